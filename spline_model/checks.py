@@ -1,0 +1,53 @@
+"""What a converged state must also satisfy before it is accepted."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from spline_model.compile import System
+
+Array = NDArray[np.float64]
+
+SLOWEST_SPEED = 0.1
+"""Least |C'| / |C0'|: the spatial curvature has a pole at zero, and a curve that nearly stops
+there is a folded parametrisation, not a strip."""
+LARGEST_CORRECTION = 0.5
+"""Largest distance from the predicted to the corrected state, over the length of the step: a
+corrector that goes further has probably left the branch."""
+
+
+def refuse(system: System, z: Array) -> str:
+    """Why a converged state is no strip: the reason, or an empty string if it is one."""
+    clamps = system.tables.clamps
+    for c in range(clamps.end.size):
+        end, inner = clamps.end[c], clamps.inner[c]
+        chord = clamps.sign[c] * (z[inner : inner + 2] - z[end : end + 2])
+        body = clamps.body[c]
+        angle = clamps.direction[c] + (z[body + 2] if body >= 0 else 0.0)
+        if not chord[0] * np.cos(angle) + chord[1] * np.sin(angle) > 0:
+            return f"the end tangent at clamp {c + 1} points backwards"
+    slowest = _slowest_speed(system, z)
+    if not slowest > SLOWEST_SPEED:
+        return f"the centreline is folded: |C'| falls to {slowest:.2g} of its value at rest"
+    return ""
+
+
+def left_the_branch(system: System, previous: Array, predicted: Array, corrected: Array) -> str:
+    """Why a corrected state is not the continuation of the previous one; empty if it is."""
+    q = slice(0, system.layout.coordinate_count)
+    unit = system.scales.unit[q]
+    step = np.linalg.norm((predicted[q] - previous[q]) / unit)
+    correction = np.linalg.norm((corrected[q] - predicted[q]) / unit)
+    if correction > LARGEST_CORRECTION * step:
+        return f"the solution lies {correction / step:.2g} steps from the predicted one"
+    return ""
+
+
+def _slowest_speed(system: System, z: Array) -> float:
+    table = system.tables.bending
+    if table.first.size == 0:
+        return np.inf
+    columns = table.first[:, None] + 2 * np.minimum(np.arange(table.d1.shape[1]), table.width[:, None] - 1)
+    x, y = (np.einsum("pa,pa->p", table.d1, z[columns + i]) for i in range(2))
+    return float((np.hypot(x, y) / table.speed).min())

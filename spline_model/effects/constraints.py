@@ -1,0 +1,47 @@
+"""Constraints: clamped strip ends and driven bodies (Eqs 5 to 7)."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import ClassVar, Literal
+
+from spline_model.effects.base import Constraint
+from spline_model.errors import InvalidParameter
+
+GROUND = "ground"
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Clamp(Constraint):
+    """One end of a strip built into the ground or into a body, where it stands at rest.
+
+    Rows: the end point (Eq 5, two rows in m) and the end direction (Eq 6). For the
+    direction the signed angle from m to C' is the row (rad): it has the Jacobian of
+    Eq 6 over |C'| where it vanishes, so that its multiplier is the end moment, and
+    unlike Eq 6 it does not vanish for a reversed tangent.
+
+    The multipliers are the force [N] and the moment [N m] of the clamp on the strip.
+    """
+
+    rows: ClassVar[int] = 3
+    strip: str
+    end: Literal["start", "end"]
+    to: str = GROUND
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class DrivenRotation(Constraint):
+    """The rotation of a body prescribed as angle x load factor (Eq 7), one row in rad.
+
+    Its multiplier is the torque that has to be applied to the body [N m]; positive in
+    the sense of a positive rotation (counter-clockwise).
+    """
+
+    rows: ClassVar[int] = 1
+    body: str
+    angle: float
+
+    def __post_init__(self) -> None:
+        if not math.isfinite(self.angle):
+            raise InvalidParameter("angle", self.angle, "a finite number [rad]")

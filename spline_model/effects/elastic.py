@@ -1,0 +1,112 @@
+"""Strain energies of a strip: bending and stretching."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from spline_model.basis import AxialModes
+from spline_model.effects.base import Potential
+from spline_model.errors import InvalidParameter, require_choice, require_count, require_positive
+
+MEASURES = ("material", "spatial", "printed")
+"""Measure names; the position is the code that the kernels read."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Bending(Potential):
+    """Bending energy of one strip.
+
+    C(u) is the centreline, ' = d/du, J0 = |C0'| the reference speed and
+    phi = (x' y'' - y' x'') / |C'|^2 = d(theta)/du the turning of the tangent.
+
+    material    V = 1/2 int EI (phi / J0 - kappa_0)^2 J0 du                        [J]
+    spatial     V = 1/2 int EI (phi / |C'| - kappa_0)^2 |C'| du        (Eq 10)     [J]
+    printed     the spatial energy with the forces of Eq 12 as they are printed:
+                d|C'|/dq is left out, so that they are no gradient and the work of
+                the drive differs from the stored energy. For comparison only.
+
+    Parameters
+    ----------
+    strip : name of the strip.
+    flexural_rigidity : EI > 0.                                                [N m^2]
+    gauss_points : Gauss points in each knot span.
+
+    Exact for: material: the geometrically exact (extensible, unshearable) elastica.
+    spatial differs from it by the order of the axial strain.
+    Left out: shear, cross-section warping, coupling with stretching over the depth.
+    Source: paper Eqs 10 to 12; Antman, Nonlinear Problems of Elasticity (2005), ch. 4.
+    """
+
+    strip: str
+    flexural_rigidity: float
+    measure: str = "material"
+    gauss_points: int
+
+    def __post_init__(self) -> None:
+        require_positive("flexural_rigidity", self.flexural_rigidity, "N m^2")
+        require_choice("measure", self.measure, MEASURES)
+        require_count("gauss_points", self.gauss_points, 1)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Stretching(Potential):
+    """Stretching energy of one strip by quadrature of the strain: the paper's form, which locks.
+
+    With the axial strain eps = |C'| / J0 - 1 (Eq 14)
+
+    material    V = 1/2 int EA eps^2 J0 du                                         [J]
+    spatial     V = 1/2 int EA eps^2 |C'| du                           (Eq 13)     [J]
+    printed     the spatial energy with the forces of Eq 15 as they are printed.
+
+    Parameters: strip, axial_rigidity EA > 0 [N], gauss_points in each knot span.
+
+    Exact for: uniform stretch. A curve of few control points cannot bend far without
+    stretching: with n = 4 it is several times too stiff at a quarter turn (membrane
+    locking). ``MixedStretching`` is the cure.
+    Source: paper Eqs 13 to 15.
+    """
+
+    strip: str
+    axial_rigidity: float
+    measure: str = "material"
+    gauss_points: int
+
+    def __post_init__(self) -> None:
+        require_positive("axial_rigidity", self.axial_rigidity, "N")
+        require_choice("measure", self.measure, MEASURES)
+        require_count("gauss_points", self.gauss_points, 1)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class MixedStretching(Potential):
+    """Stretching of one strip with an axial force of its own (Hellinger-Reissner).
+
+    N(u) = sum of a_k P_k(u) is an unknown and
+
+        V = int (N eps - 1/2 c N^2) W du,    c = 1 / EA                            [J]
+
+    is made stationary in it (W = J0, or |C'| in the spatial measure). The axial strain
+    is thereby projected on the modes P_k, which removes the locking; c = 0 is the
+    inextensible strip, with N the reaction that keeps its length.
+
+    Parameters
+    ----------
+    strip : name of the strip.
+    axial_compliance : c = 1 / EA >= 0.                                          [1/N]
+    modes : the modes P_k; control_points - 2 of them is the locking-free choice.
+
+    Exact for: uniform stretch, and N in the span of the modes.
+    Source: Reissner, On a variational theorem in elasticity, J Math Phys 29 (1950) 90.
+    """
+
+    strip: str
+    axial_compliance: float
+    modes: AxialModes
+    measure: str = "material"
+    gauss_points: int
+
+    def __post_init__(self) -> None:
+        if not 0 <= self.axial_compliance < float("inf"):
+            raise InvalidParameter("axial_compliance", self.axial_compliance, "a finite number >= 0 [1/N]")
+        require_choice("measure", self.measure, MEASURES[:2])
+        require_count("gauss_points", self.gauss_points, 1)

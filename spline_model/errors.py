@@ -1,0 +1,61 @@
+"""Exceptions of the spline model: each carries the evidence of what went wrong."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from spline_model.solution import StaticSolution
+
+
+class InvalidParameter(ValueError):
+    """A parameter outside its range; the message is one line ``name: got X, expected Y``."""
+
+    def __init__(self, name: str, got: Any, expected: str) -> None:
+        super().__init__(f"{name}: got {got!r}, expected {expected}")
+        self.name = name
+
+
+class ConvergenceError(RuntimeError):
+    """A path that could not be followed to its end.
+
+    Attributes
+    ----------
+    solution : the converged part of the path, last good state included.
+    load_factor : fraction of the path that was reached, 0 to 1.
+    history : residual norms of the failed attempts, dimensionless.
+    """
+
+    def __init__(
+        self,
+        message: str,
+        *,
+        solution: StaticSolution,
+        load_factor: float,
+        history: tuple[tuple[float, ...], ...],
+    ) -> None:
+        super().__init__(message)
+        self.solution = solution
+        self.load_factor = load_factor
+        self.history = history
+
+
+def require_positive(name: str, value: float, unit: str) -> None:
+    """Refuse anything but a finite number above zero."""
+    if not (isinstance(value, int | float) and math.isfinite(value) and value > 0):
+        raise InvalidParameter(name, value, f"a finite number > 0 [{unit}]")
+
+
+def require_count(name: str, value: int, lowest: int, highest: int | None = None) -> None:
+    """Refuse anything but an integer in ``lowest ... highest``."""
+    is_count = isinstance(value, int) and not isinstance(value, bool)
+    if not is_count or value < lowest or (highest is not None and value > highest):
+        upper = "" if highest is None else f" and <= {highest}"
+        raise InvalidParameter(name, value, f"an integer >= {lowest}{upper}")
+
+
+def require_choice(name: str, value: str, choices: tuple[str, ...]) -> None:
+    """Refuse anything but one of the named choices."""
+    if value not in choices:
+        raise InvalidParameter(name, value, "one of " + ", ".join(choices))

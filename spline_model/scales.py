@@ -1,0 +1,49 @@
+"""Units of the unknowns: what makes a residual dimensionless."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import cast
+
+import numpy as np
+from numpy.typing import NDArray
+
+from spline_model.effects import Bending, Clamp
+from spline_model.effects.base import Constraint
+from spline_model.layout import Layout
+from spline_model.scene import Scene
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Scales:
+    """Length L, energy EI / L and the unit of each unknown (N,).
+
+    Scaled by ``unit / energy`` a force row is in EI/L^2, a moment row in EI/L, a
+    compatibility or constraint row in L or rad: no tolerance changes its meaning with the
+    size, the material or the slenderness of a design.
+    """
+
+    length: float
+    energy: float
+    unit: NDArray[np.float64]
+
+
+def scene_scales(scene: Scene, layout: Layout) -> Scales:
+    """Scales from the longest strip and the largest flexural rigidity."""
+    length = max(_arc_length(strip.control_points) for strip in scene.strips)
+    bending = cast(tuple[Bending, ...], scene.of(Bending))
+    rigidity = max((e.flexural_rigidity for e in bending), default=1.0)
+    force, moment = rigidity / length**2, rigidity / length
+    unit = np.full(layout.size, length)
+    for start in layout.bodies.values():
+        unit[start + 2] = 1.0
+    for start, count in layout.modes:
+        unit[start : start + count] = force
+    for constraint, (row, count) in zip(scene.of(Constraint), layout.multipliers, strict=True):
+        unit[row : row + count] = (force, force, moment) if isinstance(constraint, Clamp) else moment
+    return Scales(length=length, energy=moment, unit=unit)
+
+
+def _arc_length(control_points: NDArray[np.float64]) -> float:
+    """Length of the control polygon: the arc length of a straight strip, an upper bound of a curved one."""
+    return float(np.hypot(*np.diff(control_points, axis=0).T).sum())

@@ -1,0 +1,76 @@
+"""A scene: strips, bodies and the effects that act on them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from spline_model.basis import SplineBasis
+from spline_model.effects import GROUND, Bending, Clamp
+from spline_model.effects.base import Constraint, Inertia, Load, Potential
+from spline_model.errors import InvalidParameter
+
+Effect = Potential | Inertia | Load | Constraint
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Strip:
+    """A flexure: a curve C(u) of control points, given at rest.
+
+    control_points: (n, 2) positions at rest [m].
+    """
+
+    name: str
+    basis: SplineBasis
+    control_points: NDArray[np.float64]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Body:
+    """A rigid body, given by its centre at rest (2,) [m]; its rotation at rest is zero."""
+
+    name: str
+    centre: NDArray[np.float64]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Scene:
+    """Strips, bodies and a tuple of effects; what no effect names does not exist in it."""
+
+    strips: tuple[Strip, ...]
+    bodies: tuple[Body, ...]
+    effects: tuple[Effect, ...]
+
+    def __post_init__(self) -> None:
+        names = [part.name for part in (*self.strips, *self.bodies)]
+        if len(set(names)) != len(names) or GROUND in names:
+            raise InvalidParameter("names", names, f"different names, none of them {GROUND!r}")
+        for effect in self.effects:
+            strip, body = getattr(effect, "strip", None), getattr(effect, "body", None)
+            if strip is not None and strip not in {s.name for s in self.strips}:
+                raise InvalidParameter("strip", strip, f"one of {[s.name for s in self.strips]}")
+            if body is not None and body not in {b.name for b in self.bodies}:
+                raise InvalidParameter("body", body, f"one of {[b.name for b in self.bodies]}")
+
+    def strip(self, name: str) -> Strip:
+        """The strip of that name."""
+        return next(strip for strip in self.strips if strip.name == name)
+
+    def body(self, name: str) -> Body:
+        """The body of that name."""
+        return next(body for body in self.bodies if body.name == name)
+
+    def of(self, *kinds: type) -> tuple[Effect, ...]:
+        """The scene's effects of these classes, in scene order."""
+        return tuple(effect for effect in self.effects if isinstance(effect, kinds))
+
+    def bending_of(self, strip: str) -> Bending | None:
+        """The bending effect of a strip, if the scene names one."""
+        return next((e for e in self.effects if isinstance(e, Bending) and e.strip == strip), None)
+
+    def clamp_of(self, strip: str, end: str) -> Clamp | None:
+        """The clamp at one end of a strip, if the scene names one."""
+        clamps = (e for e in self.effects if isinstance(e, Clamp))
+        return next((c for c in clamps if (c.strip, c.end) == (strip, end)), None)

@@ -1,0 +1,77 @@
+"""Results: frozen arrays with a status."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+class Status(Enum):
+    """How a solve ended; the text ends with a remedy."""
+
+    CONVERGED = "converged"
+    NOT_CONVERGED = "not_converged"
+
+    @property
+    def text(self) -> str:
+        """The outcome in a sentence."""
+        if self is Status.CONVERGED:
+            return "every increment converged"
+        return (
+            "the path stopped before its end and its last state is the last good one; "
+            "try more increments, more control points or axial_modes = control_points - 2"
+        )
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Path:
+    """An equilibrium path, S converged states, the unloaded one first.
+
+    load_factor (S,); states (S, N) unknowns z; rates (S, N) dz/d(load factor), from the
+    tangent; energies (S, 2) bending and axial [J]; history: residual norms by increment.
+    """
+
+    status: Status
+    message: str
+    load_factor: Array
+    states: Array
+    rates: Array
+    energies: Array
+    counters: dict[str, int]
+    history: tuple[tuple[float, ...], ...]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class StaticSolution:
+    """Answer of a pivot under a driven rotation; S states, G strips, P stations.
+
+    rotation (S,) [rad]; centre (S, 2) [m], origin at A1; torque (S,) lambda_13 [N m];
+    stiffness (S,) d(torque)/d(rotation) [N m/rad] (Eq 20) from the tangent;
+    bending_energy, axial_energy, shear_energy (S,) [J], the last zero: no shear here;
+    clamp_reactions (S, G, 2, 3): force [N] and moment [N m] of the clamp at the ground
+    and at the body end on the strip; stations (P,) reference arc length over L;
+    shape (S, G, P, 2) [m]; axial_force, bending_moment, shear_force (S, G, P) [N, N m, N].
+    """
+
+    status: Status
+    message: str
+    rotation: Array
+    centre: Array
+    torque: Array
+    stiffness: Array
+    bending_energy: Array
+    axial_energy: Array
+    shear_energy: Array
+    clamp_reactions: Array
+    stations: Array
+    shape: Array
+    axial_force: Array
+    bending_moment: Array
+    shear_force: Array
+    counters: dict[str, int]
+    history: tuple[tuple[float, ...], ...]

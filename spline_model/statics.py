@@ -1,0 +1,96 @@
+"""Statics: a pivot under a driven rotation, a scene under growing loads (Eq 19)."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+
+import numpy as np
+
+from spline_model.compile import System, compile_scene
+from spline_model.effects import DrivenRotation
+from spline_model.effects.base import Constraint
+from spline_model.errors import ConvergenceError, InvalidParameter, require_count
+from spline_model.path import follow
+from spline_model.pivot import BODY, STRIPS, Pivot
+from spline_model.scene import Scene
+from spline_model.sections import clamp_reactions, sections
+from spline_model.solution import Path, StaticSolution, Status
+
+STATIONS = np.linspace(0.0, 1.0, 61)
+"""Where sections are recovered, reference arc length over L; both clamped ends are among them."""
+
+Progress = Callable[[int, int], None]
+
+
+def solve_statics(
+    pivot: Pivot,
+    *,
+    rotation: float | Sequence[float],
+    increments: int = 20,
+    raise_on_failure: bool = True,
+    progress: Progress | None = None,
+) -> StaticSolution:
+    """Drive the pivot's body from 0 to ``rotation`` [rad] in equal increments.
+
+    A sequence of rotations is a path from one to the next (there and back), each leg in
+    ``increments``. Raises ConvergenceError with the converged part of the path, or
+    returns it as a status with ``raise_on_failure=False``.
+    """
+    targets = [rotation] if isinstance(rotation, int | float) else list(rotation)
+    for angle in targets:
+        if not math.isfinite(angle):
+            raise InvalidParameter("rotation", angle, "a finite number [rad]")
+    require_count("increments", increments, 1)
+    largest = max((abs(angle) for angle in targets), default=0.0)
+    if largest == 0.0:
+        raise InvalidParameter("rotation", rotation, "an angle other than zero [rad]")
+    legs = [np.linspace(a, b, increments + 1)[1:] for a, b in zip([0.0, *targets], targets, strict=False)]
+    system = compile_scene(pivot.driven(largest))
+    path = follow(system, list(np.concatenate(legs) / largest), progress)
+    solution = _pivot_solution(system, path)
+    if raise_on_failure and path.status is not Status.CONVERGED:
+        raise ConvergenceError(
+            path.message,
+            solution=solution,
+            load_factor=abs(solution.rotation[-1] / targets[-1]) if targets[-1] else 0.0,
+            history=path.history,
+        )
+    return solution
+
+
+def solve_loads(scene: Scene, *, increments: int = 20, progress: Progress | None = None) -> tuple[System, Path]:
+    """A scene from rest to load factor 1, all its loads and drives growing in proportion."""
+    require_count("increments", increments, 1)
+    system = compile_scene(scene)
+    return system, follow(system, list(np.linspace(0.0, 1.0, increments + 1)[1:]), progress)
+
+
+def _pivot_solution(system: System, path: Path) -> StaticSolution:
+    """The pivot's answer from the states of its path."""
+    states, layout = path.states, system.layout
+    body = states[:, layout.body(BODY)]
+    constraints = system.scene.of(Constraint)
+    i, drive = next((i, c) for i, c in enumerate(constraints) if isinstance(c, DrivenRotation))
+    row = layout.rows(i).start
+    along = [sections(system, states, name, STATIONS) for name in STRIPS]
+    reactions = [[clamp_reactions(system, states, name, end) for end in ("start", "end")] for name in STRIPS]
+    return StaticSolution(
+        status=path.status,
+        message=path.message,
+        rotation=path.load_factor * drive.angle,
+        centre=body[:, :2],
+        torque=states[:, row],
+        stiffness=path.rates[:, row] / drive.angle,
+        bending_energy=path.energies[:, 0],
+        axial_energy=path.energies[:, 1],
+        shear_energy=np.zeros(len(states)),
+        clamp_reactions=np.moveaxis(np.array(reactions), 2, 0),
+        stations=STATIONS,
+        shape=np.stack([s.shape for s in along], axis=1),
+        axial_force=np.stack([s.axial_force for s in along], axis=1),
+        bending_moment=np.stack([s.bending_moment for s in along], axis=1),
+        shear_force=np.stack([s.shear_force for s in along], axis=1),
+        counters=path.counters,
+        history=path.history,
+    )
