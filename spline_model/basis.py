@@ -48,9 +48,7 @@ class SplineBasis:
     @cached_property
     def greville(self) -> Array:
         """Greville abscissae (knot averages), shape (control_points,); degree >= 1."""
-        return np.array(
-            [self.knots[i + 1 : i + 1 + self.degree].mean() for i in range(self.control_points)]
-        )
+        return np.array([self.knots[i + 1 : i + 1 + self.degree].mean() for i in range(self.control_points)])
 
     def evaluate(self, u: Array, derivative: int = 0) -> Array:
         """Values of the derivative of each basis function, shape (len(u), control_points)."""
@@ -101,7 +99,8 @@ class LegendreModes:
 
     def evaluate(self, u: Array) -> tuple[NDArray[np.int64], Array]:
         """First mode of the support and the values, shapes (len(u),) and (len(u), width)."""
-        return np.zeros(len(u), dtype=np.int64), legendre.legvander(2 * np.asarray(u) - 1, self.count - 1)
+        values = legendre.legvander(2 * np.asarray(u) - 1, self.count - 1)
+        return np.zeros(len(u), dtype=np.int64), np.asarray(values, dtype=np.float64)
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -69,9 +69,7 @@ def compile_scene(scene: Scene) -> System:
         rest[layout.strip(strip.name)] = strip.control_points.ravel()
     for body in scene.bodies:
         rest[layout.body(body.name)][:2] = body.centre
-    return System(
-        scene=scene, tables=tables, layout=layout, scales=scene_scales(scene, layout), rest=rest
-    )
+    return System(scene=scene, tables=tables, layout=layout, scales=scene_scales(scene, layout), rest=rest)
 
 
 def make_layout(scene: Scene) -> Layout:
@@ -84,10 +82,10 @@ def make_layout(scene: Scene) -> Layout:
         bodies[body.name] = at
         at += 3
     coordinates = at
-    for effect in cast(tuple[MixedStretching, ...], scene.of(MixedStretching)):
+    for effect in scene.of(MixedStretching):
         modes.append((at, effect.modes.count))
         at += effect.modes.count
-    for constraint in cast(tuple[Constraint, ...], scene.of(Constraint)):
+    for constraint in scene.of(Constraint):
         rows.append((at, constraint.rows))
         at += constraint.rows
     return Layout(
@@ -101,7 +99,7 @@ def make_layout(scene: Scene) -> Layout:
 
 
 def _bending(scene: Scene, layout: Layout) -> BendingTable:
-    effects = cast(tuple[Bending, ...], scene.of(Bending))
+    effects = scene.of(Bending)
     points = strip_points([(scene.strip(e.strip), e.gauss_points) for e in effects], layout)
     return BendingTable(
         first=points.first,
@@ -117,7 +115,7 @@ def _bending(scene: Scene, layout: Layout) -> BendingTable:
 
 
 def _stretching(scene: Scene, layout: Layout) -> StretchingTable:
-    effects = cast(tuple[Stretching, ...], scene.of(Stretching))
+    effects = scene.of(Stretching)
     points = strip_points([(scene.strip(e.strip), e.gauss_points) for e in effects], layout)
     return StretchingTable(
         first=points.first,
@@ -131,7 +129,7 @@ def _stretching(scene: Scene, layout: Layout) -> StretchingTable:
 
 
 def _axial_force(scene: Scene, layout: Layout) -> AxialForceTable:
-    effects = cast(tuple[MixedStretching, ...], scene.of(MixedStretching))
+    effects = scene.of(MixedStretching)
     points = strip_points([(scene.strip(e.strip), e.gauss_points) for e in effects], layout)
     values = np.zeros((len(points.u), max((e.modes.width for e in effects), default=0)))
     first = np.zeros(len(points.u), dtype=np.int64)
@@ -156,7 +154,7 @@ def _axial_force(scene: Scene, layout: Layout) -> AxialForceTable:
     )
 
 
-def _measures(points: Points, effects: tuple[Bending | Stretching | MixedStretching, ...]) -> NDArray[np.int64]:
+def _measures(points: Points, effects: Sequence[Bending | Stretching | MixedStretching]) -> NDArray[np.int64]:
     return points.spread([MEASURES.index(e.measure) for e in effects]).astype(np.int64)
 
 
@@ -198,7 +196,9 @@ def _clamps(scene: Scene, layout: Layout) -> ClampTable:
 
 def _drives(scene: Scene, layout: Layout) -> DriveTable:
     constraints = scene.of(Constraint)
-    drives = [(c, layout.multipliers[i][0]) for i, c in enumerate(constraints) if isinstance(c, DrivenRotation)]
+    drives = [
+        (c, layout.multipliers[i][0]) for i, c in enumerate(constraints) if isinstance(c, DrivenRotation)
+    ]
     return DriveTable(
         coordinate=np.array([layout.bodies[d.body] + 2 for d, _ in drives], dtype=np.int64),
         target=np.array([d.angle for d, _ in drives], dtype=float),
@@ -208,9 +208,9 @@ def _drives(scene: Scene, layout: Layout) -> DriveTable:
 
 def _loads(scene: Scene, layout: Layout) -> LoadTable:
     rows: list[tuple[int, float]] = []
-    for force in cast(tuple[AppliedForce, ...], scene.of(AppliedForce)):
+    for force in scene.of(AppliedForce):
         rows += [(layout.bodies[force.body] + i, force.force[i]) for i in range(2)]
-    for moment in cast(tuple[AppliedMoment, ...], scene.of(AppliedMoment)):
+    for moment in scene.of(AppliedMoment):
         rows.append((layout.bodies[moment.body] + 2, moment.moment))
     return LoadTable(
         coordinate=np.array([i for i, _ in rows], dtype=np.int64),

@@ -83,7 +83,7 @@ class Workspace:
         factors = lu_factor(matrix, check_finite=False)
         if not np.abs(np.diag(factors[0])).min() > 0:
             raise np.linalg.LinAlgError("the tangent is singular")
-        return unit * lu_solve(factors, right_side * unit / energy, check_finite=False)
+        return np.asarray(unit * lu_solve(factors, right_side * unit / energy, check_finite=False))
 
 
 def solve(work: Workspace, start: Array, load_factor: float) -> Newton:

@@ -114,7 +114,6 @@ class _Follower:
         self.at, self.z, self.rate = load_factor, newton.z, rate
         return newton, ""
 
-
     def _predict(self, load_factor: float) -> Array:
         """Extrapolate the cubic through the last two states and their rates; from rest, the tangent."""
         if self.before is None:

@@ -9,10 +9,17 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from spline_model.basis import AxialModes, HatModes, LegendreModes, SlideModes, SplineBasis, bezier, cubic_bspline
+from spline_model.basis import (
+    AxialModes,
+    HatModes,
+    LegendreModes,
+    SlideModes,
+    SplineBasis,
+    bezier,
+    cubic_bspline,
+)
 from spline_model.effects import (
     GROUND,
-    MEASURES,
     Bending,
     Clamp,
     DrivenRotation,
@@ -59,9 +66,7 @@ class Pivot:
     def driven(self, rotation: float) -> Scene:
         """The scene with the body's rotation driven to ``rotation`` at load factor 1 (Eq 7)."""
         drive = DrivenRotation(body=BODY, angle=rotation)
-        return Scene(
-            strips=self.scene.strips, bodies=self.scene.bodies, effects=(*self.scene.effects, drive)
-        )
+        return Scene(strips=self.scene.strips, bodies=self.scene.bodies, effects=(*self.scene.effects, drive))
 
     def derived(self) -> dict[str, Any]:
         """Derived data by name, for comparison with another model's."""
@@ -126,48 +131,29 @@ def cross_axis_pivot(
     require_positive("body_moment_of_inertia", body_moment_of_inertia, "kg m^2")
     require_count("control_points", control_points, 4)
     require_choice("basis", basis, BASES)
-    require_choice("measure", measure, MEASURES)
-    require_choice("stretch", stretch, STRETCH_FORMS)
-    if measure == "printed" and stretch != "consistent":
-        raise InvalidParameter("stretch", stretch, "consistent, the only form that the printed forces have")
-    if axial_modes is not None and stretch == "consistent":
-        raise InvalidParameter("axial_modes", axial_modes, "none with stretch = consistent, which has no modes")
-
     points, directions = _clamps_at_rest(length, inclination, crossing_ratio, orientation)
-    turn = _rotation(orientation)
-    centre = points[:, 1].mean(axis=0) + turn @ np.asarray(centre_offset, dtype=float)
+    centre = points[:, 1].mean(axis=0) + _rotation(orientation) @ np.asarray(centre_offset, dtype=float)
     spline = bezier(control_points) if basis == "bezier" else cubic_bspline(control_points)
     count = spline.degree + 3 if gauss_points is None else gauss_points
-    modes = control_points - 2 if axial_modes is None else axial_modes
-    require_count("axial_modes", modes, 1, control_points - 1)
-    bending_rigidity = youngs_modulus * second_moment_of_area
+    flexural_rigidity = youngs_modulus * second_moment_of_area
     axial_rigidity = youngs_modulus * area
-
-    axial = LegendreModes(count=modes) if basis == "bezier" else HatModes(count=modes)
-    compliances: list[tuple[float, AxialModes]] = [
-        (0.0 if stretch == "inextensible" else 1.0 / axial_rigidity, axial)
-    ]
-    if slide_stiffness > 0 and modes < control_points - 1:
-        slide = slide_stiffness * bending_rigidity / length**2
-        compliances.append((1.0 / slide, SlideModes(basis=spline, axial=axial)))
+    axial = _axial_modes(spline, axial_modes, stretch)
+    slide = slide_stiffness * flexural_rigidity / length**2
 
     effects: list[Effect] = []
     for name in STRIPS:
-        rule = {"strip": name, "measure": measure, "gauss_points": count}
-        effects.append(Bending(flexural_rigidity=bending_rigidity, **rule))
-        if stretch == "consistent":
-            effects.append(Stretching(axial_rigidity=axial_rigidity, **rule))
-        else:
-            effects += [MixedStretching(axial_compliance=c, modes=m, **rule) for c, m in compliances]
+        effects.append(
+            Bending(strip=name, flexural_rigidity=flexural_rigidity, measure=measure, gauss_points=count)
+        )
+        effects += _stretching(name, axial_rigidity, stretch, measure, count, spline, axial, slide)
         effects += [Clamp(strip=name, end="start", to=GROUND), Clamp(strip=name, end="end", to=BODY)]
-
     strips = tuple(
         Strip(name=name, basis=spline, control_points=_straight(spline, *points[i]))
         for i, name in enumerate(STRIPS)
     )
     return Pivot(
         scene=Scene(strips=strips, bodies=(Body(name=BODY, centre=centre),), effects=tuple(effects)),
-        flexural_rigidity=bending_rigidity,
+        flexural_rigidity=flexural_rigidity,
         axial_rigidity=axial_rigidity,
         linear_density=density * area,
         clamp_points=points,
@@ -177,6 +163,47 @@ def cross_axis_pivot(
         body_mass=body_mass,
         body_moment_of_inertia=body_moment_of_inertia,
     )
+
+
+def _axial_modes(spline: SplineBasis, count: int | None, stretch: str) -> LegendreModes | HatModes:
+    """The axial-force modes of a strip: Legendre's for one span, hats for a B-spline."""
+    require_choice("stretch", stretch, STRETCH_FORMS)
+    if count is not None and stretch == "consistent":
+        raise InvalidParameter("axial_modes", count, "none with stretch = consistent, which has no modes")
+    modes = spline.control_points - 2 if count is None else count
+    require_count("axial_modes", modes, 1, spline.control_points - 1)
+    one_span = spline.degree == spline.control_points - 1
+    return LegendreModes(count=modes) if one_span else HatModes(count=modes)
+
+
+def _stretching(
+    strip: str,
+    axial_rigidity: float,
+    stretch: str,
+    measure: str,
+    gauss_points: int,
+    spline: SplineBasis,
+    axial: LegendreModes | HatModes,
+    slide: float,
+) -> list[Effect]:
+    """The stretching effects of one strip: by quadrature, or mixed with the slide stiffness [N]."""
+    if stretch == "consistent":
+        return [
+            Stretching(strip=strip, axial_rigidity=axial_rigidity, measure=measure, gauss_points=gauss_points)
+        ]
+    if measure == "printed":
+        raise InvalidParameter("stretch", stretch, "consistent, the only form that the printed forces have")
+    parts: list[tuple[float, AxialModes]] = [
+        (0.0 if stretch == "inextensible" else 1.0 / axial_rigidity, axial)
+    ]
+    if slide > 0 and axial.count < spline.control_points - 1:
+        parts.append((1.0 / slide, SlideModes(basis=spline, axial=axial)))
+    return [
+        MixedStretching(
+            strip=strip, axial_compliance=compliance, modes=modes, measure=measure, gauss_points=gauss_points
+        )
+        for compliance, modes in parts
+    ]
 
 
 def _check_design(

@@ -52,7 +52,9 @@ def strip_points(strips: Sequence[tuple[Strip, int]], layout: Layout) -> Points:
         "speed": np.zeros(0),
         "curvature": np.zeros(0),
     }
-    return Points(**{key: np.concatenate([none, *(part[key] for part in parts)]) for key, none in empty.items()})
+    return Points(
+        **{key: np.concatenate([none, *(part[key] for part in parts)]) for key, none in empty.items()}
+    )
 
 
 def _points_of(source: int, strip: Strip, count: int, layout: Layout, widest: int) -> dict[str, NDArray]:

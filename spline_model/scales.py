@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,7 +30,7 @@ class Scales:
 def scene_scales(scene: Scene, layout: Layout) -> Scales:
     """Scales from the longest strip and the largest flexural rigidity."""
     length = max(_arc_length(strip.control_points) for strip in scene.strips)
-    bending = cast(tuple[Bending, ...], scene.of(Bending))
+    bending = scene.of(Bending)
     rigidity = max((e.flexural_rigidity for e in bending), default=1.0)
     force, moment = rigidity / length**2, rigidity / length
     unit = np.full(layout.size, length)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,6 +14,7 @@ from spline_model.effects.base import Constraint, Inertia, Load, Potential
 from spline_model.errors import InvalidParameter
 
 Effect = Potential | Inertia | Load | Constraint
+Kind = TypeVar("Kind", bound=Effect)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -44,7 +46,7 @@ class Scene:
     effects: tuple[Effect, ...]
 
     def __post_init__(self) -> None:
-        names = [part.name for part in (*self.strips, *self.bodies)]
+        names = [strip.name for strip in self.strips] + [body.name for body in self.bodies]
         if len(set(names)) != len(names) or GROUND in names:
             raise InvalidParameter("names", names, f"different names, none of them {GROUND!r}")
         for effect in self.effects:
@@ -62,9 +64,9 @@ class Scene:
         """The body of that name."""
         return next(body for body in self.bodies if body.name == name)
 
-    def of(self, *kinds: type) -> tuple[Effect, ...]:
-        """The scene's effects of these classes, in scene order."""
-        return tuple(effect for effect in self.effects if isinstance(effect, kinds))
+    def of(self, kind: type[Kind]) -> tuple[Kind, ...]:
+        """The scene's effects of this class, in scene order."""
+        return tuple(effect for effect in self.effects if isinstance(effect, kind))
 
     def bending_of(self, strip: str) -> Bending | None:
         """The bending effect of a strip, if the scene names one."""

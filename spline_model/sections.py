@@ -49,12 +49,12 @@ def sections(system: System, states: Array, strip_name: str, stations: Array) ->
         moment = bending.flexural_rigidity * strain
 
     force = np.zeros_like(speed)
-    for effect in scene.of(Stretching):
-        if effect.strip == strip_name:
-            force += effect.axial_rigidity * (speed / rest_speed - 1.0)
-    for i, effect in enumerate(scene.of(MixedStretching)):
-        if effect.strip == strip_name:
-            first, modes = effect.modes.evaluate(stations)
+    for consistent in scene.of(Stretching):
+        if consistent.strip == strip_name:
+            force += consistent.axial_rigidity * (speed / rest_speed - 1.0)
+    for i, mixed in enumerate(scene.of(MixedStretching)):
+        if mixed.strip == strip_name:
+            first, modes = mixed.modes.evaluate(stations)
             columns = first[:, None] + np.arange(modes.shape[1])
             force += np.einsum("pk,spk->sp", modes, states[:, layout.axial_modes(i)][:, columns])
 

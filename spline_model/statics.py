@@ -59,7 +59,9 @@ def solve_statics(
     return solution
 
 
-def solve_loads(scene: Scene, *, increments: int = 20, progress: Progress | None = None) -> tuple[System, Path]:
+def solve_loads(
+    scene: Scene, *, increments: int = 20, progress: Progress | None = None
+) -> tuple[System, Path]:
     """A scene from rest to load factor 1, all its loads and drives growing in proportion."""
     require_count("increments", increments, 1)
     system = compile_scene(scene)

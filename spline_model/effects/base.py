@@ -9,6 +9,8 @@ into one flat table a class; a class that no effect names has a table of length 
 
 from __future__ import annotations
 
+from typing import ClassVar
+
 
 class Potential:
     """Adds an energy V(q), its gradient and its Hessian."""
@@ -28,4 +30,4 @@ class Constraint:
     Rows are written in metres and radians, so that multipliers are N and N m.
     """
 
-    rows: int
+    rows: ClassVar[int]

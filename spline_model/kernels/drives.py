@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 
 class DriveTable(NamedTuple):
-    """One row a driven coordinate: its index in z (D,), its value at load factor 1 (D,), its multiplier (D,)."""
+    """One row a driven coordinate: index in z, value at load factor 1, index of its multiplier; (D,) each."""
 
     coordinate: NDArray[np.int64]
     target: NDArray[np.float64]

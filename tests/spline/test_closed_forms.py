@@ -1,0 +1,92 @@
+"""The spline model against closed forms of the same theory: limits go to round-off."""
+
+import math
+
+import numpy as np
+import pytest
+
+from spline_model.pivot import cross_axis_pivot
+from spline_model.statics import solve_loads, solve_statics
+from tests import gates
+from tests.spline.scenes import LENGTH, cantilever, elastica_tip
+from tests.table_one import TABLE_ONE
+
+
+def tip(scene, increments=20):
+    """Tip (x/L, y/L, rotation) at load factor 1."""
+    system, path = solve_loads(scene, increments=increments)
+    assert path.status.value == "converged", path.message
+    return path.states[-1, system.layout.body("tip")] / (LENGTH, LENGTH, 1.0)
+
+
+def roll_up(control_points):
+    """Largest error of the tip while an end moment rolls the strip up to a full circle."""
+    system, path = solve_loads(cantilever(control_points=control_points, moment=2 * math.pi, compliance=1e-3))
+    angle = 2 * math.pi * path.load_factor[1:]
+    exact = np.column_stack((np.sin(angle) / angle, (1 - np.cos(angle)) / angle, angle))
+    body = path.states[1:, system.layout.body("tip")] / (LENGTH, LENGTH, 1.0)
+    return np.abs(body - exact).max()
+
+
+def tip_force(control_points):
+    """Largest error of tip position and rotation over six loads up to 10 EI/L^2."""
+    loads = (0.5, 1.0, 2.0, 4.0, 7.0, 10.0)
+    errors = [
+        np.abs(tip(cantilever(control_points=control_points, force=load), 8) - elastica_tip(load)).max()
+        for load in loads
+    ]
+    return max(errors)
+
+
+def small_angle_stiffness(control_points, stretch="inextensible"):
+    """Largest relative error of K at rest against 8 (EI/L)(1 - 3 l + 3 l^2), four crossing ratios."""
+    errors = []
+    for ratio in (0.5, 0.35, 0.2, 0.127322):
+        pivot = cross_axis_pivot(
+            **(TABLE_ONE | {"crossing_ratio": ratio}), control_points=control_points, stretch=stretch
+        )
+        found = solve_statics(pivot, rotation=0.01, increments=1).stiffness[0]
+        closed_form = 8 * pivot.flexural_rigidity / TABLE_ONE["length"] * (1 - 3 * ratio + 3 * ratio**2)
+        errors.append(abs(found / closed_form - 1))
+    return max(errors)
+
+
+CHECKS = {"spline_roll_up": roll_up, "spline_tip_force": tip_force}
+
+
+@pytest.mark.parametrize("gate", CHECKS)
+def test_spline_meets_the_closed_form(gate):
+    """Requirement: with enough control points the strip reproduces the exact elastica."""
+    gates.check(gate, CHECKS[gate](control_points=16))
+
+
+@pytest.mark.parametrize("gate", CHECKS)
+def test_closed_form_gates_have_teeth(gate):
+    """Requirement: the same checks fail with a few control points."""
+    with pytest.raises(AssertionError, match="x the gate"):
+        gates.check(gate, CHECKS[gate](**gates.teeth(gate)))
+
+
+def test_small_angle_stiffness_is_the_linear_closed_form():
+    """Requirement: K at rest of inextensible strips is the closed form for any crossing ratio."""
+    gates.check("spline_small_angle_stiffness", small_angle_stiffness(control_points=4))
+
+
+def test_small_angle_stiffness_gate_has_teeth():
+    """Requirement: the check sees the stretch of Table 1's strips, which the closed form leaves out."""
+    with pytest.raises(AssertionError, match="x the gate"):
+        gates.check(
+            "spline_small_angle_stiffness",
+            small_angle_stiffness(control_points=4, **gates.teeth("spline_small_angle_stiffness")),
+        )
+
+
+def test_published_cantilever_values():
+    """Requirement: the reference itself meets Mattiasson's published table to its last digit."""
+    published = {1.0: (0.05643, 0.30172, 0.46135), 10.0: (0.55500, 0.81061, 1.43029)}
+    for load, (shortening, deflection, rotation) in published.items():
+        x, y, angle = elastica_tip(load)
+        half_digit = 5.1e-6  # the table has five decimals
+        assert abs(1 - x - shortening) < half_digit
+        assert abs(y - deflection) < half_digit
+        assert abs(angle - rotation) < half_digit

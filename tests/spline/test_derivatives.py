@@ -1,0 +1,98 @@
+"""Gradient against energy and Hessian against gradient, for every operator, at crooked states."""
+
+import numpy as np
+import pytest
+
+from spline_model.compile import compile_scene
+from spline_model.kernels.assemble import assemble
+from spline_model.pivot import cross_axis_pivot
+from tests import gates
+from tests.table_one import TABLE_ONE
+
+FORMS = {
+    "material mixed": {},
+    "spatial mixed": {"measure": "spatial"},
+    "inextensible": {"stretch": "inextensible"},
+    "material consistent": {"stretch": "consistent"},
+    "spatial consistent": {"stretch": "consistent", "measure": "spatial"},
+    "printed": {"stretch": "consistent", "measure": "printed"},
+    "B-spline": {"basis": "bspline", "control_points": 7, "axial_modes": 3},
+}
+
+
+class Operator:
+    """The assembled operator in dimensionless unknowns around a crooked state."""
+
+    def __init__(self, settings):
+        pivot = cross_axis_pivot(**(TABLE_ONE | settings))
+        self.system = compile_scene(pivot.driven(0.8))
+        generator = np.random.default_rng(7)
+        self.unit, self.energy_unit = self.system.scales.unit, self.system.scales.energy
+        noise = generator.uniform(-0.03, 0.03, self.system.layout.size)
+        noise[self.system.layout.coordinate_count :] *= 30
+        self.y = self.system.rest / self.unit + noise
+
+    def evaluate(self, y):
+        """Energy, gradient and Hessian in units of EI/L."""
+        gradient, hessian = np.empty(len(y)), np.empty((len(y), len(y)))
+        energies = assemble(y * self.unit, self.system.tables, 1.0, gradient, hessian)
+        scale = self.unit / self.energy_unit
+        return sum(energies) / self.energy_unit, gradient * scale, hessian * scale[:, None] * self.unit
+
+
+def fourth_order(function, y, i, step):
+    """Fourth-order central difference of a function in its i-th variable."""
+    e = np.zeros(len(y))
+    e[i] = step
+    return (8 * (function(y + e) - function(y - e)) - function(y + 2 * e) + function(y - 2 * e)) / (12 * step)
+
+
+def hessian_error(settings):
+    """Largest error of a column of the Hessian, over the largest entry of that column."""
+    operator = Operator(settings)
+    hessian = operator.evaluate(operator.y)[2]
+    columns = [
+        fourth_order(lambda y: operator.evaluate(y)[1], operator.y, i, 2e-4) for i in range(len(operator.y))
+    ]
+    return max(
+        np.abs(column - hessian[:, i]).max() / np.abs(hessian[:, i]).max() for i, column in enumerate(columns)
+    )
+
+
+def gradient_error(settings, rows):
+    """Largest error of the gradient's rows without multipliers, over its largest entry."""
+    operator = Operator(settings)
+    operator.y[operator.system.layout.multiplier_start :] = 0.0  # psi is no part of the energy
+    gradient = operator.evaluate(operator.y)[1]
+    found = [fourth_order(lambda y: operator.evaluate(y)[0], operator.y, i, 2e-4) for i in range(rows)]
+    return np.abs(np.array(found) - gradient[:rows]).max() / np.abs(gradient[:rows]).max()
+
+
+@pytest.mark.parametrize("form", FORMS)
+def test_hessian_is_the_gradients_derivative(form):
+    """Requirement: the tangent of every operator is consistent, also of the printed forces."""
+    gates.check("spline_hessian", hessian_error(FORMS[form]))
+
+
+@pytest.mark.parametrize("form", [form for form in FORMS if form != "printed"])
+def test_gradient_is_the_energys_derivative(form):
+    """Requirement: the forces of every energy are its exact gradient."""
+    rows = Operator(FORMS[form]).system.layout.coordinate_count
+    gates.check("spline_gradient", gradient_error(FORMS[form], rows))
+
+
+@pytest.mark.parametrize("gate", ["spline_gradient", "spline_hessian"])
+def test_derivative_gates_have_teeth(gate):
+    """Requirement: the printed forces (Eqs 12, 15) are not the gradient of the printed energies."""
+    rows = Operator({}).system.layout.coordinate_count
+    with pytest.raises(AssertionError, match="x the gate"):
+        gates.check(gate, gradient_error(gates.teeth(gate), rows))
+
+
+@pytest.mark.parametrize("form", [form for form in FORMS if form != "printed"])
+def test_tangent_is_symmetric(form):
+    """Requirement: a gradient's tangent is symmetric to round-off."""
+    operator = Operator(FORMS[form])
+    hessian = operator.evaluate(operator.y)[2]
+    asymmetry = np.abs(hessian - hessian.T).max() / np.abs(hessian).max()
+    assert asymmetry < 1e-13  # some hundred additions of double precision

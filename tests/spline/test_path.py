@@ -1,0 +1,107 @@
+"""Following the path: increments, work, refusals."""
+
+import math
+
+import numpy as np
+import pytest
+
+from spline_model.errors import ConvergenceError, InvalidParameter
+from spline_model.pivot import cross_axis_pivot
+from spline_model.statics import solve_statics
+from tests import gates
+from tests.table_one import TABLE_ONE
+
+QUARTER = math.pi / 2
+
+
+def solved(rotation=QUARTER, increments=20, **settings):
+    """Static solution of Table 1 with settings."""
+    return solve_statics(cross_axis_pivot(**(TABLE_ONE | settings)), rotation=rotation, increments=increments)
+
+
+def increment_dependence(increments=(1, 2, 5, 200), **settings):
+    """Largest relative change of torque and K at 90 deg against 20 increments."""
+    reference = solved(**settings)
+    found = [solved(increments=count, **settings) for count in increments]
+    return max(
+        max(abs(s.torque[-1] / reference.torque[-1] - 1), abs(s.stiffness[-1] / reference.stiffness[-1] - 1))
+        for s in found
+    )
+
+
+def test_answer_does_not_depend_on_the_increments():
+    """Requirement: 1, 2, 5, 20 and 200 increments end in the same state."""
+    gates.check("spline_increment_independence", increment_dependence())
+
+
+def test_increment_gate_has_teeth():
+    """Requirement: the check notices a different discretisation."""
+    reference, other = solved(), solved(**gates.teeth("spline_increment_independence"))
+    with pytest.raises(AssertionError, match="x the gate"):
+        gates.check("spline_increment_independence", abs(other.torque[-1] / reference.torque[-1] - 1))
+
+
+@pytest.mark.parametrize("control_points", [4, 6, 8, 12])
+def test_newton_iterations(control_points):
+    """Requirement: 45 Newton iterations or fewer for 20 increments; a factorisation each, one more for K."""
+    counters = solved(control_points=control_points).counters
+    assert counters["newton_iterations"] <= 45
+    assert counters["factorisations"] == counters["newton_iterations"] + counters["increments"] + 1
+    assert counters["increments"] == 20
+    assert counters["halved_increments"] == 0
+
+
+def test_a_path_that_stops_keeps_its_converged_part():
+    """Requirement: a failed path says where and why and keeps the last good state."""
+    pivot = cross_axis_pivot(**TABLE_ONE, control_points=8)
+    with pytest.raises(ConvergenceError, match="stopped between load factor") as caught:
+        solve_statics(pivot, rotation=math.radians(230), increments=30)
+    kept = solve_statics(pivot, rotation=math.radians(230), increments=30, raise_on_failure=False)
+    assert kept.status.value == "not_converged"
+    assert "try more increments" in kept.status.text
+    assert 1 < len(kept.rotation) < 31
+    assert np.array_equal(kept.torque, caught.value.solution.torque)
+    assert np.isfinite(kept.torque).all()
+    assert 0 < caught.value.load_factor < 1
+
+
+def test_progress_counts_to_the_end():
+    """Requirement: the progress callable sees every increment."""
+    seen = []
+    solve_statics(
+        cross_axis_pivot(**TABLE_ONE),
+        rotation=0.5,
+        increments=4,
+        progress=lambda done, total: seen.append((done, total)),
+    )
+    assert seen == [(1, 4), (2, 4), (3, 4), (4, 4)]
+
+
+@pytest.mark.parametrize(
+    "change, line",
+    [
+        ({"length": 0.0}, r"length: got 0.0, expected a finite number > 0 \[m\]"),
+        ({"youngs_modulus": math.nan}, r"youngs_modulus: got nan"),
+        ({"crossing_ratio": 1.0}, r"crossing_ratio: got 1.0, expected a number between 0 and 1"),
+        ({"inclination": 2.0}, r"inclination: got 2.0"),
+        ({"control_points": 3}, r"control_points: got 3, expected an integer >= 4"),
+        ({"axial_modes": 6}, r"axial_modes: got 6, expected an integer >= 1 and <= 5"),
+        ({"axial_modes": 2, "stretch": "consistent"}, r"axial_modes: got 2, expected none"),
+        ({"measure": "printed"}, r"stretch: got 'mixed', expected consistent"),
+        ({"basis": "hermite"}, r"basis: got 'hermite', expected one of bezier, bspline"),
+        ({"gauss_points": 0}, r"gauss_points: got 0, expected an integer >= 1"),
+        ({"body_mass": -1.0}, r"body_mass: got -1.0"),
+    ],
+    ids=str,
+)
+def test_invalid_parameters_are_one_line(change, line):
+    """Requirement: a parameter outside its range is refused with name, value and expectation."""
+    with pytest.raises(InvalidParameter, match=line):
+        cross_axis_pivot(**(TABLE_ONE | change))
+
+
+@pytest.mark.parametrize("change", [{"rotation": math.inf}, {"rotation": 0.0}, {"increments": 0}], ids=str)
+def test_invalid_paths_are_refused(change):
+    """Requirement: a path without length, end or increments is refused."""
+    with pytest.raises(InvalidParameter):
+        solve_statics(cross_axis_pivot(**TABLE_ONE), **({"rotation": 1.0, "increments": 5} | change))

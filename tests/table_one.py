@@ -1,0 +1,16 @@
+"""Table 1 of the paper in SI units, written out once more so that tests do not depend on the case reader."""
+
+import math
+
+TABLE_ONE = {
+    "length": 0.06 * math.sqrt(2.0),
+    "inclination": math.pi / 4,
+    "crossing_ratio": 0.5,
+    "area": 5e-5,
+    "second_moment_of_area": 1.041e-10,
+    "youngs_modulus": 206e9,
+    "poisson_ratio": 0.29,
+    "density": 7800.0,
+    "body_mass": 0.2,
+    "body_moment_of_inertia": 0.002,
+}
