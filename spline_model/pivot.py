@@ -21,10 +21,12 @@ from spline_model.basis import (
 from spline_model.effects import (
     GROUND,
     Bending,
+    BodyInertia,
     Clamp,
     DrivenRotation,
     MixedStretching,
     Stretching,
+    StripInertia,
 )
 from spline_model.errors import InvalidParameter, require_choice, require_count, require_positive
 from spline_model.scene import Body, Effect, Scene, Strip
@@ -33,6 +35,8 @@ BASES = ("bezier", "bspline")
 STRETCH_FORMS = ("mixed", "consistent", "inextensible")
 BODY = "body"
 STRIPS = ("strip_1", "strip_2")
+SWINGING_SLIDE_STIFFNESS = 100.0
+"""The value for a pivot in motion: its sliding must be fast against the strips' bending, or it takes part."""
 SLIDE_STIFFNESS = 10.0
 """Default stiffness of the strains that the axial modes do not see, in EI/L^2.
 
@@ -67,6 +71,15 @@ class Pivot:
         """The scene with the body's rotation driven to ``rotation`` at load factor 1 (Eq 7)."""
         drive = DrivenRotation(body=BODY, angle=rotation)
         return Scene(strips=self.scene.strips, bodies=self.scene.bodies, effects=(*self.scene.effects, drive))
+
+    def released(self) -> Scene:
+        """The scene with the inertia of strips and body, and without a drive."""
+        inertia = (
+            *(StripInertia(strip=name, linear_density=self.linear_density) for name in STRIPS),
+            BodyInertia(body=BODY, mass=self.body_mass, moment_of_inertia=self.body_moment_of_inertia),
+        )
+        effects = (*self.scene.effects, *inertia)
+        return Scene(strips=self.scene.strips, bodies=self.scene.bodies, effects=effects)
 
     def derived(self) -> dict[str, Any]:
         """Derived data by name, for comparison with another model's."""

@@ -59,6 +59,21 @@ def solve_statics(
     return solution
 
 
+def solve_path(pivot: Pivot, rotation: float, increments: int = 20) -> Path:
+    """The states of the path to one rotation; raises ConvergenceError if it is not reached."""
+    require_count("increments", increments, 1)
+    system = compile_scene(pivot.driven(rotation))
+    path = follow(system, list(np.linspace(0.0, 1.0, increments + 1)[1:]))
+    if path.status is not Status.CONVERGED:
+        raise ConvergenceError(
+            path.message,
+            solution=_pivot_solution(system, path),
+            load_factor=float(path.load_factor[-1]),
+            history=path.history,
+        )
+    return path
+
+
 def solve_loads(
     scene: Scene, *, increments: int = 20, progress: Progress | None = None
 ) -> tuple[System, Path]:

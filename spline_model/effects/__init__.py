@@ -2,6 +2,7 @@
 
 from spline_model.effects.constraints import GROUND, Clamp, DrivenRotation
 from spline_model.effects.elastic import MEASURES, Bending, MixedStretching, Stretching
+from spline_model.effects.inertia import BodyInertia, StripInertia
 from spline_model.effects.loads import AppliedForce, AppliedMoment
 
 __all__ = [
@@ -10,8 +11,10 @@ __all__ = [
     "AppliedForce",
     "AppliedMoment",
     "Bending",
+    "BodyInertia",
     "Clamp",
     "DrivenRotation",
     "MixedStretching",
     "Stretching",
+    "StripInertia",
 ]

@@ -1,0 +1,163 @@
+"""Dynamics: the pivot released from a static state (Eq 4 without the drive)."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from spline_model.compile import compile_scene
+from spline_model.errors import InvalidParameter, require_choice, require_positive
+from spline_model.integrators import adaptive, energy_consistent, explicit, generalised_alpha
+from spline_model.integrators.motion import Motion, Records, initial_acceleration, set_in_motion
+from spline_model.modes import linear_modes, static_state
+from spline_model.pivot import BODY, Pivot
+from spline_model.solution import Status
+
+Array = NDArray[np.float64]
+
+INTEGRATORS: dict[str, Callable[..., Records]] = {
+    "energy": energy_consistent.integrate,
+    "generalised-alpha": generalised_alpha.integrate,
+    "explicit": explicit.integrate,
+}
+STEP = 5e-5
+"""Default step of the implicit integrators [s]: some 240 steps a swing of Table 1."""
+MOST_MEMORY = 2e9
+"""Bytes that the records of one run may take."""
+STEPS_PER_PERIOD = 20
+"""Fewer steps than this in a period of the swing do not resolve it (phase error above 1 %)."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Trajectory:
+    """Motion after the release; T records, the start first.
+
+    time (T,) [s]; rotation (T,) [rad]; centre (T, 2) [m]; kinetic_energy, strain_energy (T,)
+    [J]; constraint_residual (T,) [m]; velocity_residual (T,) its rate [m/s]; states (T, N)
+    and velocities (T, Q) of the released system; resolution: empty, or how far the step
+    under-resolves the swing; counters: steps, halved_steps, newton_iterations, ...
+    """
+
+    status: Status
+    message: str
+    time: Array
+    rotation: Array
+    centre: Array
+    kinetic_energy: Array
+    strain_energy: Array
+    constraint_residual: Array
+    velocity_residual: Array
+    states: Array
+    velocities: Array
+    resolution: str
+    counters: dict[str, int]
+    settings: dict[str, Any]
+
+
+def solve_release(
+    pivot: Pivot,
+    *,
+    start: float = math.pi / 2,
+    duration: float = 0.05,
+    step: float | None = None,
+    integrator: str = "energy",
+    accuracy: float | None = None,
+    records: int | None = None,
+    **options: float,
+) -> Trajectory:
+    """Release the pivot at rest from the static state at rotation ``start`` [rad].
+
+    Parameters
+    ----------
+    duration, step : [s]; the step defaults to STEP, or to 0.9 of the critical one (explicit); it
+        is shortened so that a whole number of steps fits between the records.
+    integrator : "energy" (default, cannot create energy), "generalised-alpha" (option
+        ``spectral_radius``) or "explicit".
+    accuracy : wanted error of the rotation over the run [rad], by local error control of the
+        energy-consistent steps, instead of a fixed step.
+    records : largest number of records; default every step.
+
+    Raises InvalidParameter, and ConvergenceError if statics does not reach ``start``.
+    """
+    require_choice("integrator", integrator, tuple(INTEGRATORS))
+    require_positive("duration", duration, "s")
+    if not math.isfinite(start):
+        raise InvalidParameter("start", start, "a finite angle [rad]")
+    for name, value in (("step", step), ("accuracy", accuracy)):
+        if value is not None:
+            require_positive(name, value, "s" if name == "step" else "rad")
+    if accuracy is not None and (step is not None or integrator != "energy"):
+        raise InvalidParameter("accuracy", accuracy, "no step beside it, and the energy integrator")
+
+    motion = set_in_motion(compile_scene(pivot.released()))
+    layout = motion.system.layout
+    held = static_state(pivot, start)[: layout.size].copy()
+    v = np.zeros(layout.coordinate_count)
+    acceleration, z = initial_acceleration(motion, held, v)
+    if accuracy is not None:
+        run = adaptive.integrate(motion, z, v, acceleration, duration=duration, accuracy=accuracy)
+        return _trajectory(motion, run, {"integrator": integrator, "accuracy_rad": accuracy}, None)
+    if step is None:
+        step = 0.9 * critical_step(motion, z) if integrator == "explicit" else STEP
+    steps, every = _count(duration, step, records, layout.size + layout.coordinate_count + 6)
+    step = duration / steps
+    run = INTEGRATORS[integrator](motion, z, v, acceleration, step=step, steps=steps, every=every, **options)
+    return _trajectory(motion, run, {"integrator": integrator, "step_s": step, **options}, step)
+
+
+def critical_step(motion: Motion, z: Array) -> float:
+    """Largest stable step of the explicit integrator at a state [s], from its highest frequency."""
+    return float(explicit.STABILITY_LIMIT / math.sqrt(linear_modes(motion.system, z, motion.mass)[0][-1]))
+
+
+def _count(duration: float, step: float, records: int | None, width: int) -> tuple[int, int]:
+    """Number of steps, a multiple of the steps a record; refuses what does not fit into memory."""
+    if step > duration:
+        raise InvalidParameter("step", step, f"at most the duration, {duration:g} s")
+    steps = max(1, math.ceil(duration / step * (1 - 1e-12)))  # a whole number but for round-off
+    every = 1 if records is None else max(1, math.ceil(steps / records))
+    memory = 8.0 * width * (steps // every + 1)
+    if memory > MOST_MEMORY:
+        raise InvalidParameter(
+            "duration",
+            duration,
+            f"records that fit into {MOST_MEMORY / 1e9:g} GB; {steps} steps of {step:g} s take {memory / 1e9:.3g} GB",
+        )
+    return math.ceil(steps / every) * every, every
+
+
+def _trajectory(motion: Motion, run: Records, settings: dict[str, Any], step: float | None) -> Trajectory:
+    body = run.states[:, motion.system.layout.body(BODY)]
+    return Trajectory(
+        status=Status.NOT_CONVERGED if run.message else Status.CONVERGED,
+        message=run.message,
+        time=run.time,
+        rotation=body[:, 2],
+        centre=body[:, :2],
+        kinetic_energy=run.rows[:, 0],
+        strain_energy=run.rows[:, 1],
+        constraint_residual=run.rows[:, 2],
+        velocity_residual=run.rows[:, 3],
+        states=run.states,
+        velocities=run.velocities,
+        resolution="" if step is None else _resolution(motion, step),
+        counters=run.counters,
+        settings=settings,
+    )
+
+
+def _resolution(motion: Motion, step: float) -> str:
+    """How far a step under-resolves the swing at rest, or an empty string."""
+    squares = linear_modes(motion.system, motion.system.rest, motion.mass)[0]
+    omega = math.sqrt(squares[0]) if squares[0] > 0 else 0.0
+    if not 0 < omega * step / (2 * math.pi) * STEPS_PER_PERIOD > 1:
+        return ""
+    return (
+        f"the step of {step:g} s is {omega * step / (2 * math.pi):.3g} of the swing's period at rest: "
+        f"energy is right, phase and amplitude are not; take {2 * math.pi / omega / STEPS_PER_PERIOD:.2g} s or less"
+    )

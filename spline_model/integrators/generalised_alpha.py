@@ -1,0 +1,143 @@
+"""Generalised-alpha for the index-3 constrained system.
+
+    M a1 + dV/dq(q1) - Psi_q(q1)^T lambda1 = 0,   psi(q1) = 0
+    q1 = q0 + h v0 + h^2 ((1/2 - beta) p0 + beta p1),   v1 = v0 + h ((1 - gamma) p0 + gamma p1)
+    (1 - alpha_m) p1 + alpha_m p0 = (1 - alpha_f) a1 + alpha_f a0
+
+Second order in q, v and lambda; ``spectral_radius`` rho at infinite frequency sets the
+numerical damping (1 none, 0 most): alpha_m = (2 rho - 1)/(rho + 1), alpha_f = rho/(rho + 1),
+gamma = 1/2 + alpha_f - alpha_m, beta = (gamma + 1/2)^2 / 4. Energy is not conserved, and far
+above the resolved frequencies the nonlinear scheme may fail.
+Source: Arnold and Bruls, Multibody Syst Dyn 18 (2007) 185.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.linalg import LinAlgWarning, lu_factor, lu_solve
+
+from spline_model.checks import refuse
+from spline_model.integrators.motion import Array, Motion, Records
+from spline_model.kernels.assemble import assemble
+from spline_model.kernels.energy_step import record
+
+TOLERANCE = 1e-10
+MOST_ITERATIONS = 15
+SMALLEST_STEP = 2.0**-8
+SPECTRAL_RADIUS = 0.8
+
+
+class Stepper:
+    """One system's arrays and the scheme's constants; holds the state while it is advanced."""
+
+    def __init__(
+        self, motion: Motion, z: Array, v: Array, acceleration: Array, spectral_radius: float
+    ) -> None:
+        rho = spectral_radius
+        self.alpha_m, self.alpha_f = (2 * rho - 1) / (rho + 1), rho / (rho + 1)
+        self.gamma = 0.5 + self.alpha_f - self.alpha_m
+        self.beta = (self.gamma + 0.5) ** 2 / 4
+        self.motion, self.z, self.v = motion, z.copy(), v.copy()
+        self.acceleration, self.pseudo = acceleration.copy(), acceleration.copy()
+        size = len(z)
+        self.gradient, self.hessian = np.empty(size), np.empty((size, size))
+        self.counters = {"steps": 0, "halved_steps": 0, "newton_iterations": 0, "factorisations": 0}
+
+    def advance(self, duration: float, step: float) -> bool:
+        """Advance by ``duration``; steps whose Newton fails are halved; False if none succeeds."""
+        done, h = 0.0, step
+        while duration - done > 1e-9 * duration:
+            h = min(h, duration - done)
+            if self._try(h):
+                self.counters["steps"] += 1
+                done += h
+                h = min(2 * h, step)
+                continue
+            self.counters["halved_steps"] += 1
+            h /= 2
+            if h < SMALLEST_STEP * step:
+                return False
+        return True
+
+    def _try(self, h: float) -> bool:
+        count, motion = len(self.v), self.motion
+        scales = motion.system.scales
+        z, acceleration = self.z.copy(), np.zeros(count)
+        pseudo = (self.alpha_f * self.acceleration - self.alpha_m * self.pseudo) / (1 - self.alpha_m)
+        z[:count] += h * self.v + h**2 * ((0.5 - self.beta) * self.pseudo + self.beta * pseudo)
+        v = self.v + h * ((1 - self.gamma) * self.pseudo + self.gamma * pseudo)
+        rate = (1 - self.alpha_m) / (self.beta * h**2 * (1 - self.alpha_f))
+        for _ in range(MOST_ITERATIONS):
+            assemble(z, motion.system.tables, 0.0, self.gradient, self.hessian)
+            self.gradient[:count] += motion.mass @ acceleration
+            norm = np.abs(self.gradient * scales.unit).max() / scales.energy
+            if not np.isfinite(norm):
+                return False
+            if norm <= TOLERANCE:
+                return self._accept(z, v, acceleration, pseudo)
+            self.hessian[:count, :count] += rate * motion.mass
+            change = self._solve()
+            if change is None:
+                return False
+            z += change
+            v += self.gamma / (self.beta * h) * change[:count]
+            acceleration += rate * change[:count]
+            pseudo += change[:count] / (self.beta * h**2)
+        return False
+
+    def _solve(self) -> Array | None:
+        unit, energy = self.motion.system.scales.unit, self.motion.system.scales.energy
+        self.counters["newton_iterations"] += 1
+        self.counters["factorisations"] += 1
+        try:
+            factors = lu_factor(self.hessian * (unit[:, None] * unit / energy), check_finite=False)
+        except (np.linalg.LinAlgError, LinAlgWarning):
+            return None
+        return np.asarray(-unit * lu_solve(factors, self.gradient * unit / energy, check_finite=False))
+
+    def _accept(self, z: Array, v: Array, acceleration: Array, pseudo: Array) -> bool:
+        if refuse(self.motion.system, z):
+            return False
+        self.z, self.v, self.acceleration, self.pseudo = z, v, acceleration, pseudo
+        return True
+
+
+def integrate(
+    motion: Motion,
+    z: Array,
+    v: Array,
+    acceleration: Array,
+    *,
+    step: float,
+    steps: int,
+    every: int,
+    spectral_radius: float = SPECTRAL_RADIUS,
+) -> Records:
+    """Take ``steps`` steps from (z, v), recording every ``every``-th one."""
+    stepper = Stepper(motion, z, v, acceleration, spectral_radius)
+    system = motion.system
+    strains = np.empty(len(motion.rigidity))
+    states, rates, rows, message = [z], [v], [np.empty(4)], ""
+    start = system.layout.coordinate_count
+
+    def note(z: Array, v: Array, row: Array) -> None:
+        record(z, v, system.tables, motion.mass, motion.rigidity, start, motion.chord, strains, row)
+
+    note(z, v, rows[0])
+    for k in range(1, steps + 1):
+        if not stepper.advance(step, step):
+            message = f"stopped at {(k - 1) * step:.6g} s: Newton fails at any step"
+            break
+        if k % every == 0:
+            states.append(stepper.z)
+            rates.append(stepper.v)
+            rows.append(np.empty(4))
+            note(stepper.z, stepper.v, rows[-1])
+    return Records(
+        time=step * every * np.arange(len(states)),
+        states=np.array(states),
+        velocities=np.array(rates),
+        rows=np.array(rows),
+        message=message,
+        counters=stepper.counters,
+    )
