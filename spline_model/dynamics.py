@@ -10,10 +10,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from spline_model.compile import compile_scene
+from spline_model.compile import System, compile_scene
 from spline_model.errors import InvalidParameter, require_choice, require_positive
 from spline_model.integrators import adaptive, energy_consistent, explicit, generalised_alpha
-from spline_model.integrators.motion import Motion, Records, initial_acceleration, set_in_motion
+from spline_model.integrators.motion import Records, initial_acceleration, set_in_motion
+from spline_model.kernels.motion import Motion
 from spline_model.modes import linear_modes, static_state
 from spline_model.pivot import BODY, Pivot
 from spline_model.solution import Status
@@ -94,25 +95,25 @@ def solve_release(
     if accuracy is not None and (step is not None or integrator != "energy"):
         raise InvalidParameter("accuracy", accuracy, "no step beside it, and the energy integrator")
 
-    motion = set_in_motion(compile_scene(pivot.released()))
-    layout = motion.system.layout
+    system = compile_scene(pivot.released())
+    motion, layout = set_in_motion(system), system.layout
     held = static_state(pivot, start)[: layout.size].copy()
     v = np.zeros(layout.coordinate_count)
-    acceleration, z = initial_acceleration(motion, held, v)
+    acceleration, z = initial_acceleration(system, motion, held, v)
     if accuracy is not None:
         run = adaptive.integrate(motion, z, v, acceleration, duration=duration, accuracy=accuracy)
-        return _trajectory(motion, run, {"integrator": integrator, "accuracy_rad": accuracy}, None)
+        return _trajectory(system, motion, run, {"integrator": integrator, "accuracy_rad": accuracy}, None)
     if step is None:
-        step = 0.9 * critical_step(motion, z) if integrator == "explicit" else STEP
+        step = 0.9 * critical_step(system, motion, z) if integrator == "explicit" else STEP
     steps, every = _count(duration, step, records, layout.size + layout.coordinate_count + 6)
     step = duration / steps
     run = INTEGRATORS[integrator](motion, z, v, acceleration, step=step, steps=steps, every=every, **options)
-    return _trajectory(motion, run, {"integrator": integrator, "step_s": step, **options}, step)
+    return _trajectory(system, motion, run, {"integrator": integrator, "step_s": step, **options}, step)
 
 
-def critical_step(motion: Motion, z: Array) -> float:
+def critical_step(system: System, motion: Motion, z: Array) -> float:
     """Largest stable step of the explicit integrator at a state [s], from its highest frequency."""
-    return float(explicit.STABILITY_LIMIT / math.sqrt(linear_modes(motion.system, z, motion.mass)[0][-1]))
+    return float(explicit.STABILITY_LIMIT / math.sqrt(linear_modes(system, z, motion.mass)[0][-1]))
 
 
 def _count(duration: float, step: float, records: int | None, width: int) -> tuple[int, int]:
@@ -126,13 +127,15 @@ def _count(duration: float, step: float, records: int | None, width: int) -> tup
         raise InvalidParameter(
             "duration",
             duration,
-            f"records that fit into {MOST_MEMORY / 1e9:g} GB; {steps} steps of {step:g} s take {memory / 1e9:.3g} GB",
+            f"records within {MOST_MEMORY / 1e9:g} GB; {steps} steps of {step:g} s take {memory / 1e9:.3g}",
         )
     return math.ceil(steps / every) * every, every
 
 
-def _trajectory(motion: Motion, run: Records, settings: dict[str, Any], step: float | None) -> Trajectory:
-    body = run.states[:, motion.system.layout.body(BODY)]
+def _trajectory(
+    system: System, motion: Motion, run: Records, settings: dict[str, Any], step: float | None
+) -> Trajectory:
+    body = run.states[:, system.layout.body(BODY)]
     return Trajectory(
         status=Status.NOT_CONVERGED if run.message else Status.CONVERGED,
         message=run.message,
@@ -145,19 +148,20 @@ def _trajectory(motion: Motion, run: Records, settings: dict[str, Any], step: fl
         velocity_residual=run.rows[:, 3],
         states=run.states,
         velocities=run.velocities,
-        resolution="" if step is None else _resolution(motion, step),
+        resolution="" if step is None else _resolution(system, motion, step),
         counters=run.counters,
         settings=settings,
     )
 
 
-def _resolution(motion: Motion, step: float) -> str:
+def _resolution(system: System, motion: Motion, step: float) -> str:
     """How far a step under-resolves the swing at rest, or an empty string."""
-    squares = linear_modes(motion.system, motion.system.rest, motion.mass)[0]
+    squares = linear_modes(system, system.rest, motion.mass)[0]
     omega = math.sqrt(squares[0]) if squares[0] > 0 else 0.0
     if not 0 < omega * step / (2 * math.pi) * STEPS_PER_PERIOD > 1:
         return ""
     return (
         f"the step of {step:g} s is {omega * step / (2 * math.pi):.3g} of the swing's period at rest: "
-        f"energy is right, phase and amplitude are not; take {2 * math.pi / omega / STEPS_PER_PERIOD:.2g} s or less"
+        "energy is right, phase and amplitude are not; "
+        f"take {2 * math.pi / omega / STEPS_PER_PERIOD:.2g} s or less"
     )

@@ -13,7 +13,7 @@ Array = NDArray[np.float64]
 
 
 def mass_matrix(scene: Scene, layout: Layout) -> Array:
-    """M in the coordinates q, shape (coordinate_count, coordinate_count) [kg, kg m^2]; zero where none acts."""
+    """M in the coordinates q, shape (Q, Q) [kg, kg m^2]; zero where no inertia acts."""
     mass = np.zeros((layout.coordinate_count, layout.coordinate_count))
     for effect in scene.of(StripInertia):
         block = effect.linear_density * unit_mass(scene.strip(effect.strip))

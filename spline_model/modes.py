@@ -11,7 +11,6 @@ from scipy.linalg import eigh, null_space
 from spline_model.basis import SlideModes
 from spline_model.compile import System, compile_scene
 from spline_model.effects import MixedStretching
-from spline_model.effects.base import Inertia
 from spline_model.errors import InvalidParameter, require_count
 from spline_model.kernels.assemble import assemble
 from spline_model.mass import mass_matrix
@@ -91,9 +90,7 @@ def linear_modes(system: System, z: Array, mass: Array) -> tuple[Array, Array, A
     """
     layout, unit = system.layout, system.scales.unit
     if not np.any(mass):
-        raise InvalidParameter(
-            "effects", "no inertia", f"one of {[k.__name__ for k in Inertia.__subclasses__()]}"
-        )
+        raise InvalidParameter("effects", "no inertia", "strip or body inertia for a natural mode")
     count = layout.coordinate_count
     gradient, hessian = np.empty(layout.size), np.empty((layout.size, layout.size))
     assemble(z, system.tables, 0.0, gradient, hessian)

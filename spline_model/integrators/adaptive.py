@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from spline_model.integrators import energy_consistent
-from spline_model.integrators.motion import Array, Motion, Records
+from spline_model.integrators.motion import Array, Records
 from spline_model.kernels.energy_step import FACTORISATIONS, HALVED, NEWTON, STEPS, advance, record
+from spline_model.kernels.motion import Motion
 
 FIRST_STEP = 1e-4
 """First trial step over the duration."""
@@ -24,37 +25,17 @@ def integrate(
     estimates the step's error (Milne's device; Hairer, Norsett and Wanner, III.7). A step is
     accepted if it is below accuracy * h / duration. Every accepted step is a record.
     """
-    system = motion.system
     counters, strains = np.zeros(4, dtype=np.int64), np.empty(len(motion.rigidity))
-    start = system.layout.coordinate_count
     time, states, rates, rows = [0.0], [z.copy()], [v.copy()], [np.empty(4)]
 
-    def note(z: Array, v: Array, row: Array) -> None:
-        record(z, v, system.tables, motion.mass, motion.rigidity, start, motion.chord, strains, row)
-
-    note(z, v, rows[0])
+    record(z, v, motion, strains, rows[0])
     rejected, message, h = 0, "", FIRST_STEP * duration
     while duration - time[-1] > 1e-9 * duration:
         h = min(h, duration - time[-1])
         new_z, new_v, new_a = states[-1].copy(), rates[-1].copy(), acceleration.copy()
         turns = motion.turns
         predicted = new_z[turns] + h * (new_v[turns] + 0.5 * h * new_a[turns])
-        done = advance(
-            new_z,
-            new_v,
-            new_a,
-            h,
-            h,
-            h,
-            system.tables,
-            motion.mass,
-            turns,
-            motion.chord,
-            system.scales.unit,
-            system.scales.energy,
-            energy_consistent.TOLERANCE,
-            counters,
-        )
+        done = advance(new_z, new_v, new_a, h, h, h, motion, energy_consistent.TOLERANCE, counters)
         error = np.abs(new_z[turns] - predicted).max() / 6 if done == h else np.inf
         share = accuracy * h / duration
         if error <= share:
@@ -63,7 +44,7 @@ def integrate(
             rates.append(new_v)
             acceleration = new_a
             rows.append(np.empty(4))
-            note(new_z, new_v, rows[-1])
+            record(new_z, new_v, motion, strains, rows[-1])
         else:
             rejected += 1
         # the error over its share goes with h^2

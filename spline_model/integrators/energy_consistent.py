@@ -15,8 +15,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from spline_model.integrators.motion import Array, Motion, Records
+from spline_model.integrators.motion import Array, Records
 from spline_model.kernels.energy_step import FACTORISATIONS, HALVED, NEWTON, STEPS, run
+from spline_model.kernels.motion import Motion
 
 TOLERANCE = 1e-11
 """Residual of a step, in EI/L^2, EI/L, L and rad; the energy of a step is exact to this."""
@@ -32,7 +33,6 @@ def integrate(
     states, rates, rows = np.zeros((count, z.size)), np.zeros((count, v.size)), np.zeros((count, 4))
     states[0], rates[0] = z, v
     counters = np.zeros(4, dtype=np.int64)
-    layout, scales = motion.system.layout, motion.system.scales
     done = run(
         z.copy(),
         v.copy(),
@@ -41,14 +41,7 @@ def integrate(
         steps,
         every,
         step * SMALLEST_STEP,
-        motion.system.tables,
-        motion.mass,
-        motion.turns,
-        motion.chord,
-        scales.unit,
-        scales.energy,
-        motion.rigidity,
-        layout.coordinate_count,
+        motion,
         TOLERANCE,
         counters,
         states,

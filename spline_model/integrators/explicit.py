@@ -11,11 +11,11 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from spline_model.compile import System
 from spline_model.errors import InvalidParameter
-from spline_model.integrators.motion import Array, Motion, Records
+from spline_model.integrators.motion import Array, Records
 from spline_model.kernels.energy_step import record
-from spline_model.kernels.reduced import expand, runge_kutta
+from spline_model.kernels.motion import Motion
+from spline_model.kernels.reduced import Workspace, expand, runge_kutta
 
 STABILITY_LIMIT = 8.0**0.5
 """omega h up to which Runge-Kutta 4 does not amplify an undamped oscillation."""
@@ -23,20 +23,16 @@ MOST_ENERGY = 1.1
 """A run whose energy exceeds this times the initial one is unstable and stops."""
 
 
-def reduce(system: System, z: Array, v: Array) -> tuple[Array, Array, NDArray[np.int64], Array]:
-    """Reduced coordinates r, rates w, the free indices in q and the chords at rest, from a state."""
-    clamps, layout = system.tables.clamps, system.layout
+def reduce(motion: Motion, z: Array, v: Array) -> tuple[Array, Array, NDArray[np.int64]]:
+    """Reduced coordinates r (R,), their rates w (R,) and the free indices in q, from a state."""
+    clamps, count = motion.tables.clamps, len(v)
     held = {int(i) + j for i in (*clamps.end, *clamps.inner) for j in range(2)}
-    free = np.array([i for i in range(layout.coordinate_count) if i not in held], dtype=np.int64)
-    rest = [
-        system.rest[i : i + 2] - system.rest[e : e + 2] for e, i in zip(clamps.end, clamps.inner, strict=True)
-    ]
-    chord = np.array([np.hypot(*c) for c in rest])
-    now = [z[i : i + 2] - z[e : e + 2] for e, i in zip(clamps.end, clamps.inner, strict=True)]
-    r = np.concatenate((z[free], [np.hypot(*c) for c in now] / chord))
-    jacobian, drift = np.zeros((layout.coordinate_count, len(r))), np.zeros(layout.coordinate_count)
-    expand(r, np.zeros(len(r)), free, clamps, chord, z.copy(), jacobian, drift)
-    return r, np.linalg.lstsq(jacobian, v, rcond=None)[0], free, chord
+    free = np.array([i for i in range(count) if i not in held], dtype=np.int64)
+    chords = [z[i : i + 2] - z[e : e + 2] for e, i in zip(clamps.end, clamps.inner, strict=True)]
+    r = np.concatenate((z[free], [np.hypot(*c) for c in chords] / motion.chord))
+    jacobian, drift = np.zeros((count, len(r))), np.zeros(count)
+    expand(r, np.zeros(len(r)), free, clamps, motion.chord, z.copy(), jacobian, drift)
+    return r, np.asarray(np.linalg.lstsq(jacobian, v, rcond=None)[0]), free
 
 
 def integrate(
@@ -44,42 +40,34 @@ def integrate(
 ) -> Records:
     """Take ``steps`` steps from (z, v), recording every ``every``-th one; ``acceleration`` is not needed."""
     if (np.diag(motion.rigidity) == 0).any():
-        raise InvalidParameter(
-            "integrator", "explicit", "energy or generalised-alpha for inextensible strips"
-        )
-    system, count = motion.system, len(v)
-    r, w, free, chord = reduce(system, z, v)
-    size, strains = system.layout.size, np.empty(len(motion.rigidity))
-    state = z.copy()
-    arrays = (
-        np.empty(size),
-        np.empty((size, size)),
-        np.empty((count, len(r))),
-        np.empty(count),
-        strains,
+        raise InvalidParameter("integrator", "explicit", "an implicit one for inextensible strips")
+    r, w, free = reduce(motion, z, v)
+    size, count = len(z), len(v)
+    work = Workspace(
+        z=z.copy(),
+        gradient=np.empty(size),
+        hessian=np.empty((size, size)),
+        jacobian=np.empty((count, len(r))),
+        drift=np.empty(count),
+        strains=np.empty(len(motion.rigidity)),
     )
     states, rates, rows, message = [z], [v], [np.empty(4)], ""
-    start = system.layout.coordinate_count
-    record(z, v, system.tables, motion.mass, motion.rigidity, start, chord, strains, rows[0])
+    record(z, v, motion, work.strains, rows[0])
     most = MOST_ENERGY * (rows[0][0] + rows[0][1])
     for k in range(steps // every):
-        fine = runge_kutta(
-            r, w, step, every, free, system.tables, chord, motion.mass, motion.rigidity, state, *arrays
-        )
+        fine = runge_kutta(r, w, step, every, free, motion, work)
         if fine:
-            expand(r, w, free, system.tables.clamps, chord, state, arrays[2], arrays[3])
-            speed = arrays[2] @ w
-            row = np.empty(4)
-            record(state, speed, system.tables, motion.mass, motion.rigidity, start, chord, strains, row)
-            fine = row[0] + row[1] <= most
+            expand(r, w, free, motion.tables.clamps, motion.chord, work.z, work.jacobian, work.drift)
+            states.append(work.z.copy())
+            rates.append(work.jacobian @ w)
+            rows.append(np.empty(4))
+            record(states[-1], rates[-1], motion, work.strains, rows[-1])
+            fine = rows[-1][0] + rows[-1][1] <= most
         if not fine:
             message = f"unstable near {k * every * step:.6g} s: the step is above the critical one"
             break
-        states.append(state.copy())
-        rates.append(speed)
-        rows.append(row)
     return Records(
-        time=step * every * np.arange(len(states)),
+        time=np.arange(0.0, len(states)) * (step * every),
         states=np.array(states),
         velocities=np.array(rates),
         rows=np.array(rows),

@@ -16,10 +16,10 @@ from __future__ import annotations
 import numpy as np
 from scipy.linalg import LinAlgWarning, lu_factor, lu_solve
 
-from spline_model.checks import refuse
-from spline_model.integrators.motion import Array, Motion, Records
+from spline_model.integrators.motion import Array, Records
 from spline_model.kernels.assemble import assemble
-from spline_model.kernels.energy_step import record
+from spline_model.kernels.energy_step import forward, record
+from spline_model.kernels.motion import Motion
 
 TOLERANCE = 1e-10
 MOST_ITERATIONS = 15
@@ -61,16 +61,15 @@ class Stepper:
 
     def _try(self, h: float) -> bool:
         count, motion = len(self.v), self.motion
-        scales = motion.system.scales
         z, acceleration = self.z.copy(), np.zeros(count)
         pseudo = (self.alpha_f * self.acceleration - self.alpha_m * self.pseudo) / (1 - self.alpha_m)
         z[:count] += h * self.v + h**2 * ((0.5 - self.beta) * self.pseudo + self.beta * pseudo)
         v = self.v + h * ((1 - self.gamma) * self.pseudo + self.gamma * pseudo)
         rate = (1 - self.alpha_m) / (self.beta * h**2 * (1 - self.alpha_f))
         for _ in range(MOST_ITERATIONS):
-            assemble(z, motion.system.tables, 0.0, self.gradient, self.hessian)
+            assemble(z, motion.tables, 0.0, self.gradient, self.hessian)
             self.gradient[:count] += motion.mass @ acceleration
-            norm = np.abs(self.gradient * scales.unit).max() / scales.energy
+            norm = np.abs(self.gradient * motion.unit).max() / motion.energy
             if not np.isfinite(norm):
                 return False
             if norm <= TOLERANCE:
@@ -86,7 +85,7 @@ class Stepper:
         return False
 
     def _solve(self) -> Array | None:
-        unit, energy = self.motion.system.scales.unit, self.motion.system.scales.energy
+        unit, energy = self.motion.unit, self.motion.energy
         self.counters["newton_iterations"] += 1
         self.counters["factorisations"] += 1
         try:
@@ -96,7 +95,7 @@ class Stepper:
         return np.asarray(-unit * lu_solve(factors, self.gradient * unit / energy, check_finite=False))
 
     def _accept(self, z: Array, v: Array, acceleration: Array, pseudo: Array) -> bool:
-        if refuse(self.motion.system, z):
+        if not forward(z, self.motion.tables):
             return False
         self.z, self.v, self.acceleration, self.pseudo = z, v, acceleration, pseudo
         return True
@@ -115,15 +114,9 @@ def integrate(
 ) -> Records:
     """Take ``steps`` steps from (z, v), recording every ``every``-th one."""
     stepper = Stepper(motion, z, v, acceleration, spectral_radius)
-    system = motion.system
     strains = np.empty(len(motion.rigidity))
     states, rates, rows, message = [z], [v], [np.empty(4)], ""
-    start = system.layout.coordinate_count
-
-    def note(z: Array, v: Array, row: Array) -> None:
-        record(z, v, system.tables, motion.mass, motion.rigidity, start, motion.chord, strains, row)
-
-    note(z, v, rows[0])
+    record(z, v, motion, strains, rows[0])
     for k in range(1, steps + 1):
         if not stepper.advance(step, step):
             message = f"stopped at {(k - 1) * step:.6g} s: Newton fails at any step"
@@ -132,9 +125,9 @@ def integrate(
             states.append(stepper.z)
             rates.append(stepper.v)
             rows.append(np.empty(4))
-            note(stepper.z, stepper.v, rows[-1])
+            record(stepper.z, stepper.v, motion, strains, rows[-1])
     return Records(
-        time=step * every * np.arange(len(states)),
+        time=np.arange(0.0, len(states)) * (step * every),
         states=np.array(states),
         velocities=np.array(rates),
         rows=np.array(rows),

@@ -1,4 +1,4 @@
-"""What every integrator starts from and returns."""
+"""From a compiled scene to a motion: its constants and consistent start; and what a run returns."""
 
 from __future__ import annotations
 
@@ -12,25 +12,10 @@ from spline_model.effects import MixedStretching
 from spline_model.effects.base import Inertia, Load
 from spline_model.errors import InvalidParameter
 from spline_model.kernels.assemble import assemble
+from spline_model.kernels.motion import Motion
 from spline_model.mass import mass_matrix
 
 Array = NDArray[np.float64]
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Motion:
-    """A system in motion: what does not change during a run.
-
-    mass (Q, Q) [kg, kg m^2]; turns: places of the rotations in q; chord (C,) length of the end
-    chord at rest of each clamp [m]; rigidity (M, M) inverse compliance of the axial modes
-    [N/m], zero where a strip is inextensible.
-    """
-
-    system: System
-    mass: Array
-    turns: NDArray[np.int64]
-    chord: Array
-    rigidity: Array
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -64,11 +49,13 @@ def set_in_motion(system: System) -> Motion:
     clamps = system.tables.clamps
     chords = [rest[i : i + 2] - rest[e : e + 2] for e, i in zip(clamps.end, clamps.inner, strict=True)]
     return Motion(
-        system=system,
+        tables=system.tables,
         mass=mass,
         turns=np.array([start + 2 for start in layout.bodies.values()], dtype=np.int64),
         chord=np.array([np.hypot(*chord) for chord in chords]),
         rigidity=axial_rigidity(system),
+        unit=system.scales.unit,
+        energy=system.scales.energy,
     )
 
 
@@ -87,23 +74,23 @@ def axial_rigidity(system: System) -> Array:
     return rigidity
 
 
-def initial_acceleration(motion: Motion, z: Array, v: Array) -> tuple[Array, Array]:
+def initial_acceleration(system: System, motion: Motion, z: Array, v: Array) -> tuple[Array, Array]:
     """Consistent acceleration (Q,) and unknowns z (N,) at a state with velocity v (Q,).
 
     M a + dV/dq = Psi_q^T lambda with the constraints (and the inextensible strips' strains)
     differentiated twice: Psi_q a = -(Psi_q v)_q v, the right side by a central difference of
     Psi_q along v, exact at rest.
     """
-    layout = motion.system.layout
+    layout = system.layout
     q, rest = slice(0, layout.coordinate_count), slice(layout.coordinate_count, layout.size)
-    size, unit = layout.size, motion.system.scales.unit
+    size, unit = layout.size, system.scales.unit
     gradient, hessian = np.empty(size), np.empty((size, size))
     free = z.copy()
     axial = slice(layout.coordinate_count, layout.multiplier_start)
     free[rest] = 0.0
-    assemble(free, motion.system.tables, 0.0, gradient, hessian)
+    assemble(free, motion.tables, 0.0, gradient, hessian)
     free[axial] = motion.rigidity @ gradient[axial]
-    assemble(free, motion.system.tables, 0.0, gradient, hessian)
+    assemble(free, motion.tables, 0.0, gradient, hessian)
     fixed = np.concatenate((np.diag(motion.rigidity) == 0, np.ones(size - layout.multiplier_start, bool)))
     rows = np.arange(size)[rest][fixed]
     jacobian, force = hessian[rows][:, q].copy(), -gradient[q].copy()
@@ -115,9 +102,9 @@ def initial_acceleration(motion: Motion, z: Array, v: Array) -> tuple[Array, Arr
         ahead, behind = free.copy(), free.copy()
         ahead[q] += step * v
         behind[q] -= step * v
-        assemble(ahead, motion.system.tables, 0.0, gradient, hessian)
+        assemble(ahead, motion.tables, 0.0, gradient, hessian)
         drift = hessian[rows][:, q] @ v
-        assemble(behind, motion.system.tables, 0.0, gradient, hessian)
+        assemble(behind, motion.tables, 0.0, gradient, hessian)
         drift = (drift - hessian[rows][:, q] @ v) / (2 * step)
 
     matrix = np.block([[motion.mass, jacobian.T], [jacobian, np.zeros((len(rows), len(rows)))]])

@@ -17,7 +17,7 @@ STEPS, HALVED, NEWTON, FACTORISATIONS = range(4)
 
 
 @njit(cache=True, nogil=True)
-def assemble_step(z0, z1, delta, v0, h, tables, mass, turns, chord, gradient, hessian):
+def assemble_step(z0, z1, delta, v0, h, motion, gradient, hessian):
     """Residual and tangent of one step of length h from (z0, v0) to z1.
 
     M (v1 - v0) / h + D V - D psi^T lambda = 0 with (v0 + v1) / 2 = (q1 - q0) / h; rotations
@@ -27,16 +27,17 @@ def assemble_step(z0, z1, delta, v0, h, tables, mass, turns, chord, gradient, he
     """
     gradient[:] = 0.0
     hessian[:] = 0.0
+    tables, mass = motion.tables, motion.mass
     add_discrete_bending(z0, z1, tables.bending, gradient, hessian)
     add_discrete_stretching(z0, z1, tables.stretching, gradient, hessian)
     add_discrete_axial_force(z0, z1, tables.axial_force, gradient, hessian)
-    subtract_discrete_clamps(z0, z1, tables.clamps, chord, gradient, hessian)
+    subtract_discrete_clamps(z0, z1, tables.clamps, motion.chord, gradient, hessian)
     count = v0.size
     change = np.empty(count)
     slope = np.ones(count)
     for i in range(count):
         change[i] = delta[i] / h - v0[i]
-    for i in turns:
+    for i in motion.turns:
         half = 0.5 * delta[i]
         change[i] = 2.0 * math.tan(half) / h - v0[i]
         slope[i] = 1.0 / math.cos(half) ** 2
@@ -50,49 +51,31 @@ def assemble_step(z0, z1, delta, v0, h, tables, mass, turns, chord, gradient, he
 
 
 @njit(cache=True, nogil=True)
-def newton_step(
-    z0,
-    z1,
-    delta,
-    v0,
-    h,
-    tables,
-    mass,
-    turns,
-    chord,
-    unit,
-    energy_unit,
-    tolerance,
-    gradient,
-    hessian,
-    counters,
-):
-    """Solve one step in place from the guess delta and the axial forces and multipliers in z1; True if the residual came below tolerance.
+def newton_step(z0, z1, delta, v0, h, motion, tolerance, gradient, hessian, counters):
+    """Solve one step in place from the guess delta and the axial forces and multipliers in z1.
 
-    Rotations of more than a quarter turn in one step are refused: the Cayley map has a pole
-    at a half turn.
+    True if the residual came below tolerance. Rotations of more than a quarter turn in one
+    step are refused: the Cayley map has a pole at a half turn.
     """
+    unit, energy = motion.unit, motion.energy
     size = z1.size
     before = np.inf
     for i in range(delta.size):
         z1[i] = z0[i] + delta[i]
     for _ in range(20):
-        assemble_step(z0, z1, delta, v0, h, tables, mass, turns, chord, gradient, hessian)
+        assemble_step(z0, z1, delta, v0, h, motion, gradient, hessian)
         norm = 0.0
         for i in range(size):
-            gradient[i] *= unit[i] / energy_unit
+            gradient[i] *= unit[i] / energy
             norm = max(norm, abs(gradient[i])) if gradient[i] == gradient[i] else np.inf
         if not norm < 1e12:
             return False
         if norm <= tolerance or (norm <= 1e3 * tolerance and norm > 0.5 * before):
-            for i in turns:
-                if abs(delta[i]) > 0.5 * math.pi:
-                    return False
-            return True
+            return np.abs(delta[motion.turns]).max() <= 0.5 * math.pi if motion.turns.size else True
         before = norm
         for i in range(size):
             for j in range(size):
-                hessian[i, j] *= unit[i] * unit[j] / energy_unit
+                hessian[i, j] *= unit[i] * unit[j] / energy
         try:
             step = np.linalg.solve(hessian, gradient)
         except Exception:  # numba: singular to machine precision
@@ -132,22 +115,7 @@ def forward(z, tables):
 
 
 @njit(cache=True, nogil=True)
-def advance(
-    z,
-    v,
-    acceleration,
-    duration,
-    first_step,
-    smallest,
-    tables,
-    mass,
-    turns,
-    chord,
-    unit,
-    energy_unit,
-    tolerance,
-    counters,
-):
+def advance(z, v, acceleration, duration, first_step, smallest, motion, tolerance, counters):
     """Advance (z, v) in place by ``duration``, halving steps whose Newton fails; returns the time done.
 
     The step doubles again after each success, up to ``first_step``.
@@ -161,24 +129,8 @@ def advance(
         guess[:] = z
         for i in range(count):
             delta[i] = step * (v[i] + 0.5 * step * acceleration[i])
-        solved = newton_step(
-            z,
-            guess,
-            delta,
-            v,
-            step,
-            tables,
-            mass,
-            turns,
-            chord,
-            unit,
-            energy_unit,
-            tolerance,
-            gradient,
-            hessian,
-            counters,
-        )
-        if not (solved and forward(guess, tables)):
+        solved = newton_step(z, guess, delta, v, step, motion, tolerance, gradient, hessian, counters)
+        if not (solved and forward(guess, motion.tables)):
             counters[HALVED] += 1
             step *= 0.5
             if step < smallest:
@@ -187,7 +139,7 @@ def advance(
         counters[STEPS] += 1
         for i in range(count):
             mean = delta[i] / step
-            for turn in turns:
+            for turn in motion.turns:
                 if i == turn:
                     mean = 2.0 * math.tan(0.5 * delta[i]) / step
             acceleration[i] = 2.0 * (mean - v[i]) / step
@@ -199,12 +151,12 @@ def advance(
 
 
 @njit(cache=True, nogil=True)
-def record(z, v, tables, mass, rigidity, start, chord, strains, row):
+def record(z, v, motion, strains, row):
     """Fill row with kinetic and strain energy [J], the constraint residuals psi [m] and d(psi)/dt [m/s]."""
-    row[0] = 0.5 * np.dot(v, np.dot(mass, v))
-    row[1] = strain_energy(z, tables, rigidity, start, strains)
+    row[0] = 0.5 * np.dot(v, np.dot(motion.mass, v))
+    row[1] = strain_energy(z, motion.tables, motion.rigidity, v.size, strains)
     position = velocity = 0.0
-    clamps = tables.clamps
+    clamps = motion.tables.clamps
     for c in range(clamps.end.size):
         end, inner, sign, body = clamps.end[c], clamps.inner[c], clamps.sign[c], clamps.body[c]
         bx, by = clamps.point[c]
@@ -218,7 +170,7 @@ def record(z, v, tables, mass, rigidity, start, chord, strains, row):
         mx, my = math.cos(m), math.sin(m)
         dx, dy = sign * (z[inner] - z[end]), sign * (z[inner + 1] - z[end + 1])
         wx, wy = sign * (v[inner] - v[end]), sign * (v[inner + 1] - v[end + 1])
-        reach = chord[c]
+        reach = motion.chord[c]
         position = max(position, abs(z[end] - gx - ax), abs(z[end + 1] - gy - ay))
         position = max(position, abs(mx * dy - my * dx) / math.hypot(dx, dy) * reach)
         velocity = max(velocity, abs(v[end] - vx + omega * ay), abs(v[end + 1] - vy - omega * ax))
@@ -228,56 +180,20 @@ def record(z, v, tables, mass, rigidity, start, chord, strains, row):
 
 
 @njit(cache=True, nogil=True)
-def run(
-    z,
-    v,
-    acceleration,
-    step,
-    steps,
-    every,
-    smallest,
-    tables,
-    mass,
-    turns,
-    chord,
-    unit,
-    energy_unit,
-    rigidity,
-    start,
-    tolerance,
-    counters,
-    states,
-    rates,
-    rows,
-):
+def run(z, v, acceleration, step, steps, every, smallest, motion, tolerance, counters, states, rates, rows):
     """Take ``steps`` steps, recording each ``every``-th one; returns the steps that were completed.
 
     states (R, N), rates (R, Q) and rows (R, 4) are filled from row 1 on; row 0 is the start.
     """
-    strains = np.empty(rigidity.shape[0])
-    record(z, v, tables, mass, rigidity, start, chord, strains, rows[0])
+    strains = np.empty(motion.rigidity.shape[0])
+    record(z, v, motion, strains, rows[0])
     for k in range(1, steps + 1):
-        done = advance(
-            z,
-            v,
-            acceleration,
-            step,
-            step,
-            smallest,
-            tables,
-            mass,
-            turns,
-            chord,
-            unit,
-            energy_unit,
-            tolerance,
-            counters,
-        )
+        done = advance(z, v, acceleration, step, step, smallest, motion, tolerance, counters)
         if done < step:
             return k - 1
         if k % every == 0:
             r = k // every
             states[r] = z
             rates[r] = v
-            record(z, v, tables, mass, rigidity, start, chord, strains, rows[r])
+            record(z, v, motion, strains, rows[r])
     return steps

@@ -10,9 +10,11 @@ over its value at rest, all other control points, and the bodies' poses:
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
+from numpy.typing import NDArray
 
 from spline_model.kernels.assemble import assemble
 from spline_model.kernels.energy import axial_strains
@@ -60,81 +62,46 @@ def expand(r, w, free, clamps, chord, z, jacobian, drift):
             drift[inner + 1] = -spin * (ay + s * my) + 2.0 * omega * ds * mx
 
 
+class Workspace(NamedTuple):
+    """What one evaluation fills: z, gradient (N,), hessian (N, N), jacobian (Q, R), drift (Q,)."""
+
+    z: NDArray[np.float64]
+    gradient: NDArray[np.float64]
+    hessian: NDArray[np.float64]
+    jacobian: NDArray[np.float64]
+    drift: NDArray[np.float64]
+    strains: NDArray[np.float64]
+
+
 @njit(cache=True, nogil=True)
-def acceleration(r, w, free, tables, chord, mass, rigidity, z, gradient, hessian, jacobian, drift, strains):
-    """Reduced acceleration (R,) at (r, w); z is left at the expanded coordinates."""
-    count = mass.shape[0]
-    expand(r, w, free, tables.clamps, chord, z, jacobian, drift)
+def acceleration(r, w, free, motion, work):
+    """Reduced acceleration (R,) at (r, w); work.z is left at the expanded coordinates."""
+    z, strains, tables = work.z, work.strains, motion.tables
+    count = motion.mass.shape[0]
+    expand(r, w, free, tables.clamps, motion.chord, z, work.jacobian, work.drift)
     axial_strains(z, tables.axial_force, count, strains)
     z[count:] = 0.0
-    z[count : count + strains.size] = np.dot(rigidity, strains)
-    assemble(z, tables, 0.0, gradient, hessian)
-    force = gradient[:count] + np.dot(mass, drift)
-    inertia = np.dot(jacobian.T, np.dot(mass, jacobian))
-    return np.linalg.solve(inertia, -np.dot(jacobian.T, force))
+    z[count : count + strains.size] = np.dot(motion.rigidity, strains)
+    assemble(z, tables, 0.0, work.gradient, work.hessian)
+    force = work.gradient[:count] + np.dot(motion.mass, work.drift)
+    inertia = np.dot(work.jacobian.T, np.dot(motion.mass, work.jacobian))
+    return np.linalg.solve(inertia, -np.dot(work.jacobian.T, force))
 
 
 @njit(cache=True, nogil=True)
-def runge_kutta(
-    r, w, h, steps, free, tables, chord, mass, rigidity, z, gradient, hessian, jacobian, drift, strains
-):
-    """Take ``steps`` classical Runge-Kutta steps of length h in place; False at the first non-finite state."""
+def runge_kutta(r, w, h, steps, free, motion, work):
+    """Take ``steps`` classical Runge-Kutta steps of length h in place; False if the state diverges."""
     for _ in range(steps):
-        k1 = acceleration(
-            r, w, free, tables, chord, mass, rigidity, z, gradient, hessian, jacobian, drift, strains
-        )
+        k1 = acceleration(r, w, free, motion, work)
         w2 = w + 0.5 * h * k1
-        k2 = acceleration(
-            r + 0.5 * h * w,
-            w2,
-            free,
-            tables,
-            chord,
-            mass,
-            rigidity,
-            z,
-            gradient,
-            hessian,
-            jacobian,
-            drift,
-            strains,
-        )
+        k2 = acceleration(r + 0.5 * h * w, w2, free, motion, work)
         w3 = w + 0.5 * h * k2
-        k3 = acceleration(
-            r + 0.5 * h * w2,
-            w3,
-            free,
-            tables,
-            chord,
-            mass,
-            rigidity,
-            z,
-            gradient,
-            hessian,
-            jacobian,
-            drift,
-            strains,
-        )
+        k3 = acceleration(r + 0.5 * h * w2, w3, free, motion, work)
         w4 = w + h * k3
-        k4 = acceleration(
-            r + h * w3,
-            w4,
-            free,
-            tables,
-            chord,
-            mass,
-            rigidity,
-            z,
-            gradient,
-            hessian,
-            jacobian,
-            drift,
-            strains,
-        )
+        k4 = acceleration(r + h * w3, w4, free, motion, work)
         r += h / 6.0 * (w + 2.0 * w2 + 2.0 * w3 + w4)
         w += h / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4)
-        if not np.isfinite(np.abs(r).max() + np.abs(w).max()):
-            return False
-        if np.abs(r).max() > 1e3:  # far outside any pose: the next stage would only overflow
+        # far outside any pose, or not finite: the next stage would only overflow
+        if not np.abs(r).max() + 1e-9 * np.abs(w).max() < 1e3:
             return False
     return True
