@@ -1,0 +1,43 @@
+# `make` alone lists the targets. Everything happens in .venv, which `make setup` creates.
+.DEFAULT_GOAL := help
+.PHONY: help setup figures test test-all lint clean
+
+PYTHON ?= python3
+BIN := .venv/bin
+STAMP := .venv/installed
+
+# One thread: the matrices are small, and timings must not depend on what else runs.
+export OMP_NUM_THREADS := 1
+export OPENBLAS_NUM_THREADS := 1
+export MKL_NUM_THREADS := 1
+
+help:  ## list the targets
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-9s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
+
+setup: $(STAMP)  ## create .venv with the pinned packages and this one
+
+$(STAMP): requirements.lock pyproject.toml
+	$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "Python 3.11 or newer is needed")'
+	$(PYTHON) -m venv .venv
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -r requirements.lock
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps --no-build-isolation --editable .
+	@touch $@
+
+figures: $(STAMP)  ## compute all studies anew, draw their figures, refresh the README
+	$(BIN)/python -m studies run all
+	$(BIN)/python -m studies readme
+
+test: $(STAMP)  ## run the quick tests
+	$(BIN)/python -m pytest -q -m "not slow"
+
+test-all: $(STAMP)  ## run all tests
+	$(BIN)/python -m pytest -q
+
+lint: $(STAMP)  ## check style and types
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+
+clean:  ## remove .venv and every cache, but no results
+	rm -rf .venv .mypy_cache .pytest_cache .ruff_cache .hypothesis .benchmarks build *.egg-info
+	find . -name __pycache__ -type d -prune -exec rm -rf {} +

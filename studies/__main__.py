@@ -1,0 +1,62 @@
+"""`python -m studies COMMAND ...`: find the command, import it, run it."""
+
+import os
+import sys
+from collections.abc import Sequence
+
+# One thread, set before numpy is first imported: small matrices gain nothing from more, and timings must not
+# vary.
+for _variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
+    os.environ.setdefault(_variable, "1")
+
+from importlib import import_module  # noqa: E402
+
+from studies.commands.parser import Parser  # noqa: E402
+from studies.errors import BadInput  # noqa: E402
+from studies.registry import COMMANDS  # noqa: E402
+
+BAD_INPUT = 2
+INTERRUPTED = 130
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run one command; return its exit code, or 2 after one line on the error stream for bad input."""
+    words = list(sys.argv[1:] if arguments is None else arguments)
+    try:
+        return _dispatch(words)
+    except BadInput as error:
+        print(f"studies: {error}", file=sys.stderr)
+        return BAD_INPUT
+    except KeyboardInterrupt:
+        print("studies: interrupted", file=sys.stderr)
+        return INTERRUPTED
+
+
+def _dispatch(words: list[str]) -> int:
+    parser = _overview()
+    if not words:
+        parser.print_help()
+        return 0
+    name = parser.parse_args(words[:1]).command
+    module = import_module(COMMANDS[name][0])
+    command = Parser(prog=f"python -m studies {name}", description=module.__doc__)
+    module.add_arguments(command)
+    code: int = module.main(command.parse_args(words[1:]))
+    return code
+
+
+def _overview() -> Parser:
+    lines = "\n".join(f"  {name:10s} {text}" for name, (_, text) in COMMANDS.items())
+    parser = Parser(
+        prog="python -m studies",
+        description=f"Studies of the cross-axis flexural pivot.\n\ncommands:\n{lines}",
+        epilog="`python -m studies COMMAND --help` explains a command, with an example.",
+    )
+    parser.add_argument(
+        "command", choices=list(COMMANDS), metavar="COMMAND", help="one of the commands above"
+    )
+    return parser
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,108 @@
+"""Measures that compare one path with another: arrays in, numbers out, no model."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+def trajectory_error(centre: Array, reference: Array) -> Array:
+    """Return |g - g_ref| over |g_ref,end - g_ref,0|, the distance of two paths over the reference's
+    displacement.
+
+    Args:
+        centre: (S, 2) positions [m]; a path that stopped early has fewer states than the reference.
+        reference: (R, 2) positions [m], R >= S, from rest to the end of the path.
+
+    Returns:
+        (S,) [1].
+
+    Raises:
+        ValueError: the reference ends where it began.
+    """
+    travel = float(np.linalg.norm(reference[-1] - reference[0]))
+    if travel == 0.0:
+        raise ValueError("reference path: got no displacement, expected one to relate errors to")
+    distance = np.linalg.norm(centre - reference[: len(centre)], axis=1)
+    return np.asarray(distance / travel)
+
+
+def relative_error(values: Array, reference: Array) -> Array:
+    """Return (v - v_ref) / |v_ref| state by state, 0/0 of an unloaded state counting as no error.
+
+    Args:
+        values: (S,) of any unit.
+        reference: (R,) of the same unit, R >= S.
+
+    Returns:
+        (S,) signed [1].
+    """
+    expected = reference[: len(values)]
+    difference = values - expected
+    safe = np.where(expected == 0.0, 1.0, np.abs(expected))
+    return np.where((expected == 0.0) & (difference == 0.0), 0.0, difference / safe)
+
+
+def observed_order(coarse: float, fine: float, ratio: float = 2.0) -> float:
+    """Return log(e_coarse / e_fine) / log(ratio): the order at which an error falls when a mesh is refined by
+    `ratio`.
+
+    NaN when either error is zero or not finite.
+    """
+    if not (0.0 < abs(coarse) < math.inf and 0.0 < abs(fine) < math.inf):
+        return math.nan
+    return math.log(abs(coarse / fine)) / math.log(ratio)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Extrapolated:
+    """A limit of refinement and its uncertainty, of the same shape and unit."""
+
+    value: Array
+    uncertainty: Array
+
+
+def richardson(coarse: Array, fine: Array, *, order: float, ratio: float = 2.0) -> Array:
+    """Return the limit of a sequence of known order from its last two members.
+
+    f = f_fine + (f_fine - f_coarse) / (ratio^order - 1), exact when the error is C h^order alone.
+
+    Args:
+        coarse, fine: values on two meshes, any shape.
+        order: order of the method [1].
+        ratio: refinement between the two [1].
+    """
+    return np.asarray(fine + (fine - coarse) / (ratio**order - 1.0))
+
+
+def extrapolate(levels: Sequence[Array], *, order: float = 2.0, ratio: float = 2.0) -> Extrapolated:
+    """Return the limit of successively refined answers, with h^order and then h^(2 order) eliminated.
+
+    The uncertainty is the distance to the limit that the same elimination gives without the finest level: an
+    upper bound as long as refinement helps, and of the size of round-off where it no longer does.
+
+    Args:
+        levels: arrays of one shape, coarse to fine, each refined by `ratio`; the last four are used.
+        order: order of the method [1].
+        ratio: refinement from one level to the next [1].
+
+    Raises:
+        ValueError: fewer than three levels.
+    """
+    if len(levels) < 3:
+        raise ValueError(f"levels: got {len(levels)}, expected at least 3")
+    limit = _limit(levels, order, ratio)
+    return Extrapolated(value=limit, uncertainty=np.abs(limit - _limit(levels[:-1], order, ratio)))
+
+
+def _limit(levels: Sequence[Array], order: float, ratio: float) -> Array:
+    """Return the limit of the last two levels, or of the last three where there are as many."""
+    once = richardson(levels[-2], levels[-1], order=order, ratio=ratio)
+    if len(levels) == 2:
+        return once
+    before = richardson(levels[-3], levels[-2], order=order, ratio=ratio)
+    return richardson(before, once, order=2.0 * order, ratio=ratio)

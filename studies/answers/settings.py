@@ -1,0 +1,57 @@
+"""Settings of the two models: how a problem is discretised, as frozen values that name themselves."""
+
+from dataclasses import asdict, dataclass
+from typing import Any, ClassVar
+
+
+@dataclass(frozen=True, kw_only=True)
+class SplineSettings:
+    """Discretisation by dynamic splines; what each value may be is checked by `spline_model`.
+
+    Args:
+        control_points: n per strip [1].
+        axial_modes: m axial-force modes per strip [1]; None for the model's default, n - 2.
+        basis: "bezier" (degree n - 1) or "bspline" (cubic).
+        measure: "material", "spatial" (the paper's energy) or "printed" (the paper's generalised forces as
+            printed).
+        stretch: "mixed", "consistent" (the paper's quadrature) or "inextensible".
+        gauss_points: quadrature points [1]; None for the model's default.
+    """
+
+    control_points: int = 6
+    axial_modes: int | None = None
+    basis: str = "bezier"
+    measure: str = "material"
+    stretch: str = "mixed"
+    gauss_points: int | None = None
+
+    model: ClassVar[str] = "spline"
+
+    def keywords(self) -> dict[str, Any]:
+        """Return the discretisation keywords of `spline_model.pivot.cross_axis_pivot`."""
+        return asdict(self)
+
+
+@dataclass(frozen=True, kw_only=True)
+class FeSettings:
+    """Discretisation by finite elements; what each value may be is checked by `fe_reference`.
+
+    Args:
+        elements: per strip [1].
+        element: "corotational" (Euler-Bernoulli) or "reissner" (shear-deformable).
+    """
+
+    elements: int = 20
+    element: str = "corotational"
+
+    @property
+    def model(self) -> str:
+        """Name of the model on the command line."""
+        return "fe-shear" if self.element == "reissner" else "fe"
+
+    def keywords(self) -> dict[str, Any]:
+        """Return the discretisation keywords of `fe_reference.pivot.cross_axis_pivot`."""
+        return asdict(self)
+
+
+Settings = SplineSettings | FeSettings

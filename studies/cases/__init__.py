@@ -1,0 +1,1 @@
+"""Cases: designs of the pivot as TOML files (given data only, each with its source) and what reads them."""

@@ -1,0 +1,186 @@
+"""Read a case file into a `Problem`: the given data of one pivot, in SI units and radians."""
+
+import difflib
+import hashlib
+import json
+import math
+import tomllib
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+from studies.cases.keys import KEYS, Key
+from studies.errors import BadInput
+
+FOLDER = Path(__file__).parent
+
+#: Parameters that both models take by keyword, under the same names as the attributes of `Problem`.
+PIVOT_PARAMETERS = (
+    "length",
+    "inclination",
+    "crossing_ratio",
+    "area",
+    "second_moment_of_area",
+    "youngs_modulus",
+    "poisson_ratio",
+    "density",
+    "body_mass",
+    "body_moment_of_inertia",
+    "centre_offset",
+)
+
+
+class CaseError(BadInput):
+    """A case file, or a value of it, that cannot be used: file, key, got, expected in one line."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Problem:
+    """The given data of one cross-axis pivot and of the rotation it is driven through.
+
+    Args:
+        length: length L of a strip [m].
+        inclination: angle a of strip 1 to the ground plate at rest [rad].
+        crossing_ratio: distance of the crossing point from the ground end over L [1].
+        area: section area A [m^2].
+        second_moment_of_area: I [m^4].
+        youngs_modulus: E [Pa].
+        poisson_ratio: nu [1].
+        density: rho [kg/m^3].
+        body_mass: mass of the moving body [kg].
+        body_moment_of_inertia: about its centre of mass [kg m^2].
+        centre_offset: of the centre of mass from the midpoint of B1 B2, in body axes [m].
+        rotation: end of the driven path, counter-clockwise positive [rad].
+        increments: equal increments of the path [1].
+        section_depth: depth of the section in the plane of bending [m]; None for the rectangle that A and I
+            imply.
+
+    Raises:
+        CaseError: a value outside its admissible range.
+    """
+
+    length: float
+    inclination: float
+    crossing_ratio: float
+    area: float
+    second_moment_of_area: float
+    youngs_modulus: float
+    poisson_ratio: float
+    density: float
+    body_mass: float
+    body_moment_of_inertia: float
+    centre_offset: tuple[float, float] = (0.0, 0.0)
+    rotation: float
+    increments: int
+    section_depth: float | None = None
+
+    def __post_init__(self) -> None:
+        for key in KEYS:
+            value = getattr(self, key.attribute)
+            if value is None and key.optional:
+                continue
+            try:
+                key.rule.verify(value)
+            except ValueError as error:
+                raise CaseError(f"{key.section}.{key.name}: {error}") from None
+
+    @property
+    def depth(self) -> float:
+        """Depth of the section [m]: as given, or sqrt(12 I / A) of the rectangle with the case's A and I."""
+        if self.section_depth is not None:
+            return self.section_depth
+        return math.sqrt(12.0 * self.second_moment_of_area / self.area)
+
+    @property
+    def crossing_point(self) -> tuple[float, float]:
+        """Where the two strips cross at rest [m], origin at A1."""
+        distance = self.crossing_ratio * self.length
+        return distance * math.cos(self.inclination), distance * math.sin(self.inclination)
+
+    def pivot_parameters(self) -> dict[str, Any]:
+        """Return the keyword arguments that `cross_axis_pivot` of either model takes."""
+        return {name: getattr(self, name) for name in PIVOT_PARAMETERS}
+
+    def fingerprint(self) -> str:
+        """Return the SHA-256 of the values, whatever the file's layout or comments."""
+        return hashlib.sha256(json.dumps(asdict(self), sort_keys=True).encode()).hexdigest()
+
+
+def named_case(name: str) -> Problem:
+    """Return the case of that name that comes with the suite."""
+    return read_case(FOLDER / f"{name}.toml")
+
+
+def read_case(path: str | Path) -> Problem:
+    """Read the case file at `path`.
+
+    Raises:
+        CaseError: the file is unreadable or not TOML, a section or key is missing, unknown or misspelt, a
+            value has the wrong type or lies outside its range. One line: file, key, got, expected.
+    """
+    document = _parse(Path(path))
+    for section, content in document.items():
+        if not isinstance(content, dict):
+            raise CaseError(
+                f"{path}: {section}: got a value outside any section, expected one of {_sections()}"
+            )
+        _refuse_unknown(path, section, content)
+    values: dict[str, Any] = {}
+    for key in KEYS:
+        content = document.get(key.section)
+        if content is None:
+            raise CaseError(
+                f"{path}: [{key.section}]: got no such section, expected one with {_names(key.section)}"
+            )
+        if key.name in content:
+            values[key.attribute] = _value(path, key, content[key.name])
+        elif not key.optional:
+            raise CaseError(
+                f"{path}: {key.section}.{key.name}: got no such key, expected {key.rule.expected}"
+            )
+    return Problem(**values)
+
+
+def _parse(path: Path) -> dict[str, Any]:
+    try:
+        text = path.read_bytes().decode("utf-8")
+    except OSError as error:
+        raise CaseError(f"{path}: cannot be read ({error.strerror}), expected a TOML case file") from None
+    except UnicodeDecodeError:
+        raise CaseError(f"{path}: got bytes that are not UTF-8 text, expected a TOML case file") from None
+    try:
+        return tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        raise CaseError(f"{path}: got text that is not TOML ({error}), expected a TOML case file") from None
+
+
+def _value(path: str | Path, key: Key, value: Any) -> Any:
+    try:
+        return key.rule.parse(value)
+    except ValueError as error:
+        raise CaseError(f"{path}: {key.section}.{key.name}: {error}") from None
+
+
+def _refuse_unknown(path: str | Path, section: str, content: dict[str, Any]) -> None:
+    sections = list(dict.fromkeys(key.section for key in KEYS))
+    if section not in sections:
+        raise CaseError(
+            f"{path}: [{section}]: got an unknown section, expected {_nearest(section, sections)}"
+        )
+    names = [key.name for key in KEYS if key.section == section]
+    for name in content:
+        if name not in names:
+            raise CaseError(f"{path}: {section}.{name}: got an unknown key, expected {_nearest(name, names)}")
+
+
+def _nearest(name: str, known: list[str]) -> str:
+    near = difflib.get_close_matches(name, known, n=1)
+    return f"{near[0]} (the nearest name)" if near else "one of " + ", ".join(known)
+
+
+def _sections() -> str:
+    return ", ".join(f"[{name}]" for name in dict.fromkeys(key.section for key in KEYS))
+
+
+def _names(section: str) -> str:
+    return ", ".join(key.name for key in KEYS if key.section == section and not key.optional)

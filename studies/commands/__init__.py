@@ -1,0 +1,1 @@
+"""Commands, one file each: `add_arguments(parser)` and `main(arguments) -> exit code`."""

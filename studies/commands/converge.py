@@ -1,0 +1,140 @@
+"""Refine both models on a design and say how many control points or elements reach an accuracy.
+
+    python -m studies converge studies/cases/cross_axis_pivot.toml
+    python -m studies converge my_pivot.toml --control-points 4:16 --elements 5:320 --output my_pivot
+
+The spline is refined point by point, the finite elements by doubling; both are held against the limit of the
+finite elements' refinement, whose own uncertainty is printed. Errors are the largest over the path. Tables
+and a figure go to the output folder. Exit code 0: done; 2: bad input; 3: the finite elements, and with them
+the reference, did not converge. A spline that does not converge keeps its row.
+"""
+
+import argparse
+import math
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import pandas as pd
+
+from studies.answers.reference import NoReference, Reference
+from studies.answers.settings import SplineSettings
+from studies.cases.problem import read_case
+from studies.commands.parser import Parser, counts
+from studies.commands.solve import NOT_CONVERGED
+from studies.convergence import design
+from studies.convergence.sweep import FINEST, QUANTITIES, element_sweep, reaching, spline_sweep, with_orders
+from studies.errors import BadInput
+from studies.record import style
+from studies.record.files import require_writable_folder, write_whole
+from studies.record.progress import Bar
+from studies.record.source import ROOT
+from studies.record.store import as_csv
+
+#: Accuracies whose count is reported.
+ACCURACIES = (1e-3, 1e-4, 1e-6)
+
+
+def add_arguments(parser: Parser) -> None:
+    """Declare the arguments of the command."""
+    parser.add_argument("case", metavar="CASE.toml", help="the design")
+    parser.add_argument(
+        "--control-points", type=counts(4), default=(4, 12), metavar="A:B", help="default 4:12, in steps of 1"
+    )
+    parser.add_argument(
+        "--elements", type=counts(1), default=(5, 160), metavar="A:B", help="default 5:160, by doubling"
+    )
+    parser.add_argument("--basis", choices=("bezier", "bspline"), default="bezier", help="default bezier")
+    parser.add_argument(
+        "--measure", choices=("material", "spatial"), default="material", help="default material"
+    )
+    parser.add_argument(
+        "--stretch", choices=("mixed", "consistent", "inextensible"), default="mixed", help="default mixed"
+    )
+    parser.add_argument(
+        "--output", type=Path, metavar="FOLDER", help="default: results/designs/<name of the case>"
+    )
+
+
+def main(arguments: argparse.Namespace) -> int:
+    """Refine, print, store and draw; return the exit code."""
+    problem = read_case(arguments.case)
+    if problem.rotation == 0.0:
+        raise BadInput(
+            f"{arguments.case}: drive.rotation_deg: got 0, expected a rotation to relate errors to"
+        )
+    meshes = _doubled(*arguments.elements)
+    first, last = arguments.control_points
+    settings = [
+        SplineSettings(
+            control_points=n, basis=arguments.basis, measure=arguments.measure, stretch=arguments.stretch
+        )
+        for n in range(first, last + 1)
+    ]
+    output = arguments.output or ROOT / "results" / "designs" / Path(arguments.case).stem
+    require_writable_folder(output)
+    try:
+        with Bar("finite elements") as bar:
+            elements, limit = element_sweep(problem, meshes, "corotational", bar)
+    except NoReference as error:
+        print(f"studies: not converged: {error}", file=sys.stderr)
+        return NOT_CONVERGED
+    with Bar("splines") as bar:
+        splines = with_orders(spline_sweep(problem, settings, limit, bar), "control_points")
+    print("\n".join(_report(splines, elements, limit)))
+    with style.applied():
+        figure = style.rendered(design.draw(splines, elements, limit))
+    contents = {"control_points.csv": as_csv(splines), "elements.csv": as_csv(elements)}
+    contents |= {f"convergence.{kind}": content for kind, content in figure.items()}
+    for name, content in contents.items():
+        write_whole(output / name, content)
+    print(f"\ntables and figure: {output}")
+    return 0
+
+
+def _doubled(first: int, last: int) -> list[int]:
+    """Return first, 2 first, 4 first ... up to `last`: three meshes at least to take a limit from."""
+    meshes = [first]
+    while 2 * meshes[-1] <= last:
+        meshes.append(2 * meshes[-1])
+    if len(meshes) < 3 or meshes[2] > FINEST:
+        raise BadInput(f"--elements: got {first}:{last}, expected A:B with A <= {FINEST // 4} and B >= 4 A")
+    return meshes
+
+
+def _report(splines: pd.DataFrame, elements: pd.DataFrame, limit: Reference) -> Iterator[str]:
+    """Yield the tables of both models and the counts that reach the accuracies."""
+    yield "largest errors over the path, against the finite elements in the limit of refinement"
+    yield "its uncertainty: " + ", ".join(f"{name} {limit.uncertainty[name]:.1e}" for name in QUANTITIES)
+    for title, table, count in (
+        ("spline, control points a strip", splines, "control_points"),
+        ("finite elements, elements a strip", elements, "elements"),
+    ):
+        yield ""
+        yield title
+        yield f"{'count':>6}" + "".join(f"{name:>13}{'order':>8}" for name in QUANTITIES) + "  status"
+        yield from _rows(table, count)
+    yield ""
+    yield "count that reaches, in trajectory and torque" + "".join(f"{a:>10.0e}" for a in ACCURACIES)
+    for title, table, count in (
+        ("control points", splines, "control_points"),
+        ("elements", elements, "elements"),
+    ):
+        beyond = f"> {table[count].max()}"
+        found = (reaching(table, count, accuracy) for accuracy in ACCURACIES)
+        yield f"{title:<44}" + "".join(f"{number or beyond:>10}" for number in found)
+
+
+def _rows(table: pd.DataFrame, count: str) -> Iterator[str]:
+    """Yield one line a row, the status with where a failed path stopped."""
+    for row in table.to_dict("records"):
+        cells = "".join(_cell(row[f"error_{name}"], row[f"order_{name}"]) for name in QUANTITIES)
+        ended = f"{row['status'].replace('_', ' ')}"
+        if row["status"] != "converged":
+            ended += f" beyond {math.degrees(row['reached_rad']):.4g} deg"
+        yield f"{row[count]:>6}{cells}  {ended}"
+
+
+def _cell(error: float, order: float) -> str:
+    shown = f"{error:13.3e}" if math.isfinite(error) else f"{'-':>13}"
+    return shown + (f"{order:8.2f}" if math.isfinite(order) else f"{'-':>8}")

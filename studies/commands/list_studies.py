@@ -1,0 +1,23 @@
+"""List the studies: the names that `run` and `draw` take.
+
+    python -m studies list
+
+A study may also be called by its last part, its group, or as one of "all".
+"""
+
+import argparse
+
+from studies.commands.parser import Parser
+from studies.registry import STUDIES
+
+
+def add_arguments(parser: Parser) -> None:
+    """Declare the arguments of the command: there are none."""
+
+
+def main(arguments: argparse.Namespace) -> int:
+    """Print one line a study; return the exit code."""
+    width = max(map(len, STUDIES))
+    for name, (_, text) in STUDIES.items():
+        print(f"{name:{width}}  {text}")
+    return 0

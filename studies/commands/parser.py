@@ -1,0 +1,66 @@
+"""An argument parser whose errors are one line, and the number types that arguments share."""
+
+import argparse
+import difflib
+import math
+import re
+from collections.abc import Callable
+from typing import Any, NoReturn
+
+from studies.errors import BadInput
+
+
+class Parser(argparse.ArgumentParser):
+    """Parser that keeps the layout of its texts and raises BadInput instead of exiting."""
+
+    def __init__(self, **keywords: Any) -> None:
+        super().__init__(formatter_class=argparse.RawDescriptionHelpFormatter, allow_abbrev=False, **keywords)
+
+    def error(self, message: str) -> NoReturn:
+        """Raise BadInput with `message` in one line, naming the option nearest to an unknown one."""
+        unknown = re.match(r"unrecognized arguments: (--[\w-]+)", message)
+        if unknown:
+            options = [option for action in self._actions for option in action.option_strings]
+            near = difflib.get_close_matches(unknown[1], options, n=1)
+            message += (
+                f", expected {near[0]} (the nearest option)" if near else f", expected one of {options}"
+            )
+        raise BadInput(f"{self.prog.removeprefix('python -m studies ')}: {message}")
+
+
+def whole_number(low: int) -> Callable[[str], int]:
+    """Return a parser of whole numbers from `low` upwards."""
+
+    def parse(text: str) -> int:
+        try:
+            value = int(text)
+        except ValueError:
+            value = low - 1
+        if value < low:
+            raise argparse.ArgumentTypeError(f"got {text}, expected a whole number of at least {low}")
+        return value
+
+    return parse
+
+
+def counts(low: int) -> Callable[[str], tuple[int, int]]:
+    """Return a parser of ranges "first:last" of whole numbers from `low` upwards, both ends included."""
+
+    def parse(text: str) -> tuple[int, int]:
+        first, separator, last = text.partition(":")
+        if separator and first.isdecimal() and last.isdecimal() and low <= int(first) < int(last):
+            return int(first), int(last)
+        raise argparse.ArgumentTypeError(f"got {text}, expected FIRST:LAST with {low} <= FIRST < LAST")
+
+    return parse
+
+
+def degrees(text: str) -> float:
+    """Parse a finite angle in degrees."""
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not math.isfinite(value):
+        raise argparse.ArgumentTypeError(f"got {text}, expected a finite number of degrees")
+    return value

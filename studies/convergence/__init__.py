@@ -1,0 +1,1 @@
+"""Convergence of both models with their refinement."""

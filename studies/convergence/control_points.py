@@ -1,0 +1,151 @@
+"""Convergence of the splines with their control points in every form: the locking map."""
+
+from collections.abc import Callable, Mapping
+
+import numpy as np
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.colors import LogNorm
+from matplotlib.figure import Figure
+
+from studies.answers.reference import reference
+from studies.answers.settings import SplineSettings
+from studies.cases.problem import named_case
+from studies.convergence.sweep import QUANTITIES, reaching, spline_sweep
+from studies.paper.findings import Finding, percent, table
+from studies.record.style import BASES, STRETCH, page, uncertain
+
+CASE = "cross_axis_pivot"
+CASES = (CASE,)
+
+COUNTS = range(4, 13)
+MEASURES = ("material", "spatial")
+
+
+def settings() -> list[SplineSettings]:
+    """Return every discretisation of the map: basis, measure, stretch form, n, and m = 1 ... n - 1."""
+    forms: list[tuple[int, str, int | None]] = []
+    for n in COUNTS:
+        forms.append((n, "consistent", None))
+        forms += [(n, stretch, m) for stretch in ("mixed", "inextensible") for m in range(1, n)]
+    return [
+        SplineSettings(basis=basis, measure=measure, control_points=n, stretch=stretch, axial_modes=m)
+        for basis in BASES
+        for measure in MEASURES
+        for n, stretch, m in forms
+    ]
+
+
+def compute(progress: Callable[[int, int], None]) -> dict[str, pd.DataFrame]:
+    """Return the map with errors against the refined FE, the reference's uncertainty, and the findings."""
+    problem = named_case(CASE)
+    limit = reference(problem)
+    rows = spline_sweep(problem, settings(), limit, progress)
+    uncertainty = pd.DataFrame(
+        [{"quantity": name, "uncertainty": limit.uncertainty[name]} for name in QUANTITIES]
+    )
+    return {"map": rows, "reference": uncertainty, "findings": table(_findings(rows))}
+
+
+def draw(tables: Mapping[str, pd.DataFrame]) -> dict[str, Figure]:
+    """Draw the errors over n for m = n - 2, and the map of the torque error over n and m."""
+    return {"control_points": _lines(tables), "locking_map": _maps(tables)}
+
+
+def default_modes(rows: pd.DataFrame) -> pd.DataFrame:
+    """Return the rows of the default m = n - 2, and those of consistent stretch, which has no modes."""
+    return rows[(rows["stretch"] == "consistent") | (rows["axial_modes"] == rows["control_points"] - 2)]
+
+
+def _lines(tables: Mapping[str, pd.DataFrame]) -> Figure:
+    figure = page(9.5, 6.6)
+    panels = figure.subplots(2, 2, sharex=True, sharey="row")
+    rows, limits = default_modes(tables["map"]), tables["reference"]
+    for line, quantity in enumerate(("trajectory", "torque")):
+        level = float(limits["uncertainty"][limits["quantity"] == quantity].max())
+        for column, (basis, label) in enumerate(BASES.items()):
+            panel = panels[line, column]
+            for (stretch, measure), look in STRETCH.items():
+                named = (rows["basis"] == basis) & (rows["stretch"] == stretch)
+                curve = rows[named & (rows["measure"] == measure)]
+                panel.semilogy(curve["control_points"], curve[f"error_{quantity}"], **look.keywords())
+            panel.set(ylabel=f"largest error of the {quantity} [1]" if column == 0 else "")
+            panel.set_title(label if line == 0 else "")
+            panel.set_xticks(list(COUNTS))
+            uncertain(panel, level)
+    for panel in panels[1]:
+        panel.set_xlabel("control points a strip, n")
+    figure.legend(*panels[0, 0].get_legend_handles_labels(), loc="outside lower center", ncols=3)
+    return figure
+
+
+def _maps(tables: Mapping[str, pd.DataFrame]) -> Figure:
+    figure = page(9.5, 4.4)
+    panels = figure.subplots(1, 2, sharey=True)
+    rows = tables["map"].query("stretch == 'mixed' and measure == 'material'")
+    norm = LogNorm(1e-10, 1.0)
+    for panel, (basis, label) in zip(panels, BASES.items(), strict=True):
+        _map(panel, rows[rows["basis"] == basis], norm)
+        panel.set_title(label)
+        panel.set_xlabel("control points a strip, n")
+    panels[0].set_ylabel("axial-force modes a strip, m")
+    figure.suptitle("Numbers: decimal exponent of the error; rings: the default m = n - 2; x: not converged")
+    figure.colorbar(panels[0].collections[0], ax=panels, label="largest error of the torque [1]")
+    return figure
+
+
+def _map(panel: Axes, rows: pd.DataFrame, norm: LogNorm) -> None:
+    """Draw the errors as coloured squares with their decimal exponent; a failed point is a cross."""
+    modes = np.arange(1, max(COUNTS))
+    grid = np.full((len(modes), len(COUNTS)), np.nan)
+    columns = (rows[name].to_numpy(float) for name in ("axial_modes", "control_points", "error_torque"))
+    for m, n, error in zip(*columns, strict=True):
+        i, j = int(m) - 1, int(n) - COUNTS[0]
+        grid[i, j] = error
+        dark = np.isfinite(error) and error < 1e-5
+        text = f"{np.log10(error):.0f}" if np.isfinite(error) else "x"
+        panel.text(
+            COUNTS[j],
+            modes[i],
+            text,
+            ha="center",
+            va="center",
+            fontsize=7.5,
+            color="white" if dark else "black",
+        )
+    edges = np.arange(COUNTS[0] - 0.5, COUNTS[-1] + 1.0)
+    panel.pcolormesh(edges, np.arange(0.5, len(modes) + 1.0), grid, norm=norm, cmap="viridis")
+    panel.grid(False)
+    panel.plot(COUNTS, np.array(COUNTS) - 2, "o", markersize=15, markerfacecolor="none", color="white")
+    panel.set(xticks=list(COUNTS), yticks=list(modes))
+
+
+def _findings(rows: pd.DataFrame) -> list[Finding]:
+    """Return what the map says of locking and of the number of control points, from the default modes."""
+    found = []
+    chosen = default_modes(rows).query("measure == 'material'")
+    for (basis, stretch), curve in chosen.groupby(["basis", "stretch"]):
+        name = f"{BASES[str(basis)]}, {stretch} stretch"
+        four = curve.query("control_points == 4").iloc[0]
+        found.append(
+            Finding(
+                claim="Four control points give the torque to 3 % on the whole path",
+                formulation=name,
+                quantity="the largest error of the torque with four control points",
+                value=float(four["error_torque"]),
+                holds=bool(four["error_torque"] <= 0.03),
+            )
+        )
+        count = reaching(curve, "control_points", 1e-4)
+        best = float(curve["error_torque"].min())
+        found.append(
+            Finding(
+                claim=f"At most {COUNTS[-1]} control points give trajectory and torque to {percent(1e-4)}",
+                formulation=name,
+                quantity="the smallest error of the torque"
+                + (f" (within it from n = {count})" if count else ""),
+                value=best,
+                holds=count is not None,
+            )
+        )
+    return found

@@ -1,0 +1,110 @@
+"""Sweeps over refinement: one row a discretisation with its largest errors, failed ones included."""
+
+from collections.abc import Callable, Iterable, Sequence
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from studies.answers.adapters import answer_static
+from studies.answers.metrics import observed_order
+from studies.answers.reference import Reference, errors, limit_of
+from studies.answers.response import Response
+from studies.answers.settings import FeSettings, SplineSettings
+from studies.cases.problem import Problem
+from studies.record.progress import silent
+
+QUANTITIES = ("trajectory", "torque", "stiffness")
+ERROR_COLUMNS = tuple(f"error_{name}" for name in QUANTITIES)
+
+#: Meshes above this one are answered but not extrapolated from: their stiffness carries too much round-off.
+FINEST = 160
+
+Progress = Callable[[int, int], None]
+
+
+def spline_sweep(
+    problem: Problem, settings: Sequence[SplineSettings], against: Reference, progress: Progress = silent
+) -> pd.DataFrame:
+    """Return one row for each of `settings`: what it is, how it ended, its errors, its work.
+
+    Columns: basis, measure, stretch, control_points, axial_modes (none for consistent stretch), status,
+    reached_rad (end of the converged part of the path), error_trajectory, error_torque, error_stiffness
+    (largest magnitudes over the path; empty when the path was not completed), newton_iterations, message.
+    """
+    rows = []
+    for count, setting in enumerate(settings):
+        progress(count, len(settings))
+        answer = answer_static(problem, setting)
+        rows.append(_described(setting) | _outcome(answer, against))
+    progress(len(settings), len(settings))
+    return pd.DataFrame(rows)
+
+
+def element_sweep(
+    problem: Problem, elements: Iterable[int], element: str, progress: Progress = silent
+) -> tuple[pd.DataFrame, Reference]:
+    """Return one row a mesh with its errors against the limit of the meshes themselves, and that limit.
+
+    Columns: element, elements, status, reached_rad, the three errors, their observed orders (from the pair of
+    this mesh and the one before), newton_iterations, message.
+
+    Raises:
+        NoReference: a mesh does not reach the end of the path.
+    """
+    counts = list(elements)
+    answers = []
+    for done, count in enumerate(counts):
+        progress(done, len(counts))
+        answers.append(answer_static(problem, FeSettings(elements=count, element=element)))
+    progress(len(counts), len(counts))
+    limit = limit_of([answer for answer in answers if answer.settings["elements"] <= FINEST])
+    rows = [
+        {"element": element, "elements": count} | _outcome(answer, limit)
+        for count, answer in zip(counts, answers, strict=True)
+    ]
+    return with_orders(pd.DataFrame(rows), "elements"), limit
+
+
+def with_orders(table: pd.DataFrame, count: str) -> pd.DataFrame:
+    """Return `table`, sorted by the column `count`, with the observed order of each error beside it."""
+    table = table.sort_values(count).reset_index(drop=True)
+    for name in QUANTITIES:
+        values, counts = table[f"error_{name}"].to_numpy(float), table[count].to_numpy(float)
+        orders = [np.nan] + [
+            observed_order(values[i - 1], values[i], counts[i] / counts[i - 1]) for i in range(1, len(values))
+        ]
+        table[f"order_{name}"] = orders
+    return table
+
+
+def reaching(table: pd.DataFrame, count: str, accuracy: float) -> int | None:
+    """Return the smallest `count` from which on all errors of trajectory and torque are within `accuracy`.
+
+    None when no count of the table does; a failed row counts as an error of any size.
+    """
+    worst = table[["error_trajectory", "error_torque"]].max(axis=1, skipna=False).fillna(np.inf)
+    within = (worst <= accuracy)[::-1].cummin()[::-1]
+    counts = table.loc[within, count]
+    return None if counts.empty else int(counts.min())
+
+
+def _described(setting: SplineSettings) -> dict[str, Any]:
+    modes = setting.axial_modes
+    if modes is None and setting.stretch != "consistent":
+        modes = setting.control_points - 2
+    return {
+        "basis": setting.basis,
+        "measure": setting.measure,
+        "stretch": setting.stretch,
+        "control_points": setting.control_points,
+        "axial_modes": modes,
+    }
+
+
+def _outcome(answer: Response, against: Reference) -> dict[str, Any]:
+    row: dict[str, Any] = {"status": answer.status, "reached_rad": answer.rotation[-1]}
+    row |= dict.fromkeys(ERROR_COLUMNS, np.nan)
+    if answer.converged:
+        row |= {f"error_{name}": value for name, value in errors(answer, against).largest().items()}
+    return row | {"newton_iterations": answer.counters["newton_iterations"], "message": answer.message}

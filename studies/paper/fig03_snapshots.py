@@ -1,0 +1,132 @@
+"""Fig 3 of the paper: snapshots of the pivot, both models superposed, and the distance of their strips."""
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from scipy.interpolate import CubicSpline
+
+from studies.answers.metrics import Array
+from studies.answers.response import Response
+from studies.cases.problem import named_case
+from studies.paper import formulations
+from studies.paper.findings import Finding, table
+from studies.paper.formulations import FE, LOCKING_FREE, PAPER, REFINED
+from studies.record.style import BLACK, LOOKS, page
+
+CASES = (formulations.CASE,)
+
+#: Parts of the path at which the pivot is drawn.
+SNAPSHOTS = (0.0, 0.25, 0.5, 0.75, 1.0)
+DRAWN = (PAPER, LOCKING_FREE, REFINED)
+
+#: In the snapshots the finite elements are points over the splines' lines, so that both can be seen.
+NODES: dict[str, Any] = {"color": BLACK, "linestyle": "", "marker": "o", "markersize": 2.6}
+
+CLAIM = "Conclusion: four control points approximate negligibly (shape within 1 % of the length)"
+BOUND = 0.01
+
+
+def compute(progress: Callable[[int, int], None]) -> dict[str, pd.DataFrame]:
+    """Return the strips' shapes at the snapshots, and their distance to the finest elements on the way."""
+    answers, limit = formulations.answers(progress)
+    length = named_case(formulations.CASE).length
+    shapes = [_snapshots(REFINED, limit.finest)]
+    distances, found = [], []
+    for name, answer in answers.items():
+        shapes.append(_snapshots(name, answer))
+        distance = _distance(answer, limit.finest) / length
+        distances.append(
+            pd.DataFrame({"formulation": name, "rotation_rad": answer.rotation, "distance": distance})
+        )
+        if name != FE:
+            found.append(
+                Finding(
+                    claim=CLAIM,
+                    formulation=name,
+                    quantity="the largest distance across the reference curve, over the length,",
+                    value=float(distance.max()),
+                    holds=bool(answer.converged and distance.max() < BOUND),
+                )
+            )
+    return {"shapes": pd.concat(shapes), "distances": pd.concat(distances), "findings": table(found)}
+
+
+def draw(tables: Mapping[str, pd.DataFrame]) -> dict[str, Figure]:
+    """Draw the snapshots in a row and the distance of the strips over the rotation below."""
+    figure = page(9.5, 5.8)
+    panels = figure.subplot_mosaic([list("abcde"), ["error"] * 5], height_ratios=(1.0, 1.2))
+    shapes = tables["shapes"]
+    for label, rotation in zip("abcde", sorted(shapes["rotation_rad"].unique()), strict=True):
+        _draw_pivot(panels[label], shapes[shapes["rotation_rad"] == rotation])
+        panels[label].set_title(f"{np.degrees(rotation):.3g}°")
+    panels["a"].set_ylabel("y [mm]")
+    panel = panels["error"]
+    for name, curve in tables["distances"].groupby("formulation", sort=False):
+        moved = curve[curve["rotation_rad"] != 0.0]
+        panel.semilogy(np.degrees(moved["rotation_rad"]), moved["distance"], **LOOKS[str(name)].keywords())
+    panel.axhline(BOUND, color="#444444", linewidth=0.8)
+    panel.annotate("1 %", (1.0, BOUND), xytext=(0, 3), textcoords="offset points", fontsize=8)
+    panel.set(xlabel="rotation [deg]", ylabel="largest distance / length [1]", xticks=range(0, 91, 15))
+    panel.set_title("Distance of the strips to those of the refined finite elements")
+    handles, labels = panel.get_legend_handles_labels()
+    points = Line2D([], [], **NODES)
+    figure.legend([points, *handles], [LOOKS[REFINED].label, *labels], loc="outside lower center", ncols=4)
+    return {"fig03_snapshots": figure}
+
+
+def _draw_pivot(panel: Axes, shapes: pd.DataFrame) -> None:
+    """Draw ground, strips and body of one snapshot; the formulations lie over one another."""
+    for name in DRAWN:
+        shape = shapes[shapes["formulation"] == name]
+        look: dict[str, Any] = NODES if name == REFINED else LOOKS[name].keywords() | {"marker": ""}
+        every = 16 if name == REFINED else 1
+        ends = []
+        for _, strip in shape.groupby("strip"):
+            x, y = 1e3 * strip["x_m"].to_numpy(), 1e3 * strip["y_m"].to_numpy()
+            panel.plot(x[::every], y[::every], **look)
+            ends.append((x[[0, -1]], y[[0, -1]]))
+        if name == REFINED:
+            (x1, y1), (x2, y2) = ends
+            for end in (0, 1):
+                panel.plot([x1[end], x2[end]], [y1[end], y2[end]], color="#b0b0b0", linewidth=4.0, zorder=0)
+    panel.set(aspect="equal", xlim=(-24.0, 70.0), ylim=(-6.0, 90.0), xlabel="x [mm]", yticks=(0, 30, 60, 90))
+
+
+def _snapshots(name: str, answer: Response) -> pd.DataFrame:
+    """Return the strips' shapes at the snapshots that the path reached."""
+    steps = named_case(formulations.CASE).increments
+    rows = []
+    for part in SNAPSHOTS:
+        state = round(part * steps)
+        if state >= len(answer.rotation):
+            continue
+        for strip in (0, 1):
+            rows.append(
+                pd.DataFrame(
+                    {
+                        "formulation": name,
+                        "rotation_rad": answer.rotation[state],
+                        "strip": strip + 1,
+                        "station": answer.stations,
+                        "x_m": answer.shape[state, strip, :, 0],
+                        "y_m": answer.shape[state, strip, :, 1],
+                    }
+                )
+            )
+    return pd.concat(rows)
+
+
+def _distance(answer: Response, finest: Response) -> Array:
+    """Return (S,) the largest distance [m] of the answer's points from the finest strips, across these.
+
+    What points slide along the strip does not show in a shape and is left out. Exact to second order.
+    """
+    curve = CubicSpline(finest.stations, finest.shape[: len(answer.rotation)], axis=2)
+    gap, along = answer.shape - curve(answer.stations), curve(answer.stations, 1)
+    across = (along[..., 0] * gap[..., 1] - along[..., 1] * gap[..., 0]) / np.linalg.norm(along, axis=-1)
+    return np.asarray(np.abs(across).max(axis=(1, 2)))

@@ -1,0 +1,156 @@
+"""Fig 5 of the paper: stiffness against rotation, the torque it belongs to, and the errors of both."""
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from studies.answers.metrics import relative_error
+from studies.answers.reference import errors
+from studies.answers.response import Response
+from studies.paper import findings, formulations
+from studies.paper.findings import Finding
+from studies.paper.formulations import FE, REFINED
+from studies.record.style import LOOKS, page, uncertain
+
+CASES = (formulations.CASE,)
+
+#: "Negligible" is read as the width of a line in a printed plot, about this part of the full scale.
+NEGLIGIBLE = 0.03
+SAME_TORQUE = "Fig 5: the differences are negligible (torque within 3 % at every rotation)"
+SAME_STIFFNESS = "Fig 5: the differences are negligible (stiffness within 3 % at every rotation)"
+STIFFER = "Fig 5: the spline overestimates the stiffness (at the end of the movement)"
+
+
+def compute(progress: Callable[[int, int], None]) -> dict[str, pd.DataFrame]:
+    """Return torque and stiffness with their errors, a summary at 45 and 90 degrees, and the findings."""
+    answers, limit = formulations.answers(progress)
+    nothing = np.zeros(len(limit.rotation))
+    curves = [_curve(REFINED, limit.rotation, limit.torque, limit.stiffness, nothing, nothing)]
+    summary: list[dict[str, Any]] = []
+    found: list[Finding] = []
+    for name, answer in answers.items():
+        error = errors(answer, limit)
+        curves.append(
+            _curve(name, answer.rotation, answer.torque, answer.stiffness, error.torque, error.stiffness)
+        )
+        half = len(limit.rotation) // 2
+        summary.append(
+            {
+                "formulation": name,
+                "meaning": formulations.MEANING[name],
+                "status": answer.status,
+                "error_torque_half": error.torque[half] if half < len(error.torque) else np.nan,
+                "error_torque_end": error.torque[-1],
+                "error_torque_largest": float(np.abs(error.torque).max()),
+                "error_stiffness_end": error.stiffness[-1],
+                "error_stiffness_largest": float(np.abs(error.stiffness).max()),
+                "axial_energy_end_J": answer.axial_energy[-1],
+                "bending_energy_end_J": answer.bending_energy[-1],
+                "max_stress_end_Pa": answer.max_stress[-1],
+            }
+        )
+        if name != FE:
+            found += _findings(name, answer, answers[FE])
+    uncertainty = [
+        {"quantity": name, "uncertainty": limit.uncertainty[name]} for name in ("torque", "stiffness")
+    ]
+    return {
+        "curves": pd.concat(curves),
+        "summary": pd.DataFrame(summary),
+        "findings": findings.table(found),
+        "reference": pd.DataFrame(uncertainty),
+    }
+
+
+def draw(tables: Mapping[str, pd.DataFrame]) -> dict[str, Figure]:
+    """Draw torque and stiffness above their errors over the rotation."""
+    figure = page(9.0, 7.0)
+    panels = figure.subplots(2, 2, sharex=True)
+    for column, (quantity, unit) in enumerate((("torque", "Nm"), ("stiffness", "Nm_per_rad"))):
+        above, below = panels[:, column]
+        for name, look in LOOKS.items():
+            curve = tables["curves"].query("formulation == @name")
+            degrees = np.degrees(curve["rotation_rad"])
+            above.plot(degrees, curve[f"{quantity}_{unit}"], **look.keywords(), markevery=2)
+            if name != REFINED:
+                size = np.abs(curve[f"error_{quantity}"])
+                below.semilogy(degrees[degrees != 0.0], size[degrees != 0.0], **look.keywords())
+        _annotate(above, below, tables["curves"], f"{quantity}_{unit}")
+        uncertain(below, tables["reference"].query("quantity == @quantity")["uncertainty"].max())
+    panels[0, 0].set(ylabel="driving torque [N m]")
+    panels[0, 1].set(ylabel="stiffness dT/dθ [N m / rad]")
+    panels[1, 0].set(ylabel="|error of the torque| [1]")
+    panels[1, 1].set(ylabel="|error of the stiffness| [1]")
+    figure.legend(*panels[0, 0].get_legend_handles_labels(), loc="outside upper center", ncols=4)
+    return {"fig05_stiffness": figure}
+
+
+def _annotate(above: Axes, below: Axes, curves: pd.DataFrame, column: str) -> None:
+    """Limit the upper panel to what can be compared there, and say where locking leaves it."""
+    top = 1.8 * curves.query("formulation == @REFINED")[column].max()
+    above.set_ylim(0.0, top)
+    locked = curves.query("formulation == @formulations.PAPER")[column].max()
+    above.annotate(
+        f"as the paper:\nup to {locked:,.0f}",
+        (0.03, 0.86),
+        xycoords="axes fraction",
+        color=LOOKS[formulations.PAPER].colour,
+        fontsize=8,
+    )
+    below.axhline(NEGLIGIBLE, color="#444444", linewidth=0.8)
+    below.annotate("3 %", (1.0, NEGLIGIBLE), xytext=(0, 3), textcoords="offset points", fontsize=8)
+    below.set(xlabel="rotation [deg]", xticks=range(0, 91, 15))
+
+
+def _findings(name: str, answer: Response, against: Response) -> list[Finding]:
+    """Return the claims of Fig 5 held against one formulation, compared with 20 elements as there."""
+    torque = relative_error(answer.torque, against.torque)
+    stiffness = relative_error(answer.stiffness, against.stiffness)
+    largest = {"torque": float(np.abs(torque).max()), "stiffness": float(np.abs(stiffness).max())}
+    return [
+        Finding(
+            claim=SAME_TORQUE,
+            formulation=name,
+            quantity="the largest difference of the torque to 20 finite elements",
+            value=largest["torque"],
+            holds=answer.converged and largest["torque"] < NEGLIGIBLE,
+        ),
+        Finding(
+            claim=SAME_STIFFNESS,
+            formulation=name,
+            quantity="the largest difference of the stiffness to 20 finite elements",
+            value=largest["stiffness"],
+            holds=answer.converged and largest["stiffness"] < NEGLIGIBLE,
+        ),
+        Finding(
+            claim=STIFFER,
+            formulation=name,
+            quantity="the signed difference of the stiffness to 20 finite elements at the end",
+            value=float(stiffness[-1]),
+            holds=bool(answer.converged and stiffness[-1] > 0.0),
+        ),
+    ]
+
+
+def _curve(
+    name: str,
+    rotation: np.ndarray,
+    torque: np.ndarray,
+    stiffness: np.ndarray,
+    torque_error: np.ndarray,
+    stiffness_error: np.ndarray,
+) -> pd.DataFrame:
+    return pd.DataFrame(
+        {
+            "formulation": name,
+            "rotation_rad": rotation,
+            "torque_Nm": torque,
+            "stiffness_Nm_per_rad": stiffness,
+            "error_torque": torque_error,
+            "error_stiffness": stiffness_error,
+        }
+    )

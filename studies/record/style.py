@@ -1,0 +1,114 @@
+"""How every figure looks: a fixed colour for each formulation, files equal byte by byte."""
+
+import io
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass
+from typing import Any
+
+import matplotlib as mpl
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+#: Colours that remain apart for colour-blind readers (Okabe and Ito, Color Universal Design, 2008).
+BLACK, GREY, ORANGE, SKY = "#000000", "#808080", "#e69f00", "#56b4e9"
+GREEN, YELLOW, BLUE, RED, PURPLE = "#009e73", "#d6c400", "#0072b2", "#d55e00", "#cc79a7"
+
+SETTINGS: Any = {
+    "font.family": "DejaVu Sans",
+    "font.size": 9.0,
+    "axes.labelsize": 9.0,
+    "axes.titlesize": 9.5,
+    "axes.titlelocation": "left",
+    "figure.titlesize": 9.0,
+    "axes.grid": True,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "grid.color": "#dddddd",
+    "grid.linewidth": 0.6,
+    "lines.linewidth": 1.4,
+    "lines.markersize": 4.0,
+    "legend.fontsize": 8.0,
+    "legend.frameon": False,
+    "svg.hashsalt": "cross-axis flexural pivot",
+    "svg.fonttype": "path",
+    "savefig.dpi": 130,
+}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Look:
+    """Label, colour, line and marker of one formulation, the same in every figure."""
+
+    label: str
+    colour: str
+    line: str = "-"
+    marker: str = ""
+
+    def keywords(self) -> dict[str, Any]:
+        """Return the keyword arguments of `Axes.plot`."""
+        return {"label": self.label, "color": self.colour, "linestyle": self.line, "marker": self.marker}
+
+
+#: One look for each formulation, wherever it is drawn.
+LOOKS: dict[str, Look] = {
+    "FE refined": Look(label="FE, refined", colour=BLACK),
+    "FE, 20 elements": Look(label="FE, 20 elements", colour=GREY, line="--", marker="s"),
+    "n = 4, as the paper": Look(label="spline n = 4, as the paper", colour=RED, marker="o"),
+    "n = 4, printed forces": Look(label="spline n = 4, printed forces", colour=PURPLE, line=":", marker="v"),
+    "n = 4, 3 Gauss points": Look(label="spline n = 4, 3 Gauss points", colour=ORANGE, line="-.", marker="^"),
+    "n = 4, locking-free": Look(label="spline n = 4, locking-free", colour=SKY, marker="D"),
+    "n = 6": Look(label="spline n = 6", colour=BLUE, marker="x"),
+}
+
+
+#: The two finite elements.
+ELEMENTS: dict[str, Look] = {
+    "corotational": Look(label="corotational Euler-Bernoulli", colour=BLACK, marker="s"),
+    "reissner": Look(label="Reissner, with shear", colour=GREEN, marker="o"),
+}
+
+BASES: dict[str, str] = {"bezier": "Bézier curve of degree n - 1", "bspline": "cubic B-spline"}
+
+#: Stretch forms by colour, measures by line: (stretch, measure) -> look.
+STRETCH: dict[tuple[str, str], Look] = {
+    ("inextensible", "spatial"): Look(label="inextensible, spatial", colour=GREY, line="--", marker="o"),
+    ("inextensible", "material"): Look(label="inextensible, material", colour=GREY, marker="s"),
+    ("consistent", "spatial"): Look(label="consistent, spatial (paper)", colour=RED, line="--", marker="o"),
+    ("consistent", "material"): Look(label="consistent, material", colour=RED, marker="s"),
+    ("mixed", "spatial"): Look(label="mixed, spatial", colour=BLUE, line="--", marker="o"),
+    ("mixed", "material"): Look(label="mixed, material", colour=BLUE, marker="s"),
+}
+
+
+@contextmanager
+def applied() -> Iterator[None]:
+    """Draw in the suite's style within this context."""
+    with mpl.rc_context(SETTINGS):
+        yield
+
+
+def page(width: float, height: float) -> Figure:
+    """Return an empty figure of that size [inch]."""
+    return Figure(figsize=(width, height), layout="constrained")
+
+
+def uncertain(panel: Axes, level: float) -> None:
+    """Shade what lies below the uncertainty of the reference in a panel of errors."""
+    panel.set_ylim(bottom=level / 10.0)
+    panel.axhspan(level / 1e3, level, color="#eeeeee", zorder=0)
+    panel.annotate(
+        "uncertainty of the reference", (0.98, level), (0, -3), ("axes fraction", "data"), "offset points",
+        ha="right", va="top", fontsize=8, color="#666666",
+    )  # fmt: skip
+
+
+def rendered(figure: Figure) -> Mapping[str, bytes]:
+    """Return `figure` as {"svg": ..., "png": ...}: the same bytes for the same figure."""
+    files = {}
+    with applied():
+        for kind, metadata in (("svg", {"Date": None}), ("png", {"Software": None})):
+            stream = io.BytesIO()
+            figure.savefig(stream, format=kind, metadata=metadata)
+            files[kind] = stream.getvalue()
+    return files

@@ -1,0 +1,69 @@
+"""Names of commands and studies and their modules, which are imported when they are called."""
+
+import difflib
+from collections.abc import Iterable
+from importlib import import_module
+from typing import Any
+
+from studies.errors import BadInput
+
+#: Command -> (module with `add_arguments(parser)` and `main(arguments) -> exit code`, what it does).
+COMMANDS: dict[str, tuple[str, str]] = {
+    "solve": ("studies.commands.solve", "drive a pivot through a rotation and report its path"),
+    "converge": ("studies.commands.converge", "refine both models on a design until an accuracy is reached"),
+    "list": ("studies.commands.list_studies", "list the studies"),
+    "run": ("studies.commands.run", "compute and draw studies"),
+    "draw": ("studies.commands.draw", "redraw studies from their stored tables"),
+    "status": ("studies.commands.status", "say which stored results are fresh, stale or missing"),
+    "readme": ("studies.commands.readme", "rewrite the figures of agreement in README.md from the results"),
+}
+
+#: Study -> (module with `CASES`, `compute(progress)` and `draw(tables)`, what it shows).
+STUDIES: dict[str, tuple[str, str]] = {
+    "paper/fig03_snapshots": (
+        "studies.paper.fig03_snapshots",
+        "Fig 3: deformed shapes, both models superposed",
+    ),
+    "paper/fig04_trajectory": (
+        "studies.paper.fig04_trajectory",
+        "Fig 4: path of the body's centre and its error",
+    ),
+    "paper/fig05_stiffness": (
+        "studies.paper.fig05_stiffness",
+        "Fig 5: torque and stiffness and their errors",
+    ),
+    "convergence/control_points": (
+        "studies.convergence.control_points",
+        "error against control points for every basis, measure and stretch form: the locking map",
+    ),
+    "convergence/elements": (
+        "studies.convergence.elements",
+        "error against elements, order and Richardson value",
+    ),
+}
+
+
+def module_of(study: str) -> Any:
+    """Import and return the module of `study`."""
+    return import_module(STUDIES[study][0])
+
+
+def selected(names: Iterable[str]) -> list[str]:
+    """Return the studies that `names` stand for, in the order of the register.
+
+    A name is a study ("paper/fig04_trajectory"), its last part ("fig04_trajectory"), a group ("paper") or
+    "all".
+
+    Raises:
+        BadInput: a name that stands for no study; it lists the nearest.
+    """
+    chosen: set[str] = set()
+    for name in names:
+        found = {study for study in STUDIES if name in (study, *study.split("/"), "all")}
+        if not found:
+            known = [*STUDIES, *(study.split("/")[-1] for study in STUDIES)]
+            near = difflib.get_close_matches(name, known, n=1)
+            hint = f"{near[0]} (the nearest name)" if near else "one of " + ", ".join(STUDIES)
+            raise BadInput(f"study: got {name}, expected {hint}")
+        chosen |= found
+    return [study for study in STUDIES if study in chosen]

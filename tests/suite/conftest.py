@@ -1,0 +1,53 @@
+"""What the tests of the machinery share: the Table 1 case and the command line in this process."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+
+from studies.__main__ import main
+from studies.cases.problem import FOLDER
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What a command left behind."""
+
+    code: int
+    out: str
+    err: str
+
+
+@pytest.fixture
+def table_1() -> str:
+    """Text of the case file of Table 1."""
+    return (FOLDER / "cross_axis_pivot.toml").read_text(encoding="utf-8")
+
+
+@pytest.fixture
+def case(tmp_path: Path, table_1: str) -> Callable[..., Path]:
+    """Write the Table 1 case with texts replaced (old, new) and return its path."""
+
+    def write(*replacements: tuple[str, str]) -> Path:
+        text = table_1
+        for old, new in replacements:
+            assert old in text, f"{old!r} is not in the Table 1 case"
+            text = text.replace(old, new)
+        path = tmp_path / "case.toml"
+        path.write_text(text, encoding="utf-8")
+        return path
+
+    return write
+
+
+@pytest.fixture
+def command(capsys: pytest.CaptureFixture[str]) -> Callable[..., Outcome]:
+    """Run `python -m studies` with the given words in this process."""
+
+    def run(*words: object) -> Outcome:
+        code = main([str(word) for word in words])
+        captured = capsys.readouterr()
+        return Outcome(code, captured.out, captured.err)
+
+    return run

@@ -1,0 +1,97 @@
+"""Measures and derived quantities agree with what they stand for on cases that can be worked out by hand."""
+
+import dataclasses
+import math
+
+import numpy as np
+import pytest
+
+from studies.answers.metrics import (
+    extrapolate,
+    observed_order,
+    relative_error,
+    richardson,
+    trajectory_error,
+)
+from studies.answers.response import centre_shift, extreme_fibre_strain
+from studies.cases.problem import CaseError, named_case
+
+TABLE_1 = named_case("cross_axis_pivot")
+
+
+def test_trajectory_error_relates_to_the_travel():
+    """A path 3 and 4 mm off one that travels 50 mm is off by 10 %."""
+    reference = np.array([[0.0, 0.0], [0.02, 0.0], [0.05, 0.0]])
+    path = reference + np.array([[0.0, 0.0], [0.003, 0.004], [0.0, 0.005]])
+    assert trajectory_error(path, reference) == pytest.approx([0.0, 0.1, 0.1], rel=1e-12)
+    assert trajectory_error(path[:2], reference) == pytest.approx([0.0, 0.1], rel=1e-12)
+    with pytest.raises(ValueError, match="got no displacement"):
+        trajectory_error(path, reference[:1])
+
+
+def test_relative_error_is_signed_and_counts_an_unloaded_state_as_none():
+    """Errors keep their sign, also against negative references; 0 against 0 is no error."""
+    error = relative_error(np.array([0.0, 1.1, -1.9]), np.array([0.0, 1.0, -2.0, 5.0]))
+    assert error == pytest.approx([0.0, 0.1, 0.05], rel=1e-12)
+
+
+def test_order_and_limit_of_a_known_sequence():
+    """f(h) = 1 + 3 h^2 + 5 h^4 is of order 2; elimination finds its limit and what is uncertain."""
+    levels = [np.array([1.0 + 3.0 * h**2 + 5.0 * h**4]) for h in (0.1, 0.05, 0.025)]
+    errors = [float(level[0]) - 1.0 for level in levels]
+    assert observed_order(errors[-2], errors[-1]) == pytest.approx(2.0, abs=0.01)
+    assert richardson(levels[1], levels[2], order=2.0) == pytest.approx(1.0, abs=1e-5)
+    limit = extrapolate(levels)
+    assert limit.value == pytest.approx(1.0, abs=1e-14)
+    assert limit.uncertainty == pytest.approx(4.0 * 5.0 * 0.05**4, rel=1e-6)
+    with_four = extrapolate([np.array([1.0 + 3.0 * 0.2**2 + 5.0 * 0.2**4]), *levels])
+    assert with_four.uncertainty == pytest.approx(0.0, abs=1e-14)
+    assert math.isnan(observed_order(0.0, 1.0))
+    with pytest.raises(ValueError, match="got 2, expected at least 3"):
+        extrapolate(levels[:2])
+
+
+def test_a_hinge_at_the_crossing_has_no_centre_shift():
+    """Turning about the crossing point shifts nothing; moving as well shifts by that much."""
+    rotation = np.linspace(0.0, 2.0, 5)
+    crossing = np.array(TABLE_1.crossing_point)
+    arm = np.array([0.01, 0.03])
+    turned = np.stack(
+        (
+            np.cos(rotation) * arm[0] - np.sin(rotation) * arm[1],
+            np.sin(rotation) * arm[0] + np.cos(rotation) * arm[1],
+        ),
+        axis=-1,
+    )
+    moved = np.outer(rotation, [0.002, -0.001])
+    assert centre_shift(TABLE_1, rotation, crossing + turned) == pytest.approx(0.0, abs=1e-16)
+    assert centre_shift(TABLE_1, rotation, crossing + turned + moved) == pytest.approx(moved, abs=1e-16)
+
+
+def test_extreme_fibre_strain_is_the_larger_of_the_two_fibres():
+    """Axial and bending strain add up on one side whatever their signs."""
+    axial = np.array([100.0, -100.0, 0.0])
+    moment = np.array([2.0, 2.0, -2.0])
+    stretch = 100.0 / (TABLE_1.youngs_modulus * TABLE_1.area)
+    bend = 2.0 * TABLE_1.depth / (2.0 * TABLE_1.youngs_modulus * TABLE_1.second_moment_of_area)
+    assert extreme_fibre_strain(TABLE_1, axial, moment) == pytest.approx(
+        [bend + stretch, bend + stretch, bend]
+    )
+    assert TABLE_1.depth == pytest.approx(5e-3, rel=1e-3)
+    assert dataclasses.replace(TABLE_1, section_depth=0.004).depth == 0.004
+
+
+def test_problem_checks_its_values_wherever_they_come_from():
+    """A Problem made in code is held to the ranges of a case file."""
+    with pytest.raises(CaseError, match=r"strip.crossing_ratio: got 1.5, expected a number between 0 and 1"):
+        dataclasses.replace(TABLE_1, crossing_ratio=1.5)
+    with pytest.raises(CaseError, match=r"drive.increments: got 0, expected a whole number"):
+        dataclasses.replace(TABLE_1, increments=0)
+
+
+def test_fingerprint_follows_values_not_layout(case, table_1):
+    """Comments leave the fingerprint of a problem as it is; a changed value changes it."""
+    from studies.cases.problem import read_case
+
+    assert read_case(case(("# Table 1: 206 GPa", ""))).fingerprint() == TABLE_1.fingerprint()
+    assert read_case(case(("206e9", "207e9"))).fingerprint() != TABLE_1.fingerprint()

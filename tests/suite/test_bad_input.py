@@ -1,0 +1,237 @@
+"""Bad input is one clear line (file, key, got, expected) and exit code 2, whatever is wrong with it."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from studies.record.source import ROOT
+
+#: What is written over the Table 1 case, and what the one line must say.
+BAD_VALUES = {
+    "missing key": ("poisson_ratio = 0.29", "", "material.poisson_ratio: got no such key, expected a number"),
+    "misspelt key": (
+        "length_m",
+        "lenght_m",
+        "strip.lenght_m: got an unknown key, expected length_m (the nearest",
+    ),
+    "unknown key": (
+        "[drive]",
+        "[drive]\nzzz = 1",
+        "drive.zzz: got an unknown key, expected one of rotation_deg",
+    ),
+    "missing section": ("[drive]", "[body.drive]", "body.drive: got an unknown key"),
+    "misspelt section": (
+        "[material]",
+        "[materail]",
+        "[materail]: got an unknown section, expected material (the",
+    ),
+    "value outside sections": (
+        "[strip]",
+        "x = 1\n[strip]",
+        "x: got a value outside any section, expected one of [s",
+    ),
+    "text for a number": ("= 45 ", '= "45" ', 'strip.inclination_deg: got the text "45", expected a number'),
+    "truth value": (
+        "= 206e9",
+        "= true",
+        "material.youngs_modulus_Pa: got the truth value true, expected a positive",
+    ),
+    "not a number": (
+        "= 206e9",
+        "= nan",
+        "material.youngs_modulus_Pa: got nan, expected a positive number [Pa]",
+    ),
+    "infinite": ("= 5e-5", "= inf", "strip.area_m2: got inf, expected a positive number [m^2]"),
+    "zero": ("= 5e-5", "= 0", "strip.area_m2: got 0, expected a positive number [m^2]"),
+    "negative": (
+        "mass_kg = 0.2",
+        "mass_kg = -0.2",
+        "body.mass_kg: got -0.2, expected a positive number [kg]",
+    ),
+    "crossing ratio 0": (
+        "crossing_ratio = 0.5",
+        "crossing_ratio = 0.0",
+        "strip.crossing_ratio: got 0.0, expected",
+    ),
+    "crossing ratio 1": (
+        "crossing_ratio = 0.5",
+        "crossing_ratio = 1",
+        "strip.crossing_ratio: got 1, expected",
+    ),
+    "inclination 90": (
+        "= 45 ",
+        "= 90 ",
+        "strip.inclination_deg: got 90, expected a number between 0 and 90, both",
+    ),
+    "poisson ratio -1": (
+        "= 0.29",
+        "= -1",
+        "material.poisson_ratio: got -1, expected a number above -1 and at most",
+    ),
+    "poisson ratio 0.51": (
+        "= 0.29",
+        "= 0.51",
+        "material.poisson_ratio: got 0.51, expected a number above -1",
+    ),
+    "one offset": ("[0, 0]", "[0]", "body.centre_offset_m: got [0], expected two finite numbers [x, y] [m]"),
+    "offset not a number": ("[0, 0]", "[0, nan]", "body.centre_offset_m: got [0, nan], expected two finite"),
+    "no increments": (
+        "increments = 20",
+        "increments = 0",
+        "drive.increments: got 0, expected a whole number from 1",
+    ),
+    "broken increments": (
+        "increments = 20",
+        "increments = 20.5",
+        "drive.increments: got 20.5, expected a whole",
+    ),
+    "too far a rotation": (
+        "= 90 ",
+        "= 400 ",
+        "drive.rotation_deg: got 400, expected a number from -360 to 360",
+    ),
+    "no depth": (
+        "[material]",
+        "section_depth_m = 0\n[material]",
+        "strip.section_depth_m: got 0, expected a positive",
+    ),
+    "not TOML": ("[strip]", "[strip", "got text that is not TOML"),
+}
+
+
+@pytest.mark.parametrize("name", BAD_VALUES)
+def test_bad_case_is_one_line(name, case, command):
+    """A case file with a fault is refused with file, key, got and expected in one line."""
+    old, new, text = BAD_VALUES[name]
+    path = case((old, new))
+    outcome = command("solve", path, "--model", "fe")
+    assert outcome.code == 2
+    assert outcome.out == ""
+    assert outcome.err.count("\n") == 1
+    assert outcome.err.startswith(f"studies: {path}: ")
+    assert text in outcome.err
+
+
+def test_missing_section_names_what_it_needs(case, command, table_1):
+    """A case without a section is refused with the keys that the section must have."""
+    body = table_1[table_1.index("[body]") : table_1.index("[drive]")]
+    outcome = command("solve", case((body, "")), "--model", "fe")
+    assert outcome.code == 2
+    assert "[body]: got no such section, expected one with mass_kg, moment_of_inertia_kg_m2" in outcome.err
+
+
+#: Words after `solve CASE.toml`, and what the one line must say.
+BAD_OPTIONS = {
+    "no model": ([], "required: --model"),
+    "unknown model": (["--model", "rod"], "invalid choice: 'rod' (choose from"),
+    "three control points": (
+        ["--model", "spline", "--control-points", "3"],
+        "control_points: got 3, expected",
+    ),
+    "no axial mode": (["--model", "spline", "--axial-modes", "0"], "axial_modes: got 0, expected"),
+    "six modes of six": (["--model", "spline", "--axial-modes", "6"], "axial_modes: got 6, expected"),
+    "no element": (["--model", "fe", "--elements", "0"], "elements: got 0, expected"),
+    "half an element": (["--model", "fe", "--elements", "1.5"], "--elements: invalid int value: '1.5'"),
+    "no increment": (
+        ["--model", "fe", "--increments", "0"],
+        "--increments: got 0, expected a whole number from 1",
+    ),
+    "no repeat": (
+        ["--model", "fe", "--repeat", "0"],
+        "--repeat: got 0, expected a whole number of at least 1",
+    ),
+    "rotation nan": (
+        ["--model", "fe", "--rotation-deg", "nan"],
+        "--rotation-deg: got nan, expected a finite",
+    ),
+    "rotation 720": (
+        ["--model", "fe", "--rotation-deg", "720"],
+        "--rotation-deg: got 720.0, expected a number",
+    ),
+    "option of the other model": (["--model", "fe", "--basis", "bezier"], "--basis: got it with --model fe"),
+    "misspelt option": (["--model", "fe", "--elemnts", "4"], "expected --elements (the nearest option)"),
+    "unknown basis": (["--model", "spline", "--basis", "nurbs"], "--basis: invalid choice: 'nurbs'"),
+}
+
+
+@pytest.mark.parametrize("name", BAD_OPTIONS)
+def test_bad_option_is_one_line(name, case, command):
+    """An option with a fault is refused with got and expected in one line."""
+    words, text = BAD_OPTIONS[name]
+    outcome = command("solve", case(), *words)
+    assert outcome.code == 2
+    assert outcome.out == ""
+    assert outcome.err.count("\n") == 1
+    assert text in outcome.err
+
+
+@pytest.mark.parametrize(
+    ("words", "text"),
+    [
+        (["slove"], "invalid choice: 'slove'"),
+        (["run", "fig04_trajectry"], "got fig04_trajectry, expected fig04_trajectory (the nearest name)"),
+        (["run"], "required: NAME"),
+        (
+            ["solve", "absent.toml", "--model", "fe"],
+            "absent.toml: cannot be read (No such file or directory)",
+        ),
+        (["converge", "absent.toml"], "absent.toml: cannot be read (No such file or directory)"),
+    ],
+)
+def test_bad_words_are_one_line(words, text, command):
+    """Unknown commands, studies and files are refused in one line."""
+    outcome = command(*words)
+    assert outcome.code == 2
+    assert outcome.err.count("\n") == 1
+    assert text in outcome.err
+
+
+def test_folder_and_binary_files_are_refused(tmp_path, command):
+    """A folder, or bytes that are not text, given as case file are refused in one line."""
+    binary = tmp_path / "binary.toml"
+    binary.write_bytes(b"\xff\xfe\x00")
+    for path, text in ((tmp_path, "cannot be read (Is a directory)"), (binary, "bytes that are not UTF-8")):
+        outcome = command("solve", path, "--model", "fe")
+        assert outcome.code == 2
+        assert outcome.err.count("\n") == 1
+        assert text in outcome.err
+
+
+def test_unwritable_answer_is_refused_before_solving(case, command, tmp_path):
+    """An answer that cannot be written is refused in one line before solving and leaves nothing."""
+    blocked = tmp_path / "file"
+    blocked.write_text("in the way")
+    before = sorted(tmp_path.rglob("*"))
+    for target in (blocked / "x.json", tmp_path / "absent" / "x.json", tmp_path):
+        path = case()
+        outcome = command("solve", path, "--model", "fe", "--json", target)
+        assert outcome.code == 2
+        assert outcome.err.count("\n") == 1
+        assert f"{target}: cannot be written" in outcome.err
+        path.unlink()
+    assert sorted(tmp_path.rglob("*")) == before
+
+
+def test_unwritable_results_are_refused_before_computing(command, tmp_path):
+    """A results folder that cannot be written is refused in one line, before anything is computed."""
+    blocked = tmp_path / "file"
+    blocked.write_text("in the way")
+    outcome = command("run", "fig04_trajectory", "--results", blocked / "results")
+    assert outcome.code == 2
+    assert outcome.err.count("\n") == 1
+    assert "cannot be written" in outcome.err
+
+
+def test_bad_input_as_a_user_sees_it(tmp_path):
+    """The process itself ends with exit code 2, one line on the error stream and no traceback."""
+    case = tmp_path / "case.toml"
+    case.write_text("[strip]\nlenght_m = 1\n", encoding="utf-8")
+    words = [sys.executable, "-m", "studies", "solve", str(case), "--model", "fe"]
+    done = subprocess.run(words, cwd=Path(ROOT), capture_output=True, text=True, check=False)
+    assert done.returncode == 2
+    assert done.stdout == ""
+    assert done.stderr == (
+        f"studies: {case}: strip.lenght_m: got an unknown key, expected length_m (the nearest name)\n"
+    )

@@ -1,0 +1,107 @@
+"""`python -m studies converge`: errors, orders and the counts that reach an accuracy."""
+
+import re
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from studies.convergence.sweep import reaching, with_orders
+
+
+@pytest.fixture
+def short(case, command, tmp_path):
+    """Run the command on a short path with few refinements; return its outcome and its folder."""
+    folder = tmp_path / "out"
+    path = case(("rotation_deg = 90", "rotation_deg = 30"), ("increments = 20", "increments = 3"))
+    words = ["converge", path, "--control-points", "4:6", "--elements", "5:40", "--output", folder]
+    return command(*words), folder
+
+
+def test_table_orders_and_counts(short):
+    """The table has a row for every count, order 2 for the elements, and the counts for three accuracies."""
+    outcome, _ = short
+    assert outcome.code == 0
+    rows = {
+        int(line.split()[0]): line.split() for line in outcome.out.splitlines() if re.match(r" +\d", line)
+    }
+    assert set(rows) == {4, 5, 6, 10, 20, 40}
+    assert [float(cell) for cell in rows[40][2:7:2]] == pytest.approx([2.0, 2.0, 2.0], abs=0.1)
+    assert rows[40][7] == "converged"
+    assert re.search(r"trajectory and torque +1e-03 +1e-04 +1e-06\n", outcome.out)
+    assert re.search(r"\nelements +\d+ +\d+ +> 40\n", outcome.out)
+
+
+def test_folder_holds_tables_and_figure(short):
+    """The folder holds both tables and the figure, and nothing that was there is touched on a second run."""
+    _, folder = short
+    names = {"control_points.csv", "elements.csv", "convergence.png", "convergence.svg"}
+    assert {path.name for path in folder.iterdir()} == names
+    elements = pd.read_csv(folder / "elements.csv")
+    assert list(elements["elements"]) == [5, 10, 20, 40]
+    assert (elements["error_torque"] > 0.0).all()
+
+
+def test_other_files_of_the_folder_stay(case, command, tmp_path):
+    """Files that were in the output folder before are left alone."""
+    (tmp_path / "mine.txt").write_text("keep")
+    path = case(("rotation_deg = 90", "rotation_deg = 5"), ("increments = 20", "increments = 1"))
+    words = ["converge", path, "--control-points", "4:5", "--elements", "5:20", "--output", tmp_path]
+    assert command(*words).code == 0
+    assert (tmp_path / "mine.txt").read_text() == "keep"
+
+
+@pytest.mark.parametrize(
+    ("words", "text"),
+    [
+        (["--elements", "5:10"], "--elements: got 5:10, expected A:B with A <= 40 and B >= 4 A"),
+        (["--elements", "100:400"], "--elements: got 100:400, expected A:B with A <= 40"),
+        (["--elements", "5"], "--elements: got 5, expected FIRST:LAST with 1 <= FIRST < LAST"),
+        (["--elements", "0:8"], "--elements: got 0:8, expected FIRST:LAST with 1 <= FIRST < LAST"),
+        (["--control-points", "3:8"], "--control-points: got 3:8, expected FIRST:LAST with 4 <= FIRST"),
+        (["--control-points", "8:4"], "--control-points: got 8:4, expected FIRST:LAST"),
+    ],
+)
+def test_bad_ranges_are_one_line(words, text, case, command):
+    """A range that cannot be refined over is refused in one line."""
+    outcome = command("converge", case(), *words)
+    assert outcome.code == 2
+    assert outcome.err.count("\n") == 1
+    assert text in outcome.err
+
+
+def test_no_rotation_and_no_folder_are_refused(case, command, tmp_path):
+    """A path without rotation, or a folder that cannot be made, is refused before solving."""
+    outcome = command("converge", case(("rotation_deg = 90", "rotation_deg = 0")))
+    assert outcome.code == 2
+    assert "drive.rotation_deg: got 0, expected a rotation to relate errors to" in outcome.err
+    (tmp_path / "file").write_text("in the way")
+    outcome = command("converge", case(), "--output", tmp_path / "file" / "out")
+    assert outcome.code == 2
+    assert outcome.err.count("\n") == 1
+    assert "cannot be written" in outcome.err
+
+
+def test_count_that_reaches_an_accuracy_holds_from_there_on():
+    """A count reaches an accuracy when it and all larger ones do, in both; a failed row never does."""
+    table = pd.DataFrame(
+        {
+            "n": [4, 5, 6, 7, 8],
+            "error_trajectory": [1e-5, 1e-2, 1e-4, 1e-6, 1e-8],
+            "error_torque": [1e-5, 1e-3, 1e-3, 1e-5, 1e-7],
+        }
+    )
+    assert reaching(table, "n", 1e-3) == 6
+    assert reaching(table, "n", 1e-4) == 7
+    assert reaching(table, "n", 1e-9) is None
+    assert reaching(table.replace(1e-6, np.nan), "n", 1e-3) == 8
+
+
+def test_orders_compare_a_row_with_the_one_before():
+    """The observed order belongs to the pair of this count and the one before, whatever their ratio."""
+    table = pd.DataFrame({"n": [30, 10, 20]})
+    for name in ("trajectory", "torque", "stiffness"):
+        table[f"error_{name}"] = 5.0 / table["n"] ** 3
+    orders = with_orders(table, "n")["order_torque"].to_numpy()
+    assert np.isnan(orders[0])
+    assert orders[1:] == pytest.approx([3.0, 3.0], rel=1e-12)

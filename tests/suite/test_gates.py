@@ -1,0 +1,132 @@
+"""Gates are honest: complete, tight, used, with teeth, and refusing what cannot be an error."""
+
+import ast
+import datetime
+import math
+import re
+
+import pytest
+
+from studies.record.source import ROOT
+from tests import gates
+
+#: A limit is at most this many times what was last measured.
+SLACK = 20.0
+
+
+def _faults(name: str, gate: dict) -> list[str]:
+    """Return what is wrong with the declaration of a gate."""
+    faults = [f"{name}: no {field}" for field in gates.REQUIRED if field not in gate]
+    fields = gates.REQUIRED | gates.OPTIONAL
+    faults += [f"{name}: unknown field {field}" for field in gate if field not in fields]
+    faults += [f"{name}: {field} is a {type(value).__name__}" for field, value in gate.items()
+               if field in fields and not isinstance(value, fields[field])]  # fmt: skip
+    if faults:
+        return faults
+    if not 0.0 < gate["measured"] <= gate["limit"] <= SLACK * gate["measured"]:
+        faults.append(
+            f"{name}: limit {gate['limit']} is not within 1 to {SLACK} x measured {gate['measured']}"
+        )
+    if not gate["teeth"]:
+        faults.append(f"{name}: no teeth")
+    if ("parts" in gate) != ("factor" in gate):
+        faults.append(f"{name}: parts and factor belong together")
+    elif "parts" in gate and gate["limit"] > gate["factor"] * sum(gate["parts"].values()):
+        faults.append(f"{name}: limit is above factor x the sum of its parts")
+    if not gate["why"].strip() or not gate["against"].strip():
+        faults.append(f"{name}: why or against is empty")
+    datetime.date.fromisoformat(gate["set"][:10])
+    return faults
+
+
+def test_every_gate_is_complete_and_tight():
+    """Each gate has all its fields, teeth, and a limit of at most 20 x what was measured."""
+    faults = [fault for name, gate in gates.table().items() for fault in _faults(name, gate)]
+    assert faults == []
+
+
+SOUND = {
+    "limit": 1e-6,
+    "unit": "1",
+    "measured": 2e-7,
+    "set": "2026-01-31, first version",
+    "against": "a closed form",
+    "why": "five times what was seen",
+    "teeth": {"elements": 5},
+}
+
+
+@pytest.mark.parametrize(
+    ("change", "fault"),
+    [
+        ({"limit": 1e-5}, "within 1 to"),
+        ({"limit": 1e-7}, "within 1 to"),
+        ({"teeth": {}}, "no teeth"),
+        ({"unit": 1}, "unit is a int"),
+        ({"tolerance": 1.0}, "unknown field tolerance"),
+        ({"parts": {"model": 1e-7}}, "belong together"),
+        ({"parts": {"model": 1e-7}, "factor": 2.0}, "above factor"),
+        ({"why": " "}, "is empty"),
+    ],
+)
+def test_unsound_gate_is_seen(change, fault):
+    """The check of declarations has teeth."""
+    assert _faults("sound", SOUND) == []
+    assert any(fault in line for line in _faults("unsound", SOUND | change))
+
+
+def test_every_gate_is_used():
+    """Each gate is named by a test, so that no limit stands for nothing."""
+    nodes = [
+        node
+        for path in (ROOT / "tests").rglob("*.py")
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+    ]
+    words = {node.value for node in nodes if isinstance(node, ast.Constant)}
+    patterns = [_pattern(node) for node in nodes if isinstance(node, ast.JoinedStr)]
+    unused = [
+        name
+        for name in gates.table()
+        if name not in words and not any(pattern.fullmatch(name) for pattern in patterns)
+    ]
+    assert unused == []
+
+
+def _pattern(text: ast.JoinedStr) -> re.Pattern[str]:
+    """Return what a formatted text such as f"fe_order_{element}" can become: words where it has values."""
+    parts = (re.escape(str(part.value)) if isinstance(part, ast.Constant) else r"\w+" for part in text.values)
+    fixed = any(isinstance(part, ast.Constant) and len(str(part.value)) > 3 for part in text.values)
+    return re.compile("".join(parts)) if fixed else re.compile(r"(?!)")
+
+
+@pytest.fixture
+def sound_gate(monkeypatch):
+    """A table with one sound gate."""
+    monkeypatch.setattr(gates, "table", lambda: {"sound": SOUND})
+
+
+@pytest.mark.parametrize(
+    ("error", "text"),
+    [
+        (2e-6, "error 2e-06 [1] is 2 x the gate (limit 1e-06, against a closed form, last measured 2e-07)"),
+        (0.0, "is not positive (compared with itself?)"),
+        (-1e-9, "is not positive"),
+        (math.nan, "is not a finite number"),
+        (math.inf, "is not a finite number"),
+    ],
+)
+def test_check_refuses(sound_gate, error, text):
+    """An error above the limit, of zero, negative or not finite is refused in one telling line."""
+    with pytest.raises(AssertionError) as refusal:
+        gates.check("sound", error)
+    assert text in str(refusal.value)
+    assert "\n" not in str(refusal.value)
+
+
+def test_check_passes_and_names_unknown_gates(sound_gate):
+    """An error up to the limit passes; an unknown gate lists those there are."""
+    gates.check("sound", 1e-6)
+    assert gates.limit("sound") == 1e-6
+    assert gates.teeth("sound") == {"elements": 5}
+    with pytest.raises(KeyError, match="there are: sound"):
+        gates.check("unsound", 1e-6)

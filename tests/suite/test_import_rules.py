@@ -1,0 +1,78 @@
+"""The models see nothing of this repository but themselves: neither repeats the other's mistakes."""
+
+import ast
+import sys
+from pathlib import Path
+
+import pytest
+
+from studies.record.source import ROOT, imports
+
+REPOSITORY = {"spline_model", "fe_reference", "studies", "tests", "report"}
+MODELS = {
+    "spline_model": {"numpy", "scipy", "numba"},
+    "fe_reference": {"numpy", "scipy", "numba", "skfem"},
+}
+
+
+def _top_level_imports(path: Path, source: str) -> set[str]:
+    """Return the top-level names that `source`, standing at `path`, imports in any way."""
+    module = ".".join(path.relative_to(ROOT).with_suffix("").parts).removesuffix(".__init__")
+    tree = ast.parse(source)
+    names = set(imports(tree, module, package=path.name == "__init__.py"))
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Call) and getattr(node.func, "id", getattr(node.func, "attr", "")) in (
+            "import_module",
+            "__import__",
+        ):
+            names |= {word.value for word in node.args if isinstance(word, ast.Constant)}
+    return {str(name).split(".")[0] for name in names}
+
+
+def _breaches(path: Path, source: str) -> set[str]:
+    """Return what `source` at `path` imports against the rules."""
+    package = path.relative_to(ROOT).parts[0]
+    found = _top_level_imports(path, source)
+    if package in MODELS:
+        return found - MODELS[package] - {package} - set(sys.stdlib_module_names)
+    if package == "studies" and path != ROOT / "studies" / "answers" / "adapters.py":
+        return found & set(MODELS) if set(MODELS) <= found else found & {"tests"}
+    return found & {"tests"} if package == "studies" else set()
+
+
+def _files(*packages: str) -> list[Path]:
+    return [path for package in packages for path in sorted((ROOT / package).rglob("*.py"))]
+
+
+@pytest.mark.parametrize("path", _files(*MODELS, "studies"), ids=lambda path: str(path.relative_to(ROOT)))
+def test_file_keeps_the_import_rules(path):
+    """A model imports itself and its libraries; of the studies the adapters alone import both."""
+    assert _breaches(path, path.read_text(encoding="utf-8")) == set()
+
+
+@pytest.mark.parametrize(
+    ("place", "source", "breach"),
+    [
+        ("spline_model/x.py", "import fe_reference.mesh", {"fe_reference"}),
+        ("spline_model/x.py", "def f():\n    from studies.cases import problem", {"studies"}),
+        (
+            "spline_model/effects/x.py",
+            "from importlib import import_module\nimport_module('studies')",
+            {"studies"},
+        ),
+        ("fe_reference/x.py", "from spline_model.basis import bernstein", {"spline_model"}),
+        ("fe_reference/x.py", "import pandas", {"pandas"}),
+        ("studies/x.py", "import spline_model\nimport fe_reference", {"spline_model", "fe_reference"}),
+        ("studies/x.py", "from tests import gates", {"tests"}),
+    ],
+)
+def test_breach_is_seen(place, source, breach):
+    """The check has teeth: each kind of forbidden import is found."""
+    assert _breaches(ROOT / place, source) == breach
+
+
+def test_relative_imports_stay_inside():
+    """A relative import is read as the package it leads to."""
+    assert _top_level_imports(ROOT / "spline_model" / "effects" / "x.py", "from ..basis import a") == {
+        "spline_model"
+    }

@@ -1,0 +1,77 @@
+"""The repository is complete and speaks of itself alone."""
+
+import getpass
+import platform
+import re
+import subprocess
+import tomllib
+
+import pytest
+
+from studies.record.source import ROOT
+
+PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+
+
+def _committed() -> list[str]:
+    """Return the paths of the files that are or would be committed."""
+    words = ["git", "ls-files", "--cached", "--others", "--exclude-standard"]
+    try:
+        done = subprocess.run(words, cwd=ROOT, capture_output=True, text=True, check=True)
+    except (OSError, subprocess.CalledProcessError):
+        pytest.skip("not a git working tree")
+    return [name for name in done.stdout.splitlines() if (ROOT / name).is_file()]
+
+
+def test_packages_are_all_named():
+    """Every package folder stands in pyproject.toml, which setuptools cannot discover by itself."""
+    found = {
+        ".".join(path.parent.relative_to(ROOT).parts)
+        for top in ("fe_reference", "spline_model", "studies")
+        for path in (ROOT / top).rglob("__init__.py")
+    }
+    assert found == set(PROJECT["tool"]["setuptools"]["packages"])
+
+
+def test_lock_pins_everything_that_is_asked_for():
+    """requirements.lock pins each package with ==, has every dependency, and names no host or path."""
+    lines = (ROOT / "requirements.lock").read_text(encoding="utf-8").splitlines()
+    pins = [line for line in lines if not line.startswith("#")]
+    assert [line for line in pins if not re.fullmatch(r"[\w.-]+==[\w.]+", line)] == []
+    locked = {re.sub(r"[-_.]+", "-", line.split("==")[0]).lower() for line in pins}
+    asked = PROJECT["project"]["dependencies"] + PROJECT["project"]["optional-dependencies"]["dev"]
+    assert {re.split(r"[^\w-]", need)[0] for need in asked} - locked == set()
+
+
+def test_no_machine_is_named():
+    """No committed file holds an absolute path of a machine, a user or a host."""
+    home = ["/" + name + "/" for name in ("home", "root", "Users", "work", "tmp", "mnt", "opt")]
+    pattern = re.compile("|".join(rf"(?<![\w.:/]){re.escape(name)}\w" for name in home))
+    host = platform.node()
+    faults = []
+    for name in _committed():
+        if name.endswith((".png", ".pdf")):
+            continue
+        text = (ROOT / name).read_text(encoding="utf-8")
+        faults += [f"{name}: {match[0]}" for match in pattern.finditer(text)]
+        faults += [
+            f"{name}: {word}" for word in (str(ROOT), f"@{host}", f"{getpass.getuser()}@") if word in text
+        ]
+    assert faults == []
+
+
+def test_figures_stay_small():
+    """No committed figure in pixels is larger than 200 kB."""
+    large = [
+        name for name in _committed() if name.endswith(".png") and (ROOT / name).stat().st_size > 200_000
+    ]
+    assert large == []
+
+
+def test_integration_runs_what_a_user_runs():
+    """Continuous integration calls the Makefile's targets, and the workflow nothing but that script."""
+    script = (ROOT / ".ci" / "run").read_text(encoding="utf-8")
+    assert "make lint" in script
+    assert "make test" in script
+    assert (ROOT / ".ci" / "run").stat().st_mode & 0o111
+    assert "run: .ci/run" in (ROOT / ".github" / "workflows" / "ci.yml").read_text(encoding="utf-8")

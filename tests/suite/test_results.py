@@ -1,0 +1,129 @@
+"""The committed results are fresh, can be drawn again, reproduce, and are what README.md says."""
+
+import importlib.metadata
+import inspect
+import re
+import subprocess
+import sys
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from studies.commands.readme import BEGIN, END, README, rewritten
+from studies.errors import BadInput
+from studies.paper import formulations
+from studies.record import provenance, style
+from studies.record.progress import silent
+from studies.record.source import ROOT
+from studies.record.store import Store, as_csv
+from studies.registry import STUDIES, module_of
+
+
+@pytest.mark.parametrize("name", STUDIES)
+def test_study_has_its_two_functions_and_its_cases(name):
+    """A study module offers compute(progress), draw(tables) and the cases it reads."""
+    module = module_of(name)
+    assert list(inspect.signature(module.compute).parameters) == ["progress"]
+    assert list(inspect.signature(module.draw).parameters) == ["tables"]
+    assert all((ROOT / "studies" / "cases" / f"{case}.toml").is_file() for case in module.CASES)
+
+
+@pytest.mark.parametrize("name", STUDIES)
+def test_stored_result_is_fresh(name):
+    """No committed result was made by other code or from another case than those of today."""
+    state = Store().state(name, module=STUDIES[name][0], cases=module_of(name).CASES)
+    assert (state.kind, state.reason) == ("fresh", "")
+
+
+@pytest.mark.parametrize("name", STUDIES)
+def test_stored_tables_draw_the_stored_figures(name):
+    """With the same libraries the committed tables give the committed vector figures byte by byte."""
+    store = Store()
+    record = store.record(name)
+    for library in ("matplotlib", "numpy", "pandas"):
+        if record["versions"][library] != importlib.metadata.version(library):
+            pytest.skip(f"drawn with {library} {record['versions'][library]}")
+    with style.applied():
+        figures = module_of(name).draw(store.load_tables(name))
+    drawn = {
+        f"{title}.svg": provenance.sha256(style.rendered(page)["svg"]) for title, page in figures.items()
+    }
+    assert drawn == {file: digest for file, digest in record["figures"].items() if file.endswith(".svg")}
+
+
+def test_figure_names_are_unique():
+    """No study overwrites the figure of another one."""
+    names = [name for study in STUDIES for name in Store().record(study)["figures"]]
+    assert len(names) == len(set(names))
+
+
+def test_stored_paths_reproduce():
+    """Computed again, the paths of Fig 4 are those stored, to the digits that round-off leaves."""
+    name = "paper/fig04_trajectory"
+    stored = Store().load_tables(name)["paths"]
+    computed = (
+        module_of(name).compute(silent)["paths"].sort_values(list(stored.columns)).reset_index(drop=True)
+    )
+    assert list(computed["formulation"]) == list(stored["formulation"])
+    for column in ("rotation_rad", "com_x_m", "com_y_m"):
+        np.testing.assert_allclose(computed[column], stored[column], rtol=0.0, atol=1e-10)
+
+
+def test_every_formulation_has_its_look_and_its_meaning():
+    """Each formulation of the paper's figures has a colour of its own and says what it is."""
+    names = {*formulations.SETTINGS, formulations.REFINED}
+    assert names == set(style.LOOKS) == set(formulations.MEANING)
+    colours = [look.colour for look in style.LOOKS.values()]
+    assert len(colours) == len(set(colours))
+
+
+def test_findings_say_what_their_numbers_say():
+    """Each finding of Figs 3 to 5 is a sentence with number and verdict, for every formulation."""
+    for study in ("fig03_snapshots", "fig04_trajectory", "fig05_stiffness"):
+        found = Store().load_tables(f"paper/{study}")["findings"]
+        splines = {name for name, setting in formulations.SETTINGS.items() if setting.model == "spline"}
+        assert set(found["formulation"]) == splines
+        assert set(found["holds"]) <= {"yes", "no"}
+        for row in found.to_dict("records"):
+            verdict = "the claim holds." if row["holds"] == "yes" else "the claim does not hold."
+            assert row["sentence"].startswith(f"{row['formulation']}: {row['quantity']} is ")
+            assert row["sentence"].endswith(verdict)
+
+
+def test_readme_agrees_with_the_results():
+    """The figures of agreement in README.md are those of the stored results."""
+    text = README.read_text(encoding="utf-8")
+    assert rewritten(text, Store()) == text
+    assert text.index(BEGIN) < text.index("| trajectory | torque | stiffness |") < text.index(END)
+
+
+def test_readme_is_not_written_without_results_or_marks(tmp_path):
+    """Without results, or without the marks, nothing is written and the reason is one line."""
+    with pytest.raises(
+        BadInput, match=r"control_points: got no stored tables, expected those of `make figures`"
+    ):
+        rewritten(README.read_text(encoding="utf-8"), Store(tmp_path))
+    with pytest.raises(BadInput, match=r"README\.md: got no marks"):
+        rewritten("no marks", Store())
+
+
+def test_readme_example_runs():
+    """The Python example of README.md runs and prints what it says."""
+    example = re.search(r"```python\n(.*?)```", README.read_text(encoding="utf-8"), re.DOTALL)
+    assert example
+    done = subprocess.run(
+        [sys.executable, "-c", example[1]], cwd=ROOT, capture_output=True, text=True, check=True
+    )
+    promised = re.findall(r"\)  # (.*)", example[1])
+    assert promised
+    assert done.stdout.splitlines()[: len(promised)] == promised
+    assert len(done.stdout.splitlines()) == len(promised) + 3
+
+
+def test_stored_tables_are_tidy():
+    """Every committed table is sorted and rounded as the store writes it: nothing was edited by hand."""
+    for study in STUDIES:
+        for name, table in Store().load_tables(study).items():
+            stored = (Store().data(study) / f"{name}.csv").read_bytes()
+            assert as_csv(pd.DataFrame(table)) == stored, f"{study}/{name}"

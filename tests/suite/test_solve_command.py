@@ -1,0 +1,110 @@
+"""`python -m studies solve`: its JSON, table and exit codes are an interface that others call."""
+
+import json
+import math
+
+import pytest
+
+from studies.answers import adapters
+
+ARRAYS = {
+    "rotation_rad",
+    "com_x_m",
+    "com_y_m",
+    "torque_Nm",
+    "stiffness_Nm_per_rad",
+    "strain_energy_J",
+    "max_stress_Pa",
+}
+KEYS = ARRAYS | {"status", "message", "model", "settings", "counters", "wall_s"}
+
+
+@pytest.mark.parametrize("model", ["spline", "fe", "fe-shear"])
+def test_json_of_every_model(model, case, command):
+    """The JSON holds exactly the named keys, arrays with the unloaded state first."""
+    outcome = command(
+        "solve", case(), "--model", model, "--rotation-deg", 30, "--increments", 4, "--json", "-"
+    )
+    assert outcome.code == 0
+    assert outcome.err == ""
+    answer = json.loads(outcome.out)
+    assert set(answer) == KEYS
+    assert {name: len(answer[name]) for name in ARRAYS} == dict.fromkeys(ARRAYS, 5)
+    assert (answer["status"], answer["message"], answer["model"]) == ("converged", "", model)
+    assert answer["rotation_rad"] == pytest.approx(
+        [0.0, *(math.radians(7.5 * k) for k in (1, 2, 3, 4))], abs=1e-12
+    )
+    assert answer["com_x_m"][0] == pytest.approx(0.03, abs=1e-15)
+    assert answer["com_y_m"][0] == pytest.approx(0.06, abs=1e-15)
+    assert answer["torque_Nm"][-1] > 100.0
+    assert answer["wall_s"] > 0.0
+    assert all(isinstance(count, int) for count in answer["counters"].values())
+    assert answer["counters"]["increments"] == 4
+
+
+def test_settings_of_the_answer_are_those_asked_for(case, command):
+    """Every option of the spline reaches the model and stands in the answer."""
+    options: list[object] = ["--control-points", 8, "--axial-modes", 5, "--basis", "bspline"]
+    options += ["--measure", "spatial", "--gauss-points", 9]
+    path = ["--rotation-deg", 5, "--increments", 1]
+    answer = json.loads(command("solve", case(), "--model", "spline", *options, *path, "--json", "-").out)
+    assert answer["settings"] == {
+        "control_points": 8,
+        "axial_modes": 5,
+        "basis": "bspline",
+        "measure": "spatial",
+        "stretch": "mixed",
+        "gauss_points": 9,
+    }
+
+
+def test_file_holds_what_the_stream_would(case, command, tmp_path):
+    """`--json FILE` writes the same object as `--json -`, time aside, and leaves no other file."""
+    words = ["solve", case(), "--model", "fe", "--rotation-deg", 5, "--increments", 1, "--json"]
+    streamed = json.loads(command(*words, "-").out)
+    outcome = command(*words, tmp_path / "answer.json")
+    written = json.loads((tmp_path / "answer.json").read_text(encoding="utf-8"))
+    assert (outcome.code, outcome.out) == (0, "")
+    assert streamed.keys() == written.keys()
+    assert {**streamed, "wall_s": None} == {**written, "wall_s": None}
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["answer.json", "case.toml"]
+
+
+def test_table_is_short_and_readable(case, command):
+    """Without --json the path is a table with units that fits a terminal."""
+    outcome = command("solve", case(), "--model", "fe", "--rotation-deg", 45, "--increments", 3)
+    lines = outcome.out.splitlines()
+    assert outcome.code == 0
+    assert len(lines) == 3 + 4 + 1
+    assert "N m/rad" in lines[2]
+    assert lines[-2].split()[0] == "45.000"
+    assert max(map(len, lines[:-1])) <= 90
+
+
+def test_repeat_takes_the_median_after_a_warm_up(case, command, monkeypatch):
+    """With `--repeat R` R solves are timed after one warm-up of the whole path."""
+    asked = []
+    genuine = adapters.measure
+
+    def counted(work, *, repeat, warm_up):
+        asked.append((repeat, warm_up))
+        return genuine(work, repeat=repeat, warm_up=warm_up)
+
+    monkeypatch.setattr(adapters, "measure", counted)
+    words = ["solve", case(), "--model", "fe", "--rotation-deg", 5, "--increments", 1, "--json", "-"]
+    assert command(*words, "--repeat", 3).code == 0
+    assert command(*words).code == 0
+    assert asked == [(3, 1), (1, 0)]
+
+
+def test_not_converged_keeps_the_path_so_far(case, command):
+    """A path that stops is exit code 3 with its converged part and where and why it stopped."""
+    words = ["--model", "fe", "--elements", 1, "--rotation-deg", 360, "--increments", 3, "--json", "-"]
+    outcome = command("solve", case(("length_m = 0.08", "length_m = 8.08")), *words)
+    answer = json.loads(outcome.out)
+    assert outcome.code == 3
+    assert answer["status"] == "not_converged"
+    assert answer["message"]
+    assert outcome.err == f"studies: not converged: {answer['message']}\n"
+    assert 1 <= len(answer["rotation_rad"]) < 4
+    assert {len(answer[name]) for name in ARRAYS} == {len(answer["rotation_rad"])}

@@ -1,0 +1,62 @@
+"""Commands start fast: nothing heavy is imported before it is needed."""
+
+import subprocess
+import sys
+
+import pytest
+
+from studies.record.source import ROOT
+from studies.registry import COMMANDS, STUDIES, selected
+
+HEAVY = ("numpy", "scipy", "numba", "skfem", "pandas", "matplotlib", "spline_model", "fe_reference")
+
+
+def _loaded_by(words: list[str]) -> set[str]:
+    """Return the heavy packages loaded after `python -m studies` with `words` has run."""
+    script = (
+        "import sys\n"
+        "from studies.__main__ import main\n"
+        "try:\n"
+        f"    main({words!r})\n"
+        "except SystemExit:\n"
+        "    pass\n"
+        f"print('loaded', *[name for name in {HEAVY!r} if name in sys.modules])"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", script], cwd=ROOT, capture_output=True, text=True, check=True
+    )
+    return set(done.stdout.splitlines()[-1].split()[1:])
+
+
+@pytest.mark.parametrize("words", [["--help"], [], ["list"]])
+def test_overview_imports_nothing_heavy(words):
+    """Help and lists load no numerical package."""
+    assert _loaded_by(words) == set()
+
+
+def test_solve_loads_one_model_and_no_plotting():
+    """Solving with one model loads neither the other one nor what only studies need."""
+    case = "studies/cases/cross_axis_pivot.toml"
+    words = ["solve", case, "--model", "fe", "--rotation-deg", "1", "--increments", "1"]
+    assert _loaded_by(words) & {"spline_model", "pandas", "matplotlib"} == set()
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_every_command_explains_itself_with_an_example(name, capsys):
+    """`--help` of a command says what it does, with an example of its use."""
+    from studies.__main__ import main
+
+    with pytest.raises(SystemExit) as ended:
+        main([name, "--help"])
+    text = capsys.readouterr().out
+    assert ended.value.code == 0
+    assert f"    python -m studies {name}" in text
+
+
+def test_names_of_studies():
+    """A study is called by its name, its last part, its group or "all"."""
+    assert (
+        selected(["fig04_trajectory"]) == selected(["paper/fig04_trajectory"]) == ["paper/fig04_trajectory"]
+    )
+    assert selected(["paper"]) == [name for name in STUDIES if name.startswith("paper/")]
+    assert selected(["all", "paper"]) == list(STUDIES)

@@ -1,0 +1,158 @@
+"""Stored results are tidy, whole, traceable and the same every time."""
+
+import getpass
+import json
+import platform
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from studies.record import style
+from studies.record.files import OutputError, replace_folder, write_whole
+from studies.record.source import ROOT
+from studies.record.store import Store, as_csv
+
+STUDY = "paper/example"
+MODULE = "studies.answers.metrics"
+CASES = ("cross_axis_pivot",)
+TABLE = pd.DataFrame(
+    {"model": ["b", "a", "a"], "rotation_rad": [0.5, 1 / 3, 0.25], "status": ["ok", "ok", "x"]}
+)
+
+
+def _save(store: Store) -> None:
+    store.save_tables(
+        STUDY,
+        {"example": TABLE},
+        module=MODULE,
+        cases=CASES,
+        command="python -m studies run example",
+        elapsed=1.0,
+    )
+
+
+def _draw() -> dict:
+    with style.applied():
+        page = style.page(3.0, 2.0)
+        page.subplots().plot([0.0, 1.0], [0.0, 1.0], label="a line")
+        return {"example": page}
+
+
+@pytest.fixture
+def store(tmp_path):
+    """A store with one computed and drawn study."""
+    store = Store(tmp_path / "results")
+    _save(store)
+    store.save_figures(STUDY, _draw())
+    return store
+
+
+def _state(store: Store) -> tuple[str, str]:
+    state = store.state(STUDY, module=MODULE, cases=CASES)
+    return state.kind, state.reason
+
+
+def test_table_is_sorted_with_twelve_digits():
+    """A table is sorted from left to right, has 12 significant digits, and keeps failed points."""
+    failed = pd.concat(
+        [TABLE, pd.DataFrame({"model": ["c"], "rotation_rad": [np.nan], "status": ["failed"]})]
+    )
+    assert as_csv(failed).decode() == (
+        "model,rotation_rad,status\na,0.25,x\na,0.333333333333,ok\nb,0.5,ok\nc,,failed\n"
+    )
+
+
+def test_table_comes_back(store):
+    """What is loaded is what was stored, to 12 digits."""
+    loaded = store.load_tables(STUDY)["example"]
+    expected = TABLE.sort_values(list(TABLE.columns)).reset_index(drop=True)
+    pd.testing.assert_frame_equal(loaded, expected, rtol=1e-12, check_dtype=False)
+
+
+def test_provenance_tells_the_origin_and_not_the_place(store):
+    """Provenance has command, inputs, hashes, versions, machine and date, but no path, user or host."""
+    text = (store.data(STUDY) / "provenance.json").read_text(encoding="utf-8")
+    record = json.loads(text)
+    assert {"command", "inputs", "tables", "figures", "versions", "machine", "date", "elapsed_s"} <= set(
+        record
+    )
+    assert set(record["tables"]) == {"example.csv"}
+    assert set(record["figures"]) == {"example.png", "example.svg"}
+    values = [
+        str(value) for part in (record, record["machine"], record["versions"]) for value in part.values()
+    ]
+    for secret in (str(ROOT), str(store.root), platform.node(), getpass.getuser()):
+        assert secret not in values
+        assert str(ROOT) not in text
+
+
+def test_fresh_stale_missing(store, monkeypatch):
+    """A result is fresh until the case, the source or a file changes, and missing without its files."""
+    assert _state(store) == ("fresh", "")
+    with monkeypatch.context() as patch:
+        patch.setattr("studies.record.provenance.source_hash", lambda module: "another")
+        assert _state(store) == ("stale", "the source was changed")
+    (store.figures / "example.png").write_bytes(b"edited")
+    assert _state(store) == ("stale", "example.png was changed after it was made")
+    (store.figures / "example.png").unlink()
+    assert _state(store) == ("missing", "example.png does not exist")
+    _save(store)
+    assert _state(store) == ("missing", "no figure was drawn")
+    assert Store(store.root / "empty").state(STUDY, module=MODULE, cases=CASES).reason == "never run"
+
+
+def test_changed_case_is_stale(store):
+    """A result whose case has changed since is stale."""
+    path = store.data(STUDY) / "provenance.json"
+    record = json.loads(path.read_text(encoding="utf-8"))
+    record["inputs"]["cases"]["cross_axis_pivot"] = "another"
+    path.write_text(json.dumps(record), encoding="utf-8")
+    assert _state(store) == ("stale", "a case was changed")
+
+
+def test_figures_are_equal_byte_by_byte(store):
+    """Drawing again gives the same bytes."""
+    before = {path.name: path.read_bytes() for path in store.figures.iterdir()}
+    store.save_figures(STUDY, _draw())
+    assert {path.name: path.read_bytes() for path in store.figures.iterdir()} == before
+
+
+def test_figure_no_longer_drawn_is_removed(store):
+    """A figure that a study no longer draws does not linger."""
+    store.save_figures(STUDY, {"renamed": _draw()["example"]})
+    assert sorted(path.name for path in store.figures.iterdir()) == ["renamed.png", "renamed.svg"]
+
+
+def test_interrupted_file_leaves_the_former_one(tmp_path, monkeypatch):
+    """When writing fails midway the former file stands and no part of the new one remains."""
+    path = tmp_path / "answer.json"
+    write_whole(path, b"former")
+
+    def fail(self, target):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr("pathlib.Path.replace", fail)
+    with pytest.raises(OutputError, match=r"answer.json: cannot be written \(No space left on device\)"):
+        write_whole(path, b"new")
+    assert [item.name for item in tmp_path.iterdir()] == ["answer.json"]
+    assert path.read_bytes() == b"former"
+
+
+def test_interrupted_folder_leaves_the_former_one(tmp_path):
+    """When one file of a folder cannot be written the former folder stands whole."""
+    folder = tmp_path / "study"
+    replace_folder(folder, {"a.csv": b"former"})
+    with pytest.raises(OutputError, match="cannot be written"):
+        replace_folder(folder, {"a.csv": b"new", "absent/b.csv": b"new"})
+    assert [item.name for item in tmp_path.iterdir()] == ["study"]
+    assert {item.name: item.read_bytes() for item in folder.iterdir()} == {"a.csv": b"former"}
+
+
+def test_folder_holds_exactly_what_was_written(tmp_path):
+    """A table that is no longer made does not linger."""
+    folder = tmp_path / "data" / "study"
+    replace_folder(folder, {"a.csv": b"1", "b.csv": b"2"})
+    replace_folder(folder, {"b.csv": b"3"})
+    assert {item.name: item.read_bytes() for item in folder.iterdir()} == {"b.csv": b"3"}
+    assert [item.name for item in folder.parent.iterdir()] == ["study"]

@@ -1,0 +1,43 @@
+"""Progress and timing report what happened and stay out of the way."""
+
+import gc
+
+import pytest
+
+from studies.record import progress
+from studies.record.progress import Bar
+from studies.record.timing import measure
+
+
+def test_timing_warms_up_and_counts_repeats():
+    """The work runs warm_up + repeat times; collection is off while timed and then restored."""
+    seen = []
+    timing = measure(lambda: seen.append(gc.isenabled()) or len(seen), repeat=3, warm_up=2)
+    assert seen == [True, True, False, False, False]
+    assert gc.isenabled()
+    assert timing.result == 5
+    assert len(timing.seconds) == 3
+    assert (
+        min(timing.seconds)
+        <= timing.quartiles[0]
+        <= timing.median
+        <= timing.quartiles[1]
+        <= max(timing.seconds)
+    )
+    with pytest.raises(ValueError, match="got 0, expected at least 1"):
+        measure(lambda: None, repeat=0)
+
+
+def test_bar_shows_long_work_on_the_error_stream_only(capsys, monkeypatch):
+    """Work that lasts is shown on the error stream, short work is not shown at all."""
+    with Bar("short") as bar:
+        bar(1, 2)
+        bar(2, 2)
+    assert capsys.readouterr() == ("", "")
+    monkeypatch.setattr(progress, "DELAY", 0.0)
+    with Bar("long") as bar:
+        bar(1, 2)
+        bar(2, 2)
+    captured = capsys.readouterr()
+    assert captured.out == ""
+    assert "long" in captured.err
