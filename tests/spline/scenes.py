@@ -7,7 +7,15 @@ from scipy.optimize import brentq
 from scipy.special import ellipe, ellipeinc, ellipk, ellipkinc
 
 from spline_model.basis import LegendreModes, SlideModes, bezier
-from spline_model.effects import AppliedForce, AppliedMoment, Bending, Clamp, MixedStretching
+from spline_model.effects import (
+    AppliedForce,
+    AppliedMoment,
+    Bending,
+    BodyInertia,
+    Clamp,
+    MixedStretching,
+    StripInertia,
+)
 from spline_model.scene import Body, Scene, Strip
 
 LENGTH = 0.7
@@ -59,3 +67,29 @@ def elastica_tip(load):
     x = math.sqrt(2.0 * math.sin(rotation) / load)
     y = 1.0 - 2.0 / math.sqrt(load) * (ellipe(m) - ellipeinc(phi, m))
     return x, y, rotation
+
+
+def swinging(*, control_points, tip_mass=None, tip_inertia=None, clamped=True, compliance=0.0):
+    """A strip along x in motion, clamped or free at the origin, mu = 1 kg/m.
+
+    With a tip mass [mu L] and inertia [mu L^3] a body is clamped to its end. compliance 1/EA
+    in L^2/EI; the slide stiffness is 100 EI/L^2.
+    """
+    scene = cantilever(control_points=control_points, compliance=compliance)
+    basis, axial = scene.strips[0].basis, LegendreModes(count=control_points - 2)
+    unit, with_body = RIGIDITY / LENGTH**2, tip_mass is not None
+    rule = {"strip": "strip", "gauss_points": control_points + 2}
+    effects = [
+        Bending(flexural_rigidity=RIGIDITY, **rule),
+        MixedStretching(axial_compliance=compliance / unit, modes=axial, **rule),
+        MixedStretching(axial_compliance=0.01 / unit, modes=SlideModes(basis=basis, axial=axial), **rule),
+        StripInertia(strip="strip", linear_density=1.0),
+    ]
+    if clamped:
+        effects.append(Clamp(strip="strip", end="start"))
+    if with_body:
+        effects.append(Clamp(strip="strip", end="end", to="tip"))
+        effects.append(
+            BodyInertia(body="tip", mass=tip_mass * LENGTH, moment_of_inertia=tip_inertia * LENGTH**3)
+        )
+    return Scene(strips=scene.strips, bodies=scene.bodies if with_body else (), effects=tuple(effects))

@@ -1,0 +1,236 @@
+"""The release: energy, constraints, order, three integrators, momenta."""
+
+import math
+
+import numpy as np
+import pytest
+
+from spline_model.compile import compile_scene
+from spline_model.dynamics import INTEGRATORS, solve_release
+from spline_model.errors import ConvergenceError, InvalidParameter
+from spline_model.integrators import energy_consistent
+from spline_model.integrators.motion import initial_acceleration, set_in_motion
+from spline_model.modes import natural_frequencies
+from spline_model.pivot import SWINGING_SLIDE_STIFFNESS, cross_axis_pivot
+from tests import gates
+from tests.spline.scenes import LENGTH, swinging
+from tests.table_one import TABLE_ONE
+
+
+def released(settings=None, **options):
+    """Trajectory of Table 1."""
+    design = TABLE_ONE | {"slide_stiffness": SWINGING_SLIDE_STIFFNESS} | (settings or {})
+    return solve_release(cross_axis_pivot(**design), **options)
+
+
+def energy_error(trajectory):
+    """Largest relative change of the total energy."""
+    energy = trajectory.kinetic_energy + trajectory.strain_energy
+    return np.abs(energy / energy[0] - 1).max()
+
+
+@pytest.mark.parametrize("step", [1e-5, 5e-5, 2e-4, 1e-3, 1e-2])
+def test_energy_and_constraints_hold_at_any_step(step):
+    """Requirement: the default integrator keeps energy and constraints at any step, and stays bounded."""
+    trajectory = released(duration=0.05, step=step)
+    assert trajectory.status.value == "converged", trajectory.message
+    gates.check("spline_swing_energy", energy_error(trajectory))
+    gates.check("spline_swing_constraints", trajectory.constraint_residual.max())
+    assert np.abs(trajectory.rotation).max() < 1.01 * math.pi / 2
+    assert bool(trajectory.resolution) == (step > 6.6e-4), trajectory.resolution
+
+
+@pytest.mark.parametrize("gate", ["spline_swing_energy", "spline_swing_constraints"])
+def test_swing_gates_have_teeth(gate):
+    """Requirement: generalised-alpha, which damps, and a tenth of a micrometre fail the same gates."""
+    trajectory = released(duration=0.01, **gates.teeth("spline_swing_energy"))
+    error = energy_error(trajectory) if gate == "spline_swing_energy" else gates.teeth(gate)["gap_m"]
+    with pytest.raises(AssertionError, match="x the gate"):
+        gates.check(gate, error)
+
+
+def test_order_two_in_time():
+    """Requirement: the rotation converges with order 2 in the step."""
+    steps = [2e-6, 1e-6, 5e-7, 2.5e-7]
+    ends = [released({"control_points": 4}, duration=0.002, step=s, records=1).rotation[-1] for s in steps]
+    exact = released({"control_points": 4}, duration=0.002, step=2e-7, records=1, integrator="explicit")
+    errors = np.abs(np.array(ends) - exact.rotation[-1])
+    # the axial waves that the release excites make single pairs scatter, so the mean is asked as well
+    orders = np.log2(errors[:-1] / errors[1:])
+    assert min(orders[-1], orders.mean()) > 2 - 0.15, (orders, errors)
+    gates.check("spline_swing_in_time", errors[-1])
+
+
+def test_time_gate_has_teeth():
+    """Requirement: a long step fails the level of the order test."""
+    step = gates.teeth("spline_swing_in_time")["step"]
+    coarse = released({"control_points": 4}, duration=0.002, step=step, records=1).rotation[-1]
+    fine = released({"control_points": 4}, duration=0.002, step=1e-6, records=1).rotation[-1]
+    with pytest.raises(AssertionError, match="x the gate"):
+        gates.check("spline_swing_in_time", abs(coarse - fine))
+
+
+def integrator_difference(step):
+    """Largest difference of the three integrators' rotations over 5 ms, inextensible strips left out."""
+    paths = [
+        released({"control_points": 4}, duration=0.005, step=step, records=50, integrator=name).rotation
+        for name in INTEGRATORS
+    ]
+    return max(np.abs(path - paths[0]).max() for path in paths[1:])
+
+
+def test_three_integrators_agree():
+    """Requirement: energy-consistent, generalised-alpha and explicit runs tend to one trajectory."""
+    gates.check("spline_integrators_agree", integrator_difference(step=1e-6))
+
+
+def test_integrator_gate_has_teeth():
+    """Requirement: at a coarser step the three differ by more."""
+    with pytest.raises(AssertionError, match="x the gate"):
+        gates.check(
+            "spline_integrators_agree", integrator_difference(**gates.teeth("spline_integrators_agree"))
+        )
+
+
+def crossing_frequency(time, value):
+    """Frequency from the first to the last zero crossing, by inverse cubic interpolation [Hz]."""
+    at = np.flatnonzero(value[1:] * value[:-1] < 0)
+    zeros = []
+    for i in at[(at > 1) & (at < len(value) - 3)]:
+        near = slice(i - 1, i + 3)
+        fit = np.polynomial.Polynomial.fit(value[near], time[near], 3)
+        zeros.append(fit(0.0))
+    return (len(zeros) - 1) / (2 * (zeros[-1] - zeros[0]))
+
+
+def small_swing(start, step=2e-5):
+    """Relative difference of a small swing's frequency and the first linear mode."""
+    pivot = cross_axis_pivot(**TABLE_ONE, slide_stiffness=SWINGING_SLIDE_STIFFNESS)
+    trajectory = solve_release(pivot, start=start, duration=0.1, step=step)
+    mode = natural_frequencies(pivot, count=1).frequency[0]
+    return abs(crossing_frequency(trajectory.time, trajectory.rotation) / mode - 1)
+
+
+def test_small_swing_has_the_linear_frequency():
+    """Requirement: the period of a small swing is that of the first linear mode."""
+    gates.check("spline_small_swing", small_swing(start=1e-3))
+
+
+def test_small_swing_gate_has_teeth():
+    """Requirement: a swing of some degrees differs from the linear mode."""
+    with pytest.raises(AssertionError, match="x the gate"):
+        gates.check("spline_small_swing", small_swing(**gates.teeth("spline_small_swing")))
+
+
+def momenta(scene, states, velocities):
+    """Linear and angular momentum about the origin at each record, shape (R, 3)."""
+    system = compile_scene(scene)
+    mass, layout = set_in_motion(system).mass, system.layout
+    p = velocities @ mass
+    q = states[:, : layout.coordinate_count]
+    body = layout.bodies["tip"]
+    points = np.r_[0:body, body : body + 2]
+    x, y, px, py = q[:, points[::2]], q[:, points[1::2]], p[:, points[::2]], p[:, points[1::2]]
+    spin = (x * py - y * px).sum(axis=1) + p[:, body + 2]
+    return np.column_stack((px.sum(axis=1), py.sum(axis=1), spin))
+
+
+def free_flight(step, steps=400):
+    """Largest change of momentum and energy in free flight, over their scale."""
+    scene = swinging(control_points=6, tip_mass=0.5, tip_inertia=0.1, clamped=False, compliance=1e-3)
+    system = compile_scene(scene)
+    motion = set_in_motion(system)
+    count = system.layout.coordinate_count
+    v = np.zeros(count)
+    body = system.layout.bodies["tip"]
+    spin = 3.0  # rad/s, about the body's centre, and a bending velocity that grows towards the free end
+    points = system.rest[:body].reshape(-1, 2) - system.rest[body : body + 2]
+    v[:body] = (np.column_stack((-points[:, 1], points[:, 0])) * spin + (0.4, -0.2)).ravel()
+    v[1:body:2] += 40.0 * (points[:, 0] / LENGTH) ** 2 * (np.arange(len(points)) < len(points) - 2)
+    v[body : body + 3] = (0.4, -0.2, spin)
+    acceleration, z = initial_acceleration(system, motion, system.rest, v)
+    run = energy_consistent.integrate(motion, z, v, acceleration, step=step, steps=steps, every=1)
+    assert not run.message
+    momentum = momenta(scene, run.states, run.velocities)
+    energy = run.rows[:, 0] + run.rows[:, 1]
+    assert run.rows[:, 1].max() > 0.05 * energy[0]  # the strip does bend on its way
+    drift = np.abs(momentum - momentum[0]).max() / np.abs(momentum[0]).max()
+    return max(drift, np.abs(energy / energy[0] - 1).max())
+
+
+def test_free_flight_conserves_momentum_and_energy():
+    """Requirement: an unclamped strip with a body keeps linear and angular momentum and energy."""
+    gates.check("spline_free_flight", free_flight(step=1e-3))
+
+
+def test_free_flight_gate_has_teeth(monkeypatch):
+    """Requirement: a Newton that stops early shows in the conserved quantities."""
+    monkeypatch.setattr(energy_consistent, "TOLERANCE", gates.teeth("spline_free_flight")["tolerance"])
+    with pytest.raises(AssertionError, match="x the gate"):
+        gates.check("spline_free_flight", free_flight(step=1e-3))
+
+
+def test_initial_acceleration_is_consistent():
+    """Requirement: the first step's mean acceleration tends to the consistent one."""
+    pivot = cross_axis_pivot(**TABLE_ONE, slide_stiffness=SWINGING_SLIDE_STIFFNESS)
+    system = compile_scene(pivot.released())
+    start = solve_release(pivot, duration=1e-6, step=1e-7)
+    motion = set_in_motion(system)
+    v = np.zeros(system.layout.coordinate_count)
+    acceleration, _ = initial_acceleration(system, motion, start.states[0], v)
+    turn = motion.turns[0]
+    mean = start.velocities[1][turn] / 1e-7
+    assert abs(mean / acceleration[turn] - 1) < 1e-5  # (axial frequency x step)^2 / 12
+
+
+def test_accuracy_controls_the_step():
+    """Requirement: a tighter accuracy takes more steps and comes nearer to the converged swing."""
+    exact = released(duration=0.005, step=5e-7, records=1).rotation[-1]
+    loose, tight = (released(duration=0.005, accuracy=a) for a in (1e-2, 1e-4))
+    assert tight.counters["steps"] > 2 * loose.counters["steps"]
+    assert abs(tight.rotation[-1] - exact) < 1e-4
+    assert abs(loose.rotation[-1] - exact) < 1e-2
+    assert energy_error(loose) < 1e-10  # as at fixed steps
+
+
+def test_an_unstable_explicit_step_is_named():
+    """Requirement: an explicit step above the critical one stops with a message, not with NaN."""
+    fine = released(duration=0.001, integrator="explicit")
+    coarse = released(duration=0.001, integrator="explicit", step=1.3 / 0.9 * fine.settings["step_s"])
+    assert fine.status.value == "converged"
+    assert coarse.status.value == "not_converged"
+    assert "above the critical one" in coarse.message
+    assert np.isfinite(coarse.rotation).all()
+
+
+@pytest.mark.parametrize(
+    "options, line",
+    [
+        ({"step": 0.0}, "step: got 0.0"),
+        ({"duration": -1.0}, "duration: got -1.0"),
+        ({"step": 1.0}, "step: got 1.0, expected at most the duration"),
+        ({"duration": 1e6, "step": 1e-6}, r"duration: got 1000000.0, expected records within 2 GB"),
+        ({"integrator": "euler"}, "expected one of energy, generalised-alpha, explicit"),
+        ({"start": math.nan}, "start: got nan"),
+        ({"accuracy": 1e-3, "step": 1e-4}, "accuracy: got 0.001"),
+    ],
+    ids=str,
+)
+def test_invalid_options_are_one_line(options, line):
+    """Requirement: a bad option is refused with name, value and expectation."""
+    with pytest.raises(InvalidParameter, match=line):
+        released(**options)
+
+
+def test_a_start_that_statics_cannot_reach_is_refused():
+    """Requirement: a release from a state that statics does not reach says where it stopped."""
+    with pytest.raises(ConvergenceError, match="stopped between load factor"):
+        released({"control_points": 8, "slide_stiffness": 10.0}, start=math.radians(230))
+
+
+def test_inextensible_strips_have_no_explicit_step():
+    """Requirement: the explicit integrator refuses inextensible strips, the default swings them."""
+    with pytest.raises(InvalidParameter, match="an implicit one for inextensible strips"):
+        released({"stretch": "inextensible"}, integrator="explicit", step=1e-6)
+    trajectory = released({"stretch": "inextensible"}, duration=0.005)
+    gates.check("spline_swing_energy", energy_error(trajectory))
