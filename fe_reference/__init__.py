@@ -1,0 +1,1 @@
+"""Independent finite-element reference for flexural pivots: thin strips and one rigid body, on scikit-fem."""

@@ -1,0 +1,72 @@
+"""Refusals of this package: bad parameters, and a solve that stopped, with what it found until then."""
+
+import math
+from typing import Any
+
+
+class InvalidParameter(ValueError):
+    """A parameter outside its domain; the message is one line "name: got X, expected Y [unit]"."""
+
+    def __init__(self, name: str, got: object, expected: str) -> None:
+        super().__init__(f"{name}: got {got!r}, expected {expected}")
+        self.name = name
+
+
+class ConvergenceError(RuntimeError):
+    """A solve that stopped before its end.
+
+    Attributes:
+        solution: the converged part (`StaticSolution` or `Trajectory`), last good state last.
+        load_factor: fraction of the path (statics) or of the duration (dynamics) that was reached.
+        history: dimensionless residual norms of the attempts that failed, one tuple an attempt.
+    """
+
+    def __init__(
+        self, message: str, *, solution: Any, load_factor: float, history: tuple[tuple[float, ...], ...]
+    ) -> None:
+        super().__init__(message)
+        self.solution = solution
+        self.load_factor = load_factor
+        self.history = history
+
+
+def finite(name: str, value: Any, unit: str) -> float:
+    """Return `value` as a float, or refuse it if it is not a finite real number."""
+    if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
+        raise InvalidParameter(name, value, f"a finite number [{unit}]")
+    return float(value)
+
+
+def positive(name: str, value: Any, unit: str) -> float:
+    """Return `value` as a float, or refuse it if it is not finite and above zero."""
+    if finite(name, value, unit) <= 0.0:
+        raise InvalidParameter(name, value, f"a number above 0 [{unit}]")
+    return float(value)
+
+
+def not_negative(name: str, value: Any, unit: str) -> float:
+    """Return `value` as a float, or refuse it if it is not finite or is below zero."""
+    if finite(name, value, unit) < 0.0:
+        raise InvalidParameter(name, value, f"a number not below 0 [{unit}]")
+    return float(value)
+
+
+def within(name: str, value: Any, low: float, high: float, unit: str) -> float:
+    """Return `value` as a float, or refuse it if it is not strictly between `low` and `high`."""
+    if not low < finite(name, value, unit) < high:
+        raise InvalidParameter(name, value, f"a number between {low:g} and {high:g}, both excluded [{unit}]")
+    return float(value)
+
+
+def count(name: str, value: Any, minimum: int = 1) -> int:
+    """Return `value` if it is an integer of at least `minimum`."""
+    if isinstance(value, bool) or not hasattr(value, "__index__") or value < minimum:
+        raise InvalidParameter(name, value, f"an integer of at least {minimum} [1]")
+    return int(value)
+
+
+def choice(name: str, value: Any, known: tuple[str, ...]) -> str:
+    """Return `value` if it is one of the names in `known`."""
+    if value not in known:
+        raise InvalidParameter(name, value, f"one of {', '.join(known)} [name]")
+    return str(value)

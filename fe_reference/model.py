@@ -1,0 +1,189 @@
+"""What a finite-element model is made of: sections, strips of two-node beam elements, and one rigid body.
+
+Every strip begins at ground and ends on the rigid body. A cantilever is the same thing with a body of no size
+and no mass at its tip. The parameters are plain SI numbers and radians.
+"""
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from .errors import InvalidParameter, choice, count, not_negative, positive, within
+from .structure import Structure
+
+Array = NDArray[np.float64]
+ELEMENTS = ("corotational", "reissner")
+
+
+def rotation_matrix(angle: float) -> Array:
+    """Return the matrix (2, 2) that turns a vector counter-clockwise by `angle` [rad]."""
+    cosine, sine = np.cos(angle), np.sin(angle)
+    return np.array([[cosine, -sine], [sine, cosine]])
+
+
+@dataclass(frozen=True, kw_only=True)
+class Section:
+    """Cross-section and material of a strip: a linear elastic, homogeneous beam section.
+
+    Symbols: A [m^2], I [m^4], E [Pa], nu [1], rho [kg/m^3], shear factor k [1].
+    Rigidities: EA [N], EI [N m^2], k G A [N] with G = E / (2 (1 + nu)); linear density mu = rho A [kg/m].
+    k = 5/6 is the value for a rectangle in energy equivalence (Reissner), without the dependence on nu.
+    """
+
+    area: float
+    second_moment_of_area: float
+    youngs_modulus: float
+    poisson_ratio: float
+    density: float
+    shear_factor: float = 5.0 / 6.0
+
+    def __post_init__(self) -> None:
+        positive("area", self.area, "m^2")
+        positive("second_moment_of_area", self.second_moment_of_area, "m^4")
+        positive("youngs_modulus", self.youngs_modulus, "Pa")
+        within("poisson_ratio", self.poisson_ratio, -1.0, 0.5, "1")
+        positive("density", self.density, "kg/m^3")
+        positive("shear_factor", self.shear_factor, "1")
+
+    @property
+    def axial_rigidity(self) -> float:
+        """EA [N]."""
+        return self.youngs_modulus * self.area
+
+    @property
+    def flexural_rigidity(self) -> float:
+        """EI [N m^2]."""
+        return self.youngs_modulus * self.second_moment_of_area
+
+    @property
+    def shear_rigidity(self) -> float:
+        """k G A [N]."""
+        return self.shear_factor * self.axial_rigidity / (2.0 * (1.0 + self.poisson_ratio))
+
+    @property
+    def linear_density(self) -> float:
+        """Mass per unit reference length, rho A [kg/m]."""
+        return self.density * self.area
+
+    @property
+    def rotary_density(self) -> float:
+        """Rotary inertia of the section per unit reference length, rho I [kg m]."""
+        return self.density * self.second_moment_of_area
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Strip:
+    """A strip as a chain of stress-free two-node elements from ground to body.
+
+    Args:
+        section: cross-section and material, the same along the strip.
+        nodes: reference positions (P, 2) [m], ground end first. The chain may turn from element to element:
+            every element keeps its own reference angle, so that a curved strip is stress-free as well.
+        clamped: whether the ground end is clamped; if not it is free.
+    """
+
+    section: Section
+    nodes: Array
+    clamped: bool = True
+
+    def __post_init__(self) -> None:
+        nodes = np.array(self.nodes, dtype=float)
+        if nodes.ndim != 2 or nodes.shape[0] < 2 or nodes.shape[1] != 2 or not np.isfinite(nodes).all():
+            raise InvalidParameter(
+                "nodes", np.shape(self.nodes), "finite positions of shape (2 or more, 2) [m]"
+            )
+        if not np.all(np.linalg.norm(np.diff(nodes, axis=0), axis=1) > 0.0):
+            raise InvalidParameter("nodes", "coincident neighbours", "elements of a length above 0 [m]")
+        object.__setattr__(self, "nodes", nodes)
+
+    @property
+    def length(self) -> float:
+        """Reference length [m]."""
+        return float(np.linalg.norm(np.diff(self.nodes, axis=0), axis=1).sum())
+
+
+def straight_strip(
+    start: ArrayLike, end: ArrayLike, *, section: Section, elements: int, clamped: bool = True
+) -> Strip:
+    """Return a strip of `elements` equal elements between two points (2,) [m]."""
+    fraction = np.linspace(0.0, 1.0, count("elements", elements) + 1)[:, None]
+    first, last = np.asarray(start, dtype=float), np.asarray(end, dtype=float)
+    return Strip(section=section, nodes=first + fraction * (last - first), clamped=clamped)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Body:
+    """The rigid body: centre of mass at rest (2,) [m], mass [kg], inertia about the centre [kg m^2].
+
+    A body without mass and inertia is legal: it is then the common end node of the strips.
+    """
+
+    centre: Array
+    mass: float = 0.0
+    moment_of_inertia: float = 0.0
+
+    def __post_init__(self) -> None:
+        not_negative("body_mass", self.mass, "kg")
+        not_negative("body_moment_of_inertia", self.moment_of_inertia, "kg m^2")
+        centre = np.array(self.centre, dtype=float)
+        if centre.shape != (2,) or not np.isfinite(centre).all():
+            raise InvalidParameter("centre", self.centre, "two finite coordinates [m]")
+        object.__setattr__(self, "centre", centre)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Model:
+    """Strips between ground and one rigid body, with the element that the strips are made of.
+
+    Args:
+        strips: one or more, all of the same number of elements.
+        body: the rigid body to which the last node of every strip is attached.
+        element: "corotational" (Euler-Bernoulli) or "reissner" (with shear).
+    """
+
+    strips: tuple[Strip, ...]
+    body: Body
+    element: str = "corotational"
+
+    def __post_init__(self) -> None:
+        choice("element", self.element, ELEMENTS)
+        sizes = {len(strip.nodes) for strip in self.strips}
+        if len(sizes) != 1:
+            raise InvalidParameter(
+                "strips", sorted(sizes), "one or more strips with the same number of nodes [1]"
+            )
+
+    @cached_property
+    def structure(self) -> Structure:
+        """Mesh, element law and dof numbering, built at first use."""
+        return Structure(self)
+
+    def rotated(self, angle: float) -> "Model":
+        """Return the same model turned as a whole about the origin by `angle` [rad]."""
+        turn = rotation_matrix(angle)
+        strips = tuple(replace(strip, nodes=strip.nodes @ turn.T) for strip in self.strips)
+        return replace(self, strips=strips, body=replace(self.body, centre=turn @ self.body.centre))
+
+    def derived(self) -> dict[str, float | Array]:
+        """Return what this package derives from the given data, for comparison with another derivation.
+
+        Rigidities [N m^2], [N], linear density [kg/m], clamp points and unit tangents (strips, end, xy) with
+        the ground end first, body centre (2,) [m], mass of one strip [kg], mass and inertia of the body.
+        """
+        section = self.strips[0].section
+        first = np.array([strip.nodes[1] - strip.nodes[0] for strip in self.strips])
+        last = np.array([strip.nodes[-1] - strip.nodes[-2] for strip in self.strips])
+        tangents = np.stack([first, last], axis=1)
+        return {
+            "flexural_rigidity": section.flexural_rigidity,
+            "axial_rigidity": section.axial_rigidity,
+            "linear_density": section.linear_density,
+            "clamp_points": np.array([[strip.nodes[0], strip.nodes[-1]] for strip in self.strips]),
+            "clamp_directions": tangents / np.linalg.norm(tangents, axis=2, keepdims=True),
+            "centre": self.body.centre,
+            "strip_mass": section.linear_density * self.strips[0].length,
+            "body_mass": self.body.mass,
+            "body_moment_of_inertia": self.body.moment_of_inertia,
+        }

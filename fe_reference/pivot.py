@@ -1,0 +1,65 @@
+"""The cross-axis flexural pivot: two straight strips that cross without touching, and the body they carry."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from .errors import InvalidParameter, finite, positive, within
+from .model import Body, Model, Section, straight_strip
+
+
+def cross_axis_pivot(
+    *,
+    length: float,
+    inclination: float,
+    crossing_ratio: float,
+    area: float,
+    second_moment_of_area: float,
+    youngs_modulus: float,
+    poisson_ratio: float,
+    density: float,
+    body_mass: float,
+    body_moment_of_inertia: float,
+    centre_offset: Sequence[float] = (0.0, 0.0),
+    elements: int = 20,
+    element: str = "corotational",
+) -> Model:
+    """Return the pivot at rest, with the ground end A1 of the first strip at the origin.
+
+    With strip length L, inclination a and crossing ratio r (distance of the crossing from ground over L):
+
+        A1 = (0, 0),  A2 = (2 r L cos a, 0),  B1 = A1 + L (cos a, sin a),  B2 = A2 + L (-cos a, sin a)
+
+    and the body's centre at (B1 + B2)/2 + centre_offset.
+
+    Args:
+        length: L [m]. inclination: a [rad], between 0 and pi/2. crossing_ratio: r, between 0 and 1.
+        area [m^2], second_moment_of_area [m^4], youngs_modulus [Pa], poisson_ratio [1], density [kg/m^3]: of
+        strips. body_mass [kg], body_moment_of_inertia about its centre [kg m^2]; zero is legal.
+        centre_offset: (2,) [m].
+        elements: number of elements a strip. element: "corotational" or "reissner".
+
+    Raises:
+        InvalidParameter: a value outside its domain; one line with name, value, expectation and unit.
+    """
+    span = positive("length", length, "m")
+    angle = within("inclination", inclination, 0.0, 0.5 * np.pi, "rad")
+    ratio = within("crossing_ratio", crossing_ratio, 0.0, 1.0, "1")
+    if len(centre_offset) != 2:
+        raise InvalidParameter("centre_offset", centre_offset, "two coordinates [m]")
+    offset = np.array([finite("centre_offset", part, "m") for part in centre_offset])
+    section = Section(
+        area=area,
+        second_moment_of_area=second_moment_of_area,
+        youngs_modulus=youngs_modulus,
+        poisson_ratio=poisson_ratio,
+        density=density,
+    )
+    run, rise = span * np.cos(angle), span * np.sin(angle)
+    ground = np.array([[0.0, 0.0], [2.0 * ratio * run, 0.0]])
+    ends = ground + np.array([[run, rise], [-run, rise]])
+    strips = tuple(
+        straight_strip(a, b, section=section, elements=elements) for a, b in zip(ground, ends, strict=True)
+    )
+    body = Body(centre=ends.mean(axis=0) + offset, mass=body_mass, moment_of_inertia=body_moment_of_inertia)
+    return Model(strips=strips, body=body, element=element)

@@ -1,0 +1,57 @@
+"""From reduced coordinates to what an engineer reads: shapes, section forces, clamp reactions."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .structure import Structure
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Recovery:
+    """Fields of one state along the strips, as in `solution.StaticSolution` without the state axis."""
+
+    shape: Array
+    axial_force: Array
+    shear_force: Array
+    bending_moment: Array
+    clamp_reactions: Array
+
+
+def nodal_angles(structure: Structure) -> Array:
+    """Return the reference direction at the nodes, mean of the adjacent elements, (G, P) [rad]."""
+    chord = structure.elements.chord.reshape(2, structure.strips, -1)
+    angle = np.unwrap(np.arctan2(chord[1], chord[0]), axis=1)
+    return np.concatenate([angle[:, :1], 0.5 * (angle[:, 1:] + angle[:, :-1]), angle[:, -1:]], axis=1)
+
+
+def at_nodes(first: Array, last: Array) -> Array:
+    """Merge the end values of the elements (G, E) at the nodes (G, P): the means of the adjacent elements."""
+    return np.concatenate([first[:, :1], 0.5 * (first[:, 1:] + last[:, :-1]), last[:, -1:]], axis=1)
+
+
+def recover(structure: Structure, y: Array) -> Recovery:
+    """Return shape, section forces and reactions of the state y.
+
+    The end forces of an element are those of its own equilibrium: of the part beyond on the element at
+        its end, and
+    the opposite at its beginning.
+    """
+    grid = (structure.strips, structure.stations)
+    nodal = structure.displacement(y).reshape(*grid, 3)
+    rest = np.array([strip.nodes for strip in structure.model.strips])
+    forces = structure.law.forces(structure.element_displacement(y)).reshape(6, structure.strips, -1)
+    force_x, force_y, moment = (at_nodes(-forces[i], forces[i + 3]) for i in range(3))
+    angle = nodal_angles(structure) + nodal[..., 2]
+    c, s = np.cos(angle), np.sin(angle)
+    reactions = np.stack([forces[0:3, :, 0].T, forces[3:6, :, -1].T], axis=1)
+    return Recovery(
+        shape=rest + nodal[..., :2] - rest[0, 0],
+        axial_force=force_x * c + force_y * s,
+        shear_force=force_y * c - force_x * s,
+        bending_moment=moment,
+        clamp_reactions=reactions,
+    )

@@ -1,0 +1,74 @@
+"""What the tests of the finite elements share: the paper's pivot, a cantilever, gates with teeth."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+import pytest
+
+from fe_reference.model import Body, Model, Section, straight_strip
+from fe_reference.pivot import cross_axis_pivot
+from tests import gates
+
+LENGTH = 0.06 * np.sqrt(2.0)
+TABLE_1: dict[str, Any] = {
+    "length": LENGTH,
+    "inclination": np.pi / 4.0,
+    "crossing_ratio": 0.5,
+    "area": 5e-5,
+    "second_moment_of_area": 1.041e-10,
+    "youngs_modulus": 206e9,
+    "poisson_ratio": 0.29,
+    "density": 7800.0,
+    "body_mass": 0.2,
+    "body_moment_of_inertia": 0.002,
+}
+SECTION = Section(
+    **{
+        name: TABLE_1[name]
+        for name in ("area", "second_moment_of_area", "youngs_modulus", "poisson_ratio", "density")
+    }
+)
+EI = SECTION.flexural_rigidity
+#: Units of force, moment and rotational stiffness in which errors are given.
+FORCE, MOMENT = EI / LENGTH**2, EI / LENGTH
+
+
+def pivot(**changes: Any) -> Model:
+    """Return the paper's pivot with some parameters changed."""
+    return cross_axis_pivot(**{**TABLE_1, **changes})
+
+
+def cantilever(*, elements: int, element: str = "corotational", section: Section = SECTION) -> Model:
+    """Return a horizontal strip, clamped on the left, with a massless body as its tip."""
+    strip = straight_strip((0.0, 0.0), (LENGTH, 0.0), section=section, elements=elements)
+    return Model(strips=(strip,), body=Body(centre=np.array([LENGTH, 0.0])), element=element)
+
+
+def with_shear_factor(model: Model, factor: float) -> Model:
+    """Return the model with another shear factor in all strips."""
+    section = replace(model.strips[0].section, shear_factor=factor)
+    return replace(model, strips=tuple(replace(strip, section=section) for strip in model.strips))
+
+
+def extrapolated(values: Sequence[Any]) -> Any:
+    """Return the Romberg value of results on meshes each twice as fine as the last (even powers)."""
+    row = [np.asarray(value, dtype=float) for value in values]
+    for power in range(1, len(row)):
+        row = [fine + (fine - coarse) / (4.0**power - 1.0) for coarse, fine in pairwise(row)]
+    return row[0]
+
+
+def observed_order(values: Sequence[Any]) -> float:
+    """Return the order seen in three results on meshes each twice as fine as the one before."""
+    coarse, middle, fine = (np.ravel(value) for value in values)
+    return float(np.log2(np.linalg.norm(coarse - middle) / np.linalg.norm(middle - fine)))
+
+
+def hold(name: str, error: Callable[..., float]) -> None:
+    """Hold an error against its gate, and see the gate refuse the error of the coarser setting."""
+    gates.check(name, error())
+    with pytest.raises(AssertionError, match=r"x the gate|is not a finite number"):
+        gates.check(name, error(**gates.teeth(name)))

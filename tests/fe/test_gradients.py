@@ -1,0 +1,99 @@
+"""Forces against energies and tangents against forces, by differences at large, folded states."""
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+from fe_reference.model import ELEMENTS, rotation_matrix
+from fe_reference.structure import Structure
+from tests.fe.cases import FORCE, LENGTH, hold, pivot
+
+#: Sixth-order central difference of a first derivative, offsets 1 to 3.
+WEIGHTS = (3.0 / 4.0, -3.0 / 20.0, 1.0 / 60.0)
+
+
+def far_state(structure: Structure) -> np.ndarray:
+    """Return coordinates far from rest: body turned by 250 degrees, nodes scattered."""
+    generator = np.random.default_rng(7)
+    y = np.zeros(structure.size)
+    fraction = np.tile(np.arange(1, structure.stations - 1) / (structure.stations - 1.0), structure.strips)
+    y[2:-3:3] = fraction * 4.4 + 0.2 * generator.standard_normal(len(fraction))
+    y[0:-3:3] = 0.2 * LENGTH / structure.stations * generator.standard_normal(len(fraction))
+    y[1:-3:3] = 0.2 * LENGTH / structure.stations * generator.standard_normal(len(fraction))
+    y[-3:] = 0.3 * LENGTH, -0.2 * LENGTH, 4.4
+    return y
+
+
+def derivative(function: Callable[[np.ndarray], np.ndarray], y: np.ndarray, step: np.ndarray) -> np.ndarray:
+    """Return d f / d y of shape (..., size) by sixth-order differences with a step for every coordinate."""
+    columns = []
+    for j, h in enumerate(step):
+        unit = np.eye(len(y))[j] * h
+        columns.append(
+            sum(
+                w / h * (function(y + k * unit) - function(y - k * unit))
+                for k, w in enumerate(WEIGHTS, start=1)
+            )
+        )
+    return np.stack(columns, axis=-1)
+
+
+@pytest.mark.parametrize("about", ["centre", "other point"])
+@pytest.mark.parametrize("element", ELEMENTS)
+def test_force_is_the_gradient_of_the_energy(element: str, about: str) -> None:
+    """The reduced force, master-slave map included, is the gradient of the energy."""
+    model = pivot(elements=4, element=element, crossing_ratio=0.4)
+    structure = Structure(model, None if about == "centre" else np.array([0.01, 0.09]))
+    y = far_state(structure)
+
+    def error(step: float = 1e-3) -> float:
+        size = np.where(structure.scale == structure.force_unit, LENGTH, 1.0)
+        slope = derivative(lambda z: np.array(sum(structure.energies(z))), y, step * size)
+        force = structure.internal_force(y)
+        return float(np.abs((slope - force) * size).max() / np.abs(force * size).max())
+
+    hold("fe_force_is_gradient", error)
+
+
+@pytest.mark.parametrize("about", ["centre", "other point"])
+@pytest.mark.parametrize("element", ELEMENTS)
+def test_tangent_is_the_derivative_of_the_force(element: str, about: str) -> None:
+    """The reduced tangent, with the curvature of the map, is the derivative of the reduced force."""
+    model = pivot(elements=4, element=element, crossing_ratio=0.4)
+    structure = Structure(model, None if about == "centre" else np.array([0.01, 0.09]))
+    y = far_state(structure)
+
+    def error(step: float = 1e-3) -> float:
+        size = np.where(structure.scale == structure.force_unit, LENGTH, 1.0)
+        slope = derivative(structure.internal_force, y, step * size) * size * size[:, None]
+        tangent = structure.tangent_stiffness(y).toarray() * size * size[:, None]
+        return float(np.abs(slope - tangent).max() / np.abs(tangent).max())
+
+    hold("fe_tangent_is_derivative", error)
+
+
+def test_curvature_of_the_reduction_matters() -> None:
+    """Without the curvature of the master-slave map the tangent would be visibly wrong here."""
+    structure = pivot(elements=4, crossing_ratio=0.4).structure
+    y = far_state(structure)
+    with_it = structure.tangent_stiffness(y)
+    without = structure.reduced_matrix(structure.law.tangents(structure.element_displacement(y)), y[-1], 0.0)
+    gap = (with_it - without).toarray()
+    assert np.count_nonzero(gap) == 1
+    assert abs(gap[-1, -1]) > FORCE * LENGTH
+
+
+@pytest.mark.parametrize("element", ELEMENTS)
+def test_rigid_motion_costs_nothing(element: str) -> None:
+    """Turned by three turns and a half and moved as a whole, a strip holds no force."""
+    structure = pivot(elements=3, element=element).structure
+
+    def error(turn: float = 7.0 * np.pi, stretch: float = 0.0) -> float:
+        rest = np.concatenate([strip.nodes for strip in structure.model.strips])
+        field = np.full((len(rest), 3), turn)
+        field[:, :2] = (1.0 + stretch) * rest @ rotation_matrix(turn).T - rest + 0.3 * LENGTH
+        moved = field.ravel()[structure.basis.element_dofs]
+        return float(np.abs(structure.law.forces(moved)).max() / FORCE)
+
+    hold("fe_rigid_motion", error)

@@ -1,0 +1,71 @@
+"""Order and level of the discretisation error on the paper's path to 90 degrees."""
+
+from functools import cache
+
+import numpy as np
+import pytest
+
+from fe_reference.model import ELEMENTS
+from fe_reference.solution import StaticSolution
+from fe_reference.statics import solve_statics
+from tests.fe.cases import SECTION, extrapolated, hold, observed_order, pivot, with_shear_factor
+
+QUANTITIES = {
+    "torque": lambda path: path.torque,
+    "trajectory": lambda path: path.centre,
+    "stiffness": lambda path: path.stiffness,
+}
+
+
+@cache
+def path(element: str, elements: int, shear_factor: float = SECTION.shear_factor) -> StaticSolution:
+    model = with_shear_factor(pivot(element=element, elements=elements), shear_factor)
+    return solve_statics(model, rotation=np.pi / 2.0, increments=10)
+
+
+def deviation(value: np.ndarray, exact: np.ndarray) -> float:
+    """Return the largest deviation over the path, over the largest change of the quantity on it."""
+    size = np.linalg.norm(
+        np.atleast_2d(exact.T - exact[0][..., None] if exact.ndim > 1 else exact), axis=0
+    ).max()
+    gap = value - exact
+    return float((np.linalg.norm(gap, axis=1) if gap.ndim > 1 else np.abs(gap)).max() / size)
+
+
+@pytest.mark.parametrize("element", ELEMENTS)
+@pytest.mark.parametrize("quantity", QUANTITIES)
+def test_order_two(element: str, quantity: str) -> None:
+    """Over the whole path the answer converges with the second power of the element length."""
+
+    def error(elements: int = 20) -> float:
+        values = [QUANTITIES[quantity](path(element, n)) for n in (elements, 2 * elements, 4 * elements)]
+        return abs(observed_order(values) - 2.0)
+
+    hold(f"fe_order_{quantity}_{element}", error)
+
+
+@pytest.mark.parametrize("element", ELEMENTS)
+@pytest.mark.parametrize("quantity", QUANTITIES)
+def test_level_of_twenty_elements(element: str, quantity: str) -> None:
+    """Twenty elements are as near to the extrapolated value as stated."""
+    pick = QUANTITIES[quantity]
+
+    def error(elements: int = 20) -> float:
+        return deviation(
+            pick(path(element, elements)), extrapolated([pick(path(element, n)) for n in (40, 80, 160)])
+        )
+
+    hold(f"fe_level_{quantity}_{element}", error)
+
+
+@pytest.mark.parametrize("quantity", QUANTITIES)
+def test_reissner_without_shear_is_the_corotational_pivot(quantity: str) -> None:
+    """With a very large shear rigidity both elements extrapolate to the same path."""
+    pick = QUANTITIES[quantity]
+
+    def error(shear_factor: float = 1e3) -> float:
+        meshes = (20, 40, 80)
+        rigid = extrapolated([pick(path("reissner", n, shear_factor)) for n in meshes])
+        return deviation(rigid, extrapolated([pick(path("corotational", n)) for n in meshes]))
+
+    hold(f"fe_shear_limit_{quantity}", error)

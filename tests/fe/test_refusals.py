@@ -1,0 +1,133 @@
+"""Bad parameters and failed solves are refused in words, with evidence."""
+
+import math
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from fe_reference.errors import ConvergenceError, InvalidParameter
+from fe_reference.model import Body, Model, Section, Strip, straight_strip
+from fe_reference.solution import Status
+from fe_reference.statics import solve_loads, solve_statics
+from tests.fe.cases import LENGTH, SECTION, cantilever, pivot
+
+BAD = [
+    ("length", 0.0, "length: got 0.0, expected a number above 0 [m]"),
+    ("length", math.nan, "length: got nan, expected a finite number [m]"),
+    ("length", "long", "length: got 'long', expected a finite number [m]"),
+    ("inclination", math.pi / 2, f"inclination: got {math.pi / 2!r}, expected a number between 0 and 1.5708"),
+    ("crossing_ratio", 1.0, "crossing_ratio: got 1.0, expected a number between 0 and 1, both excluded [1]"),
+    ("area", -1e-5, "area: got -1e-05, expected a number above 0 [m^2]"),
+    ("second_moment_of_area", 0.0, "second_moment_of_area: got 0.0, expected a number above 0 [m^4]"),
+    ("youngs_modulus", math.inf, "youngs_modulus: got inf, expected a finite number [Pa]"),
+    ("poisson_ratio", 0.5, "poisson_ratio: got 0.5, expected a number between -1 and 0.5, both excluded [1]"),
+    ("density", True, "density: got True, expected a finite number [kg/m^3]"),
+    ("body_mass", -0.1, "body_mass: got -0.1, expected a number not below 0 [kg]"),
+    (
+        "body_moment_of_inertia",
+        -1.0,
+        "body_moment_of_inertia: got -1.0, expected a number not below 0 [kg m^2]",
+    ),
+    ("centre_offset", (0.0,), "centre_offset: got (0.0,), expected two coordinates [m]"),
+    ("elements", 0, "elements: got 0, expected an integer of at least 1 [1]"),
+    ("elements", 2.5, "elements: got 2.5, expected an integer of at least 1 [1]"),
+    ("element", "shell", "element: got 'shell', expected one of corotational, reissner [name]"),
+]
+
+
+@pytest.mark.parametrize(("name", "value", "message"), BAD)
+def test_bad_parameter_is_one_clear_line(name: str, value: Any, message: str) -> None:
+    """A bad parameter is refused with its name, the value, what is expected and the unit."""
+    with pytest.raises(InvalidParameter) as refusal:
+        pivot(**{name: value})
+    assert str(refusal.value).startswith(message)
+    assert "\n" not in str(refusal.value)
+    assert refusal.value.name == name
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ({"rotation": math.nan}, "rotation: got nan, expected a finite number [rad]"),
+        ({"rotation": ()}, "rotation: got (), expected at least one angle [rad]"),
+        ({"rotation": 1.0, "increments": 0}, "increments: got 0, expected an integer of at least 1 [1]"),
+    ],
+)
+def test_bad_path_is_one_clear_line(arguments: dict[str, Any], message: str) -> None:
+    """A path that cannot be followed is refused before anything is computed."""
+    with pytest.raises(InvalidParameter) as refusal:
+        solve_statics(pivot(), **arguments)
+    assert str(refusal.value) == message
+
+
+def test_bad_load_and_geometry_are_refused() -> None:
+    """Loads of the wrong shape, folded meshes and unequal strips are refused."""
+    with pytest.raises(InvalidParameter, match=r"force: got .*, expected two components \[N\]"):
+        solve_loads(cantilever(elements=2), force=(1.0, 2.0, 3.0))
+    with pytest.raises(InvalidParameter, match="coincident neighbours"):
+        Strip(section=SECTION, nodes=np.zeros((3, 2)))
+    with pytest.raises(InvalidParameter, match="finite positions"):
+        Strip(section=SECTION, nodes=np.zeros(3))
+    with pytest.raises(InvalidParameter, match="two finite coordinates"):
+        Body(centre=np.array([np.nan, 0.0]))
+    with pytest.raises(InvalidParameter, match="above 0"):
+        Section(area=1.0, second_moment_of_area=1.0, youngs_modulus=1.0, poisson_ratio=0.3, density=0.0)
+    strips = tuple(straight_strip((0.0, 0.0), (LENGTH, 0.0), section=SECTION, elements=n) for n in (2, 3))
+    with pytest.raises(InvalidParameter, match="same number of nodes"):
+        Model(strips=strips, body=Body(centre=np.zeros(2)))
+
+
+def test_model_without_clamps_is_refused() -> None:
+    """A model that nothing holds has no static solution."""
+    free = cantilever(elements=2)
+    strip = replace(free.strips[0], clamped=False)
+    with pytest.raises(InvalidParameter, match="strips: got 'a model that can move freely', expected clamps"):
+        solve_loads(replace(free, strips=(strip,)), moment=1.0)
+
+
+def test_rest_is_a_path_too() -> None:
+    """A path of no rotation stays at rest."""
+    solution = solve_statics(pivot(elements=4), rotation=0.0, increments=2)
+    assert solution.status is Status.CONVERGED
+    assert not solution.torque.any()
+    assert np.all(solution.stiffness == solution.stiffness[0])
+
+
+def test_failed_path_keeps_what_converged() -> None:
+    """A drive of more than six turns in four increments fails; the error carries what was reached."""
+    calls: list[tuple[int, int]] = []
+    with pytest.raises(ConvergenceError, match=r"between rotation .* halvings of the increment") as failure:
+        solve_statics(
+            pivot(elements=8), rotation=40.0, increments=4, progress=lambda *call: calls.append(call)
+        )
+    solution = failure.value.solution
+    reached = len(solution.torque) - 1
+    assert calls == [(k, 4) for k in range(1, reached + 1)]
+    assert solution.status is Status.NOT_CONVERGED
+    assert solution.status.text.endswith("use more increments or a finer mesh.")
+    assert failure.value.load_factor == reached / 4.0
+    assert len(failure.value.history) > 0
+    assert solution.message in str(failure.value)
+
+
+def test_failed_path_is_returned_on_request() -> None:
+    """The same failure is a status for who asks for it."""
+    solution = solve_statics(pivot(elements=8), rotation=40.0, increments=4, raise_on_failure=False)
+    assert solution.status is Status.NOT_CONVERGED
+    assert np.isfinite(solution.torque).all()
+    assert solution.counters["increments"] == len(solution.torque) - 1
+
+
+def test_converged_path_reports_its_work() -> None:
+    """The paper's path takes twenty increments of at most four iterations, and says so."""
+    solution = solve_statics(pivot(), rotation=np.pi / 2.0)
+    assert solution.status is Status.CONVERGED
+    assert solution.message == ""
+    assert solution.counters["increments"] == 20
+    assert solution.counters["halvings"] == 0
+    assert solution.counters["newton_iterations"] == sum(len(norms) - 1 for norms in solution.history) <= 80
+    assert solution.stations.shape == (21,)
+    assert solution.shape.shape == (21, 2, 21, 2)
+    assert solution.clamp_reactions.shape == (21, 2, 2, 3)
