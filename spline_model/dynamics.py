@@ -15,6 +15,7 @@ from spline_model.errors import InvalidParameter, require_choice, require_positi
 from spline_model.integrators import adaptive, energy_consistent, explicit, generalised_alpha
 from spline_model.integrators.motion import Records, initial_acceleration, set_in_motion
 from spline_model.kernels.motion import Motion
+from spline_model.kernels.record import DISSIPATED, KINETIC, POSITION, STRAIN, VELOCITY, WEIGHT, WORK
 from spline_model.modes import linear_modes, static_state
 from spline_model.pivot import BODY, Pivot
 from spline_model.solution import Status
@@ -39,7 +40,8 @@ class Trajectory:
     """Motion after the release; T records, the start first.
 
     time (T,) [s]; rotation (T,) [rad]; centre (T, 2) [m]; kinetic_energy, strain_energy (T,)
-    [J]; constraint_residual (T,) [m]; velocity_residual (T,) its rate [m/s]; states (T, N)
+    [J]; gravity_energy, work of loads and drives so far, dissipated so far (T,) [J];
+    constraint_residual (T,) [m]; velocity_residual (T,) its rate [m/s]; states (T, N)
     and velocities (T, Q) of the released system; resolution: empty, or how far the step
     under-resolves the swing; counters: steps, halved_steps, newton_iterations, ...
     """
@@ -53,6 +55,9 @@ class Trajectory:
     strain_energy: Array
     constraint_residual: Array
     velocity_residual: Array
+    gravity_energy: Array
+    work: Array
+    dissipated: Array
     states: Array
     velocities: Array
     resolution: str
@@ -142,10 +147,13 @@ def _trajectory(
         time=run.time,
         rotation=body[:, 2],
         centre=body[:, :2],
-        kinetic_energy=run.rows[:, 0],
-        strain_energy=run.rows[:, 1],
-        constraint_residual=run.rows[:, 2],
-        velocity_residual=run.rows[:, 3],
+        kinetic_energy=run.rows[:, KINETIC],
+        strain_energy=run.rows[:, STRAIN],
+        constraint_residual=run.rows[:, POSITION],
+        velocity_residual=run.rows[:, VELOCITY],
+        gravity_energy=run.rows[:, WEIGHT],
+        work=run.rows[:, WORK],
+        dissipated=run.rows[:, DISSIPATED],
         states=run.states,
         velocities=run.velocities,
         resolution="" if step is None else _resolution(system, motion, step),

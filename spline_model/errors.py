@@ -47,6 +47,12 @@ def require_positive(name: str, value: float, unit: str) -> None:
         raise InvalidParameter(name, value, f"a finite number > 0 [{unit}]")
 
 
+def require_not_negative(name: str, value: float, unit: str) -> None:
+    """Refuse anything but a finite number of at least zero."""
+    if not (isinstance(value, int | float) and math.isfinite(value) and value >= 0):
+        raise InvalidParameter(name, value, f"a finite number >= 0 [{unit}]")
+
+
 def require_count(name: str, value: int, lowest: int, highest: int | None = None) -> None:
     """Refuse anything but an integer in ``lowest ... highest``."""
     is_count = isinstance(value, int) and not isinstance(value, bool)

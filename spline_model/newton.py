@@ -22,6 +22,17 @@ MOST_ITERATIONS = 15
 """From a tangent predictor Newton takes two to four; more than this is a wrong start."""
 
 
+def add_open_potentials(system: System, z: Array, gradient: Array, hessian: Array) -> float:
+    """Add the derivatives of the potentials in Python; returns their energy [J]."""
+    count, total = system.layout.coordinate_count, 0.0
+    for potential in system.open_potentials:
+        energy, force, stiffness = potential.derivatives(z[:count], system.layout)
+        gradient[:count] += force
+        hessian[:count, :count] += stiffness
+        total += energy
+    return total
+
+
 @dataclass(kw_only=True)
 class Counters:
     """Work that was done; the same on every machine."""
@@ -66,7 +77,9 @@ class Workspace:
         """Fill gradient and hessian at z; returns bending and axial energy [J]."""
         self.counters.residual_evaluations += 1
         self.counters.tangent_evaluations += 1
-        return assemble(z, self.system.tables, load_factor, self.gradient, self.hessian)
+        bending, axial = assemble(z, self.system.tables, load_factor, self.gradient, self.hessian)
+        add_open_potentials(self.system, z, self.gradient, self.hessian)
+        return bending, axial
 
     def norm(self) -> float:
         """Largest entry of the dimensionless residual."""

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from spline_model.checks import left_the_branch, refuse
 from spline_model.compile import System
+from spline_model.errors import InvalidParameter
 from spline_model.newton import Newton, Workspace, solve
 from spline_model.solution import Path, Status
 
@@ -60,7 +61,7 @@ class _Follower:
         self.force = _load_rate(work.system)
         start = solve(work, work.system.rest, 0.0)
         if start.reason:
-            raise ValueError(f"the scene at rest is not in equilibrium: {start.reason}")
+            raise InvalidParameter("scene", start.reason, "an equilibrium near rest at load factor 0")
         self.at = 0.0
         self.z = start.z
         self.rate = work.solve(self.force)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from spline_model.effects import Bending, Clamp
+from spline_model.effects import Bending, Clamp, DrivenDisplacement
 from spline_model.effects.base import Constraint
 from spline_model.layout import Layout
 from spline_model.scene import Scene
@@ -39,7 +39,10 @@ def scene_scales(scene: Scene, layout: Layout) -> Scales:
     for start, count in layout.modes:
         unit[start : start + count] = force
     for constraint, (row, count) in zip(scene.of(Constraint), layout.multipliers, strict=True):
-        unit[row : row + count] = (force, force, moment) if isinstance(constraint, Clamp) else moment
+        if isinstance(constraint, Clamp):
+            unit[row : row + count] = (force, force, moment)
+        else:
+            unit[row : row + count] = force if isinstance(constraint, DrivenDisplacement) else moment
     return Scales(length=length, energy=moment, unit=unit)
 
 

@@ -10,10 +10,10 @@ from numpy.typing import NDArray
 
 from spline_model.basis import SplineBasis
 from spline_model.effects import GROUND, Bending, Clamp
-from spline_model.effects.base import Constraint, Inertia, Load, Potential
+from spline_model.effects.base import Constraint, Dissipation, Inertia, Load, Potential
 from spline_model.errors import InvalidParameter
 
-Effect = Potential | Inertia | Load | Constraint
+Effect = Potential | Inertia | Dissipation | Load | Constraint
 Kind = TypeVar("Kind", bound=Effect)
 
 
@@ -27,6 +27,16 @@ class Strip:
     name: str
     basis: SplineBasis
     control_points: NDArray[np.float64]
+
+    def gauss_points(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Points u and weights ds0 [m] of a rule that is exact for products of two basis functions."""
+        u, weight = self.basis.gauss_rule(self.basis.degree + 1)
+        return u, weight * np.hypot(*(self.basis.evaluate(u, 1) @ self.control_points).T)
+
+    def share_of_length(self) -> NDArray[np.float64]:
+        """int N ds0 of each basis function, shape (n,) [m]."""
+        u, length = self.gauss_points()
+        return np.asarray(length @ self.basis.evaluate(u))
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

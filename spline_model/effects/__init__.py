@@ -1,20 +1,36 @@
 """Effects: the named frozen values a scene is made of."""
 
-from spline_model.effects.constraints import GROUND, Clamp, DrivenRotation
+from spline_model.effects.constraints import (
+    ALWAYS,
+    GROUND,
+    Clamp,
+    DrivenDisplacement,
+    DrivenRotation,
+)
+from spline_model.effects.damping import BodyDamper, StripDamping, StripDrag
 from spline_model.effects.elastic import MEASURES, Bending, MixedStretching, Stretching
-from spline_model.effects.inertia import BodyInertia, StripInertia
-from spline_model.effects.loads import AppliedForce, AppliedMoment
+from spline_model.effects.inertia import BodyInertia, SectionRotaryInertia, StripInertia
+from spline_model.effects.loads import AppliedForce, AppliedMoment, BodyGravity, StripGravity, TipForce
 
 __all__ = [
+    "ALWAYS",
     "GROUND",
     "MEASURES",
     "AppliedForce",
     "AppliedMoment",
     "Bending",
+    "BodyDamper",
+    "BodyGravity",
     "BodyInertia",
     "Clamp",
+    "DrivenDisplacement",
     "DrivenRotation",
     "MixedStretching",
+    "SectionRotaryInertia",
     "Stretching",
+    "StripDamping",
+    "StripDrag",
+    "StripGravity",
     "StripInertia",
+    "TipForce",
 ]

@@ -1,15 +1,22 @@
 """The kinds of effect a scene is made of.
 
-    M a + dV/dq - f(q, t) - G(q, t)^T lambda = 0,      psi(q, t) = 0
+    M a + dV/dq + f_d(q, v) - f(q, t) - G(q, t)^T lambda = 0,      psi(q, t) = 0
 
-An effect is a frozen value that says what it acts on and with which constants; it
-holds no state and no flag. ``spline_model.scene.compile_scene`` sorts the effects
-into one flat table a class; a class that no effect names has a table of length zero.
+An effect is a frozen value that says what it acts on and with which constants; it holds no
+state and no flag. ``spline_model.compile`` sorts the effects once into one flat table a
+class; a class that no effect names has a table of length zero.
 """
 
 from __future__ import annotations
 
 from typing import ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from spline_model.layout import Layout
+
+Array = NDArray[np.float64]
 
 
 class Potential:
@@ -18,6 +25,10 @@ class Potential:
 
 class Inertia:
     """Adds to the mass matrix M and to the kinetic energy."""
+
+
+class Dissipation:
+    """Adds a force against the velocity; it takes energy out and never puts any in."""
 
 
 class Load:
@@ -31,3 +42,15 @@ class Constraint:
     """
 
     rows: ClassVar[int]
+
+
+class OpenPotential(Potential):
+    """A potential with its derivatives in Python: the way to add one without touching a kernel.
+
+    It works in statics, in modes and with the generalised-alpha integrator; the compiled
+    integrators refuse a scene that holds one.
+    """
+
+    def derivatives(self, q: Array, layout: Layout) -> tuple[float, Array, Array]:
+        """Energy [J], gradient (Q,) and Hessian (Q, Q) at the coordinates q (Q,)."""
+        raise NotImplementedError

@@ -1,4 +1,4 @@
-"""Constraints: clamped strip ends and driven bodies (Eqs 5 to 7)."""
+"""Constraints: clamped and pinned strip ends, driven bodies (Eqs 5 to 7)."""
 
 from __future__ import annotations
 
@@ -7,9 +7,11 @@ from dataclasses import dataclass
 from typing import ClassVar, Literal
 
 from spline_model.effects.base import Constraint
+from spline_model.effects.history import STEADY, History
 from spline_model.errors import InvalidParameter
 
 GROUND = "ground"
+ALWAYS = (0.0, math.inf)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -34,14 +36,36 @@ class Clamp(Constraint):
 class DrivenRotation(Constraint):
     """The rotation of a body prescribed as angle x load factor (Eq 7), one row in rad.
 
-    Its multiplier is the torque that has to be applied to the body [N m]; positive in
-    the sense of a positive rotation (counter-clockwise).
+    In a motion it is angle x history(t) and acts in ``held``, from - to [s]; a body that is
+    caught loses the velocity that the drive does not have. Its multiplier is the torque
+    that has to be applied to the body [N m]; positive counter-clockwise.
     """
 
     rows: ClassVar[int] = 1
     body: str
     angle: float
+    history: History = STEADY
+    held: tuple[float, float] = ALWAYS
 
     def __post_init__(self) -> None:
         if not math.isfinite(self.angle):
             raise InvalidParameter("angle", self.angle, "a finite number [rad]")
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class DrivenDisplacement(Constraint):
+    """The displacement of a body's centre prescribed as (dx, dy) x load factor, two rows in m.
+
+    The paper's "two other driving constraints" (section 4). In a motion as for
+    ``DrivenRotation``. The multipliers are the applied force [N].
+    """
+
+    rows: ClassVar[int] = 2
+    body: str
+    displacement: tuple[float, float]
+    history: History = STEADY
+    held: tuple[float, float] = ALWAYS
+
+    def __post_init__(self) -> None:
+        if not all(math.isfinite(part) for part in self.displacement):
+            raise InvalidParameter("displacement", self.displacement, "two finite numbers [m]")

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from spline_model.basis import AxialModes
 from spline_model.effects.base import Potential
-from spline_model.errors import InvalidParameter, require_choice, require_count, require_positive
+from spline_model.errors import require_choice, require_count, require_not_negative
 
 MEASURES = ("material", "spatial", "printed")
 """Measure names; the position is the code that the kernels read."""
@@ -28,7 +28,8 @@ class Bending(Potential):
     Parameters
     ----------
     strip : name of the strip.
-    flexural_rigidity : EI > 0.                                                [N m^2]
+    flexural_rigidity : EI >= 0.                                               [N m^2]
+    natural_curvature : of the stress-free strip, kappa_0; None for its shape at rest.  [1/m]
     gauss_points : Gauss points in each knot span.
 
     Exact for: material: the geometrically exact (extensible, unshearable) elastica.
@@ -39,11 +40,12 @@ class Bending(Potential):
 
     strip: str
     flexural_rigidity: float
+    natural_curvature: float | None = None
     measure: str = "material"
     gauss_points: int
 
     def __post_init__(self) -> None:
-        require_positive("flexural_rigidity", self.flexural_rigidity, "N m^2")
+        require_not_negative("flexural_rigidity", self.flexural_rigidity, "N m^2")
         require_choice("measure", self.measure, MEASURES)
         require_count("gauss_points", self.gauss_points, 1)
 
@@ -58,7 +60,8 @@ class Stretching(Potential):
     spatial     V = 1/2 int EA eps^2 |C'| du                           (Eq 13)     [J]
     printed     the spatial energy with the forces of Eq 15 as they are printed.
 
-    Parameters: strip, axial_rigidity EA > 0 [N], gauss_points in each knot span.
+    Parameters: strip, axial_rigidity EA >= 0 [N], natural_strain eps_0 of the stress-free
+    strip against the one at rest, gauss_points in each knot span. eps is less by eps_0.
 
     Exact for: uniform stretch. A curve of few control points cannot bend far without
     stretching: with n = 4 it is several times too stiff at a quarter turn (membrane
@@ -68,11 +71,12 @@ class Stretching(Potential):
 
     strip: str
     axial_rigidity: float
+    natural_strain: float = 0.0
     measure: str = "material"
     gauss_points: int
 
     def __post_init__(self) -> None:
-        require_positive("axial_rigidity", self.axial_rigidity, "N")
+        require_not_negative("axial_rigidity", self.axial_rigidity, "N")
         require_choice("measure", self.measure, MEASURES)
         require_count("gauss_points", self.gauss_points, 1)
 
@@ -94,6 +98,7 @@ class MixedStretching(Potential):
     strip : name of the strip.
     axial_compliance : c = 1 / EA >= 0.                                          [1/N]
     modes : the modes P_k; control_points - 2 of them is the locking-free choice.
+    natural_strain : eps_0 of the stress-free strip against the one at rest; eps is less by it.
 
     Exact for: uniform stretch, and N in the span of the modes.
     Source: Reissner, On a variational theorem in elasticity, J Math Phys 29 (1950) 90.
@@ -102,11 +107,11 @@ class MixedStretching(Potential):
     strip: str
     axial_compliance: float
     modes: AxialModes
+    natural_strain: float = 0.0
     measure: str = "material"
     gauss_points: int
 
     def __post_init__(self) -> None:
-        if not 0 <= self.axial_compliance < float("inf"):
-            raise InvalidParameter("axial_compliance", self.axial_compliance, "a finite number >= 0 [1/N]")
+        require_not_negative("axial_compliance", self.axial_compliance, "1/N")
         require_choice("measure", self.measure, MEASURES[:2])
         require_count("gauss_points", self.gauss_points, 1)

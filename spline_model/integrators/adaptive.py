@@ -5,9 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from spline_model.integrators import energy_consistent
-from spline_model.integrators.motion import Array, Records
-from spline_model.kernels.energy_step import FACTORISATIONS, HALVED, NEWTON, STEPS, advance, record
+from spline_model.integrators.energy_consistent import counts
+from spline_model.integrators.motion import Array, Records, require_conservative
+from spline_model.kernels.energy_step import advance
 from spline_model.kernels.motion import Motion
+from spline_model.kernels.record import record
 
 FIRST_STEP = 1e-4
 """First trial step over the duration."""
@@ -26,25 +28,41 @@ def integrate(
     accepted if it is below accuracy * h / duration. Every accepted step is a record.
     """
     counters, strains = np.zeros(4, dtype=np.int64), np.empty(len(motion.rigidity))
-    time, states, rates, rows = [0.0], [z.copy()], [v.copy()], [np.empty(4)]
+    totals, active = np.zeros(2), np.zeros(motion.tables.drives.row.size, dtype=np.int64)
+    time, states, rates, rows = [0.0], [z.copy()], [v.copy()], [np.empty(7)]
 
-    record(z, v, motion, strains, rows[0])
+    require_conservative(motion, "accuracy control")
+    record(z, v, motion, strains, totals, rows[0])
     rejected, message, h = 0, "", FIRST_STEP * duration
     while duration - time[-1] > 1e-9 * duration:
         h = min(h, duration - time[-1])
         new_z, new_v, new_a = states[-1].copy(), rates[-1].copy(), acceleration.copy()
         turns = motion.turns
         predicted = new_z[turns] + h * (new_v[turns] + 0.5 * h * new_a[turns])
-        done = advance(new_z, new_v, new_a, h, h, h, motion, energy_consistent.TOLERANCE, counters)
+        new_totals = totals.copy()
+        done = advance(
+            new_z,
+            new_v,
+            new_a,
+            time[-1],
+            h,
+            h,
+            h,
+            active,
+            motion,
+            energy_consistent.TOLERANCE,
+            counters,
+            new_totals,
+        )
         error = np.abs(new_z[turns] - predicted).max() / 6 if done == h else np.inf
         share = accuracy * h / duration
         if error <= share:
             time.append(time[-1] + h)
             states.append(new_z)
             rates.append(new_v)
-            acceleration = new_a
-            rows.append(np.empty(4))
-            record(new_z, new_v, motion, strains, rows[-1])
+            acceleration, totals = new_a, new_totals
+            rows.append(np.empty(7))
+            record(new_z, new_v, motion, strains, totals, rows[-1])
         else:
             rejected += 1
         # the error over its share goes with h^2
@@ -58,11 +76,5 @@ def integrate(
         velocities=np.array(rates),
         rows=np.array(rows),
         message=message,
-        counters={
-            "steps": int(counters[STEPS]),
-            "rejected_steps": rejected,
-            "halved_steps": int(counters[HALVED]),
-            "newton_iterations": int(counters[NEWTON]),
-            "factorisations": int(counters[FACTORISATIONS]),
-        },
+        counters=counts(counters) | {"rejected_steps": rejected},
     )

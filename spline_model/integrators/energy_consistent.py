@@ -13,11 +13,16 @@ Source: Gonzalez, Time integration and discrete Hamiltonian systems, J Nonlinear
 
 from __future__ import annotations
 
-import numpy as np
+from itertools import pairwise
 
+import numpy as np
+from numpy.typing import NDArray
+
+from spline_model.integrators.events import catch, drive_events, drives_at
 from spline_model.integrators.motion import Array, Records
 from spline_model.kernels.energy_step import FACTORISATIONS, HALVED, NEWTON, STEPS, run
 from spline_model.kernels.motion import Motion
+from spline_model.kernels.record import record
 
 TOLERANCE = 1e-11
 """Residual of a step, in EI/L^2, EI/L, L and rad; the energy of a step is exact to this."""
@@ -28,38 +33,64 @@ SMALLEST_STEP = 2.0**-14
 def integrate(
     motion: Motion, z: Array, v: Array, acceleration: Array, *, step: float, steps: int, every: int
 ) -> Records:
-    """Take ``steps`` steps from (z, v), recording every ``every``-th one."""
+    """Take ``steps`` steps from (z, v), recording every ``every``-th one.
+
+    Drives begin and end at the step nearest to their times; a body that a drive catches
+    changes its velocity at once, and the energy that this costs counts as dissipated.
+    """
     count = steps // every + 1
-    states, rates, rows = np.zeros((count, z.size)), np.zeros((count, v.size)), np.zeros((count, 4))
-    states[0], rates[0] = z, v
+    states, rates = np.zeros((count, z.size)), np.zeros((count, v.size))
+    rows, totals = np.zeros((count, 7)), np.zeros(2)
     counters = np.zeros(4, dtype=np.int64)
-    done = run(
-        z.copy(),
-        v.copy(),
-        acceleration.copy(),
-        step,
-        steps,
-        every,
-        step * SMALLEST_STEP,
-        motion,
-        TOLERANCE,
-        counters,
-        states,
-        rates,
-        rows,
-    )
+    z, v, acceleration = z.copy(), v.copy(), acceleration.copy()
+    events = drive_events(motion, step, steps)
+    active = drives_at(motion, 0, step)
+    v, totals[1] = catch(motion, z, v, active, 0.0, step)
+    states[0], rates[0] = z, v
+    record(z, v, motion, np.empty(len(motion.rigidity)), totals, rows[0])
+    done = 0
+    for begin, end in pairwise(events):
+        if begin > 0:
+            active = drives_at(motion, begin, step)
+            v, lost = catch(motion, z, v, active, begin * step, step)
+            totals[1] += lost
+        done = run(
+            z,
+            v,
+            acceleration,
+            step,
+            begin,
+            end,
+            every,
+            step * SMALLEST_STEP,
+            active,
+            motion,
+            TOLERANCE,
+            counters,
+            totals,
+            states,
+            rates,
+            rows,
+        )
+        if done < end:
+            break
     kept = done // every + 1
     message = "" if done == steps else f"stopped at {done * step:.6g} s: Newton fails at any step"
     return Records(
-        time=step * every * np.arange(kept),
+        time=np.arange(0.0, kept) * (step * every),
         states=states[:kept],
         velocities=rates[:kept],
         rows=rows[:kept],
         message=message,
-        counters={
-            "steps": int(counters[STEPS]),
-            "halved_steps": int(counters[HALVED]),
-            "newton_iterations": int(counters[NEWTON]),
-            "factorisations": int(counters[FACTORISATIONS]),
-        },
+        counters=counts(counters),
     )
+
+
+def counts(counters: NDArray[np.int64]) -> dict[str, int]:
+    """Counters of a run by name."""
+    return {
+        "steps": int(counters[STEPS]),
+        "halved_steps": int(counters[HALVED]),
+        "newton_iterations": int(counters[NEWTON]),
+        "factorisations": int(counters[FACTORISATIONS]),
+    }

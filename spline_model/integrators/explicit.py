@@ -12,9 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.errors import InvalidParameter
-from spline_model.integrators.motion import Array, Records
-from spline_model.kernels.energy_step import record
+from spline_model.integrators.motion import Array, Records, require_conservative
 from spline_model.kernels.motion import Motion
+from spline_model.kernels.record import record
 from spline_model.kernels.reduced import Workspace, expand, runge_kutta
 
 STABILITY_LIMIT = 8.0**0.5
@@ -41,6 +41,9 @@ def integrate(
     """Take ``steps`` steps from (z, v), recording every ``every``-th one; ``acceleration`` is not needed."""
     if (np.diag(motion.rigidity) == 0).any():
         raise InvalidParameter("integrator", "explicit", "an implicit one for inextensible strips")
+    require_conservative(motion, "explicit")
+    if np.linalg.eigvalsh(motion.mass)[0] <= 0:
+        raise InvalidParameter("integrator", "explicit", "an implicit one for strips without mass")
     r, w, free = reduce(motion, z, v)
     size, count = len(z), len(v)
     work = Workspace(
@@ -51,8 +54,9 @@ def integrate(
         drift=np.empty(count),
         strains=np.empty(len(motion.rigidity)),
     )
-    states, rates, rows, message = [z], [v], [np.empty(4)], ""
-    record(z, v, motion, work.strains, rows[0])
+    totals = np.zeros(2)
+    states, rates, rows, message = [z], [v], [np.empty(7)], ""
+    record(z, v, motion, work.strains, totals, rows[0])
     most = MOST_ENERGY * (rows[0][0] + rows[0][1])
     for k in range(steps // every):
         fine = runge_kutta(r, w, step, every, free, motion, work)
@@ -60,8 +64,8 @@ def integrate(
             expand(r, w, free, motion.tables.clamps, motion.chord, work.z, work.jacobian, work.drift)
             states.append(work.z.copy())
             rates.append(work.jacobian @ w)
-            rows.append(np.empty(4))
-            record(states[-1], rates[-1], motion, work.strains, rows[-1])
+            rows.append(np.empty(7))
+            record(states[-1], rates[-1], motion, work.strains, totals, rows[-1])
             fine = rows[-1][0] + rows[-1][1] <= most
         if not fine:
             message = f"unstable near {k * every * step:.6g} s: the step is above the critical one"

@@ -16,10 +16,10 @@ from __future__ import annotations
 import numpy as np
 from scipy.linalg import LinAlgWarning, lu_factor, lu_solve
 
-from spline_model.integrators.motion import Array, Records
+from spline_model.integrators.motion import Array, Records, require_conservative
 from spline_model.kernels.assemble import assemble
-from spline_model.kernels.energy_step import forward, record
 from spline_model.kernels.motion import Motion
+from spline_model.kernels.record import forward, record
 
 TOLERANCE = 1e-10
 MOST_ITERATIONS = 15
@@ -67,7 +67,7 @@ class Stepper:
         v = self.v + h * ((1 - self.gamma) * self.pseudo + self.gamma * pseudo)
         rate = (1 - self.alpha_m) / (self.beta * h**2 * (1 - self.alpha_f))
         for _ in range(MOST_ITERATIONS):
-            assemble(z, motion.tables, 0.0, self.gradient, self.hessian)
+            assemble(z, motion.tables, 1.0, self.gradient, self.hessian)
             self.gradient[:count] += motion.mass @ acceleration
             norm = np.abs(self.gradient * motion.unit).max() / motion.energy
             if not np.isfinite(norm):
@@ -113,10 +113,11 @@ def integrate(
     spectral_radius: float = SPECTRAL_RADIUS,
 ) -> Records:
     """Take ``steps`` steps from (z, v), recording every ``every``-th one."""
+    require_conservative(motion, "generalised-alpha")
     stepper = Stepper(motion, z, v, acceleration, spectral_radius)
-    strains = np.empty(len(motion.rigidity))
-    states, rates, rows, message = [z], [v], [np.empty(4)], ""
-    record(z, v, motion, strains, rows[0])
+    strains, totals = np.empty(len(motion.rigidity)), np.zeros(2)
+    states, rates, rows, message = [z], [v], [np.empty(7)], ""
+    record(z, v, motion, strains, totals, rows[0])
     for k in range(1, steps + 1):
         if not stepper.advance(step, step):
             message = f"stopped at {(k - 1) * step:.6g} s: Newton fails at any step"
@@ -124,8 +125,8 @@ def integrate(
         if k % every == 0:
             states.append(stepper.z)
             rates.append(stepper.v)
-            rows.append(np.empty(4))
-            record(stepper.z, stepper.v, motion, strains, rows[-1])
+            rows.append(np.empty(7))
+            record(stepper.z, stepper.v, motion, strains, totals, rows[-1])
     return Records(
         time=np.arange(0.0, len(states)) * (step * every),
         states=np.array(states),

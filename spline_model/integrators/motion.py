@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.compile import System
-from spline_model.effects import MixedStretching
-from spline_model.effects.base import Inertia, Load
+from spline_model.effects import Bending, MixedStretching, Stretching, StripDamping
+from spline_model.effects.base import Inertia
 from spline_model.errors import InvalidParameter
 from spline_model.kernels.assemble import assemble
 from spline_model.kernels.motion import Motion
-from spline_model.mass import mass_matrix
+from spline_model.mass import drag_matrix, mass_matrix
+from spline_model.quadrature import strip_points
+from spline_model.tables import bending_table, stretching_table
 
 Array = NDArray[np.float64]
 
@@ -22,8 +25,8 @@ Array = NDArray[np.float64]
 class Records:
     """R records of a run, the start first.
 
-    time (R,) [s]; states (R, N); velocities (R, Q); rows (R, 4) kinetic and strain energy [J],
-    largest constraint residual [m] and its rate [m/s]; message: empty, or why the run stopped.
+    time (R,) [s]; states (R, N); velocities (R, Q); rows (R, 7) as named in
+    ``spline_model.kernels.record``; message: empty, or why the run stopped.
     """
 
     time: Array
@@ -39,24 +42,45 @@ def set_in_motion(system: System) -> Motion:
     scene, layout, rest = system.scene, system.layout, system.rest
     if not scene.of(Inertia):
         raise InvalidParameter("effects", "no inertia", "strip_inertia and body_inertia for a motion")
-    if scene.of(Load):
-        raise InvalidParameter("effects", "a load", "no load: these integrators release a scene")
     if any(effect.measure != "material" for effect in system.scene.of(MixedStretching)):
         raise InvalidParameter("measure", "spatial", "material for the motion of mixed strips")
-    mass = mass_matrix(scene, layout)
-    if np.linalg.eigvalsh(mass)[0] <= 0:
-        raise InvalidParameter("effects", "coordinates without mass", "inertia for every strip and body")
     clamps = system.tables.clamps
     chords = [rest[i : i + 2] - rest[e : e + 2] for e, i in zip(clamps.end, clamps.inner, strict=True)]
     return Motion(
         tables=system.tables,
-        mass=mass,
+        mass=mass_matrix(scene, layout),
+        drag=drag_matrix(scene, layout),
+        **_damping(system),
         turns=np.array([start + 2 for start in layout.bodies.values()], dtype=np.int64),
         chord=np.array([np.hypot(*chord) for chord in chords]),
         rigidity=axial_rigidity(system),
         unit=system.scales.unit,
         energy=system.scales.energy,
     )
+
+
+def _damping(system: System) -> dict[str, Any]:
+    """Tables of the strips' Kelvin-Voigt damping; empty for strips that have none."""
+    scene, layout = system.scene, system.layout
+    times = {effect.strip: effect.relaxation_time for effect in scene.of(StripDamping)}
+    bending = [
+        replace(e, flexural_rigidity=times[e.strip] * e.flexural_rigidity)
+        for e in scene.of(Bending)
+        if e.strip in times
+    ]
+    stretching = [
+        replace(e, axial_rigidity=times[e.strip] * e.axial_rigidity)
+        for e in scene.of(Stretching)
+        if e.strip in times
+    ]
+    mixed = scene.of(MixedStretching)
+    points = strip_points([(scene.strip(e.strip), e.gauss_points) for e in mixed], layout)
+    relaxation = points.spread([times.get(e.strip, 0.0) for e in mixed])
+    return {
+        "bending_damping": bending_table(scene, layout, bending),
+        "stretching_damping": stretching_table(scene, layout, stretching),
+        "axial_relaxation": relaxation if any(e.strip in times for e in mixed) else np.zeros(0),
+    }
 
 
 def axial_rigidity(system: System) -> Array:
@@ -88,9 +112,9 @@ def initial_acceleration(system: System, motion: Motion, z: Array, v: Array) -> 
     free = z.copy()
     axial = slice(layout.coordinate_count, layout.multiplier_start)
     free[rest] = 0.0
-    assemble(free, motion.tables, 0.0, gradient, hessian)
+    assemble(free, motion.tables, 1.0, gradient, hessian)
     free[axial] = motion.rigidity @ gradient[axial]
-    assemble(free, motion.tables, 0.0, gradient, hessian)
+    assemble(free, motion.tables, 1.0, gradient, hessian)
     fixed = np.concatenate((np.diag(motion.rigidity) == 0, np.ones(size - layout.multiplier_start, bool)))
     rows = np.arange(size)[rest][fixed]
     jacobian, force = hessian[rows][:, q].copy(), -gradient[q].copy()
@@ -102,15 +126,26 @@ def initial_acceleration(system: System, motion: Motion, z: Array, v: Array) -> 
         ahead, behind = free.copy(), free.copy()
         ahead[q] += step * v
         behind[q] -= step * v
-        assemble(ahead, motion.tables, 0.0, gradient, hessian)
+        assemble(ahead, motion.tables, 1.0, gradient, hessian)
         drift = hessian[rows][:, q] @ v
-        assemble(behind, motion.tables, 0.0, gradient, hessian)
+        assemble(behind, motion.tables, 1.0, gradient, hessian)
         drift = (drift - hessian[rows][:, q] @ v) / (2 * step)
 
+    # a coordinate without mass stands in equilibrium already: least squares leave it at rest
     matrix = np.block([[motion.mass, jacobian.T], [jacobian, np.zeros((len(rows), len(rows)))]])
-    scale = np.concatenate((1 / np.sqrt(np.diag(motion.mass)), np.ones(len(rows))))
-    scale[len(motion.mass) :] = 1 / np.sqrt((jacobian**2 / np.diag(motion.mass)).sum(axis=1))
+    heavy = np.diag(motion.mass).max()
+    scale = np.concatenate((unit[q] / system.scales.length, np.full(len(rows), 1.0)))
+    scale[len(motion.mass) :] = heavy / np.maximum(np.linalg.norm(jacobian * scale[q], axis=1), 1e-300)
     right = np.concatenate((force, -drift)) * scale
-    solved = scale * np.linalg.solve(matrix * scale[:, None] * scale, right)
+    scaled = matrix * scale[:, None] * scale
+    solved = scale * np.linalg.lstsq(scaled, right, rcond=1e-14)[0]
     free[rows] = solved[len(motion.mass) :]
     return solved[: len(motion.mass)], free
+
+
+def require_conservative(motion: Motion, name: str) -> None:
+    """Refuse a scene with damping, drives or loads: only the energy-consistent scheme has them."""
+    damped = motion.drag.size + motion.bending_damping.first.size + motion.axial_relaxation.size
+    others = motion.tables.drives.row.size + motion.tables.loads.coordinate.size
+    if damped + motion.stretching_damping.first.size + others:
+        raise InvalidParameter("integrator", name, "energy (fixed step) for damping, loads and drives")

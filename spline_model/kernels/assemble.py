@@ -15,12 +15,18 @@ from numpy.typing import NDArray
 from spline_model.kernels.axial_force import AxialForceTable, add_axial_force
 from spline_model.kernels.bending import BendingTable, add_bending
 from spline_model.kernels.clamps import ClampTable, subtract_clamps
-from spline_model.kernels.drives import DriveTable, LoadTable, subtract_drives, subtract_loads
+from spline_model.kernels.drives import (
+    DriveTable,
+    LoadTable,
+    subtract_drives,
+    subtract_loads,
+    subtract_weight,
+)
 from spline_model.kernels.stretching import StretchingTable, add_stretching
 
 
 class Tables(NamedTuple):
-    """The flat operator tables of a scene, one a kind of effect."""
+    """The flat operator tables of a scene, one a kind of effect; weight (Q,) or (0,) [N]."""
 
     bending: BendingTable
     stretching: StretchingTable
@@ -28,6 +34,7 @@ class Tables(NamedTuple):
     clamps: ClampTable
     drives: DriveTable
     loads: LoadTable
+    weight: NDArray[np.float64]
 
 
 @njit(cache=True, nogil=True)
@@ -51,4 +58,5 @@ def assemble(
     subtract_clamps(z, tables.clamps, gradient, hessian)
     subtract_drives(z, tables.drives, load_factor, gradient, hessian)
     subtract_loads(tables.loads, load_factor, gradient)
+    subtract_weight(tables.weight, gradient)
     return bending, axial

@@ -16,8 +16,9 @@ class AxialForceTable(NamedTuple):
     """One row a Gauss point.
 
     first (P,), width (P,), d1 (P, S), weight (P,), speed (P,) as in ``BendingTable``;
-    compliance (P,) 1/EA [1/N]; mode_first (P,) index in z of the first axial mode of the
-    support, mode_width (P,) their number, modes (P, M) their values; measure (P,) code.
+    strain (P,) natural strain eps_0; compliance (P,) 1/EA [1/N]; mode_first (P,) index in z
+    of the first axial mode of the support, mode_width (P,) their number, modes (P, M) their
+    values; measure (P,) code.
     """
 
     first: NDArray[np.int64]
@@ -25,6 +26,7 @@ class AxialForceTable(NamedTuple):
     d1: NDArray[np.float64]
     weight: NDArray[np.float64]
     speed: NDArray[np.float64]
+    strain: NDArray[np.float64]
     compliance: NDArray[np.float64]
     mode_first: NDArray[np.int64]
     mode_width: NDArray[np.int64]
@@ -53,7 +55,7 @@ def add_axial_force(z, table, gradient, hessian):
         for k in range(mode_width):
             force += modes[k] * z[mode_first + k]
 
-        eps = v / speed - 1.0
+        eps = v / speed - 1.0 - table.strain[p]
         if table.measure[p] == 0:  # W = J0
             value, by_v, by_vv = (force * eps - 0.5 * c * force * force) * speed, force, 0.0
             by_n, by_nv, by_nn = (eps - c * force) * speed, 1.0, -c * speed

@@ -36,10 +36,11 @@ def inverse_power(s0, s1, spatial):
 
 
 @njit(cache=True, nogil=True)
-def point_discrete_bending(p0, p1, speed, curvature0, rigidity, measure, g, h):
+def point_discrete_bending(p0, p1, speed, curvature0, rigidity, measure, mean_share, rate_share, g, h):
     """Discrete gradient g (4,) of 1/2 EI b^2 w from p0 to p1 (4,) and its derivative h (4, 4) in p1.
 
-    p = (x', y', x'', y''), b = c s^-k scale - kappa_0, c = x' y'' - y' x''.
+    p = (x', y', x'', y''), b = c s^-k scale - kappa_0, c = x' y'' - y' x''. The stress is
+    EI (mean_share mean(b) + rate_share (b1 - b0)): (1, 0) elastic, (0, beta / h) viscous.
     """
     spatial = measure != 0
     s0, s1 = p0[0] ** 2 + p0[1] ** 2, p1[0] ** 2 + p1[1] ** 2
@@ -51,7 +52,8 @@ def point_discrete_bending(p0, p1, speed, curvature0, rigidity, measure, g, h):
     slope1 = -1.5 / (s1 * s1 * v1) if spatial else -1 / (s1 * s1)
     scale = 1.0 if spatial else 1.0 / speed
     b0, b1 = c0 * power0 * scale - curvature0, c1 * power1 * scale - curvature0
-    mean_b, mean_c = 0.5 * (b0 + b1), 0.5 * (c0 + c1)
+    mean_b = mean_share * 0.5 * (b0 + b1) + rate_share * (b1 - b0)
+    mean_c = 0.5 * (c0 + c1)
     w = 0.5 * (v0 + v1) if spatial else speed
 
     m0, m1, m2, m3 = (
@@ -84,13 +86,13 @@ def point_discrete_bending(p0, p1, speed, curvature0, rigidity, measure, g, h):
             -power_j * m1 - (0.5 * mean_power if j == 1 else 0.0),
             power_j * m0 + (0.5 * mean_power if j == 0 else 0.0),
         )
-        bj = 0.5 * scale * (cj[j] * power1 + c1 * slope1 * sj[j])
+        bj = (0.5 * mean_share + rate_share) * scale * (cj[j] * power1 + c1 * slope1 * sj[j])
         wj = 0.25 * sj[j] / v1 if spatial else 0.0
         for i in range(4):
             h[i, j] = rigidity * scale * (bj * w * d[i] + mean_b * wj * d[i] + mean_b * w * dj[i])
     for i in range(4):
         g[i] = rigidity * mean_b * w * scale * d[i]
-    if spatial:  # + 1/2 EI mean(b^2) D|C'|
+    if spatial and mean_share > 0.0:  # + 1/2 EI mean(b^2) D|C'|
         push = 0.25 * rigidity * (b0 * b0 + b1 * b1) / w
         for i in range(2):
             mi = m0 if i == 0 else m1
@@ -102,8 +104,8 @@ def point_discrete_bending(p0, p1, speed, curvature0, rigidity, measure, g, h):
 
 
 @njit(cache=True, nogil=True)
-def add_discrete_bending(z0, z1, table, gradient, hessian):
-    """Add the discrete gradient between z0 and z1, and its derivative in z1."""
+def add_discrete_bending(z0, z1, table, mean_share, rate_share, gradient, hessian):
+    """Add the discrete gradient between z0 and z1, and its derivative in z1; shares as in the point."""
     g, h = np.empty(4), np.empty((4, 4))
     p0, p1 = np.empty(4), np.empty(4)
     for p in range(table.first.size):
@@ -119,7 +121,16 @@ def add_discrete_bending(z0, z1, table, gradient, hessian):
                 p1[i] += d1[a] * new
                 p1[i + 2] += d2[a] * new
         point_discrete_bending(
-            p0, p1, table.speed[p], table.curvature[p], table.rigidity[p], table.measure[p], g, h
+            p0,
+            p1,
+            table.speed[p],
+            table.curvature[p],
+            table.rigidity[p],
+            table.measure[p],
+            mean_share,
+            rate_share,
+            g,
+            h,
         )
         add_to_gradient(gradient, first, width, d1, d2, table.weight[p], g)
         add_to_hessian(hessian, first, width, d1, d2, table.weight[p], h)

@@ -45,20 +45,25 @@ def add_along(gradient, hessian, first, width, d1, mx, my, mean_v, tx, ty, force
 
 
 @njit(cache=True, nogil=True)
-def add_discrete_stretching(z0, z1, table, gradient, hessian):
-    """Add the discrete gradient of the stretching energy by quadrature, and its derivative in z1."""
+def add_discrete_stretching(z0, z1, table, mean_share, rate_share, gradient, hessian):
+    """Add the discrete gradient of the stretching energy by quadrature, and its derivative in z1.
+
+    The stress is EA (mean_share mean(eps) + rate_share (eps1 - eps0)), as in bending.
+    """
     for p in range(table.first.size):
         first, width, d1 = table.first[p], table.width[p], table.d1[p]
         x0, y0, x1, y1 = tangents(z0, z1, first, width, d1)
         v0, v1 = math.hypot(x0, y0), math.hypot(x1, y1)
         speed, rigidity = table.speed[p], table.rigidity[p]
-        e0, e1, mean_v = v0 / speed - 1.0, v1 / speed - 1.0, 0.5 * (v0 + v1)
-        mean_e = 0.5 * (e0 + e1)
+        rest = 1.0 + table.strain[p]
+        e0, e1, mean_v = v0 / speed - rest, v1 / speed - rest, 0.5 * (v0 + v1)
+        mean_e = mean_share * 0.5 * (e0 + e1) + rate_share * (e1 - e0)
+        share = 0.5 * mean_share + rate_share
         if table.measure[p] == 0:
-            force, slope = rigidity * mean_e, 0.5 * rigidity / speed
+            force, slope = rigidity * mean_e, share * rigidity / speed
         else:
-            force = rigidity * (mean_v * mean_e / speed + 0.25 * (e0 * e0 + e1 * e1))
-            slope = rigidity * (0.5 * mean_e + 0.5 * mean_v / speed + 0.5 * e1) / speed
+            force = rigidity * (mean_v * mean_e / speed + mean_share * 0.25 * (e0 * e0 + e1 * e1))
+            slope = rigidity * (0.5 * mean_e + share * mean_v / speed + mean_share * 0.5 * e1) / speed
         w = table.weight[p]
         add_along(
             gradient,
@@ -94,7 +99,7 @@ def add_discrete_axial_force(z0, z1, table, gradient, hessian):
         for k in range(mode_width):
             force += modes[k] * z1[mode_first + k]
         add_along(gradient, hessian, first, width, d1, mx, my, mean_v, x1 / v1, y1 / v1, w * force, 0.0)
-        gap = mean_v - speed - c * force * speed
+        gap = mean_v - (1.0 + table.strain[p]) * speed - c * force * speed
         for k in range(mode_width):
             row, pk = mode_first + k, w * modes[k]
             gradient[row] += pk * gap
@@ -106,3 +111,23 @@ def add_discrete_axial_force(z0, z1, table, gradient, hessian):
                 hessian[row, column + 1] += 0.5 * pk * d1[a] * y1 / v1
                 hessian[column, row] += pk * d1[a] * mx / mean_v
                 hessian[column + 1, row] += pk * d1[a] * my / mean_v
+
+
+@njit(cache=True, nogil=True)
+def add_discrete_axial_damping(z0, z1, table, relaxation, h, gradient, hessian):
+    """Add beta (eps1 - eps0) / h to the rows of the axial force: N = EA (eps + beta d(eps)/dt).
+
+    relaxation (P,) is beta [s] at the points of ``table``, which are those of the mixed stretching.
+    """
+    for p in range(relaxation.size):
+        first, width, d1 = table.first[p], table.width[p], table.d1[p]
+        x0, y0, x1, y1 = tangents(z0, z1, first, width, d1)
+        v0, v1 = math.hypot(x0, y0), math.hypot(x1, y1)
+        w = table.weight[p] * relaxation[p] / h
+        for k in range(table.mode_width[p]):
+            row, pk = table.mode_first[p] + k, w * table.modes[p, k]
+            gradient[row] += pk * (v1 - v0)
+            for a in range(width):
+                column = first + 2 * a
+                hessian[row, column] += pk * d1[a] * x1 / v1
+                hessian[row, column + 1] += pk * d1[a] * y1 / v1

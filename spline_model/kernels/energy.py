@@ -18,7 +18,7 @@ def axial_strains(z, table, start, strains):
         for a in range(table.width[p]):
             x += d1[a] * z[first + 2 * a]
             y += d1[a] * z[first + 2 * a + 1]
-        gap = table.weight[p] * (math.hypot(x, y) - table.speed[p])
+        gap = table.weight[p] * (math.hypot(x, y) - (1.0 + table.strain[p]) * table.speed[p])
         for k in range(table.mode_width[p]):
             strains[table.mode_first[p] - start + k] += table.modes[p, k] * gap
 
@@ -49,7 +49,8 @@ def strain_energy(z, tables, rigidity, start, strains):
             x += d1[a] * z[first + 2 * a]
             y += d1[a] * z[first + 2 * a + 1]
         v = math.hypot(x, y)
-        eps, w = v / table.speed[p] - 1.0, table.speed[p] if table.measure[p] == 0 else v
+        eps = v / table.speed[p] - 1.0 - table.strain[p]
+        w = table.speed[p] if table.measure[p] == 0 else v
         energy += 0.5 * table.weight[p] * table.rigidity[p] * eps * eps * w
     axial_strains(z, tables.axial_force, start, strains)
     return energy + 0.5 * np.dot(strains, np.dot(rigidity, strains))

@@ -9,18 +9,29 @@ from numba import njit
 
 from spline_model.kernels.discrete_bending import add_discrete_bending
 from spline_model.kernels.discrete_clamps import subtract_discrete_clamps
-from spline_model.kernels.discrete_stretching import add_discrete_axial_force, add_discrete_stretching
-from spline_model.kernels.energy import strain_energy
+from spline_model.kernels.discrete_loads import (
+    external_work,
+    subtract_discrete_drives,
+    subtract_discrete_loads,
+)
+from spline_model.kernels.discrete_stretching import (
+    add_discrete_axial_damping,
+    add_discrete_axial_force,
+    add_discrete_stretching,
+)
+from spline_model.kernels.dissipation import dissipation
+from spline_model.kernels.drives import subtract_weight
+from spline_model.kernels.record import forward, record
 
 STEPS, HALVED, NEWTON, FACTORISATIONS = range(4)
 """Places of the counters of a run."""
 
 
 @njit(cache=True, nogil=True)
-def assemble_step(z0, z1, delta, v0, h, motion, gradient, hessian):
-    """Residual and tangent of one step of length h from (z0, v0) to z1.
+def assemble_step(z0, z1, delta, v0, time, h, active, motion, gradient, hessian):
+    """Residual and tangent of one step of length h from (z0, v0) at ``time`` to z1.
 
-    M (v1 - v0) / h + D V - D psi^T lambda = 0 with (v0 + v1) / 2 = (q1 - q0) / h; rotations
+    M (v1 - v0) / h + D V + damping - loads - D psi^T lambda = 0 with (v0 + v1) / 2 = (q1 - q0) / h; rotations
     (``turns``, indices in q) by the Cayley map. Axial forces and multipliers in z1 are the
     step's means. delta (Q,) is q1 - q0, kept apart because at small h its inertia would drown
     in the round-off of q1.
@@ -28,10 +39,16 @@ def assemble_step(z0, z1, delta, v0, h, motion, gradient, hessian):
     gradient[:] = 0.0
     hessian[:] = 0.0
     tables, mass = motion.tables, motion.mass
-    add_discrete_bending(z0, z1, tables.bending, gradient, hessian)
-    add_discrete_stretching(z0, z1, tables.stretching, gradient, hessian)
+    add_discrete_bending(z0, z1, tables.bending, 1.0, 0.0, gradient, hessian)
+    add_discrete_stretching(z0, z1, tables.stretching, 1.0, 0.0, gradient, hessian)
     add_discrete_axial_force(z0, z1, tables.axial_force, gradient, hessian)
+    add_discrete_bending(z0, z1, motion.bending_damping, 0.0, 1.0 / h, gradient, hessian)
+    add_discrete_stretching(z0, z1, motion.stretching_damping, 0.0, 1.0 / h, gradient, hessian)
+    add_discrete_axial_damping(z0, z1, tables.axial_force, motion.axial_relaxation, h, gradient, hessian)
     subtract_discrete_clamps(z0, z1, tables.clamps, motion.chord, gradient, hessian)
+    subtract_discrete_loads(tables.loads, time, h, delta, gradient, hessian)
+    subtract_discrete_drives(z1, tables.drives, active, time, h, delta, gradient, hessian)
+    subtract_weight(tables.weight, gradient)
     count = v0.size
     change = np.empty(count)
     slope = np.ones(count)
@@ -48,10 +65,15 @@ def assemble_step(z0, z1, delta, v0, h, motion, gradient, hessian):
             push += m * change[j]
             hessian[i, j] += 2.0 * m * slope[j] / (h * h)
         gradient[i] += 2.0 * push / h
+    for i in range(motion.drag.shape[0]):
+        for j in range(count):
+            d = motion.drag[i, j]
+            gradient[i] += d * (change[j] + v0[j])
+            hessian[i, j] += d * slope[j] / h
 
 
 @njit(cache=True, nogil=True)
-def newton_step(z0, z1, delta, v0, h, motion, tolerance, gradient, hessian, counters):
+def newton_step(z0, z1, delta, v0, time, h, active, motion, tolerance, gradient, hessian, counters):
     """Solve one step in place from the guess delta and the axial forces and multipliers in z1.
 
     True if the residual came below tolerance. Rotations of more than a quarter turn in one
@@ -63,7 +85,7 @@ def newton_step(z0, z1, delta, v0, h, motion, tolerance, gradient, hessian, coun
     for i in range(delta.size):
         z1[i] = z0[i] + delta[i]
     for _ in range(20):
-        assemble_step(z0, z1, delta, v0, h, motion, gradient, hessian)
+        assemble_step(z0, z1, delta, v0, time, h, active, motion, gradient, hessian)
         norm = 0.0
         for i in range(size):
             gradient[i] *= unit[i] / energy
@@ -93,43 +115,26 @@ def newton_step(z0, z1, delta, v0, h, motion, tolerance, gradient, hessian, coun
 
 
 @njit(cache=True, nogil=True)
-def forward(z, tables):
-    """True if every end tangent points forwards and |C'| stays above a tenth of its value at rest."""
-    clamps = tables.clamps
-    for c in range(clamps.end.size):
-        end, inner, sign, body = clamps.end[c], clamps.inner[c], clamps.sign[c], clamps.body[c]
-        m = clamps.direction[c] + (z[body + 2] if body >= 0 else 0.0)
-        dx, dy = z[inner] - z[end], z[inner + 1] - z[end + 1]
-        if not sign * (dx * math.cos(m) + dy * math.sin(m)) > 0.0:
-            return False
-    table = tables.bending
-    for p in range(table.first.size):
-        first, d1 = table.first[p], table.d1[p]
-        x = y = 0.0
-        for a in range(table.width[p]):
-            x += d1[a] * z[first + 2 * a]
-            y += d1[a] * z[first + 2 * a + 1]
-        if not math.hypot(x, y) > 0.1 * table.speed[p]:
-            return False
-    return True
-
-
-@njit(cache=True, nogil=True)
-def advance(z, v, acceleration, duration, first_step, smallest, motion, tolerance, counters):
+def advance(
+    z, v, acceleration, time, duration, first_step, smallest, active, motion, tolerance, counters, totals
+):
     """Advance (z, v) in place by ``duration``, halving steps whose Newton fails; returns the time done.
 
-    The step doubles again after each success, up to ``first_step``.
+    The step doubles again after each success, up to ``first_step``. totals (2,) grows by the
+    work of loads and drives and by the dissipated energy [J].
     """
     size, count = z.size, v.size
     gradient, hessian = np.empty(size), np.empty((size, size))
-    guess, delta = np.empty(size), np.empty(count)
+    guess, delta, velocity = np.empty(size), np.empty(count), np.empty(count)
     done, step = 0.0, min(first_step, duration)
     while duration - done > 1e-9 * duration:
         step = min(step, duration - done)
         guess[:] = z
         for i in range(count):
             delta[i] = step * (v[i] + 0.5 * step * acceleration[i])
-        solved = newton_step(z, guess, delta, v, step, motion, tolerance, gradient, hessian, counters)
+        solved = newton_step(
+            z, guess, delta, v, time + done, step, active, motion, tolerance, gradient, hessian, counters
+        )
         if not (solved and forward(guess, motion.tables)):
             counters[HALVED] += 1
             step *= 0.5
@@ -143,7 +148,10 @@ def advance(z, v, acceleration, duration, first_step, smallest, motion, toleranc
                 if i == turn:
                     mean = 2.0 * math.tan(0.5 * delta[i]) / step
             acceleration[i] = 2.0 * (mean - v[i]) / step
+            velocity[i] = mean
             v[i] = 2.0 * mean - v[i]
+        totals[0] += external_work(guess, motion.tables, active, time + done, step, delta)
+        totals[1] += dissipation(z, guess, velocity, step, motion)
         z[:] = guess
         done += step
         step = min(2.0 * step, first_step)
@@ -151,49 +159,49 @@ def advance(z, v, acceleration, duration, first_step, smallest, motion, toleranc
 
 
 @njit(cache=True, nogil=True)
-def record(z, v, motion, strains, row):
-    """Fill row with kinetic and strain energy [J], the constraint residuals psi [m] and d(psi)/dt [m/s]."""
-    row[0] = 0.5 * np.dot(v, np.dot(motion.mass, v))
-    row[1] = strain_energy(z, motion.tables, motion.rigidity, v.size, strains)
-    position = velocity = 0.0
-    clamps = motion.tables.clamps
-    for c in range(clamps.end.size):
-        end, inner, sign, body = clamps.end[c], clamps.inner[c], clamps.sign[c], clamps.body[c]
-        bx, by = clamps.point[c]
-        gx = gy = angle = vx = vy = omega = 0.0
-        if body >= 0:
-            gx, gy, angle = z[body], z[body + 1], z[body + 2]
-            vx, vy, omega = v[body], v[body + 1], v[body + 2]
-        cos, sin = math.cos(angle), math.sin(angle)
-        ax, ay = cos * bx - sin * by, sin * bx + cos * by
-        m = clamps.direction[c] + angle
-        mx, my = math.cos(m), math.sin(m)
-        dx, dy = sign * (z[inner] - z[end]), sign * (z[inner + 1] - z[end + 1])
-        wx, wy = sign * (v[inner] - v[end]), sign * (v[inner + 1] - v[end + 1])
-        reach = motion.chord[c]
-        position = max(position, abs(z[end] - gx - ax), abs(z[end + 1] - gy - ay))
-        position = max(position, abs(mx * dy - my * dx) / math.hypot(dx, dy) * reach)
-        velocity = max(velocity, abs(v[end] - vx + omega * ay), abs(v[end + 1] - vy - omega * ax))
-        velocity = max(velocity, abs(mx * wy - my * wx - omega * (mx * dx + my * dy)))
-    row[2] = position
-    row[3] = velocity
+def run(
+    z,
+    v,
+    acceleration,
+    step,
+    begin,
+    end,
+    every,
+    smallest,
+    active,
+    motion,
+    tolerance,
+    counters,
+    totals,
+    states,
+    rates,
+    rows,
+):
+    """Take the steps ``begin`` ... ``end`` - 1, each of length ``step``; returns the next step's number.
 
-
-@njit(cache=True, nogil=True)
-def run(z, v, acceleration, step, steps, every, smallest, motion, tolerance, counters, states, rates, rows):
-    """Take ``steps`` steps, recording each ``every``-th one; returns the steps that were completed.
-
-    states (R, N), rates (R, Q) and rows (R, 4) are filled from row 1 on; row 0 is the start.
+    states (R, N), rates (R, Q) and rows (R, 7) are filled at every ``every``-th step's end.
     """
     strains = np.empty(motion.rigidity.shape[0])
-    record(z, v, motion, strains, rows[0])
-    for k in range(1, steps + 1):
-        done = advance(z, v, acceleration, step, step, smallest, motion, tolerance, counters)
+    for k in range(begin, end):
+        done = advance(
+            z,
+            v,
+            acceleration,
+            k * step,
+            step,
+            step,
+            smallest,
+            active,
+            motion,
+            tolerance,
+            counters,
+            totals,
+        )
         if done < step:
-            return k - 1
-        if k % every == 0:
-            r = k // every
+            return k
+        if (k + 1) % every == 0:
+            r = (k + 1) // every
             states[r] = z
             rates[r] = v
-            record(z, v, motion, strains, rows[r])
-    return steps
+            record(z, v, motion, strains, totals, rows[r])
+    return end

@@ -82,7 +82,7 @@ def acceleration(r, w, free, motion, work):
     axial_strains(z, tables.axial_force, count, strains)
     z[count:] = 0.0
     z[count : count + strains.size] = np.dot(motion.rigidity, strains)
-    assemble(z, tables, 0.0, work.gradient, work.hessian)
+    assemble(z, tables, 1.0, work.gradient, work.hessian)
     force = work.gradient[:count] + np.dot(motion.mass, work.drift)
     inertia = np.dot(work.jacobian.T, np.dot(motion.mass, work.jacobian))
     return np.linalg.solve(inertia, -np.dot(work.jacobian.T, force))

@@ -16,7 +16,7 @@ class StretchingTable(NamedTuple):
     """One row a Gauss point.
 
     first (P,), width (P,), d1 (P, S), weight (P,), speed (P,) as in ``BendingTable``;
-    rigidity (P,) EA [N]; measure (P,) code of the measure.
+    strain (P,) natural strain eps_0; rigidity (P,) EA [N]; measure (P,) code of the measure.
     """
 
     first: NDArray[np.int64]
@@ -24,18 +24,19 @@ class StretchingTable(NamedTuple):
     d1: NDArray[np.float64]
     weight: NDArray[np.float64]
     speed: NDArray[np.float64]
+    strain: NDArray[np.float64]
     rigidity: NDArray[np.float64]
     measure: NDArray[np.int64]
 
 
 @njit(cache=True, nogil=True)
-def point_stretching(v, speed, rigidity, measure):
+def point_stretching(v, speed, strain0, rigidity, measure):
     """Energy density, force and force derivative in v = |C'|.
 
     material  1/2 EA eps^2 J0; spatial  1/2 EA eps^2 v; printed: the force of the
     spatial one without the derivative of its length element v.
     """
-    eps = v / speed - 1.0
+    eps = v / speed - 1.0 - strain0
     if measure == 0:
         return 0.5 * rigidity * eps * eps * speed, rigidity * eps, rigidity / speed
     energy = 0.5 * rigidity * eps * eps * v
@@ -59,7 +60,9 @@ def add_stretching(z, table, gradient, hessian):
             x1 += d1[a] * z[first + 2 * a]
             y1 += d1[a] * z[first + 2 * a + 1]
         v = math.sqrt(x1 * x1 + y1 * y1)
-        density, force, slope = point_stretching(v, table.speed[p], table.rigidity[p], table.measure[p])
+        density, force, slope = point_stretching(
+            v, table.speed[p], table.strain[p], table.rigidity[p], table.measure[p]
+        )
         weight = table.weight[p]
         energy += weight * density
         add_isotropic(gradient, hessian, first, width, d1, x1 / v, y1 / v, v, weight * force, weight * slope)

@@ -39,7 +39,8 @@ class Step:
         size = len(z1)
         gradient, hessian = np.empty(size), np.empty((size, size))
         delta, v0 = (z1 - z0)[: self.count], np.zeros(self.count)
-        assemble_step(z0, z1, delta, v0, h, self.motion, gradient, hessian)
+        active = np.zeros(0, dtype=np.int64)
+        assemble_step(z0, z1, delta, v0, 0.0, h, active, self.motion, gradient, hessian)
         scale = self.unit / self.energy
         return gradient * scale, hessian * scale[:, None] * self.unit
 

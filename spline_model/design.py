@@ -1,0 +1,225 @@
+"""A design: strips and bodies by their geometry and material, and how they are discretised."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from spline_model.basis import HatModes, LegendreModes, SplineBasis, bezier, cubic_bspline
+from spline_model.effects.constraints import GROUND
+from spline_model.effects.elastic import MEASURES
+from spline_model.errors import (
+    InvalidParameter,
+    require_choice,
+    require_count,
+    require_not_negative,
+    require_positive,
+)
+
+BASES = ("bezier", "bspline")
+STRETCH_FORMS = ("mixed", "consistent", "inextensible")
+SLIDE_STIFFNESS = 10.0
+"""Default stiffness of the strains that the axial modes do not see, in EI/L^2.
+
+With control_points - 2 modes the control points of a straight strip slide along it without
+resistance and the tangent at rest is singular. Any value from 1e-6 to 10 mends that; near 10
+the error of every n from 4 to 10 is least (results of convergence/slide_stiffness), and from
+100 on the strip begins to lock.
+"""
+SWINGING_SLIDE_STIFFNESS = 100.0
+"""The value for a motion: the sliding must be fast against the strips' bending, or it takes part."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Discretisation:
+    """How every strip is described.
+
+    control_points n >= 4; axial_modes m in 1 ... n - 1, default n - 2; basis "bezier" (degree
+    n - 1) or "bspline" (cubic); measure "material", "spatial" (Eqs 10, 13) or "printed"
+    (forces of Eqs 12, 15); stretch "mixed", "consistent" (Eq 13 by quadrature) or
+    "inextensible"; gauss_points in each knot span, default degree + 3, which follows the
+    primary branch to a half turn where n - 1 points lose it; slide_stiffness of the strains
+    that the axial modes do not see, in EI/L^2, 0 for none.
+    """
+
+    control_points: int = 6
+    axial_modes: int | None = None
+    basis: str = "bezier"
+    measure: str = "material"
+    stretch: str = "mixed"
+    gauss_points: int | None = None
+    slide_stiffness: float = SLIDE_STIFFNESS
+
+    def __post_init__(self) -> None:
+        require_count("control_points", self.control_points, 4)
+        require_choice("basis", self.basis, BASES)
+        require_choice("measure", self.measure, MEASURES)
+        require_choice("stretch", self.stretch, STRETCH_FORMS)
+        require_not_negative("slide_stiffness", self.slide_stiffness, "EI/L^2")
+        if self.gauss_points is not None:
+            require_count("gauss_points", self.gauss_points, 1)
+        if self.measure == "printed" and self.stretch != "consistent":
+            raise InvalidParameter("stretch", self.stretch, "consistent, the only form with printed forces")
+        if self.axial_modes is None:
+            return
+        if self.stretch == "consistent":
+            raise InvalidParameter("axial_modes", self.axial_modes, "none with stretch = consistent")
+        require_count("axial_modes", self.axial_modes, 1, self.control_points - 1)
+
+    @cached_property
+    def spline(self) -> SplineBasis:
+        """The basis of the control points."""
+        return (bezier if self.basis == "bezier" else cubic_bspline)(self.control_points)
+
+    @cached_property
+    def modes(self) -> LegendreModes | HatModes:
+        """The axial-force modes: Legendre's for one span, hats for a B-spline."""
+        count = self.control_points - 2 if self.axial_modes is None else self.axial_modes
+        return LegendreModes(count=count) if self.basis == "bezier" else HatModes(count=count)
+
+    @property
+    def points_a_span(self) -> int:
+        """Gauss points in each knot span."""
+        return self.spline.degree + 3 if self.gauss_points is None else self.gauss_points
+
+
+@dataclass(frozen=True, kw_only=True)
+class StripDesign:
+    """A strip between two points, from ``root`` to ``tip``: the ground, a body, or None (free tip).
+
+    start, end [m]; area [m^2], second_moment_of_area [m^4], youngs_modulus [Pa], density
+    [kg/m^3]; poisson_ratio is for models with shear; rise: sagitta of the circular arc at
+    rest [m], positive to the left of start -> end, 0 for a straight strip.
+    """
+
+    name: str
+    start: tuple[float, float]
+    end: tuple[float, float]
+    area: float
+    second_moment_of_area: float
+    youngs_modulus: float
+    density: float
+    poisson_ratio: float = 0.3
+    root: str = GROUND
+    tip: str | None = None
+    rise: float = 0.0
+
+    def __post_init__(self) -> None:
+        require_positive("area", self.area, "m^2")
+        require_positive("second_moment_of_area", self.second_moment_of_area, "m^4")
+        require_positive("youngs_modulus", self.youngs_modulus, "Pa")
+        require_positive("density", self.density, "kg/m^3")
+        require_positive("length", self.chord, "m")
+        if not abs(self.rise) < self.chord / 2:
+            raise InvalidParameter("rise", self.rise, f"less than half the chord, {self.chord / 2:g} [m]")
+
+    @property
+    def chord(self) -> float:
+        """Distance of the ends [m]."""
+        return math.dist(self.start, self.end)
+
+    @property
+    def length(self) -> float:
+        """Arc length at rest [m]."""
+        if self.rise == 0.0:
+            return self.chord
+        half = 2.0 * math.atan2(2.0 * abs(self.rise), self.chord)
+        return self.chord * half / math.sin(half)
+
+    @property
+    def flexural_rigidity(self) -> float:
+        """EI [N m^2]."""
+        return self.youngs_modulus * self.second_moment_of_area
+
+    @property
+    def axial_rigidity(self) -> float:
+        """EA [N]."""
+        return self.youngs_modulus * self.area
+
+    @property
+    def linear_density(self) -> float:
+        """mu = rho A [kg/m]."""
+        return self.density * self.area
+
+    def control_points(self, basis: SplineBasis) -> NDArray[np.float64]:
+        """Control points at rest (n, 2): exact for a straight strip, the least-squares arc otherwise.
+
+        The arc's ends and end tangents are met exactly; its parametrisation is by arc length.
+        """
+        start, end = np.asarray(self.start, dtype=float), np.asarray(self.end, dtype=float)
+        straight = start + basis.greville[:, None] * (end - start)
+        if self.rise == 0.0:
+            return np.asarray(straight)
+        return _arc(basis, start, end, self.rise, self.length)
+
+
+def _arc(
+    basis: SplineBasis, start: NDArray[np.float64], end: NDArray[np.float64], rise: float, length: float
+) -> NDArray[np.float64]:
+    """Control points of the circular arc from start to end with that sagitta."""
+    along = (end - start) / math.dist(start, end)
+    left = np.array([-along[1], along[0]])
+    half = 2.0 * math.atan2(2.0 * rise, math.dist(start, end))
+    u = basis.gauss_rule(basis.degree + 5)[0]
+    turn = half * (1.0 - 2.0 * u)  # of the tangent against the chord
+    radius = length / (2.0 * half)
+    x = radius * (math.sin(half) - np.sin(turn))
+    y = radius * (np.cos(turn) - math.cos(half))
+    target = start + np.outer(x, along) + np.outer(y, left)
+    n = basis.control_points
+    points = np.zeros((n, 2))
+    reach = length / basis.evaluate(np.array([0.0]), 1)[0, 1]
+    points[0], points[-1] = start, end
+    points[1] = start + reach * (math.cos(half) * along + math.sin(half) * left)
+    points[-2] = end - reach * (math.cos(half) * along - math.sin(half) * left)
+    if n > 4:
+        values = basis.evaluate(u)
+        known = values[:, [0, 1, -2, -1]] @ points[[0, 1, -2, -1]]
+        points[2:-2] = np.linalg.lstsq(values[:, 2:-2], target - known, rcond=None)[0]
+    return points
+
+
+@dataclass(frozen=True, kw_only=True)
+class BodyDesign:
+    """A rigid body: centre at rest [m], mass [kg], moment of inertia about the centre [kg m^2]."""
+
+    name: str
+    centre: tuple[float, float]
+    mass: float = 0.0
+    moment_of_inertia: float = 0.0
+
+    def __post_init__(self) -> None:
+        require_not_negative("mass", self.mass, "kg")
+        require_not_negative("moment_of_inertia", self.moment_of_inertia, "kg m^2")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Design:
+    """Strips and bodies with their discretisation; pre_strain holds curvature and strain, if any."""
+
+    strips: tuple[StripDesign, ...]
+    bodies: tuple[BodyDesign, ...]
+    discretisation: Discretisation
+    pre_strain: Mapping[str, Any] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        names = {body.name for body in self.bodies}
+        for strip in self.strips:
+            for end in (strip.root, strip.tip):
+                if end not in {*names, GROUND, None}:
+                    raise InvalidParameter(f"end of {strip.name}", end, f"ground or one of {sorted(names)}")
+
+    def body_named(self, name: str | None) -> str:
+        """That name, or the only body's."""
+        names = [body.name for body in self.bodies]
+        if name is None and len(names) == 1:
+            return names[0]
+        if name not in names:
+            raise InvalidParameter("body", name, f"one of {names}")
+        return str(name)

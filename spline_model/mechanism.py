@@ -1,0 +1,81 @@
+"""Any mechanism of flexures: strips, bodies and named effects as a scene."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from spline_model.design import BodyDesign, Design, Discretisation, StripDesign
+from spline_model.effects import Clamp, DrivenRotation
+from spline_model.effects.base import Inertia
+from spline_model.effects.registry import DEFAULT_EFFECTS, INERTIA, build, check_names
+from spline_model.errors import InvalidParameter
+from spline_model.scene import Body, Effect, Scene, Strip
+
+__all__ = ["BodyDesign", "Mechanism", "StripDesign", "mechanism"]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Mechanism:
+    """A design, the names of its effects, and its scene without a driven rotation."""
+
+    design: Design
+    effects: tuple[str, ...]
+    scene: Scene
+
+    def driven(self, rotation: float, body: str | None = None) -> Scene:
+        """The scene with a body's rotation driven to ``rotation`` [rad] at load factor 1 (Eq 7)."""
+        drive = DrivenRotation(body=self.design.body_named(body), angle=rotation)
+        return self.with_effects(drive)
+
+    def with_effects(self, *more: Effect) -> Scene:
+        """The scene with some effects more."""
+        return replace(self.scene, effects=(*self.scene.effects, *more))
+
+    def released(self) -> Scene:
+        """The scene in motion; refused if none of its effects has inertia."""
+        if not self.scene.of(Inertia):
+            raise InvalidParameter("effects", list(self.effects), f"one of {', '.join(INERTIA)} for a motion")
+        return self.scene
+
+
+def mechanism(
+    *,
+    strips: Sequence[StripDesign],
+    bodies: Sequence[BodyDesign] = (),
+    effects: Sequence[str] = DEFAULT_EFFECTS,
+    parameters: Mapping[str, Mapping[str, Any]] | None = None,
+    **discretisation: Any,
+) -> Mechanism:
+    """A mechanism whose scene holds the named effects and nothing else.
+
+    effects: names of ``spline_model.effects.registry``; parameters: of each named effect,
+    by effect; discretisation: keywords of ``Discretisation``. ``stretch="inextensible"`` and
+    the effect "inextensible" are the same thing.
+    """
+    grid, given = Discretisation(**discretisation), dict(parameters or {})
+    names = tuple(effects)
+    if grid.stretch == "inextensible":
+        names = tuple("inextensible" if name == "stretching" else name for name in names)
+    check_names(names, given)
+    if "inextensible" in names and grid.stretch == "consistent":
+        raise InvalidParameter("stretch", "consistent", "mixed for inextensible strips")
+    pre_strain = dict(given.get("pre_strain", {}))
+    design = Design(strips=tuple(strips), bodies=tuple(bodies), discretisation=grid, pre_strain=pre_strain)
+    attachments: list[Effect] = []
+    for strip in strips:
+        attachments.append(Clamp(strip=strip.name, end="start", to=strip.root))
+        if strip.tip is not None:
+            attachments.append(Clamp(strip=strip.name, end="end", to=strip.tip))
+    scene = Scene(
+        strips=tuple(
+            Strip(name=s.name, basis=grid.spline, control_points=s.control_points(grid.spline))
+            for s in strips
+        ),
+        bodies=tuple(Body(name=b.name, centre=np.asarray(b.centre, dtype=float)) for b in bodies),
+        effects=(*build(names, given, design), *attachments),
+    )
+    return Mechanism(design=design, effects=names, scene=scene)
