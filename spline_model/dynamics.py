@@ -11,13 +11,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.compile import System, compile_scene
+from spline_model.effects import DrivenRotation
 from spline_model.errors import InvalidParameter, require_choice, require_positive
 from spline_model.integrators import adaptive, energy_consistent, explicit, generalised_alpha
 from spline_model.integrators.motion import Records, initial_acceleration, set_in_motion
 from spline_model.kernels.motion import Motion
 from spline_model.kernels.record import DISSIPATED, KINETIC, POSITION, STRAIN, VELOCITY, WEIGHT, WORK
+from spline_model.mechanism import Mechanism
 from spline_model.modes import linear_modes, static_state
-from spline_model.pivot import BODY, Pivot
+from spline_model.pivot import Pivot
 from spline_model.solution import Status
 
 Array = NDArray[np.float64]
@@ -37,38 +39,58 @@ STEPS_PER_PERIOD = 20
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Trajectory:
-    """Motion after the release; T records, the start first.
+    """A motion; T records, the start first.
 
-    time (T,) [s]; rotation (T,) [rad]; centre (T, 2) [m]; kinetic_energy, strain_energy (T,)
-    [J]; gravity_energy, work of loads and drives so far, dissipated so far (T,) [J];
-    constraint_residual (T,) [m]; velocity_residual (T,) its rate [m/s]; states (T, N)
-    and velocities (T, Q) of the released system; resolution: empty, or how far the step
-    under-resolves the swing; counters: steps, halved_steps, newton_iterations, ...
+    time (T,) [s]; bodies: x, y, theta (T, 3) by name [m, m, rad]; body: the one that rotation
+    (T,) and centre (T, 2) are of; kinetic_energy, strain_energy (T,) [J]; gravity_energy
+    against rest, work of loads and drives so far, dissipated so far (T,) [J];
+    constraint_residual (T,) [m]; velocity_residual (T,) its rate [m/s]; states (T, N) and
+    velocities (T, Q) of the system in motion; resolution: empty, or how far the step
+    under-resolves the swing; effects: names of the scene's effects; counters: steps,
+    halved_steps, newton_iterations, ...
     """
 
     status: Status
     message: str
     time: Array
-    rotation: Array
-    centre: Array
+    bodies: dict[str, Array]
+    body: str
     kinetic_energy: Array
     strain_energy: Array
-    constraint_residual: Array
-    velocity_residual: Array
     gravity_energy: Array
     work: Array
     dissipated: Array
+    constraint_residual: Array
+    velocity_residual: Array
     states: Array
     velocities: Array
     resolution: str
+    effects: tuple[str, ...]
     counters: dict[str, int]
     settings: dict[str, Any]
 
+    @property
+    def rotation(self) -> Array:
+        """Rotation of the body, (T,) [rad]."""
+        return self.bodies[self.body][:, 2]
 
-def solve_release(
-    pivot: Pivot,
+    @property
+    def centre(self) -> Array:
+        """Centre of the body, (T, 2) [m]."""
+        return self.bodies[self.body][:, :2]
+
+
+def solve_release(pivot: Pivot, *, start: float = math.pi / 2, **settings: Any) -> Trajectory:
+    """Release the pivot at rest from the static state at rotation ``start`` [rad]; see ``solve_motion``."""
+    return solve_motion(pivot.mechanism, start=start, **settings)
+
+
+def solve_motion(
+    mechanism: Mechanism,
     *,
-    start: float = math.pi / 2,
+    start: float = 0.0,
+    body: str | None = None,
+    drive: DrivenRotation | None = None,
     duration: float = 0.05,
     step: float | None = None,
     integrator: str = "energy",
@@ -76,10 +98,12 @@ def solve_release(
     records: int | None = None,
     **options: float,
 ) -> Trajectory:
-    """Release the pivot at rest from the static state at rotation ``start`` [rad].
+    """Motion of a mechanism from the static state at the rotation ``start`` [rad] of a body, at rest.
 
     Parameters
     ----------
+    body : that ``start`` rotates and that the trajectory reports; default the only one.
+    drive : a rotation that is held or driven in a part of the run, if any.
     duration, step : [s]; the step defaults to STEP, or to 0.9 of the critical one (explicit); it
         is shortened so that a whole number of steps fits between the records.
     integrator : "energy" (default, cannot create energy), "generalised-alpha" (option
@@ -90,6 +114,33 @@ def solve_release(
 
     Raises InvalidParameter, and ConvergenceError if statics does not reach ``start``.
     """
+    _check(integrator, duration, start, step, accuracy)
+    body = mechanism.design.body_named(body)
+    scene = mechanism.released()
+    system = compile_scene(scene if drive is None else mechanism.with_effects(drive))
+    motion, layout = set_in_motion(system), system.layout
+    held = static_state(mechanism, start, body=body)
+    z, v = np.zeros(layout.size), np.zeros(layout.coordinate_count)
+    known = min(len(held), layout.size)
+    z[:known] = held[:known]
+    acceleration, z = initial_acceleration(system, motion, z, v)
+    effects = mechanism.effects
+    if accuracy is not None:
+        run = adaptive.integrate(motion, z, v, acceleration, duration=duration, accuracy=accuracy)
+        settings = {"integrator": integrator, "accuracy_rad": accuracy}
+        return _trajectory(system, run, effects, body, settings, "")
+    if step is None:
+        step = 0.9 * critical_step(system, motion, z) if integrator == "explicit" else STEP
+    steps, every = _count(duration, step, records, layout.size + layout.coordinate_count + 7)
+    step = duration / steps
+    run = INTEGRATORS[integrator](motion, z, v, acceleration, step=step, steps=steps, every=every, **options)
+    settings = {"integrator": integrator, "step_s": step, **options}
+    return _trajectory(system, run, effects, body, settings, _resolution(system, motion, step))
+
+
+def _check(
+    integrator: str, duration: float, start: float, step: float | None, accuracy: float | None
+) -> None:
     require_choice("integrator", integrator, tuple(INTEGRATORS))
     require_positive("duration", duration, "s")
     if not math.isfinite(start):
@@ -99,21 +150,6 @@ def solve_release(
             require_positive(name, value, "s" if name == "step" else "rad")
     if accuracy is not None and (step is not None or integrator != "energy"):
         raise InvalidParameter("accuracy", accuracy, "no step beside it, and the energy integrator")
-
-    system = compile_scene(pivot.released())
-    motion, layout = set_in_motion(system), system.layout
-    held = static_state(pivot, start)[: layout.size].copy()
-    v = np.zeros(layout.coordinate_count)
-    acceleration, z = initial_acceleration(system, motion, held, v)
-    if accuracy is not None:
-        run = adaptive.integrate(motion, z, v, acceleration, duration=duration, accuracy=accuracy)
-        return _trajectory(system, motion, run, {"integrator": integrator, "accuracy_rad": accuracy}, None)
-    if step is None:
-        step = 0.9 * critical_step(system, motion, z) if integrator == "explicit" else STEP
-    steps, every = _count(duration, step, records, layout.size + layout.coordinate_count + 6)
-    step = duration / steps
-    run = INTEGRATORS[integrator](motion, z, v, acceleration, step=step, steps=steps, every=every, **options)
-    return _trajectory(system, motion, run, {"integrator": integrator, "step_s": step, **options}, step)
 
 
 def critical_step(system: System, motion: Motion, z: Array) -> float:
@@ -138,25 +174,32 @@ def _count(duration: float, step: float, records: int | None, width: int) -> tup
 
 
 def _trajectory(
-    system: System, motion: Motion, run: Records, settings: dict[str, Any], step: float | None
+    system: System,
+    run: Records,
+    effects: tuple[str, ...],
+    body: str,
+    settings: dict[str, Any],
+    resolution: str,
 ) -> Trajectory:
-    body = run.states[:, system.layout.body(BODY)]
+    rows, layout = run.rows, system.layout
+    rest = float(system.tables.weight @ system.rest[: system.tables.weight.size])
     return Trajectory(
         status=Status.NOT_CONVERGED if run.message else Status.CONVERGED,
         message=run.message,
         time=run.time,
-        rotation=body[:, 2],
-        centre=body[:, :2],
-        kinetic_energy=run.rows[:, KINETIC],
-        strain_energy=run.rows[:, STRAIN],
-        constraint_residual=run.rows[:, POSITION],
-        velocity_residual=run.rows[:, VELOCITY],
-        gravity_energy=run.rows[:, WEIGHT],
-        work=run.rows[:, WORK],
-        dissipated=run.rows[:, DISSIPATED],
+        bodies={b.name: run.states[:, layout.body(b.name)] for b in system.scene.bodies},
+        body=body,
+        kinetic_energy=rows[:, KINETIC],
+        strain_energy=rows[:, STRAIN],
+        gravity_energy=rows[:, WEIGHT] + rest,
+        work=rows[:, WORK],
+        dissipated=rows[:, DISSIPATED],
+        constraint_residual=rows[:, POSITION],
+        velocity_residual=rows[:, VELOCITY],
         states=run.states,
         velocities=run.velocities,
-        resolution="" if step is None else _resolution(system, motion, step),
+        resolution=resolution,
+        effects=effects,
         counters=run.counters,
         settings=settings,
     )

@@ -6,7 +6,7 @@ import math
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from spline_model.solution import StaticSolution
+    from spline_model.solution import MechanismSolution, StaticSolution
 
 
 class InvalidParameter(ValueError):
@@ -31,7 +31,7 @@ class ConvergenceError(RuntimeError):
         self,
         message: str,
         *,
-        solution: StaticSolution,
+        solution: StaticSolution | MechanismSolution,
         load_factor: float,
         history: tuple[tuple[float, ...], ...],
     ) -> None:

@@ -14,7 +14,9 @@ from spline_model.effects import MixedStretching
 from spline_model.errors import InvalidParameter, require_count
 from spline_model.kernels.assemble import assemble
 from spline_model.mass import mass_matrix
-from spline_model.pivot import BODY, STRIPS, Pivot
+from spline_model.mechanism import Mechanism
+from spline_model.path import follow
+from spline_model.pivot import Pivot
 from spline_model.statics import STATIONS, solve_path
 
 Array = NDArray[np.float64]
@@ -24,13 +26,18 @@ SLIDE_SHARE = 0.5
 points' sliding along the strip: a number of the discretisation, not of the pivot."""
 
 
+MASSLESS = 1e-13
+"""Directions with less than this of the largest modal mass follow the others statically."""
+
+
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Modes:
     """Natural modes, lowest first.
 
     frequency (F,) [Hz], negative where the state is unstable (growth rate over 2 pi);
     shapes (F, G, P, 2) and body_shapes (F, 3): displacement of the strips' stations and of
-    the body (x, y, theta) at unit modal mass; slide_frequency: those left out as slide modes
+    the body (x, y, theta; zero without one) at unit modal mass; slide_frequency: those left out as
+    slide modes
     [Hz]; held: whether the body's rotation was held.
     """
 
@@ -43,43 +50,56 @@ class Modes:
 
 
 def natural_frequencies(
-    pivot: Pivot, *, rotation: float = 0.0, count: int = 10, held: bool = False, increments: int = 20
+    pivot: Pivot | Mechanism,
+    *,
+    rotation: float = 0.0,
+    body: str | None = None,
+    count: int = 10,
+    held: bool = False,
+    increments: int = 20,
 ) -> Modes:
-    """Modes about the static state at ``rotation`` [rad].
+    """Modes about the static state at the rotation [rad] of a body, the only one by default.
 
     The drive's torque acts on as a dead moment (``held=False``) or the rotation is fixed
     (``held=True``). Raises ConvergenceError if statics does not reach the state.
     """
     require_count("count", count, 1)
-    system = compile_scene(pivot.driven(rotation) if held else pivot.released())
-    z = np.zeros(system.layout.size)
-    z[:] = static_state(pivot, rotation, increments)[: system.layout.size]
-    scene = pivot.released()
-    mass = mass_matrix(scene, system.layout)
-    values, vectors, share = linear_modes(system, z, mass)
+    mechanism = pivot.mechanism if isinstance(pivot, Pivot) else pivot
+    body = mechanism.design.body_named(body) if mechanism.design.bodies else None
+    released = mechanism.released()
+    scene = mechanism.driven(rotation, body) if held else released
+    system = compile_scene(scene)
+    layout = system.layout
+    z = static_state(mechanism, rotation, increments, body)[: layout.size]
+    values, vectors, share = linear_modes(system, z, mass_matrix(released, layout))
     slide = share > SLIDE_SHARE
     frequency = np.sign(values) * np.sqrt(np.abs(values)) / (2 * np.pi)
     kept = np.flatnonzero(~slide)[:count]
-    layout = system.layout
     shapes = [
-        np.moveaxis(vectors[layout.strip(name)][:, kept].reshape(-1, 2, len(kept)), 2, 0) for name in STRIPS
+        np.moveaxis(vectors[layout.strip(strip.name)][:, kept].reshape(-1, 2, len(kept)), 2, 0)
+        for strip in system.scene.strips
     ]
-    values_at = [system.scene.strip(name).basis.evaluate(STATIONS) for name in STRIPS]
+    values_at = [strip.basis.evaluate(STATIONS) for strip in system.scene.strips]
     return Modes(
         frequency=frequency[kept],
         shapes=np.stack([b @ s for b, s in zip(values_at, shapes, strict=True)], axis=1),
-        body_shapes=vectors[layout.body(BODY)][:, kept].T,
+        body_shapes=np.zeros((len(kept), 3)) if body is None else vectors[layout.body(body)][:, kept].T,
         slide_frequency=frequency[slide],
         rotation=rotation,
         held=held,
     )
 
 
-def static_state(pivot: Pivot, rotation: float, increments: int = 20) -> Array:
-    """The unknowns z of the static state at ``rotation``, the drive's multiplier last."""
+def static_state(
+    mechanism: Mechanism, rotation: float, increments: int = 20, body: str | None = None
+) -> Array:
+    """The unknowns z of the static state at a body's rotation, the drive's multiplier last.
+
+    At rotation 0 the body is free and loads are absent: rest, but for gravity and pre-strain.
+    """
     if rotation == 0.0:
-        return compile_scene(pivot.driven(1.0)).rest
-    return np.asarray(solve_path(pivot, rotation, increments).states[-1])
+        return np.asarray(follow(compile_scene(mechanism.scene), []).states[0])
+    return np.asarray(solve_path(mechanism, rotation, increments, body).states[-1])
 
 
 def linear_modes(system: System, z: Array, mass: Array) -> tuple[Array, Array, Array]:
@@ -112,8 +132,20 @@ def linear_modes(system: System, z: Array, mass: Array) -> tuple[Array, Array, A
     constraints = constraints / np.linalg.norm(constraints, axis=1, keepdims=True)
     free = null_space(constraints)
     scaled_mass = mass * unit[:count, None] * unit[:count]
+    free = _without_massless(free, stiffness, scaled_mass)
     values, vectors = eigh(free.T @ stiffness @ free, free.T @ scaled_mass @ free)
     shapes = free @ vectors
     strain = np.einsum("im,ij,jm->m", shapes, stiffness, shapes)
     share = np.einsum("im,ij,jm->m", shapes, slide, shapes) / np.abs(strain)
     return values, shapes * unit[:count, None], share
+
+
+def _without_massless(free: Array, stiffness: Array, mass: Array) -> Array:
+    """The free directions with mass, each with the static answer of those that have none."""
+    weights, directions = eigh(free.T @ mass @ free)
+    massless = weights < MASSLESS * weights[-1]
+    if not massless.any():
+        return free
+    quiet, moving = free @ directions[:, massless], free @ directions[:, ~massless]
+    answer = np.linalg.solve(quiet.T @ stiffness @ quiet, quiet.T @ stiffness @ moving)
+    return np.asarray(moving - quiet @ answer)

@@ -53,6 +53,7 @@ class StaticSolution:
     rotation (S,) [rad]; centre (S, 2) [m], origin at A1; torque (S,) lambda_13 [N m];
     stiffness (S,) d(torque)/d(rotation) [N m/rad] (Eq 20) from the tangent;
     bending_energy, axial_energy, shear_energy (S,) [J], the last zero: no shear here;
+    gravity_energy (S,) [J] against rest, work (S,) of drive and loads since the first state;
     clamp_reactions (S, G, 2, 3): force [N] and moment [N m] of the clamp at the ground
     and at the body end on the strip; stations (P,) reference arc length over L;
     shape (S, G, P, 2) [m]; axial_force, bending_moment, shear_force (S, G, P) [N, N m, N].
@@ -67,11 +68,43 @@ class StaticSolution:
     bending_energy: Array
     axial_energy: Array
     shear_energy: Array
+    gravity_energy: Array
+    work: Array
     clamp_reactions: Array
     stations: Array
     shape: Array
     axial_force: Array
     bending_moment: Array
     shear_force: Array
+    counters: dict[str, int]
+    history: tuple[tuple[float, ...], ...]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class MechanismSolution:
+    """Answer of any mechanism; S states, G strips, P stations.
+
+    load_factor (S,); bodies: x, y, theta (S, 3) by name [m, m, rad]; torque, stiffness (S,)
+    of the driven rotation [N m, N m/rad], nan without one; bending_energy, axial_energy,
+    gravity_energy, work (S,) [J]; stations (P,); shape (S, G, P, 2) [m]; axial_force,
+    bending_moment, shear_force (S, G, P); effects: names of what was assembled.
+    """
+
+    status: Status
+    message: str
+    load_factor: Array
+    bodies: dict[str, Array]
+    torque: Array
+    stiffness: Array
+    bending_energy: Array
+    axial_energy: Array
+    gravity_energy: Array
+    work: Array
+    stations: Array
+    shape: Array
+    axial_force: Array
+    bending_moment: Array
+    shear_force: Array
+    effects: tuple[str, ...]
     counters: dict[str, int]
     history: tuple[tuple[float, ...], ...]

@@ -10,12 +10,15 @@ import numpy as np
 from spline_model.compile import System, compile_scene
 from spline_model.effects import DrivenRotation
 from spline_model.effects.base import Constraint
+from spline_model.effects.registry import MOTION_ONLY
 from spline_model.errors import ConvergenceError, InvalidParameter, require_count
+from spline_model.mechanism import Mechanism
 from spline_model.path import follow
 from spline_model.pivot import BODY, STRIPS, Pivot
 from spline_model.scene import Scene
 from spline_model.sections import clamp_reactions, sections
-from spline_model.solution import Path, StaticSolution, Status
+from spline_model.solution import MechanismSolution, Path, StaticSolution, Status
+from spline_model.work import external_work, gravity_energy
 
 STATIONS = np.linspace(0.0, 1.0, 61)
 """Where sections are recovered, reference arc length over L; both clamped ends are among them."""
@@ -59,15 +62,15 @@ def solve_statics(
     return solution
 
 
-def solve_path(pivot: Pivot, rotation: float, increments: int = 20) -> Path:
+def solve_path(mechanism: Mechanism, rotation: float, increments: int = 20, body: str | None = None) -> Path:
     """The states of the path to one rotation; raises ConvergenceError if it is not reached."""
     require_count("increments", increments, 1)
-    system = compile_scene(pivot.driven(rotation))
+    system = compile_scene(mechanism.driven(rotation, body))
     path = follow(system, list(np.linspace(0.0, 1.0, increments + 1)[1:]))
     if path.status is not Status.CONVERGED:
         raise ConvergenceError(
             path.message,
-            solution=_pivot_solution(system, path),
+            solution=_mechanism_solution(system, path, mechanism),
             load_factor=float(path.load_factor[-1]),
             history=path.history,
         )
@@ -81,6 +84,63 @@ def solve_loads(
     require_count("increments", increments, 1)
     system = compile_scene(scene)
     return system, follow(system, list(np.linspace(0.0, 1.0, increments + 1)[1:]), progress)
+
+
+def solve_mechanism(
+    mechanism: Mechanism,
+    *,
+    body: str | None = None,
+    rotation: float | None = None,
+    increments: int = 20,
+    raise_on_failure: bool = True,
+    progress: Progress | None = None,
+) -> MechanismSolution:
+    """Any mechanism from rest to load factor 1: its loads and drives grow in proportion.
+
+    rotation [rad] drives the named body, or the only one; None leaves all bodies to the loads.
+    """
+    scene = mechanism.scene if rotation is None else mechanism.driven(rotation, body)
+    system, path = solve_loads(scene, increments=increments, progress=progress)
+    solution = _mechanism_solution(system, path, mechanism)
+    if raise_on_failure and path.status is not Status.CONVERGED:
+        raise ConvergenceError(
+            path.message,
+            solution=solution,
+            load_factor=float(path.load_factor[-1]),
+            history=path.history,
+        )
+    return solution
+
+
+def _mechanism_solution(system: System, path: Path, mechanism: Mechanism) -> MechanismSolution:
+    """The answer of a mechanism from the states of its path."""
+    states, layout = path.states, system.layout
+    torque = stiffness = np.full(len(states), np.nan)
+    for i, drive in enumerate(system.scene.of(Constraint)):
+        if isinstance(drive, DrivenRotation):
+            row = layout.rows(i).start
+            torque, stiffness = states[:, row], path.rates[:, row] / drive.angle
+    along = [sections(system, states, strip.name, STATIONS) for strip in system.scene.strips]
+    return MechanismSolution(
+        status=path.status,
+        message=path.message,
+        load_factor=path.load_factor,
+        bodies={body.name: states[:, layout.body(body.name)] for body in system.scene.bodies},
+        torque=torque,
+        stiffness=stiffness,
+        bending_energy=path.energies[:, 0],
+        axial_energy=path.energies[:, 1],
+        gravity_energy=gravity_energy(system, states),
+        work=external_work(system, path),
+        stations=STATIONS,
+        shape=np.stack([s.shape for s in along], axis=1),
+        axial_force=np.stack([s.axial_force for s in along], axis=1),
+        bending_moment=np.stack([s.bending_moment for s in along], axis=1),
+        shear_force=np.stack([s.shear_force for s in along], axis=1),
+        effects=tuple(name for name in mechanism.effects if name not in MOTION_ONLY),
+        counters=path.counters,
+        history=path.history,
+    )
 
 
 def _pivot_solution(system: System, path: Path) -> StaticSolution:
@@ -102,6 +162,8 @@ def _pivot_solution(system: System, path: Path) -> StaticSolution:
         bending_energy=path.energies[:, 0],
         axial_energy=path.energies[:, 1],
         shear_energy=np.zeros(len(states)),
+        gravity_energy=gravity_energy(system, states),
+        work=external_work(system, path),
         clamp_reactions=np.moveaxis(np.array(reactions), 2, 0),
         stations=STATIONS,
         shape=np.stack([s.shape for s in along], axis=1),

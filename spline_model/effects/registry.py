@@ -41,6 +41,8 @@ REGISTRY: dict[str, Builder] = {
 DEFAULT_EFFECTS = ("bending", "stretching", "strip_inertia", "body_inertia")
 CONTRADICTIONS = (("stretching", "inextensible"),)
 INERTIA = ("strip_inertia", "section_rotary_inertia", "body_inertia")
+MOTION_ONLY = (*INERTIA, "strip_damping", "strip_drag", "body_damping")
+"""Effects that statics never asks for."""
 
 
 def check_names(names: Sequence[str], parameters: Parameters) -> None:
@@ -78,6 +80,6 @@ def build(names: Sequence[str], parameters: Parameters, design: Design) -> tuple
 
 
 def _signature(name: str) -> str:
-    code = REGISTRY[name].__code__  # type: ignore[attr-defined]
+    code = REGISTRY[name].__code__
     names = code.co_varnames[1 : code.co_argcount + code.co_kwonlyargcount]
     return "only " + ", ".join(names) if names else "none"
