@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,7 +28,7 @@ class System:
     open_potentials : the potentials whose derivatives are Python's.
     layout : what stands where in the vector of unknowns z.
     scales : the unit of each unknown, which makes residuals dimensionless.
-    rest : z at rest, shape (layout.size,).
+    rest : z at rest, shape (layout.size,); rest_curvature at the points of bending (P,) [1/m].
     """
 
     scene: Scene
@@ -37,14 +37,15 @@ class System:
     layout: Layout
     scales: Scales
     rest: Array
+    rest_curvature: Array
 
 
 def compile_scene(scene: Scene) -> System:
     """Sort the effects once into flat tables; kinds that are not named stay empty."""
     layout = make_layout(scene)
-    mixed = scene.of(MixedStretching)
+    bending, mixed = scene.of(Bending), scene.of(MixedStretching)
     tables = Tables(
-        bending=build.bending_table(scene, layout, scene.of(Bending)),
+        bending=build.bending_table(scene, layout, bending),
         stretching=build.stretching_table(scene, layout, scene.of(Stretching)),
         axial_force=build.axial_force_table(scene, layout, mixed, range(len(mixed))),
         clamps=build.clamp_table(scene, layout),
@@ -64,6 +65,9 @@ def compile_scene(scene: Scene) -> System:
         layout=layout,
         scales=scene_scales(scene, layout),
         rest=rest,
+        rest_curvature=build.bending_table(
+            scene, layout, [replace(e, natural_curvature=None) for e in bending]
+        ).curvature,
     )
 
 

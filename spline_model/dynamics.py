@@ -13,7 +13,13 @@ from numpy.typing import NDArray
 from spline_model.compile import System, compile_scene
 from spline_model.effects import DrivenRotation
 from spline_model.errors import InvalidParameter, require_choice, require_positive
-from spline_model.integrators import adaptive, energy_consistent, explicit, generalised_alpha
+from spline_model.integrators import (
+    adaptive,
+    energy_consistent,
+    explicit,
+    generalised_alpha,
+    quasi_static,
+)
 from spline_model.integrators.motion import Records, initial_acceleration, set_in_motion
 from spline_model.kernels.motion import Motion
 from spline_model.kernels.record import DISSIPATED, KINETIC, POSITION, STRAIN, VELOCITY, WEIGHT, WORK
@@ -106,7 +112,8 @@ def solve_motion(
     drive : a rotation that is held or driven in a part of the run, if any.
     duration, step : [s]; the step defaults to STEP, or to 0.9 of the critical one (explicit); it
         is shortened so that a whole number of steps fits between the records.
-    integrator : "energy" (default, cannot create energy), "generalised-alpha" (option
+    integrator : "energy" (default, cannot create energy; with massless strips, only the bodies
+        are dynamic), "generalised-alpha" (option
         ``spectral_radius``) or "explicit".
     accuracy : wanted error of the rotation over the run [rad], by local error control of the
         energy-consistent steps, instead of a fixed step.
@@ -133,7 +140,13 @@ def solve_motion(
         step = 0.9 * critical_step(system, motion, z) if integrator == "explicit" else STEP
     steps, every = _count(duration, step, records, layout.size + layout.coordinate_count + 7)
     step = duration / steps
-    run = INTEGRATORS[integrator](motion, z, v, acceleration, step=step, steps=steps, every=every, **options)
+    if integrator == "energy" and massless(system, motion):
+        integrator = "quasi-static strips"
+        run = quasi_static.integrate(system, motion, z, step=step, steps=steps, every=every)
+    else:
+        run = INTEGRATORS[integrator](
+            motion, z, v, acceleration, step=step, steps=steps, every=every, **options
+        )
     settings = {"integrator": integrator, "step_s": step, **options}
     return _trajectory(system, run, effects, body, settings, _resolution(system, motion, step))
 
@@ -150,6 +163,12 @@ def _check(
             require_positive(name, value, "s" if name == "step" else "rad")
     if accuracy is not None and (step is not None or integrator != "energy"):
         raise InvalidParameter("accuracy", accuracy, "no step beside it, and the energy integrator")
+
+
+def massless(system: System, motion: Motion) -> bool:
+    """Whether no strip has inertia, so that only the bodies' coordinates are dynamic."""
+    bodies = min(system.layout.bodies.values(), default=len(motion.mass))
+    return not motion.mass[:bodies].any()
 
 
 def critical_step(system: System, motion: Motion, z: Array) -> float:

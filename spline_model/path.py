@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from spline_model.checks import left_the_branch, refuse
 from spline_model.compile import System
-from spline_model.errors import InvalidParameter
 from spline_model.newton import Newton, Workspace, solve
+from spline_model.preload import settle
 from spline_model.solution import Path, Status
 
 Array = NDArray[np.float64]
@@ -59,9 +59,7 @@ class _Follower:
     def __init__(self, work: Workspace) -> None:
         self.work = work
         self.force = _load_rate(work.system)
-        start = solve(work, work.system.rest, 0.0)
-        if start.reason:
-            raise InvalidParameter("scene", start.reason, "an equilibrium near rest at load factor 0")
+        start = settle(work)
         self.at = 0.0
         self.z = start.z
         self.rate = work.solve(self.force)

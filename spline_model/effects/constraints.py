@@ -36,8 +36,9 @@ class Clamp(Constraint):
 class DrivenRotation(Constraint):
     """The rotation of a body prescribed as angle x load factor (Eq 7), one row in rad.
 
-    In a motion it is angle x history(t) and acts in ``held``, from - to [s]; a body that is
-    caught loses the velocity that the drive does not have. Its multiplier is the torque
+    In a motion it acts in ``held``, from - to [s], and changes by angle x the change of
+    history(t) from where the body is when it begins; a body that is caught loses the velocity
+    that the drive does not have. Its multiplier is the torque
     that has to be applied to the body [N m]; positive counter-clockwise.
     """
 

@@ -18,7 +18,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from spline_model.integrators.events import catch, drive_events, drives_at
+from spline_model.integrators.events import catch, drive_events, drives_at, from_here
 from spline_model.integrators.motion import Array, Records
 from spline_model.kernels.energy_step import FACTORISATIONS, HALVED, NEWTON, STEPS, run
 from spline_model.kernels.motion import Motion
@@ -35,8 +35,8 @@ def integrate(
 ) -> Records:
     """Take ``steps`` steps from (z, v), recording every ``every``-th one.
 
-    Drives begin and end at the step nearest to their times; a body that a drive catches
-    changes its velocity at once, and the energy that this costs counts as dissipated.
+    Drives begin and end at the step nearest to their times and start from where the body is;
+    a body that is caught changes its velocity at once, and what that costs counts as dissipated.
     """
     count = steps // every + 1
     states, rates = np.zeros((count, z.size)), np.zeros((count, v.size))
@@ -45,13 +45,15 @@ def integrate(
     z, v, acceleration = z.copy(), v.copy(), acceleration.copy()
     events = drive_events(motion, step, steps)
     active = drives_at(motion, 0, step)
+    motion = from_here(motion, z, active, np.zeros_like(active), 0.0)
     v, totals[1] = catch(motion, z, v, active, 0.0, step)
     states[0], rates[0] = z, v
     record(z, v, motion, np.empty(len(motion.rigidity)), totals, rows[0])
     done = 0
     for begin, end in pairwise(events):
         if begin > 0:
-            active = drives_at(motion, begin, step)
+            before, active = active, drives_at(motion, begin, step)
+            motion = from_here(motion, z, active, before, begin * step)
             v, lost = catch(motion, z, v, active, begin * step, step)
             totals[1] += lost
         done = run(

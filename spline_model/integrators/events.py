@@ -27,6 +27,18 @@ def drives_at(motion: Motion, number: int, step: float) -> NDArray[np.int64]:
     return ((drives.begin < middle) & (middle < drives.until)).astype(np.int64)
 
 
+def from_here(
+    motion: Motion, z: Array, active: NDArray[np.int64], before: NDArray[np.int64], time: float
+) -> Motion:
+    """The motion with the drives that begin now starting from where their bodies are."""
+    drives = motion.tables.drives
+    origin = drives.origin.copy()
+    for d in np.flatnonzero(active & ~before.astype(bool)):
+        factor = factor_at(time, drives.first[d], drives.pairs[d], drives.times, drives.factors)
+        origin[d] = z[drives.coordinate[d]] - factor * drives.target[d]
+    return motion._replace(tables=motion.tables._replace(drives=drives._replace(origin=origin)))
+
+
 def catch(
     motion: Motion, z: Array, v: Array, active: NDArray[np.int64], time: float, step: float
 ) -> tuple[Array, float]:
