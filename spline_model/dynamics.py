@@ -133,7 +133,7 @@ def solve_motion(
     acceleration, z = initial_acceleration(system, motion, z, v)
     effects = mechanism.effects
     if accuracy is not None:
-        run = adaptive.integrate(motion, z, v, acceleration, duration=duration, accuracy=accuracy)
+        run = adaptive.integrate(system, motion, z, v, acceleration, duration=duration, accuracy=accuracy)
         settings = {"integrator": integrator, "accuracy_rad": accuracy}
         return _trajectory(system, run, effects, body, settings, "")
     if step is None:
@@ -145,7 +145,7 @@ def solve_motion(
         run = quasi_static.integrate(system, motion, z, step=step, steps=steps, every=every)
     else:
         run = INTEGRATORS[integrator](
-            motion, z, v, acceleration, step=step, steps=steps, every=every, **options
+            system, motion, z, v, acceleration, step=step, steps=steps, every=every, **options
         )
     settings = {"integrator": integrator, "step_s": step, **options}
     return _trajectory(system, run, effects, body, settings, _resolution(system, motion, step))

@@ -12,9 +12,9 @@ from spline_model.basis import SlideModes
 from spline_model.compile import System, compile_scene
 from spline_model.effects import MixedStretching
 from spline_model.errors import InvalidParameter, require_count
-from spline_model.kernels.assemble import assemble
 from spline_model.mass import mass_matrix
 from spline_model.mechanism import Mechanism
+from spline_model.operator import evaluate
 from spline_model.path import follow
 from spline_model.pivot import Pivot
 from spline_model.statics import STATIONS, solve_path
@@ -113,7 +113,7 @@ def linear_modes(system: System, z: Array, mass: Array) -> tuple[Array, Array, A
         raise InvalidParameter("effects", "no inertia", "strip or body inertia for a natural mode")
     count = layout.coordinate_count
     gradient, hessian = np.empty(layout.size), np.empty((layout.size, layout.size))
-    assemble(z, system.tables, 0.0, gradient, hessian)
+    evaluate(system, z, 0.0, gradient, hessian)
     hessian *= unit[:, None] * unit
     stiffness = hessian[:count, :count].copy()
     rows = [hessian[layout.multiplier_start :, :count]]

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from scipy.linalg import lu_factor, lu_solve
 
 from spline_model.compile import System
-from spline_model.kernels.assemble import assemble
+from spline_model.operator import evaluate
 
 Array = NDArray[np.float64]
 
@@ -20,17 +20,6 @@ FLOOR = 1e-8
 (it grows with EA L^2 / EI in the paper's stretch form); above it, that is a failure."""
 MOST_ITERATIONS = 15
 """From a tangent predictor Newton takes two to four; more than this is a wrong start."""
-
-
-def add_open_potentials(system: System, z: Array, gradient: Array, hessian: Array) -> float:
-    """Add the derivatives of the potentials in Python; returns their energy [J]."""
-    count, total = system.layout.coordinate_count, 0.0
-    for potential in system.open_potentials:
-        energy, force, stiffness = potential.derivatives(z[:count], system.layout)
-        gradient[:count] += force
-        hessian[:count, :count] += stiffness
-        total += energy
-    return total
 
 
 @dataclass(kw_only=True)
@@ -77,9 +66,7 @@ class Workspace:
         """Fill gradient and hessian at z; returns bending and axial energy [J]."""
         self.counters.residual_evaluations += 1
         self.counters.tangent_evaluations += 1
-        bending, axial = assemble(z, self.system.tables, load_factor, self.gradient, self.hessian)
-        add_open_potentials(self.system, z, self.gradient, self.hessian)
-        return bending, axial
+        return evaluate(self.system, z, load_factor, self.gradient, self.hessian)
 
     def norm(self) -> float:
         """Largest entry of the dimensionless residual."""

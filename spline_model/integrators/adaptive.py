@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from spline_model.compile import System
 from spline_model.integrators import energy_consistent
 from spline_model.integrators.energy_consistent import counts
-from spline_model.integrators.motion import Array, Records, require_conservative
+from spline_model.integrators.motion import Array, Records, require_compiled, require_conservative
 from spline_model.kernels.energy_step import advance
 from spline_model.kernels.motion import Motion
 from spline_model.kernels.record import record
@@ -18,7 +19,14 @@ SMALLEST_STEP = 1e-9
 
 
 def integrate(
-    motion: Motion, z: Array, v: Array, acceleration: Array, *, duration: float, accuracy: float
+    system: System,
+    motion: Motion,
+    z: Array,
+    v: Array,
+    acceleration: Array,
+    *,
+    duration: float,
+    accuracy: float,
 ) -> Records:
     """Advance by ``duration`` with steps whose error in the rotations stays within its share.
 
@@ -31,6 +39,7 @@ def integrate(
     totals, active = np.zeros(2), np.zeros(motion.tables.drives.row.size, dtype=np.int64)
     time, states, rates, rows = [0.0], [z.copy()], [v.copy()], [np.empty(7)]
 
+    require_compiled(system, "accuracy control")
     require_conservative(motion, "accuracy control")
     record(z, v, motion, strains, totals, rows[0])
     rejected, message, h = 0, "", FIRST_STEP * duration

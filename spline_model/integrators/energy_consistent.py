@@ -18,8 +18,9 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
+from spline_model.compile import System
 from spline_model.integrators.events import catch, drive_events, drives_at, from_here
-from spline_model.integrators.motion import Array, Records
+from spline_model.integrators.motion import Array, Records, require_compiled
 from spline_model.kernels.energy_step import FACTORISATIONS, HALVED, NEWTON, STEPS, run
 from spline_model.kernels.motion import Motion
 from spline_model.kernels.record import record
@@ -31,13 +32,22 @@ SMALLEST_STEP = 2.0**-14
 
 
 def integrate(
-    motion: Motion, z: Array, v: Array, acceleration: Array, *, step: float, steps: int, every: int
+    system: System,
+    motion: Motion,
+    z: Array,
+    v: Array,
+    acceleration: Array,
+    *,
+    step: float,
+    steps: int,
+    every: int,
 ) -> Records:
     """Take ``steps`` steps from (z, v), recording every ``every``-th one.
 
     Drives begin and end at the step nearest to their times and start from where the body is;
     a body that is caught changes its velocity at once, and what that costs counts as dissipated.
     """
+    require_compiled(system, "energy")
     count = steps // every + 1
     states, rates = np.zeros((count, z.size)), np.zeros((count, v.size))
     rows, totals = np.zeros((count, 7)), np.zeros(2)

@@ -11,8 +11,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from spline_model.compile import System
 from spline_model.errors import InvalidParameter
-from spline_model.integrators.motion import Array, Records, require_conservative
+from spline_model.integrators.motion import Array, Records, require_compiled, require_conservative
 from spline_model.kernels.motion import Motion
 from spline_model.kernels.record import record
 from spline_model.kernels.reduced import Workspace, expand, runge_kutta
@@ -36,11 +37,20 @@ def reduce(motion: Motion, z: Array, v: Array) -> tuple[Array, Array, NDArray[np
 
 
 def integrate(
-    motion: Motion, z: Array, v: Array, acceleration: Array, *, step: float, steps: int, every: int
+    system: System,
+    motion: Motion,
+    z: Array,
+    v: Array,
+    acceleration: Array,
+    *,
+    step: float,
+    steps: int,
+    every: int,
 ) -> Records:
     """Take ``steps`` steps from (z, v), recording every ``every``-th one; ``acceleration`` is not needed."""
     if (np.diag(motion.rigidity) == 0).any():
         raise InvalidParameter("integrator", "explicit", "an implicit one for inextensible strips")
+    require_compiled(system, "explicit")
     require_conservative(motion, "explicit")
     if np.linalg.eigvalsh(motion.mass)[0] <= 0:
         raise InvalidParameter("integrator", "explicit", "an implicit one for strips without mass")

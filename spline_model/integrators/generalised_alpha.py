@@ -16,10 +16,11 @@ from __future__ import annotations
 import numpy as np
 from scipy.linalg import LinAlgWarning, lu_factor, lu_solve
 
+from spline_model.compile import System
 from spline_model.integrators.motion import Array, Records, require_conservative
-from spline_model.kernels.assemble import assemble
 from spline_model.kernels.motion import Motion
 from spline_model.kernels.record import forward, record
+from spline_model.operator import evaluate
 
 TOLERANCE = 1e-10
 MOST_ITERATIONS = 15
@@ -31,13 +32,13 @@ class Stepper:
     """One system's arrays and the scheme's constants; holds the state while it is advanced."""
 
     def __init__(
-        self, motion: Motion, z: Array, v: Array, acceleration: Array, spectral_radius: float
+        self, system: System, motion: Motion, z: Array, v: Array, acceleration: Array, spectral_radius: float
     ) -> None:
         rho = spectral_radius
         self.alpha_m, self.alpha_f = (2 * rho - 1) / (rho + 1), rho / (rho + 1)
         self.gamma = 0.5 + self.alpha_f - self.alpha_m
         self.beta = (self.gamma + 0.5) ** 2 / 4
-        self.motion, self.z, self.v = motion, z.copy(), v.copy()
+        self.system, self.motion, self.z, self.v = system, motion, z.copy(), v.copy()
         self.acceleration, self.pseudo = acceleration.copy(), acceleration.copy()
         size = len(z)
         self.gradient, self.hessian = np.empty(size), np.empty((size, size))
@@ -67,7 +68,7 @@ class Stepper:
         v = self.v + h * ((1 - self.gamma) * self.pseudo + self.gamma * pseudo)
         rate = (1 - self.alpha_m) / (self.beta * h**2 * (1 - self.alpha_f))
         for _ in range(MOST_ITERATIONS):
-            assemble(z, motion.tables, 1.0, self.gradient, self.hessian)
+            evaluate(self.system, z, 1.0, self.gradient, self.hessian)
             self.gradient[:count] += motion.mass @ acceleration
             norm = np.abs(self.gradient * motion.unit).max() / motion.energy
             if not np.isfinite(norm):
@@ -102,6 +103,7 @@ class Stepper:
 
 
 def integrate(
+    system: System,
     motion: Motion,
     z: Array,
     v: Array,
@@ -114,7 +116,7 @@ def integrate(
 ) -> Records:
     """Take ``steps`` steps from (z, v), recording every ``every``-th one."""
     require_conservative(motion, "generalised-alpha")
-    stepper = Stepper(motion, z, v, acceleration, spectral_radius)
+    stepper = Stepper(system, motion, z, v, acceleration, spectral_radius)
     strains, totals = np.empty(len(motion.rigidity)), np.zeros(2)
     states, rates, rows, message = [z], [v], [np.empty(7)], ""
     record(z, v, motion, strains, totals, rows[0])

@@ -15,6 +15,7 @@ from spline_model.errors import InvalidParameter
 from spline_model.kernels.assemble import assemble
 from spline_model.kernels.motion import Motion
 from spline_model.mass import drag_matrix, mass_matrix
+from spline_model.operator import evaluate
 from spline_model.quadrature import strip_points
 from spline_model.tables import bending_table, stretching_table
 
@@ -112,9 +113,9 @@ def initial_acceleration(system: System, motion: Motion, z: Array, v: Array) -> 
     free = z.copy()
     axial = slice(layout.coordinate_count, layout.multiplier_start)
     free[rest] = 0.0
-    assemble(free, motion.tables, 1.0, gradient, hessian)
+    evaluate(system, free, 1.0, gradient, hessian)
     free[axial] = motion.rigidity @ gradient[axial]
-    assemble(free, motion.tables, 1.0, gradient, hessian)
+    evaluate(system, free, 1.0, gradient, hessian)
     fixed = np.concatenate((np.diag(motion.rigidity) == 0, np.ones(size - layout.multiplier_start, bool)))
     rows = np.arange(size)[rest][fixed]
     jacobian, force = hessian[rows][:, q].copy(), -gradient[q].copy()
@@ -126,9 +127,9 @@ def initial_acceleration(system: System, motion: Motion, z: Array, v: Array) -> 
         ahead, behind = free.copy(), free.copy()
         ahead[q] += step * v
         behind[q] -= step * v
-        assemble(ahead, motion.tables, 1.0, gradient, hessian)
+        evaluate(system, ahead, 1.0, gradient, hessian)
         drift = hessian[rows][:, q] @ v
-        assemble(behind, motion.tables, 1.0, gradient, hessian)
+        evaluate(system, behind, 1.0, gradient, hessian)
         drift = (drift - hessian[rows][:, q] @ v) / (2 * step)
 
     # a coordinate without mass stands in equilibrium already: least squares leave it at rest
@@ -141,6 +142,13 @@ def initial_acceleration(system: System, motion: Motion, z: Array, v: Array) -> 
     solved = scale * np.linalg.lstsq(scaled, right, rcond=1e-14)[0]
     free[rows] = solved[len(motion.mass) :]
     return solved[: len(motion.mass)], free
+
+
+def require_compiled(system: System, name: str) -> None:
+    """Refuse potentials in Python."""
+    if system.open_potentials:
+        names = [type(potential).__name__ for potential in system.open_potentials]
+        raise InvalidParameter("integrator", name, f"generalised-alpha for {', '.join(names)}")
 
 
 def require_conservative(motion: Motion, name: str) -> None:

@@ -100,9 +100,10 @@ def integrate(system: System, motion: Motion, z: Array, *, step: float, steps: i
     count = system.layout.coordinate_count
     start = np.concatenate((z[: system.layout.multiplier_start], np.zeros(strips.system.layout.size)))
     start = start[: strips.system.layout.size]
-    pose = strips.answer(z[strips.coordinates], start)
-    if pose is None:
+    first = strips.answer(z[strips.coordinates], start)
+    if first is None:
         raise InvalidParameter("start", "no equilibrium of the strips", "a static state")
+    pose = first
     body = np.ix_(strips.coordinates, strips.coordinates)
     mass = motion.mass[body]
     drag = motion.drag[body] if motion.drag.size else np.zeros_like(mass)
@@ -144,18 +145,16 @@ def integrate(system: System, motion: Motion, z: Array, *, step: float, steps: i
             break
         if k % every == 0:
             note()
-    work_counters = strips.work.counters
+    by_strips = strips.work.counters
+    counters["newton_iterations"] = by_strips.newton_iterations
+    counters["factorisations"] = by_strips.factorisations
     return Records(
         time=np.arange(0.0, len(states)) * (step * every),
         states=np.array(states),
         velocities=np.array(rates),
         rows=np.array(rows),
         message=message,
-        counters=counters
-        | {
-            "newton_iterations": work_counters.newton_iterations,
-            "factorisations": work_counters.factorisations,
-        },
+        counters=counters,
     )
 
 

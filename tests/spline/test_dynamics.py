@@ -149,7 +149,7 @@ def free_flight(step, steps=400):
     v[1:body:2] += 40.0 * (points[:, 0] / LENGTH) ** 2 * (np.arange(len(points)) < len(points) - 2)
     v[body : body + 3] = (0.4, -0.2, spin)
     acceleration, z = initial_acceleration(system, motion, system.rest, v)
-    run = energy_consistent.integrate(motion, z, v, acceleration, step=step, steps=steps, every=1)
+    run = energy_consistent.integrate(system, motion, z, v, acceleration, step=step, steps=steps, every=1)
     assert not run.message
     momentum = momenta(scene, run.states, run.velocities)
     energy = run.rows[:, 0] + run.rows[:, 1]
