@@ -29,10 +29,11 @@ def energy_error(trajectory):
     return np.abs(energy / energy[0] - 1).max()
 
 
+@pytest.mark.parametrize("control_points", [4, 6, 8])
 @pytest.mark.parametrize("step", [1e-5, 5e-5, 2e-4, 1e-3, 1e-2])
-def test_energy_and_constraints_hold_at_any_step(step):
+def test_energy_and_constraints_hold_at_any_step(step, control_points):
     """Requirement: the default integrator keeps energy and constraints at any step, and stays bounded."""
-    trajectory = released(duration=0.05, step=step)
+    trajectory = released({"control_points": control_points}, duration=0.05, step=step)
     assert trajectory.status.value == "converged", trajectory.message
     gates.check("spline_swing_energy", energy_error(trajectory))
     gates.check("spline_swing_constraints", trajectory.constraint_residual.max())
