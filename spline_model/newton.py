@@ -6,12 +6,14 @@ from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import lu_factor, lu_solve
+from scipy.linalg import get_lapack_funcs
 
 from spline_model.compile import System
 from spline_model.operator import evaluate
 
 Array = NDArray[np.float64]
+
+getrf, getrs = get_lapack_funcs(("getrf", "getrs"))  # without the checks and warnings of lu_factor
 
 TOLERANCE = 1e-11
 """Largest residual of a solved state, in EI/L^2, EI/L, L and rad."""
@@ -80,10 +82,10 @@ class Workspace:
         matrix = self.hessian * (unit[:, None] * unit / energy)
         if not np.isfinite(matrix).all():
             raise np.linalg.LinAlgError("the tangent is not finite")
-        factors = lu_factor(matrix, check_finite=False)
-        if not np.abs(np.diag(factors[0])).min() > 0:
+        factors, pivots, failed = getrf(matrix)
+        if failed:
             raise np.linalg.LinAlgError("the tangent is singular")
-        return np.asarray(unit * lu_solve(factors, right_side * unit / energy, check_finite=False))
+        return np.asarray(unit * getrs(factors, pivots, right_side * unit / energy)[0])
 
 
 def solve(work: Workspace, start: Array, load_factor: float) -> Newton:

@@ -14,13 +14,15 @@ Source: Arnold and Bruls, Multibody Syst Dyn 18 (2007) 185.
 from __future__ import annotations
 
 import numpy as np
-from scipy.linalg import LinAlgWarning, lu_factor, lu_solve
+from scipy.linalg import get_lapack_funcs
 
 from spline_model.compile import System
 from spline_model.integrators.motion import Array, Records, require_conservative
 from spline_model.kernels.motion import Motion
 from spline_model.kernels.record import forward, record
 from spline_model.operator import evaluate
+
+(gesv,) = get_lapack_funcs(("gesv",))  # without the checks and warnings of scipy.linalg.solve
 
 TOLERANCE = 1e-10
 MOST_ITERATIONS = 15
@@ -89,11 +91,9 @@ class Stepper:
         unit, energy = self.motion.unit, self.motion.energy
         self.counters["newton_iterations"] += 1
         self.counters["factorisations"] += 1
-        try:
-            factors = lu_factor(self.hessian * (unit[:, None] * unit / energy), check_finite=False)
-        except (np.linalg.LinAlgError, LinAlgWarning):
-            return None
-        return np.asarray(-unit * lu_solve(factors, self.gradient * unit / energy, check_finite=False))
+        matrix = self.hessian * (unit[:, None] * unit / energy)
+        _, _, change, failed = gesv(matrix, self.gradient * unit / energy)
+        return None if failed else np.asarray(-unit * change)
 
     def _accept(self, z: Array, v: Array, acceleration: Array, pseudo: Array) -> bool:
         if not forward(z, self.motion.tables):
