@@ -10,13 +10,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from spline_model.design import SLIDE_STIFFNESS, SWINGING_SLIDE_STIFFNESS, BodyDesign, StripDesign
+from spline_model.design import SLIDE_STIFFNESS, BodyDesign, StripDesign, swinging_slide_stiffness
 from spline_model.effects.registry import DEFAULT_EFFECTS
 from spline_model.errors import InvalidParameter, require_positive
 from spline_model.mechanism import Mechanism, mechanism
 from spline_model.scene import Scene
 
-__all__ = ["BODY", "SLIDE_STIFFNESS", "STRIPS", "SWINGING_SLIDE_STIFFNESS", "Pivot", "cross_axis_pivot"]
+__all__ = ["BODY", "SLIDE_STIFFNESS", "STRIPS", "Pivot", "cross_axis_pivot", "swinging_slide_stiffness"]
 
 BODY = "body"
 STRIPS = ("strip_1", "strip_2")

@@ -10,6 +10,8 @@ from studies.errors import BadInput
 #: Command -> (module with `add_arguments(parser)` and `main(arguments) -> exit code`, what it does).
 COMMANDS: dict[str, tuple[str, str]] = {
     "solve": ("studies.commands.solve", "drive a pivot through a rotation and report its path"),
+    "release": ("studies.commands.release", "let go of a driven pivot and report its motion"),
+    "modes": ("studies.commands.modes", "report natural frequencies, at rest or at a rotation"),
     "converge": ("studies.commands.converge", "refine both models on a design until an accuracy is reached"),
     "list": ("studies.commands.list_studies", "list the studies"),
     "run": ("studies.commands.run", "compute and draw studies"),
@@ -32,6 +34,10 @@ STUDIES: dict[str, tuple[str, str]] = {
         "studies.paper.fig05_stiffness",
         "Fig 5: torque and stiffness and their errors",
     ),
+    "paper/fig06_release": (
+        "studies.paper.fig06_release",
+        "Fig 6: motion after the release from 90 degrees and its errors",
+    ),
     "convergence/control_points": (
         "studies.convergence.control_points",
         "error against control points for every basis, measure and stretch form: the locking map",
@@ -39,6 +45,14 @@ STUDIES: dict[str, tuple[str, str]] = {
     "convergence/elements": (
         "studies.convergence.elements",
         "error against elements, order and Richardson value",
+    ),
+    "convergence/frequency": (
+        "studies.convergence.frequency",
+        "frequency of the swing and of small motion against control points, elements, step and amplitude",
+    ),
+    "convergence/slide_stiffness": (
+        "studies.convergence.slide_stiffness",
+        "error against the stiffness of the strains that the axial modes do not see",
     ),
 }
 

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.interpolate import CubicSpline
 
 Array = NDArray[np.float64]
 
@@ -106,3 +107,64 @@ def _limit(levels: Sequence[Array], order: float, ratio: float) -> Array:
         return once
     before = richardson(levels[-3], levels[-2], order=order, ratio=ratio)
     return richardson(before, once, order=2.0 * order, ratio=ratio)
+
+
+def zero_crossings(time: Array, value: Array) -> Array:
+    """Return the instants at which `value` changes its sign, by linear interpolation between records.
+
+    Exact to third order in the records' distance for a swing, whose curvature vanishes where it crosses zero.
+
+    Args:
+        time: (T,) [s], increasing.
+        value: (T,) of any unit.
+    """
+    before = np.flatnonzero(np.signbit(value[:-1]) != np.signbit(value[1:]))
+    rise = value[before + 1] - value[before]
+    return np.asarray(time[before] - value[before] * (time[before + 1] - time[before]) / rise)
+
+
+def swing_frequency(time: Array, rotation: Array) -> float:
+    """Return the mean frequency of a swing between its first and its last passage through zero [Hz].
+
+    f = (N - 1) / (2 (t_N - t_1)) with N crossings, half a period apart. Leaves out what comes before the
+    first and after the last; a swing whose rest is not at zero needs an odd number of crossings, a whole
+    number of periods. NaN with fewer than two.
+
+    Args:
+        time: (T,) [s], increasing; several records a period.
+        rotation: (T,) [rad].
+    """
+    instants = zero_crossings(time, rotation)
+    if len(instants) < 2:
+        return math.nan
+    return (len(instants) - 1) / (2.0 * float(instants[-1] - instants[0]))
+
+
+def quasi_static_frequency(
+    rotation: Array, centre: Array, strain_energy: Array, *, mass: float, moment_of_inertia: float
+) -> float:
+    """Return the frequency of the swing that the static path alone implies [Hz].
+
+    The body moves along its static path with the path's strain energy U as its potential:
+
+        T = 4 integral_0^Theta sqrt((J + m |dg/dtheta|^2) / (2 (U(Theta) - U(theta)))) dtheta
+
+    with theta = Theta sin(phi), which takes the singularity at the end away. Leaves out the inertia of the
+    strips; exact for massless strips of a design whose path is symmetric about rest.
+
+    Args:
+        rotation: (S,) from 0 to the amplitude Theta [rad], one sign.
+        centre: (S, 2) [m]; strain_energy: (S,) [J], along the static path.
+        mass: m of the body [kg]; moment_of_inertia: J about its centre of mass [kg m^2].
+    """
+    nodes, weights = np.polynomial.legendre.leggauss(40)
+    phi = 0.25 * np.pi * (nodes + 1.0)
+    turn = np.abs(rotation)
+    amplitude = turn[-1]
+    angle = amplitude * np.sin(phi)
+    energy = CubicSpline(turn, strain_energy)
+    rate = CubicSpline(turn, centre)(angle, 1)
+    inertia = moment_of_inertia + mass * np.sum(rate**2, axis=1)
+    left = 2.0 * (strain_energy[-1] - energy(angle))
+    quarter = 0.25 * np.pi * float(weights @ (np.sqrt(inertia / left) * amplitude * np.cos(phi)))
+    return 1.0 / (4.0 * quarter)

@@ -16,6 +16,8 @@ class SplineSettings:
             printed).
         stretch: "mixed", "consistent" (the paper's quadrature) or "inextensible".
         gauss_points: quadrature points [1]; None for the model's default.
+        slide_stiffness: of the strains that the axial modes do not see [EI/L^2]; None for the model's
+            default, which differs between statics and motion.
     """
 
     control_points: int = 6
@@ -24,12 +26,17 @@ class SplineSettings:
     measure: str = "material"
     stretch: str = "mixed"
     gauss_points: int | None = None
+    slide_stiffness: float | None = None
 
     model: ClassVar[str] = "spline"
 
     def keywords(self) -> dict[str, Any]:
-        """Return the discretisation keywords of `spline_model.pivot.cross_axis_pivot`."""
-        return asdict(self)
+        """Return the discretisation keywords of `spline_model.pivot.cross_axis_pivot`; a slide stiffness only
+        if it is set."""
+        keywords = asdict(self)
+        if self.slide_stiffness is None:
+            del keywords["slide_stiffness"]
+        return keywords
 
 
 @dataclass(frozen=True, kw_only=True)

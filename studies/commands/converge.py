@@ -20,8 +20,8 @@ import pandas as pd
 from studies.answers.reference import NoReference, Reference
 from studies.answers.settings import SplineSettings
 from studies.cases.problem import read_case
+from studies.commands.answer import NOT_CONVERGED
 from studies.commands.parser import Parser, counts
-from studies.commands.solve import NOT_CONVERGED
 from studies.convergence import design
 from studies.convergence.sweep import FINEST, QUANTITIES, element_sweep, reaching, spline_sweep, with_orders
 from studies.errors import BadInput

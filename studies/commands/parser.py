@@ -64,3 +64,14 @@ def degrees(text: str) -> float:
     if not math.isfinite(value):
         raise argparse.ArgumentTypeError(f"got {text}, expected a finite number of degrees")
     return value
+
+
+def not_negative(text: str) -> float:
+    """Parse a finite number of zero or above."""
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not 0.0 <= value < math.inf:
+        raise argparse.ArgumentTypeError(f"got {text}, expected a finite number of at least 0")
+    return value

@@ -10,42 +10,24 @@ converged, and then the converged part of the path is reported with where and wh
 
 import argparse
 import dataclasses
-import json
 import math
-import sys
 from collections.abc import Iterator
-from pathlib import Path
 from typing import Any
 
 from studies.answers.adapters import answer_static
 from studies.answers.response import Response
-from studies.answers.settings import FeSettings, Settings, SplineSettings
 from studies.cases.keys import INCREMENTS, ROTATION
 from studies.cases.problem import Problem, read_case
+from studies.commands.answer import add_json_argument, deliver, described, ending, require_target
+from studies.commands.model import add_model_arguments, chosen_settings
 from studies.commands.parser import Parser, degrees, whole_number
 from studies.errors import BadInput
-from studies.record.files import require_writable_file, write_whole
 from studies.record.progress import Bar
-
-NOT_CONVERGED = 3
-
-MODELS = ("spline", "fe", "fe-shear")
-
-#: Option -> keyword of the settings it fills; given for the other model it is refused rather than ignored.
-SPLINE_OPTIONS = ("control_points", "axial_modes", "basis", "measure", "stretch", "gauss_points")
-FE_OPTIONS = ("elements",)
 
 
 def add_arguments(parser: Parser) -> None:
     """Declare the arguments of the command."""
-    parser.add_argument("case", metavar="CASE.toml", help="the design")
-    parser.add_argument(
-        "--model", choices=MODELS, required=True, help="spline, corotational or shear-deformable FE"
-    )
-    add_spline_arguments(parser)
-    parser.add_argument(
-        "--elements", type=int, metavar="N", help="elements a strip (fe, fe-shear; default 20)"
-    )
+    add_model_arguments(parser)
     parser.add_argument(
         "--rotation-deg", type=degrees, metavar="X", help="end of the path (default: the case's)"
     )
@@ -55,44 +37,18 @@ def add_arguments(parser: Parser) -> None:
     parser.add_argument(
         "--repeat", type=whole_number(1), default=1, metavar="R", help="wall_s is the median of R solves"
     )
-    parser.add_argument(
-        "--json", metavar="FILE|-", help="write the answer as JSON to FILE or the output stream"
-    )
-
-
-def add_spline_arguments(parser: Parser) -> None:
-    """Declare the arguments that set the spline model's discretisation."""
-    parser.add_argument("--control-points", type=int, metavar="N", help="control points a strip (default 6)")
-    parser.add_argument(
-        "--axial-modes", type=int, metavar="M", help="axial-force modes a strip (default N - 2)"
-    )
-    parser.add_argument("--basis", choices=("bezier", "bspline"), help="default bezier")
-    parser.add_argument("--measure", choices=("material", "spatial", "printed"), help="default material")
-    parser.add_argument("--stretch", choices=("mixed", "consistent", "inextensible"), help="default mixed")
-    parser.add_argument("--gauss-points", type=int, metavar="G", help="quadrature points a strip")
+    add_json_argument(parser)
 
 
 def main(arguments: argparse.Namespace) -> int:
     """Solve and report; return the exit code."""
     problem = _driven(read_case(arguments.case), arguments)
-    settings = _settings(arguments)
-    target = None if arguments.json in (None, "-") else Path(arguments.json)
-    if target is not None:
-        require_writable_file(target)
+    settings = chosen_settings(arguments)
+    require_target(arguments)
     with Bar(f"solve {settings.model}") as bar:
         answer = answer_static(problem, settings, repeat=arguments.repeat, progress=bar)
-    if arguments.json is None:
-        print("\n".join(_readable(answer)))
-    else:
-        text = json.dumps(as_document(answer), allow_nan=False, indent=1) + "\n"
-        if target is None:
-            sys.stdout.write(text)
-        else:
-            write_whole(target, text.encode())
-    if not answer.converged:
-        print(f"studies: not converged: {answer.message}", file=sys.stderr)
-        return NOT_CONVERGED
-    return 0
+    failure = None if answer.converged else answer.message
+    return deliver(arguments, as_document(answer), _readable(answer), failure=failure)
 
 
 def as_document(answer: Response) -> dict[str, Any]:
@@ -129,30 +85,9 @@ def _driven(problem: Problem, arguments: argparse.Namespace) -> Problem:
     return dataclasses.replace(problem, **changes)
 
 
-def _settings(arguments: argparse.Namespace) -> Settings:
-    """Return the settings of the chosen model; an option of the other model is an error."""
-    spline = arguments.model == "spline"
-    own, other = (SPLINE_OPTIONS, FE_OPTIONS) if spline else (FE_OPTIONS, SPLINE_OPTIONS)
-    for name in other:
-        if getattr(arguments, name) is not None:
-            expected = ", ".join(_option(known) for known in own)
-            raise BadInput(
-                f"{_option(name)}: got it with --model {arguments.model}, expected only {expected}"
-            )
-    given = {name: getattr(arguments, name) for name in own if getattr(arguments, name) is not None}
-    if spline:
-        return SplineSettings(**given)
-    return FeSettings(element="reissner" if arguments.model == "fe-shear" else "corotational", **given)
-
-
-def _option(name: str) -> str:
-    return "--" + name.replace("_", "-")
-
-
 def _readable(answer: Response) -> Iterator[str]:
     """Yield the lines of a short table."""
-    settings = ", ".join(f"{name} {value}" for name, value in answer.settings.items() if value is not None)
-    yield f"{answer.model}: {settings}"
+    yield described(answer.model, answer.settings)
     yield f"{'rotation':>9} {'x':>11} {'y':>11} {'torque':>12} {'stiffness':>12} {'energy':>11} {'stress':>9}"
     yield f"{'deg':>9} {'mm':>11} {'mm':>11} {'N m':>12} {'N m/rad':>12} {'J':>11} {'MPa':>9}"
     rows = zip(
@@ -167,5 +102,4 @@ def _readable(answer: Response) -> Iterator[str]:
     for rotation, (x, y), torque, stiffness, energy, stress in rows:
         place = f"{math.degrees(rotation):9.3f} {x:11.5f} {y:11.5f}"
         yield f"{place} {torque:12.4f} {stiffness:12.4f} {energy:11.4f} {stress:9.1f}"
-    work = ", ".join(f"{name.replace('_', ' ')} {count}" for name, count in answer.counters.items())
-    yield f"{answer.status.replace('_', ' ')}; {work}; solved in {answer.wall_s * 1e3:.3g} ms"
+    yield ending(answer.status, answer.counters, answer.wall_s)

@@ -46,7 +46,8 @@ def _answer(name: str) -> Response:
 
 
 @cache
-def _reference() -> Reference:
+def refined() -> Reference:
+    """Return the limit of refinement of the case's static path."""
     return reference(named_case(CASE))
 
 
@@ -58,6 +59,6 @@ def answers(progress: Callable[[int, int], None]) -> tuple[dict[str, Response], 
         progress(count, total)
         found[name] = _answer(name)
     progress(len(SETTINGS), total)
-    limit = _reference()
+    limit = refined()
     progress(total, total)
     return found, limit

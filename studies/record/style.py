@@ -9,10 +9,14 @@ from typing import Any
 import matplotlib as mpl
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from PIL import Image
 
 #: Colours that remain apart for colour-blind readers (Okabe and Ito, Color Universal Design, 2008).
 BLACK, GREY, ORANGE, SKY = "#000000", "#808080", "#e69f00", "#56b4e9"
 GREEN, YELLOW, BLUE, RED, PURPLE = "#009e73", "#d6c400", "#0072b2", "#d55e00", "#cc79a7"
+
+#: Colours of a figure in pixels.
+COLOURS = 96
 
 SETTINGS: Any = {
     "font.family": "DejaVu Sans",
@@ -61,6 +65,11 @@ LOOKS: dict[str, Look] = {
     "n = 6": Look(label="spline n = 6", colour=BLUE, marker="x"),
 }
 
+#: Colours of the locking-free splines by their control points.
+COUNT_COLOURS = {4: SKY, 5: ORANGE, 6: BLUE, 7: YELLOW, 8: PURPLE, 9: GREY, 10: GREEN}
+
+#: A refined spline beside them, to hold the reference to.
+CHECK = Look(label="spline n = 10", colour=GREEN, line=":")
 
 #: The two finite elements.
 ELEMENTS: dict[str, Look] = {
@@ -100,6 +109,7 @@ def uncertain(panel: Axes, level: float) -> None:
     panel.annotate(
         "uncertainty of the reference", (0.98, level), (0, -3), ("axes fraction", "data"), "offset points",
         ha="right", va="top", fontsize=8, color="#666666",
+        bbox={"facecolor": "#eeeeee", "edgecolor": "none", "pad": 0.5, "alpha": 0.85},
     )  # fmt: skip
 
 
@@ -111,4 +121,12 @@ def rendered(figure: Figure) -> Mapping[str, bytes]:
             stream = io.BytesIO()
             figure.savefig(stream, format=kind, metadata=metadata)
             files[kind] = stream.getvalue()
-    return files
+    return files | {"png": _in_palette(files["png"])}
+
+
+def _in_palette(png: bytes) -> bytes:
+    """Return `png` in the colours of a palette, enough for lines and their soft edges: a third as large."""
+    stream = io.BytesIO()
+    with Image.open(io.BytesIO(png)) as picture:
+        picture.convert("RGB").quantize(COLOURS, dither=Image.Dither.NONE).save(stream, "png", optimize=True)
+    return stream.getvalue()

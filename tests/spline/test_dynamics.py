@@ -11,7 +11,7 @@ from spline_model.errors import ConvergenceError, InvalidParameter
 from spline_model.integrators import energy_consistent
 from spline_model.integrators.motion import initial_acceleration, set_in_motion
 from spline_model.modes import natural_frequencies
-from spline_model.pivot import SWINGING_SLIDE_STIFFNESS, cross_axis_pivot
+from spline_model.pivot import cross_axis_pivot, swinging_slide_stiffness
 from tests import gates
 from tests.spline.scenes import LENGTH, swinging
 from tests.table_one import TABLE_ONE
@@ -19,7 +19,9 @@ from tests.table_one import TABLE_ONE
 
 def released(settings=None, **options):
     """Trajectory of Table 1."""
-    design = TABLE_ONE | {"slide_stiffness": SWINGING_SLIDE_STIFFNESS} | (settings or {})
+    settings = settings or {}
+    slide = swinging_slide_stiffness(settings.get("control_points", 6))
+    design = TABLE_ONE | {"slide_stiffness": slide} | settings
     return solve_release(cross_axis_pivot(**design), **options)
 
 
@@ -106,7 +108,7 @@ def crossing_frequency(time, value):
 
 def small_swing(start, step=2e-5):
     """Relative difference of a small swing's frequency and the first linear mode."""
-    pivot = cross_axis_pivot(**TABLE_ONE, slide_stiffness=SWINGING_SLIDE_STIFFNESS)
+    pivot = cross_axis_pivot(**TABLE_ONE, slide_stiffness=swinging_slide_stiffness(6))
     trajectory = solve_release(pivot, start=start, duration=0.1, step=step)
     mode = natural_frequencies(pivot, count=1).frequency[0]
     return abs(crossing_frequency(trajectory.time, trajectory.rotation) / mode - 1)
@@ -173,7 +175,7 @@ def test_free_flight_gate_has_teeth(monkeypatch):
 
 def test_initial_acceleration_is_consistent():
     """Requirement: the first step's mean acceleration tends to the consistent one."""
-    pivot = cross_axis_pivot(**TABLE_ONE, slide_stiffness=SWINGING_SLIDE_STIFFNESS)
+    pivot = cross_axis_pivot(**TABLE_ONE, slide_stiffness=swinging_slide_stiffness(6))
     system = compile_scene(pivot.released())
     start = solve_release(pivot, duration=1e-6, step=1e-7)
     motion = set_in_motion(system)

@@ -5,15 +5,21 @@ import math
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 
 from studies.answers.metrics import (
     extrapolate,
     observed_order,
+    quasi_static_frequency,
     relative_error,
     richardson,
+    swing_frequency,
     trajectory_error,
+    zero_crossings,
 )
+from studies.answers.motion import Motion
 from studies.answers.response import centre_shift, extreme_fibre_strain
+from studies.answers.swing import MESHES, limit_of
 from studies.cases.problem import CaseError, named_case
 
 TABLE_1 = named_case("cross_axis_pivot")
@@ -95,3 +101,72 @@ def test_fingerprint_follows_values_not_layout(case, table_1):
 
     assert read_case(case(("# Table 1: 206 GPa", ""))).fingerprint() == TABLE_1.fingerprint()
     assert read_case(case(("206e9", "207e9"))).fingerprint() != TABLE_1.fingerprint()
+
+
+def test_frequency_of_a_known_swing():
+    """Crossings of a cosine are found between records, its frequency from them; one crossing has none."""
+    time = np.linspace(0.0, 0.1, 400)
+    swing = np.cos(2.0 * np.pi * 42.0 * time)
+    assert zero_crossings(time, swing)[:2] == pytest.approx([1.0 / 168.0, 3.0 / 168.0], rel=1e-4)
+    assert swing_frequency(time, swing) == pytest.approx(42.0, rel=1e-4)
+    assert math.isnan(swing_frequency(time, 2.0 + swing))
+    assert math.isnan(swing_frequency(time[:60], swing[:60]))
+
+
+@pytest.mark.parametrize(("cubic", "amplitude"), [(0.0, 0.5), (0.0, -1.5), (40.0, 1.2)])
+def test_statics_alone_implies_the_frequency_of_an_oscillator(cubic, amplitude):
+    """Of U = k a^2/2 + c a^4/4 the frequency is that of the integrated equation of motion."""
+    mass, inertia, arm, stiffness = 0.2, 2e-3, 0.03, 500.0
+    rotation = np.linspace(0.0, amplitude, 21)
+    centre = arm * np.stack((np.cos(rotation), np.sin(rotation)), axis=1)
+    energy = 0.5 * stiffness * rotation**2 + 0.25 * cubic * rotation**4
+    whole = inertia + mass * arm**2
+
+    def quarter(_, state):
+        return state[0]
+
+    quarter.terminal = True  # type: ignore[attr-defined]
+    motion = solve_ivp(
+        lambda _, s: [s[1], -(stiffness * s[0] + cubic * s[0] ** 3) / whole],
+        (0.0, 1.0),
+        [amplitude, 0.0],
+        events=quarter,
+        rtol=1e-11,
+        atol=1e-12,
+    )
+    found = quasi_static_frequency(rotation, centre, energy, mass=mass, moment_of_inertia=inertia)
+    # the cubic splines through 21 states of the circle are good to a few 1e-6
+    assert found == pytest.approx(1.0 / (4.0 * motion.t_events[0][0]), rel=1e-5)
+
+
+def test_limit_of_swings_removes_the_error_of_the_mesh():
+    """Swings whose rotation is off by h^2 and h^4 have the exact one as limit, and an uncertainty."""
+    instants = np.linspace(0.0, 0.05, 401)
+    levels = []
+    for elements in MESHES:
+        h = 1.0 / elements
+        rotation = np.cos(500.0 * instants) * (1.0 + 3.0 * h**2 + 7.0 * h**4)
+        arrays = {
+            name: np.ones_like(instants)
+            for name in ("kinetic_energy", "strain_energy", "constraint_residual", "velocity_residual")
+        }
+        levels.append(
+            Motion(
+                model="fe",
+                settings={"elements": elements},
+                status="converged",
+                message="",
+                resolution="",
+                time=instants,
+                rotation=rotation,
+                centre=np.stack((rotation, 2.0 * rotation), axis=1),
+                counters={},
+                wall_s=0.0,
+                **arrays,
+            )
+        )
+    limit = limit_of(levels, instants[::4])
+    assert limit.swing.rotation == pytest.approx(np.cos(500.0 * instants[::4]), abs=1e-12)
+    assert limit.uncertainty.max() < 1e-10
+    assert limit.frequency == pytest.approx(500.0 / (2.0 * np.pi), rel=1e-4)
+    assert levels[0].energy_error == 0.0

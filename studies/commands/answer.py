@@ -1,0 +1,77 @@
+"""Delivering an answer: as JSON to a file or the output stream, or as a table, and its exit code."""
+
+import argparse
+import json
+import math
+import sys
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import Any
+
+from studies.commands.parser import Parser
+from studies.record.files import require_writable_file, write_whole
+
+NOT_CONVERGED = 3
+
+
+def add_json_argument(parser: Parser) -> None:
+    """Declare where the answer goes."""
+    parser.add_argument(
+        "--json", metavar="FILE|-", help="write the answer as JSON to FILE or the output stream"
+    )
+
+
+def require_target(arguments: argparse.Namespace) -> None:
+    """Raise OutputError unless the file that the answer is to go to can be written: asked before solving."""
+    if arguments.json not in (None, "-"):
+        require_writable_file(Path(arguments.json))
+
+
+def deliver(
+    arguments: argparse.Namespace, document: Mapping[str, Any], table: Iterable[str], *, failure: str | None
+) -> int:
+    """Write `document` where `--json` says, or print `table`; return the exit code.
+
+    Args:
+        arguments: of the command.
+        document: the answer as a JSON object.
+        table: the answer in lines to read.
+        failure: why the answer is not complete; None when it is.
+    """
+    if arguments.json is None:
+        print("\n".join(table))
+    else:
+        text = json.dumps(document, allow_nan=False, indent=1) + "\n"
+        if arguments.json == "-":
+            sys.stdout.write(text)
+        else:
+            write_whole(Path(arguments.json), text.encode())
+    if failure is None:
+        return 0
+    print(f"studies: not converged: {failure}", file=sys.stderr)
+    return NOT_CONVERGED
+
+
+def described(model: str, settings: Mapping[str, Any]) -> str:
+    """Return the model and its settings in a line."""
+    given = (f"{name} {_short(value)}" for name, value in settings.items() if value is not None)
+    return f"{model}: {', '.join(given)}"
+
+
+def ending(status: str, counters: Mapping[str, int], wall_s: float) -> str:
+    """Return how the solve ended, its work and its time in a line."""
+    work = [f"{name.replace('_', ' ')} {count}" for name, count in counters.items()]
+    return "; ".join(
+        part
+        for part in (status.replace("_", " "), ", ".join(work), f"solved in {wall_s * 1e3:.3g} ms")
+        if part
+    )
+
+
+def number(value: float) -> float | None:
+    """Return `value` as JSON has it: nothing for NaN."""
+    return value if math.isfinite(value) else None
+
+
+def _short(value: Any) -> str:
+    return f"{value:.6g}" if isinstance(value, float) else str(value)

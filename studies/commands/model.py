@@ -1,0 +1,75 @@
+"""The arguments that choose a design, a model and its discretisation, shared by all commands that ask one."""
+
+import argparse
+
+from studies.answers.settings import FeSettings, Settings, SplineSettings
+from studies.commands.parser import Parser, not_negative
+from studies.errors import BadInput
+
+MODELS = ("spline", "fe", "fe-shear")
+
+#: Option -> keyword of the settings it fills; given for the other model it is refused rather than ignored.
+SPLINE_OPTIONS = (
+    "control_points",
+    "axial_modes",
+    "basis",
+    "measure",
+    "stretch",
+    "gauss_points",
+    "slide_stiffness",
+)
+FE_OPTIONS = ("elements",)
+
+
+def add_model_arguments(parser: Parser) -> None:
+    """Declare the case, the model and the options of either discretisation."""
+    parser.add_argument("case", metavar="CASE.toml", help="the design")
+    parser.add_argument(
+        "--model", choices=MODELS, required=True, help="spline, corotational or shear-deformable FE"
+    )
+    parser.add_argument("--control-points", type=int, metavar="N", help="control points a strip (default 6)")
+    parser.add_argument(
+        "--axial-modes", type=int, metavar="M", help="axial-force modes a strip (default N - 2)"
+    )
+    parser.add_argument("--basis", choices=("bezier", "bspline"), help="default bezier")
+    parser.add_argument("--measure", choices=("material", "spatial", "printed"), help="default material")
+    parser.add_argument("--stretch", choices=("mixed", "consistent", "inextensible"), help="default mixed")
+    parser.add_argument("--gauss-points", type=int, metavar="G", help="quadrature points a strip")
+    parser.add_argument(
+        "--slide-stiffness",
+        type=not_negative,
+        metavar="S",
+        help="of the strains that the axial modes do not see, in EI/L^2 (default: the model's)",
+    )
+    parser.add_argument(
+        "--elements", type=int, metavar="N", help="elements a strip (fe, fe-shear; default 20)"
+    )
+
+
+def chosen_settings(arguments: argparse.Namespace) -> Settings:
+    """Return the settings of the chosen model; an option of the other model is an error."""
+    spline = arguments.model == "spline"
+    own, other = (SPLINE_OPTIONS, FE_OPTIONS) if spline else (FE_OPTIONS, SPLINE_OPTIONS)
+    refuse(arguments, other, own)
+    given = {name: getattr(arguments, name) for name in own if getattr(arguments, name) is not None}
+    if spline:
+        return SplineSettings(**given)
+    return FeSettings(element="reissner" if arguments.model == "fe-shear" else "corotational", **given)
+
+
+def refuse(arguments: argparse.Namespace, unusable: tuple[str, ...], usable: tuple[str, ...]) -> None:
+    """Raise BadInput if an option was given that the chosen model cannot use.
+
+    Args:
+        arguments: of the command.
+        unusable, usable: options of the other model and of this one.
+    """
+    for name in unusable:
+        if getattr(arguments, name) is not None:
+            expected = ", ".join(map(option, usable))
+            raise BadInput(f"{option(name)}: got it with --model {arguments.model}, expected only {expected}")
+
+
+def option(name: str) -> str:
+    """Return the option that fills the argument `name`."""
+    return "--" + name.replace("_", "-")

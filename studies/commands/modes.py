@@ -1,0 +1,77 @@
+"""Report the natural frequencies of small motion, at rest or about a driven rotation, with one of the models.
+
+    python -m studies modes studies/cases/cross_axis_pivot.toml --model spline --control-points 8
+    python -m studies modes studies/cases/cross_axis_pivot.toml --model fe --rotation-deg 45 --held --json -
+
+With --held the rotation is held; without it the driving torque acts on as it is. A negative frequency is an
+unstable mode (growth rate over 2 pi). slide_frequency_Hz holds those frequencies that are of the spline's
+parametrisation alone. Exit code 0: done; 2: bad input; 3: statics does not reach the rotation.
+"""
+
+import argparse
+from collections.abc import Iterator
+from typing import Any
+
+from studies.answers.adapters import answer_modes
+from studies.answers.motion import Spectrum
+from studies.cases.keys import ROTATION
+from studies.cases.problem import read_case
+from studies.commands.answer import add_json_argument, deliver, described, ending, require_target
+from studies.commands.model import add_model_arguments, chosen_settings
+from studies.commands.parser import Parser, degrees, whole_number
+from studies.errors import BadInput
+
+
+def add_arguments(parser: Parser) -> None:
+    """Declare the arguments of the command."""
+    add_model_arguments(parser)
+    parser.add_argument(
+        "--rotation-deg", type=degrees, default=0.0, metavar="X", help="of the static state, default 0"
+    )
+    parser.add_argument("--held", action="store_true", help="hold the rotation of the body")
+    parser.add_argument(
+        "--count", type=whole_number(1), default=10, metavar="C", help="number of modes, default 10"
+    )
+    add_json_argument(parser)
+
+
+def main(arguments: argparse.Namespace) -> int:
+    """Solve and report; return the exit code."""
+    problem = read_case(arguments.case)
+    settings = chosen_settings(arguments)
+    try:
+        rotation = ROTATION.parse(arguments.rotation_deg)
+    except ValueError as error:
+        raise BadInput(f"--rotation-deg: {error}") from None
+    require_target(arguments)
+    answer = answer_modes(problem, settings, rotation=rotation, count=arguments.count, held=arguments.held)
+    failure = None if answer.converged else answer.message
+    return deliver(arguments, as_document(answer), _readable(answer), failure=failure)
+
+
+def as_document(answer: Spectrum) -> dict[str, Any]:
+    """Return the answer as the JSON object of the command."""
+    return {
+        "status": answer.status,
+        "message": answer.message,
+        "model": answer.model,
+        "settings": answer.settings,
+        "rotation_rad": answer.rotation,
+        "held": answer.held,
+        "frequency_Hz": answer.frequency.tolist(),
+        "body_shapes": answer.body_shapes.tolist(),
+        "slide_frequency_Hz": answer.slide_frequency.tolist(),
+        "wall_s": answer.wall_s,
+    }
+
+
+def _readable(answer: Spectrum) -> Iterator[str]:
+    """Yield the lines of a short table."""
+    yield described(answer.model, answer.settings)
+    yield f"{'mode':>5} {'frequency':>13}   displacement of the body at unit modal mass"
+    yield f"{'':>5} {'Hz':>13} {'x':>12} {'y':>12} {'rotation':>12}"
+    for mode, (frequency, (x, y, turn)) in enumerate(
+        zip(answer.frequency, answer.body_shapes, strict=True), 1
+    ):
+        yield f"{mode:5d} {frequency:13.4f} {x:12.4e} {y:12.4e} {turn:12.4e}"
+    yield ending(answer.status, {}, answer.wall_s)

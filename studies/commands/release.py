@@ -1,0 +1,119 @@
+"""Let go of a pivot that was driven to a rotation and report its free motion with one of the models.
+
+    python -m studies release studies/cases/cross_axis_pivot.toml --model spline --control-points 8
+    python -m studies release studies/cases/cross_axis_pivot.toml --model fe --duration 0.02 --json -
+
+Coordinates have their origin at A1, the ground clamp of strip 1; rotation is counter-clockwise. The arrays of
+the JSON run over the instants, the release first; frequency_Hz is null with fewer than two passages through
+zero. wall_s leaves out the static path to the start. Exit code 0: done, though `resolution` may say that the
+step is too long for the swing; 2: bad input; 3: statics does not reach the start, or the motion stopped
+early.
+"""
+
+import argparse
+import math
+from collections.abc import Iterator
+from typing import Any
+
+from studies.answers.adapters import answer_release
+from studies.answers.motion import Motion
+from studies.cases.keys import ROTATION
+from studies.cases.problem import read_case
+from studies.commands.answer import add_json_argument, deliver, described, ending, number, require_target
+from studies.commands.model import add_model_arguments, chosen_settings, refuse
+from studies.commands.parser import Parser, degrees, whole_number
+from studies.errors import BadInput
+
+#: Options of the motion that the finite elements lack, and those that both have.
+SPLINE_OPTIONS = ("accuracy",)
+OPTIONS = ("step", "integrator")
+
+#: Lines of the table, beside the release itself.
+LINES = 20
+
+
+def add_arguments(parser: Parser) -> None:
+    """Declare the arguments of the command."""
+    add_model_arguments(parser)
+    parser.add_argument(
+        "--from-deg", type=degrees, metavar="X", help="rotation at the release (default: the case's)"
+    )
+    parser.add_argument("--duration", type=float, default=0.05, metavar="T", help="in s, default 0.05")
+    parser.add_argument("--step", type=float, metavar="S", help="in s (default: the integrator's)")
+    parser.add_argument(
+        "--integrator",
+        metavar="NAME",
+        help="spline: energy (default), generalised-alpha, explicit; fe: central-difference (default), "
+        "generalised-alpha",
+    )
+    parser.add_argument(
+        "--accuracy",
+        type=float,
+        metavar="A",
+        help="wanted error of the rotation in rad, instead of a step (spline)",
+    )
+    parser.add_argument(
+        "--repeat", type=whole_number(1), default=1, metavar="R", help="wall_s is the median of R releases"
+    )
+    add_json_argument(parser)
+
+
+def main(arguments: argparse.Namespace) -> int:
+    """Release and report; return the exit code."""
+    problem = read_case(arguments.case)
+    settings = chosen_settings(arguments)
+    if settings.model != "spline":
+        refuse(arguments, SPLINE_OPTIONS, OPTIONS)
+    start = problem.rotation
+    if arguments.from_deg is not None:
+        try:
+            start = ROTATION.parse(arguments.from_deg)
+        except ValueError as error:
+            raise BadInput(f"--from-deg: {error}") from None
+    require_target(arguments)
+    options = {name: getattr(arguments, name) for name in (*OPTIONS, *SPLINE_OPTIONS)}
+    answer = answer_release(
+        problem, settings, start=start, duration=arguments.duration, repeat=arguments.repeat, **options
+    )
+    failure = None if answer.converged else answer.message
+    return deliver(arguments, as_document(answer), _readable(answer), failure=failure)
+
+
+def as_document(answer: Motion) -> dict[str, Any]:
+    """Return the answer as the JSON object of the command."""
+    return {
+        "status": answer.status,
+        "message": answer.message,
+        "resolution": answer.resolution,
+        "model": answer.model,
+        "settings": answer.settings,
+        "frequency_Hz": number(answer.frequency),
+        "time_s": answer.time.tolist(),
+        "rotation_rad": answer.rotation.tolist(),
+        "com_x_m": answer.centre[:, 0].tolist(),
+        "com_y_m": answer.centre[:, 1].tolist(),
+        "kinetic_J": answer.kinetic_energy.tolist(),
+        "strain_J": answer.strain_energy.tolist(),
+        "constraint_residual": answer.constraint_residual.tolist(),
+        "counters": answer.counters,
+        "wall_s": answer.wall_s,
+    }
+
+
+def _readable(answer: Motion) -> Iterator[str]:
+    """Yield the lines of a short table: a few of the instants."""
+    yield described(answer.model, answer.settings)
+    yield f"{'time':>9} {'rotation':>9} {'x':>11} {'y':>11} {'kinetic':>11} {'strain':>11} {'clamp gap':>10}"
+    yield f"{'ms':>9} {'deg':>9} {'mm':>11} {'mm':>11} {'J':>11} {'J':>11} {'m':>10}"
+    last = len(answer.time) - 1
+    for record in sorted({round(last * part / LINES) for part in range(LINES + 1)} if last >= 0 else ()):
+        x, y = 1e3 * answer.centre[record]
+        instant, rotation = 1e3 * answer.time[record], math.degrees(answer.rotation[record])
+        place = f"{instant:9.3f} {rotation:9.3f} {x:11.5f} {y:11.5f}"
+        energy = f"{answer.kinetic_energy[record]:11.4f} {answer.strain_energy[record]:11.4f}"
+        yield f"{place} {energy} {answer.constraint_residual[record]:10.1e}"
+    if math.isfinite(answer.frequency):
+        yield f"frequency {answer.frequency:.4f} Hz; energy kept to {answer.energy_error:.1e}"
+    if answer.resolution:
+        yield answer.resolution
+    yield ending(answer.status, answer.counters, answer.wall_s)

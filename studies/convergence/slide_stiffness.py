@@ -1,0 +1,144 @@
+"""Errors against the slide stiffness: that of the strains which the axial-force modes do not see.
+
+With n - 2 modes the control points of a straight strip can slide along it without strain energy; a stiffness
+of these strains forbids it. Too little leaves the sliding slow, so that it takes part in a motion; too much
+is locking again.
+"""
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from spline_model.pivot import SLIDE_STIFFNESS, SWINGING_SLIDE_STIFFNESS
+from studies.answers.adapters import answer_static
+from studies.answers.metrics import swing_frequency
+from studies.answers.reference import errors
+from studies.answers.settings import SplineSettings
+from studies.cases.problem import named_case
+from studies.convergence.sweep import QUANTITIES
+from studies.paper import formulations, swings
+from studies.paper.findings import Finding, table
+from studies.record.style import COUNT_COLOURS, page
+
+CASE = formulations.CASE
+CASES = (CASE,)
+
+#: Values in units of EI/L^2; EA is 3.5e3 of them for Table 1.
+VALUES = (1e-3, 0.1, 1.0, 3.0, 10.0, 30.0, 100.0, 300.0, 1000.0)
+COUNTS = range(4, 11)
+#: Motions are dearer: fewer counts, and half the usual duration (two swings) [s].
+MOVING_COUNTS = (4, 6, 8)
+DURATION = 0.025
+
+#: What the model takes where nothing is said.
+DEFAULTS = {"statics": SLIDE_STIFFNESS, "motion": SWINGING_SLIDE_STIFFNESS}
+
+#: A default is called near the best when its error is at most this many times the least.
+NEAR = 3.0
+
+
+def compute(progress: Callable[[int, int], None]) -> dict[str, pd.DataFrame]:
+    """Return the errors of statics and of motion, one row a count and value, the defaults and findings."""
+    total = len(COUNTS) + len(MOVING_COUNTS)
+    statics, motions = [], []
+    for done, n in enumerate(COUNTS):
+        progress(done, total)
+        statics += [_static(n, value) for value in VALUES]
+    for done, n in enumerate(MOVING_COUNTS, start=len(COUNTS)):
+        progress(done, total)
+        motions += [_motion(n, value) for value in VALUES]
+    progress(total, total)
+    static, motion = pd.DataFrame(statics), pd.DataFrame(motions)
+    found = _findings(static, "error_torque", DEFAULTS["statics"], "torque on the path")
+    found += _findings(motion, "error_rotation_rad", DEFAULTS["motion"], "rotation in motion")
+    chosen = pd.DataFrame([{"problem": name, "slide_stiffness": value} for name, value in DEFAULTS.items()])
+    return {"statics": static, "motion": motion, "defaults": chosen, "findings": table(found)}
+
+
+def draw(tables: Mapping[str, pd.DataFrame]) -> dict[str, Figure]:
+    """Draw the errors of torque, stiffness and rotation in motion over the slide stiffness."""
+    figure = page(9.5, 4.4)
+    torque, stiffness, motion = figure.subplots(1, 3)
+    chosen = tables["defaults"].set_index("problem")["slide_stiffness"]
+    panels = (
+        (torque, tables["statics"], "error_torque", "largest error of the torque [1]", chosen["statics"]),
+        (
+            stiffness,
+            tables["statics"],
+            "error_stiffness",
+            "largest error of the stiffness [1]",
+            chosen["statics"],
+        ),
+        (
+            motion,
+            tables["motion"],
+            "error_rotation_rad",
+            "largest error of the rotation [rad]",
+            chosen["motion"],
+        ),
+    )
+    for panel, rows, column, label, default in panels:
+        for n, curve in rows.groupby("control_points"):
+            style = {"color": COUNT_COLOURS[int(str(n))], "marker": "o", "markersize": 3.0}
+            panel.loglog(curve["slide_stiffness"], curve[column], **style, label=f"n = {n}")
+        _default(panel, float(default))
+        panel.set(xlabel="slide stiffness [EI/L²]", ylabel=label)
+    torque.set_title("Static path to 90°")
+    stiffness.set_title("Static path to 90°")
+    motion.set_title(f"{1e3 * DURATION:g} ms after the release")
+    figure.legend(*torque.get_legend_handles_labels(), loc="outside lower center", ncols=len(COUNTS))
+    return {"slide_stiffness": figure}
+
+
+def _default(panel: Axes, value: float) -> None:
+    panel.axvline(value, color="#444444", linewidth=0.8)
+    panel.annotate(
+        "default", (value, 1.0), (3, -3), ("data", "axes fraction"), "offset points", va="top", fontsize=8
+    )
+
+
+def _static(n: int, value: float) -> dict[str, Any]:
+    """Return the row of one static path: status and largest errors against the limit of the elements."""
+    settings = SplineSettings(control_points=n, slide_stiffness=value)
+    answer = answer_static(named_case(CASE), settings)
+    row: dict[str, Any] = {"control_points": n, "slide_stiffness": value, "status": answer.status}
+    found = errors(answer, formulations.refined()).largest() if answer.converged else {}
+    return row | {f"error_{name}": found.get(name, np.nan) for name in QUANTITIES}
+
+
+def _motion(n: int, value: float) -> dict[str, Any]:
+    """Return the row of one motion: status, largest error of the rotation and shift of the frequency."""
+    instants = swings.INSTANTS[swings.INSTANTS <= DURATION]
+    exact = swings.reference().swing.rotation[: len(instants)]
+    motion = swings.resolved(SplineSettings(control_points=n, slide_stiffness=value), duration=DURATION)
+    shift = motion.frequency / swing_frequency(instants, exact) - 1.0
+    return {
+        "control_points": n,
+        "slide_stiffness": value,
+        "status": motion.status,
+        "error_rotation_rad": swings.rotation_error(motion, exact, instants),
+        "frequency_shift": shift if motion.converged else np.nan,
+    }
+
+
+def _findings(rows: pd.DataFrame, column: str, default: float, what: str) -> list[Finding]:
+    """Return for each count whether the default is near the best of the values, which it names."""
+    found = []
+    for n, curve in rows.groupby("control_points"):
+        by_value = curve.set_index("slide_stiffness")[column].dropna()
+        best = float(by_value.index[int(by_value.argmin())])
+        excess = float(by_value[default] / by_value[best])
+        found.append(
+            Finding(
+                claim=f"The default slide stiffness is near the best for the {what} (within {NEAR:g} x)",
+                formulation=f"n = {n}",
+                quantity=f"the error with {default:g} EI/L^2 over the least, with {best:g},",
+                value=excess,
+                holds=excess <= NEAR,
+            )
+        )
+    return found

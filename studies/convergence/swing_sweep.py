@@ -1,0 +1,167 @@
+"""Sweeps of swings and of linear modes over refinement, step and amplitude: one row each."""
+
+import dataclasses
+import math
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from studies.answers.adapters import answer_modes, answer_static
+from studies.answers.metrics import extrapolate, quasi_static_frequency
+from studies.answers.motion import Motion
+from studies.answers.response import Response
+from studies.answers.settings import FeSettings, SplineSettings
+from studies.answers.swing import MESHES, sampled
+from studies.cases.problem import named_case
+from studies.paper import swings
+from studies.paper.formulations import CASE, FE, SETTINGS
+
+COUNTS = tuple(swings.STEPS)
+#: Beyond this count the consistent form, whose axial waves are faster, needs shorter steps; nor does it lock.
+MOST_CONSISTENT = 7
+ELEMENTS = (5, 10, *MESHES[:1], 20, *MESHES[1:])
+STEPS = (2e-6, 5e-6, 1e-5, 2e-5, 5e-5, 1e-4, 2e-4, 5e-4)
+INTEGRATORS = {"energy": "energy-consistent", "generalised-alpha": "generalised-α"}
+AMPLITUDES = (2, 5, 10, 20, 30, 45, 60, 75, 90)
+
+#: Linear modes shown, and the meshes whose limit they are held against.
+MODES = 5
+MODE_MESHES = (5, 10, 20, 40, 80)
+
+#: Step of the backbone's swings [s]: the rotation is off by less than 2e-4 rad.
+BACKBONE_STEP = 3e-6
+
+
+def control_points() -> pd.DataFrame:
+    """Return one row a stretch form and count: the swing's frequency, its shift and the one statics implies.
+
+    Columns: stretch, control_points, status, frequency_Hz, shift (of the frequency, against the limit of the
+    finite elements), shift_from_statics (of the quasi-static frequency against that of the finest elements),
+    error_rotation_rad (largest over the motion).
+    """
+    finest = static_frequency(answer_static(named_case(CASE), FeSettings(elements=160)))
+    rows = []
+    for stretch, most in (("mixed", COUNTS[-1]), ("consistent", MOST_CONSISTENT)):
+        for n in COUNTS[: COUNTS.index(most) + 1]:
+            settings = SplineSettings(control_points=n, stretch=stretch)
+            motion = swings.resolved(settings)
+            implied = static_frequency(answer_static(named_case(CASE), _as_in(motion, settings)))
+            row = {"stretch": stretch, "control_points": n} | _outcome(motion)
+            rows.append(row | {"shift_from_statics": implied / finest - 1.0})
+    return pd.DataFrame(rows)
+
+
+def elements() -> pd.DataFrame:
+    """Return one row a mesh of the explicit finite elements; columns as of `control_points`."""
+    levels = {int(level.settings["elements"]): level for level in swings.reference().levels}
+    rows = []
+    for count in ELEMENTS:
+        motion = levels[count] if count in levels else swings.released(FeSettings(elements=count))
+        rows.append({"elements": count} | _outcome(motion))
+    return pd.DataFrame(rows)
+
+
+def steps() -> pd.DataFrame:
+    """Return one row an implicit integrator and step, held against the resolved motion of the same spline.
+
+    Columns: integrator, step_s, status, frequency_Hz, shift, error_rotation_rad, energy_error.
+    """
+    settings = SplineSettings(control_points=6)
+    exact = swings.resolved(settings)
+    rows = []
+    for integrator in INTEGRATORS:
+        for step in STEPS:
+            motion = swings.released(settings, integrator=integrator, step=step)
+            row = {"integrator": integrator, "step_s": step} | _outcome(motion, exact)
+            rows.append(row | {"energy_error": motion.energy_error})
+    return pd.DataFrame(rows)
+
+
+def modes() -> pd.DataFrame:
+    """Return one row a model, count and linear mode at rest, against the limit of the finite elements.
+
+    Columns: model, count, mode, frequency_Hz, limit_Hz, error (relative), uncertainty (of the limit).
+    """
+    problem = named_case(CASE)
+    meshes = {n: answer_modes(problem, FeSettings(elements=n), count=MODES).frequency for n in MODE_MESHES}
+    splines = {
+        n: answer_modes(problem, SplineSettings(control_points=n), count=MODES).frequency for n in COUNTS
+    }
+    # consistent masses and cubic elements: the frequencies are of order four
+    limit = extrapolate([meshes[n] for n in MODE_MESHES[-3:]], order=4.0)
+    rows = []
+    for model, answers in (("fe", meshes), ("spline", splines)):
+        for count, frequency in answers.items():
+            for mode in range(min(MODES, len(frequency))):
+                rows.append(
+                    {
+                        "model": model,
+                        "count": count,
+                        "mode": mode + 1,
+                        "frequency_Hz": frequency[mode],
+                        "limit_Hz": limit.value[mode],
+                        "error": frequency[mode] / limit.value[mode] - 1.0,
+                        "uncertainty": limit.uncertainty[mode] / limit.value[mode],
+                    }
+                )
+    return pd.DataFrame(rows)
+
+
+def backbone() -> pd.DataFrame:
+    """Return one row a model and amplitude: the frequency of the swing, and that of its static path.
+
+    Columns: formulation, amplitude_rad, status, frequency_Hz, frequency_from_statics_Hz, first_mode_Hz.
+    """
+    options: dict[str, dict[str, Any]] = {
+        FE: {},
+        "n = 6": {"integrator": "explicit", "step": BACKBONE_STEP},
+    }
+    rows = []
+    for name, chosen in options.items():
+        first = answer_modes(named_case(CASE), SETTINGS[name], count=1).frequency[0]
+        for amplitude in np.radians(AMPLITUDES):
+            problem = dataclasses.replace(named_case(CASE), rotation=float(amplitude))
+            motion = swings.released(SETTINGS[name], start=float(amplitude), **chosen)
+            rows.append(
+                {
+                    "formulation": name,
+                    "amplitude_rad": amplitude,
+                    "status": motion.status,
+                    "frequency_Hz": motion.frequency if motion.converged else math.nan,
+                    "frequency_from_statics_Hz": static_frequency(answer_static(problem, SETTINGS[name])),
+                    "first_mode_Hz": first,
+                }
+            )
+    return pd.DataFrame(rows)
+
+
+def static_frequency(answer: Response) -> float:
+    """Return the frequency of the swing that a static path implies, with the case's body [Hz]."""
+    problem = named_case(CASE)
+    return quasi_static_frequency(
+        answer.rotation,
+        answer.centre,
+        answer.strain_energy,
+        mass=problem.body_mass,
+        moment_of_inertia=problem.body_moment_of_inertia,
+    )
+
+
+def _as_in(motion: Motion, settings: SplineSettings) -> SplineSettings:
+    """Return `settings` with the slide stiffness that the pivot had in motion, for its static path."""
+    return dataclasses.replace(settings, slide_stiffness=motion.settings["slide_stiffness"])
+
+
+def _outcome(motion: Motion, exact: Motion | None = None) -> dict[str, Any]:
+    """Return status, frequency, shift and error of a motion against `exact`, or the limit of the elements."""
+    limit = swings.reference()
+    frequency = limit.frequency if exact is None else exact.frequency
+    rotation = limit.swing.rotation if exact is None else sampled(exact, swings.INSTANTS).rotation
+    found = motion.frequency if motion.converged else math.nan
+    return {
+        "status": motion.status,
+        "frequency_Hz": found,
+        "shift": found / frequency - 1.0,
+        "error_rotation_rad": swings.rotation_error(motion, rotation),
+    }

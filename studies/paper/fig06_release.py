@@ -1,0 +1,194 @@
+"""Fig 6 of the paper: the motion of the body's centre after the release from 90 degrees, and its errors."""
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from studies.answers.metrics import Array
+from studies.answers.motion import Motion
+from studies.answers.settings import SplineSettings
+from studies.answers.swing import Swing, SwingReference, sampled
+from studies.paper import formulations, swings
+from studies.paper.findings import Finding, table
+from studies.paper.formulations import FE, LOCKING_FREE, MEANING, PAPER, REFINED, SETTINGS
+from studies.record.style import CHECK, LOOKS, page, uncertain
+
+CASES = (formulations.CASE,)
+
+#: Formulations of Fig 6, and the refined spline that the reference, which it shares nothing with, is held to.
+SPLINES = (PAPER, LOCKING_FREE, "n = 6")
+REFINED_SPLINE = "n = 10"
+
+#: "Slightly different" is read as a tenth of what the centre travels.
+SLIGHT = 0.1
+ALIKE = "Fig 6: the two time histories are slightly different (within 10 % of the travel over 0.05 s)"
+FASTER = "Fig 6: the spline swings at a higher frequency than 20 finite elements"
+
+#: Every so many of the common instants is stored.
+STORED = 2
+
+QUANTITIES = (
+    ("rotation_rad", "rotation [deg]", 180.0 / np.pi),
+    ("com_x_m", "x of the centre [mm]", 1e3),
+    ("com_y_m", "y of the centre [mm]", 1e3),
+)
+
+
+def compute(progress: Callable[[int, int], None]) -> dict[str, pd.DataFrame]:
+    """Return the motions with their differences to the limit of refinement, a summary and the findings."""
+    limit = swings.reference()
+    names = (*SPLINES, FE, REFINED_SPLINE)
+    motions = {}
+    for count, name in enumerate(names, start=1):
+        motions[name] = _motion(name)
+        progress(count, len(names))
+    traces = [_trace(REFINED, limit.swing, limit.swing)]
+    traces += [
+        _trace(name, sampled(motion, swings.INSTANTS), limit.swing) for name, motion in motions.items()
+    ]
+    return {
+        "motions": pd.concat(traces),
+        "summary": pd.DataFrame([_summary(name, motion, limit) for name, motion in motions.items()]),
+        "reference": _uncertainty(limit),
+        "findings": table(_findings(motions)),
+    }
+
+
+def draw(tables: Mapping[str, pd.DataFrame]) -> dict[str, Figure]:
+    """Draw rotation, x and y over time beside their differences to the reference, and the energy below."""
+    figure = page(8.8, 8.0)
+    panels = figure.subplots(4, 2, sharex=True)
+    motions = tables["motions"]
+    level = tables["reference"].set_index("quantity")["uncertainty"]
+    for (value, error), (column, label, scale) in zip(panels, QUANTITIES, strict=False):
+        for name, curve in motions.groupby("formulation", sort=False):
+            look = _look(str(name))
+            time = 1e3 * curve["time_s"]
+            if name != REFINED_SPLINE:
+                value.plot(time, scale * curve[column], **look)
+            if name != REFINED:
+                late = curve["time_s"] > 0.0
+                error.semilogy(time[late], scale * curve[f"difference_{column}"].abs()[late], **look)
+        value.set_ylabel(label)
+        error.set_ylabel(f"|difference| {label[label.index('[') :]}")
+        uncertain(error, scale * level[column])
+    _energies(panels[3, 0], panels[3, 1], motions)
+    panels[0, 0].set_title("After the release from 90°")
+    panels[0, 1].set_title("Difference to the refined finite elements")
+    handles, labels = panels[0, 1].get_legend_handles_labels()
+    refined = panels[0, 0].get_legend_handles_labels()
+    first = refined[1].index(LOOKS[REFINED].label)
+    figure.legend(
+        [refined[0][first], *handles], [refined[1][first], *labels], loc="outside lower center", ncols=3
+    )
+    return {"fig06_release": figure}
+
+
+def _energies(value: Axes, error: Axes, motions: pd.DataFrame) -> None:
+    """Draw the strain energy, and the change of the whole energy, over time."""
+    for name, curve in motions.groupby("formulation", sort=False):
+        look = _look(str(name))
+        if name != REFINED_SPLINE:
+            value.plot(1e3 * curve["time_s"], curve["strain_J"], **look)
+        if name != REFINED:
+            total = curve["strain_J"] + curve["kinetic_J"]
+            late = curve["time_s"] > 0.0
+            change = (total / total.iloc[0] - 1.0).abs()[late]
+            error.semilogy(1e3 * curve["time_s"][late], change.clip(lower=1e-16), **look)
+    value.set(ylabel="strain energy [J]", xlabel="time [ms]")
+    error.set(ylabel="|change of energy| [1]", xlabel="time [ms]")
+
+
+def _look(name: str) -> dict[str, Any]:
+    """Return the line of a formulation; the reference is broad and lies below the others, which cover it."""
+    look = (CHECK if name == REFINED_SPLINE else LOOKS[name]).keywords() | {"marker": ""}
+    return look | ({"linewidth": 2.8, "zorder": 1.9} if name == REFINED else {})
+
+
+def _motion(name: str) -> Motion:
+    """Return the motion of one formulation: the splines' at a resolved step, the elements' at their own."""
+    settings = SplineSettings(control_points=10) if name == REFINED_SPLINE else SETTINGS[name]
+    return swings.resolved(settings) if isinstance(settings, SplineSettings) else swings.released(settings)
+
+
+def _trace(name: str, swing: Swing, limit: Swing) -> pd.DataFrame:
+    kept = slice(None, None, STORED)
+    return pd.DataFrame(
+        {
+            "formulation": name,
+            "time_s": swing.time[kept],
+            "rotation_rad": swing.rotation[kept],
+            "com_x_m": swing.centre[kept, 0],
+            "com_y_m": swing.centre[kept, 1],
+            "kinetic_J": swing.kinetic_energy[kept],
+            "strain_J": swing.strain_energy[kept],
+            "difference_rotation_rad": (swing.rotation - limit.rotation)[kept],
+            "difference_com_x_m": (swing.centre - limit.centre)[kept, 0],
+            "difference_com_y_m": (swing.centre - limit.centre)[kept, 1],
+        }
+    )
+
+
+def _summary(name: str, motion: Motion, limit: SwingReference) -> dict[str, Any]:
+    swing = sampled(motion, swings.INSTANTS)
+    return {
+        "formulation": name,
+        "meaning": MEANING.get(name, "material measure, mixed stretch: refined, a check of the reference"),
+        "status": motion.status,
+        "frequency_Hz": motion.frequency,
+        "frequency_shift": motion.frequency / limit.frequency - 1.0,
+        "error_rotation_rad": float(np.abs(swing.rotation - limit.swing.rotation).max()),
+        "error_centre_m": float(np.linalg.norm(swing.centre - limit.swing.centre, axis=1).max()),
+        "energy_error": motion.energy_error,
+        "constraint_residual_m": float(motion.constraint_residual.max()),
+        "integrator": motion.settings["integrator"],
+        "step_s": motion.settings["step_s"],
+    }
+
+
+def _uncertainty(limit: SwingReference) -> pd.DataFrame:
+    """Return the largest uncertainties of the reference: in rad, in m, and relative for the frequency."""
+    largest = {
+        "rotation_rad": float(limit.uncertainty.max()),
+        "com_x_m": float(limit.centre_uncertainty[:, 0].max()),
+        "com_y_m": float(limit.centre_uncertainty[:, 1].max()),
+        "frequency": limit.frequency_uncertainty,
+    }
+    return pd.DataFrame([{"quantity": name, "uncertainty": value} for name, value in largest.items()])
+
+
+def _findings(motions: Mapping[str, Motion]) -> list[Finding]:
+    """Return the claims of Fig 6 held against each spline, compared with 20 elements as there."""
+    twenty = sampled(motions[FE], swings.INSTANTS).centre
+    travel = _travel(twenty)
+    found = []
+    for name in SPLINES:
+        motion = motions[name]
+        distance = np.linalg.norm(sampled(motion, swings.INSTANTS).centre - twenty, axis=1).max() / travel
+        shift = motion.frequency / motions[FE].frequency - 1.0
+        found += [
+            Finding(
+                claim=ALIKE,
+                formulation=name,
+                quantity="the largest distance to the centre of 20 finite elements, over its travel,",
+                value=float(distance),
+                holds=bool(motion.converged and distance < SLIGHT),
+            ),
+            Finding(
+                claim=FASTER,
+                formulation=name,
+                quantity="the signed difference of the frequency to 20 finite elements",
+                value=shift,
+                holds=motion.converged and shift > 0.0,
+            ),
+        ]
+    return found
+
+
+def _travel(centre: Array) -> float:
+    """Return the diagonal of the rectangle that the path fills [m]."""
+    return float(np.linalg.norm(np.ptp(centre, axis=0)))
