@@ -28,9 +28,9 @@ SLIDE_STIFFNESS = 10.0
 """Default stiffness of the strains that the axial modes do not see, in EI/L^2.
 
 With control_points - 2 modes the control points of a straight strip slide along it without
-resistance and the tangent at rest is singular. Any value from 1e-6 to 10 mends that; near 10
-the error of every n from 4 to 10 is least (results of convergence/slide_stiffness), and from
-100 on the strip begins to lock.
+resistance and the tangent at rest is singular. Any value from 1e-6 to 10 mends that and moves
+the static error by some factors only: 10 is best for n = 5 and 8 and several times the least
+for n = 6 and 10 (results of convergence/slide_stiffness); from 100 on the strip begins to lock.
 """
 
 

@@ -14,6 +14,8 @@ from spline_model.kernels.record import record
 
 FIRST_STEP = 1e-4
 """First trial step over the duration."""
+MOST_RECORDS = 1_000_000
+"""Steps that one run keeps: some gigabytes at six control points."""
 SMALLEST_STEP = 1e-9
 """Least step over the duration before the run is given up."""
 
@@ -35,7 +37,7 @@ def integrate(
     estimates the step's error (Milne's device; Hairer, Norsett and Wanner, III.7). A step is
     accepted if it is below accuracy * h / duration. Every accepted step is a record.
     """
-    counters, strains = np.zeros(4, dtype=np.int64), np.empty(len(motion.rigidity))
+    counters, strains = np.zeros(5, dtype=np.int64), np.empty(len(motion.rigidity))
     totals, active = np.zeros(2), np.zeros(motion.tables.drives.row.size, dtype=np.int64)
     time, states, rates, rows = [0.0], [z.copy()], [v.copy()], [np.empty(7)]
 
@@ -44,6 +46,9 @@ def integrate(
     record(z, v, motion, strains, totals, rows[0])
     rejected, message, h = 0, "", FIRST_STEP * duration
     while duration - time[-1] > 1e-9 * duration:
+        if len(time) > MOST_RECORDS:
+            message = f"stopped at {time[-1]:.6g} s: {MOST_RECORDS} steps are kept at most"
+            break
         h = min(h, duration - time[-1])
         new_z, new_v, new_a = states[-1].copy(), rates[-1].copy(), acceleration.copy()
         turns = motion.turns

@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from spline_model.compile import System
 from spline_model.integrators.events import catch, drive_events, drives_at, from_here
 from spline_model.integrators.motion import Array, Records, require_compiled
-from spline_model.kernels.energy_step import FACTORISATIONS, HALVED, NEWTON, STEPS, run
+from spline_model.kernels.energy_step import FACTORISATIONS, FOLDED, HALVED, NEWTON, STEPS, run
 from spline_model.kernels.motion import Motion
 from spline_model.kernels.record import record
 
@@ -51,7 +51,7 @@ def integrate(
     count = steps // every + 1
     states, rates = np.zeros((count, z.size)), np.zeros((count, v.size))
     rows, totals = np.zeros((count, 7)), np.zeros(2)
-    counters = np.zeros(4, dtype=np.int64)
+    counters = np.zeros(5, dtype=np.int64)
     z, v, acceleration = z.copy(), v.copy(), acceleration.copy()
     events = drive_events(motion, step, steps)
     active = drives_at(motion, 0, step)
@@ -87,7 +87,8 @@ def integrate(
         if done < end:
             break
     kept = done // every + 1
-    message = "" if done == steps else f"stopped at {done * step:.6g} s: Newton fails at any step"
+    reason = "a strip folds; take a shorter step" if counters[FOLDED] else "Newton fails at any step"
+    message = "" if done == steps else f"stopped at {done * step:.6g} s: {reason}"
     return Records(
         time=np.arange(0.0, kept) * (step * every),
         states=states[:kept],

@@ -23,8 +23,8 @@ from spline_model.kernels.dissipation import dissipation
 from spline_model.kernels.drives import subtract_weight
 from spline_model.kernels.record import forward, record
 
-STEPS, HALVED, NEWTON, FACTORISATIONS = range(4)
-"""Places of the counters of a run."""
+STEPS, HALVED, NEWTON, FACTORISATIONS, FOLDED = range(5)
+"""Places of the counters of a run; FOLDED is 1 if the last refused step was solved, but no strip."""
 
 
 @njit(cache=True, nogil=True)
@@ -137,6 +137,7 @@ def advance(
         )
         if not (solved and forward(guess, motion.tables)):
             counters[HALVED] += 1
+            counters[FOLDED] = 1 if solved else 0
             step *= 0.5
             if step < smallest:
                 return done
