@@ -1,0 +1,309 @@
+"""A whole path in the rotation of one body, compiled: predict, correct, check, halve."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from spline_model.fast.condense import condense, recover, recover_rate
+from spline_model.fast.strip import FAST, Grid, Local, evaluate
+
+ITERATIONS, EVALUATIONS, HALVED = range(3)
+KNOWN = 3
+MOST_ITERATIONS = 15
+SMALLEST_STEP = 2.0**-10
+SLOWEST_SPEED = 0.1
+LARGEST_CORRECTION = 0.5
+
+
+class Frame(NamedTuple):
+    """G strips from the ground to one body, in SI units.
+
+    root (G, 2) clamped points; angle (G,) of the clamp directions at rest; length (G,);
+    rigidity (G,) EI; arm (G, 2) tips from the body's centre at rest; compliance (G, K) of
+    the axial modes in L^2/EI; centre (2,) of the body at rest.
+    """
+
+    root: NDArray[np.float64]
+    angle: NDArray[np.float64]
+    length: NDArray[np.float64]
+    rigidity: NDArray[np.float64]
+    arm: NDArray[np.float64]
+    compliance: NDArray[np.float64]
+    centre: NDArray[np.float64]
+
+
+class Answer(NamedTuple):
+    """S states: y (S, Y), torque, stiffness (S,), energies (S, 2), counters (3,).
+
+    y is x, y of the centre over the first strip's length, then w and a of each strip.
+    """
+
+    y: NDArray[np.float64]
+    torque: NDArray[np.float64]
+    stiffness: NDArray[np.float64]
+    energies: NDArray[np.float64]
+    counters: NDArray[np.int64]
+
+
+class Space(NamedTuple):
+    """Working arrays of one path: body (3, 4) tangent and force; pose and change (3,); scratch."""
+
+    body: NDArray[np.float64]
+    pose: NDArray[np.float64]
+    change: NDArray[np.float64]
+    scratch: NDArray[np.float64]
+    known_at: NDArray[np.float64]
+    known_y: NDArray[np.float64]
+    known_rate: NDArray[np.float64]
+    y: NDArray[np.float64]
+    rate: NDArray[np.float64]
+    predicted: NDArray[np.float64]
+
+
+@njit(cache=True, nogil=True, fastmath=FAST)
+def assemble(y, theta, frame, grid, locals_, space, out):
+    """Condense all strips at y; the body's tangent and force in space.body, energies in out (3,).
+
+    Returns the largest residual in EI/L^2 and L (first strip's), or inf for a singular strip.
+    Places of out: bending, axial, smallest |C'| / L, negative pivots.
+    """
+    strips, modes = frame.angle.size, frame.compliance.shape[1]
+    own = (y.size - 2) // strips - modes
+    length0, unit = frame.length[0], frame.rigidity[0] / frame.length[0] ** 2
+    body, pose = space.body, space.pose
+    body[:] = 0.0
+    out[:] = 0.0
+    out[2] = np.inf
+    x, z = y[0] * length0, y[1] * length0
+    cos_t, sin_t = math.cos(theta), math.sin(theta)
+    norm = fx = fy = 0.0
+    for s in range(strips):
+        local, at = locals_[s], 2 + s * (own + modes)
+        length, scale = frame.length[s], frame.rigidity[s] / frame.length[s]
+        ax = cos_t * frame.arm[s, 0] - sin_t * frame.arm[s, 1]
+        ay = sin_t * frame.arm[s, 0] + cos_t * frame.arm[s, 1]
+        c, d = math.cos(frame.angle[s]), math.sin(frame.angle[s])
+        rx, ry = (x + ax - frame.root[s, 0]) / length, (z + ay - frame.root[s, 1]) / length
+        pose[0], pose[1], pose[2] = c * rx + d * ry, c * ry - d * rx, theta
+        bending, axial, slowest = evaluate(
+            y[at : at + own], y[at + own : at + own + modes], pose, frame.compliance[s], grid, local, space.scratch
+        )
+        out[0] += scale * bending
+        out[1] += scale * axial
+        out[2] = min(out[2], slowest)
+        g, h = local.g, local.h
+        relative = scale / length / unit
+        for i in range(own):
+            norm = max(norm, abs(g[i]) * relative)
+        for k in range(modes):
+            norm = max(norm, abs(local.gap[k]))
+        fx += scale / length * (c * g[own] - d * g[own + 1])
+        fy += scale / length * (d * g[own] + c * g[own + 1])
+        negative = condense(local, frame.compliance[s], own)
+        if negative < 0:
+            return np.inf
+        out[3] += negative
+        px, py = c * g[own] - d * g[own + 1], d * g[own] + c * g[own + 1]
+        # e = R(-angle) (r + arm(theta) - root) / L, phi = theta
+        hxx, hxy, hyy = h[own, own], h[own, own + 1], h[own + 1, own + 1]
+        kxx = c * c * hxx - 2 * c * d * hxy + d * d * hyy
+        kxy = c * d * (hxx - hyy) + (c * c - d * d) * hxy
+        kyy = d * d * hxx + 2 * c * d * hxy + c * c * hyy
+        kxt = c * h[own, own + 2] - d * h[own + 1, own + 2]
+        kyt = d * h[own, own + 2] + c * h[own + 1, own + 2]
+        a, b = -ay / length, ax / length  # d(tip)/d(theta) over L
+        body[0, 0] += scale / length**2 * kxx
+        body[0, 1] += scale / length**2 * kxy
+        body[1, 1] += scale / length**2 * kyy
+        body[0, 2] += scale / length * (kxx * a + kxy * b + kxt)
+        body[1, 2] += scale / length * (kxy * a + kyy * b + kyt)
+        body[2, 2] += scale * (
+            kxx * a * a + 2 * kxy * a * b + kyy * b * b + 2 * (kxt * a + kyt * b) + h[own + 2, own + 2]
+        ) - scale / length * (px * ax + py * ay)
+        body[0, 3] += scale / length * px
+        body[1, 3] += scale / length * py
+        body[2, 3] += scale * (px * a + py * b + g[own + 2])
+    return max(norm, max(abs(fx), abs(fy)) / unit)
+
+
+@njit(cache=True, nogil=True, fastmath=FAST)
+def turn_into(frame, s, theta, dx, dy, dtheta, change):
+    """Change of a strip's tip pose (3,) for a change of the body's pose."""
+    cos_t, sin_t = math.cos(theta), math.sin(theta)
+    ax = cos_t * frame.arm[s, 0] - sin_t * frame.arm[s, 1]
+    ay = sin_t * frame.arm[s, 0] + cos_t * frame.arm[s, 1]
+    rx, ry = (dx - ay * dtheta) / frame.length[s], (dy + ax * dtheta) / frame.length[s]
+    c, d = math.cos(frame.angle[s]), math.sin(frame.angle[s])
+    change[0], change[1], change[2] = c * rx + d * ry, c * ry - d * rx, dtheta
+
+
+@njit(cache=True, nogil=True, fastmath=FAST)
+def newton(y, theta, frame, grid, locals_, space, out, tolerance, counters):
+    """Solve at theta in place; True if the residual came below tolerance."""
+    strips, modes = frame.angle.size, frame.compliance.shape[1]
+    own = (y.size - 2) // strips - modes
+    body, before = space.body, np.inf
+    for _ in range(MOST_ITERATIONS + 1):
+        norm = assemble(y, theta, frame, grid, locals_, space, out)
+        counters[EVALUATIONS] += 1
+        if norm <= tolerance or (norm <= 1e3 * tolerance and norm > 0.5 * before):
+            return True
+        if not norm < 1e12:
+            return False
+        before = norm
+        determinant = body[0, 0] * body[1, 1] - body[0, 1] ** 2
+        if determinant == 0.0:
+            return False
+        dx = (body[0, 1] * body[1, 3] - body[1, 1] * body[0, 3]) / determinant
+        dy = (body[0, 1] * body[0, 3] - body[0, 0] * body[1, 3]) / determinant
+        y[0] += dx / frame.length[0]
+        y[1] += dy / frame.length[0]
+        for s in range(strips):
+            at = 2 + s * (own + modes)
+            turn_into(frame, s, theta, dx, dy, 0.0, space.change)
+            dw, da = space.rate[at : at + own], space.rate[at + own : at + own + modes]
+            recover(locals_[s], frame.compliance[s], own, space.change, dw, da)
+            for i in range(own + modes):
+                y[at + i] += space.rate[at + i]
+        counters[ITERATIONS] += 1
+    return False
+
+
+@njit(cache=True, nogil=True, fastmath=FAST)
+def tangent(y, theta, frame, locals_, space):
+    """Rate dy/dtheta in space.rate at a state that was just assembled; returns torque and stiffness."""
+    strips, modes = frame.angle.size, frame.compliance.shape[1]
+    own = (y.size - 2) // strips - modes
+    body = space.body
+    determinant = body[0, 0] * body[1, 1] - body[0, 1] ** 2
+    dx = (body[0, 1] * body[1, 2] - body[1, 1] * body[0, 2]) / determinant
+    dy = (body[0, 1] * body[0, 2] - body[0, 0] * body[1, 2]) / determinant
+    space.rate[0], space.rate[1] = dx / frame.length[0], dy / frame.length[0]
+    for s in range(strips):
+        at = 2 + s * (own + modes)
+        turn_into(frame, s, theta, dx, dy, 1.0, space.change)
+        dw, da = space.rate[at : at + own], space.rate[at + own : at + own + modes]
+        recover_rate(locals_[s], frame.compliance[s], own, space.change, dw, da)
+    # the remaining residual is carried to equilibrium by the tangent
+    torque = body[2, 3] + dx * body[0, 3] + dy * body[1, 3]
+    return torque, body[2, 2] + dx * body[0, 2] + dy * body[1, 2]
+
+
+@njit(cache=True, nogil=True, fastmath=FAST)
+def predict(theta, known, space):
+    """Hermite's polynomial through the last ``known`` states and rates, at theta, in space.predicted."""
+    at, predicted = space.known_at, space.predicted
+    predicted[:] = 0.0
+    for i in range(known):
+        lagrange, slope = 1.0, 0.0
+        for j in range(known):
+            if j != i:
+                lagrange *= (theta - at[j]) / (at[i] - at[j])
+                slope += 1.0 / (at[i] - at[j])
+        square = lagrange * lagrange
+        by_value, by_rate = (1.0 - 2.0 * (theta - at[i]) * slope) * square, (theta - at[i]) * square
+        for k in range(predicted.size):
+            predicted[k] += by_value * space.known_y[i, k] + by_rate * space.known_rate[i, k]
+
+
+@njit(cache=True, nogil=True, fastmath=FAST)
+def accepted(y, known, space, frame, out, own, modes):
+    """Whether a solved state is the continuation of the last one, with end tangents forward and no fold."""
+    if not out[2] > SLOWEST_SPEED:
+        return False
+    step = correction = 0.0
+    last = space.known_y[known - 1]
+    for k in range(2):
+        step += (space.predicted[k] - last[k]) ** 2
+        correction += (y[k] - space.predicted[k]) ** 2
+    for s in range(frame.angle.size):
+        at = 2 + s * (own + modes)
+        if not (y[at] > 0.0 and y[at + own - 1] > 0.0):
+            return False
+        for k in range(at, at + own):
+            step += (space.predicted[k] - last[k]) ** 2
+            correction += (y[k] - space.predicted[k]) ** 2
+    return correction <= LARGEST_CORRECTION**2 * step
+
+
+@njit(cache=True, nogil=True, fastmath=FAST)
+def follow(start, targets, frame, grid, locals_, space, tolerance, answer):
+    """Follow the path from rest (theta = 0) through the target rotations; returns the states converged.
+
+    answer is filled from row 0, the state at rest, on.
+    """
+    modes = frame.compliance.shape[1]
+    own = (start.size - 2) // frame.angle.size - modes
+    out, y, counters = np.empty(4), space.y, answer.counters
+    y[:] = start
+    if not newton(y, 0.0, frame, grid, locals_, space, out, tolerance, counters):
+        return 0
+    known, theta = 0, 0.0
+    for row in range(targets.size + 1):
+        target = targets[row - 1] if row > 0 else 0.0
+        begin, step = theta, target - theta
+        whole = step
+        while True:
+            if row > 0:
+                last = abs(target - theta) <= abs(step) * (1 + 1e-9)
+                here = target if last else theta + step
+                use = known if known < 2 or abs(here - theta) <= 2 * abs(theta - space.known_at[known - 2]) else 1
+                if use < known:
+                    keep_last(known, space)
+                    known = 1
+                predict(here, known, space)
+                y[:] = space.predicted
+                solved = newton(y, here, frame, grid, locals_, space, out, tolerance, counters)
+                if not (solved and accepted(y, known, space, frame, out, own, modes)):
+                    counters[HALVED] += 1
+                    step *= 0.5
+                    if abs(step) < SMALLEST_STEP * abs(whole):
+                        return row
+                    continue
+                theta = here
+            else:
+                last = True
+            torque, stiffness = tangent(y, theta, frame, locals_, space)
+            known = remember(theta, y, known, space)
+            if last:
+                break
+            done = abs(theta - begin) / abs(step)
+            if abs(step) < abs(whole) and round(done) % 2 == 0:
+                step *= 2.0
+        answer.y[row] = y
+        answer.torque[row], answer.stiffness[row] = torque, stiffness
+        answer.energies[row, 0], answer.energies[row, 1] = out[0], out[1]
+    return targets.size + 1
+
+
+@njit(cache=True, nogil=True)
+def remember(theta, y, known, space):
+    """Append a state and its rate to the known ones, dropping the oldest; returns their number."""
+    if known > 0 and theta == space.known_at[known - 1]:
+        known -= 1
+    if known == KNOWN:
+        for i in range(KNOWN - 1):
+            space.known_at[i] = space.known_at[i + 1]
+            space.known_y[i] = space.known_y[i + 1]
+            space.known_rate[i] = space.known_rate[i + 1]
+        known -= 1
+    space.known_at[known] = theta
+    space.known_y[known] = y
+    space.known_rate[known] = space.rate
+    return known + 1
+
+
+@njit(cache=True, nogil=True)
+def keep_last(known, space):
+    """Forget all known states but the last."""
+    space.known_at[0] = space.known_at[known - 1]
+    space.known_y[0] = space.known_y[known - 1]
+    space.known_rate[0] = space.known_rate[known - 1]
+
+
+__all__ = ["Answer", "Frame", "Grid", "Local", "Space", "follow"]
