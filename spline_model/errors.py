@@ -14,7 +14,7 @@ class InvalidParameter(ValueError):
 
     def __init__(self, name: str, got: Any, expected: str) -> None:
         super().__init__(f"{name}: got {got!r}, expected {expected}")
-        self.name = name
+        self.name, self.got, self.expected = name, got, expected
 
 
 class ConvergenceError(RuntimeError):

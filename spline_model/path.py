@@ -76,6 +76,8 @@ class _Follower:
     def advance(self, target: float) -> str:
         """Go on to ``target`` and keep its state; returns why it failed, or nothing."""
         whole = target - self.at
+        if len(self.known) > 1 and whole * (self.at - self.known[-2][0]) < 0:
+            self.known = deque([self.known[-1]], maxlen=KNOWN_STATES)  # the path turns back
         step, begin = whole, self.at
         while True:
             last = abs(target - self.at) <= abs(step) * (1 + 1e-9)

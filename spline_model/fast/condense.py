@@ -6,10 +6,6 @@ from numba import njit
 
 from spline_model.fast.strip import FAST
 
-LEAST_COMPLIANCE = 1e-9
-"""In the tangent a mode is at least this compliant, in L^2/EI: an inextensible strip keeps a finite
-stiffness to condense, its residual stays exact, and Newton loses no iteration by it."""
-
 
 @njit(cache=True, nogil=True, fastmath=FAST)
 def condense(local, compliance, own):
@@ -21,7 +17,7 @@ def condense(local, compliance, own):
     g, h, b, gap = local.g, local.h, local.b, local.gap
     size = own + 3
     for k in range(gap.size):
-        stiffness = (2 * k + 1) / max(compliance[k], LEAST_COMPLIANCE)
+        stiffness = (2 * k + 1) / compliance[k]
         row = b[k]
         push = stiffness * gap[k]
         for i in range(size):
@@ -62,7 +58,7 @@ def recover(local, compliance, own, change, dw, da):
             strain += b[k, i] * dw[i]
         for j in range(3):
             strain += b[k, own + j] * change[j]
-        da[k] = strain * (2 * k + 1) / max(compliance[k], LEAST_COMPLIANCE)
+        da[k] = strain * (2 * k + 1) / compliance[k]
 
 
 @njit(cache=True, nogil=True, fastmath=FAST)
@@ -82,4 +78,4 @@ def recover_rate(local, compliance, own, change, dw, da):
             strain += b[k, i] * dw[i]
         for j in range(3):
             strain += b[k, own + j] * change[j]
-        da[k] = strain * (2 * k + 1) / max(compliance[k], LEAST_COMPLIANCE)
+        da[k] = strain * (2 * k + 1) / compliance[k]

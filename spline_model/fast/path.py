@@ -23,13 +23,13 @@ LARGEST_CORRECTION = 0.5
 class Frame(NamedTuple):
     """G strips from the ground to one body, in SI units.
 
-    root (G, 2) clamped points; angle (G,) of the clamp directions at rest; length (G,);
+    root (G, 2) clamped points; axis (G, 2) the clamp directions at rest; length (G,);
     rigidity (G,) EI; arm (G, 2) tips from the body's centre at rest; compliance (G, K) of
     the axial modes in L^2/EI; centre (2,) of the body at rest.
     """
 
     root: NDArray[np.float64]
-    angle: NDArray[np.float64]
+    axis: NDArray[np.float64]
     length: NDArray[np.float64]
     rigidity: NDArray[np.float64]
     arm: NDArray[np.float64]
@@ -51,12 +51,10 @@ class Answer(NamedTuple):
 
 
 class Space(NamedTuple):
-    """Working arrays of one path: body (3, 4) tangent and force; pose and change (3,); scratch."""
+    """Working arrays of one path: body (3, 4) tangent and force, change (3,) of a tip, known states."""
 
     body: NDArray[np.float64]
-    pose: NDArray[np.float64]
     change: NDArray[np.float64]
-    scratch: NDArray[np.float64]
     known_at: NDArray[np.float64]
     known_y: NDArray[np.float64]
     known_rate: NDArray[np.float64]
@@ -72,10 +70,10 @@ def assemble(y, theta, frame, grid, locals_, space, out):
     Returns the largest residual in EI/L^2 and L (first strip's), or inf for a singular strip.
     Places of out: bending, axial, smallest |C'| / L, negative pivots.
     """
-    strips, modes = frame.angle.size, frame.compliance.shape[1]
+    strips, modes = frame.length.size, frame.compliance.shape[1]
     own = (y.size - 2) // strips - modes
     length0, unit = frame.length[0], frame.rigidity[0] / frame.length[0] ** 2
-    body, pose = space.body, space.pose
+    body = space.body
     body[:] = 0.0
     out[:] = 0.0
     out[2] = np.inf
@@ -87,11 +85,18 @@ def assemble(y, theta, frame, grid, locals_, space, out):
         length, scale = frame.length[s], frame.rigidity[s] / frame.length[s]
         ax = cos_t * frame.arm[s, 0] - sin_t * frame.arm[s, 1]
         ay = sin_t * frame.arm[s, 0] + cos_t * frame.arm[s, 1]
-        c, d = math.cos(frame.angle[s]), math.sin(frame.angle[s])
+        c, d = frame.axis[s, 0], frame.axis[s, 1]
         rx, ry = (x + ax - frame.root[s, 0]) / length, (z + ay - frame.root[s, 1]) / length
-        pose[0], pose[1], pose[2] = c * rx + d * ry, c * ry - d * rx, theta
         bending, axial, slowest = evaluate(
-            y[at : at + own], y[at + own : at + own + modes], pose, frame.compliance[s], grid, local, space.scratch
+            y[at : at + own],
+            y[at + own : at + own + modes],
+            c * rx + d * ry,
+            c * ry - d * rx,
+            cos_t,
+            sin_t,
+            frame.compliance[s],
+            grid,
+            local,
         )
         out[0] += scale * bending
         out[1] += scale * axial
@@ -132,22 +137,22 @@ def assemble(y, theta, frame, grid, locals_, space, out):
 
 
 @njit(cache=True, nogil=True, fastmath=FAST)
-def turn_into(frame, s, theta, dx, dy, dtheta, change):
+def turn_into(frame, s, cos_t, sin_t, dx, dy, dtheta, change):
     """Change of a strip's tip pose (3,) for a change of the body's pose."""
-    cos_t, sin_t = math.cos(theta), math.sin(theta)
     ax = cos_t * frame.arm[s, 0] - sin_t * frame.arm[s, 1]
     ay = sin_t * frame.arm[s, 0] + cos_t * frame.arm[s, 1]
     rx, ry = (dx - ay * dtheta) / frame.length[s], (dy + ax * dtheta) / frame.length[s]
-    c, d = math.cos(frame.angle[s]), math.sin(frame.angle[s])
+    c, d = frame.axis[s, 0], frame.axis[s, 1]
     change[0], change[1], change[2] = c * rx + d * ry, c * ry - d * rx, dtheta
 
 
 @njit(cache=True, nogil=True, fastmath=FAST)
 def newton(y, theta, frame, grid, locals_, space, out, tolerance, counters):
     """Solve at theta in place; True if the residual came below tolerance."""
-    strips, modes = frame.angle.size, frame.compliance.shape[1]
+    strips, modes = frame.length.size, frame.compliance.shape[1]
     own = (y.size - 2) // strips - modes
     body, before = space.body, np.inf
+    cos_t, sin_t = math.cos(theta), math.sin(theta)
     for _ in range(MOST_ITERATIONS + 1):
         norm = assemble(y, theta, frame, grid, locals_, space, out)
         counters[EVALUATIONS] += 1
@@ -165,7 +170,7 @@ def newton(y, theta, frame, grid, locals_, space, out, tolerance, counters):
         y[1] += dy / frame.length[0]
         for s in range(strips):
             at = 2 + s * (own + modes)
-            turn_into(frame, s, theta, dx, dy, 0.0, space.change)
+            turn_into(frame, s, cos_t, sin_t, dx, dy, 0.0, space.change)
             dw, da = space.rate[at : at + own], space.rate[at + own : at + own + modes]
             recover(locals_[s], frame.compliance[s], own, space.change, dw, da)
             for i in range(own + modes):
@@ -177,16 +182,17 @@ def newton(y, theta, frame, grid, locals_, space, out, tolerance, counters):
 @njit(cache=True, nogil=True, fastmath=FAST)
 def tangent(y, theta, frame, locals_, space):
     """Rate dy/dtheta in space.rate at a state that was just assembled; returns torque and stiffness."""
-    strips, modes = frame.angle.size, frame.compliance.shape[1]
+    strips, modes = frame.length.size, frame.compliance.shape[1]
     own = (y.size - 2) // strips - modes
     body = space.body
+    cos_t, sin_t = math.cos(theta), math.sin(theta)
     determinant = body[0, 0] * body[1, 1] - body[0, 1] ** 2
     dx = (body[0, 1] * body[1, 2] - body[1, 1] * body[0, 2]) / determinant
     dy = (body[0, 1] * body[0, 2] - body[0, 0] * body[1, 2]) / determinant
     space.rate[0], space.rate[1] = dx / frame.length[0], dy / frame.length[0]
     for s in range(strips):
         at = 2 + s * (own + modes)
-        turn_into(frame, s, theta, dx, dy, 1.0, space.change)
+        turn_into(frame, s, cos_t, sin_t, dx, dy, 1.0, space.change)
         dw, da = space.rate[at : at + own], space.rate[at + own : at + own + modes]
         recover_rate(locals_[s], frame.compliance[s], own, space.change, dw, da)
     # the remaining residual is carried to equilibrium by the tangent
@@ -221,7 +227,7 @@ def accepted(y, known, space, frame, out, own, modes):
     for k in range(2):
         step += (space.predicted[k] - last[k]) ** 2
         correction += (y[k] - space.predicted[k]) ** 2
-    for s in range(frame.angle.size):
+    for s in range(frame.length.size):
         at = 2 + s * (own + modes)
         if not (y[at] > 0.0 and y[at + own - 1] > 0.0):
             return False
@@ -238,7 +244,7 @@ def follow(start, targets, frame, grid, locals_, space, tolerance, answer):
     answer is filled from row 0, the state at rest, on.
     """
     modes = frame.compliance.shape[1]
-    own = (start.size - 2) // frame.angle.size - modes
+    own = (start.size - 2) // frame.length.size - modes
     out, y, counters = np.empty(4), space.y, answer.counters
     y[:] = start
     if not newton(y, 0.0, frame, grid, locals_, space, out, tolerance, counters):
@@ -247,13 +253,15 @@ def follow(start, targets, frame, grid, locals_, space, tolerance, answer):
     for row in range(targets.size + 1):
         target = targets[row - 1] if row > 0 else 0.0
         begin, step = theta, target - theta
+        if known > 1 and step * (theta - space.known_at[known - 2]) < 0.0:  # the path turns back
+            keep_last(known, space)
+            known = 1
         whole = step
         while True:
             if row > 0:
                 last = abs(target - theta) <= abs(step) * (1 + 1e-9)
                 here = target if last else theta + step
-                use = known if known < 2 or abs(here - theta) <= 2 * abs(theta - space.known_at[known - 2]) else 1
-                if use < known:
+                if known > 1 and abs(here - theta) > 2 * abs(theta - space.known_at[known - 2]):
                     keep_last(known, space)
                     known = 1
                 predict(here, known, space)

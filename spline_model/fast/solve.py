@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
@@ -10,19 +10,25 @@ from numpy.polynomial import legendre
 from numpy.typing import NDArray
 
 from spline_model.basis import bezier
+from spline_model.compile import System
 from spline_model.design import Design
 from spline_model.effects.constraints import GROUND
-from spline_model.fast.path import Answer, Frame, Grid, Space, follow
+from spline_model.effects.registry import MOTION_ONLY
+from spline_model.fast.path import EVALUATIONS, HALVED, ITERATIONS, Answer, Frame, Grid, Space, follow
+from spline_model.fast.states import states_of
 from spline_model.fast.strip import local_arrays
 from spline_model.mechanism import Mechanism
+from spline_model.solution import Path, Status
 
 Array = NDArray[np.float64]
 
-TOLERANCE = 1e-10
-"""Residual of a solved state in EI/L^2 and L: the one of the multiplier path, less the room that the
-condensed axial stiffness needs for round-off."""
-FAST_EFFECTS = {"bending", "stretching", "inextensible", "strip_inertia", "section_rotary_inertia"}
-FAST_EFFECTS |= {"body_inertia", "strip_damping", "strip_drag", "body_damping"}
+TOLERANCE = 1e-11
+"""Residual of a solved state in EI/L^2 and L, as on the multiplier path."""
+FAST_EFFECTS = {"bending", "stretching", *MOTION_ONLY}
+"""Effects that a fast path may have; of these statics asks for the first two only."""
+LEAST_COMPLIANCE = 1e-9
+"""Axial compliance in L^2/EI below which the condensed stiffness would drown in round-off (beyond a
+slenderness L/h of 9000, and for inextensible strips): the multiplier path takes these."""
 
 
 def is_fast(mechanism: Mechanism) -> bool:
@@ -36,6 +42,9 @@ def is_fast(mechanism: Mechanism) -> bool:
         and grid.stretch != "consistent"
         and all(s.root == GROUND and s.tip == design.bodies[0].name for s in design.strips)
         and all(s.rise == 0.0 for s in design.strips)
+        and all(
+            s.flexural_rigidity >= LEAST_COMPLIANCE * s.axial_rigidity * s.length**2 for s in design.strips
+        )
     )
 
 
@@ -60,7 +69,7 @@ def mode_count(design: Design) -> int:
 
 def frame_of(mechanism: Mechanism) -> Frame:
     """Geometry and rigidities of the strips."""
-    design, inextensible = mechanism.design, "inextensible" in mechanism.effects
+    design = mechanism.design
     centre = np.array(design.bodies[0].centre, dtype=float)
     start = np.array([s.start for s in design.strips], dtype=float)
     end = np.array([s.end for s in design.strips], dtype=float)
@@ -69,13 +78,13 @@ def frame_of(mechanism: Mechanism) -> Frame:
     compliance = np.empty((len(length), mode_count(design)))
     settings = design.discretisation
     for i, strip in enumerate(design.strips):
-        compliance[i] = 0.0 if inextensible else rigidity[i] / (strip.axial_rigidity * length[i] ** 2)
+        compliance[i] = rigidity[i] / (strip.axial_rigidity * length[i] ** 2)
         if settings.slide_stiffness > 0:
             compliance[i, settings.modes.count :] = 1.0 / settings.slide_stiffness
     along = end - start
     return Frame(
         root=start,
-        angle=np.arctan2(along[:, 1], along[:, 0]),
+        axis=along / length[:, None],
         length=length,
         rigidity=rigidity,
         arm=end - centre,
@@ -91,9 +100,7 @@ def arrays(strips: int, control_points: int, modes: int) -> tuple[tuple[Any, ...
     locals_ = tuple(local_arrays(control_points, modes) for _ in range(strips))
     space = Space(
         body=np.zeros((3, 4)),
-        pose=np.zeros(3),
         change=np.zeros(3),
-        scratch=np.zeros((2 * control_points, own + 3)),
         known_at=np.zeros(3),
         known_y=np.zeros((3, size)),
         known_rate=np.zeros((3, size)),
@@ -109,7 +116,7 @@ def at_rest(frame: Frame, control_points: int, modes: int) -> Array:
     u = np.arange(2, control_points - 2) / (control_points - 1)
     own = np.concatenate(([1.0], np.column_stack((u, np.zeros(len(u)))).ravel(), [1.0]))
     strip = np.concatenate((own, np.zeros(modes)))
-    return np.concatenate((frame.centre / frame.length[0], np.tile(strip, len(frame.angle))))
+    return np.concatenate((frame.centre / frame.length[0], np.tile(strip, len(frame.length))))
 
 
 def fast_path(mechanism: Mechanism, rotations: Sequence[float]) -> tuple[int, Answer]:
@@ -132,4 +139,45 @@ def empty_answer(states: int, size: int) -> Answer:
         stiffness=np.zeros(states),
         energies=np.zeros((states, 2)),
         counters=np.zeros(3, dtype=np.int64),
+    )
+
+
+def follow_fast(
+    mechanism: Mechanism,
+    system: System,
+    rotations: Sequence[float],
+    progress: Callable[[int, int], None] | None = None,
+) -> Path | None:
+    """The path as the multiplier path would give it, or None where the fast one stops.
+
+    ``system`` is the mechanism compiled with its driven rotation; load factors are those of
+    its drive. Of the rates only the drive's multiplier is filled.
+    """
+    drive = system.tables.drives
+    done, answer = fast_path(mechanism, rotations)
+    if done <= len(rotations):
+        return None
+    if progress is not None:
+        for increment in range(len(rotations)):
+            progress(increment + 1, len(rotations))
+    angles = np.concatenate(([0.0], rotations))
+    rates = np.zeros((done, system.layout.size))
+    rates[:, drive.row[0]] = answer.stiffness * drive.target[0]
+    increments, counters = len(rotations), answer.counters
+    return Path(
+        status=Status.CONVERGED,
+        message="",
+        load_factor=angles / drive.target[0],
+        states=states_of(system, frame_of(mechanism), angles, answer),
+        rates=rates,
+        energies=answer.energies,
+        counters={
+            "increments": increments,
+            "halved_increments": int(counters[HALVED]),
+            "newton_iterations": int(counters[ITERATIONS]),
+            "residual_evaluations": int(counters[EVALUATIONS]),
+            "tangent_evaluations": int(counters[EVALUATIONS]),
+            "factorisations": int(counters[EVALUATIONS]),
+        },
+        history=(),
     )

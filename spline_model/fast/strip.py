@@ -37,7 +37,7 @@ class Local(NamedTuple):
 
     points (n, 2); gradient (2 n,), hessian (2 n, 2 n), coupling (K, 2 n) in the control
     points; g (W + 3,), h (W + 3, W + 3), b (K, W + 3) in (w, e); gap (K,) residual of the
-    axial forces; pivot (W,) of the factorisation of h's leading block; reply (W, 4).
+    axial forces.
     """
 
     points: NDArray[np.float64]
@@ -66,25 +66,22 @@ def local_arrays(control_points: int, modes: int) -> Local:
 
 
 @njit(cache=True, nogil=True, fastmath=FAST)
-def place_points(w, pose, points):
-    """Control points from the own coordinates (W,) and the tip's pose (3,)."""
+def place_points(w, x, y, cos, sin, points):
+    """Control points from the own coordinates (W,) and the tip's point and direction."""
     n = points.shape[0]
-    reach = 1.0 / (n - 1)
-    x, y, phi = pose[0], pose[1], pose[2]
-    last = w.size - 1
-    points[0, 0] = points[0, 1] = points[1, 1] = 0.0
+    reach, last = 1.0 / (n - 1), w.size - 1
     points[1, 0] = w[0] * reach
     for i in range(2, n - 2):
         points[i, 0] = w[2 * i - 3]
         points[i, 1] = w[2 * i - 2]
-    points[n - 2, 0] = x - w[last] * reach * math.cos(phi)
-    points[n - 2, 1] = y - w[last] * reach * math.sin(phi)
+    points[n - 2, 0] = x - w[last] * reach * cos
+    points[n - 2, 1] = y - w[last] * reach * sin
     points[n - 1, 0], points[n - 1, 1] = x, y
 
 
 @njit(cache=True, nogil=True, fastmath=FAST)
 def assemble_points(points, a, compliance, grid, local):
-    """Fill gradient, upper hessian blocks, coupling and gap; returns bending and axial energy and least |C'|."""
+    """Fill gradient, upper hessian blocks, coupling and gap; returns the energies and least |C'|."""
     n, count, modes = points.shape[0], grid.weight.size, a.size
     gradient, hessian, coupling = local.gradient, local.hessian, local.coupling
     gradient[:] = 0.0
@@ -157,51 +154,71 @@ def assemble_points(points, a, compliance, grid, local):
 
 
 @njit(cache=True, nogil=True, fastmath=FAST)
-def to_own(vector, w, pose, n, out):
-    """A covector in the control points (2 n,) in the coordinates (w, e), (W + 3,)."""
-    reach, last = 1.0 / (n - 1), w.size - 1
-    cos, sin = math.cos(pose[2]), math.sin(pose[2])
-    bx, by = vector[2 * n - 4], vector[2 * n - 3]
+def to_own(vector, reach, arm, cos, sin, out):
+    """A covector in the control points (2 n,) in the coordinates (w, e), (W + 3,).
+
+    reach = 1 / (n - 1), arm = s_B reach; d(P_(n-2))/d(phi) = arm (sin phi, -cos phi).
+    """
+    size, last = vector.size, out.size - 4
+    bx, by = vector[size - 4], vector[size - 3]
     out[0] = reach * vector[2]
-    for i in range(4, 2 * n - 4):
+    for i in range(4, size - 4):
         out[i - 3] = vector[i]
     out[last] = -reach * (cos * bx + sin * by)
-    out[last + 1] = vector[2 * n - 2] + bx
-    out[last + 2] = vector[2 * n - 1] + by
-    out[last + 3] = w[last] * reach * (sin * bx - cos * by)
+    out[last + 1] = vector[size - 2] + bx
+    out[last + 2] = vector[size - 1] + by
+    out[last + 3] = arm * (sin * bx - cos * by)
 
 
 @njit(cache=True, nogil=True, fastmath=FAST)
-def evaluate(w, a, pose, compliance, grid, local, scratch):
-    """Fill g, h, b and gap of a strip in (w, e); returns bending and axial energy and the least |C'|."""
-    place_points(w, pose, local.points)
+def hessian_to_own(hessian, gradient, reach, arm, cos, sin, h):
+    """The upper triangle of h in (w, e) from the upper blocks of the Hessian in the control points."""
+    size, last = gradient.size, h.shape[0] - 4
+    b = size - 4
+    row = hessian[2]
+    h[0, 0] = reach * reach * row[2]
+    for j in range(4, b):
+        h[0, j - 3] = reach * row[j]
+    for i in range(3, b):
+        row, k, f = (hessian[2], 0, reach) if i == 3 else (hessian[i], i - 3, 1.0)
+        if i > 3:
+            for j in range(i, b):
+                h[k, j - 3] = row[j]
+        bx, by = f * row[b], f * row[b + 1]
+        h[k, last] = -reach * (cos * bx + sin * by)
+        h[k, last + 1] = f * row[b + 2] + bx
+        h[k, last + 2] = f * row[b + 3] + by
+        h[k, last + 3] = arm * (sin * bx - cos * by)
+    first, second = hessian[b], hessian[b + 1]
+    xx, xy, yy = first[b], first[b + 1], second[b + 1]  # P_(n-2) with itself
+    ux, uy, vx, vy = first[b + 2], first[b + 3], second[b + 2], second[b + 3]  # with P_(n-1)
+    nx, ny = arm * sin, -arm * cos
+    tx, ty = -reach * cos, -reach * sin
+    h[last, last] = tx * (tx * xx + 2.0 * ty * xy) + ty * ty * yy
+    h[last, last + 1] = tx * (xx + ux) + ty * (xy + vx)
+    h[last, last + 2] = tx * (xy + uy) + ty * (yy + vy)
+    gx, gy = gradient[b], gradient[b + 1]
+    h[last, last + 3] = tx * (xx * nx + xy * ny) + ty * (xy * nx + yy * ny) + reach * (sin * gx - cos * gy)
+    h[last + 1, last + 1] = xx + 2.0 * ux + hessian[b + 2, b + 2]
+    h[last + 1, last + 2] = xy + uy + vx + hessian[b + 2, b + 3]
+    h[last + 2, last + 2] = yy + 2.0 * vy + hessian[b + 3, b + 3]
+    h[last + 1, last + 3] = (xx + ux) * nx + (xy + vx) * ny
+    h[last + 2, last + 3] = (xy + uy) * nx + (yy + vy) * ny
+    h[last + 3, last + 3] = nx * (xx * nx + 2.0 * xy * ny) + yy * ny * ny + arm * (cos * gx + sin * gy)
+
+
+@njit(cache=True, nogil=True, fastmath=FAST)
+def evaluate(w, a, x, y, cos, sin, compliance, grid, local):
+    """Fill g, the upper triangle of h, b and gap in (w, e) at a tip in (x, y) with direction (cos, sin).
+
+    Returns bending and axial energy and the least |C'|.
+    """
+    place_points(w, x, y, cos, sin, local.points)
     bending, axial, slowest = assemble_points(local.points, a, compliance, grid, local)
-    n = local.points.shape[0]
-    size, last, reach = 2 * n, w.size - 1, 1.0 / (n - 1)
-    hessian = local.hessian
-    for i in range(2, size):
-        for j in range(i + 1 if i % 2 else i + 2, size):
-            hessian[j, i] = hessian[i, j]
-        if i % 2 == 0:
-            hessian[i + 1, i] = hessian[i, i + 1]
-    to_own(local.gradient, w, pose, n, local.g)
-    for i in range(2, size):
-        to_own(hessian[i], w, pose, n, scratch[i])
-    h = local.h
-    cos, sin = math.cos(pose[2]), math.sin(pose[2])
-    for j in range(w.size + 3):
-        h[0, j] = reach * scratch[2, j]
-        for i in range(4, size - 4):
-            h[i - 3, j] = scratch[i, j]
-        bx, by = scratch[size - 4, j], scratch[size - 3, j]
-        h[last, j] = -reach * (cos * bx + sin * by)
-        h[last + 1, j] = scratch[size - 2, j] + bx
-        h[last + 2, j] = scratch[size - 1, j] + by
-        h[last + 3, j] = w[last] * reach * (sin * bx - cos * by)
-    bx, by = local.gradient[size - 4], local.gradient[size - 3]
-    h[last + 3, last + 3] += w[last] * reach * (cos * bx + sin * by)
-    h[last, last + 3] += reach * (sin * bx - cos * by)
-    h[last + 3, last] += reach * (sin * bx - cos * by)
+    reach = 1.0 / (local.points.shape[0] - 1)
+    arm = w[w.size - 1] * reach
+    to_own(local.gradient, reach, arm, cos, sin, local.g)
+    hessian_to_own(local.hessian, local.gradient, reach, arm, cos, sin, local.h)
     for k in range(a.size):
-        to_own(local.coupling[k], w, pose, n, local.b[k])
+        to_own(local.coupling[k], reach, arm, cos, sin, local.b[k])
     return bending, axial, slowest

@@ -1,0 +1,146 @@
+"""The condensed, compiled path against the multiplier path."""
+
+import math
+
+import numpy as np
+import pytest
+
+from spline_model.batch import solve_many
+from spline_model.errors import InvalidParameter
+from spline_model.fast.solve import is_fast
+from spline_model.pivot import cross_axis_pivot
+from spline_model.statics import solve_statics
+from tests import gates
+from tests.table_one import TABLE_ONE
+
+FIELDS = (
+    "centre",
+    "torque",
+    "stiffness",
+    "bending_energy",
+    "axial_energy",
+    "clamp_reactions",
+    "shape",
+    "axial_force",
+    "bending_moment",
+    "shear_force",
+    "work",
+)
+DESIGNS = (
+    {"control_points": 4},
+    {},
+    {"control_points": 7, "axial_modes": 4},
+    {"control_points": 8, "axial_modes": 7},
+    {"control_points": 12},
+    {"crossing_ratio": 0.3, "inclination": 0.6, "centre_offset": (0.01, 0.02), "orientation": 0.4},
+    {"area": 5e-6, "second_moment_of_area": 1.041e-13},
+)
+
+
+def difference(**settings):
+    """Largest difference of any answer of the two methods, over its largest value, there and back."""
+    pivot = cross_axis_pivot(**(TABLE_ONE | settings))
+    path = {"rotation": [1.5, -0.7], "increments": 15}
+    fast, reference = (solve_statics(pivot, method=m, **path) for m in ("condensed", "multipliers"))
+    assert is_fast(pivot.mechanism)
+    return max(
+        np.abs(getattr(fast, name) - getattr(reference, name)).max() / np.abs(getattr(reference, name)).max()
+        for name in FIELDS
+    )
+
+
+@pytest.mark.parametrize("settings", DESIGNS, ids=str)
+def test_both_methods_give_the_same_answer(settings):
+    """Requirement: condensed and multiplier path agree to 1e-10 in every answer, multipliers included."""
+    gates.check("spline_fast_path", difference(**settings))
+
+
+def test_fast_path_gate_has_teeth():
+    """Requirement: the check notices a slide stiffness that differs by a per mille."""
+    changed = gates.teeth("spline_fast_path")
+    fast = solve_statics(cross_axis_pivot(**TABLE_ONE, **changed), rotation=1.5)
+    reference = solve_statics(cross_axis_pivot(**TABLE_ONE), rotation=1.5, method="multipliers")
+    with pytest.raises(AssertionError, match="x the gate"):
+        gates.check("spline_fast_path", np.abs(fast.torque / reference.torque.max() - 1)[-1])
+
+
+@pytest.mark.parametrize(
+    "settings",
+    [
+        {"stretch": "inextensible"},
+        {"stretch": "consistent"},
+        {"measure": "spatial"},
+        {"basis": "bspline"},
+        {"effects": ("bending", "stretching", "gravity")},
+        {"area": 50.0},
+    ],
+    ids=str,
+)
+def test_other_scenes_take_the_multiplier_path(settings):
+    """Requirement: what the condensed path does not cover is solved all the same, by the other one."""
+    pivot = cross_axis_pivot(**(TABLE_ONE | settings))
+    assert not is_fast(pivot.mechanism)
+    assert solve_statics(pivot, rotation=0.3, increments=3).status.value == "converged"
+
+
+def test_an_unknown_method_is_refused():
+    """Requirement: a method that does not exist is refused with those that do."""
+    with pytest.raises(InvalidParameter, match="one of condensed, multipliers"):
+        solve_statics(cross_axis_pivot(**TABLE_ONE), rotation=0.3, method="guess")
+
+
+def many(count=40):
+    """Designs around Table 1, drawn once."""
+    generator = np.random.default_rng(11)
+    return [
+        TABLE_ONE
+        | {
+            "crossing_ratio": generator.uniform(0.2, 0.8),
+            "inclination": generator.uniform(0.6, 1.0),
+            "second_moment_of_area": 1.041e-10 * generator.uniform(0.3, 3.0),
+        }
+        for _ in range(count)
+    ]
+
+
+def test_a_batch_equals_single_solves():
+    """Requirement: many designs at once give the answers of single solves, whatever the threads."""
+    designs = many()
+    one, two = (solve_many(designs, rotation=1.2, increments=20, threads=t) for t in (1, 2))
+    for name in ("torque", "stiffness", "centre", "energy"):
+        assert np.array_equal(getattr(one, name), getattr(two, name))
+    for i in (0, 17, 39):
+        single = solve_statics(cross_axis_pivot(**designs[i]), rotation=1.2)
+        torque = np.abs(one.torque[i] - single.torque).max() / single.torque.max()
+        centre = np.abs(one.centre[i] - single.centre).max() / designs[i]["length"]
+        # the same code on the same numbers: zero is right here, so round-off is added
+        gates.check("spline_batch", torque + centre + np.finfo(float).eps)
+    assert one.converged.all()
+
+
+def test_batch_gate_has_teeth():
+    """Requirement: one design's answer does not pass for another's."""
+    designs = many()
+    batch = solve_many(designs, rotation=1.2, increments=20)
+    other = gates.teeth("spline_batch")["design"]
+    with pytest.raises(AssertionError, match="x the gate"):
+        gates.check("spline_batch", np.abs(batch.torque[0] / batch.torque[other] - 1)[-1])
+
+
+def test_failed_designs_are_rows():
+    """Requirement: a design whose path stops is reported in its row, nan from there on; the others go on."""
+    designs = [TABLE_ONE, TABLE_ONE | {"crossing_ratio": 0.95}, TABLE_ONE]
+    batch = solve_many(designs, rotation=math.radians(400), increments=40, control_points=8)
+    stopped = batch.states < 41
+    assert stopped.any()
+    for i in np.flatnonzero(stopped):
+        assert not batch.converged[i]
+        assert np.isfinite(batch.torque[i, : batch.states[i]]).all()
+        assert np.isnan(batch.torque[i, batch.states[i] :]).all()
+    assert np.array_equal(batch.torque[0], batch.torque[2], equal_nan=True)
+
+
+def test_a_bad_design_in_a_batch_is_named():
+    """Requirement: the row of a bad design and its fault are in the one line of the refusal."""
+    with pytest.raises(InvalidParameter, match=r"design 1: length: got -1\.0"):
+        solve_many([TABLE_ONE, TABLE_ONE | {"length": -1.0}], rotation=1.0)
