@@ -14,9 +14,10 @@ from spline_model.compile import System
 from spline_model.design import Design
 from spline_model.effects.constraints import GROUND
 from spline_model.effects.registry import MOTION_ONLY
-from spline_model.fast.path import EVALUATIONS, HALVED, ITERATIONS, Answer, Frame, Grid, Space, follow
+from spline_model.fast.body import Frame, Space
+from spline_model.fast.path import EVALUATIONS, HALVED, ITERATIONS, Answer, follow
 from spline_model.fast.states import states_of
-from spline_model.fast.strip import local_arrays
+from spline_model.fast.strip import Grid, local_arrays
 from spline_model.mechanism import Mechanism
 from spline_model.solution import Path, Status
 

@@ -9,7 +9,8 @@ from numpy.typing import NDArray
 from spline_model.compile import System
 from spline_model.effects import Clamp, DrivenRotation, MixedStretching
 from spline_model.effects.base import Constraint
-from spline_model.fast.path import Answer, Frame
+from spline_model.fast.body import Frame
+from spline_model.fast.path import Answer
 from spline_model.kernels.assemble import assemble
 
 Array = NDArray[np.float64]

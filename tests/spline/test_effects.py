@@ -344,3 +344,43 @@ def test_a_new_effect_is_one_class_and_one_line(monkeypatch):
         solve_motion(pivot.mechanism, start=1.0, duration=0.002)
     work = Workspace.of(compile_scene(pivot.scene))
     assert work.system.open_potentials[0].stiffness == 1e5
+
+
+def frame_difference(turned_by=0.7):
+    """Difference of a scene with every effect and its image turned by 0.7 rad: rotations, over 20 ms."""
+    names = (
+        "gravity",
+        "section_rotary_inertia",
+        "strip_damping",
+        "strip_drag",
+        "body_damping",
+        "applied_force",
+    )
+    turn = np.array([[np.cos(turned_by), -np.sin(turned_by)], [np.sin(turned_by), np.cos(turned_by)]])
+    given = {name: PARAMETERS[name] for name in names if name in PARAMETERS}
+    turned = given | {
+        "gravity": {"acceleration": tuple(turn @ given["gravity"]["acceleration"])},
+        "applied_force": {"force": tuple(turn @ given["applied_force"]["force"])},
+    }
+    runs = [
+        solve_motion(
+            cross_axis_pivot(
+                **TABLE_ONE, orientation=angle, effects=DEFAULT_EFFECTS + names, parameters=parameters
+            ).mechanism,
+            start=1.2,
+            duration=0.02,
+        )
+        for angle, parameters in ((0.0, given), (0.7, turned))
+    ]
+    return np.abs(runs[0].rotation - runs[1].rotation).max()
+
+
+def test_effects_are_frame_indifferent():
+    """Requirement: a scene turned as a whole, with its loads, moves in the same way."""
+    gates.check("spline_effects_frame", frame_difference())
+
+
+def test_frame_gate_has_teeth():
+    """Requirement: loads that do not turn with the scene do not pass."""
+    with pytest.raises(AssertionError, match="x the gate"):
+        gates.check("spline_effects_frame", frame_difference(**gates.teeth("spline_effects_frame")))
