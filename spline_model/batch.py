@@ -9,14 +9,17 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from spline_model.errors import InvalidParameter, require_count
-from spline_model.fast.path import follow
+from spline_model.fast.body import Frame
+from spline_model.fast.many import follow_share
 from spline_model.fast.solve import (
+    LEAST_COMPLIANCE,
     TOLERANCE,
     arrays,
     at_rest,
+    compliances,
     empty_answer,
     frame_of,
     grid_of,
@@ -27,6 +30,9 @@ from spline_model.mechanism import Mechanism
 from spline_model.pivot import cross_axis_pivot
 
 Array = NDArray[np.float64]
+
+POSITIVE = ("length", "area", "second_moment_of_area", "youngs_modulus")
+"""Columns that statics reads and that must be above zero; the others are checked on the first design."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -52,7 +58,7 @@ class Batch:
 
 
 def solve_many(
-    designs: Sequence[Mapping[str, Any]],
+    designs: Mapping[str, ArrayLike] | Sequence[Mapping[str, Any]],
     *,
     rotation: float,
     increments: int = 20,
@@ -61,30 +67,85 @@ def solve_many(
 ) -> Batch:
     """Static paths of many pivots to one rotation [rad].
 
-    designs: keywords of ``cross_axis_pivot``, one mapping a design; discretisation: the same
-    for all. The compiled paths run without the interpreter's lock on ``threads`` threads,
-    default all cores; the answers do not depend on their number. Raises InvalidParameter
-    with the number of the design that is bad or has no condensed path.
+    designs: keywords of ``cross_axis_pivot`` as columns, each a number or an array (D,), or
+    one mapping a design; discretisation: the same for all. The compiled paths run without
+    the interpreter's lock on ``threads`` threads, default all cores; the answers do not
+    depend on their number. Raises InvalidParameter with the number of a bad design.
     """
     require_count("increments", increments, 1)
-    mechanisms = [_mechanism(i, design, discretisation) for i, design in enumerate(designs)]
+    columns = _columns(designs)
+    first = cross_axis_pivot(
+        **{name: _plain(values[0]) for name, values in columns.items()}, **discretisation
+    )
+    if not is_fast(first.mechanism):
+        raise InvalidParameter("discretisation", discretisation, "Bezier strips, material, mixed")
+    frames = _frames(columns, first.mechanism)
     rotations = np.linspace(0.0, rotation, increments + 1)
-    batch = _empty(len(designs), rotations)
+    batch = _empty(len(frames.length), rotations)
     workers = threads or os.cpu_count() or 1
-    shares = [range(w, len(mechanisms), workers) for w in range(workers)]
     with ThreadPoolExecutor(workers) as pool:
-        list(pool.map(lambda share: _solve_share(mechanisms, share, rotations[1:], batch), shares))
+        list(pool.map(lambda w: _solve_share(w, workers, first.mechanism, frames, batch), range(workers)))
     return batch
 
 
-def _mechanism(number: int, design: Mapping[str, Any], discretisation: Mapping[str, Any]) -> Mechanism:
-    try:
-        mechanism = cross_axis_pivot(**(dict(design) | dict(discretisation))).mechanism
-    except InvalidParameter as error:
-        raise InvalidParameter(f"design {number}: {error.name}", error.got, error.expected) from None
-    if not is_fast(mechanism):
-        raise InvalidParameter(f"design {number}", "no condensed path", "Bezier strips, material, mixed")
-    return mechanism
+def _columns(designs: Mapping[str, ArrayLike] | Sequence[Mapping[str, Any]]) -> dict[str, Array]:
+    """Designs as columns of equal length, pairs with a second axis."""
+    if not isinstance(designs, Mapping):
+        designs = {name: np.array([design[name] for design in designs]) for name in designs[0]}
+    pairs = {name: 1 + (name == "centre_offset") for name in designs}
+    values = {name: np.asarray(value, dtype=float) for name, value in designs.items()}
+    count = max((len(v) for name, v in values.items() if v.ndim >= pairs[name]), default=1)
+    shape = {name: (count, 2) if pairs[name] == 2 else (count,) for name in values}
+    return {name: np.broadcast_to(value, shape[name]) for name, value in values.items()}
+
+
+def _plain(value: Any) -> Any:
+    return tuple(float(part) for part in value) if np.ndim(value) else float(value)
+
+
+def _frames(columns: Mapping[str, Array], first: Mechanism) -> Frame:
+    """Frames of all designs, every field with a first axis (D, ...)."""
+    for name in POSITIVE:
+        _refuse(columns, name, columns[name] > 0, "a finite number > 0")
+    _refuse(
+        columns,
+        "inclination",
+        (columns["inclination"] > 0) & (columns["inclination"] < np.pi / 2),
+        "0 to pi/2",
+    )
+    _refuse(
+        columns, "crossing_ratio", (columns["crossing_ratio"] > 0) & (columns["crossing_ratio"] < 1), "0 to 1"
+    )
+    c = columns
+    length, count = c["length"], len(c["length"])
+    turn = np.broadcast_to(c.get("orientation", np.zeros(1)), (count,))
+    offset = np.broadcast_to(c.get("centre_offset", np.zeros((1, 2))), (count, 2))
+    cos, sin = np.cos(c["inclination"]), np.sin(c["inclination"])
+    axis = np.stack((np.stack((cos, sin), -1), np.stack((-cos, sin), -1)), axis=1)
+    root = np.zeros((count, 2, 2))
+    root[:, 1, 0] = 2 * c["crossing_ratio"] * length * cos
+    tip = root + length[:, None, None] * axis
+    arm = tip - (tip.mean(axis=1) + offset)[:, None]
+    matrix = np.moveaxis(np.array([[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]]), -1, 0)
+    axis, root, arm = (np.einsum("dij,dsj->dsi", matrix, part) for part in (axis, root, arm))
+    rigidity = c["youngs_modulus"] * c["second_moment_of_area"]
+    axial = rigidity / (c["youngs_modulus"] * c["area"] * length**2)
+    _refuse(columns, "area", axial >= LEAST_COMPLIANCE, "strips below a slenderness of 9000")
+    return Frame(
+        root=root,
+        axis=axis,
+        length=np.repeat(length[:, None], 2, axis=1),
+        rigidity=np.repeat(rigidity[:, None], 2, axis=1),
+        arm=arm,
+        compliance=np.repeat(compliances(first.design, axial)[:, None], 2, axis=1),
+        centre=root[:, 0] + length[:, None] * axis[:, 0] - arm[:, 0],
+    )
+
+
+def _refuse(columns: Mapping[str, Array], name: str, good: NDArray[np.bool_], expected: str) -> None:
+    bad = np.flatnonzero(~(good & np.isfinite(columns[name])))
+    if bad.size:
+        raise InvalidParameter(f"design {bad[0]}: {name}", float(columns[name][bad[0]]), expected)
 
 
 def _empty(designs: int, rotations: Array) -> Batch:
@@ -100,23 +161,23 @@ def _empty(designs: int, rotations: Array) -> Batch:
     )
 
 
-def _solve_share(mechanisms: Sequence[Mechanism], share: range, rotations: Array, batch: Batch) -> None:
+def _solve_share(worker: int, workers: int, first: Mechanism, frames: Frame, batch: Batch) -> None:
     """Solve the designs of one thread with one set of working arrays."""
-    if not share:
-        return
-    design = mechanisms[share[0]].design
+    design = first.design
     n, modes = design.discretisation.control_points, mode_count(design)
-    grid = grid_of(design)
     locals_, space = arrays(len(design.strips), n, modes)
-    answer = empty_answer(len(rotations) + 1, len(space.y))
-    for i in share:
-        frame = frame_of(mechanisms[i])
-        answer.counters[:] = 0
-        start = at_rest(frame, n, modes)
-        done = follow(start, rotations, frame, grid, locals_, space, TOLERANCE, answer)
-        batch.states[i] = done
-        batch.centre[i, :done] = answer.y[:done, :2] * frame.length[0]
-        batch.torque[i, :done] = answer.torque[:done]
-        batch.stiffness[i, :done] = answer.stiffness[:done]
-        batch.energy[i, :done] = answer.energies[:done].sum(axis=1)
-        batch.iterations[i] = answer.counters[0]
+    answer = empty_answer(len(batch.rotation), len(space.y))
+    results = (batch.states, batch.centre, batch.torque, batch.stiffness, batch.energy, batch.iterations)
+    follow_share(
+        worker,
+        workers,
+        frames,
+        at_rest(frame_of(first), n, modes),
+        batch.rotation[1:],
+        grid_of(design),
+        locals_,
+        space,
+        TOLERANCE,
+        answer,
+        results,
+    )

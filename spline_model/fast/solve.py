@@ -68,6 +68,15 @@ def mode_count(design: Design) -> int:
     return settings.control_points - 1 if settings.slide_stiffness > 0 else settings.modes.count
 
 
+def compliances(design: Design, axial: Array) -> Array:
+    """Compliance of each mode, (D, K) [L^2/EI]: the strips' axial one (D,), and the slide stiffness's."""
+    settings = design.discretisation
+    table = np.repeat(axial[:, None], mode_count(design), axis=1)
+    if settings.slide_stiffness > 0:
+        table[:, settings.modes.count :] = 1.0 / settings.slide_stiffness
+    return table
+
+
 def frame_of(mechanism: Mechanism) -> Frame:
     """Geometry and rigidities of the strips."""
     design = mechanism.design
@@ -76,12 +85,7 @@ def frame_of(mechanism: Mechanism) -> Frame:
     end = np.array([s.end for s in design.strips], dtype=float)
     length = np.array([s.length for s in design.strips])
     rigidity = np.array([s.flexural_rigidity for s in design.strips])
-    compliance = np.empty((len(length), mode_count(design)))
-    settings = design.discretisation
-    for i, strip in enumerate(design.strips):
-        compliance[i] = rigidity[i] / (strip.axial_rigidity * length[i] ** 2)
-        if settings.slide_stiffness > 0:
-            compliance[i, settings.modes.count :] = 1.0 / settings.slide_stiffness
+    axial = rigidity / (np.array([s.axial_rigidity for s in design.strips]) * length**2)
     along = end - start
     return Frame(
         root=start,
@@ -89,7 +93,7 @@ def frame_of(mechanism: Mechanism) -> Frame:
         length=length,
         rigidity=rigidity,
         arm=end - centre,
-        compliance=compliance,
+        compliance=compliances(design, axial),
         centre=centre,
     )
 

@@ -144,3 +144,12 @@ def test_a_bad_design_in_a_batch_is_named():
     """Requirement: the row of a bad design and its fault are in the one line of the refusal."""
     with pytest.raises(InvalidParameter, match=r"design 1: length: got -1\.0"):
         solve_many([TABLE_ONE, TABLE_ONE | {"length": -1.0}], rotation=1.0)
+
+
+def test_columns_are_the_same_as_rows():
+    """Requirement: designs as columns, with numbers for what they share, give the answers of a list."""
+    designs = many(5)
+    varied = ("crossing_ratio", "inclination", "second_moment_of_area")
+    columns = TABLE_ONE | {name: np.array([d[name] for d in designs]) for name in varied}
+    rows = solve_many(designs, rotation=1.0, increments=5)
+    assert np.array_equal(solve_many(columns, rotation=1.0, increments=5).torque, rows.torque)
