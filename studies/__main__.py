@@ -20,12 +20,21 @@ INTERRUPTED = 130
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run one command; return its exit code, or 2 after one line on the error stream for bad input."""
+    """Run one command; return its exit code, or 2 after one line on the error stream for bad input
+    or a missing package."""
     words = list(sys.argv[1:] if arguments is None else arguments)
     try:
         return _dispatch(words)
     except BadInput as error:
         print(f"studies: {error}", file=sys.stderr)
+        return BAD_INPUT
+    except ModuleNotFoundError as error:
+        if (error.name or "").partition(".")[0] in ("studies", "spline_model", "fe_reference"):
+            raise  # a fault of this suite, not of its surroundings
+        print(
+            f"studies: the package {error.name} is not installed: run `make setup` and use .venv/bin/python",
+            file=sys.stderr,
+        )
         return BAD_INPUT
     except KeyboardInterrupt:
         print("studies: interrupted", file=sys.stderr)

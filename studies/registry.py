@@ -17,6 +17,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "run": ("studies.commands.run", "compute and draw studies"),
     "draw": ("studies.commands.draw", "redraw studies from their stored tables"),
     "status": ("studies.commands.status", "say which stored results are fresh, stale or missing"),
+    "compile": ("studies.commands.compile_kernels", "compile the kernels of both models, once"),
     "readme": ("studies.commands.readme", "rewrite the figures of agreement in README.md from the results"),
 }
 

@@ -166,7 +166,7 @@ class _Model:
     Attributes:
         records: keyword for the largest number of records of a motion.
         release_options: keywords that every release takes.
-        moving: discretisation keywords of a pivot in motion where its settings say nothing.
+        moving: discretisation keywords of a pivot in motion, from its settings, where they say nothing.
     """
 
     pivot: ModuleType
@@ -176,7 +176,7 @@ class _Model:
     errors: ModuleType
     records: str
     release_options: dict[str, Any]
-    moving: dict[str, Any]
+    moving: Callable[[Settings], dict[str, Any]]
 
 
 def _model(settings: Settings) -> _Model:
@@ -196,7 +196,7 @@ def _model(settings: Settings) -> _Model:
             errors=fe_reference.errors,
             records="samples",
             release_options={"raise_on_failure": False},
-            moving={},
+            moving=lambda settings: {},
         )
     import spline_model.dynamics
     import spline_model.errors
@@ -212,8 +212,17 @@ def _model(settings: Settings) -> _Model:
         errors=spline_model.errors,
         records="records",
         release_options={},
-        moving={"slide_stiffness": spline_model.pivot.SWINGING_SLIDE_STIFFNESS},
+        moving=_swinging_spline,
     )
+
+
+def _swinging_spline(settings: Settings) -> dict[str, Any]:
+    """Return the slide stiffness of a spline in motion, which goes with the number of control points."""
+    from spline_model.design import Discretisation
+    from spline_model.pivot import swinging_slide_stiffness
+
+    given = settings.keywords().get("control_points", Discretisation.control_points)
+    return {"slide_stiffness": swinging_slide_stiffness(given)}
 
 
 def _pivot(
@@ -226,7 +235,7 @@ def _pivot(
     """
     keywords = settings.keywords()
     if moving:
-        keywords |= {name: value for name, value in model.moving.items() if name not in keywords}
+        keywords = model.moving(settings) | keywords
     try:
         return model.pivot.cross_axis_pivot(**problem.pivot_parameters(), **keywords), keywords
     except model.errors.InvalidParameter as error:

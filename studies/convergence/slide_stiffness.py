@@ -10,10 +10,9 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from spline_model.pivot import SLIDE_STIFFNESS, SWINGING_SLIDE_STIFFNESS
+from spline_model.pivot import SLIDE_STIFFNESS, swinging_slide_stiffness
 from studies.answers.adapters import answer_static
 from studies.answers.metrics import swing_frequency
 from studies.answers.reference import errors
@@ -34,9 +33,6 @@ COUNTS = range(4, 11)
 MOVING_COUNTS = (4, 6, 8)
 DURATION = 0.025
 
-#: What the model takes where nothing is said.
-DEFAULTS = {"statics": SLIDE_STIFFNESS, "motion": SWINGING_SLIDE_STIFFNESS}
-
 #: A default is called near the best when its error is at most this many times the least.
 NEAR = 3.0
 
@@ -50,12 +46,22 @@ def compute(progress: Callable[[int, int], None]) -> dict[str, pd.DataFrame]:
         statics += [_static(n, value) for value in VALUES]
     for done, n in enumerate(MOVING_COUNTS, start=len(COUNTS)):
         progress(done, total)
-        motions += [_motion(n, value) for value in VALUES]
+        motions += [_motion(n, value) for value in sorted({*VALUES, swinging_slide_stiffness(n)})]
     progress(total, total)
     static, motion = pd.DataFrame(statics), pd.DataFrame(motions)
-    found = _findings(static, "error_torque", DEFAULTS["statics"], "torque on the path")
-    found += _findings(motion, "error_rotation_rad", DEFAULTS["motion"], "rotation in motion")
-    chosen = pd.DataFrame([{"problem": name, "slide_stiffness": value} for name, value in DEFAULTS.items()])
+    chosen = pd.DataFrame(
+        [{"problem": "statics", "control_points": n, "slide_stiffness": SLIDE_STIFFNESS} for n in COUNTS]
+        + [
+            {"problem": "motion", "control_points": n, "slide_stiffness": swinging_slide_stiffness(n)}
+            for n in MOVING_COUNTS
+        ]
+    )
+    defaults = {
+        str(problem): rows.set_index("control_points")["slide_stiffness"]
+        for problem, rows in chosen.groupby("problem")
+    }
+    found = _findings(static, "error_torque", defaults["statics"], "torque on the path")
+    found += _findings(motion, "error_rotation_rad", defaults["motion"], "rotation in motion")
     return {"statics": static, "motion": motion, "defaults": chosen, "findings": table(found)}
 
 
@@ -63,42 +69,26 @@ def draw(tables: Mapping[str, pd.DataFrame]) -> dict[str, Figure]:
     """Draw the errors of torque, stiffness and rotation in motion over the slide stiffness."""
     figure = page(9.5, 4.4)
     torque, stiffness, motion = figure.subplots(1, 3)
-    chosen = tables["defaults"].set_index("problem")["slide_stiffness"]
+    chosen = tables["defaults"].set_index(["problem", "control_points"])["slide_stiffness"]
     panels = (
-        (torque, tables["statics"], "error_torque", "largest error of the torque [1]", chosen["statics"]),
-        (
-            stiffness,
-            tables["statics"],
-            "error_stiffness",
-            "largest error of the stiffness [1]",
-            chosen["statics"],
-        ),
-        (
-            motion,
-            tables["motion"],
-            "error_rotation_rad",
-            "largest error of the rotation [rad]",
-            chosen["motion"],
-        ),
+        (torque, "statics", "error_torque", "largest error of the torque [1]"),
+        (stiffness, "statics", "error_stiffness", "largest error of the stiffness [1]"),
+        (motion, "motion", "error_rotation_rad", "largest error of the rotation [rad]"),
     )
-    for panel, rows, column, label, default in panels:
-        for n, curve in rows.groupby("control_points"):
+    for panel, problem, column, label in panels:
+        for n, curve in tables[problem].groupby("control_points"):
             style = {"color": COUNT_COLOURS[int(str(n))], "marker": "o", "markersize": 3.0}
             panel.loglog(curve["slide_stiffness"], curve[column], **style, label=f"n = {n}")
-        _default(panel, float(default))
+            default = chosen[problem, n]
+            at = curve.set_index("slide_stiffness")[column][default]
+            panel.loglog(default, at, "o", markersize=8.0, fillstyle="none", color="black")
         panel.set(xlabel="slide stiffness [EI/L²]", ylabel=label)
     torque.set_title("Static path to 90°")
     stiffness.set_title("Static path to 90°")
     motion.set_title(f"{1e3 * DURATION:g} ms after the release")
+    torque.annotate("rings: the defaults", (0.03, 0.03), xycoords="axes fraction", fontsize=8)
     figure.legend(*torque.get_legend_handles_labels(), loc="outside lower center", ncols=len(COUNTS))
     return {"slide_stiffness": figure}
-
-
-def _default(panel: Axes, value: float) -> None:
-    panel.axvline(value, color="#444444", linewidth=0.8)
-    panel.annotate(
-        "default", (value, 1.0), (3, -3), ("data", "axes fraction"), "offset points", va="top", fontsize=8
-    )
 
 
 def _static(n: int, value: float) -> dict[str, Any]:
@@ -125,18 +115,18 @@ def _motion(n: int, value: float) -> dict[str, Any]:
     }
 
 
-def _findings(rows: pd.DataFrame, column: str, default: float, what: str) -> list[Finding]:
+def _findings(rows: pd.DataFrame, column: str, defaults: "pd.Series[float]", what: str) -> list[Finding]:
     """Return for each count whether the default is near the best of the values, which it names."""
     found = []
     for n, curve in rows.groupby("control_points"):
         by_value = curve.set_index("slide_stiffness")[column].dropna()
-        best = float(by_value.index[int(by_value.argmin())])
+        best, default = float(by_value.index[int(by_value.argmin())]), float(defaults[n])
         excess = float(by_value[default] / by_value[best])
         found.append(
             Finding(
                 claim=f"The default slide stiffness is near the best for the {what} (within {NEAR:g} x)",
                 formulation=f"n = {n}",
-                quantity=f"the error with {default:g} EI/L^2 over the least, with {best:g},",
+                quantity=f"the error with {default:.3g} EI/L^2 over the least, with {best:g},",
                 value=excess,
                 holds=excess <= NEAR,
             )

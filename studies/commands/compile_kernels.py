@@ -1,0 +1,44 @@
+"""Compile the kernels of both models, once; later runs load them from the disk.
+
+    python -m studies compile
+
+`make setup` does this. The kernels are kept beside their sources and compiled anew when these change. Nothing
+depends on this command: what is not compiled is compiled when it is first called.
+"""
+
+import argparse
+import sys
+import time
+from dataclasses import replace
+
+from studies.answers.adapters import answer_modes, answer_release, answer_static
+from studies.answers.settings import FeSettings, Settings, SplineSettings
+from studies.cases.problem import named_case
+from studies.commands.parser import Parser
+
+#: Small calls that between them enter every kernel.
+SETTINGS: tuple[Settings, ...] = (
+    SplineSettings(control_points=4),
+    SplineSettings(control_points=4, stretch="consistent"),
+    FeSettings(elements=4),
+    FeSettings(elements=4, element="reissner"),
+)
+INTEGRATORS = {"spline": ("energy", "generalised-alpha", "explicit"), "fe": ("central-difference",)}
+
+
+def add_arguments(parser: Parser) -> None:
+    """Declare no arguments."""
+
+
+def main(arguments: argparse.Namespace) -> int:
+    """Enter every kernel; return the exit code."""
+    problem = replace(named_case("cross_axis_pivot"), rotation=0.1, increments=1)
+    print("studies: compiling the kernels, once (about a minute) ...", file=sys.stderr, flush=True)
+    begin = time.perf_counter()
+    for settings in SETTINGS:
+        answer_static(problem, settings)
+        answer_modes(problem, settings)
+        for integrator in INTEGRATORS["fe" if isinstance(settings, FeSettings) else "spline"]:
+            answer_release(problem, settings, duration=1e-5, integrator=integrator, step=1e-8)
+    print(f"studies: ready after {time.perf_counter() - begin:.0f} s", file=sys.stderr)
+    return 0
