@@ -1,1 +1,1 @@
-"""Independent finite-element reference for flexural pivots: thin strips and one rigid body, on scikit-fem."""
+"""Independent finite-element reference for flexural pivots: thin strips and rigid bodies, on scikit-fem."""

@@ -30,6 +30,17 @@ def wrapped(angle: Array) -> Array:
     return angle - 2.0 * np.pi * np.round(angle / (2.0 * np.pi))
 
 
+def outer(a: Array, b: Array) -> Array:
+    """Return the products (6, 6, E) of two sets of rows (6, E)."""
+    return a[:, None] * b[None, :]
+
+
+def _directions(c: Array, s: Array) -> tuple[Array, Array]:
+    """Return d l / d u and l d beta / d u (6, E) of chords along (c, s)."""
+    zero = np.zeros_like(c)
+    return np.stack([-c, -s, zero, c, s, zero]), np.stack([s, -c, zero, -s, c, zero])
+
+
 class Corotational:
     """Forces, tangents and energies of corotational elements with given reference geometry.
 
@@ -77,25 +88,46 @@ class Corotational:
     def tangents(self, displacement: Array) -> Array:
         """Return the derivative (6, 6, E) of the nodal forces: material part and both geometric parts."""
         length, (c, s), strain, first, second = self._frame(displacement)
+        along, across = _directions(c, s)
+        axial = self.elements.axial_rigidity * strain
+        shear = sum(self._end_moments(first, second)) / length
+        return (
+            self._material(length, along, across)
+            + axial / length * outer(across, across)
+            + shear / length * (outer(along, across) + outer(across, along))
+        )
+
+    def material_tangents(self, displacement: Array) -> Array:
+        """Return the part of the tangents that comes from the change of the strains alone, (6, 6, E)."""
+        length, (c, s), *_ = self._frame(displacement)
+        return self._material(length, *_directions(c, s))
+
+    def _material(self, length: Array, along: Array, across: Array) -> Array:
         e = self.elements
-        zero, one = np.zeros_like(c), np.ones_like(c)
-        along = np.stack([-c, -s, zero, c, s, zero])  # d l / d u
-        across = np.stack([s, -c, zero, -s, c, zero])  # l d beta / d u
+        zero, one = np.zeros_like(length), np.ones_like(length)
         turn_1 = np.stack([zero, zero, one, zero, zero, zero]) - across / length
         turn_2 = np.stack([zero, zero, zero, zero, zero, one]) - across / length
         rate = e.flexural_rigidity / e.length
-        axial, shear = e.axial_rigidity * strain, sum(self._end_moments(first, second)) / length
-
-        def outer(a: Array, b: Array) -> Array:
-            return a[:, None] * b[None, :]
-
         return (
             e.axial_rigidity / e.length * outer(along, along)
             + rate * (4.0 * (outer(turn_1, turn_1) + outer(turn_2, turn_2)))
             + rate * (2.0 * (outer(turn_1, turn_2) + outer(turn_2, turn_1)))
-            + axial / length * outer(across, across)
-            + shear / length * (outer(along, across) + outer(across, along))
         )
+
+    def axial_strains(self, displacement: Array) -> Array:
+        """Return eps of the elements (E,)."""
+        return self._frame(displacement)[2]
+
+    def axial_slopes(self, displacement: Array) -> Array:
+        """Return d eps / d u, (6, E) [1/m]."""
+        _, (c, s), *_ = self._frame(displacement)
+        return _directions(c, s)[0] / self.elements.length
+
+    def axial_curvatures(self, displacement: Array) -> Array:
+        """Return d^2 eps / d u^2, (6, 6, E) [1/m^2]."""
+        length, (c, s), *_ = self._frame(displacement)
+        across = _directions(c, s)[1]
+        return outer(across, across) / (length * self.elements.length)
 
     def energies(self, displacement: Array) -> tuple[Array, Array, Array]:
         """Return bending, axial and shear energy of the elements, three arrays (E,) [J]; the last is zero."""

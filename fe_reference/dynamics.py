@@ -1,22 +1,25 @@
-"""Free motion of the body and its strips after the drive is removed."""
+"""Motion of a model after its drives are removed, or from the shape at rest."""
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import ceil
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from .effects.actions import start_load
+from .effects.named import DEFAULT_EFFECTS, needs_inertia, read_effects
 from .errors import ConvergenceError, InvalidParameter, choice, count, finite, positive, within
 from .explicit import Explicit, critical_step
 from .implicit import Implicit
-from .mass import about_mass_centre
+from .mass import about_mass_centre, carried_over
 from .model import Model
 from .modes import natural_frequencies
 from .motion import Progress, Samples, sampling
 from .solution import Status
-from .statics import body_centre, driven_state
+from .statics import static_state
 from .structure import Structure
+from .trajectory import MechanismTrajectory, Trajectory, mechanism_trajectory, pivot_trajectory
 
 Array = NDArray[np.float64]
 INTEGRATORS = ("central-difference", "generalised-alpha")
@@ -28,43 +31,26 @@ MOST_STEPS = 1_000_000_000
 MOST_NUMBERS = 200_000_000
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Trajectory:
-    """A motion at T sampled instants, the start first; G strips, P nodes a strip.
+@dataclass(frozen=True, kw_only=True)
+class Run:
+    """How a motion is integrated; the arguments of `solve_release` of the same names."""
 
-    Attributes:
-        status, message: how the run ended; why and when it stopped ("" if it did not).
-        time (T,): [s].
-        rotation (T,): turn of the body [rad].
-        centre (T, 2): its centre of mass, origin at the ground end of the first strip [m].
-        rotation_rate (T,): [rad/s].
-        kinetic_energy, strain_energy (T,): [J].
-        constraint_residual (T,) [m], velocity_residual (T,) [m/s]: zero: clamps and attachments are
-            eliminated exactly, not enforced.
-        shape (T, G, P, 2): positions of the nodes, same origin [m].
-        counters: steps, force_evaluations; implicit also newton_iterations, halvings.
-        settings: integrator, step_s, critical_step_s (explicit), start_rad and what else defines the run.
-    """
+    duration: float
+    step: float | None
+    integrator: str
+    safety: float
+    spectral_radius: float
+    samples: int
+    progress: Progress | None
 
-    status: Status
-    message: str
-    time: Array
-    rotation: Array
-    centre: Array
-    rotation_rate: Array
-    kinetic_energy: Array
-    strain_energy: Array
-    constraint_residual: Array
-    velocity_residual: Array
-    shape: Array
-    counters: Mapping[str, int]
-    settings: Mapping[str, float | str]
-
-    @property
-    def energy_error(self) -> float:
-        """Largest deviation of the energy from that of the start, relative to it [1]."""
-        energy = self.kinetic_energy + self.strain_energy
-        return float(np.abs(energy / energy[0] - 1.0).max())
+    def __post_init__(self) -> None:
+        choice("integrator", self.integrator, INTEGRATORS)
+        positive("duration", self.duration, "s")
+        if self.step is not None:
+            positive("step", self.step, "s")
+        count("samples", self.samples)
+        positive("safety", self.safety, "1")
+        within("spectral_radius", self.spectral_radius, 0.0, 1.0 + 1e-12, "1")
 
 
 def solve_release(
@@ -94,44 +80,133 @@ def solve_release(
         increments: of the static path to the start.
         progress: called as progress(done, total) after every sample.
 
-    Leaves out damping and gravity; the corotational element has no physical rotary inertia (see `mass`).
+    The start is in equilibrium under gravity, natural strains and the loads at the instant 0. Drives end
+    there; loads go on with their histories. Unless the scene names the rotary inertia of the sections, the
+    corotational element has none but a numerical one (see `mass`).
 
     Raises:
-        InvalidParameter: a value outside its domain, or a run too long to finish or to keep.
+        InvalidParameter: a value outside its domain, a run too long to finish or to keep, nothing with
+            inertia, or parts without inertia in the explicit integrator.
         ConvergenceError: statics does not reach the start; or (unless `raise_on_failure` is False) the motion
             blew up or a step had no solution: carries the trajectory until then.
     """
-    name = choice("integrator", integrator, INTEGRATORS)
     if finite("start", start, "rad") == 0.0:
         raise InvalidParameter("start", start, "a rotation that is not zero [rad]")
-    span = positive("duration", duration, "s")
-    kept = count("samples", samples)
-    structure, body = about_mass_centre(pivot.structure)
-    y = driven_state(structure, start, count("increments", increments))
+    run = Run(
+        duration=duration,
+        step=step,
+        integrator=integrator,
+        safety=safety,
+        spectral_radius=spectral_radius,
+        samples=samples,
+        progress=progress,
+    )
+    pivot.body_index(None)
+    y = _start(pivot, start, None, increments)
+    structure, motion, settings = _integrate(pivot, y, run)
+    trajectory = pivot_trajectory(structure, motion, {"start_rad": start, **settings})
+    _raise_if_stopped(trajectory, motion, run, raise_on_failure)
+    return trajectory
+
+
+def solve_motion(
+    mechanism: Model,
+    *,
+    start: float | None = None,
+    body: str | None = None,
+    settled: bool = True,
+    duration: float,
+    step: float | None = None,
+    integrator: str = INTEGRATORS[0],
+    safety: float = 0.9,
+    spectral_radius: float = 0.9,
+    samples: int = 1000,
+    increments: int = 20,
+    raise_on_failure: bool = True,
+    progress: Progress | None = None,
+) -> MechanismTrajectory:
+    """Let a mechanism go at rest and follow the motion of all its bodies.
+
+    Args:
+        mechanism: strips, bodies and effects.
+        start: rotation at which a body is held until the start [rad]; None: no body is held.
+        body: name of the held body; None: the only one.
+        settled: whether the start is in equilibrium under gravity, natural strains and the loads at the
+            instant 0; if not it is the shape at rest, and all of these act at once.
+        others: as in `solve_release`. The default of the implicit step is a 6000th of the first period about
+            the shape at rest, without gravity and loads.
+
+    Drives end at the start; loads go on with their histories.
+
+    Raises:
+        InvalidParameter, ConvergenceError: as in `solve_release`; a start that is held but not settled.
+    """
+    run = Run(
+        duration=duration,
+        step=step,
+        integrator=integrator,
+        safety=safety,
+        spectral_radius=spectral_radius,
+        samples=samples,
+        progress=progress,
+    )
+    if start is not None and not settled:
+        raise InvalidParameter("settled", settled, "True for a start at a held rotation [1]")
+    y = _start(mechanism, start, body, increments) if settled else np.zeros(mechanism.structure.size)
+    structure, motion, settings = _integrate(mechanism, y, run)
+    begin: dict[str, float | str] = {} if start is None else {"start_rad": start}
+    trajectory = mechanism_trajectory(structure, motion, begin | settings)
+    _raise_if_stopped(trajectory, motion, run, raise_on_failure)
+    return trajectory
+
+
+def _start(model: Model, rotation: float | None, body: str | None, increments: int) -> Array:
+    """Return the coordinates of the start about the bodies' centres."""
+    needs_inertia(model.effects)
+    return static_state(model, rotation, body, count("increments", increments), start_load(model.structure))
+
+
+def _integrate(model: Model, y: Array, run: Run) -> tuple[Structure, Samples, dict[str, float | str]]:
+    """Integrate from rest at y; return the structure the samples belong to, the samples and the settings."""
+    needs_inertia(model.effects)
+    structure, bodies = about_mass_centre(model.structure)
+    y = carried_over(model.structure, y, structure)
     scheme: Explicit | Implicit
     choices: dict[str, float]
-    if name == "central-difference":
-        limit = min(critical_step(structure, body, state) for state in (y, np.zeros_like(y)))
-        choices = {"critical_step_s": limit, "safety": positive("safety", safety, "1")}
-        longest, scheme = safety * limit, Explicit(structure, body)
+    if run.integrator == "central-difference":
+        scheme = Explicit(structure, bodies)
+        limit = min(critical_step(structure, bodies, state) for state in (y, np.zeros_like(y)))
+        choices, longest = {"critical_step_s": limit, "safety": run.safety}, run.safety * limit
     else:
-        choices = {"spectral_radius": within("spectral_radius", spectral_radius, 0.0, 1.0 + 1e-12, "1")}
-        first = natural_frequencies(pivot, count=1, mass="lumped").frequency[0]
-        longest, scheme = 1.0 / (STEPS_PER_PERIOD * first), Implicit(structure, body, spectral_radius)
-    h, steps = _steps(span, longest if step is None else positive("step", step, "s"), step is None)
-    _affordable(span, h, steps, min(kept, steps), y.size)
-    motion = scheme.run(y, np.zeros_like(y), h, sampling(steps, kept), progress)
-    settings: dict[str, float | str] = {"integrator": name, "start_rad": start, "duration_s": span}
-    settings |= {"step_s": h, **choices}
-    trajectory = _trajectory(structure, motion, settings)
+        scheme, choices = Implicit(structure, bodies, run.spectral_radius), {}
+        choices["spectral_radius"] = run.spectral_radius
+        longest = run.duration if run.step is not None else 1.0 / (STEPS_PER_PERIOD * _first_frequency(model))
+    h, steps = _steps(run.duration, longest if run.step is None else run.step, run.step is None)
+    _affordable(run.duration, h, steps, min(run.samples, steps), y.size)
+    motion = scheme.run(y, np.zeros_like(y), h, sampling(steps, run.samples), run.progress)
+    settings: dict[str, float | str] = {"integrator": run.integrator, "duration_s": run.duration, "step_s": h}
+    return structure, motion, settings | choices
+
+
+def _first_frequency(model: Model) -> float:
+    """Return the first frequency about the shape at rest, of inertia and elasticity alone [Hz]."""
+    kept = [name for name in model.effects.names if name in DEFAULT_EFFECTS]
+    bare = replace(model, effects=read_effects(kept, {}))
+    frequency = float(natural_frequencies(bare, rotation=None, count=1, mass="lumped").frequency[0])
+    if frequency <= 0.0:
+        raise InvalidParameter("step", None, "a step: the model can move freely and has no first period [s]")
+    return frequency
+
+
+def _raise_if_stopped(trajectory: Any, motion: Samples, run: Run, raise_on_failure: bool) -> None:
+    """Raise if a motion ended early, with what there is of it."""
     if trajectory.status is not Status.CONVERGED and raise_on_failure:
         raise ConvergenceError(
             f"{trajectory.message}; {trajectory.status.text}",
             solution=trajectory,
-            load_factor=float(trajectory.time[-1] / span),
+            load_factor=float(trajectory.time[-1] / run.duration),
             history=tuple(motion.history),
         )
-    return trajectory
 
 
 def _steps(duration: float, longest: float, fill: bool) -> tuple[float, int]:
@@ -151,26 +226,3 @@ def _affordable(duration: float, step: float, steps: int, samples: int, size: in
     if 2 * samples * size > MOST_NUMBERS:
         most = MOST_NUMBERS // (2 * size)
         raise InvalidParameter("samples", samples, f"at most {most} samples of {size} coordinates [1]")
-
-
-def _trajectory(structure: Structure, motion: Samples, settings: Mapping[str, float | str]) -> Trajectory:
-    """Turn samples in the reduced coordinates into what is reported."""
-    y, time = np.array(motion.y), np.array(motion.time)
-    status = Status.CONVERGED if not motion.message else Status.NOT_CONVERGED
-    nodes = np.array([strip.nodes for strip in structure.model.strips])
-    moved = np.array([structure.displacement(each)[:, :2] for each in motion.y])
-    return Trajectory(
-        status=Status.UNSTABLE if motion.unstable else status,
-        message=motion.message,
-        time=time,
-        rotation=y[:, -1],
-        centre=body_centre(structure, y),
-        rotation_rate=np.array(motion.v)[:, -1],
-        kinetic_energy=np.array(motion.kinetic),
-        strain_energy=np.array(motion.strain),
-        constraint_residual=np.zeros_like(time),
-        velocity_residual=np.zeros_like(time),
-        shape=nodes + moved.reshape(-1, *nodes.shape) - nodes[0, 0],
-        counters=dict(motion.counters),
-        settings=settings,
-    )

@@ -70,3 +70,16 @@ def choice(name: str, value: Any, known: tuple[str, ...]) -> str:
     if value not in known:
         raise InvalidParameter(name, value, f"one of {', '.join(known)} [name]")
     return str(value)
+
+
+def pair(name: str, value: Any, unit: str) -> tuple[float, float]:
+    """Return `value` as two floats, or refuse it if it is not two finite numbers."""
+    parts = list(value) if isinstance(value, list | tuple) or hasattr(value, "tolist") else []
+    if len(parts) != 2:
+        raise InvalidParameter(name, value, f"two finite numbers [{unit}]")
+    return finite(name, float_or_same(parts[0]), unit), finite(name, float_or_same(parts[1]), unit)
+
+
+def float_or_same(value: Any) -> Any:
+    """Return a numpy number as a plain one; anything else as it is."""
+    return value.item() if hasattr(value, "item") else value

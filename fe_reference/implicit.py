@@ -1,17 +1,20 @@
 """Implicit integration with the same elements and the same lumped masses: the generalised-alpha scheme.
 
-    M ((1 - am) a_{n+1} + am a_n) + (1 - af) f(q_{n+1}) + af f(q_n) = 0
+    M ((1 - am) a_{n+1} + am a_n) + (1 - af) f_{n+1} + af f_n = 0,    f_n = f(q_n, v_n, t_n)
     q_{n+1} = q_n + h v_n + h^2 ((1/2 - b) a_n + b a_{n+1}),    v_{n+1} = v_n + h ((1 - g) a_n + g a_{n+1})
 
 with am = (2 r - 1)/(r + 1), af = r/(r + 1), g = 1/2 - am + af, b = (1 - am + af)^2 / 4 and spectral radius r
 at infinite frequency: second order, and high frequencies that the step does not resolve are damped if r < 1.
-Energy is not conserved exactly in large motion; it is recorded. About the common centre of mass M is diagonal
-and constant.
+Energy is not conserved exactly in large motion; it is recorded, the work of loads and dampers by the
+trapezoidal rule over the steps. About the common centres of mass M is diagonal and constant.
+
+Strips without inertia are legal: their rows hold no mass and become (1 - af) f_{n+1} + af f_n = 0, so that
+the strips stay in equilibrium with the bodies if they start there, and else reach it as (-r)^n.
 
 Source: J. Chung, G. M. Hulbert, J. Appl. Mech. 60 (1993) 371-375.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,8 +22,9 @@ from scipy.sparse import diags_array
 from scipy.sparse.linalg import SuperLU, splu
 
 from .compiled import CompiledForces
-from .mass import RigidBody, lumped_diagonal
-from .motion import Progress, Samples
+from .effects.actions import Actions, Resistance
+from .mass import RigidBodies, lumped_diagonal
+from .motion import Energy, Progress, Samples
 from .newton import round_off
 from .structure import Structure
 
@@ -37,35 +41,56 @@ HALVINGS = 6
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Instant:
-    """Coordinates, velocities and accelerations (size,), internal force [N, N m] and strain energy [J]."""
+    """The state at an instant of a motion.
 
+    Attributes:
+        time [s]. y, v, a (size,): coordinates, velocities, accelerations.
+        force (size,): all that resists [N, N m]. strain: energy [J].
+        acting: what loads and dampers exert, None if none is named; work, dissipated: by them so far [J].
+    """
+
+    time: float
     y: Array
     v: Array
     a: Array
     force: Array
-    energy: float
+    strain: float
+    acting: Resistance | None = None
+    work: float = 0.0
+    dissipated: float = 0.0
 
 
 class Implicit:
-    """The scheme for one structure, reduced about the centre of mass of its `body`, at a spectral radius."""
+    """The scheme at a spectral radius, for a structure reduced about the centres of mass of its `bodies`."""
 
-    def __init__(self, structure: Structure, body: RigidBody, spectral_radius: float) -> None:
+    def __init__(self, structure: Structure, bodies: RigidBodies, spectral_radius: float) -> None:
         r = spectral_radius
         self.structure = structure
-        self.mass = lumped_diagonal(structure, body)
+        self.mass = lumped_diagonal(structure, bodies)
         self.am, self.af = (2.0 * r - 1.0) / (r + 1.0), r / (r + 1.0)
         self.gamma = 0.5 - self.am + self.af
         self.beta = 0.25 * (1.0 - self.am + self.af) ** 2
         self.tolerance = max(TOLERANCE, round_off(structure))
 
         self.compiled = CompiledForces(structure)
+        self.actions = Actions(self.compiled)
         self._factor: SuperLU | None = None
         self._factor_step = 0.0
 
     def start(self, y: Array, v: Array) -> Instant:
-        """Return the initial instant with its consistent acceleration."""
-        force, energy = self.compiled.forces(y)
-        return Instant(y=y, v=v, a=-force / self.mass, force=force, energy=energy)
+        """Return the initial instant with its consistent acceleration, zero where there is no inertia."""
+        force, strain, acting = self._act(y, v, 0.0)
+        inert = self.mass > 0.0
+        a = np.where(inert, -force / np.where(inert, self.mass, 1.0), 0.0)
+        return Instant(time=0.0, y=y, v=v, a=a, force=force, strain=strain, acting=acting)
+
+    def _act(self, y: Array, v: Array, time: float) -> tuple[Array, float, Resistance | None]:
+        """Return all that resists the motion (size,), the strain energy and what loads and dampers exert."""
+        force, strain = self.compiled.forces(y)
+        if not self.actions.named:
+            return force, strain, None
+        acting = self.actions.resist(y, v, time)
+        return force + acting.force, strain, acting
 
     def step(self, now: Instant, h: float, samples: Samples, depth: int = 0) -> Instant | None:
         """Return the instant after h [s], in halved steps where needed; None if those fail too."""
@@ -80,21 +105,22 @@ class Implicit:
 
     def _single(self, now: Instant, h: float, samples: Samples) -> Instant | None:
         """Return the instant after one step of h [s], or None if the iteration does not converge."""
-        mass, scale = self.mass, self.structure.scale
+        mass, scale, time = self.mass, self.structure.scale, now.time + h
         coasting = now.y + h * now.v + h**2 * (0.5 - self.beta) * now.a
+        drifting = now.v + h * (1.0 - self.gamma) * now.a
         held = self.am * mass * now.a + self.af * now.force
         reach = self.beta * h**2
         # the unknown is the acceleration: taken from differences of positions it would drown in round-off
         a, norms = now.a.copy(), [np.inf]
         for _ in range(ITERATIONS):
-            y = coasting + reach * a
-            force, energy = self.compiled.forces(y)
+            y, v = coasting + reach * a, drifting + self.gamma * h * a
+            force, strain, acting = self._act(y, v, time)
             residual = (1.0 - self.am) * mass * a + (1.0 - self.af) * force + held
             norms.append(float(np.abs(residual / scale).max()))
             samples.counters["force_evaluations"] += 1
             if norms[-1] <= self.tolerance:
-                v = now.v + h * ((1.0 - self.gamma) * now.a + self.gamma * a)
-                return Instant(y=y, v=v, a=a, force=force, energy=energy)
+                after = Instant(time=time, y=y, v=v, a=a, force=force, strain=strain, acting=acting)
+                return _accounted(now, after)
             if not np.isfinite(norms[-1]):
                 break
             samples.counters["iterations"] += 1
@@ -107,9 +133,15 @@ class Implicit:
         return None
 
     def _factorise(self, y: Array, h: float, samples: Samples) -> SuperLU:
-        """Factorise the tangent of a step of h [s] at y, and keep the factors for the steps that follow."""
+        """Factorise the tangent of a step of h [s] at y, and keep the factors for the steps that follow.
+
+        What the dampers' forces change with the place is left out: the iteration is a modified one anyway.
+        """
         inertia = diags_array((1.0 - self.am) / (self.beta * h**2) * self.mass)
-        tangent = (1.0 - self.af) * self.structure.tangent_stiffness(y) + inertia
+        resisting = self.structure.tangent_stiffness(y)
+        if self.actions.damped:
+            resisting = resisting + self.gamma / (self.beta * h) * self.actions.damping_matrix(y)
+        tangent = (1.0 - self.af) * resisting + inertia
         self._factor, self._factor_step = splu(tangent.tocsc(), options={"SymmetricMode": True}), h
         samples.counters["factorisations"] += 1
         return self._factor
@@ -133,5 +165,21 @@ class Implicit:
         return samples
 
     def _keep(self, samples: Samples, now: Instant, time: float) -> bool:
-        kinetic = 0.5 * float(self.mass @ now.v**2)
-        return samples.keep(time, now.y, now.v, kinetic, now.energy)
+        energy = Energy(
+            kinetic=0.5 * float(self.mass @ now.v**2),
+            strain=now.strain,
+            gravity=self.structure.gravity_energy(now.y),
+            work=now.work,
+            dissipated=now.dissipated,
+        )
+        return samples.keep(time, now.y, now.v, energy)
+
+
+def _accounted(before: Instant, after: Instant) -> Instant:
+    """Return `after` with the work of loads and dampers in the step, by the trapezoidal rule."""
+    if before.acting is None or after.acting is None:
+        return after
+    half = 0.5 * (after.time - before.time)
+    work = before.work + half * (before.acting.load_power + after.acting.load_power)
+    lost = before.dissipated + half * (before.acting.loss_power + after.acting.loss_power)
+    return replace(after, work=work, dissipated=lost)

@@ -84,27 +84,38 @@ def internal_forces(
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def carry(body: Array, attached: Indices, offsets: Array, u: Array) -> None:
-    """Move the attached nodes with the body (displacement x, y and turn): exact rigid motion."""
-    sine, less = math.sin(body[2]), 2.0 * math.sin(0.5 * body[2]) ** 2
+def carry(bodies: Array, attached: Indices, carrier: Indices, offsets: Array, u: Array) -> None:
+    """Move the attached nodes with their bodies (B, 3) (displacement x, y and turn): exact rigid motion."""
     for k in range(len(attached)):
-        i = attached[k]
-        u[i, 0] = body[0] - less * offsets[k, 0] - sine * offsets[k, 1]
-        u[i, 1] = body[1] + sine * offsets[k, 0] - less * offsets[k, 1]
-        u[i, 2] = body[2]
+        i, b = attached[k], carrier[k]
+        sine, less = math.sin(bodies[b, 2]), 2.0 * math.sin(0.5 * bodies[b, 2]) ** 2
+        u[i, 0] = bodies[b, 0] - less * offsets[k, 0] - sine * offsets[k, 1]
+        u[i, 1] = bodies[b, 1] + sine * offsets[k, 0] - less * offsets[k, 1]
+        u[i, 2] = bodies[b, 2]
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def body_force(theta: float, attached: Indices, offsets: Array, force: Array, out: Array) -> None:
-    """Write force and moment about the body's point that the forces on the attached nodes make up."""
-    c, s = math.cos(theta), math.sin(theta)
+def body_forces(
+    bodies: Array, attached: Indices, carrier: Indices, offsets: Array, force: Array, out: Array
+) -> None:
+    """Write forces and moments about the bodies' points (B, 3) that the forces on attached nodes make up."""
     out[:] = 0.0
     for k in range(len(attached)):
-        i = attached[k]
+        i, b = attached[k], carrier[k]
+        c, s = math.cos(bodies[b, 2]), math.sin(bodies[b, 2])
         arm_x, arm_y = c * offsets[k, 0] - s * offsets[k, 1], s * offsets[k, 0] + c * offsets[k, 1]
-        out[0] += force[i, 0]
-        out[1] += force[i, 1]
-        out[2] += force[i, 2] + arm_x * force[i, 1] - arm_y * force[i, 0]
+        out[b, 0] += force[i, 0]
+        out[b, 1] += force[i, 1]
+        out[b, 2] += force[i, 2] + arm_x * force[i, 1] - arm_y * force[i, 0]
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def move(compliance: Array, force: Array, step: float, v: Array, u: Array) -> None:
+    """Advance velocities and places (rows, 3) by one step under `force`: v -= h c f, u += h v."""
+    for i in range(len(u)):
+        for k in range(3):
+            v[i, k] -= step * compliance[i, k] * force[i, k]
+            u[i, k] += step * v[i, k]
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -113,31 +124,27 @@ def advance(
     first: Indices,
     table: Array,
     attached: Indices,
+    carrier: Indices,
     offsets: Array,
     compliance: Array,
     body_compliance: Array,
     u: Array,
     v: Array,
-    body: Array,
-    body_v: Array,
+    bodies: Array,
+    bodies_v: Array,
     force: Array,
-    resultant: Array,
+    resultants: Array,
     scratch: Array,
     step: float,
     steps: int,
 ) -> None:
     """Make `steps` steps of the central difference scheme in place: v is half a step behind u.
 
-    v += h a(u), u += h v for the free nodes (`compliance` (nodes, 3) is 1/mass there, else 0) and the body.
+    v += h a(u), u += h v for the free nodes (`compliance` (nodes, 3) is 1/mass there, else 0) and the bodies.
     """
     for _ in range(steps):
         internal_forces(shear, first, table, u, force, scratch)
-        body_force(body[2], attached, offsets, force, resultant)
-        for i in range(len(u)):
-            for k in range(3):
-                v[i, k] -= step * compliance[i, k] * force[i, k]
-                u[i, k] += step * v[i, k]
-        for k in range(3):
-            body_v[k] -= step * body_compliance[k] * resultant[k]
-            body[k] += step * body_v[k]
-        carry(body, attached, offsets, u)
+        body_forces(bodies, attached, carrier, offsets, force, resultants)
+        move(compliance, force, step, v, u)
+        move(body_compliance, resultants, step, bodies_v, bodies)
+        carry(bodies, attached, carrier, offsets, u)

@@ -1,4 +1,4 @@
-"""Masses of the strips' elements and of the body, in the reduced coordinates.
+"""Masses of the strips' elements and of the bodies, in the reduced coordinates.
 
 Lumped (diagonal) element masses, half of the element at each node:
 
@@ -8,10 +8,14 @@ Lumped (diagonal) element masses, half of the element at each node:
 
 The Euler-Bernoulli beam has no rotary inertia, but an explicit scheme needs some at every node. The first
 form falls with l^2 per unit length, so that it leaves on refinement: a mode of wave number b is slowed by
-(b l)^2 / 78, which is of the order of the error of the lumped masses themselves.
+(b l)^2 / 78, which is of the order of the error of the lumped masses themselves. A scene that names the
+rotary inertia of the sections has rho I l / 2 in its place, with either element.
 
 Consistent element masses: cubic bending and linear stretching in the frame of the chord (corotational),
-linear fields with rotary inertia (Reissner).
+linear fields with rotary inertia (Reissner). The rotary inertia of the sections, if it is named, is added to
+the first with the slopes of the same cubics.
+
+Strips without inertia and bodies without inertia have none of this, and none of the attached masses.
 
 Source of the scaled diagonal: E. Hinton, T. Rock, O. C. Zienkiewicz, Earthquake Eng. Struct. Dyn. 4 (1976)
 245-249.
@@ -27,26 +31,31 @@ from .structure import Structure
 
 Array = NDArray[np.float64]
 MASSES = ("consistent", "lumped")
+#: Integrals of the products of the slopes of the four cubics, times 30 l.
+SLOPES = np.array([[36, 3, -36, 3], [3, 4, -3, -1], [-36, -3, 36, -3], [3, -1, -3, 4]], dtype=float)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class RigidBody:
-    """The body with the lumped masses of the nodes attached to it, as one rigid body.
+class RigidBodies:
+    """The bodies with the lumped masses of the nodes attached to them, each as one rigid body.
 
     Attributes:
-        mass [kg]; centre of mass of the whole at rest (2,) [m]; moment_of_inertia about that centre [kg m^2].
+        mass (B,) [kg]; centre of mass of the whole at rest (B, 2) [m]; moment_of_inertia (B,) about that
+        centre [kg m^2].
     """
 
-    mass: float
+    mass: Array
     centre: Array
-    moment_of_inertia: float
+    moment_of_inertia: Array
 
 
 def lumped_elements(structure: Structure) -> Array:
     """Return the diagonal masses of the elements (6, E) [kg, kg m^2]."""
-    e = structure.elements
+    e, effects = structure.elements, structure.model.effects
+    if "strip_inertia" not in effects:
+        return np.zeros((6, len(e.length)))
     half = 0.5 * e.linear_density * e.length
-    physical = structure.model.element == "reissner"
+    physical = structure.model.element == "reissner" or "section_rotary_inertia" in effects
     rotary = 0.5 * e.rotary_density * e.length if physical else e.linear_density * e.length**3 / 78.0
     return np.stack([half, half, rotary, half, half, rotary])
 
@@ -58,57 +67,91 @@ def lumped_nodes(structure: Structure) -> Array:
     return masses.reshape(-1, 3)
 
 
-def rigid_body(structure: Structure) -> RigidBody:
-    """Return the body of the model together with the lumped masses of the attached nodes."""
-    body, nodes = structure.model.body, lumped_nodes(structure)[structure.attached]
-    masses = np.append(nodes[:, 0], body.mass)
-    points = np.vstack([structure.offsets + structure.point, body.centre])
-    centre = masses @ points / masses.sum()
-    spread = masses @ np.sum((points - centre) ** 2, axis=1)
-    inertia = body.moment_of_inertia + nodes[:, 2].sum() + spread
-    return RigidBody(mass=float(masses.sum()), centre=centre, moment_of_inertia=float(inertia))
+def own_inertia(structure: Structure) -> Array:
+    """Return mass [kg] and moment of inertia [kg m^2] of the bodies alone, (B, 2)."""
+    bodies = structure.model.bodies if "body_inertia" in structure.model.effects else ()
+    own = np.zeros((len(structure.model.bodies), 2))
+    own[: len(bodies)] = np.reshape([(body.mass, body.moment_of_inertia) for body in bodies], (-1, 2))
+    return own
 
 
-def about_mass_centre(structure: Structure) -> tuple[Structure, RigidBody]:
-    """Return the same structure reduced about the centre of mass of the body with its attached lumped masses.
+def rigid_bodies(structure: Structure) -> RigidBodies:
+    """Return the bodies of the model together with the lumped masses of the attached nodes."""
+    ends, own = structure.attachments, own_inertia(structure)
+    nodes = lumped_nodes(structure)[ends.node]
+    centres = np.array([body.centre for body in structure.model.bodies]).reshape(-1, 2)
+    carrier = np.append(ends.body, np.arange(len(own)))
+    masses = np.append(nodes[:, 0], own[:, 0])
+    places = np.vstack([ends.offsets + structure.points[ends.body], centres])
+    total = np.bincount(carrier, masses, len(own)).astype(np.float64)
+    moments = np.stack([np.bincount(carrier, masses * part, len(own)) for part in places.T], axis=1)
+    with_mass = total > 0.0
+    centre = centres.copy()
+    centre[with_mass] = moments[with_mass] / total[with_mass, None]
+    spread = masses * np.sum((places - centre[carrier]) ** 2, axis=1)
+    inertia = own[:, 1] + np.bincount(carrier, spread + np.append(nodes[:, 2], 0.0 * own[:, 1]), len(own))
+    return RigidBodies(mass=total, centre=centre, moment_of_inertia=inertia)
+
+
+def about_mass_centre(structure: Structure) -> tuple[Structure, RigidBodies]:
+    """Return the same structure reduced about the centres of mass of the bodies with their attached masses.
 
     There the lumped mass matrix is diagonal and constant: no coupling of translation and rotation, hence no
     centrifugal terms in the equations of motion, which are exact.
     """
-    body = rigid_body(structure)
-    return Structure(structure.model, body.centre), body
+    bodies = rigid_bodies(structure)
+    return Structure(structure.model, bodies.centre), bodies
 
 
-def lumped_diagonal(structure: Structure, body: RigidBody) -> Array:
-    """Return the lumped masses (size,) of a structure that is reduced about the centre of `body`."""
-    free = lumped_nodes(structure).ravel()[structure.free_dofs]
-    return np.concatenate([free, [body.mass, body.mass, body.moment_of_inertia]])
+def carried_over(before: Structure, y: Array, after: Structure) -> Array:
+    """Return coordinates y of one structure in another that is reduced about other points of the bodies."""
+    moved = y.copy()
+    for k in range(len(before.points)):
+        at, offset = before.body_slice(k), after.points[k] - before.points[k]
+        sine, less = np.sin(y[at][2]), 2.0 * np.sin(0.5 * y[at][2]) ** 2
+        moved[at.start] += -less * offset[0] - sine * offset[1]
+        moved[at.start + 1] += sine * offset[0] - less * offset[1]
+    return moved
+
+
+def lumped_diagonal(structure: Structure, bodies: RigidBodies) -> Array:
+    """Return the lumped masses (size,) of a structure that is reduced about the centres of `bodies`."""
+    free = lumped_nodes(structure)[structure.free_nodes]
+    carried = np.stack([bodies.mass, bodies.mass, bodies.moment_of_inertia], axis=1)
+    return np.concatenate([free.ravel(), carried.ravel()])
 
 
 def mass_matrix(structure: Structure, y: Array, kind: str) -> csc_matrix:
-    """Return the mass matrix (size, size) of strips and body at y, "consistent" or "lumped"."""
-    if kind == "lumped":
+    """Return the mass matrix (size, size) of strips and bodies at y, "consistent" or "lumped"."""
+    if kind == "lumped" or "strip_inertia" not in structure.model.effects:
         masses = np.eye(6)[:, :, None] * lumped_elements(structure)
     elif structure.model.element == "reissner":
         masses = _linear_elements(structure)
     else:
         masses = _cubic_elements(structure, y)
-    strips = structure.reduced_matrix(masses, y[-1], 0.0)
-    whole: csc_matrix = (strips + _body_block(structure, y[-1])).tocsc()
+    whole: csc_matrix = (
+        structure.reduced_matrix(masses, y) + body_blocks(structure, y, own_inertia(structure))
+    ).tocsc()
     return whole
 
 
-def _body_block(structure: Structure, theta: float) -> csc_matrix:
-    """Return the mass of the body alone for the displacement of the reduction's point and the rotation."""
-    body = structure.model.body
-    c, s = np.cos(theta), np.sin(theta)
-    gx, gy = body.centre - structure.point
-    slope = np.array([[1.0, 0.0, -s * gx - c * gy], [0.0, 1.0, c * gx - s * gy]])
-    block = body.mass * slope.T @ slope
-    block[2, 2] += body.moment_of_inertia
-    last = np.arange(structure.size - 3, structure.size)
-    indices = (np.repeat(last, 3), np.tile(last, 3))
-    placed: csc_matrix = coo_matrix((block.ravel(), indices), (structure.size, structure.size)).tocsc()
+def body_blocks(structure: Structure, y: Array, values: Array) -> csc_matrix:
+    """Return what (B, 2) values, for translation of the bodies' centres and for rotation, make (size, size).
+
+    They are masses and moments of inertia, or the coefficients of dampers.
+    """
+    theta, blocks = y[structure.turns], []
+    for k, (translation, rotation) in enumerate(values):
+        c, s = np.cos(theta[k]), np.sin(theta[k])
+        gx, gy = structure.model.bodies[k].centre - structure.points[k]
+        slope = np.array([[1.0, 0.0, -s * gx - c * gy], [0.0, 1.0, c * gx - s * gy]])
+        block = translation * slope.T @ slope
+        block[2, 2] += rotation
+        blocks.append(block)
+    last = np.arange(structure.first_body, structure.size).reshape(-1, 3)
+    indices = (np.repeat(last, 3, axis=1).ravel(), np.tile(last, (1, 3)).ravel())
+    data = np.reshape(blocks, -1)
+    placed: csc_matrix = coo_matrix((data, indices), (structure.size, structure.size)).tocsc()
     return placed
 
 
@@ -135,6 +178,9 @@ def _cubic_elements(structure: Structure, y: Array) -> Array:
     )
     lever = np.stack([one, e.length, one, e.length])
     local[np.ix_(across, across)] = numbers[..., None] * lever[:, None] * lever[None, :]
+    if "section_rotary_inertia" in structure.model.effects:
+        ratio = 14.0 * e.rotary_density / (e.linear_density * e.length**2)  # 420 / 30, in units of mu l / 420
+        local[np.ix_(across, across)] += ratio * SLOPES[..., None] * lever[:, None] * lever[None, :]
     frame = np.array([[c, s, zero], [-s, c, zero], [zero, zero, one]])
     turn = np.zeros((6, 6, len(c)))
     turn[:3, :3] = turn[3:, 3:] = frame

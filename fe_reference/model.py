@@ -1,15 +1,17 @@
-"""What a finite-element model is made of: sections, strips of two-node beam elements, and one rigid body.
+"""What a finite-element model is made of: sections, strips of two-node beam elements, and rigid bodies.
 
-Every strip begins at ground and ends on the rigid body. A cantilever is the same thing with a body of no size
-and no mass at its tip. The parameters are plain SI numbers and radians.
+Each end of a strip is clamped to ground, carried by a body, or free. The parameters are plain SI numbers and
+radians.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from .attachments import FREE, GROUND
+from .effects.named import AppliedForce, AppliedMoment, DrivenDisplacement, Effects, TipForce
 from .errors import InvalidParameter, choice, count, not_negative, positive, within
 from .structure import Structure
 
@@ -75,18 +77,21 @@ class Section:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Strip:
-    """A strip as a chain of stress-free two-node elements from ground to body.
+    """A strip as a chain of two-node elements from its root to its tip.
 
     Args:
         section: cross-section and material, the same along the strip.
-        nodes: reference positions (P, 2) [m], ground end first. The chain may turn from element to element:
+        nodes: reference positions (P, 2) [m], root first. The chain may turn from element to element:
             every element keeps its own reference angle, so that a curved strip is stress-free as well.
-        clamped: whether the ground end is clamped; if not it is free.
+        root, tip: what the first and the last node are on: the index of a body, GROUND (clamped) or FREE.
+        name: what it is called.
     """
 
     section: Section
     nodes: Array
-    clamped: bool = True
+    root: int = GROUND
+    tip: int = 0
+    name: str = "strip"
 
     def __post_init__(self) -> None:
         nodes = np.array(self.nodes, dtype=float)
@@ -105,17 +110,25 @@ class Strip:
 
 
 def straight_strip(
-    start: ArrayLike, end: ArrayLike, *, section: Section, elements: int, clamped: bool = True
+    start: ArrayLike,
+    end: ArrayLike,
+    *,
+    section: Section,
+    elements: int,
+    root: int = GROUND,
+    tip: int = 0,
+    name: str = "strip",
 ) -> Strip:
     """Return a strip of `elements` equal elements between two points (2,) [m]."""
     fraction = np.linspace(0.0, 1.0, count("elements", elements) + 1)[:, None]
     first, last = np.asarray(start, dtype=float), np.asarray(end, dtype=float)
-    return Strip(section=section, nodes=first + fraction * (last - first), clamped=clamped)
+    nodes = first + fraction * (last - first)
+    return Strip(section=section, nodes=nodes, root=root, tip=tip, name=name)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Body:
-    """The rigid body: centre of mass at rest (2,) [m], mass [kg], inertia about the centre [kg m^2].
+    """A rigid body: centre of mass at rest (2,) [m], mass [kg], inertia about the centre [kg m^2], name.
 
     A body without mass and inertia is legal: it is then the common end node of the strips.
     """
@@ -123,6 +136,7 @@ class Body:
     centre: Array
     mass: float = 0.0
     moment_of_inertia: float = 0.0
+    name: str = "body"
 
     def __post_init__(self) -> None:
         not_negative("body_mass", self.mass, "kg")
@@ -135,17 +149,19 @@ class Body:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Model:
-    """Strips between ground and one rigid body, with the element that the strips are made of.
+    """Strips between ground and rigid bodies, the element they are made of, and the effects of the scene.
 
     Args:
-        strips: one or more, all of the same number of elements.
-        body: the rigid body to which the last node of every strip is attached.
+        strips: one or more, all of the same number of elements, of different names if they are many.
+        bodies: the rigid bodies, of different names; none is legal.
         element: "corotational" (Euler-Bernoulli) or "reissner" (with shear).
+        effects: the named effects.
     """
 
     strips: tuple[Strip, ...]
-    body: Body
+    bodies: tuple[Body, ...] = ()
     element: str = "corotational"
+    effects: Effects = field(default_factory=Effects)
 
     def __post_init__(self) -> None:
         choice("element", self.element, ELEMENTS)
@@ -154,6 +170,53 @@ class Model:
             raise InvalidParameter(
                 "strips", sorted(sizes), "one or more strips with the same number of nodes [1]"
             )
+        for strip in self.strips:
+            for end in (strip.root, strip.tip):
+                if end not in (GROUND, FREE) and not 0 <= end < len(self.bodies):
+                    raise InvalidParameter("strips", end, f"ends on {len(self.bodies)} bodies [index]")
+        for kind, names in (("strips", self.strip_names), ("bodies", self.body_names)):
+            if len(set(names)) != len(names):
+                raise InvalidParameter(kind, names, "names that differ [name]")
+        self._check_places()
+
+    def _check_places(self) -> None:
+        """Refuse loads and drives on what is not there."""
+        for load in (self.effects.find(AppliedForce), self.effects.find(AppliedMoment)):
+            if load is not None:
+                self.body_index(load.body)
+        tip = self.effects.find(TipForce)
+        if tip is not None and self.strips[self.strip_index(tip.strip)].tip != FREE:
+            raise InvalidParameter("tip_force", tip.strip, "a strip whose tip is free [name]")
+        if self.effects.find(DrivenDisplacement) is not None and not self.bodies:
+            raise InvalidParameter("driven_displacement", "no bodies", "a body to lead [name]")
+
+    @property
+    def strip_names(self) -> tuple[str, ...]:
+        """Names of the strips in order."""
+        return tuple(strip.name for strip in self.strips)
+
+    @property
+    def body_names(self) -> tuple[str, ...]:
+        """Names of the bodies in order."""
+        return tuple(body.name for body in self.bodies)
+
+    @property
+    def body(self) -> Body:
+        """The one body of a model that has one."""
+        return self.bodies[self.body_index(None)]
+
+    def body_index(self, name: str | None) -> int:
+        """Return the place of the body of this name; None means the only one there is."""
+        known = ", ".join(self.body_names) or "no bodies"
+        if name is None and len(self.bodies) != 1:
+            raise InvalidParameter("body", name, f"one of {known} [name]")
+        if name is not None and name not in self.body_names:
+            raise InvalidParameter("body", name, f"one of {known} [name]")
+        return 0 if name is None else self.body_names.index(name)
+
+    def strip_index(self, name: str) -> int:
+        """Return the place of the strip of this name."""
+        return self.strip_names.index(choice("strip", name, self.strip_names))
 
     @cached_property
     def structure(self) -> Structure:
@@ -161,10 +224,11 @@ class Model:
         return Structure(self)
 
     def rotated(self, angle: float) -> "Model":
-        """Return the same model turned as a whole about the origin by `angle` [rad]."""
+        """Return the same model turned as a whole about the origin by `angle` [rad], with its loads."""
         turn = rotation_matrix(angle)
         strips = tuple(replace(strip, nodes=strip.nodes @ turn.T) for strip in self.strips)
-        return replace(self, strips=strips, body=replace(self.body, centre=turn @ self.body.centre))
+        bodies = tuple(replace(body, centre=turn @ body.centre) for body in self.bodies)
+        return replace(self, strips=strips, bodies=bodies, effects=self.effects.turned(turn))
 
     def derived(self) -> dict[str, float | Array]:
         """Return what this package derives from the given data, for comparison with another derivation.

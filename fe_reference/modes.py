@@ -6,13 +6,14 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import eigh
 from scipy.sparse import csc_matrix
-from scipy.sparse.linalg import eigsh
+from scipy.sparse.linalg import eigsh, splu
 
-from .errors import InvalidParameter, choice, finite
+from .effects.named import needs_inertia
+from .errors import InvalidParameter, choice
 from .errors import count as at_least_one
 from .mass import MASSES, mass_matrix
 from .model import Model
-from .statics import driven_state
+from .statics import static_state
 from .structure import Structure
 
 Array = NDArray[np.float64]
@@ -23,12 +24,12 @@ class Modes:
     """The lowest modes of small motion, C modes of G strips with P nodes.
 
     Attributes:
-        rotation: rotation of the static state [rad].
+        rotation: rotation of the static state [rad], nan if it was not driven.
         held: whether the rotation of the body is held; if not, the driving torque stays on as it is.
         mass: "consistent" or "lumped".
         frequency (C,): [Hz], ascending; negative where the state is unstable: -growth rate / (2 pi).
         shapes (C, G, P, 2): displacements of the nodes, of unit modal mass [m / sqrt(kg m^2)].
-        body_shapes (C, 3): displacement of the body's centre of mass and its rotation, in the same scale.
+        body_shapes (C, 3 B): displacement of the centre of mass and rotation of every body, same scale.
     """
 
     rotation: float
@@ -42,50 +43,51 @@ class Modes:
 def natural_frequencies(
     pivot: Model,
     *,
-    rotation: float = 0.0,
+    rotation: float | None = 0.0,
     count: int = 10,
     held: bool = False,
     mass: str = "consistent",
     increments: int = 20,
+    body: str | None = None,
 ) -> Modes:
     """Return the lowest natural frequencies and shapes about the state at a driven rotation.
 
     Args:
-        pivot: the model. rotation: of the static state [rad]. count: number of modes.
+        pivot: the model; its loads and its driven displacement are in full, gravity and natural strains act.
+        rotation: of the static state [rad]; None: nothing is driven. count: number of modes.
         held: whether the rotation of the body stays held; if not the torque of the drive stays on unchanged.
         mass: "consistent" (default) or "lumped", the one of the explicit integrator.
         increments: of the static path to the state.
+        body: name of the driven body; None: the only one.
 
-    Exact for small motion; leaves out damping.
+    Exact for small motion; leaves out damping. Strips without inertia follow the bodies statically.
 
     Raises:
-        InvalidParameter: more modes than there are coordinates, an unknown kind of mass.
+        InvalidParameter: more modes than there are coordinates, an unknown kind of mass, no inertia at all, a
+            rotation that is held but not driven.
         ConvergenceError: the static state cannot be reached.
     """
-    kind = choice("mass", mass, MASSES)
-    structure = pivot.structure
-    y = driven_state(structure, finite("rotation", rotation, "rad"), increments)
-    n = structure.size - (1 if held else 0)
-    wanted = _modes_wanted(count, n)
-    stiffness = structure.tangent_stiffness(y)[:n, :n].tocsc()
-    values, vectors = _lowest(structure, stiffness, mass_matrix(structure, y, kind)[:n, :n].tocsc(), wanted)
-    full = np.zeros((wanted, structure.size))
-    full[:, :n] = vectors.T
-    full *= np.sign(full[np.arange(wanted), np.abs(full).argmax(axis=1)])[:, None]
+    kind, structure = choice("mass", mass, MASSES), pivot.structure
+    needs_inertia(pivot.effects)
+    if rotation is None and held:
+        raise InvalidParameter("held", held, "a driven rotation to hold [1]")
+    y = static_state(pivot, rotation, body, increments)
+    turn = structure.turns[pivot.body_index(body)] if held else -1
+    kept = np.flatnonzero(np.arange(structure.size) != turn)
+    stiffness = structure.tangent_stiffness(y)[:, kept][kept].tocsc()
+    inertia = mass_matrix(structure, y, kind)[:, kept][kept].tocsc()
+    values, vectors = _lowest(structure, stiffness, inertia, count)
+    full = np.zeros((len(values), structure.size))
+    full[:, kept] = vectors.T
+    full *= np.sign(full[np.arange(len(full)), np.abs(full).argmax(axis=1)])[:, None]
     return Modes(
-        rotation=float(rotation),
+        rotation=np.nan if rotation is None else float(rotation),
         held=held,
         mass=kind,
         frequency=np.sign(values) * np.sqrt(np.abs(values)) / (2.0 * np.pi),
-        shapes=_nodal_shapes(structure, full, y[-1]),
-        body_shapes=full[:, -3:],
+        shapes=_nodal_shapes(structure, full, y),
+        body_shapes=full[:, structure.first_body :],
     )
-
-
-def _modes_wanted(wanted: int, available: int) -> int:
-    if at_least_one("count", wanted) > available:
-        raise InvalidParameter("count", wanted, f"at most {available} modes of this mesh [1]")
-    return wanted
 
 
 def _lowest(
@@ -94,8 +96,11 @@ def _lowest(
     """Return the `wanted` lowest eigenvalues [1/s^2], ascending, and vectors of unit modal mass.
 
     Inverse iteration (Lanczos) keeps the lowest modes free of the round-off of the stiffest ones. It is
-    shifted a little below zero, so that rigid motions do not make it singular.
+    shifted a little below zero, so that rigid motions do not make it singular. What has no mass is condensed.
     """
+    if "strip_inertia" not in structure.model.effects:
+        return _condensed(structure.first_body, stiffness, mass, wanted)
+    _available(wanted, stiffness.shape[0])
     if wanted >= stiffness.shape[0] - 1:
         values, vectors = eigh(stiffness.toarray(), mass.toarray())
         return values[:wanted], vectors[:, :wanted]
@@ -107,11 +112,25 @@ def _lowest(
     return values[order], vectors[:, order]
 
 
-def _nodal_shapes(structure: Structure, full: Array, theta: float) -> Array:
-    """Return the displacements (C, G, P, 2) of the nodes for modes (C, size) at the rotation theta."""
-    shapes = np.zeros((len(full), structure.strips * structure.stations, 2))
-    shapes[:, structure.free_nodes] = full[:, :-3].reshape(len(full), -1, 3)[..., :2]
-    arms = structure.arms(theta)
-    slope = np.stack([-arms[:, 1], arms[:, 0]], axis=1)
-    shapes[:, structure.attached] = full[:, None, -3:-1] + full[:, None, -1:] * slope
-    return shapes.reshape(len(full), structure.strips, structure.stations, 2)
+def _condensed(strips: int, stiffness: csc_matrix, mass: csc_matrix, wanted: int) -> tuple[Array, Array]:
+    """Return the modes of bodies on strips without mass, whose first `strips` coordinates follow them."""
+    follow = -splu(stiffness[:strips, :strips]).solve(stiffness[:strips, strips:].toarray())
+    shapes = np.vstack([follow, np.eye(stiffness.shape[0] - strips)])
+    own = mass[strips:, strips:].toarray()
+    _available(wanted, int(np.linalg.matrix_rank(own)))
+    # largest inverses first: a body without rotary inertia leaves the mass matrix singular
+    inverse, vectors = eigh(own, shapes.T @ (stiffness @ shapes))
+    order = np.argsort(inverse)[::-1][:wanted]
+    values = 1.0 / inverse[order]
+    return values, shapes @ vectors[:, order] * np.sqrt(values)
+
+
+def _available(wanted: int, available: int) -> None:
+    if at_least_one("count", wanted) > available:
+        raise InvalidParameter("count", wanted, f"at most {available} modes of this mesh [1]")
+
+
+def _nodal_shapes(structure: Structure, full: Array, y: Array) -> Array:
+    """Return the displacements (C, G, P, 2) of the nodes for modes (C, size) at the state y."""
+    moves = np.array([structure.velocity(y, mode)[:, :2] for mode in full])
+    return moves.reshape(len(full), structure.strips, structure.stations, 2)

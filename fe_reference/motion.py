@@ -13,13 +13,36 @@ Progress = Callable[[int, int], None]
 BLOW_UP = 0.1
 
 
+@dataclass(frozen=True, kw_only=True)
+class Energy:
+    """Energies of a state and what loads and dampers did until then [J].
+
+    What is conserved is kinetic + strain + gravity - work + dissipated.
+    """
+
+    kinetic: float
+    strain: float
+    gravity: float = 0.0
+    work: float = 0.0
+    dissipated: float = 0.0
+
+    @property
+    def balance(self) -> float:
+        """The conserved sum."""
+        return self.kinetic + self.strain + self.gravity - self.work + self.dissipated
+
+    @property
+    def scale(self) -> float:
+        """The energy that is at stake."""
+        return max(self.kinetic + self.strain, abs(self.gravity), abs(self.work), self.dissipated)
+
+
 @dataclass(kw_only=True, eq=False)
 class Samples:
     """States of a motion in the reduced coordinates at the sampled instants, the start first.
 
     Attributes:
-        time [s], y (size,), v (size,): instants, coordinates and velocities.
-        kinetic, strain: energies [J].
+        time [s], y (size,), v (size,), energy: instants, coordinates, velocities, energies.
         unstable: whether the motion was stopped because its energy blew up.
         message: why and when the motion stopped early ("" if it did not).
     """
@@ -27,30 +50,37 @@ class Samples:
     time: list[float] = field(default_factory=list)
     y: list[Array] = field(default_factory=list)
     v: list[Array] = field(default_factory=list)
-    kinetic: list[float] = field(default_factory=list)
-    strain: list[float] = field(default_factory=list)
+    energy: list[Energy] = field(default_factory=list)
     counters: Counter[str] = field(default_factory=Counter)
     history: list[tuple[float, ...]] = field(default_factory=list)
     unstable: bool = False
     message: str = ""
+    _stake: float = 0.0
 
-    def keep(self, time: float, y: Array, v: Array, kinetic: float, strain: float) -> bool:
-        """Keep a state if its energy is sound; otherwise note when it was lost and return False."""
-        energy = kinetic + strain
-        start = self.kinetic[0] + self.strain[0] if self.time else energy
-        if not np.isfinite(energy) or energy > (1.0 + BLOW_UP) * start:
+    def keep(self, time: float, y: Array, v: Array, energy: Energy) -> bool:
+        """Keep a state if its energy is sound; otherwise note when it was lost and return False.
+
+        The gain is measured against the largest energy at stake before this sample.
+        """
+        start = self.energy[0] if self.time else energy
+        self._stake = max(self._stake, (self.energy[-1] if self.time else energy).scale)
+        at_stake = max(self._stake, abs(energy.work), abs(energy.gravity))
+        if not np.isfinite(energy.balance) or energy.balance - start.balance > BLOW_UP * at_stake:
             self.unstable = True
             self.message = (
-                f"the energy grew from {start:.6g} J to {energy:.6g} J"
+                f"the energy grew from {start.balance:.6g} J to {energy.balance:.6g} J"
                 f" between {self.time[-1]:.6g} s and {time:.6g} s"
             )
             return False
         self.time.append(time)
         self.y.append(y.copy())
         self.v.append(v.copy())
-        self.kinetic.append(kinetic)
-        self.strain.append(strain)
+        self.energy.append(energy)
         return True
+
+    def energies(self, name: str) -> Array:
+        """Return one part of the energies over the samples (T,) [J]."""
+        return np.array([getattr(each, name) for each in self.energy])
 
 
 def sampling(steps: int, samples: int) -> list[int]:

@@ -1,17 +1,12 @@
-"""Newton's method on the reduced coordinates, for a driven rotation or for a load of given size.
-
-The path is followed in one parameter p: the driven rotation theta = p [rad], or the factor p of a dead load
-F. The unknowns are all coordinates that are not driven; the residual is the internal force less p F on them.
-"""
+"""Newton's method to the equilibrium at one parameter of a path, with the consistent tangent."""
 
 from collections import Counter
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import csc_matrix
-from scipy.sparse.linalg import splu
 
+from .control import Control, factorise
 from .structure import Structure
 
 Array = NDArray[np.float64]
@@ -24,40 +19,6 @@ TOLERANCE = 1e-10
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Control:
-    """How the path is driven: by the rotation of the body (`load` is zero), or by the load p F.
-
-    Args:
-        structure: what is driven.
-        driven: whether the parameter is the rotation of the body.
-        load: F in the reduced coordinates, (size,) [N, N m].
-    """
-
-    structure: Structure
-    driven: bool
-    load: Array
-
-    @property
-    def free(self) -> int:
-        """Number of unknowns; the rotation is the last coordinate."""
-        return self.structure.size - (1 if self.driven else 0)
-
-    def rate(self, tangent: csc_matrix, counters: Counter[str]) -> Array:
-        """Return d y / d p along the equilibrium path, (size,): one factorisation, one solve."""
-        n = self.free
-        rate = np.ones(self.structure.size)
-        right = -tangent[:, -1].toarray()[:n, 0] if self.driven else self.load
-        rate[:n] = factor(tangent, n, counters).solve(right)
-        return rate
-
-    def turn_rate(self, tangent: csc_matrix, counters: Counter[str]) -> float:
-        """Return d theta / d (moment on the body) with all coordinates free [rad/(N m)]."""
-        unit = np.zeros(self.structure.size)
-        unit[-1] = 1.0
-        return float(factor(tangent, self.structure.size, counters).solve(unit)[-1])
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
 class Outcome:
     """What Newton's method left: coordinates, norms of its residuals, and "" or the reason of its failure."""
 
@@ -66,21 +27,13 @@ class Outcome:
     failure: str
 
 
-def factor(tangent: csc_matrix, free: int, counters: Counter[str]):  # type: ignore[no-untyped-def]
-    """Factorise the leading (free, free) block; raises RuntimeError if it is singular."""
-    counters["factorisations"] += 1
-    block = tangent if free == tangent.shape[0] else tangent[:, :free][:free]
-    return splu(block.tocsc(), permc_spec="MMD_AT_PLUS_A", options={"SymmetricMode": True})
-
-
 def round_off(structure: Structure) -> float:
     """Return the dimensionless residual below which round-off decides.
 
-    Displacements of order L carry an error of one unit in the last place: relative to an element of
-        length l it is a
-    strain of L/l of it, hence a force of EA L/l (or kGA L/l, if that is part of the element and larger); and
-    a turn of the chord of L/l of it, hence a force of 12 EI L/l^3. The factor 4 covers the few operations
-    between them.
+    Displacements of order L carry an error of one unit in the last place: relative to an element of length l
+    it is a strain of L/l of it, hence a force of EA L/l (or kGA L/l, if that is part of the element and
+    larger); and a turn of the chord of L/l of it, hence a force of 12 EI L/l^3. The factor 4 covers the few
+    operations between them.
     """
     e = structure.elements
     length = max(strip.length for strip in structure.model.strips)
@@ -91,13 +44,14 @@ def round_off(structure: Structure) -> float:
 
 def equilibrate(control: Control, start: Array, parameter: float, counters: Counter[str]) -> Outcome:
     """Iterate from `start` to equilibrium at `parameter`, with the consistent tangent at every iteration."""
-    structure, n = control.structure, control.free
+    structure, free = control.structure, control.free
     tolerance = max(TOLERANCE, round_off(structure))
     y, norms = start.copy(), []
+    y[control.held] = control.prescribed(parameter)
     for _ in range(ITERATIONS + 1):
         counters["residual_evaluations"] += 1
-        residual = structure.internal_force(y)[:n] - parameter * control.load[:n]
-        norms.append(float(np.abs(residual / structure.scale[:n]).max()))
+        residual = control.residual(y, parameter)[free]
+        norms.append(float(np.abs(residual / structure.scale[free]).max(initial=0.0)))
         if norms[-1] <= tolerance:
             return Outcome(y=y, norms=tuple(norms), failure="")
         if not np.isfinite(norms[-1]):
@@ -107,7 +61,7 @@ def equilibrate(control: Control, start: Array, parameter: float, counters: Coun
         counters["newton_iterations"] += 1
         counters["tangent_evaluations"] += 1
         try:
-            y[:n] -= factor(structure.tangent_stiffness(y), n, counters).solve(residual)
+            y[free] -= factorise(control, control.tangent(y, parameter), counters).solve(residual)
         except RuntimeError:
             return Outcome(y=y, norms=tuple(norms), failure="the tangent is singular")
     return Outcome(y=y, norms=tuple(norms), failure=f"no equilibrium in {ITERATIONS} iterations")

@@ -8,22 +8,25 @@ On fine meshes the second term matters: nodes moved along straight lines stretch
 """
 
 from collections import Counter
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
+from .control import Control, Response, respond
 from .errors import InvalidParameter
-from .newton import Control, Outcome, equilibrate
+from .newton import Outcome, equilibrate
 
 Array = NDArray[np.float64]
 
 #: An increment is halved at most so often: 20 increments of 90 deg go down to 0.07 deg.
 HALVINGS = 6
-#: Relative mismatch between the energy gained in an increment and the work done on it above which the
-#: increment has jumped to another branch; on one branch the two-point Hermite rule below errs by less than 1
-#: % in any sane increment.
+#: Relative mismatch between the total potential gained in an increment and the integral of its rate above
+#: which the increment has jumped to another branch; on one branch the two-point Hermite rule below errs by
+#: less than 1 % in any sane increment. Energies are told apart down to the round-off of EI/L and of the
+#: energy of natural strains, which may cancel along the whole path.
 WORK_MISMATCH = 0.05
+ROUND_OFF = 1e-10
 #: Largest turn of an element's end from its chord [rad]: beyond a quarter turn the element is folded, not
 #: bent.
 DISTORTION = 0.5 * np.pi
@@ -35,25 +38,20 @@ class State:
 
     Attributes:
         parameter: p. y: reduced coordinates (size,).
-        rate, bend: first and second derivative of y in p (size,), the second by the difference over the
-            increment before (zero at the first state).
-        energy: strain energy [J].
-        conjugate: what does work with p: the driving torque [N m], or the work of the unit load F.y [J].
-        slope: d conjugate / d p from the tangent.
-        torque, stiffness: generalised force on the rotation [N m] and its derivative [N m/rad], all else
-            free.
+        response: its derivatives along the path, torque and stiffness.
+        bend: second derivative of y in p (size,), by the difference of the first over the increment before
+            (zero at the first state).
+        potential: total potential [J].
+        work: of loads and drives since the first state [J].
         norms: residual norms of the iteration that led here.
     """
 
     parameter: float
     y: Array
-    rate: Array
+    response: Response
     bend: Array
-    energy: float
-    conjugate: float
-    slope: float
-    torque: float
-    stiffness: float
+    potential: float
+    work: float
     norms: tuple[float, ...]
 
 
@@ -67,15 +65,22 @@ class Path:
     failures: list[tuple[float, ...]] = field(default_factory=list)
     message: str = ""
 
-    def begin(self) -> None:
-        """Put down the unloaded state."""
-        rest = np.zeros(self.control.structure.size)
+    def begin(self, y: Array | None = None) -> None:
+        """Put down the first state: rest, or coordinates in equilibrium (size,)."""
+        y = np.zeros(self.control.structure.size) if y is None else y
         try:
-            self.states.append(self._state(rest, 0.0, (0.0,), None))
+            self.states.append(self._state(y, self.control.span[0], (0.0,), None))
         except RuntimeError as error:
             raise InvalidParameter(
                 "strips", "a model that can move freely", "clamps that hold it [1]"
             ) from error
+
+    def turn_to(self, control: Control) -> None:
+        """Go on from the last state in the next span."""
+        last = self.states[-1]
+        self.control = control
+        there = self._state(last.y, last.parameter, last.norms, None)
+        self.states[-1] = replace(there, work=last.work)
 
     def advance(self, target: float) -> bool:
         """Go from the last state to `target` in one increment or in halved ones, and keep its end."""
@@ -88,7 +93,7 @@ class Path:
 
     def _reach(self, state: State, target: float, depth: int) -> State | None:
         step = target - state.parameter
-        guess = state.y + step * state.rate + 0.5 * step**2 * state.bend
+        guess = state.y + step * state.response.rate + 0.5 * step**2 * state.bend
         outcome = equilibrate(self.control, guess, target, self.counters)
         failure = outcome.failure
         if not failure:
@@ -109,40 +114,28 @@ class Path:
         return None if middle is None else self._reach(middle, target, depth + 1)
 
     def _stopped(self, failure: str, begin: float, target: float, outcome: Outcome) -> str:
-        what = "rotation [rad]" if self.control.driven else "load factor"
         return (
-            f"{failure} between {what} {begin:.6g} and {target:.6g}"
+            f"{failure} between {self.control.describe(begin)} and {self.control.describe(target)}"
             f" after {HALVINGS} halvings of the increment; last residual {outcome.norms[-1]:.3g}"
         )
 
     def _state(self, y: Array, parameter: float, norms: tuple[float, ...], before: State | None) -> State:
-        """Complete a converged state by its tangent: path rate, torque and stiffness."""
-        structure, control, counters = self.control.structure, self.control, self.counters
-        force, tangent = structure.internal_force(y), structure.tangent_stiffness(y)
-        counters["residual_evaluations"] += 1
-        counters["tangent_evaluations"] += 1
-        rate = control.rate(tangent, counters)
-        if control.driven:
-            # What is left of the residual is carried to the torque by the same solve: to first order the
-            # torque is that of exact equilibrium, free of the round-off in the last elements' forces.
-            torque = float(force[-1] + force[:-1] @ rate[:-1])
-            stiffness = float(rate @ (tangent @ rate))  # errors of the solve enter squared
-            conjugate, slope = torque, stiffness
-        else:
-            torque, stiffness = float(force[-1]), 1.0 / control.turn_rate(tangent, counters)
-            conjugate, slope = float(control.load @ y), float(control.load @ rate)
+        """Complete a converged state by its response, curvature of the path, potential and work."""
+        response = respond(self.control, y, parameter, self.counters)
         step = 0.0 if before is None else parameter - before.parameter
-        bend = np.zeros_like(y) if before is None or step == 0.0 else (rate - before.rate) / step
+        bend, work = np.zeros_like(y), 0.0
+        if before is not None and step != 0.0:
+            bend = (response.rate - before.response.rate) / step
+            # loads p F.q: their work is [p F.q] less the integral of F.q, which is part of the conjugate
+            gain = parameter * self.control.load_work(y) - before.parameter * self.control.load_work(before.y)
+            work = before.work + gain + _integral(step, before.response, response)
         return State(
             parameter=parameter,
             y=y,
-            rate=rate,
+            response=response,
             bend=bend,
-            energy=sum(structure.energies(y)),
-            conjugate=conjugate,
-            slope=slope,
-            torque=torque,
-            stiffness=stiffness,
+            potential=self.control.potential(y, parameter),
+            work=work,
             norms=norms,
         )
 
@@ -151,12 +144,17 @@ class Path:
         structure = self.control.structure
         if structure.law.distortion(structure.element_displacement(after.y)) > DISTORTION:
             return "an element is folded"
-        step, gained = after.parameter - before.parameter, after.energy - before.energy
-        mean = 0.5 * step * (before.conjugate + after.conjugate)
-        work = mean + step**2 / 12.0 * (before.slope - after.slope)
-        if not self.control.driven:  # integral of p dq = [p q] - integral of q dp
-            work = after.parameter * after.conjugate - before.parameter * before.conjugate - work
-        scale = max(abs(gained), 0.5 * abs(step) * (abs(before.conjugate) + abs(after.conjugate)))
-        if abs(gained - work) > WORK_MISMATCH * scale:
+        step, gained = after.parameter - before.parameter, after.potential - before.potential
+        integral = _integral(step, before.response, after.response)
+        largest = abs(before.response.conjugate) + abs(after.response.conjugate)
+        unit = structure.moment_unit + abs(self.control.potential_rate(after.y, after.parameter)[1])
+        scale = max(abs(gained), 0.5 * abs(step) * largest)
+        if abs(gained - integral) > WORK_MISMATCH * scale + ROUND_OFF * unit:
             return "the state lies on another branch (energy gained and work done differ)"
         return ""
+
+
+def _integral(step: float, before: Response, after: Response) -> float:
+    """Return the integral of the conjugate over a step [J] by Hermite's two-point rule, of fourth order."""
+    mean = 0.5 * step * (before.conjugate + after.conjugate)
+    return mean + step**2 / 12.0 * (before.slope - after.slope)

@@ -1,9 +1,11 @@
 """The cross-axis flexural pivot: two straight strips that cross without touching, and the body they carry."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from typing import Any
 
 import numpy as np
 
+from .effects.named import DEFAULT_EFFECTS, read_effects
 from .errors import InvalidParameter, finite, positive, within
 from .model import Body, Model, Section, straight_strip
 
@@ -21,6 +23,8 @@ def cross_axis_pivot(
     body_mass: float,
     body_moment_of_inertia: float,
     centre_offset: Sequence[float] = (0.0, 0.0),
+    effects: Sequence[str] = DEFAULT_EFFECTS,
+    parameters: Mapping[str, Mapping[str, Any]] | None = None,
     elements: int = 20,
     element: str = "corotational",
 ) -> Model:
@@ -37,6 +41,7 @@ def cross_axis_pivot(
         area [m^2], second_moment_of_area [m^4], youngs_modulus [Pa], poisson_ratio [1], density [kg/m^3]: of
         strips. body_mass [kg], body_moment_of_inertia about its centre [kg m^2]; zero is legal.
         centre_offset: (2,) [m].
+        effects: names of the effects of the scene. parameters: of those that have any, by name.
         elements: number of elements a strip. element: "corotational" or "reissner".
 
     Raises:
@@ -59,7 +64,9 @@ def cross_axis_pivot(
     ground = np.array([[0.0, 0.0], [2.0 * ratio * run, 0.0]])
     ends = ground + np.array([[run, rise], [-run, rise]])
     strips = tuple(
-        straight_strip(a, b, section=section, elements=elements) for a, b in zip(ground, ends, strict=True)
+        straight_strip(a, b, section=section, elements=elements, name=f"strip_{number}")
+        for number, (a, b) in enumerate(zip(ground, ends, strict=True), start=1)
     )
     body = Body(centre=ends.mean(axis=0) + offset, mass=body_mass, moment_of_inertia=body_moment_of_inertia)
-    return Model(strips=strips, body=body, element=element)
+    named = read_effects(effects, parameters or {})
+    return Model(strips=strips, bodies=(body,), element=element, effects=named)

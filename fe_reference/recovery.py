@@ -36,20 +36,19 @@ def at_nodes(first: Array, last: Array) -> Array:
 def recover(structure: Structure, y: Array) -> Recovery:
     """Return shape, section forces and reactions of the state y.
 
-    The end forces of an element are those of its own equilibrium: of the part beyond on the element at
-        its end, and
-    the opposite at its beginning.
+    The end forces of an element are those of its own equilibrium: of the part beyond on the element at its
+    end, and the opposite at its beginning. The shape is in the frame of the model.
     """
     grid = (structure.strips, structure.stations)
     nodal = structure.displacement(y).reshape(*grid, 3)
     rest = np.array([strip.nodes for strip in structure.model.strips])
-    forces = structure.law.forces(structure.element_displacement(y)).reshape(6, structure.strips, -1)
+    forces = structure.element_forces(structure.element_displacement(y)).reshape(6, structure.strips, -1)
     force_x, force_y, moment = (at_nodes(-forces[i], forces[i + 3]) for i in range(3))
     angle = nodal_angles(structure) + nodal[..., 2]
     c, s = np.cos(angle), np.sin(angle)
     reactions = np.stack([forces[0:3, :, 0].T, forces[3:6, :, -1].T], axis=1)
     return Recovery(
-        shape=rest + nodal[..., :2] - rest[0, 0],
+        shape=rest + nodal[..., :2],
         axial_force=force_x * c + force_y * s,
         shear_force=force_y * c - force_x * s,
         bending_moment=moment,

@@ -45,12 +45,21 @@ def internal_force(v: Any, w: Any) -> Any:
     return axial * eps + shear * gamma + moment * kappa
 
 
+def _material(u: Any, v: Any, w: Any) -> Any:
+    (eps_u, gamma_u, kappa_u), (eps_v, gamma_v, kappa_v) = _variation(u, w), _variation(v, w)
+    return w.EA * eps_u * eps_v + w.GA * gamma_u * gamma_v + w.EI * kappa_u * kappa_v
+
+
+@BilinearForm
+def material_stiffness(u: Any, v: Any, w: Any) -> Any:
+    """The part of the second variation that comes from the change of the strains alone."""
+    return _material(u, v, w)
+
+
 @BilinearForm
 def tangent_stiffness(u: Any, v: Any, w: Any) -> Any:
     """Second variation of the energy: material part, and forces times second variation of strains."""
     axial, shear, _ = _section_forces(w)
-    eps_u, gamma_u, kappa_u = _variation(u, w)
-    eps_v, gamma_v, kappa_v = _variation(v, w)
 
     def normal_slope(a: Any) -> Any:
         return a.grad[1, 0] * w.cos - a.grad[0, 0] * w.sin
@@ -60,8 +69,7 @@ def tangent_stiffness(u: Any, v: Any, w: Any) -> Any:
 
     eps_uv = u[2] * normal_slope(v) + v[2] * normal_slope(u) - u[2] * v[2] * (1.0 + w.eps)
     gamma_uv = -u[2] * axial_slope(v) - v[2] * axial_slope(u) - u[2] * v[2] * w.gamma
-    material = w.EA * eps_u * eps_v + w.GA * gamma_u * gamma_v + w.EI * kappa_u * kappa_v
-    return material + axial * eps_uv + shear * gamma_uv
+    return _material(u, v, w) + axial * eps_uv + shear * gamma_uv
 
 
 class Reissner:
@@ -107,6 +115,31 @@ class Reissner:
     def tangents(self, displacement: Array) -> Array:
         """Return the derivative (6, 6, E) of the nodal forces."""
         return tangent_stiffness.elemental(self.basis, **self._state(displacement)).data.reshape(6, 6, -1)
+
+    def material_tangents(self, displacement: Array) -> Array:
+        """Return the part of it that comes from the change of the strains alone, (6, 6, E)."""
+        return material_stiffness.elemental(self.basis, **self._state(displacement)).data.reshape(6, 6, -1)
+
+    def axial_strains(self, displacement: Array) -> Array:
+        """Return eps at the midpoints (E,)."""
+        strain: Array = self._state(displacement)["eps"][:, 0]
+        return strain
+
+    def axial_slopes(self, displacement: Array) -> Array:
+        """Return d eps / d u, (6, E) [1/m]."""
+        w, length = self._state(displacement), self.elements.length
+        c, s, half = w["cos"][:, 0] / length, w["sin"][:, 0] / length, 0.5 * w["gamma"][:, 0]
+        return np.stack([-c, -s, half, c, s, half])
+
+    def axial_curvatures(self, displacement: Array) -> Array:
+        """Return d^2 eps / d u^2, (6, 6, E) [1/m^2]."""
+        w, length = self._state(displacement), self.elements.length
+        c, s = 0.5 * w["cos"][:, 0] / length, 0.5 * w["sin"][:, 0] / length
+        zero, turned = np.zeros_like(c), np.array([0.0, 0.0, 1.0, 0.0, 0.0, 1.0])
+        mixed = np.stack([s, -c, zero, -s, c, zero])[:, None] * turned[None, :, None]
+        both = np.outer(turned, turned)[..., None] * 0.25 * (1.0 + w["eps"][:, 0])
+        second: Array = mixed + mixed.transpose(1, 0, 2) - both
+        return second
 
     def energies(self, displacement: Array) -> tuple[Array, Array, Array]:
         """Return bending, axial and shear energy of the elements, three arrays (E,) [J]."""

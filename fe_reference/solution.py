@@ -49,6 +49,8 @@ class StaticSolution:
         bending_moment (S, G, P): M at the nodes [N m], positive for counter-clockwise curvature from ground.
             Forces and moments at a node are those of nodal equilibrium: the means of the end values of the
             adjacent elements, which agree to the residual.
+        gravity_energy (S,): energy of the weight, zero in the shape at rest [J].
+        work (S,): of drives and loads since the first state, by Hermite's rule over the increments [J].
         counters: increments, halvings, newton_iterations, residual_evaluations, tangent_evaluations,
             factorisations.
         history: dimensionless residual norms of every accepted increment.
@@ -64,12 +66,56 @@ class StaticSolution:
     bending_energy: Array
     axial_energy: Array
     shear_energy: Array
+    gravity_energy: Array
+    work: Array
     clamp_reactions: Array
     stations: Array
     shape: Array
     axial_force: Array
     bending_moment: Array
     shear_force: Array
+    counters: Mapping[str, int]
+    history: tuple[tuple[float, ...], ...]
+
+    @property
+    def strain_energy(self) -> Array:
+        """Sum of the three parts (S,) [J]."""
+        return self.bending_energy + self.axial_energy + self.shear_energy
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class MechanismSolution:
+    """Converged states of a mechanism: S states from load factor 0 on, G strips, P nodes a strip.
+
+    Attributes:
+        status, message, history: as in `StaticSolution`.
+        load_factor (S,): [1].
+        bodies: by name, place of the centre [m] and turn [rad], (S, 3) x, y, theta.
+        torque, stiffness (S,): of the driven rotation [N m], [N m/rad]; nan if no rotation is driven.
+        bending_energy, axial_energy, shear_energy (S,): strain energy of all strips by part [J].
+        gravity_energy (S,): energy of the weight, zero in the shape at rest [J].
+        work (S,): of drives and loads since the first state [J].
+        shape (S, G, P, 2): positions of the nodes [m]. bending_moment (S, G, P): [N m].
+        clamp_reactions (S, G, 2, 3): force x, y [N] and moment [N m] on the strip at its root and its tip.
+        effects: names of the effects of the scene.
+        counters: as in `StaticSolution`, and settling_increments: of the way to the first state.
+    """
+
+    status: Status
+    message: str
+    load_factor: Array
+    bodies: Mapping[str, Array]
+    torque: Array
+    stiffness: Array
+    bending_energy: Array
+    axial_energy: Array
+    shear_energy: Array
+    gravity_energy: Array
+    work: Array
+    shape: Array
+    bending_moment: Array
+    clamp_reactions: Array
+    effects: tuple[str, ...]
     counters: Mapping[str, int]
     history: tuple[tuple[float, ...], ...]
 

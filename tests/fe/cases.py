@@ -44,7 +44,7 @@ def pivot(**changes: Any) -> Model:
 def cantilever(*, elements: int, element: str = "corotational", section: Section = SECTION) -> Model:
     """Return a horizontal strip, clamped on the left, with a massless body as its tip."""
     strip = straight_strip((0.0, 0.0), (LENGTH, 0.0), section=section, elements=elements)
-    return Model(strips=(strip,), body=Body(centre=np.array([LENGTH, 0.0])), element=element)
+    return Model(strips=(strip,), bodies=(Body(centre=np.array([LENGTH, 0.0])),), element=element)
 
 
 def with_shear_factor(model: Model, factor: float) -> Model:

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
+from fe_reference.attachments import FREE
 from fe_reference.errors import InvalidParameter
 from fe_reference.model import ELEMENTS, Body
 from fe_reference.modes import natural_frequencies
@@ -89,7 +90,7 @@ def test_strip_with_end_body(eta: float, zeta: float) -> None:
     body = Body(centre=np.array([LENGTH, 0.0]), mass=eta * mass, moment_of_inertia=zeta * mass * LENGTH**2)
 
     def error(elements: int = 40) -> float:
-        model = replace(cantilever(elements=elements, section=STIFF), body=body)
+        model = replace(cantilever(elements=elements, section=STIFF), bodies=(body,))
         roots = end_body_roots(eta, zeta, 3)
         return relative(natural_frequencies(model, count=3).frequency, UNIT * roots**2)
 
@@ -165,7 +166,7 @@ def test_shapes_move_with_the_body() -> None:
 def test_free_strip_has_three_rigid_motions() -> None:
     """A free strip has its three rigid motions at zero frequency, far below the first bending frequency."""
     free = cantilever(elements=10)
-    strip = replace(free.strips[0], clamped=False)
+    strip = replace(free.strips[0], root=FREE)
     modes = natural_frequencies(replace(free, strips=(strip,)), count=4)
     assert np.abs(modes.frequency[:3]).max() < 1e-3 * modes.frequency[3]
 

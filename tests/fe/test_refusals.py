@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from fe_reference.attachments import FREE
 from fe_reference.errors import ConvergenceError, InvalidParameter
 from fe_reference.model import Body, Model, Section, Strip, straight_strip
 from fe_reference.solution import Status
@@ -76,13 +77,13 @@ def test_bad_load_and_geometry_are_refused() -> None:
         Section(area=1.0, second_moment_of_area=1.0, youngs_modulus=1.0, poisson_ratio=0.3, density=0.0)
     strips = tuple(straight_strip((0.0, 0.0), (LENGTH, 0.0), section=SECTION, elements=n) for n in (2, 3))
     with pytest.raises(InvalidParameter, match="same number of nodes"):
-        Model(strips=strips, body=Body(centre=np.zeros(2)))
+        Model(strips=strips, bodies=(Body(centre=np.zeros(2)),))
 
 
 def test_model_without_clamps_is_refused() -> None:
     """A model that nothing holds has no static solution."""
     free = cantilever(elements=2)
-    strip = replace(free.strips[0], clamped=False)
+    strip = replace(free.strips[0], root=FREE)
     with pytest.raises(InvalidParameter, match="strips: got 'a model that can move freely', expected clamps"):
         solve_loads(replace(free, strips=(strip,)), moment=1.0)
 

@@ -1,0 +1,254 @@
+"""Names and parameters of the effects that a scene of finite elements may be made of.
+
+A scene names its effects; what is not named is not assembled. Parameters are frozen values in SI units.
+"""
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import MISSING, dataclass, field, fields, replace
+from itertools import pairwise
+from typing import Any, Self, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import InvalidParameter, finite, not_negative, pair
+
+Array = NDArray[np.float64]
+Pair = tuple[float, float]
+History = tuple[Pair, ...]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Effect:
+    """An effect without parameters."""
+
+    def turned(self, turn: Array) -> Self:
+        """Return the same effect in a frame turned by the matrix `turn` (2, 2)."""
+        return self
+
+
+@dataclass(frozen=True, kw_only=True)
+class Gravity(Effect):
+    """Weight of strips and bodies: acceleration (g_x, g_y) [m/s^2]. Acts whether or not they have inertia."""
+
+    acceleration: Pair
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "acceleration", pair("acceleration", self.acceleration, "m/s^2"))
+
+    def turned(self, turn: Array) -> Self:
+        return replace(self, acceleration=_turned(turn, self.acceleration))
+
+
+@dataclass(frozen=True, kw_only=True)
+class StripDamping(Effect):
+    """Kelvin-Voigt material: stress E (strain + b d strain/dt) with relaxation time b [s] in every strain."""
+
+    relaxation_time: float
+
+    def __post_init__(self) -> None:
+        not_negative("relaxation_time", self.relaxation_time, "s")
+
+
+@dataclass(frozen=True, kw_only=True)
+class StripDrag(Effect):
+    """Force -a mu v per unit length on the strips, in proportion to their mass, with the rate a [1/s]."""
+
+    rate: float
+
+    def __post_init__(self) -> None:
+        not_negative("rate", self.rate, "1/s")
+
+
+@dataclass(frozen=True, kw_only=True)
+class BodyDamping(Effect):
+    """Damper between every body and ground: translation of its centre [N s/m] and rotation [N m s]."""
+
+    translation: float = 0.0
+    rotation: float = 0.0
+
+    def __post_init__(self) -> None:
+        not_negative("translation", self.translation, "N s/m")
+        not_negative("rotation", self.rotation, "N m s")
+
+
+@dataclass(frozen=True, kw_only=True)
+class AppliedForce(Effect):
+    """Dead force (f_x, f_y) [N] at the centre of a body, times load factor or history."""
+
+    force: Pair
+    body: str | None = None
+    history: History = ((0.0, 1.0),)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "force", pair("force", self.force, "N"))
+        object.__setattr__(self, "history", _history(self.history))
+
+    def turned(self, turn: Array) -> Self:
+        return replace(self, force=_turned(turn, self.force))
+
+
+@dataclass(frozen=True, kw_only=True)
+class AppliedMoment(Effect):
+    """Moment [N m] on a body, times load factor or history."""
+
+    moment: float
+    body: str | None = None
+    history: History = ((0.0, 1.0),)
+
+    def __post_init__(self) -> None:
+        finite("moment", self.moment, "N m")
+        object.__setattr__(self, "history", _history(self.history))
+
+
+@dataclass(frozen=True, kw_only=True)
+class TipForce(Effect):
+    """Dead force (f_x, f_y) [N] at the free end of a strip, times load factor or history."""
+
+    strip: str
+    force: Pair
+    history: History = ((0.0, 1.0),)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "force", pair("force", self.force, "N"))
+        object.__setattr__(self, "history", _history(self.history))
+
+    def turned(self, turn: Array) -> Self:
+        return replace(self, force=_turned(turn, self.force))
+
+
+@dataclass(frozen=True, kw_only=True)
+class DrivenDisplacement(Effect):
+    """Displacement (d_x, d_y) [m] that the centre of the driven body is led to, times the load factor."""
+
+    displacement: Pair
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "displacement", pair("displacement", self.displacement, "m"))
+
+    def turned(self, turn: Array) -> Self:
+        return replace(self, displacement=_turned(turn, self.displacement))
+
+
+@dataclass(frozen=True, kw_only=True)
+class PreStrain(Effect):
+    """Natural curvature [1/m] and natural strain [1] of every strip: where it is free of stress.
+
+    They are counted from the shape at rest: the section laws are M = EI (kappa - curvature) and
+    N = EA (eps - strain), with kappa the change of curvature from the shape at rest.
+    """
+
+    curvature: float = 0.0
+    strain: float = 0.0
+
+    def __post_init__(self) -> None:
+        finite("curvature", self.curvature, "1/m")
+        finite("strain", self.strain, "1")
+
+
+#: Every effect that these elements can have.
+KNOWN: Mapping[str, type[Effect]] = {
+    "bending": Effect,
+    "stretching": Effect,
+    "strip_inertia": Effect,
+    "section_rotary_inertia": Effect,  # shear-deformable elements have it in any case
+    "body_inertia": Effect,
+    "gravity": Gravity,
+    "strip_damping": StripDamping,
+    "strip_drag": StripDrag,
+    "body_damping": BodyDamping,
+    "applied_force": AppliedForce,
+    "applied_moment": AppliedMoment,
+    "tip_force": TipForce,
+    "driven_displacement": DrivenDisplacement,
+    "pre_strain": PreStrain,
+}
+DEFAULT_EFFECTS = ("bending", "stretching", "strip_inertia", "body_inertia")
+T = TypeVar("T", bound=Effect)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Effects:
+    """The named effects of one scene, in the order they were named."""
+
+    named: Mapping[str, Effect] = field(default_factory=lambda: {name: Effect() for name in DEFAULT_EFFECTS})
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names in order."""
+        return tuple(self.named)
+
+    def __contains__(self, name: str) -> bool:
+        return name in self.named
+
+    def find(self, kind: type[T]) -> T | None:
+        """Return the effect of this class, or None if it is not named."""
+        return next((each for each in self.named.values() if isinstance(each, kind)), None)
+
+    def turned(self, turn: Array) -> "Effects":
+        """Return the effects of a scene turned as a whole by the matrix `turn` (2, 2)."""
+        return Effects(named={name: each.turned(turn) for name, each in self.named.items()})
+
+
+def read_effects(effects: Iterable[str], parameters: Mapping[str, Mapping[str, Any]]) -> Effects:
+    """Return the effects of these names with their parameters.
+
+    Raises:
+        InvalidParameter: a name that is not known or comes twice, "bending" or "stretching" left out, rotary
+            inertia of strips without inertia, parameters that are missing, unknown or of no named effect.
+    """
+    names = tuple(effects)
+    for name in names:
+        _known(name)
+    if len(set(names)) != len(names):
+        raise InvalidParameter("effects", names, "every name once [name]")
+    if not {"bending", "stretching"} <= set(names):
+        raise InvalidParameter("effects", names, "bending and stretching, which every element has [name]")
+    if "section_rotary_inertia" in names and "strip_inertia" not in names:
+        raise InvalidParameter("effects", names, "strip_inertia beside section_rotary_inertia [name]")
+    for name in parameters:
+        if name not in names:
+            raise InvalidParameter("parameters", name, f"one of the named effects {', '.join(names)} [name]")
+    return Effects(named={name: _made(name, parameters.get(name, {})) for name in names})
+
+
+def needs_inertia(effects: Effects) -> None:
+    """Refuse a scene whose motion is asked for though nothing in it has inertia."""
+    if not {"strip_inertia", "body_inertia"} & set(effects.names):
+        raise InvalidParameter("effects", effects.names, "strip_inertia or body_inertia for a motion [name]")
+
+
+def _known(name: str) -> None:
+    there = f"one of {', '.join(KNOWN)} [name]"
+    if name == "inextensible":
+        raise InvalidParameter(
+            "effects", name, f"{there}: these elements stretch, and a penalty would only hide that"
+        )
+    if name not in KNOWN:
+        raise InvalidParameter("effects", name, there)
+
+
+def _made(name: str, parameters: Mapping[str, Any]) -> Effect:
+    """Return the effect `name` with its parameters, refused by name if they are not those it has."""
+    known = {each.name: each.default is MISSING for each in fields(KNOWN[name])}
+    for key in parameters:
+        if key not in known:
+            raise InvalidParameter(name, key, f"one of {', '.join(known) or 'no parameters'} [name]")
+    missing = [key for key, needed in known.items() if needed and key not in parameters]
+    if missing:
+        raise InvalidParameter(name, dict(parameters), f"a value of {', '.join(missing)} [name]")
+    return KNOWN[name](**parameters)
+
+
+def _turned(turn: Array, vector: Pair) -> Pair:
+    x, y = (turn @ np.array(vector)).tolist()
+    return x, y
+
+
+def _history(history: Sequence[Sequence[float]]) -> History:
+    """Return the pairs of instant [s] and factor [1] that a piecewise linear history passes through."""
+    points = tuple(pair("history", point, "s, 1") for point in history)
+    times = [time for time, _ in points]
+    if not points or any(b <= a for a, b in pairwise(times)):
+        raise InvalidParameter("history", history, "pairs of ascending instants [s] and factors [1]")
+    return points

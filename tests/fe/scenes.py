@@ -1,0 +1,120 @@
+"""Mechanisms that the tests of effects share: a free cantilever, a parallel-strip guide, a four-bar."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from fe_reference.effects.named import DEFAULT_EFFECTS
+from fe_reference.mechanism import BodyDesign, StripDesign, mechanism
+from fe_reference.model import Model
+from tests.fe.cases import TABLE_1
+
+Parameters = Mapping[str, Mapping[str, Any]]
+SECTION: dict[str, float] = {
+    name: TABLE_1[name]
+    for name in ("area", "second_moment_of_area", "youngs_modulus", "poisson_ratio", "density")
+}
+#: Length of the guide's strips [m], distance between them, and length of the links of the four-bar.
+GUIDE, APART, LINK = 0.1, 0.05, 0.06
+#: Every effect that has a parameter, at a value that matters in the four-bar; its coupler is the loaded body.
+PARAMETERS: dict[str, dict[str, Any]] = {
+    "gravity": {"acceleration": (300.0, -981.0)},
+    "strip_damping": {"relaxation_time": 2e-7},
+    "strip_drag": {"rate": 200.0},
+    "body_damping": {"translation": 3.0, "rotation": 1e-2},
+    "applied_force": {"force": (2000.0, 1000.0), "body": "coupler", "history": ((0.0, 1.0), (2e-3, -1.0))},
+    "applied_moment": {"moment": 30.0, "body": "crank"},
+    "pre_strain": {"curvature": 3.0, "strain": 1e-3},
+}
+#: The same effects with nothing in them.
+NOTHING: dict[str, dict[str, Any]] = {
+    "gravity": {"acceleration": (0.0, 0.0)},
+    "strip_damping": {"relaxation_time": 0.0},
+    "strip_drag": {"rate": 0.0},
+    "body_damping": {"translation": 0.0, "rotation": 0.0},
+    "applied_force": {"force": (0.0, 0.0), "body": "coupler"},
+    "applied_moment": {"moment": 0.0, "body": "crank"},
+    "pre_strain": {"curvature": 0.0, "strain": 0.0},
+}
+
+
+def free_cantilever(
+    *,
+    length: float = GUIDE,
+    section: Mapping[str, float] = SECTION,
+    parameters: Parameters | None = None,
+    effects: tuple[str, ...] = DEFAULT_EFFECTS,
+    root: str | None = "ground",
+    **discretisation: Any,
+) -> Model:
+    """Return a horizontal strip, clamped on the left, with a free tip."""
+    strip = StripDesign(name="strip", start=(0.0, 0.0), end=(length, 0.0), root=root, tip=None, **section)
+    given = parameters or {}
+    return mechanism(strips=[strip], effects=(*effects, *given), parameters=given, **discretisation)
+
+
+def guide(parameters: Parameters | None = None, **discretisation: Any) -> Model:
+    """Return a stage on two parallel strips."""
+    strips = [
+        StripDesign(name=name, start=(x, 0.0), end=(x, GUIDE), tip="stage", **SECTION)
+        for name, x in (("left", 0.0), ("right", APART))
+    ]
+    stage = BodyDesign(name="stage", centre=(0.5 * APART, GUIDE), mass=0.2, moment_of_inertia=1e-4)
+    given = parameters or {}
+    return mechanism(
+        strips=strips,
+        bodies=[stage],
+        effects=(*DEFAULT_EFFECTS, *given),
+        parameters=given,
+        **discretisation,
+    )
+
+
+def four_bar(
+    parameters: Parameters | None = None,
+    *,
+    effects: tuple[str, ...] = DEFAULT_EFFECTS,
+    short: float = 0.02,
+    rise: float = 0.0,
+    **discretisation: Any,
+) -> Model:
+    """Return a parallelogram of crank, coupler and rocker with a strip of length `short` in every joint.
+
+    All strips stand upright at rest; the rocker's lower strip runs from the rocker to ground.
+    """
+    low, high = short, short + LINK
+    joints = (
+        ("a", (0.0, 0.0), (0.0, low), "ground", "crank"),
+        ("b", (0.0, high), (0.0, high + short), "crank", "coupler"),
+        ("c", (APART, high + short), (APART, high), "coupler", "rocker"),
+        ("d", (APART, low), (APART, 0.0), "rocker", "ground"),
+    )
+    strips = [
+        StripDesign(name=name, start=start, end=end, root=root, tip=tip, rise=rise, **SECTION)
+        for name, start, end, root, tip in joints
+    ]
+    centres = {
+        "crank": (0.005, 0.5 * (low + high)),
+        "coupler": (0.5 * APART, high + short),
+        "rocker": (APART, 0.5 * (low + high)),
+    }
+    bodies = [
+        BodyDesign(name=name, centre=centre, mass=0.1, moment_of_inertia=1e-4)
+        for name, centre in centres.items()
+    ]
+    given = parameters or {}
+    return mechanism(
+        strips=strips, bodies=bodies, effects=(*effects, *given), parameters=given, **discretisation
+    )
+
+
+def decay_and_frequency(motion: np.ndarray, step: float) -> tuple[float, float]:
+    """Return damping rate [1/s] and circular frequency [rad/s] of one damped vibration about zero.
+
+    Samples of such a motion obey x_{n+1} = 2 e^{-rh} cos(wh) x_n - e^{-2rh} x_{n-1}.
+    """
+    rows = np.column_stack([motion[1:-1], -motion[:-2]])
+    middle, square = np.linalg.lstsq(rows, motion[2:], rcond=None)[0]
+    rate = -0.5 * np.log(square) / step
+    return float(rate), float(np.arccos(0.5 * middle / np.sqrt(square)) / step)

@@ -1,0 +1,62 @@
+"""Rotary inertia of the sections against the Rayleigh beam."""
+
+from itertools import pairwise
+
+import numpy as np
+from scipy.optimize import brentq
+
+from fe_reference.effects.named import DEFAULT_EFFECTS
+from fe_reference.modes import natural_frequencies
+from tests.fe.cases import hold
+from tests.fe.scenes import GUIDE, SECTION, free_cantilever
+
+#: A thick section, so that its rotary inertia is felt; stretching is put out of the way at the same rho A.
+THICK = SECTION | {"second_moment_of_area": SECTION["area"] * (0.02 * GUIDE) ** 2}
+
+
+def rayleigh_frequency() -> float:
+    """Return the second frequency [Hz] of a cantilever with rotary inertia.
+
+    EI w'''' + rho I W^2 w'' - mu W^2 w = 0, clamped at 0; w'' = 0 and EI w''' + rho I W^2 w' = 0 at L. With
+    w = exp(k s) this has the roots k = +-a and k = +-i b.
+    """
+    ei = THICK["youngs_modulus"] * THICK["second_moment_of_area"]
+    mu, rotary = THICK["density"] * THICK["area"], THICK["density"] * THICK["second_moment_of_area"]
+
+    def condition(omega: float) -> float:
+        half, all_of = 0.5 * rotary * omega**2 / ei, mu * omega**2 / ei
+        root = np.sqrt(half**2 + all_of)
+        a, b = np.sqrt(root - half), np.sqrt(root + half)
+        ch, sh, c, s = np.cosh(a * GUIDE), np.sinh(a * GUIDE), np.cos(b * GUIDE), np.sin(b * GUIDE)
+        # w = A (cosh - cos) + B (sinh - a/b sin) satisfies the clamp
+        moment = [a**2 * ch + b**2 * c, a**2 * sh + a * b * s]
+        slope = [a * sh + b * s, a * ch - a * c]
+        third = [a**3 * sh - b**3 * s, a**3 * ch + a * b**2 * c]
+        shear = [p + 2.0 * half * q for p, q in zip(third, slope, strict=True)]
+        return float((moment[0] * shear[1] - moment[1] * shear[0]) / (ch * ch))
+
+    unit = np.sqrt(ei / mu) / GUIDE**2
+    return float(brentq(condition, 18.0 * unit, 24.0 * unit, xtol=1e-9)) / (2.0 * np.pi)
+
+
+def test_section_rotary_inertia() -> None:
+    """Consistent and lumped masses with rotary inertia tend to the Rayleigh beam, without it they do not."""
+    exact = rayleigh_frequency()
+
+    def error(effects: tuple[str, ...] = ("section_rotary_inertia",)) -> float:
+        worst = 0.0
+        for mass in ("consistent", "lumped"):
+            seen = [
+                natural_frequencies(
+                    free_cantilever(section=THICK, elements=n, effects=(*DEFAULT_EFFECTS, *effects)),
+                    rotation=None,
+                    count=2,
+                    mass=mass,
+                ).frequency[1]
+                for n in (20, 40, 80)
+            ]
+            pairs = [(4.0 * fine - coarse) / 3.0 for coarse, fine in pairwise(seen)]
+            worst = max(worst, abs((16.0 * pairs[1] - pairs[0]) / 15.0 / exact - 1.0))
+        return float(worst)
+
+    hold("fe_rayleigh_beam", error)

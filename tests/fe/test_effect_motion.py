@@ -1,0 +1,289 @@
+"""Motion with effects: closed forms, balance of energies, the stable step with dampers, massless strips."""
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from fe_reference.compiled import CompiledForces
+from fe_reference.control import Control
+from fe_reference.dynamics import INTEGRATORS, solve_motion, solve_release
+from fe_reference.effects.actions import Actions
+from fe_reference.errors import InvalidParameter
+from fe_reference.explicit import Explicit, critical_step
+from fe_reference.follow import follow
+from fe_reference.mass import about_mass_centre, lumped_diagonal
+from fe_reference.mechanism import BodyDesign, StripDesign, mechanism
+from fe_reference.model import ELEMENTS, Model
+from fe_reference.modes import natural_frequencies
+from tests.fe.cases import EI, MOMENT, TABLE_1, hold, pivot
+from tests.fe.scenes import GUIDE, PARAMETERS, SECTION, decay_and_frequency, four_bar, free_cantilever
+
+EXPLICIT, IMPLICIT = INTEGRATORS
+MASSLESS = ("bending", "stretching", "body_inertia")
+#: A force that bends the cantilever by a millionth of its length, let go within the first step.
+PLUCK = {"strip": "strip", "force": (0.0, 3e-6 * EI / GUIDE**2), "history": ((0.0, 1.0), (1e-9, 0.0))}
+
+
+def plucked(name: str, key: str, ratio: float) -> float:
+    """Return the damping ratio that the first mode of a plucked cantilever shows.
+
+    Args:
+        name: of the damper. key: of its one coefficient, which is chosen for the damping ratio `ratio`.
+    """
+    bare = free_cantilever(elements=12)
+    modes = natural_frequencies(bare, rotation=None, count=1, mass="lumped")
+    omega, steps = 2.0 * np.pi * modes.frequency[0], 500
+    given = {key: 2.0 * ratio / omega if name == "strip_damping" else 2.0 * ratio * omega}
+    motion = solve_motion(
+        free_cantilever(elements=12, parameters={name: given, "tip_force": PLUCK}),
+        duration=8.0 / modes.frequency[0],
+        step=1.0 / (steps * modes.frequency[0]),
+        samples=8 * steps,
+        integrator=IMPLICIT,
+    )
+    # the share of the first mode alone: the others are orthogonal to it in the equal masses of the nodes
+    masses = bare.structure.nodal_masses()
+    share = (motion.shape[:, 0, :, 1] - motion.shape[0, 0, 0, 1]) @ (masses * modes.shapes[0, 0, :, 1])
+    rate, frequency = decay_and_frequency(share[:: steps // 10], 0.1 / modes.frequency[0])
+    assert frequency == pytest.approx(omega * np.sqrt(1.0 - ratio**2), rel=1e-3)
+    return rate / omega
+
+
+@pytest.mark.parametrize("name", ["strip_damping", "strip_drag"])
+def test_damping_ratio_of_a_cantilever(name: str) -> None:
+    """The first mode decays with beta omega / 2 of the material, or alpha / (2 omega) of the drag."""
+    key = {"strip_damping": "relaxation_time", "strip_drag": "rate"}[name]
+
+    def error(ratio: float = 0.03) -> float:
+        return abs(plucked(name, key, ratio) / 0.03 - 1.0)
+
+    hold(f"fe_{name}_ratio", error)
+
+
+def test_body_damping() -> None:
+    """A pivot on massless strips decays with c.phi^2 / (2 omega) of its first mode."""
+    given = {"body_damping": {"translation": 1.5, "rotation": 0.04}}
+    bare = pivot(effects=MASSLESS)
+    modes = natural_frequencies(bare, count=1)
+    shape, omega = modes.body_shapes[0], 2.0 * np.pi * modes.frequency[0]
+    exact = 0.5 * (1.5 * np.sum(shape[:2] ** 2) + 0.04 * shape[2] ** 2)
+
+    def error(steps: int = 1000) -> float:
+        model = pivot(effects=(*MASSLESS, "body_damping"), parameters=given)
+        motion = solve_release(
+            model,
+            start=1e-4,
+            duration=4.0 / modes.frequency[0],
+            step=1.0 / (steps * modes.frequency[0]),
+            samples=4 * steps,
+            integrator=IMPLICIT,
+        )
+        rate, seen = decay_and_frequency(motion.rotation[:: steps // 10], 2.0 * np.pi / omega / 10.0)
+        return float(max(abs(rate / exact - 1.0), abs(np.hypot(seen, rate) / omega - 1.0)))
+
+    hold("fe_body_damping_ratio", error)
+
+
+def test_body_on_massless_strips() -> None:
+    """Bodies on strips without inertia have their own modes only, at the closed-form frequency."""
+    inertia = TABLE_1["body_moment_of_inertia"] + TABLE_1["body_mass"] * 0.03**2
+    exact = np.sqrt(2.0 * MOMENT / inertia) / (2.0 * np.pi)
+
+    def error(area: float = 1e3) -> float:
+        model = pivot(effects=MASSLESS, area=area * TABLE_1["area"])
+        return abs(natural_frequencies(model, count=1).frequency[0] / exact - 1.0)
+
+    hold("fe_massless_strips", error)
+    with pytest.raises(InvalidParameter, match="count: got 4, expected at most 3 modes"):
+        natural_frequencies(pivot(effects=MASSLESS), count=4)
+
+
+def test_massless_strips_stay_in_equilibrium() -> None:
+    """In a large motion strips without inertia are in equilibrium with the body at every instant."""
+
+    def error(spectral_radius: float = 0.9, settled: bool = True) -> float:
+        gravity = {"gravity": {"acceleration": (0.0, -50.0)}}
+        model = four_bar(gravity, effects=MASSLESS, elements=6)
+        motion = solve_motion(
+            model,
+            start=0.4 if settled else None,
+            body="crank" if settled else None,
+            settled=settled,
+            duration=2e-3,
+            step=1e-5,
+            samples=5,
+            integrator=IMPLICIT,
+            spectral_radius=spectral_radius,
+        )
+        strips = motion.shape[-1].reshape(-1, 2)
+        assert motion.counters["steps"] == 200
+        bodies = {name: rows[-1] for name, rows in motion.bodies.items()}
+        return float(np.abs(strips - statically(model, bodies)).max() / GUIDE)
+
+    hold("fe_massless_equilibrium", error)
+
+
+def statically(model: Model, bodies: dict[str, np.ndarray]) -> np.ndarray:
+    """Return where the nodes of the strips are in equilibrium when the bodies are held there (nodes, 2)."""
+    structure = model.structure
+    moved = np.concatenate([bodies[b.name] - [*b.centre, 0.0] for b in model.bodies])
+    held = np.arange(structure.first_body, structure.size)
+    control = Control(structure=structure, held=held, values=np.stack([0.0 * moved, moved]))
+    path = follow([control], 20)
+    assert path.message == ""
+    rest = np.concatenate([strip.nodes for strip in model.strips])
+    return rest + structure.displacement(path.states[-1].y)[:, :2]
+
+
+def test_hanging_body() -> None:
+    """A point mass on a strip of no mass swings as a tensioned beam lets it.
+
+    With the tension T = m g and n^2 = T / EI the lateral stiffness of the end, free to turn, is
+    T / (L - tanh(n L) / n).
+    """
+    tension = 4.0 * EI / GUIDE**2
+    number = np.sqrt(tension / EI)
+    exact = np.sqrt(tension / (GUIDE - np.tanh(number * GUIDE) / number) / 0.5) / (2.0 * np.pi)
+
+    def error(elements: tuple[int, int] = (20, 40)) -> float:
+        section = SECTION | {"area": 1e3 * SECTION["area"], "density": 1e-12}
+        strip = StripDesign(name="strip", start=(0.0, 0.0), end=(0.0, -GUIDE), tip="bob", **section)
+        seen = []
+        for n in elements:
+            model = mechanism(
+                strips=[strip],
+                bodies=[BodyDesign(name="bob", centre=(0.0, -GUIDE), mass=0.5)],
+                effects=(*MASSLESS, "gravity"),
+                parameters={"gravity": {"acceleration": (0.0, -tension / 0.5)}},
+                elements=n,
+            )
+            seen.append(natural_frequencies(model, rotation=None, count=1).frequency[0])
+        return float(abs((4.0 * seen[1] - seen[0]) / 3.0 / exact - 1.0))
+
+    hold("fe_hanging_body", error)
+
+
+@pytest.mark.parametrize("integrator", INTEGRATORS)
+def test_free_fall_against_drag(integrator: str) -> None:
+    """A free strip that falls against drag follows g/a^2 (a t - 1 + exp(-a t)) and does not bend."""
+    gravity, rate, duration = 9.81, 300.0, 5e-3
+    given = {"gravity": {"acceleration": (0.0, -gravity)}, "strip_drag": {"rate": rate}}
+    exact = gravity / rate**2 * (rate * duration - 1.0 + np.exp(-rate * duration))
+
+    def error(step: float = 1e-6) -> float:
+        model = free_cantilever(length=1.0, parameters=given, root=None, elements=4)
+        motion = solve_motion(model, settled=False, duration=duration, step=step, integrator=integrator)
+        fallen = -motion.shape[-1, 0, :, 1]
+        return float(np.abs(fallen / exact - 1.0).max())
+
+    hold(f"fe_free_fall_{integrator.replace('-', '_')}", error)
+
+
+def test_impulse_of_a_load() -> None:
+    """The momentum of a free strip with a body is the integral of the force on it, whatever its history."""
+    history = ((0.0, 0.0), (1e-4, 1.0), (3e-4, -0.5), (4e-4, 0.0))
+    force = {"force": (30.0, -20.0), "history": history}
+
+    def error(step: float = 1e-6) -> float:
+        model = mechanism(
+            strips=[
+                StripDesign(
+                    name="strip", start=(0.0, 0.0), end=(GUIDE, 0.0), root=None, tip="body", **SECTION
+                )
+            ],
+            bodies=[BodyDesign(name="body", centre=(1.2 * GUIDE, 0.01), mass=0.01, moment_of_inertia=1e-5)],
+            effects=("bending", "stretching", "strip_inertia", "body_inertia", "applied_force"),
+            parameters={"applied_force": force},
+            elements=5,
+        )
+        structure, bodies = about_mass_centre(model.structure)
+        scheme, rest = Explicit(structure, bodies), np.zeros(structure.size)
+        steps = round(5e-4 / step)
+        motion = scheme.run(rest, rest, step, [steps], None)
+        assert motion.message == ""
+        momentum = np.sum((scheme.mass * motion.v[-1]).reshape(-1, 3)[:, :2], axis=0)
+        times, factors = np.transpose(history)
+        impulse = np.trapezoid(factors, times) * np.array(force["force"])
+        return float(np.abs(momentum / impulse - 1.0).max())
+
+    hold("fe_impulse", error)
+
+
+@pytest.mark.parametrize("element", ELEMENTS)
+def test_motion_balance(element: str) -> None:
+    """With every effect the energies balance with work and dissipation in the explicit integrator."""
+
+    def error(integrator: str = EXPLICIT, step: float | None = None) -> float:
+        model = four_bar(PARAMETERS, elements=5, element=element)
+        motion = solve_motion(
+            model, body="crank", start=0.5, duration=2e-3, integrator=integrator, step=step, samples=100
+        )
+        assert motion.dissipated[-1] > 0.05 * motion.strain_energy[0]
+        assert np.abs(motion.work).max() > 0.02 * motion.strain_energy[0]
+        return motion.energy_error
+
+    hold(f"fe_motion_balance_{element}", error)
+
+
+def test_integrators_agree_on_a_scene() -> None:
+    """Both integrators follow the same motion of a mechanism with every effect."""
+
+    def error(step: float = 1e-6) -> float:
+        model = four_bar(PARAMETERS, elements=5)
+        settings: dict[str, Any] = {"body": "crank", "start": 0.5, "duration": 1e-3, "samples": 50}
+        explicit = solve_motion(model, **settings, step=1e-8)
+        implicit = solve_motion(model, **settings, step=step, integrator=IMPLICIT)
+        return float(
+            max(np.abs(explicit.bodies[name] - implicit.bodies[name])[:, 2].max() for name in explicit.bodies)
+        )
+
+    hold("fe_scene_integrators_agree", error)
+
+
+@pytest.mark.parametrize("name", ["strip_damping", "strip_drag", "body_damping"])
+def test_critical_step_with_dampers(name: str) -> None:
+    """The reduced step is stable for the scheme with dampers, and a step 1.3 times as long is not."""
+    strong: dict[str, Any] = {
+        "strip_damping": {"relaxation_time": 1e-6},
+        "strip_drag": {"rate": 2e7},
+        "body_damping": {"translation": 1e6, "rotation": 1e4},
+    }
+    model = four_bar({name: strong[name]}, elements=3)
+    structure, bodies = about_mass_centre(model.structure)
+    rest, plain = np.zeros(structure.size), about_mass_centre(four_bar(elements=3).structure)
+    h = critical_step(structure, bodies, rest)
+    assert h < 0.8 * critical_step(*plain, rest)
+    inverse = 1.0 / lumped_diagonal(structure, bodies)[:, None]
+    stiffness = inverse * structure.tangent_stiffness(rest).toarray()
+    damping = inverse * Actions(CompiledForces(structure)).damping_matrix(rest).toarray()
+
+    def radius(step: float) -> float:
+        one = np.eye(len(rest))
+        later = np.block([[one - step * damping, -step * stiffness]])
+        both = np.vstack([later, step * later + np.hstack([0.0 * one, one])])
+        return float(np.abs(np.linalg.eigvals(both)).max())
+
+    assert radius(h) < 1.0 + 1e-9
+    assert radius(1.3 * h) > 1.01
+
+
+def test_start_from_rest_and_settled() -> None:
+    """Under gravity a scene starts in equilibrium and stays there, or starts at rest and falls."""
+    gravity = {"gravity": {"acceleration": (0.0, -200.0)}}
+    model = four_bar(gravity, elements=4)
+    still = solve_motion(model, duration=1e-4)
+    assert still.kinetic_energy.max() < 1e-12 * abs(still.gravity_energy[0])
+    falling = solve_motion(model, duration=1e-4, settled=False)
+    assert falling.kinetic_energy[-1] > 0.0
+    assert falling.gravity_energy[-1] < 0.0
+    assert falling.effects[-1] == "gravity"
+    assert falling.bodies["crank"].shape == falling.rates["crank"].shape == (len(falling.time), 3)
+
+
+def test_rates_are_the_derivatives_of_the_places() -> None:
+    """The reported rates of the bodies are the slopes of their motion."""
+    motion = solve_motion(four_bar(elements=4), body="crank", start=0.5, duration=1e-4, samples=400)
+    for name, place in motion.bodies.items():
+        slope = np.gradient(place, motion.time, axis=0, edge_order=2)
+        assert np.abs(slope - motion.rates[name]).max() < 1e-3 * np.abs(motion.rates[name]).max()

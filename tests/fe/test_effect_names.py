@@ -1,0 +1,219 @@
+"""What a scene may name, what it is refused, and that it pays for nothing else."""
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from fe_reference.compiled import CompiledForces
+from fe_reference.dynamics import solve_motion, solve_release
+from fe_reference.effects import actions, kernels, loads, prestrain
+from fe_reference.effects.actions import Actions
+from fe_reference.effects.named import DEFAULT_EFFECTS, KNOWN
+from fe_reference.errors import InvalidParameter
+from fe_reference.explicit import Explicit
+from fe_reference.mass import about_mass_centre
+from fe_reference.mechanism import BodyDesign, StripDesign, mechanism
+from fe_reference.modes import natural_frequencies
+from fe_reference.statics import solve_mechanism, solve_statics
+from tests.fe.cases import hold, pivot
+from tests.fe.scenes import NOTHING, SECTION, four_bar, free_cantilever, guide
+
+LISTED = ", ".join(KNOWN)
+STILL = ("gravity", "applied_force", "applied_moment", "pre_strain")
+
+
+@pytest.mark.parametrize("name", NOTHING)
+def test_zero_equals_absent(name: str) -> None:
+    """An effect with a coefficient of zero leaves statics, motion and frequencies as they are without it."""
+
+    def error(increments: int = 5) -> float:
+        bare, named = four_bar(elements=4), four_bar({name: NOTHING[name]}, elements=4)
+        gaps = []
+        if name in STILL:
+            one = solve_mechanism(bare, body="crank", rotation=0.4, increments=5)
+            other = solve_mechanism(named, body="crank", rotation=0.4, increments=increments)
+            gaps = [(one.torque[-1] - other.torque[-1]) / one.torque[-1]]
+            gaps += [np.abs(one.shape[-1] - other.shape[-1]).max() / 0.1]
+        for integrator, step in (("central-difference", 5e-8), ("generalised-alpha", 1e-6)):
+            settings: dict[str, Any] = {"body": "crank", "start": 0.4, "duration": 2e-5, "step": step}
+            settings["integrator"] = integrator
+            one_way = solve_motion(bare, **settings, increments=5)
+            other_way = solve_motion(named, **settings, increments=increments)
+            gaps.append(np.abs(one_way.shape - other_way.shape).max() / 0.1)
+        # the same operations in the same order leave nothing: one unit in the last place stands for it
+        return max(*(float(abs(gap)) for gap in gaps), float(np.finfo(float).eps))
+
+    hold("fe_zero_equals_absent", error)
+
+
+def refuse(*_: Any, **__: Any) -> Any:
+    raise AssertionError("an effect that is not named was asked for")
+
+
+def test_absent_effects_are_not_run(monkeypatch: pytest.MonkeyPatch) -> None:
+    """With the code of all effects poisoned, a scene that names none of them runs in statics and motion."""
+    for name in ("viscous_forces", "drag_forces", "grip_forces", "load_forces", "put_loads"):
+        monkeypatch.setattr(actions, name, refuse)
+    for place, name in (
+        (prestrain.NaturalStrain, "__init__"),
+        (loads.DeadLoad, "generalised"),
+        (loads.DeadLoad, "work"),
+        (actions.Actions, "resist"),
+        (actions.Actions, "damping_matrix"),
+        (kernels, "viscous_forces"),
+    ):
+        monkeypatch.setattr(place, name, refuse)
+    monkeypatch.setattr("fe_reference.explicit.advance_scene", refuse)
+    model = pivot(elements=4)
+    assert solve_statics(model, rotation=0.5).status.value == "converged"
+    natural_frequencies(model, count=2)
+    for integrator in ("central-difference", "generalised-alpha"):
+        settings: dict[str, Any] = {"start": 0.5, "duration": 2e-5, "step": 5e-7}
+        assert solve_release(model, integrator=integrator, **settings).status.value == "converged"
+    with pytest.raises(AssertionError, match="not named"):
+        solve_mechanism(free_cantilever(parameters={"pre_strain": {"curvature": 1.0}}))
+
+
+def test_tables_of_absent_effects_have_no_length() -> None:
+    """Nothing is kept for effects that are not named, and the loop is the one that knows none of them."""
+    structure, bodies = about_mass_centre(four_bar().structure)
+    compiled = CompiledForces(structure)
+    acting = Actions(compiled)
+    assert [len(table) for table in (*compiled.conservative, *acting.dissipative)] == [0] * 6
+    assert len(acting.histories[0]) == 0
+    assert not acting.named
+    assert Explicit(structure, bodies).pure
+
+
+def test_compiled_once_for_all_scenes() -> None:
+    """Scenes of different effects use the same compiled steps."""
+    settings: dict[str, Any] = {"body": "crank", "start": 0.1, "duration": 1e-7, "step": 5e-8}
+    solve_motion(four_bar({"strip_drag": NOTHING["strip_drag"]}, elements=2), **settings)
+    before = len(kernels.advance_scene.signatures)
+    for name, parameters in NOTHING.items():
+        solve_motion(four_bar({name: parameters}, elements=2), **settings)
+    assert len(kernels.advance_scene.signatures) == before == 1
+
+
+BAD: list[tuple[dict[str, Any], str]] = [
+    (
+        {"effects": (*DEFAULT_EFFECTS, "magnetism")},
+        f"effects: got 'magnetism', expected one of {LISTED} [name]",
+    ),
+    (
+        {"effects": ("bending", "inextensible")},
+        f"effects: got 'inextensible', expected one of {LISTED} [name]: these elements stretch",
+    ),
+    (
+        {"effects": ("bending", "strip_inertia")},
+        "effects: got ('bending', 'strip_inertia'), expected bending and",
+    ),
+    ({"effects": (*DEFAULT_EFFECTS, "bending")}, "effects: got ('bending', 'stretching', 'strip_inertia',"),
+    (
+        {"effects": ("bending", "stretching", "section_rotary_inertia")},
+        "effects: got ('bending', 'stretching', 'section_rotary_inertia'), expected strip_inertia beside",
+    ),
+    (
+        {"parameters": {"gravity": {}}},
+        "parameters: got 'gravity', expected one of the named effects bending,",
+    ),
+    ({"parameters": {"bending": {"rate": 1.0}}}, "bending: got 'rate', expected one of no parameters [name]"),
+    (
+        {"effects": (*DEFAULT_EFFECTS, "gravity")},
+        "gravity: got {}, expected a value of acceleration [name]",
+    ),
+]
+BAD += [
+    (
+        {"effects": (*DEFAULT_EFFECTS, name), "parameters": {name: parameters}},
+        message,
+    )
+    for name, parameters, message in (
+        ("gravity", {"acceleration": 9.81}, "acceleration: got 9.81, expected two finite numbers [m/s^2]"),
+        (
+            "gravity",
+            {"acceleration": (0.0, np.nan)},
+            "acceleration: got nan, expected a finite number [m/s^2]",
+        ),
+        ("gravity", {"speed": 1.0}, "gravity: got 'speed', expected one of acceleration [name]"),
+        (
+            "strip_damping",
+            {"relaxation_time": -1.0},
+            "relaxation_time: got -1.0, expected a number not below 0",
+        ),
+        ("strip_drag", {"rate": -1.0}, "rate: got -1.0, expected a number not below 0 [1/s]"),
+        ("body_damping", {"rotation": -1.0}, "rotation: got -1.0, expected a number not below 0 [N m s]"),
+        (
+            "applied_force",
+            {"force": (1.0, 0.0), "body": "car"},
+            "body: got 'car', expected one of body [name]",
+        ),
+        ("applied_moment", {"moment": 1.0, "body": "car"}, "body: got 'car', expected one of body [name]"),
+        (
+            "applied_moment",
+            {"moment": 1.0, "history": ((0.0, 1.0), (0.0, 2.0))},
+            "history: got ((0.0, 1.0), (0.0, 2.0)), expected pairs of ascending instants [s]",
+        ),
+        (
+            "tip_force",
+            {"strip": "strip_1", "force": (1.0, 0.0)},
+            "tip_force: got 'strip_1', expected a strip whose",
+        ),
+        (
+            "tip_force",
+            {"strip": "rope", "force": (1.0, 0.0)},
+            "strip: got 'rope', expected one of strip_1, strip_2",
+        ),
+    )
+]
+
+
+@pytest.mark.parametrize(("changes", "message"), BAD)
+def test_bad_effects_are_one_clear_line(changes: dict[str, Any], message: str) -> None:
+    """Unknown, contradictory or incomplete effects are refused in one line that says what there is."""
+    with pytest.raises(InvalidParameter) as refusal:
+        pivot(**changes)
+    assert str(refusal.value).startswith(message)
+    assert "\n" not in str(refusal.value)
+
+
+def test_motion_needs_inertia() -> None:
+    """A motion of nothing that has inertia is refused; massless parts are refused in the explicit scheme."""
+    still = pivot(effects=("bending", "stretching"))
+    with pytest.raises(InvalidParameter, match="expected strip_inertia or body_inertia for a motion"):
+        solve_release(still, start=0.1, duration=1e-3)
+    with pytest.raises(InvalidParameter, match="expected strip_inertia or body_inertia for a motion"):
+        natural_frequencies(still)
+    assert solve_statics(still, rotation=0.1).status.value == "converged"
+    light = pivot(effects=("bending", "stretching", "body_inertia"))
+    with pytest.raises(InvalidParameter, match="expected generalised-alpha where strips or bodies have no"):
+        solve_release(light, start=0.1, duration=1e-3)
+
+
+def test_bad_requests_of_mechanisms() -> None:
+    """Bodies and strips that are not there, drives without a body and freedom without a step are refused."""
+    strip = StripDesign(name="strip", start=(0.0, 0.0), end=(0.1, 0.0), tip="plate", **SECTION)
+    plate = BodyDesign(name="plate", centre=(0.1, 0.0))
+    with pytest.raises(InvalidParameter, match="tip: got 'plate', expected one of ground, car"):
+        mechanism(strips=[strip], bodies=[BodyDesign(name="car", centre=(0.0, 0.0))])
+    with pytest.raises(InvalidParameter, match="bodies: got 'ground', expected another name"):
+        mechanism(strips=[strip], bodies=[BodyDesign(name="ground", centre=(0.0, 0.0))])
+    with pytest.raises(InvalidParameter, match=r"strips: got .* expected names that differ"):
+        mechanism(strips=[strip, strip], bodies=[plate])
+    with pytest.raises(InvalidParameter, match="body: got None, expected one of crank, coupler, rocker"):
+        solve_mechanism(four_bar(), rotation=0.1)
+    with pytest.raises(InvalidParameter, match="body: got None, expected one of no bodies"):
+        solve_mechanism(free_cantilever(), rotation=0.1)
+    with pytest.raises(InvalidParameter, match="driven_displacement: got 'no bodies'"):
+        free_cantilever(parameters={"driven_displacement": {"displacement": (0.0, 0.0)}})
+    led = guide({"driven_displacement": {"displacement": (1e-3, 0.0)}})
+    with pytest.raises(InvalidParameter, match="expected none beside the effect driven_displacement"):
+        solve_mechanism(led, displacement=(1e-3, 0.0))
+    with pytest.raises(InvalidParameter, match="settled: got False, expected True for a start at a held"):
+        solve_motion(guide(), start=0.1, settled=False, duration=1e-3)
+    with pytest.raises(InvalidParameter, match="held: got True, expected a driven rotation to hold"):
+        natural_frequencies(guide(), rotation=None, held=True)
+    loose = free_cantilever(root=None)
+    with pytest.raises(InvalidParameter, match="step: got None, expected a step: the model can move freely"):
+        solve_motion(loose, settled=False, duration=1e-3, integrator="generalised-alpha")
