@@ -13,6 +13,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "release": ("studies.commands.release", "let go of a driven pivot and report its motion"),
     "modes": ("studies.commands.modes", "report natural frequencies, at rest or at a rotation"),
     "converge": ("studies.commands.converge", "refine both models on a design until an accuracy is reached"),
+    "audit": ("studies.commands.audit", "say what each effect of a scene is worth, and which are enough"),
     "list": ("studies.commands.list_studies", "list the studies"),
     "run": ("studies.commands.run", "compute and draw studies"),
     "draw": ("studies.commands.draw", "redraw studies from their stored tables"),
@@ -54,6 +55,10 @@ STUDIES: dict[str, tuple[str, str]] = {
     "convergence/slide_stiffness": (
         "studies.convergence.slide_stiffness",
         "error against the stiffness of the strains that the axial modes do not see",
+    ),
+    "effects/worth": (
+        "studies.effects.worth",
+        "what each effect is worth for four designs, and what simpler strips save",
     ),
 }
 

@@ -1,22 +1,29 @@
-"""Put a problem to either model: the one file that knows both."""
+"""Put a design to either model, and get a neutral answer."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from contextlib import suppress
-from dataclasses import dataclass
-from types import ModuleType
+from dataclasses import replace
 from typing import Any
 
+import numpy as np
+
+from studies.answers.assembly import MechanismResponse, MechanismResult, mechanism_response
+from studies.answers.models import Model, built, effects_of, model_of, refusals
 from studies.answers.motion import Motion, Spectrum, motion, no_motion, no_spectrum, spectrum
-from studies.answers.response import Response, StaticResult, response
-from studies.answers.settings import FeSettings, Settings
+from studies.answers.response import Response, StaticResult, assembled, response
+from studies.answers.settings import Settings, SplineSettings
+from studies.cases.design import Design
+from studies.cases.effects import LOADS
+from studies.cases.mechanism import Mechanism
 from studies.cases.problem import Problem
-from studies.errors import BadInput
 from studies.record.timing import measure
 
 Progress = Callable[[int, int], None]
 
 #: Rotation of the first solve, which only compiles [rad]: small enough for any design and discretisation.
 WARM_UP_ROTATION = 1e-3
+#: The body of a pivot, as both models call it.
+PIVOT_BODY = "body"
 #: Duration of the first release, which only compiles [s], unless its step is longer.
 WARM_UP_DURATION = 1e-3
 
@@ -45,8 +52,8 @@ def answer_static(
     Raises:
         BadInput: a setting that the model refuses; one line.
     """
-    model = _model(settings)
-    pivot, keywords = _pivot(model, problem, settings, moving=False)
+    model = model_of(settings)
+    pivot, keywords = built(model, problem, settings, moving=False)
 
     def solve(rotation: float, increments: int, **options: Any) -> StaticResult:
         result: StaticResult = model.statics.solve_statics(
@@ -59,13 +66,52 @@ def answer_static(
             problem.rotation, problem.increments, raise_on_failure=raise_on_failure, progress=progress
         )
 
-    solve(WARM_UP_ROTATION, 1, raise_on_failure=False)
-    timing = measure(whole_path, repeat=repeat, warm_up=1 if repeat > 1 else 0)
-    return response(problem, timing.result, model=settings.model, settings=keywords, wall_s=timing.median)
+    with refusals(model, settings):
+        solve(WARM_UP_ROTATION, 1, raise_on_failure=False)
+        timing = measure(whole_path, repeat=repeat, warm_up=1 if repeat > 1 else 0)
+    return response(
+        problem,
+        timing.result,
+        model=settings.model,
+        settings=keywords,
+        effects=assembled(effects_of(pivot)),
+        wall_s=timing.median,
+    )
+
+
+def answer_mechanism(
+    mechanism: Mechanism,
+    settings: Settings,
+    *,
+    repeat: int = 1,
+    raise_on_failure: bool = False,
+    progress: Progress | None = None,
+) -> MechanismResponse:
+    """Solve the path of any mechanism from load factor 0 to 1; arguments and errors as of `answer_static`.
+
+    The path is that of the driven rotation and of the loads together, or of the loads alone.
+    """
+    model = model_of(settings)
+    asked, keywords = built(model, mechanism, settings, moving=False)
+
+    def whole_path(increments: int = mechanism.increments, **options: Any) -> MechanismResult:
+        result: MechanismResult = model.statics.solve_mechanism(
+            asked, body=mechanism.body, rotation=mechanism.rotation, increments=increments, **options
+        )
+        return result
+
+    with refusals(model, settings):
+        whole_path(1, raise_on_failure=False)
+        timing = measure(
+            lambda: whole_path(raise_on_failure=raise_on_failure, progress=progress),
+            repeat=repeat,
+            warm_up=1 if repeat > 1 else 0,
+        )
+    return mechanism_response(timing.result, model=settings.model, settings=keywords, wall_s=timing.median)
 
 
 def answer_release(
-    problem: Problem,
+    design: Design,
     settings: Settings,
     *,
     duration: float,
@@ -74,17 +120,17 @@ def answer_release(
     repeat: int = 1,
     **options: Any,
 ) -> Motion:
-    """Drive the pivot to a rotation, let it go at rest and follow its motion.
+    """Drive a body to a rotation, let it go at rest and follow the motion.
 
     `wall_s` of the motion is the median time of `repeat` releases, less that of releases that are over after
     their first record: so the static path to the start, and what is set up, are left out. A short release
     comes before, and when `repeat` is above 1 a whole one.
 
     Args:
-        problem: the design.
+        design: the pivot or mechanism; one without a rotation begins where its weight settles it.
         settings: names the model and its discretisation.
         duration: of the motion [s].
-        start: rotation at the start [rad]; None for the end of the problem's path.
+        start: rotation at the start [rad]; None for the end of the design's path.
         records: largest number of records; None for what the model keeps.
         repeat: timed releases [1].
         options: `step` [s], `integrator` and `accuracy` [rad], as the model names and checks them; None for
@@ -93,38 +139,52 @@ def answer_release(
     Raises:
         BadInput: a setting or option that the model refuses; one line.
     """
-    model = _model(settings)
-    pivot, keywords = _pivot(model, problem, settings, moving=True)
+    model = model_of(settings)
+    asked, keywords = built(model, design, settings, moving=True)
     given = {name: value for name, value in options.items() if value is not None} | model.release_options
     if records is not None:
         given[model.records] = records
-    angle = problem.rotation if start is None else start
+    run = _release_of(model, design, asked)
+    angle = design.rotation if start is None else start
+    body = _reported(design) or ""
 
     def release(**changes: Any) -> Any:
-        keywords = {"start": angle, "duration": duration} | given | changes
-        return model.dynamics.solve_release(pivot, **keywords)
+        return run(**({"start": angle, "duration": duration} | given | changes))
 
     with suppress(model.errors.InvalidParameter, model.errors.ConvergenceError):
         short = min(duration, max(WARM_UP_DURATION, given.get("step", 0.0)))
         release(start=WARM_UP_ROTATION, duration=short)
     try:
-        timing = measure(release, repeat=repeat, warm_up=1 if repeat > 1 else 0)
-    except model.errors.InvalidParameter as error:
-        raise BadInput(f"{settings.model}: {error}") from None
+        with refusals(model, settings):
+            timing = measure(release, repeat=repeat, warm_up=1 if repeat > 1 else 0)
     except model.errors.ConvergenceError as error:
-        message = f"statics does not reach the start: {error}"
-        return no_motion(message, model=settings.model, settings=keywords)
+        return no_motion(
+            f"statics does not reach the start: {error}",
+            model=settings.model,
+            settings=keywords,
+            effects=effects_of(asked),
+            names=_body_names(design),
+            body=body,
+        )
     wall = timing.median
     if len(timing.result.time) > 2:
         # a little longer than the first record, lest round-off make the step longer than the duration
         brief = {"duration": float(timing.result.time[1]) * (1.0 + 1e-9)}
         brief |= {name: value for name, value in (("step", timing.result.settings.get("step_s")),) if value}
         wall -= measure(lambda: release(**brief), repeat=repeat, warm_up=0).median
-    return motion(timing.result, model=settings.model, settings=keywords, wall_s=max(wall, 0.0))
+    return motion(
+        timing.result,
+        model=settings.model,
+        settings=keywords,
+        effects=effects_of(asked),
+        bodies=_places(timing.result),
+        body=body,
+        wall_s=max(wall, 0.0),
+    )
 
 
 def answer_modes(
-    problem: Problem,
+    design: Design,
     settings: Settings,
     *,
     rotation: float = 0.0,
@@ -133,8 +193,10 @@ def answer_modes(
 ) -> Spectrum:
     """Return the lowest natural modes about the static state at a rotation, by the settings' model.
 
+    At rest loads are absent, but weight and pre-strain act; at a rotation loads are in full.
+
     Args:
-        problem: the design.
+        design: the pivot or mechanism.
         settings: names the model and its discretisation.
         rotation: of the static state [rad].
         count: of modes [1].
@@ -143,100 +205,70 @@ def answer_modes(
     Raises:
         BadInput: a setting or option that the model refuses; one line.
     """
-    model = _model(settings)
-    pivot, keywords = _pivot(model, problem, settings, moving=True)
+    model = model_of(settings)
+    if rotation == 0.0:
+        unloaded = [name for name in design.effects.names if name not in LOADS]
+        design = replace(design, effects=design.effects.renamed(unloaded))
+    asked, keywords = built(model, design, settings, moving=True)
+    body = _reported(design)
+    state = model.at_rest if isinstance(design, Mechanism) and rotation == 0.0 and not held else rotation
+    identity: dict[str, Any] = {
+        "model": settings.model,
+        "settings": keywords,
+        "effects": effects_of(asked),
+        "rotation": rotation,
+        "body": body,
+    }
     try:
-        timing = measure(
-            lambda: model.modes.natural_frequencies(pivot, rotation=rotation, count=count, held=held),
-            repeat=1,
-            warm_up=0,
-        )
-    except model.errors.InvalidParameter as error:
-        raise BadInput(f"{settings.model}: {error}") from None
+        with refusals(model, settings):
+            timing = measure(
+                lambda: model.modes.natural_frequencies(
+                    asked, rotation=state, count=count, held=held, body=body
+                ),
+                repeat=1,
+                warm_up=0,
+            )
     except model.errors.ConvergenceError as error:
-        message = f"statics does not reach the state: {error}"
-        return no_spectrum(message, model=settings.model, settings=keywords, rotation=rotation, held=held)
-    return spectrum(timing.result, model=settings.model, settings=keywords, wall_s=timing.median)
+        return no_spectrum(f"statics does not reach the state: {error}", held=held, **identity)
+    names = _body_names(design)
+    place = names.index(body) if model.all_shapes and body is not None else 0
+    return spectrum(timing.result, place=place, wall_s=timing.median, **identity)
 
 
-@dataclass(frozen=True, kw_only=True)
-class _Model:
-    """The modules of one model, the same names in both, and what differs in how they are asked.
-
-    Attributes:
-        records: keyword for the largest number of records of a motion.
-        release_options: keywords that every release takes.
-        moving: discretisation keywords of a pivot in motion, from its settings, where they say nothing.
-    """
-
-    pivot: ModuleType
-    statics: ModuleType
-    dynamics: ModuleType
-    modes: ModuleType
-    errors: ModuleType
-    records: str
-    release_options: dict[str, Any]
-    moving: Callable[[Settings], dict[str, Any]]
+def spline_mechanism(design: Design, settings: SplineSettings) -> Any:
+    """Return the spline model's mechanism of a design, as it is in motion; errors as of `answer_release`."""
+    asked, _ = built(model_of(settings), design, settings, moving=True)
+    return asked.mechanism if isinstance(design, Problem) else asked
 
 
-def _model(settings: Settings) -> _Model:
-    """Return the settings' model; the other one is not even imported."""
-    if isinstance(settings, FeSettings):
-        import fe_reference.dynamics
-        import fe_reference.errors
-        import fe_reference.modes
-        import fe_reference.pivot
-        import fe_reference.statics
+def _release_of(model: Model, design: Design, asked: Any) -> Callable[..., Any]:
+    """Return what releases the design in the model, by the keywords `start`, `duration` and options."""
+    if isinstance(design, Problem):
 
-        return _Model(
-            pivot=fe_reference.pivot,
-            statics=fe_reference.statics,
-            dynamics=fe_reference.dynamics,
-            modes=fe_reference.modes,
-            errors=fe_reference.errors,
-            records="samples",
-            release_options={"raise_on_failure": False},
-            moving=lambda settings: {},
-        )
-    import spline_model.dynamics
-    import spline_model.errors
-    import spline_model.modes
-    import spline_model.pivot
-    import spline_model.statics
+        def release_pivot(**keywords: Any) -> Any:
+            return model.dynamics.solve_release(asked, **keywords)
 
-    return _Model(
-        pivot=spline_model.pivot,
-        statics=spline_model.statics,
-        dynamics=spline_model.dynamics,
-        modes=spline_model.modes,
-        errors=spline_model.errors,
-        records="records",
-        release_options={},
-        moving=_swinging_spline,
-    )
+        return release_pivot
+
+    def release(start: float | None, **keywords: Any) -> Any:
+        begin = start or model.at_rest
+        return model.dynamics.solve_motion(asked, start=begin, body=design.body, **keywords)
+
+    return release
 
 
-def _swinging_spline(settings: Settings) -> dict[str, Any]:
-    """Return the slide stiffness of a spline in motion, which goes with the number of control points."""
-    from spline_model.design import Discretisation
-    from spline_model.pivot import swinging_slide_stiffness
-
-    given = settings.keywords().get("control_points", Discretisation.control_points)
-    return {"slide_stiffness": swinging_slide_stiffness(given)}
+def _reported(design: Design) -> str | None:
+    """Return the name of the body that is driven and whose swing is reported."""
+    return design.body if isinstance(design, Mechanism) else PIVOT_BODY
 
 
-def _pivot(
-    model: _Model, problem: Problem, settings: Settings, *, moving: bool
-) -> tuple[Any, dict[str, Any]]:
-    """Return the pivot and the keywords of its discretisation, with the model's defaults for one in motion.
+def _body_names(design: Design) -> list[str]:
+    return [body.name for body in design.bodies] if isinstance(design, Mechanism) else [PIVOT_BODY]
 
-    Raises:
-        BadInput: a setting that the model refuses; one line.
-    """
-    keywords = settings.keywords()
-    if moving:
-        keywords = model.moving(settings) | keywords
-    try:
-        return model.pivot.cross_axis_pivot(**problem.pivot_parameters(), **keywords), keywords
-    except model.errors.InvalidParameter as error:
-        raise BadInput(f"{settings.model}: {error}") from None
+
+def _places(result: Any) -> Mapping[str, Any]:
+    """Return the places of all bodies by name, (T, 3), from a trajectory of many or of one."""
+    if hasattr(result, "bodies"):
+        places: Mapping[str, Any] = result.bodies
+        return places
+    return {PIVOT_BODY: np.column_stack((result.centre, result.rotation))}

@@ -140,6 +140,18 @@ def swing_frequency(time: Array, rotation: Array) -> float:
     return (len(instants) - 1) / (2.0 * float(instants[-1] - instants[0]))
 
 
+def whole_swing_frequency(time: Array, rotation: Array) -> float:
+    """Return the mean frequency of the whole swings between passages through zero in one direction [Hz].
+
+    As `swing_frequency`, but also right where the rest of the swing is not at zero: as weight makes it. NaN
+    without a whole swing.
+    """
+    instants = zero_crossings(time, rotation)[::2]
+    if len(instants) < 2:
+        return math.nan
+    return (len(instants) - 1) / float(instants[-1] - instants[0])
+
+
 def quasi_static_frequency(
     rotation: Array, centre: Array, strain_energy: Array, *, mass: float, moment_of_inertia: float
 ) -> float:

@@ -1,12 +1,13 @@
 """The neutral answer to a static problem: arrays that do not tell which model they came from."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
+from studies.cases.effects import MOTION_ONLY
 from studies.cases.problem import Problem
 
 Array = NDArray[np.float64]
@@ -69,12 +70,14 @@ class Response:
         centre_shift: (S, 2) displacement of the body's point that lies at the strips' crossing at rest [m].
         extreme_fibre_strain: (S, G, P) largest magnitude over the section's depth [1]; extreme_fibre_stress
             [Pa].
+        effects: names of what was assembled.
         counters: work done, by kind; history: residual norms of every increment.
         wall_s: time of the path's solve alone [s].
     """
 
     model: str
     settings: dict[str, Any]
+    effects: tuple[str, ...]
     status: str
     message: str
     rotation: Array
@@ -114,7 +117,13 @@ class Response:
 
 
 def response(
-    problem: Problem, result: StaticResult, *, model: str, settings: dict[str, Any], wall_s: float
+    problem: Problem,
+    result: StaticResult,
+    *,
+    model: str,
+    settings: dict[str, Any],
+    effects: tuple[str, ...],
+    wall_s: float,
 ) -> Response:
     """Return the neutral form of a model's `result`, with what follows from it and the given data."""
     arrays = {name: np.asarray(getattr(result, name), dtype=float) for name in SHARED_ARRAYS}
@@ -122,6 +131,7 @@ def response(
     return Response(
         model=model,
         settings=settings,
+        effects=effects,
         status=str(result.status.value),
         message=result.message,
         centre_shift=centre_shift(problem, arrays["rotation"], arrays["centre"]),
@@ -132,6 +142,11 @@ def response(
         wall_s=wall_s,
         **arrays,
     )
+
+
+def assembled(names: Iterable[str]) -> tuple[str, ...]:
+    """Return those of a scene's effects that a static path is made of."""
+    return tuple(name for name in names if name not in MOTION_ONLY)
 
 
 def centre_shift(problem: Problem, rotation: Array, centre: Array) -> Array:

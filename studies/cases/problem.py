@@ -1,16 +1,18 @@
 """Read a case file into a `Problem`: the given data of one pivot, in SI units and radians."""
 
-import difflib
 import hashlib
 import json
 import math
-import tomllib
-from dataclasses import asdict, dataclass
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
 
-from studies.cases.keys import KEYS, Key
-from studies.errors import BadInput
+from studies.cases.document import CaseError, missing, parsed, refuse_sections, refuse_unknown, table, value
+from studies.cases.effects import Effects, read_effects
+from studies.cases.keys import KEYS
+
+__all__ = ["FOLDER", "CaseError", "Problem", "named_case", "read_case", "read_problem"]
 
 FOLDER = Path(__file__).parent
 
@@ -28,10 +30,6 @@ PIVOT_PARAMETERS = (
     "body_moment_of_inertia",
     "centre_offset",
 )
-
-
-class CaseError(BadInput):
-    """A case file, or a value of it, that cannot be used: file, key, got, expected in one line."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -54,6 +52,7 @@ class Problem:
         increments: equal increments of the path [1].
         section_depth: depth of the section in the plane of bending [m]; None for the rectangle that A and I
             imply.
+        effects: of the scene.
 
     Raises:
         CaseError: a value outside its admissible range.
@@ -73,6 +72,7 @@ class Problem:
     rotation: float
     increments: int
     section_depth: float | None = None
+    effects: Effects = field(default_factory=Effects)
 
     def __post_init__(self) -> None:
         for key in KEYS:
@@ -112,74 +112,36 @@ def named_case(name: str) -> Problem:
 
 
 def read_case(path: str | Path) -> Problem:
-    """Read the case file at `path`.
+    """Read the case file of a cross-axis pivot at `path`.
 
     Raises:
         CaseError: the file is unreadable or not TOML, a section or key is missing, unknown or misspelt, a
             value has the wrong type or lies outside its range. One line: file, key, got, expected.
     """
-    document = _parse(Path(path))
-    for section, content in document.items():
-        if not isinstance(content, dict):
-            raise CaseError(
-                f"{path}: {section}: got a value outside any section, expected one of {_sections()}"
-            )
-        _refuse_unknown(path, section, content)
+    return read_problem(str(path), parsed(path))
+
+
+def read_problem(path: str, content: Mapping[str, Any]) -> Problem:
+    """Return the pivot of a parsed case file; errors as of `read_case`."""
+    if isinstance(content.get("strips"), list):
+        raise CaseError(f"{path}: [[strips]]: got a mechanism, expected a cross-axis pivot, with [strip]")
+    sections = list(dict.fromkeys(key.section for key in KEYS))
+    refuse_sections(path, content, [*sections, "scene", "effects"])
+    for section in sections:
+        known = [key.name for key in KEYS if key.section == section]
+        refuse_unknown(path, section, table(path, content, section), known)
     values: dict[str, Any] = {}
     for key in KEYS:
-        content = document.get(key.section)
-        if content is None:
+        if key.section not in content:
             raise CaseError(
                 f"{path}: [{key.section}]: got no such section, expected one with {_names(key.section)}"
             )
-        if key.name in content:
-            values[key.attribute] = _value(path, key, content[key.name])
+        given = content[key.section]
+        if key.name in given:
+            values[key.attribute] = value(path, key, given[key.name], key.section)
         elif not key.optional:
-            raise CaseError(
-                f"{path}: {key.section}.{key.name}: got no such key, expected {key.rule.expected}"
-            )
-    return Problem(**values)
-
-
-def _parse(path: Path) -> dict[str, Any]:
-    try:
-        text = path.read_bytes().decode("utf-8")
-    except OSError as error:
-        raise CaseError(f"{path}: cannot be read ({error.strerror}), expected a TOML case file") from None
-    except UnicodeDecodeError:
-        raise CaseError(f"{path}: got bytes that are not UTF-8 text, expected a TOML case file") from None
-    try:
-        return tomllib.loads(text)
-    except tomllib.TOMLDecodeError as error:
-        raise CaseError(f"{path}: got text that is not TOML ({error}), expected a TOML case file") from None
-
-
-def _value(path: str | Path, key: Key, value: Any) -> Any:
-    try:
-        return key.rule.parse(value)
-    except ValueError as error:
-        raise CaseError(f"{path}: {key.section}.{key.name}: {error}") from None
-
-
-def _refuse_unknown(path: str | Path, section: str, content: dict[str, Any]) -> None:
-    sections = list(dict.fromkeys(key.section for key in KEYS))
-    if section not in sections:
-        raise CaseError(
-            f"{path}: [{section}]: got an unknown section, expected {_nearest(section, sections)}"
-        )
-    names = [key.name for key in KEYS if key.section == section]
-    for name in content:
-        if name not in names:
-            raise CaseError(f"{path}: {section}.{name}: got an unknown key, expected {_nearest(name, names)}")
-
-
-def _nearest(name: str, known: list[str]) -> str:
-    near = difflib.get_close_matches(name, known, n=1)
-    return f"{near[0]} (the nearest name)" if near else "one of " + ", ".join(known)
-
-
-def _sections() -> str:
-    return ", ".join(f"[{name}]" for name in dict.fromkeys(key.section for key in KEYS))
+            raise missing(path, key, key.section)
+    return Problem(**values, effects=read_effects(path, content))
 
 
 def _names(section: str) -> str:

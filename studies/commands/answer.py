@@ -68,6 +68,12 @@ def ending(status: str, counters: Mapping[str, int], wall_s: float) -> str:
     )
 
 
+def places(bodies: Mapping[str, Any]) -> dict[str, dict[str, list[float]]]:
+    """Return the places of bodies, (S, 3) x, y [m] and rotation [rad] by name, as JSON has them."""
+    keys = ("x_m", "y_m", "rotation_rad")
+    return {name: dict(zip(keys, place.T.tolist(), strict=True)) for name, place in bodies.items()}
+
+
 def number(value: float) -> float | None:
     """Return `value` as JSON has it: nothing for NaN."""
     return value if math.isfinite(value) else None

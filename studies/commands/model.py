@@ -1,8 +1,10 @@
-"""The arguments that choose a design, a model and its discretisation, shared by all commands that ask one."""
+"""The arguments that choose a design, its effects, a model and its discretisation, shared by all commands."""
 
 import argparse
+import dataclasses
 
 from studies.answers.settings import FeSettings, Settings, SplineSettings
+from studies.cases.design import Design, read_design
 from studies.commands.parser import Parser, not_negative
 from studies.errors import BadInput
 
@@ -24,6 +26,7 @@ FE_OPTIONS = ("elements",)
 def add_model_arguments(parser: Parser) -> None:
     """Declare the case, the model and the options of either discretisation."""
     parser.add_argument("case", metavar="CASE.toml", help="the design")
+    add_effects_argument(parser)
     parser.add_argument(
         "--model", choices=MODELS, required=True, help="spline, corotational or shear-deformable FE"
     )
@@ -44,6 +47,23 @@ def add_model_arguments(parser: Parser) -> None:
     parser.add_argument(
         "--elements", type=int, metavar="N", help="elements a strip (fe, fe-shear; default 20)"
     )
+
+
+def add_effects_argument(parser: Parser) -> None:
+    """Declare the changes of the scene."""
+    parser.add_argument(
+        "--effects",
+        metavar="LIST",
+        help="changes of the scene's effects, as in --effects=+gravity,-strip_inertia; names alone are all",
+    )
+
+
+def chosen_design(arguments: argparse.Namespace) -> Design:
+    """Return the design of the case with the effects that are asked for."""
+    design = read_design(arguments.case)
+    if arguments.effects is None:
+        return design
+    return dataclasses.replace(design, effects=design.effects.changed(arguments.effects))
 
 
 def chosen_settings(arguments: argparse.Namespace) -> Settings:

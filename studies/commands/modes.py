@@ -2,10 +2,12 @@
 
     python -m studies modes studies/cases/cross_axis_pivot.toml --model spline --control-points 8
     python -m studies modes studies/cases/cross_axis_pivot.toml --model fe --rotation-deg 45 --held --json -
+    python -m studies modes studies/cases/parallel_strip_guide.toml --model spline --effects=-strip_inertia
 
-With --held the rotation is held; without it the driving torque acts on as it is. A negative frequency is an
-unstable mode (growth rate over 2 pi). slide_frequency_Hz holds those frequencies that are of the spline's
-parametrisation alone. Exit code 0: done; 2: bad input; 3: statics does not reach the rotation.
+At rest no loads act, but weight does. With --held the rotation is held; without it the driving torque acts
+on as it is. A negative frequency is an unstable mode (growth rate over 2 pi). slide_frequency_Hz holds those
+frequencies that are of the spline's parametrisation alone. Exit code 0: done; 2: bad input; 3: statics does
+not reach the rotation.
 """
 
 import argparse
@@ -15,9 +17,8 @@ from typing import Any
 from studies.answers.adapters import answer_modes
 from studies.answers.motion import Spectrum
 from studies.cases.keys import ROTATION
-from studies.cases.problem import read_case
 from studies.commands.answer import add_json_argument, deliver, described, ending, require_target
-from studies.commands.model import add_model_arguments, chosen_settings
+from studies.commands.model import add_model_arguments, chosen_design, chosen_settings
 from studies.commands.parser import Parser, degrees, whole_number
 from studies.errors import BadInput
 
@@ -37,14 +38,14 @@ def add_arguments(parser: Parser) -> None:
 
 def main(arguments: argparse.Namespace) -> int:
     """Solve and report; return the exit code."""
-    problem = read_case(arguments.case)
+    design = chosen_design(arguments)
     settings = chosen_settings(arguments)
     try:
         rotation = ROTATION.parse(arguments.rotation_deg)
     except ValueError as error:
         raise BadInput(f"--rotation-deg: {error}") from None
     require_target(arguments)
-    answer = answer_modes(problem, settings, rotation=rotation, count=arguments.count, held=arguments.held)
+    answer = answer_modes(design, settings, rotation=rotation, count=arguments.count, held=arguments.held)
     failure = None if answer.converged else answer.message
     return deliver(arguments, as_document(answer), _readable(answer), failure=failure)
 
@@ -56,6 +57,7 @@ def as_document(answer: Spectrum) -> dict[str, Any]:
         "message": answer.message,
         "model": answer.model,
         "settings": answer.settings,
+        "effects": list(answer.effects),
         "rotation_rad": answer.rotation,
         "held": answer.held,
         "frequency_Hz": answer.frequency.tolist(),

@@ -66,6 +66,17 @@ def degrees(text: str) -> float:
     return value
 
 
+def positive(text: str) -> float:
+    """Parse a finite number above zero."""
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not 0.0 < value < math.inf:
+        raise argparse.ArgumentTypeError(f"got {text}, expected a finite number above 0")
+    return value
+
+
 def not_negative(text: str) -> float:
     """Parse a finite number of zero or above."""
     try:

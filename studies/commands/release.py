@@ -1,13 +1,15 @@
-"""Let go of a pivot that was driven to a rotation and report its free motion with one of the models.
+"""Let go of a driven pivot or mechanism and report its motion with one of the models.
 
     python -m studies release studies/cases/cross_axis_pivot.toml --model spline --control-points 8
     python -m studies release studies/cases/cross_axis_pivot.toml --model fe --duration 0.02 --json -
+    python -m studies release studies/cases/cantilever_with_body.toml --model spline --effects=-gravity
 
-Coordinates have their origin at A1, the ground clamp of strip 1; rotation is counter-clockwise. The arrays of
-the JSON run over the instants, the release first; frequency_Hz is null with fewer than two passages through
-zero. wall_s leaves out the static path to the start. Exit code 0: done, though `resolution` may say that the
-step is too long for the swing; 2: bad input; 3: statics does not reach the start, or the motion stopped
-early.
+Of a pivot coordinates have their origin at A1, the ground clamp of strip 1; rotation is counter-clockwise. A
+mechanism without a rotation starts where its weight settles it, and its loads follow their histories. The
+arrays of the JSON run over the instants, the release first, and effects are those that were assembled;
+frequency_Hz is null with fewer than two passages through zero. wall_s leaves out the static path to the
+start. Exit code 0: done, though `resolution` may say that the step is too long for the swing; 2: bad input;
+3: statics does not reach the start, or the motion stopped early.
 """
 
 import argparse
@@ -17,10 +19,20 @@ from typing import Any
 
 from studies.answers.adapters import answer_release
 from studies.answers.motion import Motion
+from studies.cases.design import Design
+from studies.cases.effects import DEFAULT
 from studies.cases.keys import ROTATION
-from studies.cases.problem import read_case
-from studies.commands.answer import add_json_argument, deliver, described, ending, number, require_target
-from studies.commands.model import add_model_arguments, chosen_settings, refuse
+from studies.cases.problem import Problem
+from studies.commands.answer import (
+    add_json_argument,
+    deliver,
+    described,
+    ending,
+    number,
+    places,
+    require_target,
+)
+from studies.commands.model import add_model_arguments, chosen_design, chosen_settings, refuse
 from studies.commands.parser import Parser, degrees, whole_number
 from studies.errors import BadInput
 
@@ -60,11 +72,11 @@ def add_arguments(parser: Parser) -> None:
 
 def main(arguments: argparse.Namespace) -> int:
     """Release and report; return the exit code."""
-    problem = read_case(arguments.case)
+    design = chosen_design(arguments)
     settings = chosen_settings(arguments)
     if settings.model != "spline":
         refuse(arguments, SPLINE_OPTIONS, OPTIONS)
-    start = problem.rotation
+    start = design.rotation
     if arguments.from_deg is not None:
         try:
             start = ROTATION.parse(arguments.from_deg)
@@ -73,27 +85,41 @@ def main(arguments: argparse.Namespace) -> int:
     require_target(arguments)
     options = {name: getattr(arguments, name) for name in (*OPTIONS, *SPLINE_OPTIONS)}
     answer = answer_release(
-        problem, settings, start=start, duration=arguments.duration, repeat=arguments.repeat, **options
+        design, settings, start=start, duration=arguments.duration, repeat=arguments.repeat, **options
     )
     failure = None if answer.converged else answer.message
-    return deliver(arguments, as_document(answer), _readable(answer), failure=failure)
+    return deliver(arguments, as_document(design, answer), _readable(answer), failure=failure)
 
 
-def as_document(answer: Motion) -> dict[str, Any]:
-    """Return the answer as the JSON object of the command."""
+def as_document(design: Design, answer: Motion) -> dict[str, Any]:
+    """Return the answer as the JSON object of the command: of a pivot the one body, of a mechanism all.
+
+    The energies of gravity, loads and damping are there where more than the usual effects act.
+    """
+    pivot = isinstance(design, Problem)
+    place = {
+        "rotation_rad": answer.rotation.tolist(),
+        "com_x_m": answer.centre[:, 0].tolist(),
+        "com_y_m": answer.centre[:, 1].tolist(),
+    }
+    energies = {
+        "gravity_J": answer.gravity_energy.tolist(),
+        "work_J": answer.work.tolist(),
+        "dissipated_J": answer.dissipated.tolist(),
+    }
     return {
         "status": answer.status,
         "message": answer.message,
         "resolution": answer.resolution,
         "model": answer.model,
         "settings": answer.settings,
+        "effects": list(answer.effects),
         "frequency_Hz": number(answer.frequency),
         "time_s": answer.time.tolist(),
-        "rotation_rad": answer.rotation.tolist(),
-        "com_x_m": answer.centre[:, 0].tolist(),
-        "com_y_m": answer.centre[:, 1].tolist(),
+        **(place if pivot else {"bodies": places(answer.bodies)}),
         "kinetic_J": answer.kinetic_energy.tolist(),
         "strain_J": answer.strain_energy.tolist(),
+        **({} if pivot and set(answer.effects) <= {*DEFAULT, "inextensible"} else energies),
         "constraint_residual": answer.constraint_residual.tolist(),
         "counters": answer.counters,
         "wall_s": answer.wall_s,
@@ -101,7 +127,7 @@ def as_document(answer: Motion) -> dict[str, Any]:
 
 
 def _readable(answer: Motion) -> Iterator[str]:
-    """Yield the lines of a short table: a few of the instants."""
+    """Yield the lines of a short table: a few of the instants, of the body that was let go."""
     yield described(answer.model, answer.settings)
     yield f"{'time':>9} {'rotation':>9} {'x':>11} {'y':>11} {'kinetic':>11} {'strain':>11} {'clamp gap':>10}"
     yield f"{'ms':>9} {'deg':>9} {'mm':>11} {'mm':>11} {'J':>11} {'J':>11} {'m':>10}"
@@ -113,7 +139,7 @@ def _readable(answer: Motion) -> Iterator[str]:
         energy = f"{answer.kinetic_energy[record]:11.4f} {answer.strain_energy[record]:11.4f}"
         yield f"{place} {energy} {answer.constraint_residual[record]:10.1e}"
     if math.isfinite(answer.frequency):
-        yield f"frequency {answer.frequency:.4f} Hz; energy kept to {answer.energy_error:.1e}"
+        yield f"frequency {answer.frequency:.4f} Hz; energy balanced to {answer.energy_error:.1e}"
     if answer.resolution:
         yield answer.resolution
     yield ending(answer.status, answer.counters, answer.wall_s)

@@ -1,11 +1,13 @@
-"""Drive a pivot through a rotation with one of the models and report its path.
+"""Drive a pivot or a mechanism through a rotation with one of the models and report its path.
 
     python -m studies solve studies/cases/cross_axis_pivot.toml --model spline --control-points 8
     python -m studies solve studies/cases/cross_axis_pivot.toml --model fe --elements 40 --json -
+    python -m studies solve studies/cases/four_bar_of_flexures.toml --model spline --effects=-gravity
 
-Coordinates have their origin at A1, the ground clamp of strip 1; rotation is counter-clockwise. The arrays of
-the JSON run over the increments, the unloaded state first. Exit code 0: converged; 2: bad input; 3: not
-converged, and then the converged part of the path is reported with where and why it stopped.
+Of a pivot coordinates have their origin at A1, the ground clamp of strip 1; rotation is counter-clockwise.
+The arrays of the JSON run over the increments, the state of load factor 0 first, and effects are those that
+were assembled. A mechanism without a rotation follows the loads of its scene. Exit code 0: converged; 2: bad
+input; 3: not converged, and then the converged part of the path is reported with where and why it stopped.
 """
 
 import argparse
@@ -14,12 +16,22 @@ import math
 from collections.abc import Iterator
 from typing import Any
 
-from studies.answers.adapters import answer_static
+from studies.answers.adapters import answer_mechanism, answer_static
+from studies.answers.assembly import MechanismResponse
 from studies.answers.response import Response
+from studies.cases.design import Design
 from studies.cases.keys import INCREMENTS, ROTATION
-from studies.cases.problem import Problem, read_case
-from studies.commands.answer import add_json_argument, deliver, described, ending, require_target
-from studies.commands.model import add_model_arguments, chosen_settings
+from studies.cases.problem import Problem
+from studies.commands.answer import (
+    add_json_argument,
+    deliver,
+    described,
+    ending,
+    number,
+    places,
+    require_target,
+)
+from studies.commands.model import add_model_arguments, chosen_design, chosen_settings
 from studies.commands.parser import Parser, degrees, whole_number
 from studies.errors import BadInput
 from studies.record.progress import Bar
@@ -42,13 +54,19 @@ def add_arguments(parser: Parser) -> None:
 
 def main(arguments: argparse.Namespace) -> int:
     """Solve and report; return the exit code."""
-    problem = _driven(read_case(arguments.case), arguments)
+    design = _driven(chosen_design(arguments), arguments)
     settings = chosen_settings(arguments)
     require_target(arguments)
     with Bar(f"solve {settings.model}") as bar:
-        answer = answer_static(problem, settings, repeat=arguments.repeat, progress=bar)
-    failure = None if answer.converged else answer.message
-    return deliver(arguments, as_document(answer), _readable(answer), failure=failure)
+        if isinstance(design, Problem):
+            pivot = answer_static(design, settings, repeat=arguments.repeat, progress=bar)
+            document, table = as_document(pivot), _readable(pivot)
+            failure = None if pivot.converged else pivot.message
+        else:
+            answer = answer_mechanism(design, settings, repeat=arguments.repeat, progress=bar)
+            document, table = mechanism_document(answer), _mechanism_table(answer)
+            failure = None if answer.converged else answer.message
+    return deliver(arguments, document, table, failure=failure)
 
 
 def as_document(answer: Response) -> dict[str, Any]:
@@ -58,6 +76,7 @@ def as_document(answer: Response) -> dict[str, Any]:
         "message": answer.message,
         "model": answer.model,
         "settings": answer.settings,
+        "effects": list(answer.effects),
         "rotation_rad": answer.rotation.tolist(),
         "com_x_m": answer.centre[:, 0].tolist(),
         "com_y_m": answer.centre[:, 1].tolist(),
@@ -70,8 +89,28 @@ def as_document(answer: Response) -> dict[str, Any]:
     }
 
 
-def _driven(problem: Problem, arguments: argparse.Namespace) -> Problem:
-    """Return the problem with the path that the options ask for."""
+def mechanism_document(answer: MechanismResponse) -> dict[str, Any]:
+    """Return the answer of any mechanism as the JSON object of the command."""
+    return {
+        "status": answer.status,
+        "message": answer.message,
+        "model": answer.model,
+        "settings": answer.settings,
+        "effects": list(answer.effects),
+        "load_factor": answer.load_factor.tolist(),
+        "bodies": places(answer.bodies),
+        "torque_Nm": [number(value) for value in answer.torque],
+        "stiffness_Nm_per_rad": [number(value) for value in answer.stiffness],
+        "strain_energy_J": answer.strain_energy.tolist(),
+        "gravity_energy_J": answer.gravity_energy.tolist(),
+        "work_J": answer.work.tolist(),
+        "counters": answer.counters,
+        "wall_s": answer.wall_s,
+    }
+
+
+def _driven(design: Design, arguments: argparse.Namespace) -> Design:
+    """Return the design with the path that the options ask for."""
     changes: dict[str, Any] = {}
     try:
         option = "--rotation-deg"
@@ -82,7 +121,7 @@ def _driven(problem: Problem, arguments: argparse.Namespace) -> Problem:
             changes["increments"] = INCREMENTS.parse(arguments.increments)
     except ValueError as error:
         raise BadInput(f"{option}: {error}") from None
-    return dataclasses.replace(problem, **changes)
+    return dataclasses.replace(design, **changes)
 
 
 def _readable(answer: Response) -> Iterator[str]:
@@ -102,4 +141,20 @@ def _readable(answer: Response) -> Iterator[str]:
     for rotation, (x, y), torque, stiffness, energy, stress in rows:
         place = f"{math.degrees(rotation):9.3f} {x:11.5f} {y:11.5f}"
         yield f"{place} {torque:12.4f} {stiffness:12.4f} {energy:11.4f} {stress:9.1f}"
+    yield ending(answer.status, answer.counters, answer.wall_s)
+
+
+def _mechanism_table(answer: MechanismResponse) -> Iterator[str]:
+    """Yield the lines of a short table: torque and energy, and the place of every body."""
+    yield described(answer.model, answer.settings)
+    yield f"{'':>6} {'':>12} {'':>11}" + "".join(f" |{name:>29}" for name in answer.bodies)
+    head = f" |{'x':>9} {'y':>9} {'rotation':>9}" * len(answer.bodies)
+    yield f"{'load':>6} {'torque':>12} {'energy':>11}{head}"
+    yield f"{'':>6} {'N m':>12} {'J':>11}" + f" |{'mm':>9} {'mm':>9} {'deg':>9}" * len(answer.bodies)
+    for state, factor in enumerate(answer.load_factor):
+        torque = f"{answer.torque[state]:12.5g}" if math.isfinite(answer.torque[state]) else f"{'-':>12}"
+        line = f"{factor:6.3f} {torque} {answer.strain_energy[state]:11.5g}"
+        for x, y, turn in (place[state] for place in answer.bodies.values()):
+            line += f" |{1e3 * x:9.4f} {1e3 * y:9.4f} {math.degrees(turn):9.4f}"
+        yield line
     yield ending(answer.status, answer.counters, answer.wall_s)

@@ -28,7 +28,7 @@ SLIGHT = 0.1
 ALIKE = "Fig 6: the two time histories are slightly different (within 10 % of the travel over 0.05 s)"
 FASTER = "Fig 6: the spline swings at a higher frequency than 20 finite elements"
 
-#: Every so many of the common instants is stored.
+#: Every so many of the common instants is stored: some sixty a swing.
 STORED = 2
 
 QUANTITIES = (
@@ -76,6 +76,7 @@ def draw(tables: Mapping[str, pd.DataFrame]) -> dict[str, Figure]:
         value.set_ylabel(label)
         error.set_ylabel(f"|difference| {label[label.index('[') :]}")
         uncertain(error, scale * level[column])
+        error.minorticks_off()  # hundreds of marks that say nothing
     _energies(panels[3, 0], panels[3, 1], motions)
     panels[0, 0].set_title("After the release from 90°")
     panels[0, 1].set_title("Difference to the refined finite elements")
@@ -101,6 +102,7 @@ def _energies(value: Axes, error: Axes, motions: pd.DataFrame) -> None:
             error.semilogy(1e3 * curve["time_s"][late], change.clip(lower=1e-16), **look)
     value.set(ylabel="strain energy [J]", xlabel="time [ms]")
     error.set(ylabel="|change of energy| [1]", xlabel="time [ms]")
+    error.minorticks_off()
 
 
 def _look(name: str) -> dict[str, Any]:

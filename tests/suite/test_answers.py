@@ -15,9 +15,10 @@ from studies.answers.metrics import (
     richardson,
     swing_frequency,
     trajectory_error,
+    whole_swing_frequency,
     zero_crossings,
 )
-from studies.answers.motion import Motion
+from studies.answers.motion import RESIDUALS, SHARED_ARRAYS, Motion
 from studies.answers.response import centre_shift, extreme_fibre_strain
 from studies.answers.swing import MESHES, limit_of
 from studies.cases.problem import CaseError, named_case
@@ -113,6 +114,16 @@ def test_frequency_of_a_known_swing():
     assert math.isnan(swing_frequency(time[:60], swing[:60]))
 
 
+def test_frequency_of_a_swing_about_another_rest():
+    """Whole swings have the right frequency although passages through zero are not evenly spaced."""
+    time = np.linspace(0.0, 0.1, 4000)
+    swing = 0.3 + np.cos(2.0 * np.pi * 42.0 * time)
+    assert whole_swing_frequency(time, swing) == pytest.approx(42.0, rel=1e-6)
+    uneven = slice(0, 900)  # two passages, less than half a swing apart
+    assert abs(swing_frequency(time[uneven], swing[uneven]) / 42.0 - 1.0) > 1e-2
+    assert math.isnan(whole_swing_frequency(time[uneven], swing[uneven]))
+
+
 @pytest.mark.parametrize(("cubic", "amplitude"), [(0.0, 0.5), (0.0, -1.5), (40.0, 1.2)])
 def test_statics_alone_implies_the_frequency_of_an_oscillator(cubic, amplitude):
     """Of U = k a^2/2 + c a^4/4 the frequency is that of the integrated equation of motion."""
@@ -146,10 +157,7 @@ def test_limit_of_swings_removes_the_error_of_the_mesh():
     for elements in MESHES:
         h = 1.0 / elements
         rotation = np.cos(500.0 * instants) * (1.0 + 3.0 * h**2 + 7.0 * h**4)
-        arrays = {
-            name: np.ones_like(instants)
-            for name in ("kinetic_energy", "strain_energy", "constraint_residual", "velocity_residual")
-        }
+        arrays = {name: np.ones_like(instants) for name in (*SHARED_ARRAYS, *RESIDUALS) if name != "time"}
         levels.append(
             Motion(
                 model="fe",
@@ -157,9 +165,10 @@ def test_limit_of_swings_removes_the_error_of_the_mesh():
                 status="converged",
                 message="",
                 resolution="",
+                effects=(),
                 time=instants,
-                rotation=rotation,
-                centre=np.stack((rotation, 2.0 * rotation), axis=1),
+                bodies={"body": np.stack((rotation, 2.0 * rotation, rotation), axis=1)},
+                body="body",
                 counters={},
                 wall_s=0.0,
                 **arrays,

@@ -10,12 +10,14 @@ from studies.answers import adapters
 
 MODELS = ("spline", "fe", "fe-shear")
 ARRAYS = {"time_s", "rotation_rad", "com_x_m", "com_y_m", "kinetic_J", "strain_J", "constraint_residual"}
-KEYS = ARRAYS | {"status", "message", "resolution", "model", "settings", "frequency_Hz", "counters", "wall_s"}
+KEYS = ARRAYS | {"status", "message", "resolution", "model", "settings", "effects", "frequency_Hz"}
+KEYS |= {"counters", "wall_s"}
 MODE_KEYS = {
     "status",
     "message",
     "model",
     "settings",
+    "effects",
     "rotation_rad",
     "held",
     "frequency_Hz",

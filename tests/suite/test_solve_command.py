@@ -16,7 +16,7 @@ ARRAYS = {
     "strain_energy_J",
     "max_stress_Pa",
 }
-KEYS = ARRAYS | {"status", "message", "model", "settings", "counters", "wall_s"}
+KEYS = ARRAYS | {"status", "message", "model", "settings", "effects", "counters", "wall_s"}
 
 
 @pytest.mark.parametrize("model", ["spline", "fe", "fe-shear"])
@@ -31,6 +31,7 @@ def test_json_of_every_model(model, case, command):
     assert set(answer) == KEYS
     assert {name: len(answer[name]) for name in ARRAYS} == dict.fromkeys(ARRAYS, 5)
     assert (answer["status"], answer["message"], answer["model"]) == ("converged", "", model)
+    assert answer["effects"] == ["bending", "stretching"]  # statics asks for no inertia
     assert answer["rotation_rad"] == pytest.approx(
         [0.0, *(math.radians(7.5 * k) for k in (1, 2, 3, 4))], abs=1e-12
     )

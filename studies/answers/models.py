@@ -1,0 +1,129 @@
+"""The two models side by side: the one file that knows both, and how a design is put to either."""
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from types import ModuleType
+from typing import Any
+
+from studies.answers.settings import FeSettings, Settings
+from studies.cases.design import Design
+from studies.cases.problem import Problem
+from studies.errors import BadInput
+
+
+@dataclass(frozen=True, kw_only=True)
+class Model:
+    """The modules of one model, the same names in both, and what differs in how they are asked.
+
+    Attributes:
+        records: keyword for the largest number of records of a motion.
+        release_options: keywords that every release takes.
+        moving: discretisation keywords of a pivot in motion, from its settings, where they say nothing.
+        at_rest: the rotation at which no body is held.
+        all_shapes: whether modes hold the shapes of all bodies side by side, or of one.
+    """
+
+    pivot: ModuleType
+    mechanism: ModuleType
+    statics: ModuleType
+    dynamics: ModuleType
+    modes: ModuleType
+    errors: ModuleType
+    records: str
+    release_options: dict[str, Any]
+    moving: Callable[[Settings], dict[str, Any]]
+    at_rest: float | None
+    all_shapes: bool
+
+
+def model_of(settings: Settings) -> Model:
+    """Return the settings' model; the other one is not even imported."""
+    if isinstance(settings, FeSettings):
+        import fe_reference.dynamics
+        import fe_reference.errors
+        import fe_reference.mechanism
+        import fe_reference.modes
+        import fe_reference.pivot
+        import fe_reference.statics
+
+        return Model(
+            pivot=fe_reference.pivot,
+            mechanism=fe_reference.mechanism,
+            statics=fe_reference.statics,
+            dynamics=fe_reference.dynamics,
+            modes=fe_reference.modes,
+            errors=fe_reference.errors,
+            records="samples",
+            release_options={"raise_on_failure": False},
+            moving=lambda settings: {},
+            at_rest=None,
+            all_shapes=True,
+        )
+    import spline_model.dynamics
+    import spline_model.errors
+    import spline_model.mechanism
+    import spline_model.modes
+    import spline_model.pivot
+    import spline_model.statics
+
+    return Model(
+        pivot=spline_model.pivot,
+        mechanism=spline_model.mechanism,
+        statics=spline_model.statics,
+        dynamics=spline_model.dynamics,
+        modes=spline_model.modes,
+        errors=spline_model.errors,
+        records="records",
+        release_options={},
+        moving=_swinging_spline,
+        at_rest=0.0,
+        all_shapes=False,
+    )
+
+
+def _swinging_spline(settings: Settings) -> dict[str, Any]:
+    """Return the slide stiffness of a spline in motion, which goes with the number of control points."""
+    from spline_model.design import Discretisation
+    from spline_model.pivot import swinging_slide_stiffness
+
+    given = settings.keywords().get("control_points", Discretisation.control_points)
+    return {"slide_stiffness": swinging_slide_stiffness(given)}
+
+
+def built(model: Model, design: Design, settings: Settings, *, moving: bool) -> tuple[Any, dict[str, Any]]:
+    """Return the design in the model and the keywords of its discretisation, complete for one in motion.
+
+    Raises:
+        BadInput: a setting or an effect that the model refuses; one line.
+    """
+    keywords = settings.keywords()
+    if moving:
+        keywords = model.moving(settings) | keywords
+    scene = {"effects": design.effects.names, "parameters": design.effects.parameters()}
+    with refusals(model, settings):
+        if isinstance(design, Problem):
+            return model.pivot.cross_axis_pivot(**design.pivot_parameters(), **scene, **keywords), keywords
+        parts = design.mechanism_parameters()
+        mechanism = model.mechanism.mechanism(
+            strips=[model.mechanism.StripDesign(**strip) for strip in parts["strips"]],
+            bodies=[model.mechanism.BodyDesign(**body) for body in parts["bodies"]],
+            **scene,
+            **keywords,
+        )
+        return mechanism, keywords
+
+
+def effects_of(asked: Any) -> tuple[str, ...]:
+    """Return the names of the effects of what `built` returned, as the model took them."""
+    effects = getattr(asked, "mechanism", asked).effects
+    return tuple(getattr(effects, "names", effects))
+
+
+@contextmanager
+def refusals(model: Model, settings: Settings) -> Iterator[None]:
+    """Turn what the model refuses into one line."""
+    try:
+        yield
+    except model.errors.InvalidParameter as error:
+        raise BadInput(f"{settings.model}: {error}") from None

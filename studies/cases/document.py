@@ -1,0 +1,94 @@
+"""Case files as documents: parsing, and refusals that name file, key, what was got and what was expected."""
+
+import difflib
+import tomllib
+from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from studies.cases.rules import Key
+from studies.errors import BadInput
+
+
+class CaseError(BadInput):
+    """A case file, or a value of it, that cannot be used: file, key, got, expected in one line."""
+
+
+def parsed(path: str | Path) -> dict[str, Any]:
+    """Return the document at `path`; CaseError if it cannot be read or is not TOML."""
+    try:
+        text = Path(path).read_bytes().decode("utf-8")
+    except OSError as error:
+        raise CaseError(f"{path}: cannot be read ({error.strerror}), expected a TOML case file") from None
+    except UnicodeDecodeError:
+        raise CaseError(f"{path}: got bytes that are not UTF-8 text, expected a TOML case file") from None
+    try:
+        return tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        raise CaseError(f"{path}: got text that is not TOML ({error}), expected a TOML case file") from None
+
+
+def values(where: str, keys: Iterable[Key], content: Mapping[str, Any], label: str) -> dict[str, Any]:
+    """Return the values of a table by the attributes they fill, in SI; an optional key that is not there is
+    left out.
+
+    Args:
+        where: file that errors name. keys: of the table. content: what stands in it.
+        label: how errors name the table.
+    """
+    keys = list(keys)
+    refuse_unknown(where, label, content, [key.name for key in keys])
+    found = {}
+    for key in keys:
+        if key.name in content:
+            found[key.attribute] = value(where, key, content[key.name], label)
+        elif not key.optional:
+            raise missing(where, key, label)
+    return found
+
+
+def value(where: str, key: Key, given: Any, label: str) -> Any:
+    """Return one value in SI; CaseError unless its rule admits it."""
+    try:
+        return key.rule.parse(given)
+    except ValueError as error:
+        raise CaseError(f"{where}: {label}.{key.name}: {error}") from None
+
+
+def missing(where: str, key: Key, label: str) -> CaseError:
+    """Return the refusal of a table without a key that it needs."""
+    return CaseError(f"{where}: {label}.{key.name}: got no such key, expected {key.rule.expected}")
+
+
+def refuse_unknown(where: str, label: str, content: Mapping[str, Any], names: Sequence[str]) -> None:
+    """Raise CaseError if a table has a key that is not among `names`."""
+    for name in content:
+        if name not in names:
+            expected = nearest(name, names)
+            raise CaseError(f"{where}: {label}.{name}: got an unknown key, expected {expected}")
+
+
+def refuse_sections(where: str, document: Mapping[str, Any], sections: Sequence[str]) -> None:
+    """Raise CaseError if the document has a section that is not among `sections`, or values outside any."""
+    for section, content in document.items():
+        if section in sections:
+            continue
+        if not isinstance(content, dict | list):
+            listed = ", ".join(f"[{name}]" for name in sections)
+            raise CaseError(f"{where}: {section}: got a value outside any section, expected one of {listed}")
+        expected = nearest(section, sections)
+        raise CaseError(f"{where}: [{section}]: got an unknown section, expected {expected}")
+
+
+def table(where: str, document: Mapping[str, Any], section: str) -> Mapping[str, Any]:
+    """Return the content of a section, empty if it is not there; CaseError if it is no table."""
+    content = document.get(section, {})
+    if not isinstance(content, dict):
+        raise CaseError(f"{where}: {section}: got {type(content).__name__}, expected a table [{section}]")
+    return content
+
+
+def nearest(name: str, known: Sequence[str]) -> str:
+    """Return the known name nearest to `name`, or all of them, as what was expected."""
+    near = difflib.get_close_matches(name, known, n=1)
+    return f"{near[0]} (the nearest name)" if near else "one of " + ", ".join(known)

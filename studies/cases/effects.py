@@ -1,0 +1,174 @@
+"""The effects of a scene as case files and the command line name them, with the units of their parameters.
+
+A table `[effects.NAME]` gives the parameters of an effect whether or not the scene names it, so that
+`--effects=+NAME` finds them.
+"""
+
+import difflib
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from importlib import import_module
+from typing import Any
+
+from studies.cases import document
+from studies.cases.document import CaseError
+from studies.cases.rules import History, Key, Rule, Text, finite, finite_pair, not_negative
+from studies.errors import BadInput
+
+DEFAULT = ("bending", "stretching", "strip_inertia", "body_inertia")
+
+#: Effects that a static path never asks for.
+MOTION_ONLY = (
+    "strip_inertia",
+    "section_rotary_inertia",
+    "body_inertia",
+    "strip_damping",
+    "strip_drag",
+    "body_damping",
+)
+
+#: Loads that grow with the load factor: there are none at rest.
+LOADS = ("applied_force", "applied_moment", "tip_force")
+
+_BODY = ("body", "body", Text(expected="the name of a body"), True)
+_HISTORY = ("history", "history", History(), True)
+
+#: Effect -> its keys as (key, parameter, rule, optional).
+_KEYS: dict[str, tuple[tuple[str, str, Rule, bool], ...]] = {
+    "bending": (),
+    "stretching": (),
+    "inextensible": (),
+    "strip_inertia": (),
+    "section_rotary_inertia": (),
+    "body_inertia": (),
+    "gravity": (("acceleration_m_per_s2", "acceleration", finite_pair("m/s^2"), True),),
+    "strip_damping": (("relaxation_time_s", "relaxation_time", not_negative("s"), False),),
+    "strip_drag": (("rate_per_s", "rate", not_negative("1/s"), False),),
+    "body_damping": (
+        ("translation_Ns_per_m", "translation", not_negative("N s/m"), True),
+        ("rotation_Nms", "rotation", not_negative("N m s"), True),
+    ),
+    "applied_force": (("force_N", "force", finite_pair("N"), False), _BODY, _HISTORY),
+    "applied_moment": (("moment_Nm", "moment", finite("N m"), False), _BODY, _HISTORY),
+    "tip_force": (
+        ("strip", "strip", Text(expected="the name of a strip with a free end"), False),
+        ("force_N", "force", finite_pair("N"), False),
+        _HISTORY,
+    ),
+    "driven_displacement": (("displacement_m", "displacement", finite_pair("m"), False),),
+    "pre_strain": (
+        ("curvature_per_m", "curvature", finite("1/m"), True),
+        ("strain", "strain", finite("1"), True),
+    ),
+}
+KEYS: dict[str, tuple[Key, ...]] = {
+    effect: tuple(
+        Key(section=f"effects.{effect}", name=name, attribute=parameter, rule=rule, optional=optional)
+        for name, parameter, rule, optional in rows
+    )
+    for effect, rows in _KEYS.items()
+}
+
+#: Parameters that an effect has where nothing is said.
+STANDARD: dict[str, dict[str, Any]] = {"gravity": {"acceleration": (0.0, -9.81)}}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Effects:
+    """The effects that a scene names, in order, and the parameters of those that have any.
+
+    Attributes:
+        names: of the effects.
+        tables: effect -> parameter -> value in SI units, also of effects that the scene does not name.
+    """
+
+    names: tuple[str, ...] = DEFAULT
+    tables: Mapping[str, Mapping[str, Any]] = field(default_factory=dict, hash=False)
+
+    def parameters(self) -> dict[str, dict[str, Any]]:
+        """Return the parameters of the named effects, with what is standard where nothing is said."""
+        every = {name: STANDARD.get(name, {}) | dict(self.tables.get(name, {})) for name in self.names}
+        return {name: values for name, values in every.items() if values}
+
+    def renamed(self, names: Sequence[str]) -> "Effects":
+        """Return the scene with other names and the same tables."""
+        return replace(self, names=tuple(names))
+
+    def changed(self, text: str) -> "Effects":
+        """Return the scene after "+gravity,-strip_inertia", or of the whole list "bending,stretching".
+
+        Raises:
+            BadInput: an unknown effect, one that is there already or not there, signs on some names only, or
+                an effect without a parameter that it needs.
+        """
+        words = [word.strip() for word in text.split(",") if word.strip()]
+        signed = [word for word in words if word[0] in "+-"]
+        if not words or (signed and len(signed) < len(words)):
+            raise BadInput(f"--effects: got {text!r}, expected +NAME and -NAME, or names alone, with commas")
+        names = list(self.names) if signed else []
+        for word in words:
+            name = word[1:] if signed else word
+            require_known("--effects", name)
+            if word[0] == "-":
+                if name not in names:
+                    raise BadInput(
+                        f"--effects: got {word}, expected one of {', '.join(names)}, which are there"
+                    )
+                names.remove(name)
+            elif name in names:
+                raise BadInput(f"--effects: got {word}, expected an effect beside {', '.join(names)}")
+            else:
+                names.append(name)
+        scene = self.renamed(names)
+        require_parameters("--effects", scene)
+        return scene
+
+
+def read_effects(path: str, content: Mapping[str, Any]) -> Effects:
+    """Return what a case file says in [scene] and [effects.NAME]; CaseError in one line for faults."""
+    scene = document.table(path, content, "scene")
+    document.refuse_unknown(path, "scene", scene, ["effects"])
+    names = scene.get("effects", list(DEFAULT))
+    if not isinstance(names, list) or not all(isinstance(name, str) for name in names):
+        raise CaseError(f"{path}: scene.effects: got {names}, expected a list of names")
+    tables = {}
+    for name, given in document.table(path, content, "effects").items():
+        require_known(f"{path}: effects", name)
+        if not isinstance(given, dict):
+            raise CaseError(f"{path}: effects.{name}: got {given}, expected a table [effects.{name}]")
+        tables[name] = _parameters(path, name, given)
+    for name in names:
+        require_known(f"{path}: scene.effects", name)
+    effects = Effects(names=tuple(names), tables=tables)
+    require_parameters(path, effects)
+    return effects
+
+
+def require_known(where: str, name: str) -> None:
+    """Raise CaseError that lists what there is unless `name` is an effect, also one added to the splines'."""
+    if name in KEYS or name in _registered():
+        return
+    near = difflib.get_close_matches(name, KEYS, n=1)
+    hint = f"{near[0]} (the nearest name), or " if near else ""
+    raise CaseError(f"{where}: got {name}, expected {hint}one of {', '.join(KEYS)}")
+
+
+def require_parameters(where: str, effects: Effects) -> None:
+    """Raise CaseError if a named effect lacks a parameter that it needs."""
+    for name in effects.names:
+        for key in KEYS.get(name, ()):
+            if not key.optional and key.attribute not in effects.tables.get(name, {}):
+                raise document.missing(where, key, key.section)
+
+
+def _registered() -> Mapping[str, Any]:
+    """Return the effects that the spline model knows; asked for names that this file does not."""
+    registry: Mapping[str, Any] = import_module("spline_model.effects.registry").REGISTRY
+    return registry
+
+
+def _parameters(path: str, name: str, given: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the parameters of a table in SI; those of an effect without keys here as they stand."""
+    if name not in KEYS:
+        return {key: tuple(value) if isinstance(value, list) else value for key, value in given.items()}
+    return document.values(path, KEYS[name], given, f"effects.{name}")

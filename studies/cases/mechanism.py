@@ -1,0 +1,220 @@
+"""Read a case file of any strips and bodies into a `Mechanism`: given data in SI units and radians."""
+
+import hashlib
+import json
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, fields
+from typing import Any
+
+from studies.cases import document
+from studies.cases.document import CaseError
+from studies.cases.effects import Effects, read_effects
+from studies.cases.keys import INCREMENTS, POISSON, ROTATION
+from studies.cases.rules import Key, Text, finite, finite_pair, not_negative, positive
+
+GROUND, FREE = "ground", "free"
+
+SECTION = (
+    Key(section="section", name="area_m2", attribute="area", rule=positive("m^2")),
+    Key(section="section", name="second_moment_m4", attribute="second_moment_of_area", rule=positive("m^4")),
+)
+MATERIAL = (
+    Key(section="material", name="youngs_modulus_Pa", attribute="youngs_modulus", rule=positive("Pa")),
+    Key(section="material", name="poisson_ratio", attribute="poisson_ratio", rule=POISSON),
+    Key(section="material", name="density_kg_m3", attribute="density", rule=positive("kg/m^3")),
+)
+_NAME = Text(expected="a name")
+_PLACE = Text(expected=f"{GROUND} or the name of a body")
+STRIP = (
+    Key(section="strips", name="name", attribute="name", rule=_NAME),
+    Key(section="strips", name="start_m", attribute="start", rule=finite_pair("m")),
+    Key(section="strips", name="end_m", attribute="end", rule=finite_pair("m")),
+    Key(section="strips", name="root", attribute="root", rule=_PLACE, optional=True),
+    Key(section="strips", name="tip", attribute="tip", rule=Text(expected=f"{_PLACE.expected}, or {FREE}")),
+    Key(section="strips", name="rise_m", attribute="rise", rule=finite("m"), optional=True),
+)
+BODY = (
+    Key(section="bodies", name="name", attribute="name", rule=_NAME),
+    Key(section="bodies", name="centre_m", attribute="centre", rule=finite_pair("m")),
+    Key(section="bodies", name="mass_kg", attribute="mass", rule=not_negative("kg")),
+    Key(
+        section="bodies",
+        name="moment_of_inertia_kg_m2",
+        attribute="moment_of_inertia",
+        rule=not_negative("kg m^2"),
+    ),
+)
+DRIVE = (
+    Key(
+        section="drive",
+        name="body",
+        attribute="body",
+        rule=Text(expected="the name of a body"),
+        optional=True,
+    ),
+    Key(section="drive", name="rotation_deg", attribute="rotation", rule=ROTATION, optional=True),
+    Key(section="drive", name="increments", attribute="increments", rule=INCREMENTS),
+)
+SECTIONS = ("strips", "bodies", "section", "material", "drive", "scene", "effects")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Strip:
+    """A strip between two points [m], on the ground or on a body at its root, free or on either at its tip.
+
+    tip: None for a free end. rise: sagitta of the circular arc it is at rest [m], to the left of start to
+    end.
+    """
+
+    name: str
+    start: tuple[float, float]
+    end: tuple[float, float]
+    root: str = GROUND
+    tip: str | None
+    rise: float = 0.0
+    area: float
+    second_moment_of_area: float
+    youngs_modulus: float
+    poisson_ratio: float
+    density: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class Body:
+    """A rigid body: centre of mass at rest [m], mass [kg], moment of inertia about it [kg m^2]."""
+
+    name: str
+    centre: tuple[float, float]
+    mass: float
+    moment_of_inertia: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class Mechanism:
+    """The given data of a mechanism of flexures and of how it is driven.
+
+    Args:
+        strips, bodies: of different names.
+        body: the one that is driven, let go, and whose swing is reported; None where there is no body.
+        rotation: that it is driven to [rad]; None: it follows the loads.
+        increments: equal increments of the path [1].
+        effects: of the scene.
+    """
+
+    strips: tuple[Strip, ...]
+    bodies: tuple[Body, ...]
+    body: str | None
+    rotation: float | None
+    increments: int
+    effects: Effects
+
+    def mechanism_parameters(self) -> dict[str, list[dict[str, Any]]]:
+        """Return strips and bodies as the keyword arguments of the designs of either model."""
+        return {
+            "strips": [_keywords(strip) for strip in self.strips],
+            "bodies": [_keywords(body) for body in self.bodies],
+        }
+
+    def fingerprint(self) -> str:
+        """Return the SHA-256 of the values, whatever the file's layout or comments."""
+        return hashlib.sha256(json.dumps(asdict(self), sort_keys=True).encode()).hexdigest()
+
+
+def read_mechanism(path: str, content: Mapping[str, Any]) -> Mechanism:
+    """Return the mechanism of a parsed case file.
+
+    Raises:
+        CaseError: a section or key is missing, unknown or misspelt, a value is out of range, a name comes
+            twice or stands for nothing. One line: file, key, got, expected.
+    """
+    document.refuse_sections(path, content, SECTIONS)
+    shared = {
+        key.attribute: document.value(path, key, given[key.name], key.section)
+        for keys, given in (
+            (SECTION, _shared(path, content, SECTION)),
+            (MATERIAL, _shared(path, content, MATERIAL)),
+        )
+        for key in keys
+        if key.name in given
+    }
+    bodies = tuple(
+        Body(**document.values(path, BODY, given, label)) for label, given in _each(path, content, "bodies")
+    )
+    strips = tuple(_strip(path, given, label, shared) for label, given in _each(path, content, "strips"))
+    names = [body.name for body in bodies]
+    _refuse_twice(path, [*names, *(strip.name for strip in strips)])
+    for strip in strips:
+        for key, place in (("root", strip.root), ("tip", strip.tip)):
+            if place is not None and place not in (GROUND, *names):
+                expected = document.nearest(place, [GROUND, *([FREE] if key == "tip" else []), *names])
+                raise CaseError(f"{path}: strips.{strip.name}.{key}: got {place}, expected {expected}")
+    if "drive" not in content:
+        raise CaseError(f"{path}: [drive]: got no such section, expected one with increments")
+    drive = document.values(path, DRIVE, document.table(path, content, "drive"), "drive")
+    return Mechanism(
+        strips=strips,
+        bodies=bodies,
+        body=_driven(path, drive.get("body"), names),
+        rotation=drive.get("rotation"),
+        increments=drive["increments"],
+        effects=read_effects(path, content),
+    )
+
+
+def _keywords(part: Strip | Body) -> dict[str, Any]:
+    return {each.name: getattr(part, each.name) for each in fields(part)}
+
+
+def _shared(path: str, content: Mapping[str, Any], keys: tuple[Key, ...]) -> Mapping[str, Any]:
+    """Return the section that all strips have unless they say otherwise."""
+    given = document.table(path, content, keys[0].section)
+    document.refuse_unknown(path, keys[0].section, given, [key.name for key in keys])
+    return given
+
+
+def _each(path: str, content: Mapping[str, Any], section: str) -> list[tuple[str, Mapping[str, Any]]]:
+    """Return the tables of an array with the label that errors give them: by name, or by place."""
+    tables = content.get(section, [])
+    if not isinstance(tables, list) or not all(isinstance(each, dict) for each in tables):
+        raise CaseError(f"{path}: {section}: got something else, expected tables [[{section}]]")
+    found = []
+    for place, each in enumerate(tables, start=1):
+        name = each.get("name")
+        found.append((f"{section}.{name}" if isinstance(name, str) else f"{section} number {place}", each))
+    return found
+
+
+def _strip(path: str, given: Mapping[str, Any], label: str, shared: Mapping[str, Any]) -> Strip:
+    """Return one strip, its section and material its own or those of all."""
+    own = [
+        Key(section=key.section, name=key.name, attribute=key.attribute, rule=key.rule, optional=True)
+        for key in (*SECTION, *MATERIAL)
+    ]
+    found = dict(shared) | document.values(path, [*STRIP, *own], given, label)
+    for key in own:
+        if key.attribute not in found:
+            raise CaseError(
+                f"{path}: {label}.{key.name}: got no such key there nor in [{key.section}], "
+                f"expected {key.rule.expected}"
+            )
+    found["tip"] = None if found["tip"] == FREE else found["tip"]
+    return Strip(**found)
+
+
+def _refuse_twice(path: str, names: list[str]) -> None:
+    for place, name in enumerate(names):
+        if name in (GROUND, FREE) or name in names[:place]:
+            raise CaseError(
+                f"{path}: name: got {name}, expected different names, none of them {GROUND} or {FREE}"
+            )
+
+
+def _driven(path: str, body: str | None, names: list[str]) -> str | None:
+    """Return the body that is driven: the one named, or the only one."""
+    if body is None and len(names) <= 1:
+        return names[0] if names else None
+    if body not in names:
+        got = "no such key" if body is None else body
+        expected = document.nearest(body or "", names) if names else "none, as there are no bodies"
+        raise CaseError(f"{path}: drive.body: got {got}, expected {expected}")
+    return body

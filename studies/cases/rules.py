@@ -1,0 +1,160 @@
+"""Rules for the values of a case file: type, admissible range, and what they are in SI units."""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Any
+
+
+def _same(value: float) -> float:
+    return float(value)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Number:
+    """A finite number in an interval, whose ends are excluded unless closed, converted to SI by `to_si`."""
+
+    expected: str
+    low: float = -math.inf
+    high: float = math.inf
+    closed_low: bool = False
+    closed_high: bool = False
+    to_si: Callable[[float], float] = _same
+    from_si: Callable[[float], float] = _same
+
+    def parse(self, value: Any) -> float:
+        """Return `value` (in the file's unit) in SI; ValueError says what was got and expected."""
+        if isinstance(value, bool) or not isinstance(value, int | float):
+            raise ValueError(f"got {shown(value)}, expected {self.expected}")
+        number = float(value)
+        above = number >= self.low if self.closed_low else number > self.low
+        below = number <= self.high if self.closed_high else number < self.high
+        if not (math.isfinite(number) and above and below):
+            raise ValueError(f"got {shown(value)}, expected {self.expected}")
+        return self.to_si(number)
+
+    def verify(self, value: Any) -> None:
+        """Raise ValueError unless `value` (SI) is admissible."""
+        if isinstance(value, bool) or not isinstance(value, int | float):
+            raise ValueError(f"got {shown(value)}, expected {self.expected}")
+        self.parse(self.from_si(float(value)))
+
+
+@dataclass(frozen=True, kw_only=True)
+class Whole:
+    """A whole number from `low` to `high`, both included."""
+
+    expected: str
+    low: int
+    high: int
+
+    def parse(self, value: Any) -> int:
+        """Return `value`; raises ValueError that says what was got and expected."""
+        if isinstance(value, bool) or not isinstance(value, int) or not self.low <= value <= self.high:
+            raise ValueError(f"got {shown(value)}, expected {self.expected}")
+        return value
+
+    def verify(self, value: Any) -> None:
+        """Raise ValueError unless `value` is admissible."""
+        self.parse(value)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Pair:
+    """Two finite numbers [x, y]."""
+
+    expected: str
+
+    def parse(self, value: Any) -> tuple[float, float]:
+        """Return `value` as a tuple; raises ValueError that says what was got and expected."""
+        if not isinstance(value, list | tuple) or len(value) != 2:
+            raise ValueError(f"got {shown(value)}, expected {self.expected}")
+        for part in value:
+            if isinstance(part, bool) or not isinstance(part, int | float) or not math.isfinite(part):
+                raise ValueError(f"got {shown(value)}, expected {self.expected}")
+        return float(value[0]), float(value[1])
+
+    def verify(self, value: Any) -> None:
+        """Raise ValueError unless `value` is admissible."""
+        self.parse(value)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Text:
+    """A text that is not empty."""
+
+    expected: str
+
+    def parse(self, value: Any) -> str:
+        """Return `value`; raises ValueError that says what was got and expected."""
+        if not isinstance(value, str) or not value:
+            raise ValueError(f"got {shown(value)}, expected {self.expected}")
+        return value
+
+    def verify(self, value: Any) -> None:
+        """Raise ValueError unless `value` is admissible."""
+        self.parse(value)
+
+
+@dataclass(frozen=True, kw_only=True)
+class History:
+    """Pairs [time in s, factor] in order of time."""
+
+    expected: str = "pairs [time, factor] with increasing times [s]"
+
+    def parse(self, value: Any) -> tuple[tuple[float, float], ...]:
+        """Return `value` as tuples; raises ValueError that says what was got and expected."""
+        if not isinstance(value, list | tuple) or not value:
+            raise ValueError(f"got {shown(value)}, expected {self.expected}")
+        points = tuple(Pair(expected=self.expected).parse(point) for point in value)
+        if any(after[0] <= before[0] for before, after in pairwise(points)):
+            raise ValueError(f"got {shown(value)}, expected {self.expected}")
+        return points
+
+    def verify(self, value: Any) -> None:
+        """Raise ValueError unless `value` is admissible."""
+        self.parse(value)
+
+
+Rule = Number | Whole | Pair | Text | History
+
+
+@dataclass(frozen=True, kw_only=True)
+class Key:
+    """One key of a case file, the attribute or parameter it fills and the rule for its value."""
+
+    section: str
+    name: str
+    attribute: str
+    rule: Rule
+    optional: bool = False
+
+
+def shown(value: Any) -> str:
+    """Return `value` as it stands in a TOML file, with its type where that is the likely mistake."""
+    if isinstance(value, str):
+        return f'the text "{value}"'
+    if isinstance(value, bool):
+        return f"the truth value {str(value).lower()}"
+    return str(value)
+
+
+def positive(unit: str) -> Number:
+    """Return the rule for a positive number of that unit."""
+    return Number(expected=f"a positive number [{unit}]", low=0.0)
+
+
+def not_negative(unit: str) -> Number:
+    """Return the rule for a number of that unit that is not below zero."""
+    return Number(expected=f"a number of at least 0 [{unit}]", low=0.0, closed_low=True)
+
+
+def finite(unit: str) -> Number:
+    """Return the rule for any finite number of that unit."""
+    return Number(expected=f"a finite number [{unit}]")
+
+
+def finite_pair(unit: str) -> Pair:
+    """Return the rule for two finite numbers of that unit."""
+    return Pair(expected=f"two finite numbers [x, y] [{unit}]")

@@ -1,0 +1,135 @@
+"""Say what each effect of a scene is worth, and find the cheapest scene within a tolerance.
+
+    python -m studies audit studies/cases/cross_axis_pivot.toml
+    python -m studies audit my_pivot.toml --tolerance 1e-2 --json audit.json
+
+Every scene is asked, by the spline model, the static path of the case and then the motion from its end. The
+full scene is that of the case with weight and the rotary inertia of the sections. One line an effect says how
+far the answer is from the full one's when the effect is left out or replaced by its simpler form, which is
+inextensible strips for stretching and massless strips for their inertia. Changes are of the path over the
+travel, of the torque over the largest, of the swing's and the first mode's frequency, and of the part of the
+energy that is lost. Times are of static path and motion together, the full scene's over the line's: above 1
+the line is faster. DOF are those with inertia; the explicit step is 2.83 over the highest frequency. Exit
+code 0: done; 2: bad input; 3: the full scene has no answer.
+"""
+
+import argparse
+import math
+import sys
+from collections.abc import Iterator
+from typing import Any
+
+from studies.answers.settings import SplineSettings
+from studies.commands.answer import NOT_CONVERGED, add_json_argument, deliver, number, require_target
+from studies.commands.model import add_effects_argument, chosen_design
+from studies.commands.parser import Parser, positive, whole_number
+from studies.effects.audit import Audit, audit
+from studies.effects.outcome import Outcome, Unanswered
+from studies.record.progress import Bar
+
+
+def add_arguments(parser: Parser) -> None:
+    """Declare the arguments of the command."""
+    parser.add_argument("case", metavar="CASE.toml", help="the design")
+    add_effects_argument(parser)
+    parser.add_argument(
+        "--control-points",
+        type=whole_number(4),
+        default=6,
+        metavar="N",
+        help="control points a strip, default 6",
+    )
+    parser.add_argument(
+        "--tolerance", type=positive, default=1e-3, metavar="T", help="allowed change, default 1e-3"
+    )
+    add_json_argument(parser)
+
+
+def main(arguments: argparse.Namespace) -> int:
+    """Audit and report; return the exit code."""
+    design = chosen_design(arguments)
+    settings = SplineSettings(control_points=arguments.control_points)
+    require_target(arguments)
+    try:
+        with Bar("audit") as bar:
+            found = audit(design, settings, arguments.tolerance, bar)
+    except Unanswered as error:
+        print(f"studies: not converged: the full scene: {error}", file=sys.stderr)
+        return NOT_CONVERGED
+    return deliver(arguments, as_document(found), _readable(found), failure=None)
+
+
+def as_document(found: Audit) -> dict[str, Any]:
+    """Return the audit as the JSON object of the command."""
+    return {
+        "tolerance": found.tolerance,
+        "model": found.run.settings.model,
+        "settings": found.run.settings.keywords(),
+        "duration_s": found.run.duration,
+        "step_s": found.run.step,
+        "full": _row(found, found.full),
+        "rows": [_row(found, row) for row in found.rows],
+        "tried": [_row(found, row) for row in found.tried],
+        "cheapest": _row(found, found.cheapest) | {"time_ratio": found.ratio, "wall_s": found.seconds[1]},
+        "full_wall_s": found.seconds[0],
+    }
+
+
+def _row(found: Audit, row: Outcome) -> dict[str, Any]:
+    size = row.size
+    return {
+        "scene": row.variant.label,
+        "dropped": list(row.variant.dropped),
+        "effects": list(row.variant.effects.names),
+        "status": row.status,
+        "reason": row.reason,
+        "trajectory": number(row.trajectory),
+        "torque": number(row.torque),
+        "swing_frequency": number(row.swing),
+        "first_mode": number(row.mode),
+        "loss": number(row.loss),
+        "time_ratio": number(found.time_ratio(row)),
+        "wall_s": number(row.wall_s),
+        "unknowns": size.unknowns if size else None,
+        "degrees_of_freedom": size.degrees_of_freedom if size else None,
+        "highest_frequency_Hz": size.highest_frequency if size else None,
+        "explicit_step_s": size.explicit_step if size else None,
+    }
+
+
+def _readable(found: Audit) -> Iterator[str]:
+    """Yield the lines of a table, and the cheapest scene."""
+    run = found.run
+    yield f"full scene: {', '.join(found.full.variant.effects.names)}"
+    yield f"static path and {1e3 * run.duration:.3g} ms of motion in steps of {run.step:.2g} s; changes to it"
+    head = f"{'path':>9}{'torque':>9}{'swing':>10}{'1st mode':>10}{'loss':>10}"
+    yield f"{'scene':<28}{head}{'time':>8}{'unknowns':>9}{'DOF':>5}{'highest Hz':>12}{'step s':>9}"
+    for row in (found.full, *found.rows):
+        yield _line(found, row)
+    best = found.cheapest
+    yield ""
+    if not best.variant.dropped:
+        yield f"no cheaper scene is within {found.tolerance:g}"
+        return
+    yield f"cheapest within {found.tolerance:g}: {', '.join(best.variant.effects.names)}"
+    yield f"that is: {best.variant.label}"
+    yield _line(found, best)
+    yield f"run anew: largest change {best.largest:.2g}, {found.ratio:.2f} times as fast as the full scene"
+
+
+def _line(found: Audit, row: Outcome) -> str:
+    label = f"{row.variant.label if len(row.variant.dropped) < 2 else 'all of these':<28}"
+    if row.size is None:
+        return f"{label} {row.status.replace('_', ' ')}: {row.reason}"
+    cells = f"{_cell(row.trajectory, 9)}{_cell(row.torque, 9)}"
+    cells += "".join(_cell(value, 10, "+") for value in (row.swing, row.mode, row.loss))
+    size = row.size
+    extent = f"{size.unknowns:9d}{size.degrees_of_freedom:5d}"
+    speed = f"{size.highest_frequency:12.4g}{size.explicit_step:9.1e}"
+    ratio = found.time_ratio(row)
+    time = f"{ratio:8.2g}" if math.isfinite(ratio) else f"{'-':>8}"
+    return f"{label}{cells}{time}{extent}{speed}  {row.reason}".rstrip()
+
+
+def _cell(value: float, width: int, sign: str = "") -> str:
+    return f"{value:{sign}{width}.1e}" if math.isfinite(value) else f"{'-':>{width}}"

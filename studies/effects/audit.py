@@ -1,0 +1,141 @@
+"""Audit of a design: what each effect of its scene is worth, and the cheapest scene within a tolerance."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from itertools import combinations
+
+import numpy as np
+
+from studies.answers.settings import SplineSettings
+from studies.cases.design import Design
+from studies.effects.outcome import Answer, Outcome, Run, answered, outcome, run_of, timed
+from studies.effects.variants import Variant, full_scene, without
+from studies.record.progress import silent
+
+#: Timed rounds of all scenes, one after the other; and of the cheapest against the full one.
+ROUNDS, DUELS = 3, 5
+#: A scene that took so many times as long as the full one is not timed again.
+SLOW = 3.0
+#: Times closer than this are not told apart: fewer effects and degrees of freedom are then the cheaper.
+SAME_TIME = 0.1
+#: Effects that are tried in all combinations; of more the least important go in every one of them.
+MOST_COMBINED = 4
+
+Progress = Callable[[int, int], None]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Audit:
+    """What an audit found.
+
+    Attributes:
+        tolerance: allowed change [1]. run: what every scene was asked.
+        full: the full scene, with no change. rows: one effect left out or simplified each.
+        tried: scenes without several effects, for the cheapest.
+        cheapest: the cheapest scene within the tolerance, answered once more; the full one if there is none.
+        seconds: median times of the full and of the cheapest scene, in turn in one run [s].
+    """
+
+    tolerance: float
+    run: Run
+    full: Outcome
+    rows: tuple[Outcome, ...]
+    tried: tuple[Outcome, ...]
+    cheapest: Outcome
+    seconds: tuple[float, float]
+
+    @property
+    def ratio(self) -> float:
+        """Time of the full over that of the cheapest scene [1]."""
+        return self.seconds[0] / self.seconds[1]
+
+    def time_ratio(self, row: Outcome) -> float:
+        """Time of the full scene over that of a row [1]: above 1 the row is faster."""
+        return self.full.wall_s / row.wall_s
+
+
+def audit(design: Design, settings: SplineSettings, tolerance: float, progress: Progress = silent) -> Audit:
+    """Answer the full scene and those that leave effects out, and find the cheapest within the tolerance.
+
+    The full scene is that of the design with what could matter beside it: weight and the rotary inertia of
+    the sections. Changes are against it.
+
+    Raises:
+        BadInput: the model refuses the full scene. Unanswered: the full scene has no answer.
+    """
+    scene = full_scene(design.effects)
+    whole = replace(design, effects=scene.effects)
+    run = run_of(whole, settings)
+    base = answered(whole, run)
+    full = outcome(scene, whole, run, base)
+    names = scene.effects.names
+    rows = []
+    for done, name in enumerate(names):
+        progress(done, len(names) + 2)
+        rows.append(_outcome(without(scene, [name]), design, run, base))
+    tried = _combined(rows, scene, design, run, base, tolerance)
+    progress(len(names), len(names) + 2)
+    full, *others = _timed([full, *rows, *tried], design, run)
+    progress(len(names) + 1, len(names) + 2)
+    cheapest = _cheapest([full, *others], tolerance)
+    duel = _duel(design, run, full, cheapest)
+    return Audit(
+        tolerance=tolerance,
+        run=run,
+        full=full,
+        rows=tuple(others[: len(rows)]),
+        tried=tuple(others[len(rows) :]),
+        cheapest=_outcome(cheapest.variant, design, run, base).timed(duel[1]),
+        seconds=duel,
+    )
+
+
+def _outcome(variant: Variant, design: Design, run: Run, base: Answer) -> Outcome:
+    return outcome(variant, replace(design, effects=variant.effects), run, base)
+
+
+def _combined(
+    rows: Sequence[Outcome], scene: Variant, design: Design, run: Run, base: Answer, tolerance: float
+) -> list[Outcome]:
+    """Return the scenes without two and more of the effects that can each be left out."""
+    within = sorted((row for row in rows if row.largest <= tolerance), key=lambda row: row.largest)
+    names = [row.variant.dropped[0] for row in within]
+    always, free = names[:-MOST_COMBINED], names[-MOST_COMBINED:]
+    found = []
+    for count in range(len(free) + 1):
+        for chosen in combinations(free, count):
+            if len(always) + count >= 2:
+                found.append(_outcome(without(scene, [*always, *chosen]), design, run, base))
+    return found
+
+
+def _timed(outcomes: Sequence[Outcome], design: Design, run: Run) -> list[Outcome]:
+    """Return the scenes with their median times, taken round by round in turn."""
+    limit = SLOW * outcomes[0].wall_s
+    again = [each for each in outcomes if each.wall_s <= limit]
+    walls = np.array(
+        [[timed(replace(design, effects=each.variant.effects), run) for each in again] for _ in range(ROUNDS)]
+    )
+    found = dict(zip(map(id, again), np.median(walls, axis=0), strict=True))
+    return [each.timed(float(found[id(each)])) if id(each) in found else each for each in outcomes]
+
+
+def _cheapest(outcomes: Sequence[Outcome], tolerance: float) -> Outcome:
+    """Return the fastest scene within the tolerance, of those not told apart the one with least in it."""
+    within = [each for each in outcomes if each.largest <= tolerance]
+    fastest = min(each.wall_s for each in within)
+    near = [each for each in within if each.wall_s <= (1.0 + SAME_TIME) * fastest]
+    return min(near, key=_extent)
+
+
+def _extent(each: Outcome) -> tuple[int, int, float]:
+    size = each.size
+    return len(each.variant.effects.names), size.degrees_of_freedom if size else 0, each.wall_s
+
+
+def _duel(design: Design, run: Run, full: Outcome, cheapest: Outcome) -> tuple[float, float]:
+    """Return the median times of two scenes, run in turn [s]."""
+    scenes = [replace(design, effects=each.variant.effects) for each in (full, cheapest)]
+    walls = np.array([[timed(scene, run) for scene in scenes] for _ in range(DUELS)])
+    one, other = np.median(walls, axis=0)
+    return float(one), float(other)

@@ -1,0 +1,190 @@
+"""Scenes of effects and mechanisms: what a case file and `--effects` say is what is assembled."""
+
+import json
+import re
+import textwrap
+
+import numpy as np
+import pytest
+
+from spline_model.effects import registry
+from studies.cases.design import named_design
+from studies.cases.effects import DEFAULT, KEYS, MOTION_ONLY
+from studies.cases.mechanism import Mechanism
+from studies.cases.problem import FOLDER, Problem
+from studies.record.source import ROOT
+
+MECHANISMS = ("parallel_strip_guide", "cantilever_with_body", "four_bar_of_flexures")
+SCENES = ("cross_axis_pivot", *MECHANISMS)
+#: A coarse discretisation of each model; the splines' is nearly exact.
+COARSE = {"spline": [], "fe": ["--elements", 8]}
+
+
+def answer(command, *words):
+    """The JSON of a command that must succeed."""
+    outcome = command(*words, "--json", "-")
+    assert (outcome.code, outcome.err) == (0, "")
+    return json.loads(outcome.out)
+
+
+@pytest.mark.parametrize("name", MECHANISMS)
+def test_both_models_drive_every_mechanism_alike(name, command):
+    """The four scenes run by the same code, and all bodies of both models end at the same places."""
+    design = named_design(name)
+    assert isinstance(design, Mechanism)
+    ends = {}
+    for model, coarse in COARSE.items():
+        found = answer(command, "solve", FOLDER / f"{name}.toml", "--model", model, *coarse)
+        assert (found["status"], found["load_factor"][-1]) == ("converged", 1.0)
+        assert list(found["bodies"]) == [body.name for body in design.bodies]
+        assert found["effects"] == [each for each in design.effects.names if each not in MOTION_ONLY]
+        assert (found["torque_Nm"][-1] is None) == (design.rotation is None)
+        states = np.array([list(place.values()) for place in found["bodies"].values()])
+        balance = np.array(found["strain_energy_J"]) + found["gravity_energy_J"] - found["work_J"]
+        assert np.abs(balance - balance[0]).max() < 1e-4 * max(found["strain_energy_J"])
+        ends[model] = states[:, :, -1]
+        travel = np.linalg.norm(states[:, :2, -1] - states[:, :2, 0], axis=1).max()
+    # eight elements on a strip are off by some 1e-3 of the travel and of the angles
+    assert np.abs(ends["fe"] - ends["spline"])[:, :2].max() < 5e-3 * travel
+    assert np.abs(ends["fe"] - ends["spline"])[:, 2].max() < 5e-3
+
+
+@pytest.mark.parametrize("name", MECHANISMS)
+def test_both_models_release_every_mechanism_alike(name, command):
+    """After 5 ms all bodies are where the other model has them, and energies balance."""
+    places = []
+    for model, coarse in COARSE.items():
+        words = ["--model", model, *coarse, "--duration", 5e-3]
+        found = answer(command, "release", FOLDER / f"{name}.toml", *words)
+        parts = {
+            key: np.array(found[f"{key}_J"]) for key in ("kinetic", "strain", "gravity", "work", "dissipated")
+        }
+        balance = parts["kinetic"] + parts["strain"] + parts["gravity"] - parts["work"] + parts["dissipated"]
+        largest = max(np.abs(parts["strain"]).max(), np.abs(parts["work"]).max())
+        assert np.abs(balance - balance[0]).max() < 1e-4 * largest
+        assert (parts["dissipated"][-1] > 0.0) == ("body_damping" in found["effects"])
+        assert (parts["work"][-1] > 0.0) == ("applied_force" in found["effects"])
+        places.append([[place[key][-1] for key in ("x_m", "y_m")] for place in found["bodies"].values()])
+    assert np.abs(np.subtract(*places)).max() < 1e-4  # m: a thousandth of the size
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_both_models_have_the_modes_of_every_scene(name, command):
+    """The first frequency at rest, under weight but without loads, is the same to 1e-3."""
+    first = [
+        answer(command, "modes", FOLDER / f"{name}.toml", "--model", model, *coarse, "--count", 1)
+        for model, coarse in COARSE.items()
+    ]
+    assert first[0]["frequency_Hz"][0] == pytest.approx(first[1]["frequency_Hz"][0], rel=1e-3)
+    assert first[0]["effects"] == first[1]["effects"]
+    assert not {"applied_force", "applied_moment"} & set(first[0]["effects"])
+
+
+def test_mechanisms_have_tables_to_read(command):
+    """Without --json every body has its columns; the pivot keeps its own table."""
+    lines = command("solve", FOLDER / "four_bar_of_flexures.toml", "--model", "spline").out.splitlines()
+    assert lines[1].replace("|", " ").split() == ["crank", "coupler", "rocker"]
+    assert len(lines) == 4 + 21 + 1
+    released = command(
+        "release", FOLDER / "four_bar_of_flexures.toml", "--model", "spline", "--duration", 1e-3
+    )
+    assert "clamp gap" in released.out
+
+
+@pytest.mark.parametrize(
+    ("change", "names"),
+    [
+        ("+gravity", [*DEFAULT, "gravity"]),
+        ("+gravity,-strip_inertia", ["bending", "stretching", "body_inertia", "gravity"]),
+        ("-stretching,+inextensible", ["bending", "strip_inertia", "body_inertia", "inextensible"]),
+        ("bending,stretching,body_inertia", ["bending", "stretching", "body_inertia"]),
+    ],
+)
+def test_effects_are_changed_on_the_command_line(change, names, case, command):
+    """Signed names change the scene's list, names alone are all; what was assembled is reported."""
+    words = ["--model", "spline", f"--effects={change}"]
+    if "strip_inertia" in names:
+        moving = answer(command, "release", case(), *words, "--from-deg", 20, "--duration", 1e-4)
+        assert moving["effects"] == names
+        assert ("gravity_J" in moving) == ("gravity" in names)
+    assert answer(command, "modes", case(), *words, "--count", 1)["effects"] == names
+    driven = answer(command, "solve", case(), *words, "--rotation-deg", 10, "--increments", 2)
+    assert driven["effects"] == [name for name in names if name not in MOTION_ONLY]
+
+
+@pytest.mark.parametrize("model", ["spline", "fe"])
+def test_tables_of_effects_are_there_for_the_command_line(model, case, command):
+    """A table gives the parameters of an effect that --effects adds; without it weight is the earth's."""
+    end = ("increments = 20", "increments = 2\n[effects.gravity]\nacceleration_m_per_s2 = [0, -9810]")
+    shifts = []
+    for changes in ((), (end,)):
+        path = case(*changes)
+        words = ["--model", model, *COARSE[model], "--rotation-deg", 1, "--increments", 2]
+        bare = answer(command, "solve", path, *words)
+        loaded = answer(command, "solve", path, *words, "--effects=+gravity")
+        assert bare["effects"] == ["bending", "stretching"]
+        shifts.append(loaded["com_y_m"][0] - bare["com_y_m"][0])
+    assert shifts[0] < 0.0
+    assert shifts[1] == pytest.approx(1000.0 * shifts[0], rel=0.05)  # nearly linear
+
+
+def test_a_scene_in_the_case_is_a_scene_on_the_command_line(case, command):
+    """[scene] of a case file gives the answer of the same change by --effects."""
+    end = (
+        "increments = 20",
+        'increments = 3\n[scene]\neffects = ["bending", "inextensible", "body_inertia"]',
+    )
+    words = ["--model", "spline", "--rotation-deg", 40, "--increments", 3]
+    named = answer(command, "solve", case(end), *words)
+    changed = answer(command, "solve", case(), *words, "--effects=-stretching,+inextensible,-strip_inertia")
+    assert named["torque_Nm"] == changed["torque_Nm"]
+    assert set(named["effects"]) == set(changed["effects"]) == {"bending", "inextensible"}
+
+
+def test_a_strip_may_have_a_section_of_its_own(tmp_path, command):
+    """A guide with one strip twice as thick needs four and a half times the force for the same way."""
+    text = (FOLDER / "parallel_strip_guide.toml").read_text(encoding="utf-8")
+    own = text.replace('name = "left"', 'name = "left"\narea_m2 = 1e-5\nsecond_moment_m4 = 8.3333333e-13')
+    ways = []
+    for content in (text, own):
+        path = tmp_path / "guide.toml"
+        path.write_text(content.replace("[5, 0]", "[0.1, 0]"), encoding="utf-8")
+        x = answer(command, "solve", path, "--model", "spline", "--effects=-gravity")["bodies"]["platform"][
+            "x_m"
+        ]
+        ways.append(x[-1] - x[0])
+    assert ways[0] / ways[1] == pytest.approx(4.5, rel=1e-3)
+
+
+def test_the_recipe_of_contributing_adds_an_effect(case, command, monkeypatch):
+    """The code that CONTRIBUTING.md shows works from a case file as it stands, with its registry line."""
+    text = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
+    recipe = re.search(r"```python\n(.*?)```", text, re.DOTALL)
+    assert recipe
+    written: dict[str, object] = {"__name__": "recipe"}
+    exec(textwrap.dedent("   " + recipe[1].lstrip()), written)
+    end = 'increments = 2\n[scene]\neffects = ["bending", "stretching", "body_inertia", "strip_inertia", '
+    end += '"ground_spring"]\n[effects.ground_spring]\nstiffness = 1e5'
+    path = case(("increments = 20", end))
+    words = ["solve", path, "--model", "spline", "--rotation-deg", 40]
+    assert "effects: got ground_spring, expected" in command(*words).err
+    monkeypatch.setitem(registry.REGISTRY, "ground_spring", written["ground_spring"])
+    sprung = answer(command, *words)
+    assert "ground_spring" in sprung["effects"]
+    assert (
+        sprung["torque_Nm"][-1] > 1.02 * answer(command, *words, "--effects=-ground_spring")["torque_Nm"][-1]
+    )
+
+
+def test_effects_of_case_files_are_those_of_the_splines():
+    """Every effect that has keys with units here is in the registry, and the same ones are of motion only."""
+    assert set(KEYS) <= set(registry.REGISTRY)
+    assert set(MOTION_ONLY) == {name for name in registry.MOTION_ONLY if name in KEYS}
+    assert registry.DEFAULT_EFFECTS == DEFAULT
+
+
+def test_problem_of_the_pivot_is_unchanged():
+    """The pivot's case names no effects: it has those that were always there."""
+    design = named_design("cross_axis_pivot")
+    assert isinstance(design, Problem)
+    assert (design.effects.names, design.effects.parameters()) == (DEFAULT, {})
