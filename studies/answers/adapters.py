@@ -166,12 +166,6 @@ def answer_release(
             names=_body_names(design),
             body=body,
         )
-    wall = timing.median
-    if len(timing.result.time) > 2:
-        # a little longer than the first record, lest round-off make the step longer than the duration
-        brief = {"duration": float(timing.result.time[1]) * (1.0 + 1e-9)}
-        brief |= {name: value for name, value in (("step", timing.result.settings.get("step_s")),) if value}
-        wall -= measure(lambda: release(**brief), repeat=repeat, warm_up=0).median
     return motion(
         timing.result,
         model=settings.model,
@@ -179,7 +173,7 @@ def answer_release(
         effects=effects_of(asked),
         bodies=_places(timing.result),
         body=body,
-        wall_s=max(wall, 0.0),
+        wall_s=max(timing.median - _wall_of_start(release, timing.result, repeat), 0.0),
     )
 
 
@@ -239,6 +233,16 @@ def spline_mechanism(design: Design, settings: SplineSettings) -> Any:
     """Return the spline model's mechanism of a design, as it is in motion; errors as of `answer_release`."""
     asked, _ = built(model_of(settings), design, settings, moving=True)
     return asked.mechanism if isinstance(design, Problem) else asked
+
+
+def _wall_of_start(release: Callable[..., Any], result: Any, repeat: int) -> float:
+    """Return the median time of releases that are over after the first record of `result` [s]."""
+    if len(result.time) <= 2:
+        return 0.0
+    # a little longer than the first record, lest round-off make the step longer than the duration
+    brief = {"duration": float(result.time[1]) * (1.0 + 1e-9)}
+    brief |= {name: value for name, value in (("step", result.settings.get("step_s")),) if value}
+    return measure(lambda: release(**brief), repeat=repeat, warm_up=0).median
 
 
 def _release_of(model: Model, design: Design, asked: Any) -> Callable[..., Any]:

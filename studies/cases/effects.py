@@ -55,7 +55,11 @@ _KEYS: dict[str, tuple[tuple[str, str, Rule, bool], ...]] = {
         ("force_N", "force", finite_pair("N"), False),
         _HISTORY,
     ),
-    "driven_displacement": (("displacement_m", "displacement", finite_pair("m"), False),),
+    "driven_displacement": (
+        ("displacement_m", "displacement", finite_pair("m"), False),
+        _BODY,
+        _HISTORY,
+    ),
     "pre_strain": (
         ("curvature_per_m", "curvature", finite("1/m"), True),
         ("strain", "strain", finite("1"), True),

@@ -175,8 +175,9 @@ def _shared(path: str, content: Mapping[str, Any], keys: tuple[Key, ...]) -> Map
 def _each(path: str, content: Mapping[str, Any], section: str) -> list[tuple[str, Mapping[str, Any]]]:
     """Return the tables of an array with the label that errors give them: by name, or by place."""
     tables = content.get(section, [])
-    if not isinstance(tables, list) or not all(isinstance(each, dict) for each in tables):
-        raise CaseError(f"{path}: {section}: got something else, expected tables [[{section}]]")
+    needed = section == "strips" and not tables
+    if needed or not isinstance(tables, list) or not all(isinstance(each, dict) for each in tables):
+        raise CaseError(f"{path}: {section}: got {tables}, expected tables [[{section}]]")
     found = []
     for place, each in enumerate(tables, start=1):
         name = each.get("name")

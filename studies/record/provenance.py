@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from studies.cases.problem import named_case
+from studies.cases.design import named_design
 from studies.record.source import source_hash
 
 #: Packages whose version can change a number or a figure.
@@ -34,7 +34,7 @@ def inputs(module: str, cases: Iterable[str]) -> dict[str, Any]:
     """Return the hashes of what a study is made from: its source and its cases."""
     return {
         "source_sha256": source_hash(module),
-        "cases": {name: named_case(name).fingerprint() for name in cases},
+        "cases": {name: named_design(name).fingerprint() for name in cases},
     }
 
 

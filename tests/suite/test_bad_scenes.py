@@ -189,3 +189,13 @@ def test_commands_of_pivots_refuse_mechanisms(command):
     outcome = command("converge", FOLDER / "parallel_strip_guide.toml")
     assert outcome.code == 2
     assert "[[strips]]: got a mechanism, expected a cross-axis pivot, with [strip]" in outcome.err
+
+
+@pytest.mark.parametrize("head", ["strips = []", "strips = [1]"])
+def test_mechanism_without_strips_is_refused(head, tmp_path, command):
+    """A mechanism needs strips, each a table of its own."""
+    path = tmp_path / "case.toml"
+    path.write_text(f"{head}\n[drive]\nincrements = 2\n", encoding="utf-8")
+    outcome = command("modes", path, "--model", "spline")
+    assert outcome.code == 2
+    assert f"strips: got {head[9:]}, expected tables [[strips]]" in outcome.err
