@@ -6,12 +6,11 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from spline_model.fast.body import assemble, turn_into
+from spline_model.fast.compiled import kernel, part
 from spline_model.fast.condense import recover, recover_rate
-from spline_model.fast.strip import FAST
 
 ITERATIONS, EVALUATIONS, HALVED = range(3)
 KNOWN = 3
@@ -34,7 +33,7 @@ class Answer(NamedTuple):
     counters: NDArray[np.int64]
 
 
-@njit(cache=True, nogil=True, fastmath=FAST)
+@kernel()
 def newton(y, theta, frame, grid, locals_, space, out, tolerance, counters):
     """Solve at theta in place; True if the residual came below tolerance."""
     strips, modes = frame.length.size, frame.compliance.shape[1]
@@ -67,7 +66,7 @@ def newton(y, theta, frame, grid, locals_, space, out, tolerance, counters):
     return False
 
 
-@njit(cache=True, nogil=True, fastmath=FAST)
+@kernel()
 def tangent(y, theta, frame, locals_, space):
     """Rate dy/dtheta in space.rate at a state that was just assembled; returns torque and stiffness."""
     strips, modes = frame.length.size, frame.compliance.shape[1]
@@ -88,7 +87,7 @@ def tangent(y, theta, frame, locals_, space):
     return torque, body[2, 2] + dx * body[0, 2] + dy * body[1, 2]
 
 
-@njit(cache=True, nogil=True, fastmath=FAST)
+@kernel()
 def predict(theta, known, space):
     """Hermite's polynomial through the last ``known`` states and rates, at theta, in space.predicted."""
     at, predicted = space.known_at, space.predicted
@@ -105,7 +104,7 @@ def predict(theta, known, space):
             predicted[k] += by_value * space.known_y[i, k] + by_rate * space.known_rate[i, k]
 
 
-@njit(cache=True, nogil=True, fastmath=FAST)
+@kernel()
 def accepted(y, known, space, frame, out, own, modes):
     """Whether a solved state is the continuation of the last one, with end tangents forward and no fold."""
     if not out[2] > SLOWEST_SPEED:
@@ -125,7 +124,7 @@ def accepted(y, known, space, frame, out, own, modes):
     return correction <= LARGEST_CORRECTION**2 * step
 
 
-@njit(cache=True, nogil=True, fastmath=FAST)
+@kernel()
 def follow(start, targets, frame, grid, locals_, space, tolerance, answer):
     """Follow the path from rest (theta = 0) through the target rotations; returns the states converged.
 
@@ -133,8 +132,8 @@ def follow(start, targets, frame, grid, locals_, space, tolerance, answer):
     """
     modes = frame.compliance.shape[1]
     own = (start.size - 2) // frame.length.size - modes
-    out, y, counters = np.empty(4), space.y, answer.counters
-    y[:] = start
+    out, y, counters = space.out, space.y, answer.counters
+    copy(start, y)
     if not newton(y, 0.0, frame, grid, locals_, space, out, tolerance, counters):
         return 0
     known, theta = 0, 0.0
@@ -153,7 +152,7 @@ def follow(start, targets, frame, grid, locals_, space, tolerance, answer):
                     keep_last(known, space)
                     known = 1
                 predict(here, known, space)
-                y[:] = space.predicted
+                copy(space.predicted, y)
                 solved = newton(y, here, frame, grid, locals_, space, out, tolerance, counters)
                 if not (solved and accepted(y, known, space, frame, out, own, modes)):
                     counters[HALVED] += 1
@@ -171,13 +170,13 @@ def follow(start, targets, frame, grid, locals_, space, tolerance, answer):
             done = abs(theta - begin) / abs(step)
             if abs(step) < abs(whole) and round(done) % 2 == 0:
                 step *= 2.0
-        answer.y[row] = y
+        copy(y, answer.y[row])
         answer.torque[row], answer.stiffness[row] = torque, stiffness
         answer.energies[row, 0], answer.energies[row, 1] = out[0], out[1]
     return targets.size + 1
 
 
-@njit(cache=True, nogil=True)
+@kernel()
 def remember(theta, y, known, space):
     """Append a state and its rate to the known ones, dropping the oldest; returns their number."""
     if known > 0 and theta == space.known_at[known - 1]:
@@ -185,18 +184,25 @@ def remember(theta, y, known, space):
     if known == KNOWN:
         for i in range(KNOWN - 1):
             space.known_at[i] = space.known_at[i + 1]
-            space.known_y[i] = space.known_y[i + 1]
-            space.known_rate[i] = space.known_rate[i + 1]
+            copy(space.known_y[i + 1], space.known_y[i])
+            copy(space.known_rate[i + 1], space.known_rate[i])
         known -= 1
     space.known_at[known] = theta
-    space.known_y[known] = y
-    space.known_rate[known] = space.rate
+    copy(y, space.known_y[known])
+    copy(space.rate, space.known_rate[known])
     return known + 1
 
 
-@njit(cache=True, nogil=True)
+@kernel()
 def keep_last(known, space):
     """Forget all known states but the last."""
     space.known_at[0] = space.known_at[known - 1]
-    space.known_y[0] = space.known_y[known - 1]
-    space.known_rate[0] = space.known_rate[known - 1]
+    copy(space.known_y[known - 1], space.known_y[0])
+    copy(space.known_rate[known - 1], space.known_rate[0])
+
+
+@part()
+def copy(source, target):
+    """Copy a vector; a slice assignment would ask for a buffer."""
+    for i in range(source.size):
+        target[i] = source[i]

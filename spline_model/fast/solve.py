@@ -112,6 +112,7 @@ def arrays(strips: int, control_points: int, modes: int) -> tuple[tuple[Any, ...
         y=np.zeros(size),
         rate=np.zeros(size),
         predicted=np.zeros(size),
+        out=np.zeros(4),
     )
     return locals_, space
 

@@ -17,10 +17,9 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
-FAST = {"contract", "reassoc", "nsz"}
+from spline_model.fast.compiled import kernel, part
 
 
 class Grid(NamedTuple):
@@ -65,7 +64,7 @@ def local_arrays(control_points: int, modes: int) -> Local:
     )
 
 
-@njit(cache=True, nogil=True, fastmath=FAST)
+@part()
 def place_points(w, x, y, cos, sin, points):
     """Control points from the own coordinates (W,) and the tip's point and direction."""
     n = points.shape[0]
@@ -79,7 +78,7 @@ def place_points(w, x, y, cos, sin, points):
     points[n - 1, 0], points[n - 1, 1] = x, y
 
 
-@njit(cache=True, nogil=True, fastmath=FAST)
+@part()
 def assemble_points(points, a, compliance, grid, local):
     """Fill gradient, upper hessian blocks, coupling and gap; returns the energies and least |C'|."""
     n, count, modes = points.shape[0], grid.weight.size, a.size
@@ -153,7 +152,7 @@ def assemble_points(points, a, compliance, grid, local):
     return bending, axial, slowest
 
 
-@njit(cache=True, nogil=True, fastmath=FAST)
+@part()
 def to_own(vector, reach, arm, cos, sin, out):
     """A covector in the control points (2 n,) in the coordinates (w, e), (W + 3,).
 
@@ -170,7 +169,7 @@ def to_own(vector, reach, arm, cos, sin, out):
     out[last + 3] = arm * (sin * bx - cos * by)
 
 
-@njit(cache=True, nogil=True, fastmath=FAST)
+@part()
 def hessian_to_own(hessian, gradient, reach, arm, cos, sin, h):
     """The upper triangle of h in (w, e) from the upper blocks of the Hessian in the control points."""
     size, last = gradient.size, h.shape[0] - 4
@@ -207,7 +206,7 @@ def hessian_to_own(hessian, gradient, reach, arm, cos, sin, h):
     h[last + 3, last + 3] = nx * (xx * nx + 2.0 * xy * ny) + yy * ny * ny + arm * (cos * gx + sin * gy)
 
 
-@njit(cache=True, nogil=True, fastmath=FAST)
+@kernel()
 def evaluate(w, a, x, y, cos, sin, compliance, grid, local):
     """Fill g, the upper triangle of h, b and gap in (w, e) at a tip in (x, y) with direction (cos, sin).
 
