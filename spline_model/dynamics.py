@@ -18,6 +18,7 @@ from spline_model.integrators import (
     energy_consistent,
     explicit,
     generalised_alpha,
+    leapfrog,
     quasi_static,
 )
 from spline_model.integrators.motion import Records, initial_acceleration, set_in_motion
@@ -34,10 +35,14 @@ INTEGRATORS: dict[str, Callable[..., Records]] = {
     "energy": energy_consistent.integrate,
     "generalised-alpha": generalised_alpha.integrate,
     "explicit": explicit.integrate,
+    "leapfrog": leapfrog.integrate,
 }
-EXPLICIT_SAFETY = 0.5
-"""Default explicit step over the critical one of start and rest: stress stiffens the strips on the way,
-and near the limit the axial waves lose energy."""
+EXPLICIT_STEPS = {
+    "explicit": 0.5 * explicit.STABILITY_LIMIT,
+    "leapfrog": 0.9 * leapfrog.STABILITY_LIMIT,
+}
+"""omega h of the default explicit step, omega being the highest frequency at start and at rest: stress
+stiffens the strips on the way, and near its limit Runge-Kutta takes energy from the axial waves."""
 STEP = 5e-5
 """Default step of the implicit integrators [s]: some 240 steps a swing of Table 1."""
 MOST_MEMORY = 2e9
@@ -113,11 +118,11 @@ def solve_motion(
     ----------
     body : that ``start`` rotates and that the trajectory reports; default the only one.
     drive : a rotation that is held or driven in a part of the run, if any.
-    duration, step : [s]; the step defaults to STEP, or to EXPLICIT_SAFETY times the critical one
-        (explicit); it is shortened so that a whole number of steps fits between the records.
+    duration, step : [s]; the step defaults to STEP, or to that of EXPLICIT_STEPS; it is
+        shortened so that a whole number of steps fits between the records.
     integrator : "energy" (default, cannot create energy; with massless strips, only the bodies
-        are dynamic), "generalised-alpha" (option
-        ``spectral_radius``) or "explicit".
+        are dynamic), "generalised-alpha" (option ``spectral_radius``), "explicit", or "leapfrog":
+        the fastest, for a free body on straight mixed Bezier strips.
     accuracy : wanted error of the rotation over the run [rad], by local error control of the
         energy-consistent steps, instead of a fixed step.
     records : largest number of records; default every step.
@@ -140,16 +145,18 @@ def solve_motion(
         settings = {"integrator": integrator, "accuracy_rad": accuracy}
         return _trajectory(system, run, effects, body, settings, "")
     if step is None:
-        limit = critical_step(system, motion, z) if integrator == "explicit" else math.inf
-        step = min(EXPLICIT_SAFETY * limit, STEP, duration)
+        step = min(STEP, duration)
+        if integrator in EXPLICIT_STEPS:
+            step = min(step, EXPLICIT_STEPS[integrator] / highest_frequency(system, motion, z))
     steps, every = _count(duration, step, records, layout.size + layout.coordinate_count + 7)
     step = duration / steps
     if integrator == "energy" and massless(system, motion):
         integrator = "quasi-static strips"
         run = quasi_static.integrate(system, motion, z, step=step, steps=steps, every=every)
     else:
+        more = {"mechanism": mechanism} if integrator == "leapfrog" else options
         run = INTEGRATORS[integrator](
-            system, motion, z, v, acceleration, step=step, steps=steps, every=every, **options
+            system, motion, z, v, acceleration, step=step, steps=steps, every=every, **more
         )
     settings = {"integrator": integrator, "step_s": step, **options}
     return _trajectory(system, run, effects, body, settings, _resolution(system, motion, step))
@@ -175,10 +182,9 @@ def massless(system: System, motion: Motion) -> bool:
     return not motion.mass[:bodies].any()
 
 
-def critical_step(system: System, motion: Motion, z: Array) -> float:
-    """Largest stable step of the explicit integrator at a state and at rest [s], by the highest frequency."""
-    highest = max(linear_modes(system, state, motion.mass)[0][-1] for state in (z, system.rest))
-    return float(explicit.STABILITY_LIMIT / math.sqrt(highest))
+def highest_frequency(system: System, motion: Motion, z: Array) -> float:
+    """Highest circular frequency at a state and at rest [rad/s]."""
+    return math.sqrt(max(linear_modes(system, state, motion.mass)[0][-1] for state in (z, system.rest)))
 
 
 def _count(duration: float, step: float, records: int | None, width: int) -> tuple[int, int]:

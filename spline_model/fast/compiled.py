@@ -19,3 +19,10 @@ kernel = partial(njit, cache=True, nogil=True, fastmath=FAST, error_model="numpy
 
 part = partial(kernel, inline="always")
 """The same for a small function that becomes a part of its callers: tables are not passed on."""
+
+
+@part()
+def copy(source, target):
+    """Copy a vector; a slice assignment would ask for a buffer."""
+    for i in range(source.size):
+        target[i] = source[i]

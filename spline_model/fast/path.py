@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.fast.body import assemble, turn_into
-from spline_model.fast.compiled import kernel, part
+from spline_model.fast.compiled import copy, kernel
 from spline_model.fast.condense import recover, recover_rate
 
 ITERATIONS, EVALUATIONS, HALVED = range(3)
@@ -199,10 +199,3 @@ def keep_last(known, space):
     space.known_at[0] = space.known_at[known - 1]
     copy(space.known_y[known - 1], space.known_y[0])
     copy(space.known_rate[known - 1], space.known_rate[0])
-
-
-@part()
-def copy(source, target):
-    """Copy a vector; a slice assignment would ask for a buffer."""
-    for i in range(source.size):
-        target[i] = source[i]
