@@ -9,20 +9,21 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from spline_model.checks import LARGEST_CORRECTION, SLOWEST_SPEED
+from spline_model.continuation.resolution import LARGEST_DEFECT
 from spline_model.fast.body import assemble, turn_into
 from spline_model.fast.condense import recover, recover_rate
+from spline_model.fast.doubt import defect, inertia, jumped
 from spline_model.fast.strip import FAST
 
 ITERATIONS, EVALUATIONS, HALVED = range(3)
 KNOWN = 3
 MOST_ITERATIONS = 15
 SMALLEST_STEP = 2.0**-10
-SLOWEST_SPEED = 0.1
-LARGEST_CORRECTION = 0.5
 
 
 class Answer(NamedTuple):
-    """S states: y (S, Y), torque, stiffness (S,), energies (S, 2), counters (3,).
+    """S states: y (S, Y), torque, stiffness (S,), energies (S, 2), inertia, defect (S,), counters (3,).
 
     y is x, y of the centre over the first strip's length, then w and a of each strip.
     """
@@ -31,6 +32,8 @@ class Answer(NamedTuple):
     torque: NDArray[np.float64]
     stiffness: NDArray[np.float64]
     energies: NDArray[np.float64]
+    inertia: NDArray[np.int64]
+    defect: NDArray[np.float64]
     counters: NDArray[np.int64]
 
 
@@ -138,6 +141,7 @@ def follow(start, targets, frame, grid, locals_, space, tolerance, answer):
     if not newton(y, 0.0, frame, grid, locals_, space, out, tolerance, counters):
         return 0
     known, theta = 0, 0.0
+    torque = stiffness = energy = wrong = 0.0
     for row in range(targets.size + 1):
         target = targets[row - 1] if row > 0 else 0.0
         begin, step = theta, target - theta
@@ -146,6 +150,7 @@ def follow(start, targets, frame, grid, locals_, space, tolerance, answer):
             known = 1
         whole = step
         while True:
+            last, here, sound = row == 0, theta, True
             if row > 0:
                 last = abs(target - theta) <= abs(step) * (1 + 1e-9)
                 here = target if last else theta + step
@@ -155,16 +160,24 @@ def follow(start, targets, frame, grid, locals_, space, tolerance, answer):
                 predict(here, known, space)
                 y[:] = space.predicted
                 solved = newton(y, here, frame, grid, locals_, space, out, tolerance, counters)
-                if not (solved and accepted(y, known, space, frame, out, own, modes)):
-                    counters[HALVED] += 1
-                    step *= 0.5
-                    if abs(step) < SMALLEST_STEP * abs(whole):
-                        return row
-                    continue
-                theta = here
-            else:
-                last = True
-            torque, stiffness = tangent(y, theta, frame, locals_, space)
+                sound = solved and accepted(y, known, space, frame, out, own, modes)
+            if sound:
+                wrong = defect(frame, grid, locals_, out)
+                before, rate, gained = torque, stiffness, out[0] + out[1] - energy
+                torque, stiffness = tangent(y, here, frame, locals_, space)
+                sound = row == 0 or not (
+                    wrong > LARGEST_DEFECT
+                    or jumped(here - theta, before, torque, rate, stiffness, gained, energy, frame)
+                )
+                if not sound:
+                    torque, stiffness = before, rate
+            if not sound:
+                counters[HALVED] += 1
+                step *= 0.5
+                if abs(step) < SMALLEST_STEP * abs(whole):
+                    return row
+                continue
+            theta, energy = here, out[0] + out[1]
             known = remember(theta, y, known, space)
             if last:
                 break
@@ -174,6 +187,7 @@ def follow(start, targets, frame, grid, locals_, space, tolerance, answer):
         answer.y[row] = y
         answer.torque[row], answer.stiffness[row] = torque, stiffness
         answer.energies[row, 0], answer.energies[row, 1] = out[0], out[1]
+        answer.inertia[row], answer.defect[row] = inertia(space.body, out), wrong
     return targets.size + 1
 
 
