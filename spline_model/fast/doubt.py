@@ -35,24 +35,21 @@ def jumped(step, torque0, torque1, stiffness0, stiffness1, gained, stored, frame
 
 
 @njit(cache=True, nogil=True, fastmath=FAST)
-def defect(frame, grid, locals_, out):
-    """The moment defect of the state just assembled: ``continuation.resolution``.
-
-    The balance starts from the force and moment at the tip, which are the tip's rows of g.
-    """
-    wrong, unit = 0.0, 0.0
+def defect(wrong, bending, frame):
+    """The moment defect (``continuation.resolution``) from the energies of defect and bending."""
+    unit = 0.0
     for s in range(frame.length.size):
-        scale = frame.rigidity[s] / frame.length[s]
-        unit = max(unit, scale)
-        wrong += scale * strip_defect(
-            locals_[s].points, locals_[s].lever, locals_[s].turning, locals_[s].g, grid.d0, grid.weight
-        )
-    return math.sqrt(wrong / (2.0 * out[0] + SMALLEST_MOMENT**2 * unit))
+        unit = max(unit, frame.rigidity[s] / frame.length[s])
+    return math.sqrt(wrong / (2.0 * bending + SMALLEST_MOMENT**2 * unit))
 
 
 @njit(cache=True, nogil=True, fastmath=FAST)
-def strip_defect(points, lever, turning, g, basis, weight):
-    """int (M - M_b)^2 du of one strip in EI/L."""
+def strip_defect(local, basis, weight):
+    """int (M - M_b)^2 du of a strip that was just condensed, in EI/L.
+
+    The balance starts from the force and moment at the tip, which are the tip's rows of g.
+    """
+    points, lever, turning, g = local.points, local.lever, local.turning, local.g
     last, own = points.shape[0] - 1, g.size - 3
     for i in range(last + 1):  # about the control points: linear in the place, as the curve is in them
         lever[i] = (points[last, 0] - points[i, 0]) * g[own + 1]

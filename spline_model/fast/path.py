@@ -13,7 +13,7 @@ from spline_model.checks import LARGEST_CORRECTION, SLOWEST_SPEED
 from spline_model.continuation.resolution import LARGEST_DEFECT
 from spline_model.fast.body import assemble, turn_into
 from spline_model.fast.condense import recover, recover_rate
-from spline_model.fast.doubt import defect, inertia, jumped
+from spline_model.fast.doubt import defect, inertia, jumped, strip_defect
 from spline_model.fast.strip import FAST
 
 ITERATIONS, EVALUATIONS, HALVED = range(3)
@@ -71,8 +71,11 @@ def newton(y, theta, frame, grid, locals_, space, out, tolerance, counters):
 
 
 @njit(cache=True, nogil=True, fastmath=FAST)
-def tangent(y, theta, frame, locals_, space):
-    """Rate dy/dtheta in space.rate at a state that was just assembled; returns torque and stiffness."""
+def tangent(y, theta, frame, grid, locals_, space):
+    """Rate dy/dtheta in space.rate at a state that was just assembled.
+
+    Returns torque, stiffness and the energy of the strips' moment defect, twice.
+    """
     strips, modes = frame.length.size, frame.compliance.shape[1]
     own = (y.size - 2) // strips - modes
     body = space.body
@@ -81,14 +84,17 @@ def tangent(y, theta, frame, locals_, space):
     dx = (body[0, 1] * body[1, 2] - body[1, 1] * body[0, 2]) / determinant
     dy = (body[0, 1] * body[0, 2] - body[0, 0] * body[1, 2]) / determinant
     space.rate[0], space.rate[1] = dx / frame.length[0], dy / frame.length[0]
+    wrong = 0.0
     for s in range(strips):
         at = 2 + s * (own + modes)
         turn_into(frame, s, cos_t, sin_t, dx, dy, 1.0, space.change)
         dw, da = space.rate[at : at + own], space.rate[at + own : at + own + modes]
-        recover_rate(locals_[s], frame.compliance[s], own, space.change, dw, da)
+        local = locals_[s]
+        recover_rate(local, frame.compliance[s], own, space.change, dw, da)
+        wrong += frame.rigidity[s] / frame.length[s] * strip_defect(local, grid.d0, grid.weight)
     # the remaining residual is carried to equilibrium by the tangent
     torque = body[2, 3] + dx * body[0, 3] + dy * body[1, 3]
-    return torque, body[2, 2] + dx * body[0, 2] + dy * body[1, 2]
+    return torque, body[2, 2] + dx * body[0, 2] + dy * body[1, 2], wrong
 
 
 @njit(cache=True, nogil=True, fastmath=FAST)
@@ -162,9 +168,9 @@ def follow(start, targets, frame, grid, locals_, space, tolerance, answer):
                 solved = newton(y, here, frame, grid, locals_, space, out, tolerance, counters)
                 sound = solved and accepted(y, known, space, frame, out, own, modes)
             if sound:
-                wrong = defect(frame, grid, locals_, out)
                 before, rate, gained = torque, stiffness, out[0] + out[1] - energy
-                torque, stiffness = tangent(y, here, frame, locals_, space)
+                torque, stiffness, wrong = tangent(y, here, frame, grid, locals_, space)
+                wrong = defect(wrong, out[0], frame)
                 sound = row == 0 or not (
                     wrong > LARGEST_DEFECT
                     or jumped(here - theta, before, torque, rate, stiffness, gained, energy, frame)
