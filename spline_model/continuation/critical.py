@@ -131,7 +131,8 @@ def _of_torque(bracket: Bracket, row: int) -> CriticalPoint | None:
 
 def _point(system: System, kind: str, at: Point, mode: Array, inertia: int) -> CriticalPoint:
     """Complete a critical point; ``mode`` in dimensionless coordinates."""
-    mode = mode / mode[np.abs(mode).argmax()]
+    size = np.abs(mode)
+    mode = mode / mode[np.flatnonzero(size >= (1.0 - 1e-6) * size.max())[0]]  # ties in a symmetric mode
     drives = [d for d in system.scene.of(Constraint) if isinstance(d, DrivenRotation)]
     return CriticalPoint(
         kind=kind,

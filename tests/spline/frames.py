@@ -2,9 +2,12 @@
 
 import itertools
 import math
+from dataclasses import replace
 
 from spline_model.effects import DrivenDisplacement
 from spline_model.mechanism import BodyDesign, StripDesign, mechanism
+from spline_model.pivot import cross_axis_pivot
+from tests.table_one import TABLE_ONE
 
 STATIC = ("bending", "stretching")
 
@@ -53,7 +56,7 @@ def lees_frame(*, load=3.0, area=6.0, **discretisation):
     return frame.with_effects(*pins)
 
 
-def column(*, load, slenderness=1e3, side=0.0, **discretisation):
+def column(*, load, slenderness=1e3, side=0.0, effects=STATIC, **discretisation):
     """A cantilever column of length 1 and EI = 1 along x; ``load`` [EI/L^2] pushes its tip back to the root.
 
     slenderness: L sqrt(EA / EI); side: part of the load that acts across, the imperfection.
@@ -62,7 +65,26 @@ def column(*, load, slenderness=1e3, side=0.0, **discretisation):
     return mechanism(
         strips=[StripDesign(name="column", start=(0.0, 0.0), end=(1.0, 0.0), tip="tip", **section)],
         bodies=[BodyDesign(name="tip", centre=(1.0, 0.0))],
-        effects=(*STATIC, "applied_force"),
+        effects=(*effects, "applied_force"),
         parameters={"applied_force": {"body": "tip", "force": (-load, side * load)}},
         **discretisation,
     )
+
+
+def opposed(*, offset=0.01, **discretisation):
+    """A body on two parallel strips of Table 1's section that come from opposite sides, 0.1 m long.
+
+    Turned clockwise, both strips are pushed together alike: half a turn maps the pivot onto
+    itself, until the strips buckle and the body gives way. As a pivot, whose scene it replaces.
+    """
+    names = ("area", "second_moment_of_area", "youngs_modulus", "poisson_ratio", "density")
+    section = {name: TABLE_ONE[name] for name in names}
+    half = 0.05
+    ends = (((-half, -offset), (half, -offset)), ((half, offset), (-half, offset)))
+    strips = [
+        StripDesign(name=f"strip_{i}", start=start, end=end, tip="body", **section)
+        for i, (start, end) in enumerate(ends, start=1)
+    ]
+    body = BodyDesign(name="body", centre=(0.0, 0.0))
+    made = mechanism(strips=strips, bodies=[body], effects=STATIC, **discretisation)
+    return replace(cross_axis_pivot(**TABLE_ONE, **discretisation), mechanism=made)
