@@ -65,10 +65,17 @@ class Workspace:
         return cls(system=system, gradient=np.empty(size), hessian=np.empty((size, size)))
 
     def evaluate(self, z: Array, load_factor: float) -> tuple[float, float]:
-        """Fill gradient and hessian at z; returns bending and axial energy [J]."""
+        """Fill gradient and hessian at z; returns bending and axial energy [J].
+
+        Not a number where C' = 0: control points that coincide have neither tangent nor curvature.
+        """
         self.counters.residual_evaluations += 1
         self.counters.tangent_evaluations += 1
-        return evaluate(self.system, z, load_factor, self.gradient, self.hessian)
+        try:
+            return evaluate(self.system, z, load_factor, self.gradient, self.hessian)
+        except ZeroDivisionError:
+            self.gradient[:] = np.nan
+            return np.nan, np.nan
 
     def norm(self) -> float:
         """Largest entry of the dimensionless residual."""

@@ -8,20 +8,21 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from spline_model.checks import LARGEST_CORRECTION, SLOWEST_SPEED
+from spline_model.continuation.resolution import LARGEST_DEFECT
 from spline_model.fast.body import assemble, turn_into
 from spline_model.fast.compiled import copy, kernel
 from spline_model.fast.condense import recover, recover_rate
+from spline_model.fast.doubt import defect, inertia, jumped, strip_defect
 
 ITERATIONS, EVALUATIONS, HALVED = range(3)
 KNOWN = 3
 MOST_ITERATIONS = 15
 SMALLEST_STEP = 2.0**-10
-SLOWEST_SPEED = 0.1
-LARGEST_CORRECTION = 0.5
 
 
 class Answer(NamedTuple):
-    """S states: y (S, Y), torque, stiffness (S,), energies (S, 2), counters (3,).
+    """S states: y (S, Y), torque, stiffness (S,), energies (S, 2), inertia, defect (S,), counters (3,).
 
     y is x, y of the centre over the first strip's length, then w and a of each strip.
     """
@@ -30,6 +31,8 @@ class Answer(NamedTuple):
     torque: NDArray[np.float64]
     stiffness: NDArray[np.float64]
     energies: NDArray[np.float64]
+    inertia: NDArray[np.int64]
+    defect: NDArray[np.float64]
     counters: NDArray[np.int64]
 
 
@@ -67,8 +70,11 @@ def newton(y, theta, frame, grid, locals_, space, out, tolerance, counters):
 
 
 @kernel()
-def tangent(y, theta, frame, locals_, space):
-    """Rate dy/dtheta in space.rate at a state that was just assembled; returns torque and stiffness."""
+def tangent(y, theta, frame, grid, locals_, space):
+    """Rate dy/dtheta in space.rate at a state that was just assembled.
+
+    Returns torque, stiffness and the energy of the strips' moment defect, twice.
+    """
     strips, modes = frame.length.size, frame.compliance.shape[1]
     own = (y.size - 2) // strips - modes
     body = space.body
@@ -77,14 +83,17 @@ def tangent(y, theta, frame, locals_, space):
     dx = (body[0, 1] * body[1, 2] - body[1, 1] * body[0, 2]) / determinant
     dy = (body[0, 1] * body[0, 2] - body[0, 0] * body[1, 2]) / determinant
     space.rate[0], space.rate[1] = dx / frame.length[0], dy / frame.length[0]
+    wrong = 0.0
     for s in range(strips):
         at = 2 + s * (own + modes)
         turn_into(frame, s, cos_t, sin_t, dx, dy, 1.0, space.change)
         dw, da = space.rate[at : at + own], space.rate[at + own : at + own + modes]
-        recover_rate(locals_[s], frame.compliance[s], own, space.change, dw, da)
+        local = locals_[s]
+        recover_rate(local, frame.compliance[s], own, space.change, dw, da)
+        wrong += frame.rigidity[s] / frame.length[s] * strip_defect(local, grid.d0, grid.weight)
     # the remaining residual is carried to equilibrium by the tangent
     torque = body[2, 3] + dx * body[0, 3] + dy * body[1, 3]
-    return torque, body[2, 2] + dx * body[0, 2] + dy * body[1, 2]
+    return torque, body[2, 2] + dx * body[0, 2] + dy * body[1, 2], wrong
 
 
 @kernel()
@@ -137,6 +146,7 @@ def follow(start, targets, frame, grid, locals_, space, tolerance, answer):
     if not newton(y, 0.0, frame, grid, locals_, space, out, tolerance, counters):
         return 0
     known, theta = 0, 0.0
+    torque = stiffness = energy = wrong = 0.0
     for row in range(targets.size + 1):
         target = targets[row - 1] if row > 0 else 0.0
         begin, step = theta, target - theta
@@ -145,6 +155,7 @@ def follow(start, targets, frame, grid, locals_, space, tolerance, answer):
             known = 1
         whole = step
         while True:
+            last, here, sound = row == 0, theta, True
             if row > 0:
                 last = abs(target - theta) <= abs(step) * (1 + 1e-9)
                 here = target if last else theta + step
@@ -154,16 +165,24 @@ def follow(start, targets, frame, grid, locals_, space, tolerance, answer):
                 predict(here, known, space)
                 copy(space.predicted, y)
                 solved = newton(y, here, frame, grid, locals_, space, out, tolerance, counters)
-                if not (solved and accepted(y, known, space, frame, out, own, modes)):
-                    counters[HALVED] += 1
-                    step *= 0.5
-                    if abs(step) < SMALLEST_STEP * abs(whole):
-                        return row
-                    continue
-                theta = here
-            else:
-                last = True
-            torque, stiffness = tangent(y, theta, frame, locals_, space)
+                sound = solved and accepted(y, known, space, frame, out, own, modes)
+            if sound:
+                before, rate, gained = torque, stiffness, out[0] + out[1] - energy
+                torque, stiffness, wrong = tangent(y, here, frame, grid, locals_, space)
+                wrong = defect(wrong, out[0], frame)
+                sound = row == 0 or not (
+                    wrong > LARGEST_DEFECT
+                    or jumped(here - theta, before, torque, rate, stiffness, gained, energy, frame)
+                )
+                if not sound:
+                    torque, stiffness = before, rate
+            if not sound:
+                counters[HALVED] += 1
+                step *= 0.5
+                if abs(step) < SMALLEST_STEP * abs(whole):
+                    return row
+                continue
+            theta, energy = here, out[0] + out[1]
             known = remember(theta, y, known, space)
             if last:
                 break
@@ -173,6 +192,7 @@ def follow(start, targets, frame, grid, locals_, space, tolerance, answer):
         copy(y, answer.y[row])
         answer.torque[row], answer.stiffness[row] = torque, stiffness
         answer.energies[row, 0], answer.energies[row, 1] = out[0], out[1]
+        answer.inertia[row], answer.defect[row] = inertia(space.body, out), wrong
     return targets.size + 1
 
 

@@ -11,6 +11,10 @@ from numpy.typing import NDArray
 
 from spline_model.basis import bezier
 from spline_model.compile import System
+from spline_model.continuation.critical import between
+from spline_model.continuation.integration import Finer
+from spline_model.continuation.point import stand
+from spline_model.continuation.remark import remark
 from spline_model.design import Design
 from spline_model.effects.constraints import GROUND
 from spline_model.effects.registry import MOTION_ONLY
@@ -19,7 +23,9 @@ from spline_model.fast.path import EVALUATIONS, HALVED, ITERATIONS, Answer, foll
 from spline_model.fast.states import states_of
 from spline_model.fast.strip import Grid, local_arrays
 from spline_model.mechanism import Mechanism
-from spline_model.solution import Path, Status
+from spline_model.newton import Workspace
+from spline_model.solution import CriticalPoint, Path, Status
+from spline_model.work import external_work
 
 Array = NDArray[np.float64]
 
@@ -55,6 +61,7 @@ def grid_of(design: Design) -> Grid:
     basis = bezier(settings.control_points)
     u, weight = basis.gauss_rule(settings.points_a_span)
     return Grid(
+        d0=np.ascontiguousarray(basis.evaluate(u)),
         d1=np.ascontiguousarray(basis.evaluate(u, 1)),
         d2=np.ascontiguousarray(basis.evaluate(u, 2)),
         modes=np.ascontiguousarray(legendre.legvander(2 * u - 1, mode_count(design) - 1)),
@@ -98,11 +105,12 @@ def frame_of(mechanism: Mechanism) -> Frame:
     )
 
 
-def arrays(strips: int, control_points: int, modes: int) -> tuple[tuple[Any, ...], Space]:
+def arrays(strips: int, grid: Grid) -> tuple[tuple[Any, ...], Space]:
     """Working arrays of a path, to be used again for others of the same size."""
+    (points, control_points), modes = grid.d1.shape, grid.modes.shape[1]
     own = 2 * control_points - 6
     size = 2 + strips * (own + modes)
-    locals_ = tuple(local_arrays(control_points, modes) for _ in range(strips))
+    locals_ = tuple(local_arrays(control_points, modes, points) for _ in range(strips))
     space = Space(
         body=np.zeros((3, 4)),
         change=np.zeros(3),
@@ -130,11 +138,33 @@ def fast_path(mechanism: Mechanism, rotations: Sequence[float]) -> tuple[int, An
     design = mechanism.design
     n, modes, strips = design.discretisation.control_points, mode_count(design), len(design.strips)
     frame, grid = frame_of(mechanism), grid_of(design)
-    locals_, space = arrays(strips, n, modes)
+    locals_, space = arrays(strips, grid)
     answer = empty_answer(len(rotations) + 1, len(space.y))
     targets = np.asarray(rotations, dtype=float)
     done = follow(at_rest(frame, n, modes), targets, frame, grid, locals_, space, TOLERANCE, answer)
     return done, answer
+
+
+def _critical_points(
+    system: System, factors: Array, states: Array, answer: Answer
+) -> tuple[CriticalPoint, ...] | None:
+    """The critical points between rows of another inertia or another sign of the stiffness.
+
+    None where one is not found: the multiplier path, whose steps are smaller there, does it.
+    """
+    steps = np.diff(factors)
+    turned = (np.diff(answer.inertia) != 0) | (answer.stiffness[1:] * answer.stiffness[:-1] < 0.0)
+    work = Workspace.of(system)
+    found: list[CriticalPoint] = []
+    for row in np.flatnonzero(turned):
+        before, after = (
+            stand(work, states[i], factors[i], work.evaluate(states[i], factors[i])) for i in (row, row + 1)
+        )
+        points = between(work, before, after, steps[row])
+        if not points or not Finer(system).confirms(work, before, after, steps[row]):
+            return None
+        found += points
+    return tuple(found)
 
 
 def empty_answer(states: int, size: int) -> Answer:
@@ -144,6 +174,8 @@ def empty_answer(states: int, size: int) -> Answer:
         torque=np.zeros(states),
         stiffness=np.zeros(states),
         energies=np.zeros((states, 2)),
+        inertia=np.zeros(states, dtype=np.int64),
+        defect=np.zeros(states),
         counters=np.zeros(3, dtype=np.int64),
     )
 
@@ -170,13 +202,21 @@ def follow_fast(
     rates = np.zeros((done, system.layout.size))
     rates[:, drive.row[0]] = answer.stiffness * drive.target[0]
     increments, counters = len(rotations), answer.counters
+    states, factors = states_of(system, frame_of(mechanism), angles, answer), angles / drive.target[0]
+    critical = _critical_points(system, factors, states, answer)
+    if critical is None:
+        return None
     return Path(
         status=Status.CONVERGED,
-        message="",
-        load_factor=angles / drive.target[0],
-        states=states_of(system, frame_of(mechanism), angles, answer),
+        message=remark(critical),
+        load_factor=factors,
+        states=states,
         rates=rates,
         energies=answer.energies,
+        work=external_work(system, factors, states, rates),
+        inertia=answer.inertia,
+        moment_defect=answer.defect,
+        critical_points=critical,
         counters={
             "increments": increments,
             "halved_increments": int(counters[HALVED]),

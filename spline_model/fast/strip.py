@@ -23,8 +23,9 @@ from spline_model.fast.compiled import kernel, part
 
 
 class Grid(NamedTuple):
-    """Basis at the Gauss points: d1, d2 (G, n), modes (G, K), weight (G,)."""
+    """Basis at the Gauss points: d0, d1, d2 (G, n), modes (G, K), weight (G,)."""
 
+    d0: NDArray[np.float64]
     d1: NDArray[np.float64]
     d2: NDArray[np.float64]
     modes: NDArray[np.float64]
@@ -34,12 +35,15 @@ class Grid(NamedTuple):
 class Local(NamedTuple):
     """What one evaluation fills; n control points, W = 2 n - 6 own coordinates, K modes.
 
-    points (n, 2); gradient (2 n,), hessian (2 n, 2 n), coupling (K, 2 n) in the control
-    points; g (W + 3,), h (W + 3, W + 3), b (K, W + 3) in (w, e); gap (K,) residual of the
-    axial forces.
+    points (n, 2); turning (G,) theta' at the Gauss points; gradient (2 n,), hessian
+    (2 n, 2 n), coupling (K, 2 n) in the control points; g (W + 3,), h (W + 3, W + 3),
+    b (K, W + 3) in (w, e); gap (K,) residual of the axial forces; lever (n,) moment of the
+    tip's force and moment about the control points, filled by ``fast.doubt``.
     """
 
     points: NDArray[np.float64]
+    turning: NDArray[np.float64]
+    lever: NDArray[np.float64]
     gradient: NDArray[np.float64]
     hessian: NDArray[np.float64]
     coupling: NDArray[np.float64]
@@ -49,11 +53,13 @@ class Local(NamedTuple):
     gap: NDArray[np.float64]
 
 
-def local_arrays(control_points: int, modes: int) -> Local:
+def local_arrays(control_points: int, modes: int, gauss_points: int) -> Local:
     """Arrays of a strip of that size."""
     n, own = control_points, 2 * control_points - 6
     return Local(
         points=np.zeros((n, 2)),
+        turning=np.zeros(gauss_points),
+        lever=np.zeros(n),
         gradient=np.zeros(2 * n),
         hessian=np.zeros((2 * n, 2 * n)),
         coupling=np.zeros((modes, 2 * n)),
@@ -109,6 +115,7 @@ def assemble_points(points, a, compliance, grid, local):
         slowest = min(slowest, v)
         r = 1.0 / s
         f = (x1 * y2 - y1 * x2) * r  # theta'
+        local.turning[p] = f
         # gradient of f in (x', y', x'', y'')
         f0, f1 = (y2 - 2.0 * f * x1) * r, (-x2 - 2.0 * f * y1) * r
         f2, f3 = -y1 * r, x1 * r
