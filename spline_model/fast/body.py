@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from spline_model.fast.compiled import kernel
+from spline_model.fast.compiled import part
 from spline_model.fast.condense import condense
 from spline_model.fast.strip import evaluate
 
@@ -44,7 +44,7 @@ class Space(NamedTuple):
     out: NDArray[np.float64]
 
 
-@kernel()
+@part()
 def assemble(y, theta, frame, grid, locals_, space, out):
     """Condense all strips at y; the body's tangent and force in space.body, energies in out (3,).
 
@@ -117,7 +117,7 @@ def assemble(y, theta, frame, grid, locals_, space, out):
     return max(norm, max(abs(fx), abs(fy)) / unit)
 
 
-@kernel()
+@part()
 def turn_into(frame, s, cos_t, sin_t, dx, dy, dtheta, change):
     """Change of a strip's tip pose (3,) for a change of the body's pose."""
     ax = cos_t * frame.arm[s, 0] - sin_t * frame.arm[s, 1]

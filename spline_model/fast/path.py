@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from spline_model.checks import LARGEST_CORRECTION, SLOWEST_SPEED
 from spline_model.continuation.resolution import LARGEST_DEFECT
 from spline_model.fast.body import assemble, turn_into
-from spline_model.fast.compiled import copy, kernel
+from spline_model.fast.compiled import copy, kernel, part
 from spline_model.fast.condense import recover, recover_rate
 from spline_model.fast.doubt import defect, inertia, jumped, strip_defect
 
@@ -69,7 +69,7 @@ def newton(y, theta, frame, grid, locals_, space, out, tolerance, counters):
     return False
 
 
-@kernel()
+@part()
 def tangent(y, theta, frame, grid, locals_, space):
     """Rate dy/dtheta in space.rate at a state that was just assembled.
 
@@ -96,7 +96,7 @@ def tangent(y, theta, frame, grid, locals_, space):
     return torque, body[2, 2] + dx * body[0, 2] + dy * body[1, 2], wrong
 
 
-@kernel()
+@part()
 def predict(theta, known, space):
     """Hermite's polynomial through the last ``known`` states and rates, at theta, in space.predicted."""
     at, predicted = space.known_at, space.predicted
@@ -113,7 +113,7 @@ def predict(theta, known, space):
             predicted[k] += by_value * space.known_y[i, k] + by_rate * space.known_rate[i, k]
 
 
-@kernel()
+@part()
 def accepted(y, known, space, frame, out, own, modes):
     """Whether a solved state is the continuation of the last one, with end tangents forward and no fold."""
     if not out[2] > SLOWEST_SPEED:
@@ -196,7 +196,7 @@ def follow(start, targets, frame, grid, locals_, space, tolerance, answer):
     return targets.size + 1
 
 
-@kernel()
+@part()
 def remember(theta, y, known, space):
     """Append a state and its rate to the known ones, dropping the oldest; returns their number."""
     if known > 0 and theta == space.known_at[known - 1]:
@@ -213,7 +213,7 @@ def remember(theta, y, known, space):
     return known + 1
 
 
-@kernel()
+@part()
 def keep_last(known, space):
     """Forget all known states but the last."""
     space.known_at[0] = space.known_at[known - 1]

@@ -19,7 +19,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from spline_model.fast.compiled import kernel, part
+from spline_model.fast.compiled import part
 
 
 class Grid(NamedTuple):
@@ -213,7 +213,7 @@ def hessian_to_own(hessian, gradient, reach, arm, cos, sin, h):
     h[last + 3, last + 3] = nx * (xx * nx + 2.0 * xy * ny) + yy * ny * ny + arm * (cos * gx + sin * gy)
 
 
-@kernel()
+@part()
 def evaluate(w, a, x, y, cos, sin, compliance, grid, local):
     """Fill g, the upper triangle of h, b and gap in (w, e) at a tip in (x, y) with direction (cos, sin).
 
