@@ -118,10 +118,8 @@ class ImpulseSolver:
         count = layout.coordinate_count
         given = np.asarray(z, dtype=float)
         speed = np.zeros(count) if v is None else np.array(v, dtype=float)
-        for name, values, fits in (("z", given, len(given) >= count), ("v", speed, len(speed) == count)):
-            if not (values.ndim == 1 and fits and np.isfinite(values).all()):
-                expected = f"finite numbers, {count} of them{' or more' if name == 'z' else ''}"
-                raise InvalidParameter(name, f"shape {values.shape}", expected)
+        _require_numbers("z", given, count, math.inf, "m, rad, N")
+        _require_numbers("v", speed, count, count, "m/s, rad/s")
         unknowns = np.zeros(layout.size)
         same = min(len(given), layout.size)
         unknowns[:same] = given[:same]
@@ -157,9 +155,7 @@ class ImpulseSolver:
     def _driven(self, state: State, pose: Array, duration: float) -> Motion:
         """The motion with its drives on the way from the state to the pose."""
         tables, drives = self.motion.tables, self.motion.tables.drives
-        if pose.shape != drives.row.shape or not pose.size or not np.isfinite(pose).all():
-            expected = f"{drives.row.size} finite numbers, one a driven coordinate"
-            raise InvalidParameter("pose", pose.tolist(), expected)
+        _require_numbers("pose", pose, drives.row.size, drives.row.size, "m, rad")
         here = state.z[drives.coordinate]
         way = drives._replace(
             origin=here,
@@ -260,6 +256,16 @@ class Run:
             residual=float(moving.status[RESIDUAL]),
             counters=named(moving.counters),
         )
+
+
+def _require_numbers(name: str, values: Array, least: int, most: float, unit: str) -> None:
+    """Refuse anything but a vector of so many finite numbers."""
+    if values.ndim != 1 or not least <= len(values) <= most:
+        expected = f"{least}" if most == least else f"{least} or more"
+        raise InvalidParameter(f"length of {name}", values.size, expected)
+    if not np.isfinite(values).all():
+        bad = float(values[~np.isfinite(values)][0])
+        raise InvalidParameter(name, bad, f"finite numbers [{unit}]")
 
 
 def named(counters: Indices) -> dict[str, int]:
