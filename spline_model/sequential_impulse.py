@@ -11,9 +11,10 @@ the constraints hold, at a fixed step h.
            backward differences of second order. What a step does not resolve is damped, and
            while no drive acts no step gains energy.
 
-Impulses are found by sweeps over the constraints, each solved by itself, or at once
-(``sweeps=None``, Eq 30 as it stands). Misprints of the paper are corrected: Eqs 22 and 23 begin
-from the state before, Eq 26 has the transposed Jacobian, Eq 30 its minus sign.
+Impulses are found at once ("direct", Eq 30 as it stands), by sweeps over the strips, each solved
+with its axial forces and both clamps ("strips"), or over single constraints ("constraints").
+Misprints of the paper are corrected: Eqs 22 and 23 begin from the state before, Eq 26 has the
+transposed Jacobian, Eq 30 its minus sign.
 """
 
 from __future__ import annotations
@@ -44,6 +45,8 @@ Array = NDArray[np.float64]
 
 STEP = 0.01
 """The paper's step: a quarter of the time between two pictures at 25 Hz [s]."""
+SWEEPS = 30
+"""Default of the most sweeps for one linear system."""
 STABILITY_LIMIT = 2.0
 """omega h up to which symplectic Euler does not amplify an oscillation."""
 
@@ -53,7 +56,8 @@ def impulse_solver(
     *,
     body: str | None = None,
     form: str = "stable",
-    sweeps: int | None = None,
+    impulses: str = "direct",
+    sweeps: int = SWEEPS,
     tolerance: float = TOLERANCE,
 ) -> ImpulseSolver:
     """A solver for steps one at a time, of which the named body, or the only one, can be given a pose.
@@ -61,8 +65,9 @@ def impulse_solver(
     Parameters
     ----------
     form : "printed" or "stable", see above.
-    sweeps : most sweeps over the constraints for each linear system; None solves all at once. The
-        stable form converges with sweeps only while its step is short against the strips' bending.
+    impulses, sweeps : how they are found, see above, and the most sweeps for one linear system. Sweeps
+        over strips converge at any step, the slower the longer it is; those over constraints
+        diverge in the stable form where the step is long against the strips' bending.
     tolerance : residual of a stable step and gap that ends the sweeps, in EI/L^2, EI/L, L, rad.
 
     Raises InvalidParameter.
@@ -74,7 +79,9 @@ def impulse_solver(
         name = mechanism.design.body_named(body)
         drives = DrivenDisplacement(body=name, displacement=(0.0, 0.0)), DrivenRotation(body=name, angle=0.0)
         scene = mechanism.with_effects(*drives)
-    return ImpulseSolver(mechanism, compile_scene(scene), form=form, sweeps=sweeps, tolerance=tolerance)
+    return ImpulseSolver(
+        mechanism, compile_scene(scene), form=form, impulses=impulses, sweeps=sweeps, tolerance=tolerance
+    )
 
 
 def stability_limit(pivot: Pivot | Mechanism, rotation: float = 0.0) -> float:
@@ -98,14 +105,15 @@ def solve_impulses(
     duration: float = 0.05,
     step: float = STEP,
     form: str = "stable",
-    sweeps: int | None = None,
+    impulses: str = "direct",
+    sweeps: int = SWEEPS,
     tolerance: float = TOLERANCE,
     records: int | None = None,
 ) -> Trajectory:
     """Motion from the static state at the rotation ``start`` [rad] of a body, at rest, as ``solve_motion``.
 
-    body, drive, duration, records: as there; form, sweeps, tolerance: as of ``impulse_solver``; step
-    [s] is shortened so that a whole number of steps fits between the records. A body that a drive
+    body, drive, duration, records: as there; form, impulses, sweeps, tolerance: as of
+    ``impulse_solver``; step [s] is shortened so that a whole number of steps fits between the records. A body that a drive
     catches loses the velocity that the drive does not have, and with it energy, which counts as
     dissipated; what the stable form's steps damp does not.
 
@@ -121,13 +129,15 @@ def solve_impulses(
     body = mechanism.design.body_named(body)
     released = mechanism.released()
     system = compile_scene(released if drive is None else mechanism.with_effects(drive))
-    solver = ImpulseSolver(mechanism, system, form=form, sweeps=sweeps, tolerance=tolerance)
+    solver = ImpulseSolver(
+        mechanism, system, form=form, impulses=impulses, sweeps=sweeps, tolerance=tolerance
+    )
     steps, every = _count(duration, step, records, 2 * system.layout.size)
     run = Run(solver, solver.start(start, body), steps // every)
     done = _follow(run, duration / steps, steps, every)
     message = "" if done == steps else f"stopped at {done * duration / steps:.6g} s: {_reason(form)}"
     settings = {"integrator": f"sequential impulses, {form}", "step_s": duration / steps}
-    settings |= {} if sweeps is None else {"sweeps": sweeps}
+    settings |= {"impulses": impulses} | ({} if impulses == "direct" else {"sweeps": sweeps})
     return _trajectory(run, duration / steps, every, done, message, mechanism, body, settings)
 
 

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from spline_model.compile import System
 from spline_model.errors import InvalidParameter, require_choice, require_count, require_positive
 from spline_model.impulses.advance import COUNTS, ENERGY, RESIDUAL, advance
-from spline_model.impulses.blocks import make_blocks
+from spline_model.impulses.blocks import IMPULSES, make_blocks
 from spline_model.impulses.energies import energy_of
 from spline_model.impulses.space import Log, Moving, Options, make_space
 from spline_model.impulses.totals import HALVED, LIMITED, SOLVES, STEPS, SWEEPS
@@ -86,18 +86,25 @@ class ImpulseSolver:
     """
 
     def __init__(
-        self, mechanism: Mechanism, system: System, *, form: str, sweeps: int | None, tolerance: float
+        self,
+        mechanism: Mechanism,
+        system: System,
+        *,
+        form: str,
+        impulses: str,
+        sweeps: int,
+        tolerance: float,
     ) -> None:
         require_choice("form", form, FORMS)
+        require_choice("impulses", impulses, IMPULSES)
         require_positive("tolerance", tolerance, "1")
-        if sweeps is not None:
-            require_count("sweeps", sweeps, 1)
+        require_count("sweeps", sweeps, 1)
         require_compiled(system, "sequential impulses")
         self.mechanism, self.system, self.form = mechanism, system, form
         self.motion = set_in_motion(system)
-        self.blocks = make_blocks(system, self.motion, soft=form == "stable", direct=sweeps is None)
+        self.blocks = make_blocks(system, self.motion, soft=form == "stable", impulses=impulses)
         self.space = make_space(system, self.blocks)
-        self.options = Options(sweeps or 1, ITERATIONS, float(tolerance), LEAST_FRACTION)
+        self.options = Options(sweeps, ITERATIONS, float(tolerance), LEAST_FRACTION)
 
     def start(self, rotation: float = 0.0, body: str | None = None) -> State:
         """The static state at the rotation [rad] of a body, at rest: where the paper's releases start.
