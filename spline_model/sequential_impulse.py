@@ -113,7 +113,8 @@ def solve_impulses(
     """Motion from the static state at the rotation ``start`` [rad] of a body, at rest, as ``solve_motion``.
 
     body, drive, duration, records: as there; form, impulses, sweeps, tolerance: as of
-    ``impulse_solver``; step [s] is shortened so that a whole number of steps fits between the records. A body that a drive
+    ``impulse_solver``; step [s] is shortened so that a whole number of steps fits between the
+    records. A body that a drive
     catches loses the velocity that the drive does not have, and with it energy, which counts as
     dissipated; what the stable form's steps damp does not.
 
