@@ -8,8 +8,9 @@ the constraints hold, at a fixed step h.
            system. Nothing pulls positions back, so that the constraints drift.
 "stable"   Elastic forces implicit, the axial ones as constraints with compliance, constraints
            fulfilled by the positions, iterations begun from the forces of the step before,
-           backward differences of second order. What a step does not resolve is damped, and
-           while no drive acts no step gains energy.
+           backward differences of second order. What a step does not resolve is damped. No step
+           gains energy while the ground holds the mechanism and no drive acts: where the
+           differences would, the velocity is reduced.
 
 Impulses are found at once ("direct", Eq 30 as it stands), by sweeps over the strips, each solved
 with its axial forces and both clamps ("strips"), or over single constraints ("constraints").
@@ -30,7 +31,9 @@ from spline_model.compile import compile_scene
 from spline_model.dynamics import MOST_MEMORY, STEPS_PER_PERIOD, Trajectory
 from spline_model.effects import DrivenDisplacement, DrivenRotation
 from spline_model.errors import InvalidParameter, require_count, require_positive
-from spline_model.impulses.solver import TOLERANCE, ImpulseSolver, Outcome, Run, State, named
+from spline_model.impulses.run import Run, named
+from spline_model.impulses.solver import TOLERANCE, ImpulseSolver
+from spline_model.impulses.state import Outcome, State
 from spline_model.integrators.events import catch, drive_events, drives_at, from_here
 from spline_model.kernels.record import DISSIPATED, KINETIC, POSITION, STRAIN, VELOCITY, WEIGHT, WORK
 from spline_model.mass import mass_matrix

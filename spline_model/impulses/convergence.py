@@ -7,9 +7,11 @@ from numpy.typing import NDArray
 
 from spline_model.impulses.advance import EULER, predict
 from spline_model.impulses.forces import fill_drag
-from spline_model.impulses.solver import ImpulseSolver, Run, State
+from spline_model.impulses.run import Run
+from spline_model.impulses.solver import ImpulseSolver
 from spline_model.impulses.space import Options
 from spline_model.impulses.stable import solve_step
+from spline_model.impulses.state import State
 
 Array = NDArray[np.float64]
 

@@ -3,26 +3,23 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.compile import System
 from spline_model.errors import InvalidParameter, require_choice, require_count, require_positive
-from spline_model.impulses.advance import COUNTS, ENERGY, RESIDUAL, advance
 from spline_model.impulses.blocks import IMPULSES, make_blocks
-from spline_model.impulses.energies import energy_of
-from spline_model.impulses.space import Log, Moving, Options, make_space
-from spline_model.impulses.totals import HALVED, LIMITED, SOLVES, STEPS, SWEEPS
+from spline_model.impulses.run import Run
+from spline_model.impulses.space import Options, make_space
+from spline_model.impulses.state import Outcome, State
 from spline_model.integrators.motion import require_compiled, set_in_motion
 from spline_model.kernels.motion import Motion
-from spline_model.kernels.record import KINETIC, POSITION, STRAIN, VELOCITY, WEIGHT, record
 from spline_model.mechanism import Mechanism
 from spline_model.modes import static_state
 
 Array = NDArray[np.float64]
-Indices = NDArray[np.int64]
 
 FORMS = ("printed", "stable")
 TOLERANCE = 1e-9
@@ -31,51 +28,6 @@ ITERATIONS = 12
 """Most Newton iterations of a stable step before it is halved."""
 LEAST_FRACTION = 2.0**-6
 """Least part of a step before it is refused: bounds the time that a step may take."""
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class State:
-    """Where a motion is. A step leaves it as it is and returns another.
-
-    z (N,) unknowns: coordinates, axial forces, multipliers; v (Q,) velocities; earlier_q,
-    earlier_v (Q,) those of the step before, which count if ``known`` is 1 and not if it is 0;
-    time [s]; held: whether a pose was imposed in the step that led here.
-    """
-
-    z: Array
-    v: Array
-    earlier_q: Array
-    earlier_v: Array
-    known: int
-    time: float
-    held: bool
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Outcome:
-    """What steps led to.
-
-    state: after the last step that was taken; taken, asked: numbers of steps; kinetic, strain and
-    gravity energy [J]; constraint_residual [m], velocity_residual [m/s]; residual: the largest
-    that a step left in its equations, or an impulse before the last had to close [1];
-    counters: steps (halves count), solves, sweeps, halved_steps, limited_steps.
-    """
-
-    state: State
-    taken: int
-    asked: int
-    kinetic_energy: float
-    strain_energy: float
-    gravity_energy: float
-    constraint_residual: float
-    velocity_residual: float
-    residual: float
-    counters: dict[str, int]
-
-    @property
-    def complete(self) -> bool:
-        """Whether all steps were taken; if not, the state is the last good one."""
-        return self.taken == self.asked
 
 
 class ImpulseSolver:
@@ -175,96 +127,6 @@ class ImpulseSolver:
         return self.motion._replace(tables=tables._replace(drives=way))
 
 
-class Run:
-    """The arrays of a run from a state, and what it records."""
-
-    def __init__(self, solver: ImpulseSolver, state: State, records: int = 1) -> None:
-        self.solver = solver
-        z, v, motion = state.z.copy(), state.v.copy(), solver.motion
-        self.moving = Moving(
-            z=z,
-            v=v,
-            earlier_q=state.earlier_q.copy(),
-            earlier_v=state.earlier_v.copy(),
-            status=np.array([state.known, 0.0, energy_of(z, v, motion, solver.space.strains)]),
-            counters=np.zeros(5, dtype=np.int64),
-            totals=np.zeros(2),
-        )
-        self.log = Log(
-            states=np.zeros((records + 1, z.size)),
-            rates=np.zeros((records + 1, v.size)),
-            rows=np.zeros((records + 1, 7)),
-        )
-
-    def go(
-        self, first: int, last: int, h: float, time: float, every: int, active: Indices, motion: Motion
-    ) -> int:
-        """Take the steps first ... last - 1; returns the number of the first that was not taken."""
-        solver = self.solver
-        stable = solver.form == "stable"
-        return int(
-            advance(
-                self.moving,
-                self.log,
-                time,
-                h,
-                first,
-                last,
-                every,
-                stable,
-                active,
-                motion,
-                solver.blocks,
-                solver.options,
-                solver.space,
-            )
-        )
-
-    def change(self, v: Array, lost: float) -> None:
-        """Give the run other velocities, which takes the energy ``lost`` [J]: it starts anew from here."""
-        moving, solver = self.moving, self.solver
-        moving.v[:] = v
-        moving.totals[1] += lost
-        moving.status[COUNTS] = 0.0
-        moving.status[ENERGY] = energy_of(moving.z, moving.v, solver.motion, solver.space.strains)
-
-    def row(self) -> Array:
-        """The record of where the run stands (7,)."""
-        moving, row = self.moving, np.zeros(7)
-        record(moving.z, moving.v, self.solver.motion, self.solver.space.strains, moving.totals, row)
-        return row
-
-    def keep_start(self) -> None:
-        """Record where the run stands as its start."""
-        self.log.states[0], self.log.rates[0] = self.moving.z, self.moving.v
-        self.log.rows[0] = self.row()
-
-    def outcome(self, taken: int, asked: int, time: float, held: bool) -> Outcome:
-        """Where the run stands, for who asked for steps."""
-        moving, row, system = self.moving, self.row(), self.solver.system
-        weight = system.tables.weight
-        return Outcome(
-            state=State(
-                z=moving.z,
-                v=moving.v,
-                earlier_q=moving.earlier_q,
-                earlier_v=moving.earlier_v,
-                known=int(moving.status[COUNTS]),
-                time=time,
-                held=held,
-            ),
-            taken=taken,
-            asked=asked,
-            kinetic_energy=float(row[KINETIC]),
-            strain_energy=float(row[STRAIN]),
-            gravity_energy=float(row[WEIGHT] + weight @ system.rest[: weight.size]),
-            constraint_residual=float(row[POSITION]),
-            velocity_residual=float(row[VELOCITY]),
-            residual=float(moving.status[RESIDUAL]),
-            counters=named(moving.counters),
-        )
-
-
 def _require_numbers(name: str, values: Array, least: int, most: float, unit: str) -> None:
     """Refuse anything but a vector of so many finite numbers."""
     if values.ndim != 1 or not least <= len(values) <= most:
@@ -273,14 +135,3 @@ def _require_numbers(name: str, values: Array, least: int, most: float, unit: st
     if not np.isfinite(values).all():
         bad = float(values[~np.isfinite(values)][0])
         raise InvalidParameter(name, bad, f"finite numbers [{unit}]")
-
-
-def named(counters: Indices) -> dict[str, int]:
-    """Counters by name."""
-    return {
-        "steps": int(counters[STEPS]),
-        "solves": int(counters[SOLVES]),
-        "sweeps": int(counters[SWEEPS]),
-        "halved_steps": int(counters[HALVED]),
-        "limited_steps": int(counters[LIMITED]),
-    }

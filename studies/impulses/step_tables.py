@@ -32,7 +32,7 @@ FRACTIONS = (0.3, 0.5, 0.7, 0.9, 1.1, 1.5, 3.0, 10.0)
 RECORDS = 200
 
 #: Rotation of the swing whose stability is tried [rad], steps of a trial [1] and end of the bisection [1].
-SMALL, TRIAL, BRACKET = 1e-4, 2000, 0.002
+SMALL, TRIAL, BRACKET = 1e-4, 2000, 2e-4
 #: Sweeps over the constraints that the limit is tried with; None for the direct solution.
 LIMITED_SWEEPS = (None, 5, 3, 2, 1)
 
@@ -48,7 +48,8 @@ def steps(progress: Callable[[], None]) -> tuple[pd.DataFrame, pd.DataFrame]:
 
     Columns: status, error_rotation_rad (largest, against the explicit integrator on the same spline), drift
     (largest gap of the clamps over the length), energy_change and energy_gain (at the end, and largest, over
-    the start), steps, solves; times: step_us (of one step), motion_s.
+    the start), steps, solves, limited_steps (whose velocity was reduced so that no energy is gained),
+    stopped_s; times: step_us (of one step), motion_s.
     """
     rows, times = [], []
     for design in designs():
@@ -165,6 +166,7 @@ def _quality(run: Trajectory, exact: Trajectory, length: float) -> dict[str, Any
         "energy_gain": energy.max() / energy[0] - 1.0 if fine else math.nan,
         "steps": run.counters["steps"],
         "solves": run.counters["solves"],
+        "limited_steps": run.counters["limited_steps"],
         "stopped_s": math.nan if fine else run.time[-1],
     }
 

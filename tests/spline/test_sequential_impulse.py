@@ -1,5 +1,7 @@
 """Sequential impulses: order, limit of the printed form, stability of the other, sweeps, momenta, catch."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -19,8 +21,8 @@ from tests.table_one import TABLE_ONE
 
 
 def time_errors(form, steps):
-    """Largest error of the rotation within 1 ms of the release, against the explicit integrator."""
-    chosen, options = pivot(control_points=4), {"start": QUARTER, "duration": 1e-3, "records": 20}
+    """Largest error of the rotation within 0.5 ms of the release, against the explicit integrator."""
+    chosen, options = pivot(control_points=4), {"start": QUARTER, "duration": 5e-4, "records": 20}
     exact = solve_release(chosen, integrator="explicit", step=2.5e-7, **options).rotation
     paths = [solve_impulses(chosen, form=form, step=step, **options).rotation for step in steps]
     return np.array([np.abs(path - exact).max() for path in paths])
@@ -112,7 +114,7 @@ def test_a_refused_step_keeps_the_last_good_state():
         (TABLE_ONE, {"control_points": 4}),
         (TABLE_ONE, {}),
         (POLYMER, {}),
-        (POLYMER, {"stretch": "inextensible"}),
+        pytest.param(POLYMER, {"stretch": "inextensible"}, marks=pytest.mark.slow),
     ],
     ids=["Table 1, n = 4", "Table 1", "polymer", "polymer, inextensible"],
 )
@@ -147,6 +149,20 @@ def test_work_of_a_picture():
             solves.append(outcome.counters["solves"])
         assert max(solves) <= 30
         assert np.percentile(solves, 95) <= 16
+
+
+def test_forces_of_the_step_before_save_work():
+    """Requirement: a step that begins from the last forces needs fewer linear systems than one without."""
+    solver = impulse_solver(pivot(POLYMER))
+    state, warm, cold = solver.start(QUARTER), 0, 0
+    for _ in range(50):
+        forgetful = state.z.copy()
+        forgetful[len(state.v) :] = 0.0
+        cold += solver.step(replace(state, z=forgetful), 0.01).counters["solves"]
+        outcome = solver.step(state, 0.01)
+        warm += outcome.counters["solves"]
+        state = outcome.state
+    assert warm < 0.9 * cold
 
 
 # ---- sweeps ----
