@@ -41,7 +41,7 @@ def main(arguments: argparse.Namespace) -> int:
         answer_modes(problem, settings)
         for integrator in integrators:
             answer_release(problem, settings, duration=1e-5, integrator=integrator, step=1e-8)
-    chosen = built(model_of(SETTINGS[0]), problem, SETTINGS[0], moving=True)[0]
+    chosen = built(model_of(CALLS[0][0]), problem, CALLS[0][0], moving=True)[0]
     for form in ("printed", "stable"):
         solve_impulses(chosen, duration=1e-5, step=1e-6, form=form)
     print(f"studies: ready after {time.perf_counter() - begin:.0f} s", file=sys.stderr)
