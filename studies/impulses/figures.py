@@ -138,5 +138,5 @@ def _factors(panel: Axes, rows: pd.DataFrame) -> None:
     panel.axhline(1.0, color="#444444", linewidth=0.9)
     panel.axvline(PAPER_STEP, color="#444444", linestyle=":", linewidth=1.2)
     panel.set(xlabel="step h [s]", ylabel="error after a sweep over that before [1]")
-    panel.set_title("What a sweep leaves (Table 1, n = 6, at 90°)")
+    panel.set_title("What a sweep leaves, Table 1")
     panel.legend(fontsize=7, loc="lower right", frameon=True, facecolor="white", edgecolor="none")
