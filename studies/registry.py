@@ -60,6 +60,10 @@ STUDIES: dict[str, tuple[str, str]] = {
         "studies.effects.worth",
         "what each effect is worth for four designs, and what simpler strips save",
     ),
+    "impulses/step_size": (
+        "studies.impulses.step_size",
+        "sequential impulses against their step: error, drift, energy, time, limits and sweeps",
+    ),
 }
 
 

@@ -11,7 +11,9 @@ import sys
 import time
 from dataclasses import replace
 
+from spline_model.sequential_impulse import solve_impulses
 from studies.answers.adapters import answer_modes, answer_release, answer_static
+from studies.answers.models import built, model_of
 from studies.answers.settings import FeSettings, Settings, SplineSettings
 from studies.cases.problem import named_case
 from studies.commands.parser import Parser
@@ -39,5 +41,8 @@ def main(arguments: argparse.Namespace) -> int:
         answer_modes(problem, settings)
         for integrator in integrators:
             answer_release(problem, settings, duration=1e-5, integrator=integrator, step=1e-8)
+    chosen = built(model_of(CALLS[0][0]), problem, CALLS[0][0], moving=True)[0]
+    for form in ("printed", "stable"):
+        solve_impulses(chosen, duration=1e-5, step=1e-6, form=form)
     print(f"studies: ready after {time.perf_counter() - begin:.0f} s", file=sys.stderr)
     return 0
