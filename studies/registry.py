@@ -60,6 +60,14 @@ STUDIES: dict[str, tuple[str, str]] = {
         "studies.effects.worth",
         "what each effect is worth for four designs, and what simpler strips save",
     ),
+    "baselines/surrogates": (
+        "studies.baselines.comparison.surrogates",
+        "error of pseudo-rigid-body models and the linear pivot over rotation and amplitude",
+    ),
+    "baselines/peers": (
+        "studies.baselines.comparison.peers",
+        "error against time beside other codes, where installed, of the static path and of the swing",
+    ),
 }
 
 

@@ -16,7 +16,8 @@ from typing import Any
 import numpy as np
 
 from studies.baselines.answer import Array, BaselineMotion, BaselinePath, checked_choice, checked_count
-from studies.baselines.peers.exudyn_system import System, follow, hold, installed, let_go, system_of
+from studies.baselines.peers.exudyn_solve import follow, let_go
+from studies.baselines.peers.exudyn_system import System, hold, installed, system_of
 from studies.cases.problem import Problem
 
 __all__ = ["installed", "release", "static_path"]
