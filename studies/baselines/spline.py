@@ -21,6 +21,7 @@ from studies.baselines.answer import (
     median_seconds,
 )
 from studies.cases.problem import Problem
+from studies.errors import BadInput
 
 MODEL = "spline"
 
@@ -42,10 +43,14 @@ def static_path(
         control_points: n a strip [1].
 
     Raises:
-        BaselineFailed: the path is not reached.
+        BadInput: a scene that the condensed path does not cover. BaselineFailed: the path is not reached.
     """
     turns = checked_rotations(rotations)
     mechanism = _pivot(problem, control_points=control_points).mechanism
+    if not solve.is_fast(mechanism):
+        raise BadInput(
+            f"{MODEL}: got the effects {', '.join(mechanism.effects)}, expected a condensed path's"
+        )
     modes, strips = solve.mode_count(mechanism.design), len(mechanism.design.strips)
     frame, grid = solve.frame_of(mechanism), solve.grid_of(mechanism.design)
     start, targets = solve.at_rest(frame, control_points, modes), turns[1:].copy()

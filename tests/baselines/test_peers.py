@@ -212,8 +212,10 @@ def test_ratios_compare_at_equal_error():
     ).assign(status="converged")
     times = rows[["model", "variant"]].assign(solve_s=[1.0, 2.0, 30.0, 40.0])
     reached = ratios(rows, times, "error", [1e-4]).set_index("group")["ratio"]
-    assert reached["Exudyn"] == 15.0
-    assert math.isnan(reached["OpenSees"])
+    assert reached.to_dict() == {"Exudyn": 15.0}
+    assert ratios(rows, times, "error", [1e-6])["ratio"].isna().all()
+    doubtful = rows.assign(unsure=6e-5)
+    assert ratios(doubtful, times, "error", [1e-4], unsure="unsure")["ratio"].isna().all()
     steady = ratios(kept(rows, "error"), times, "error", [1e-4, 1e-3]).set_index(["level", "group"])["ratio"]
     assert math.isnan(steady[1e-4, "Exudyn"])
     assert steady[1e-3, "Exudyn"] == 15.0

@@ -211,3 +211,10 @@ def test_first_above():
     assert first_above(turns, np.array([0.0, 0.5, 0.4, 0.1]), 0.2) == 0.0
     assert first_above(turns, np.array([0.3, 0.1, 0.0, 0.1]), 0.2) == 0.0
     assert math.isnan(first_above(turns, np.array([0.0, 0.1, 0.1, 0.1]), 0.2))
+
+
+def test_spline_refuses_what_the_condensed_path_does_not_cover():
+    """Requirement: the spline's timed path is the condensed one, and another scene is refused."""
+    weighted = replace(CASE, effects=CASE.effects.renamed([*CASE.effects.names, "gravity"]))
+    with pytest.raises(BadInput, match=r"^spline: got the effects [^\n]*gravity, expected"):
+        spline.static_path(weighted, TURNS)

@@ -35,12 +35,25 @@ def work_precision(tables: Mapping[str, pd.DataFrame]) -> Figure:
         ylabel="largest error of the rotation [rad]",
         title="Free swing of 0.05 s from 90°",
     )
+    _doubt(swing, tables["swing_theories"])
     handles, labels = path.get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside lower center", ncols=3)
     figure.suptitle(
         "Each against the limit of its own theory; points: all settings tried; lines: the best of them"
     )
     return figure
+
+
+def _doubt(panel: Axes, theories: pd.DataFrame) -> None:
+    """Mark how certain the limits of the swing are."""
+    for row in theories[theories["what"] == "uncertainty"].to_dict("records"):
+        level = float(row["rotation_rad"])
+        panel.axhline(level, color="#444444", linewidth=0.9, linestyle=":")
+        panel.annotate(
+            f"uncertainty of the limit {row['theory']}", (0.99, level), (0, 2),
+            ("axes fraction", "data"), "offset points",
+            ha="right", va="bottom", fontsize=7, color="#444444",
+        )  # fmt: skip
 
 
 def _panel(panel: Axes, rows: pd.DataFrame, times: pd.DataFrame, error: str) -> None:

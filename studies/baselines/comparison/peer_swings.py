@@ -1,6 +1,6 @@
 """Swings of the spline and of other codes: errors against the limit of each one's theory, and times."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -31,7 +31,7 @@ ROTARY = "section_rotary_inertia"
 #: Timed releases in a pass.
 REPEAT = 1
 
-ERRORS = ("rotation_rad",)
+ERRORS = ("rotation_rad", "uncertainty_rad", "step_s")
 
 
 def limits(problem: Problem) -> tuple[dict[str, Array], list[dict[str, Any]]]:
@@ -62,9 +62,12 @@ def limits(problem: Problem) -> tuple[dict[str, Array], list[dict[str, Any]]]:
 
 
 def compared(
-    problem: Problem, against: dict[str, Array], progress: Callable[[int], None]
+    problem: Problem,
+    against: dict[str, Array],
+    uncertainty: Mapping[str, float],
+    progress: Callable[[int], None],
 ) -> tuple[list[dict[str, Any]], list[dict[str, Any]]]:
-    """Return errors and work, and times, a row a variant."""
+    """Return errors with the uncertainty of their limit and work, and times, a row a variant."""
 
     def solve(variant: Variant) -> tuple[dict[str, Any], float]:
         motion = variant.module.release(
@@ -74,9 +77,11 @@ def compared(
             repeat=REPEAT,
             **variant.settings,
         )
+        unsure = float(uncertainty[variant.theory])
         work = {name: motion.work.get(name, np.nan) for name in ("steps", "newton_iterations")}
         apart = float(np.abs(at_instants(motion) - against[variant.theory]).max())
-        return {"rotation_rad": apart, "step_s": variant.settings["step"]} | work, motion.solve_s
+        errors = {"rotation_rad": apart, "uncertainty_rad": unsure, "step_s": variant.settings["step"]}
+        return errors | work, motion.solve_s
 
     return tried(release_variants(), solve, ERRORS, progress)
 

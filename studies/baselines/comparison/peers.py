@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 
 from studies.baselines.comparison import peer_figures, peer_statics, peer_swings
 from studies.baselines.comparison.ratios import kept, ratios
-from studies.baselines.comparison.variants import EXUDYN, release_variants, static_variants
+from studies.baselines.comparison.variants import EXUDYN, PASSES, release_variants, static_variants
 from studies.baselines.peers import exudyn_ancf, openseespy_frame
 from studies.baselines.registry import HINT
 from studies.cases.problem import named_case
@@ -37,18 +37,21 @@ def compute(progress: Callable[[int, int], None]) -> dict[str, pd.DataFrame]:
     What differs run by run stands in the tables of times: timings, ratios, findings_of_time.
     """
     problem = named_case(CASE)
-    first, second = len(static_variants()), len(release_variants())
+    first, second = PASSES * len(static_variants()), PASSES * len(release_variants())
     total = first + second + 1
     limits, theories = peer_statics.limits(problem)
     paths, times = _tables(peer_statics.compared(problem, limits, lambda done: progress(done, total)))
-    motions_limits, swing_theories = peer_swings.limits(problem)
+    motion_limits, swing_theories = peer_swings.limits(problem)
+    uncertainty = {row["theory"]: row["rotation_rad"] for row in swing_theories if row["theory"]}
     motions, swing_times = _tables(
-        peer_swings.compared(problem, motions_limits, lambda done: progress(first + done, total))
+        peer_swings.compared(problem, motion_limits, uncertainty, lambda done: progress(first + done, total))
     )
     progress(total, total)
     static = ratios(paths, times, "worst", LEVELS)
-    swing = ratios(motions, swing_times, "rotation_rad", SWING_LEVELS)
-    steady = ratios(kept(motions, "rotation_rad"), swing_times, "rotation_rad", SWING_LEVELS)
+    swing = ratios(motions, swing_times, "rotation_rad", SWING_LEVELS, unsure="uncertainty_rad")
+    steady = ratios(
+        kept(motions, "rotation_rad"), swing_times, "rotation_rad", SWING_LEVELS, unsure="uncertainty_rad"
+    )
     return {
         "codes": pd.DataFrame(_codes()),
         "theories": pd.DataFrame(theories),

@@ -10,21 +10,34 @@ from studies.baselines.comparison.variants import AS_DELIVERED, EXUDYN, OPENSEES
 
 GROUPS = (EXUDYN, AS_DELIVERED, OPENSEES)
 
+#: A limit must be this much more certain than the level that errors against it are compared at.
+CERTAINTY = 2.0
 
-def ratios(rows: pd.DataFrame, times: pd.DataFrame, error: str, levels: Iterable[float]) -> pd.DataFrame:
+
+def ratios(
+    rows: pd.DataFrame,
+    times: pd.DataFrame,
+    error: str,
+    levels: Iterable[float],
+    unsure: str | None = None,
+) -> pd.DataFrame:
     """Return a row a level and group: the fastest variants, their times [s] and the ratio.
 
     Args:
         rows: model, group, variant, status and the column `error`; times: model, variant, solve_s.
         error: column that must not be above the level.
         levels: errors asked for.
+        unsure: column with the uncertainty of what errors are against; a level that is not `CERTAINTY` times
+            as large leaves the row out.
     """
     joined = rows[rows["status"] == "converged"].merge(times, on=["model", "variant"])
+    groups = [group for group in GROUPS if group in set(rows["group"])]
     found = []
     for level in levels:
-        spline = fastest(joined, SPLINE, error, level)
-        for group in GROUPS:
-            peer = fastest(joined, group, error, level)
+        sure = joined if unsure is None else joined[CERTAINTY * joined[unsure] <= level]
+        spline = fastest(sure, SPLINE, error, level)
+        for group in groups:
+            peer = fastest(sure, group, error, level)
             found.append(
                 {
                     "level": level,

@@ -68,7 +68,11 @@ def static_variants() -> list[Variant]:
             found.append(_ancf(elements, integration=integration, relative_tolerance=1e-6))
     found += [_variant(exudyn_ancf, AS_DELIVERED, elements=n, solver="as delivered") for n in (4, 8, 16, 40)]
     found += [_variant(exudyn_exact, AS_DELIVERED, elements=n, solver="as delivered") for n in (2, 4, 8, 20)]
-    return found + [_variant(openseespy_frame, OPENSEES, elements=n) for n in (5, 10, 20, 40, 80, 160)]
+    return found + [
+        _variant(openseespy_frame, OPENSEES, elements=n, tolerance=tolerance)
+        for n in (5, 10, 20, 40, 80, 160)
+        for tolerance in (1e-8, 1e-10)
+    ]
 
 
 def release_variants() -> list[Variant]:
@@ -79,6 +83,7 @@ def release_variants() -> list[Variant]:
         for integrator in ("energy", "generalised-alpha")
         for step in (2e-4, 1e-4, 5e-5, 2e-5)
     ]
+    found += [_variant(spline, SPLINE, control_points=n, integrator="explicit", step=2e-6) for n in (6, 7, 8)]
     for radius, tolerance in ((0.9, 1e-3), (0.6, 1e-3), (0.9, 1e-5)):
         options = {"spectral_radius": radius, "relative_tolerance": tolerance}
         for step in (2e-4, 1e-4, 5e-5, 2e-5):
@@ -119,8 +124,8 @@ def tried(
     rows: list[dict[str, Any]] = []
     solved: list[Variant] = []
     seconds: dict[Variant, float] = {}
-    for variant in variants:
-        progress(len(solved))
+    for done, variant in enumerate(variants):
+        progress(done)
         row: dict[str, Any] = {"model": variant.model, "group": variant.group, "variant": variant.label}
         row |= {"theory": variant.theory, "reason": ""}
         if not variant.module.installed():
@@ -134,8 +139,9 @@ def tried(
             continue
         rows.append(row | {"status": "converged"} | outcome)
         solved.append(variant)
-    for _ in range(PASSES - 1):
-        for variant in solved:
+    for again in range(1, PASSES):
+        for done, variant in enumerate(solved):
+            progress(again * len(variants) + done)
             seconds[variant] = min(seconds[variant], solve(variant)[1])
     times = [{"model": v.model, "variant": v.label, "solve_s": seconds[v]} for v in solved]
     return rows, times
