@@ -1,6 +1,7 @@
 """Other codes: not needed, refused in one line when absent, and when there in agreement with both models."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -30,10 +31,10 @@ opensees = pytest.mark.skipif(
 )
 
 
-def against_spline(module, **settings):
+def against_spline(module, problem=CASE, turns=TURNS, **settings):
     """Larger error of trajectory and torque over the path, against the refined spline."""
-    limit = spline.static_path(CASE, TURNS, control_points=14)
-    path = module.static_path(CASE, TURNS, **settings)
+    limit = spline.static_path(problem, turns, control_points=14)
+    path = module.static_path(problem, turns, **settings)
     return Limit(centre=limit.centre, torque=limit.torque).errors(path.centre, path.torque)["worst"]
 
 
@@ -68,6 +69,16 @@ def _against_reissner(**settings):
     limit = limit_of(meshes)
     path = exudyn_exact.static_path(CASE, TURNS, **settings)
     return Limit(centre=limit.centre, torque=limit.torque).errors(path.centre, path.torque)["worst"]
+
+
+@exudyn
+@opensees
+@pytest.mark.parametrize(("module", "elements"), [(exudyn_ancf, 40), (openseespy_frame, 80)])
+def test_other_designs_come_through_alike(module, elements):
+    """Requirement: strips of other inclination and crossing, with the body off the middle, agree as well."""
+    uneven = replace(CASE, crossing_ratio=0.3, inclination=0.6, centre_offset=(0.01, 0.02))
+    name = "exudyn_ancf_path" if module is exudyn_ancf else "openseespy_path"
+    gates.check(name, against_spline(module, uneven, np.linspace(0.0, 1.2, 17), elements=elements))
 
 
 @opensees
