@@ -63,6 +63,13 @@ STUDIES: dict[str, tuple[str, str]] = {
     "impulses/step_size": (
         "studies.impulses.step_size",
         "sequential impulses against their step: error, drift, energy, time, limits and sweeps",
+    "baselines/surrogates": (
+        "studies.baselines.comparison.surrogates",
+        "error of pseudo-rigid-body models and the linear pivot over rotation and amplitude",
+    ),
+    "baselines/peers": (
+        "studies.baselines.comparison.peers",
+        "error against time beside other codes, where installed, of the static path and of the swing",
     ),
 }
 
