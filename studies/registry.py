@@ -63,6 +63,7 @@ STUDIES: dict[str, tuple[str, str]] = {
     "impulses/step_size": (
         "studies.impulses.step_size",
         "sequential impulses against their step: error, drift, energy, time, limits and sweeps",
+    ),
     "baselines/surrogates": (
         "studies.baselines.comparison.surrogates",
         "error of pseudo-rigid-body models and the linear pivot over rotation and amplitude",
