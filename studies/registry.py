@@ -60,6 +60,10 @@ STUDIES: dict[str, tuple[str, str]] = {
         "studies.effects.worth",
         "what each effect is worth for four designs, and what simpler strips save",
     ),
+    "work_precision/statics": (
+        "studies.work_precision.statics",
+        "what accuracy costs in statics: error against time and counted work, for every model",
+    ),
 }
 
 
