@@ -4,10 +4,14 @@ import numpy as np
 import pytest
 
 from fe_reference.pivot import cross_axis_pivot as element_pivot
+from spline_model.compile import compile_scene
 from spline_model.fast.condense import condense, recover
 from spline_model.fast.solve import grid_of, mode_count
 from spline_model.fast.strip import Grid, Local, assemble_points, local_arrays
+from spline_model.newton import Workspace
+from spline_model.path import follow
 from spline_model.pivot import cross_axis_pivot
+from spline_model.sparse import LEAST_SIZE
 from studies.answers.adapters import answer_static
 from studies.answers.settings import FeSettings, SplineSettings
 from studies.cases.problem import named_case
@@ -63,12 +67,9 @@ def test_operations_of_an_element(elements):
 )
 def test_sizes_are_those_of_the_models(settings):
     """Unknowns and points are those of the systems that the models solve."""
-    from fe_reference.pivot import cross_axis_pivot as pivot_of_elements
-    from spline_model.compile import compile_scene
-
     found = work.work_of(settings, answer_static(named_case("cross_axis_pivot"), settings).counters)
     if isinstance(settings, FeSettings):
-        structure = pivot_of_elements(**TABLE_ONE, **settings.keywords()).structure
+        structure = element_pivot(**TABLE_ONE, **settings.keywords()).structure
         assert (found.unknowns, found.points) == (structure.size - 1, 2 * settings.elements)
         return
     pivot = cross_axis_pivot(**TABLE_ONE, **settings.keywords())
@@ -79,3 +80,16 @@ def test_sizes_are_those_of_the_models(settings):
         system = compile_scene(pivot.driven(1.0))
         assert found.unknowns == system.layout.size
         assert found.points == len(system.tables.bending.weight)
+
+
+@pytest.mark.parametrize("n", [24, 64])
+def test_operations_of_the_sparse_factorisation(n):
+    """The factors of a long B-spline hold what the constants say, within 3 %."""
+    system = compile_scene(cross_axis_pivot(**TABLE_ONE, control_points=n, basis="bspline").driven(1.0))
+    workspace, size = Workspace.of(system), system.layout.size
+    workspace.evaluate(follow(system, [0.2]).states[-1], 0.2)
+    factors = workspace.pattern.factorise(workspace.hessian)
+    below, right = (np.diff(part.indptr) - 1 for part in (factors.L.tocsc(), factors.U.tocsr()))
+    assert (below + 2 * below * right).sum() / size == pytest.approx(work.SPARSE_FLOPS, rel=0.03)
+    assert (factors.L.nnz + factors.U.nnz) / size == pytest.approx(work.SPARSE_ENTRIES, rel=0.03)
+    assert size >= work.SPARSE_FROM == LEAST_SIZE
