@@ -64,6 +64,10 @@ STUDIES: dict[str, tuple[str, str]] = {
         "studies.work_precision.statics",
         "what accuracy costs in statics: error against time and counted work, for every model",
     ),
+    "work_precision/dynamics": (
+        "studies.work_precision.dynamics",
+        "what accuracy costs in motion: error after the release against time and counted work",
+    ),
 }
 
 

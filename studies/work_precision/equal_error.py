@@ -5,13 +5,22 @@ from collections.abc import Sequence
 
 import pandas as pd
 
-#: Errors at which models are compared.
-TARGETS = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8)
-
 
 def worst(rows: pd.DataFrame, columns: Sequence[str]) -> pd.Series:
     """Return the largest of the error columns, row by row; infinite where one is missing."""
     return rows[list(columns)].max(axis=1, skipna=False).fillna(math.inf)
+
+
+def kept(rows: pd.DataFrame, columns: Sequence[str], rank: str) -> pd.Series:
+    """Return the largest worst error of each row and of all finer ones of its series and family.
+
+    An error that a finer setting does not keep is luck: of a step and a mesh whose errors cancel, for one.
+
+    Args:
+        rows: with series, family, the errors and `rank`, which grows with fineness within a family.
+    """
+    finest_first = rows.assign(error=worst(rows, columns)).sort_values(rank, ascending=False)
+    return finest_first.groupby(["series", "family"])["error"].cummax().reindex(rows.index)
 
 
 def cheapest(
@@ -19,20 +28,21 @@ def cheapest(
     *,
     columns: Sequence[str],
     cost: str,
-    targets: Sequence[float] = TARGETS,
-    baseline: str = "spline",
+    rank: str,
+    targets: Sequence[float],
+    baseline: str,
 ) -> pd.DataFrame:
     """Return a row a target and series: its cheapest setting whose errors are all within the target.
 
-    Columns: target, series, setting, error (the worst one of that setting), the cost, ratio (cost over that
+    Columns: target, series, setting, error (the worst one that is kept), the cost, ratio (cost over that
     of the `baseline` series at the same target). Setting is empty and the rest NaN where no setting of a
     series reaches the target or its cost is not known.
 
     Args:
         rows: with series, setting, the error columns and the cost.
-        columns: of the errors; cost: column of what is to be least.
+        columns: of the errors; cost: column of what is to be least; rank: see `kept`.
     """
-    error = worst(rows, columns)
+    error = kept(rows, columns, rank)
     found = []
     for target in targets:
         here = {}

@@ -7,7 +7,8 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from studies.record.style import BLUE, GREEN, page
+from studies.record.style import BLUE, GREEN, Look, page
+from studies.work_precision.moving_series import looks as moving_looks
 from studies.work_precision.scaling import of_basis
 from studies.work_precision.series import looks
 
@@ -27,7 +28,7 @@ def statics(tables: Mapping[str, pd.DataFrame], margin: float) -> Figure:
         error = rows[f"error_{quantity}"]
         shown = rows[error >= margin * rows[f"reference_{quantity}"]]
         for panel, (cost, title) in zip(panels[:, column], COSTS.items(), strict=True):
-            curves(panel, shown, f"error_{quantity}", cost)
+            curves(panel, shown, f"error_{quantity}", cost, looks())
             panel.set_xscale("log")
             panel.set_yscale("log")
             if column == 0:
@@ -71,13 +72,36 @@ def slope(panel: Axes, first: int, last: int) -> None:
     panel.set_ylim(low, high)
 
 
-def curves(panel: Axes, rows: pd.DataFrame, error: str, cost: str) -> None:
-    """Draw one curve a series, of the rows that have both numbers."""
-    known = rows[rows[error].notna() & rows[cost].notna()]
-    for name, look in looks().items():
-        mine = known[known["series"] == name].sort_values("count")
-        if len(mine):
-            panel.plot(mine[error], mine[cost], **look.keywords())
+def dynamics(tables: Mapping[str, pd.DataFrame], margin: float) -> Figure:
+    """Draw time (above) and work (below) over the errors of rotation and frequency."""
+    rows = tables["errors"].merge(tables["timings"], on=["series", "setting"])
+    figure = page(9.5, 7.0)
+    panels = figure.subplots(2, 2, sharex="col", sharey="row")
+    titles = {"rotation_rad": "largest error of the rotation over 0.05 s [rad]"}
+    titles |= {"frequency": "error of the swing's frequency [1]"}
+    for column, (quantity, title) in enumerate(titles.items()):
+        shown = rows[rows[f"error_{quantity}"] >= margin * rows[f"reference_{quantity}"]]
+        for panel, (cost, label) in zip(panels[:, column], COSTS.items(), strict=True):
+            curves(panel, shown, f"error_{quantity}", cost, moving_looks())
+            panel.set_xscale("log")
+            panel.set_yscale("log")
+            if column == 0:
+                panel.set_ylabel(label.replace("increments", "steps"))
+        panels[1, column].set_xlabel(title)
+        panels[1, column].invert_xaxis()
+    panels[0, 0].set_title("rotation")
+    panels[0, 1].set_title("frequency")
+    _legend(figure, panels[0, 0])
+    return figure
+
+
+def curves(panel: Axes, rows: pd.DataFrame, error: str, cost: str, styles: Mapping[str, Look]) -> None:
+    """Draw one curve a family of each series, of the rows that have both numbers."""
+    known = rows[rows[error].notna() & rows[cost].notna()].sort_values(cost)
+    for name, look in styles.items():
+        for place, (_, mine) in enumerate(known[known["series"] == name].groupby("family", sort=False)):
+            label = {} if place == 0 else {"label": None}
+            panel.plot(mine[error], mine[cost], **(look.keywords() | label))
 
 
 def _legend(figure: Figure, panel: Axes) -> None:

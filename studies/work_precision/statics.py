@@ -20,7 +20,7 @@ from studies.work_precision import figures, language, scaling, static_findings
 from studies.work_precision.equal_error import cheapest
 from studies.work_precision.limits import THEORIES, Limit, limit_of_theory
 from studies.work_precision.paths import QUANTITIES, Member, SolvedPath, path_errors
-from studies.work_precision.series import Series, all_series
+from studies.work_precision.series import SPLINE, Series, all_series
 
 CASE = "cross_axis_pivot"
 CASES = (CASE,)
@@ -28,6 +28,8 @@ CASES = (CASE,)
 #: An error is shown where it is this many times that of its reference.
 MARGIN = 10.0
 ERRORS = ("error_trajectory", "error_torque")
+#: Errors at which models are compared.
+TARGETS = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8)
 
 
 def compute(progress: Callable[[int, int], None]) -> dict[str, pd.DataFrame]:
@@ -71,9 +73,10 @@ def draw(tables: Mapping[str, pd.DataFrame]) -> dict[str, Figure]:
 def equal_error(tables: Mapping[str, pd.DataFrame]) -> dict[str, pd.DataFrame]:
     """Return the cheapest settings at equal error, by work and by time."""
     rows = joined(tables)
+    asked: dict[str, Any] = {"columns": ERRORS, "rank": "count", "targets": TARGETS, "baseline": SPLINE}
     return {
-        "digits": cheapest(rows, columns=ERRORS, cost="flops"),
-        "digits_of_time": cheapest(rows, columns=ERRORS, cost="solve_s"),
+        "digits": cheapest(rows, cost="flops", **asked),
+        "digits_of_time": cheapest(rows, cost="solve_s", **asked),
     }
 
 
@@ -86,6 +89,7 @@ def _errors(series: Series, member: Member, path: SolvedPath, limits: Mapping[st
     limit = limits[series.theory]
     return {
         "series": series.name,
+        "family": "all",
         "setting": member.setting,
         "count": member.count,
         "theory": series.theory,
