@@ -11,14 +11,16 @@ from scipy.interpolate import CubicSpline
 from studies.answers.adapters import answer_release
 from studies.answers.metrics import Array, swing_frequency
 from studies.answers.settings import Settings
+from studies.baselines.answer import BaselineFailed
 from studies.cases.problem import Problem
+from studies.errors import BadInput
 from studies.work_precision.work_of_motion import work_of_motion
 
 WORK = ("unknowns", "points", "steps", "evaluations", "factorisations", "flops")
 #: Largest number of records; some 80 a swing of Table 1, between which cubic interpolation is enough.
 RECORDS = 1000
 #: Time that repeats of one setting may take together [s], and their largest number.
-AFFORDED, REPEATS = 0.6, 7
+AFFORDED, REPEATS = 0.3, 7
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -87,10 +89,8 @@ def moving(settings: Settings, setting: str, family: str, **options: Any) -> Mov
     return MovingMember(setting=setting, family=family, step=options.get("step", math.nan), solve=solve)
 
 
-def moving_baseline(
-    module: Any, failure: type[Exception], setting: str, family: str, step: float, **options: Any
-) -> MovingMember:
-    """Return the member of a baseline's module; `failure` is what it raises where it stops."""
+def moving_baseline(module: Any, setting: str, family: str, step: float, **options: Any) -> MovingMember:
+    """Return the member of a baseline's module; a pivot that it refuses is a motion that stopped."""
 
     def solve(problem: Problem, duration: float) -> SolvedMotion:
         def run(repeat: int) -> Any:
@@ -102,7 +102,7 @@ def moving_baseline(
             motion = run(1)
             repeats = repeats_of(motion.solve_s)
             motion = run(repeats) if repeats > 1 else motion
-        except failure as stopped:
+        except (BaselineFailed, BadInput) as stopped:
             nothing = np.zeros(0)
             return SolvedMotion(
                 status="not_converged",

@@ -6,10 +6,11 @@ apart after 0.05 s, more than any mesh here.
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from importlib import import_module
-from importlib.util import find_spec
+from types import ModuleType
 
 from studies.answers.settings import FeSettings, SplineSettings
+from studies.baselines import four_bar, linear_pivot, pin_joint
+from studies.baselines.peers import exudyn_ancf, openseespy_frame
 from studies.record.style import BLACK, BLUE, GREY, ORANGE, PURPLE, RED, SKY, YELLOW, Look
 from studies.work_precision.motions import MovingMember, moving, moving_baseline
 
@@ -21,7 +22,7 @@ STEPS = (2e-4, 1e-4, 5e-5, 2e-5)
 EXPLICIT_STEPS = {4: 8e-6, 5: 5e-6, 6: 4e-6, 8: 2e-6}
 MESHES = (5, 10, 16, 24, 36)
 PEER_STEPS = (2e-4, 1e-4, 5e-5, 2e-5)
-FRAME_STEPS = (1e-4, 5e-5, 2e-5, 1e-5)
+FRAME_STEPS = (1e-4, 5e-5, 2e-5)
 CLOSED_STEP = 1e-4
 
 
@@ -38,14 +39,21 @@ class MovingSeries:
     members: tuple[MovingMember, ...]
 
 
-#: Baseline -> look, elements a strip and steps; no elements for a model that has none.
-BASELINES: dict[str, tuple[Look, tuple[int, ...], tuple[float, ...]]] = {
-    "linear pivot": (Look(label="linear closed form", colour=GREY, marker="P"), (), (CLOSED_STEP,)),
-    "pin joint": (Look(label="pseudo-rigid: pin joint", colour=YELLOW, marker="*"), (), (CLOSED_STEP,)),
-    "four-bar": (Look(label="pseudo-rigid: four-bar", colour=RED, marker="*"), (), (CLOSED_STEP,)),
-    "exudyn ancf": (Look(label="Exudyn, ANCF cable", colour=PURPLE, marker="^"), (4, 8), PEER_STEPS),
+#: Baseline -> module, look, elements a strip and steps; no elements for a model that has none.
+BASELINES: dict[str, tuple[ModuleType, Look, tuple[int, ...], tuple[float, ...]]] = {
+    "linear pivot": (
+        linear_pivot, Look(label="linear closed form", colour=GREY, marker="P"), (), (CLOSED_STEP,),
+    ),
+    "pin joint": (
+        pin_joint, Look(label="pseudo-rigid: pin joint", colour=YELLOW, marker="*"), (), (CLOSED_STEP,),
+    ),
+    "four-bar": (four_bar, Look(label="pseudo-rigid: four-bar", colour=RED, marker="*"), (), (CLOSED_STEP,)),
+    "exudyn ancf": (
+        exudyn_ancf, Look(label="Exudyn, ANCF cable", colour=PURPLE, marker="^"), (4, 8), PEER_STEPS,
+    ),
     "openseespy frame": (
-        Look(label="OpenSees, corotational", colour=ORANGE, line="--", marker="<"), (10,), FRAME_STEPS,
+        openseespy_frame, Look(label="OpenSees, corotational", colour=ORANGE, line="--", marker="<"),
+        (20,), FRAME_STEPS,
     ),
 }  # fmt: skip
 
@@ -81,29 +89,24 @@ def own_looks() -> dict[str, Look]:
     }
 
 
-def other_series() -> Iterator[MovingSeries]:
-    """Yield the surrogate models and the other codes that are installed."""
-    if find_spec("studies.baselines") is None:
-        return
-    registry = import_module("studies.baselines.registry")
-    failure = import_module("studies.baselines.answer").BaselineFailed
-    for name, (look, counts, steps) in BASELINES.items():
-        module = registry.module_of(name)
-        if not module.installed():
-            continue
-        if counts:
-            members = [
-                moving_baseline(
-                    module, failure, f"{e} elements, {1e6 * step:g} µs", f"{e} elements", step, elements=e
-                )
-                for e in counts
-                for step in steps
-            ]
-        else:
-            members = [moving_baseline(module, failure, "closed form", "all", step) for step in steps]
-        yield MovingSeries(name=name, look=look, members=tuple(members))
+def other_series() -> list[MovingSeries]:
+    """Return the surrogate models and the other codes that are installed."""
+    return [
+        MovingSeries(name=name, look=look, members=tuple(_members(module, counts, steps)))
+        for name, (module, look, counts, steps) in BASELINES.items()
+        if module.installed()
+    ]
+
+
+def _members(module: ModuleType, counts: tuple[int, ...], steps: tuple[float, ...]) -> Iterator[MovingMember]:
+    for step in steps:
+        if not counts:
+            yield moving_baseline(module, "closed form", "all", step)
+        for e in counts:
+            label = f"{e} elements, {1e6 * step:g} µs"
+            yield moving_baseline(module, label, f"{e} elements", step, elements=e)
 
 
 def looks() -> dict[str, Look]:
     """Return the look of every series by name, installed or not."""
-    return own_looks() | {name: look for name, (look, _, _) in BASELINES.items()}
+    return own_looks() | {name: look for name, (_, look, _, _) in BASELINES.items()}

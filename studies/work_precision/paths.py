@@ -10,12 +10,16 @@ import numpy as np
 from studies.answers.adapters import answer_static
 from studies.answers.metrics import Array, relative_error, trajectory_error
 from studies.answers.settings import Settings
+from studies.baselines.answer import BaselineFailed
 from studies.cases.problem import Problem
+from studies.errors import BadInput
 from studies.work_precision.work import work_of
 
 QUANTITIES = ("trajectory", "torque", "stiffness")
 #: Columns of machine-neutral work.
 WORK = ("unknowns", "points", "iterations", "factorisation_flops", "assembly_flops", "flops")
+#: Names of these in the counters of a baseline, where they differ.
+THEIRS = {"iterations": "newton_iterations"}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -72,14 +76,14 @@ def of_settings(settings: Settings, setting: str, count: int) -> Member:
     return Member(setting=setting, count=count, solve=solve)
 
 
-def of_baseline(module: Any, failure: type[Exception], setting: str, count: int, **settings: Any) -> Member:
-    """Return the member of a baseline's module; `failure` is what it raises where it stops."""
+def of_baseline(module: Any, setting: str, count: int, **settings: Any) -> Member:
+    """Return the member of a baseline's module; a pivot that it refuses is an answer that stopped."""
 
     def solve(problem: Problem, repeat: int) -> SolvedPath:
         rotations = np.linspace(0.0, problem.rotation, problem.increments + 1)
         try:
             path = module.static_path(problem, rotations, repeat=repeat, **settings)
-        except failure as stopped:
+        except (BaselineFailed, BadInput) as stopped:
             return unsolved(str(stopped))
         return SolvedPath(
             status="converged",
@@ -89,7 +93,7 @@ def of_baseline(module: Any, failure: type[Exception], setting: str, count: int,
             stiffness=path.stiffness,
             solve_s=path.solve_s,
             wall_s=math.nan,
-            work={name: float(path.work.get(name, math.nan)) for name in WORK},
+            work={name: float(path.work.get(THEIRS.get(name, name), math.nan)) for name in WORK},
         )
 
     return Member(setting=setting, count=count, solve=solve)

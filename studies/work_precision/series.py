@@ -1,11 +1,12 @@
 """The models of the work-precision diagrams: a series of settings each, from coarse to fine."""
 
 from dataclasses import dataclass
-from importlib import import_module
-from importlib.util import find_spec
+from types import ModuleType
 from typing import Any
 
 from studies.answers.settings import FeSettings, SplineSettings
+from studies.baselines import four_bar, linear_pivot, pin_joint
+from studies.baselines.peers import exudyn_ancf, exudyn_exact, openseespy_frame
 from studies.record.style import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, RED, SKY, YELLOW, Look
 from studies.work_precision.paths import Member, of_baseline, of_settings
 
@@ -36,19 +37,27 @@ MESHES = (5, 10, 20, 40, 80, 160)
 PEER_MESHES = (2, 4, 8, 16, 32)
 FRAME_MESHES = (10, 20, 40, 80)
 
-#: Baseline -> theory, look, keyword of its refinement and the counts; none for what has no refinement.
-BASELINES: dict[str, tuple[str, Look, tuple[int, ...]]] = {
-    "linear pivot": ("material", Look(label="linear closed form", colour=GREY, line="", marker="P"), ()),
-    "pin joint": ("material", Look(label="pseudo-rigid: pin joint", colour=YELLOW, line="", marker="*"), ()),
-    "four-bar": ("material", Look(label="pseudo-rigid: four-bar", colour=RED, line="", marker="*"), ()),
-    "exudyn ancf": ("material", Look(label="Exudyn, ANCF cable", colour=PURPLE, marker="^"), PEER_MESHES),
+#: Baseline -> module, theory, look, and its elements a strip; none for what has no refinement.
+BASELINES: dict[str, tuple[ModuleType, str, Look, tuple[int, ...]]] = {
+    "linear pivot": (
+        linear_pivot, "material", Look(label="linear closed form", colour=GREY, line="", marker="P"), (),
+    ),
+    "pin joint": (
+        pin_joint, "material", Look(label="pseudo-rigid: pin joint", colour=YELLOW, line="", marker="*"), (),
+    ),
+    "four-bar": (
+        four_bar, "material", Look(label="pseudo-rigid: four-bar", colour=RED, line="", marker="*"), (),
+    ),
+    "exudyn ancf": (
+        exudyn_ancf, "material", Look(label="Exudyn, ANCF cable", colour=PURPLE, marker="^"), PEER_MESHES,
+    ),
     "exudyn exact": (
-        "shear", Look(label="Exudyn, exact beam", colour=PURPLE, line=":", marker="v"), PEER_MESHES,
+        exudyn_exact, "shear",
+        Look(label="Exudyn, exact beam", colour=PURPLE, line=":", marker="v"), PEER_MESHES,
     ),
     "openseespy frame": (
-        "material",
-        Look(label="OpenSees, corotational", colour=ORANGE, line="--", marker="<"),
-        FRAME_MESHES,
+        openseespy_frame, "material",
+        Look(label="OpenSees, corotational", colour=ORANGE, line="--", marker="<"), FRAME_MESHES,
     ),
 }  # fmt: skip
 
@@ -107,20 +116,17 @@ def elements(name: str, element: str, look: Look) -> Series:
 
 def other_series() -> list[Series]:
     """Return the surrogate models and the other codes that are installed."""
-    if find_spec("studies.baselines") is None:
-        return []
-    registry = import_module("studies.baselines.registry")
-    failure = import_module("studies.baselines.answer").BaselineFailed
-    found = []
-    for name, (theory, look, counts) in BASELINES.items():
-        module = registry.module_of(name)
-        if not module.installed():
-            continue
-        members = [of_baseline(module, failure, f"{e} elements", e, elements=e) for e in counts]
-        if not counts:
-            members = [of_baseline(module, failure, "closed form", 1)]
-        found.append(Series(name=name, theory=theory, look=look, members=tuple(members)))
-    return found
+    return [
+        Series(name=name, theory=theory, look=look, members=_members(module, counts))
+        for name, (module, theory, look, counts) in BASELINES.items()
+        if module.installed()
+    ]
+
+
+def _members(module: ModuleType, counts: tuple[int, ...]) -> tuple[Member, ...]:
+    if not counts:
+        return (of_baseline(module, "closed form", 1),)
+    return tuple(of_baseline(module, f"{e} elements", e, elements=e) for e in counts)
 
 
 def all_series() -> list[Series]:
@@ -131,5 +137,5 @@ def all_series() -> list[Series]:
 def looks() -> dict[str, Look]:
     """Return the look of every series by name, installed or not."""
     return {series.name: series.look for series in own_series()} | {
-        name: look for name, (_, look, _) in BASELINES.items()
+        name: look for name, (_, _, look, _) in BASELINES.items()
     }
