@@ -23,6 +23,16 @@ def kept(rows: pd.DataFrame, columns: Sequence[str], rank: str) -> pd.Series:
     return finest_first.groupby(["series", "family"])["error"].cummax().reindex(rows.index)
 
 
+def coarsest(rows: pd.DataFrame, columns: Sequence[str], rank: str, target: float) -> pd.DataFrame:
+    """Return, of each series and family, the coarsest row whose errors are kept within the target.
+
+    It is the cheapest one of its family but for the noise of timing. The column error is what is kept.
+    """
+    error = kept(rows, columns, rank)
+    within = rows.assign(error=error)[error <= target].sort_values(rank)
+    return within.groupby(["series", "family"], sort=False).head(1)
+
+
 def cheapest(
     rows: pd.DataFrame,
     *,
@@ -42,13 +52,13 @@ def cheapest(
         rows: with series, setting, the error columns and the cost.
         columns: of the errors; cost: column of what is to be least; rank: see `kept`.
     """
-    error = kept(rows, columns, rank)
     found = []
     for target in targets:
+        within = coarsest(rows[rows[cost].notna()], columns, rank, target)
         here = {}
         for name in rows["series"].unique():
-            within = rows[(rows["series"] == name) & (error <= target) & rows[cost].notna()]
-            here[name] = within.loc[within[cost].idxmin()] if len(within) else None
+            mine = within[within["series"] == name]
+            here[name] = mine.loc[mine[cost].idxmin()] if len(mine) else None
         least = here.get(baseline)
         for name, row in here.items():
             found.append(
@@ -56,7 +66,7 @@ def cheapest(
                     "target": target,
                     "series": name,
                     "setting": "" if row is None else row["setting"],
-                    "error": math.nan if row is None else error[row.name],
+                    "error": math.nan if row is None else row["error"],
                     cost: math.nan if row is None else row[cost],
                     "ratio": math.nan if row is None or least is None else row[cost] / least[cost],
                 }

@@ -28,7 +28,7 @@ def statics(tables: Mapping[str, pd.DataFrame], margin: float) -> Figure:
         error = rows[f"error_{quantity}"]
         shown = rows[error >= margin * rows[f"reference_{quantity}"]]
         for panel, (cost, title) in zip(panels[:, column], COSTS.items(), strict=True):
-            curves(panel, shown, f"error_{quantity}", cost, looks())
+            curves(panel, shown, f"error_{quantity}", cost, "count", looks())
             panel.set_xscale("log")
             panel.set_yscale("log")
             if column == 0:
@@ -82,7 +82,7 @@ def dynamics(tables: Mapping[str, pd.DataFrame], margin: float) -> Figure:
     for column, (quantity, title) in enumerate(titles.items()):
         shown = rows[rows[f"error_{quantity}"] >= margin * rows[f"reference_{quantity}"]]
         for panel, (cost, label) in zip(panels[:, column], COSTS.items(), strict=True):
-            curves(panel, shown, f"error_{quantity}", cost, moving_looks())
+            curves(panel, shown, f"error_{quantity}", cost, "rank", moving_looks())
             panel.set_xscale("log")
             panel.set_yscale("log")
             if column == 0:
@@ -95,9 +95,11 @@ def dynamics(tables: Mapping[str, pd.DataFrame], margin: float) -> Figure:
     return figure
 
 
-def curves(panel: Axes, rows: pd.DataFrame, error: str, cost: str, styles: Mapping[str, Look]) -> None:
-    """Draw one curve a family of each series, of the rows that have both numbers."""
-    known = rows[rows[error].notna() & rows[cost].notna()].sort_values(cost)
+def curves(
+    panel: Axes, rows: pd.DataFrame, error: str, cost: str, rank: str, styles: Mapping[str, Look]
+) -> None:
+    """Draw one curve a family of each series, of the rows that have both numbers, in the order of `rank`."""
+    known = rows[rows[error].notna() & rows[cost].notna()].sort_values(rank)
     for name, look in styles.items():
         for place, (_, mine) in enumerate(known[known["series"] == name].groupby("family", sort=False)):
             label = {} if place == 0 else {"label": None}

@@ -86,7 +86,7 @@ def moving(settings: Settings, setting: str, family: str, **options: Any) -> Mov
             work=work_of_motion(settings, motion.counters) if motion.converged else _unknown(),
         )
 
-    return MovingMember(setting=setting, family=family, step=options.get("step", math.nan), solve=solve)
+    return MovingMember(setting=setting, family=family, step=options.get("step") or math.nan, solve=solve)
 
 
 def moving_baseline(module: Any, setting: str, family: str, step: float, **options: Any) -> MovingMember:

@@ -4,7 +4,7 @@ All have strips without shear and without rotary inertia of their sections: two 
 apart after 0.05 s, more than any mesh here.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from types import ModuleType
 
@@ -19,7 +19,7 @@ SPLINE, EXPLICIT, ELEMENTS = "spline, energy-consistent", "spline, explicit", "f
 COUNTS = (4, 5, 6, 8)
 STEPS = (2e-4, 1e-4, 5e-5, 2e-5)
 #: Steps of the explicit integrator by control points: near the largest stable one [s].
-EXPLICIT_STEPS = {4: 8e-6, 5: 5e-6, 6: 4e-6, 8: 2e-6}
+EXPLICIT_STEPS: dict[int, float | None] = {4: 8e-6, 5: 5e-6, 6: 4e-6, 8: 2e-6}
 MESHES = (5, 10, 16, 24, 36)
 PEER_STEPS = (2e-4, 1e-4, 5e-5, 2e-5)
 FRAME_STEPS = (1e-4, 5e-5, 2e-5)
@@ -58,19 +58,28 @@ BASELINES: dict[str, tuple[ModuleType, Look, tuple[int, ...], tuple[float, ...]]
 }  # fmt: skip
 
 
-def own_series() -> list[MovingSeries]:
-    """Return the series of the two models of the suite."""
+def own_series(
+    scale: float = 1.0, explicit_steps: Mapping[int, float | None] = EXPLICIT_STEPS
+) -> list[MovingSeries]:
+    """Return the series of the two models of the suite.
+
+    Args:
+        scale: of the implicit steps [1].
+        explicit_steps: by control points [s]; None for the model's choice.
+    """
+    steps = [scale * step for step in STEPS]
     implicit = (
-        moving(SplineSettings(control_points=n), f"n = {n}, {1e6 * step:g} µs", f"n = {n}", step=step)
+        moving(SplineSettings(control_points=n), f"n = {n}, {1e6 * step:.3g} µs", f"n = {n}", step=step)
         for n in COUNTS
-        for step in STEPS
+        for step in steps
     )
     explicit = (
         moving(
-            SplineSettings(control_points=n), f"n = {n}, {1e6 * step:g} µs", "all",
+            SplineSettings(control_points=n),
+            f"n = {n}" + (f", {1e6 * step:.3g} µs" if step else ", own step"), "all",
             integrator="explicit", step=step,
         )
-        for n, step in EXPLICIT_STEPS.items()
+        for n, step in explicit_steps.items()
     )  # fmt: skip
     meshes = (moving(FeSettings(elements=e), f"{e} elements", "all") for e in MESHES)
     looks = own_looks()
@@ -89,21 +98,23 @@ def own_looks() -> dict[str, Look]:
     }
 
 
-def other_series() -> list[MovingSeries]:
-    """Return the surrogate models and the other codes that are installed."""
+def other_series(scale: float = 1.0) -> list[MovingSeries]:
+    """Return the surrogate models and the other codes that are installed, all steps times `scale` [1]."""
     return [
-        MovingSeries(name=name, look=look, members=tuple(_members(module, counts, steps)))
+        MovingSeries(
+            name=name, look=look, members=tuple(_members(module, counts, [scale * step for step in steps]))
+        )
         for name, (module, look, counts, steps) in BASELINES.items()
         if module.installed()
     ]
 
 
-def _members(module: ModuleType, counts: tuple[int, ...], steps: tuple[float, ...]) -> Iterator[MovingMember]:
+def _members(module: ModuleType, counts: tuple[int, ...], steps: list[float]) -> Iterator[MovingMember]:
     for step in steps:
         if not counts:
             yield moving_baseline(module, "closed form", "all", step)
         for e in counts:
-            label = f"{e} elements, {1e6 * step:g} µs"
+            label = f"{e} elements, {1e6 * step:.3g} µs"
             yield moving_baseline(module, label, f"{e} elements", step, elements=e)
 
 

@@ -19,6 +19,7 @@ The operations of a pivot with r rows below are 1 + r for the multipliers and r 
 update; those of the substitution 4 r + 1.
 """
 
+import math
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 
@@ -44,17 +45,18 @@ class Work:
         points: quadrature points of all strips; elements count one each.
         iterations: of Newton over the path.
         factorisation_flops: of one factorisation; assembly_flops: of one residual with its tangent.
-        flops: of the whole path, substitutions included.
+        flops: of the whole path, substitutions included; like assembly_flops NaN of the shear-deformable
+            elements, which a library assembles: what it does is not counted.
     """
 
     unknowns: int
     points: int
     iterations: int
     factorisation_flops: int
-    assembly_flops: int
-    flops: int
+    assembly_flops: float
+    flops: float
 
-    def row(self) -> dict[str, int]:
+    def row(self) -> dict[str, float]:
         """Return the columns of a table."""
         return asdict(self)
 
@@ -62,7 +64,7 @@ class Work:
 def work_of(settings: Settings, counters: Mapping[str, int]) -> Work:
     """Return the work of a path of the pivot with its default effects, from its settings and counters."""
     if isinstance(settings, FeSettings):
-        return _of_elements(settings.elements, counters)
+        return _of_elements(settings, counters)
     condensed = (settings.basis, settings.measure, settings.stretch) == ("bezier", "material", "mixed")
     return _condensed(settings, counters) if condensed else _bordered(settings, counters)
 
@@ -145,11 +147,12 @@ def _bordered(settings: SplineSettings, counters: Mapping[str, int]) -> Work:
     )
 
 
-def _of_elements(elements: int, counters: Mapping[str, int]) -> Work:
-    inner = max(elements - 1, 0)
+def _of_elements(settings: FeSettings, counters: Mapping[str, int]) -> Work:
+    inner = max(settings.elements - 1, 0)
+    counted = settings.element == "corotational"
     rows = STRIPS * ([5, 4, 3] * max(inner - 1, 0) + [4, 3, 2] * min(inner, 1)) + [1, 0]
     factorisation = sum(pivot_flops(row) for row in rows)
-    count = STRIPS * elements
+    count = STRIPS * settings.elements
     tangents = counters["tangent_evaluations"] * count * (ELEMENT_FORCES + ELEMENT_TANGENT)
     residuals = counters["residual_evaluations"] * count * ELEMENT_FORCES
     solves = counters["factorisations"] * (factorisation + sum(4 * row + 1 for row in rows))
@@ -158,6 +161,6 @@ def _of_elements(elements: int, counters: Mapping[str, int]) -> Work:
         points=count,
         iterations=counters["newton_iterations"],
         factorisation_flops=factorisation,
-        assembly_flops=count * (2 * ELEMENT_FORCES + ELEMENT_TANGENT),
-        flops=tangents + residuals + solves,
+        assembly_flops=count * (2 * ELEMENT_FORCES + ELEMENT_TANGENT) if counted else math.nan,
+        flops=tangents + residuals + solves if counted else math.nan,
     )
