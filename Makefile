@@ -35,6 +35,7 @@ test-all: $(STAMP)  ## run all tests
 	$(BIN)/python -m pytest -q
 
 bench: $(STAMP)  ## time the solvers; counters are stored beside the seconds
+	@mkdir -p .benchmarks
 	$(BIN)/python -m pytest -q tests/bench --benchmark-enable --benchmark-sort=name \
 		--benchmark-columns=min,median,iqr,ops,rounds --benchmark-json=.benchmarks/speed.json
 

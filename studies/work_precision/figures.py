@@ -104,6 +104,11 @@ def curves(
         for place, (_, mine) in enumerate(known[known["series"] == name].groupby("family", sort=False)):
             label = {} if place == 0 else {"label": None}
             panel.plot(mine[error], mine[cost], **(look.keywords() | label))
+            if mine["family"].iloc[0] != "all":
+                panel.annotate(
+                    mine["family"].iloc[0], (mine[error].iloc[-1], mine[cost].iloc[-1]), (0, 4),
+                    textcoords="offset points", ha="center", fontsize=7, color=look.colour,
+                )  # fmt: skip
 
 
 def _legend(figure: Figure, panel: Axes) -> None:

@@ -84,6 +84,5 @@ def test_import_and_first_solve_with_a_warm_cache():
     """Requirement: nothing is compiled anew: import and first solve take less than four times the libraries'
     import, which takes about half a second on a free machine.
     """
-    run(FIRST_SOLVE)
     libraries = best(lambda: run(LIBRARIES), repeats=2)
     assert best(lambda: run(FIRST_SOLVE), repeats=2) < 4.0 * libraries
