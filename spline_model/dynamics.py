@@ -24,6 +24,7 @@ from spline_model.integrators import (
 from spline_model.integrators.motion import Records, initial_acceleration, set_in_motion
 from spline_model.kernels.motion import Motion
 from spline_model.kernels.record import DISSIPATED, KINETIC, POSITION, STRAIN, VELOCITY, WEIGHT, WORK
+from spline_model.laps import Laps
 from spline_model.mechanism import Mechanism
 from spline_model.modes import linear_modes, static_state
 from spline_model.pivot import Pivot
@@ -61,7 +62,8 @@ class Trajectory:
     constraint_residual (T,) [m]; velocity_residual (T,) its rate [m/s]; states (T, N) and
     velocities (T, Q) of the system in motion; resolution: empty, or how far the step
     under-resolves the swing; effects: names of the scene's effects; counters: steps,
-    halved_steps, newton_iterations, ...
+    halved_steps, newton_iterations, ...; seconds: by part (``spline_model.laps``), "start" the
+    static state that is let go
     """
 
     status: Status
@@ -82,6 +84,7 @@ class Trajectory:
     effects: tuple[str, ...]
     counters: dict[str, int]
     settings: dict[str, Any]
+    seconds: dict[str, float]
 
     @property
     def rotation(self) -> Array:
@@ -130,26 +133,30 @@ def solve_motion(
     Raises InvalidParameter, and ConvergenceError if statics does not reach ``start``.
     """
     _check(integrator, duration, start, step, accuracy)
-    body = mechanism.design.body_named(body)
+    laps, body = Laps(), mechanism.design.body_named(body)
     scene = mechanism.released()
     system = compile_scene(scene if drive is None else mechanism.with_effects(drive))
     motion, layout = set_in_motion(system), system.layout
+    laps.lap("compile")
     held = static_state(mechanism, start, body=body)
     z, v = np.zeros(layout.size), np.zeros(layout.coordinate_count)
     known = min(len(held), layout.size)
     z[:known] = held[:known]
     acceleration, z = initial_acceleration(system, motion, z, v)
     effects = mechanism.effects
+    laps.lap("start")
     if accuracy is not None:
         run = adaptive.integrate(system, motion, z, v, acceleration, duration=duration, accuracy=accuracy)
         settings = {"integrator": integrator, "accuracy_rad": accuracy}
-        return _trajectory(system, run, effects, body, settings, "")
+        laps.lap("solve")
+        return _trajectory(system, run, effects, body, settings, "", laps)
     if step is None:
         step = min(STEP, duration)
         if integrator in EXPLICIT_STEPS:
             step = min(step, EXPLICIT_STEPS[integrator] / highest_frequency(system, motion, z))
     steps, every = _count(duration, step, records, layout.size + layout.coordinate_count + 7)
     step = duration / steps
+    laps.lap("compile")
     if integrator == "energy" and massless(system, motion):
         integrator = "quasi-static strips"
         run = quasi_static.integrate(system, motion, z, step=step, steps=steps, every=every)
@@ -158,8 +165,9 @@ def solve_motion(
         run = INTEGRATORS[integrator](
             system, motion, z, v, acceleration, step=step, steps=steps, every=every, **more
         )
+    laps.lap("solve")
     settings = {"integrator": integrator, "step_s": step, **options}
-    return _trajectory(system, run, effects, body, settings, _resolution(system, motion, step))
+    return _trajectory(system, run, effects, body, settings, _resolution(system, motion, step), laps)
 
 
 def _check(
@@ -210,6 +218,7 @@ def _trajectory(
     body: str,
     settings: dict[str, Any],
     resolution: str,
+    laps: Laps,
 ) -> Trajectory:
     rows, layout = run.rows, system.layout
     rest = float(system.tables.weight @ system.rest[: system.tables.weight.size])
@@ -232,6 +241,7 @@ def _trajectory(
         effects=effects,
         counters=run.counters,
         settings=settings,
+        seconds=laps.lap("recover"),
     )
 
 

@@ -85,7 +85,8 @@ class StaticSolution:
     clamp_reactions (S, G, 2, 3): force [N] and moment [N m] of the clamp at the ground
     and at the body end on the strip; stations (P,) reference arc length over L;
     shape (S, G, P, 2) [m]; axial_force, bending_moment, shear_force (S, G, P) [N, N m, N];
-    inertia, moment_defect, critical_points and states as in ``Path``.
+    inertia, moment_defect, critical_points and states as in ``Path``;
+    seconds: by part, see ``spline_model.laps``.
     """
 
     status: Status
@@ -111,6 +112,7 @@ class StaticSolution:
     states: Array
     counters: dict[str, int]
     history: tuple[tuple[float, ...], ...]
+    seconds: dict[str, float]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -121,7 +123,8 @@ class MechanismSolution:
     of the driven rotation [N m, N m/rad], nan without one; bending_energy, axial_energy,
     gravity_energy, work (S,) [J]; stations (P,); shape (S, G, P, 2) [m]; axial_force,
     bending_moment, shear_force (S, G, P); effects: names of what was assembled;
-    inertia, moment_defect, critical_points and states as in ``Path``.
+    inertia, moment_defect, critical_points and states as in ``Path``; seconds: by
+    part, see ``spline_model.laps``.
     """
 
     status: Status
@@ -146,3 +149,4 @@ class MechanismSolution:
     states: Array
     counters: dict[str, int]
     history: tuple[tuple[float, ...], ...]
+    seconds: dict[str, float]

@@ -17,6 +17,7 @@ from spline_model.effects.base import Constraint
 from spline_model.effects.registry import MOTION_ONLY
 from spline_model.errors import ConvergenceError, InvalidParameter, require_choice, require_count
 from spline_model.fast.solve import follow_fast, is_fast
+from spline_model.laps import Laps
 from spline_model.mechanism import Mechanism
 from spline_model.path import follow
 from spline_model.pivot import BODY, STRIPS, Pivot
@@ -66,16 +67,19 @@ def solve_statics(
     largest = max((abs(angle) for angle in (origin, *targets)), default=0.0)
     if largest == 0.0:
         raise InvalidParameter("rotation", rotation, "an angle other than zero [rad]")
+    laps = Laps()
     legs = [np.linspace(a, b, increments + 1)[1:] for a, b in zip([origin, *targets], targets, strict=False)]
     system = compile_scene(pivot.driven(largest))
     rotations = np.concatenate(legs)
     path = None
     if method == "condensed" and branch == "primary" and start is None and is_fast(pivot.mechanism):
-        path = follow_fast(pivot.mechanism, system, list(rotations), progress)
+        path = follow_fast(pivot.mechanism, system, list(rotations), laps, progress)
     if path is None:  # also where the fast path stops: this one says why
+        laps.lap("compile")
         begin = None if start is None else last_state(start, largest)
         path = follow(system, list(rotations / largest), progress, start=begin, branch=branch)
-    solution = _pivot_solution(system, path)
+        laps.lap("solve")
+    solution = _pivot_solution(system, path, laps)
     if raise_on_failure and path.status is not Status.CONVERGED:
         raise ConvergenceError(
             path.message,
@@ -97,9 +101,12 @@ def solve_from(
     require_count("increments", increments, 1)
     if not math.isfinite(rotation) or rotation == 0.0:
         raise InvalidParameter("rotation", rotation, "an angle other than zero [rad]")
+    laps = Laps()
     system = compile_scene(pivot.driven(rotation))
+    laps.lap("compile")
     path = recover(system, 1.0, np.asarray(guess, dtype=float), increments)
-    solution = _pivot_solution(system, path)
+    laps.lap("solve")
+    solution = _pivot_solution(system, path, laps)
     if raise_on_failure and path.status is not Status.CONVERGED:
         at = float(path.load_factor[-1])
         raise ConvergenceError(path.message, solution=solution, load_factor=at, history=path.history)
@@ -121,16 +128,17 @@ def solve_path(
     """
     require_count("increments", increments, 1)
     system = compile_scene(mechanism.driven(rotation, body))
-    begin = None
+    laps, begin = Laps(), None
     if start is not None:  # its load factors are those of another rotation
         turn = system.layout.body(mechanism.design.body_named(body)).stop - 1
         begin = (float(start.states[-1, turn]) / rotation, start.states[-1])
     factors = np.linspace(0.0 if begin is None else begin[0], 1.0, increments + 1)[1:]
     path = follow(system, list(factors), start=begin, branch=branch)
+    laps.lap("solve")
     if path.status is not Status.CONVERGED:
         raise ConvergenceError(
             path.message,
-            solution=_mechanism_solution(system, path, mechanism),
+            solution=_mechanism_solution(system, path, mechanism, laps),
             load_factor=float(path.load_factor[-1]),
             history=path.history,
         )
@@ -184,6 +192,7 @@ def solve_mechanism(
     rotation [rad] drives the named body, or the only one; None leaves all bodies to the loads.
     control, branch, start and end as in ``solve_loads``.
     """
+    laps = Laps()
     scene = mechanism.scene if rotation is None else mechanism.driven(rotation, body)
     system, path = solve_loads(
         scene,
@@ -194,7 +203,8 @@ def solve_mechanism(
         start=start,
         progress=progress,
     )
-    solution = _mechanism_solution(system, path, mechanism)
+    laps.lap("solve")
+    solution = _mechanism_solution(system, path, mechanism, laps)
     if raise_on_failure and path.status is not Status.CONVERGED:
         raise ConvergenceError(
             path.message,
@@ -205,7 +215,7 @@ def solve_mechanism(
     return solution
 
 
-def _mechanism_solution(system: System, path: Path, mechanism: Mechanism) -> MechanismSolution:
+def _mechanism_solution(system: System, path: Path, mechanism: Mechanism, laps: Laps) -> MechanismSolution:
     """The answer of a mechanism from the states of its path."""
     states, layout = path.states, system.layout
     torque = stiffness = np.full(len(states), np.nan)
@@ -237,10 +247,11 @@ def _mechanism_solution(system: System, path: Path, mechanism: Mechanism) -> Mec
         states=states,
         counters=path.counters,
         history=path.history,
+        seconds=laps.lap("recover"),
     )
 
 
-def _pivot_solution(system: System, path: Path) -> StaticSolution:
+def _pivot_solution(system: System, path: Path, laps: Laps) -> StaticSolution:
     """The pivot's answer from the states of its path."""
     states, layout = path.states, system.layout
     body = states[:, layout.body(BODY)]
@@ -273,4 +284,5 @@ def _pivot_solution(system: System, path: Path) -> StaticSolution:
         states=states,
         counters=path.counters,
         history=path.history,
+        seconds=laps.lap("recover"),
     )

@@ -22,6 +22,7 @@ from spline_model.fast.body import Frame, Space
 from spline_model.fast.path import EVALUATIONS, HALVED, ITERATIONS, Answer, follow
 from spline_model.fast.states import states_of
 from spline_model.fast.strip import Grid, local_arrays
+from spline_model.laps import Laps
 from spline_model.mechanism import Mechanism
 from spline_model.newton import Workspace
 from spline_model.solution import CriticalPoint, Path, Status
@@ -133,7 +134,7 @@ def at_rest(frame: Frame, control_points: int, modes: int) -> Array:
     return np.concatenate((frame.centre / frame.length[0], np.tile(strip, len(frame.length))))
 
 
-def fast_path(mechanism: Mechanism, rotations: Sequence[float]) -> tuple[int, Answer]:
+def fast_path(mechanism: Mechanism, rotations: Sequence[float], laps: Laps) -> tuple[int, Answer]:
     """Follow the path through the rotations [rad]; returns the converged states and the answer."""
     design = mechanism.design
     n, modes, strips = design.discretisation.control_points, mode_count(design), len(design.strips)
@@ -141,7 +142,10 @@ def fast_path(mechanism: Mechanism, rotations: Sequence[float]) -> tuple[int, An
     locals_, space = arrays(strips, grid)
     answer = empty_answer(len(rotations) + 1, len(space.y))
     targets = np.asarray(rotations, dtype=float)
-    done = follow(at_rest(frame, n, modes), targets, frame, grid, locals_, space, TOLERANCE, answer)
+    start = at_rest(frame, n, modes)
+    laps.lap("compile")
+    done = follow(start, targets, frame, grid, locals_, space, TOLERANCE, answer)
+    laps.lap("solve")
     return done, answer
 
 
@@ -184,6 +188,7 @@ def follow_fast(
     mechanism: Mechanism,
     system: System,
     rotations: Sequence[float],
+    laps: Laps,
     progress: Callable[[int, int], None] | None = None,
 ) -> Path | None:
     """The path as the multiplier path would give it, or None where the fast one stops.
@@ -192,7 +197,7 @@ def follow_fast(
     its drive. Of the rates only the drive's multiplier is filled.
     """
     drive = system.tables.drives
-    done, answer = fast_path(mechanism, rotations)
+    done, answer = fast_path(mechanism, rotations, laps)
     if done <= len(rotations):
         return None
     if progress is not None:

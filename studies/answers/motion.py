@@ -47,6 +47,10 @@ class ReleaseResult(Protocol):
     def settings(self) -> Mapping[str, Any]:
         """Integrator and step of the run."""
 
+    @property
+    def seconds(self) -> Mapping[str, float]:
+        """Time by part; "solve" is that of the steps alone."""
+
 
 class ModesResult(Protocol):
     """What the modes of either model offer; see `Spectrum` for the arrays."""
@@ -83,6 +87,7 @@ class Motion:
         constraint_residual: (T,) largest gap of clamps [m]; velocity_residual: (T,) its rate [m/s].
         counters: work done, by kind.
         wall_s: time of the motion alone, without the static path to its start [s].
+        solve_s: of it, the steps alone [s].
     """
 
     model: str
@@ -103,6 +108,7 @@ class Motion:
     velocity_residual: Array
     counters: dict[str, int]
     wall_s: float
+    solve_s: float
 
     @property
     def converged(self) -> bool:
@@ -183,6 +189,7 @@ def motion(
     bodies: Mapping[str, Array],
     body: str,
     wall_s: float,
+    solve_s: float,
 ) -> Motion:
     """Return the neutral form of a model's trajectory; only some say how well they resolve the swing."""
     exact = np.zeros(len(result.time))
@@ -199,6 +206,7 @@ def motion(
         body=body,
         counters=dict(result.counters),
         wall_s=wall_s,
+        solve_s=solve_s,
         **{name: np.asarray(array, dtype=float) for name, array in arrays.items()},
     )
 
@@ -224,6 +232,7 @@ def no_motion(
         body=body,
         counters={},
         wall_s=0.0,
+        solve_s=0.0,
         **{name: np.zeros(0) for name in (*SHARED_ARRAYS, *RESIDUALS)},
     )
 
