@@ -36,6 +36,7 @@ from spline_model.impulses.solver import TOLERANCE, ImpulseSolver
 from spline_model.impulses.state import Outcome, State
 from spline_model.integrators.events import catch, drive_events, drives_at, from_here
 from spline_model.kernels.record import DISSIPATED, KINETIC, POSITION, STRAIN, VELOCITY, WEIGHT, WORK
+from spline_model.laps import Laps
 from spline_model.mass import mass_matrix
 from spline_model.mechanism import Mechanism
 from spline_model.modes import linear_modes, static_state
@@ -130,19 +131,22 @@ def solve_impulses(
         raise InvalidParameter("start", start, "a finite angle [rad]")
     if step > duration:
         raise InvalidParameter("step", step, f"at most the duration, {duration:g} s")
-    body = mechanism.design.body_named(body)
+    laps, body = Laps(), mechanism.design.body_named(body)
     released = mechanism.released()
     system = compile_scene(released if drive is None else mechanism.with_effects(drive))
     solver = ImpulseSolver(
         mechanism, system, form=form, impulses=impulses, sweeps=sweeps, tolerance=tolerance
     )
     steps, every = _count(duration, step, records, 2 * system.layout.size)
+    laps.lap("compile")
     run = Run(solver, solver.start(start, body), steps // every)
+    laps.lap("start")
     done = _follow(run, duration / steps, steps, every)
+    laps.lap("solve")
     message = "" if done == steps else f"stopped at {done * duration / steps:.6g} s: {_reason(form)}"
     settings = {"integrator": f"sequential impulses, {form}", "step_s": duration / steps}
     settings |= {"impulses": impulses} | ({} if impulses == "direct" else {"sweeps": sweeps})
-    return _trajectory(run, duration / steps, every, done, message, mechanism, body, settings)
+    return _trajectory(run, duration / steps, every, done, message, mechanism, body, settings, laps)
 
 
 def _count(duration: float, step: float, records: int | None, width: int) -> tuple[int, int]:
@@ -193,6 +197,7 @@ def _trajectory(
     mechanism: Mechanism,
     body: str,
     settings: dict[str, Any],
+    laps: Laps,
 ) -> Trajectory:
     system, log, kept = run.solver.system, run.log, done // every + 1
     rest = float(system.tables.weight @ system.rest[: system.tables.weight.size])
@@ -216,6 +221,7 @@ def _trajectory(
         effects=mechanism.effects,
         counters=named(run.moving.counters),
         settings=settings,
+        seconds=laps.lap("recover"),
     )
 
 

@@ -54,7 +54,7 @@ def static_path(
     modes, strips = solve.mode_count(mechanism.design), len(mechanism.design.strips)
     frame, grid = solve.frame_of(mechanism), solve.grid_of(mechanism.design)
     start, targets = solve.at_rest(frame, control_points, modes), turns[1:].copy()
-    locals_, space = solve.arrays(strips, control_points, modes)
+    locals_, space = solve.arrays(strips, grid)
     answer = solve.empty_answer(len(turns), len(start))
 
     def prepare() -> Callable[[], int]:
