@@ -53,6 +53,7 @@ def _doubt(panel: Axes, theories: pd.DataFrame) -> None:
             f"uncertainty of the limit {row['theory']}", (0.99, level), (0, 2),
             ("axes fraction", "data"), "offset points",
             ha="right", va="bottom", fontsize=7, color="#444444",
+            bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.5, "alpha": 0.85},
         )  # fmt: skip
 
 
