@@ -12,11 +12,10 @@ from spline_model.compile import System
 from spline_model.continuation.branch import BRANCHES
 from spline_model.continuation.point import Point, stand
 from spline_model.continuation.predict import KNOWN_STATES, hermite_extrapolation
-from spline_model.continuation.start import equilibrium
+from spline_model.continuation.start import first_point
 from spline_model.continuation.watch import Watch
 from spline_model.errors import require_choice
 from spline_model.newton import Newton, Workspace, solve
-from spline_model.preload import settle
 from spline_model.solution import Path
 from spline_model.work import external_work
 
@@ -62,12 +61,10 @@ class _Follower:
     def __init__(self, work: Workspace, start: tuple[float, Array] | None, branch: str) -> None:
         self.work = work
         self.watch = Watch(work, leaves=branch == "follow", by_load=True)
-        begin = settle(work) if start is None else equilibrium(work, self.watch.resolution, *start)
-        load_factor = 0.0 if start is None else start[0]
-        self.here = stand(work, begin.z, load_factor, begin.energies)
+        self.here, norms = first_point(work, self.watch.resolution, start)
         self.known: deque[Point] = deque([self.here], maxlen=KNOWN_STATES)
         self.points = [self.here]
-        self.history = [begin.norms]
+        self.history = [norms]
 
     def path(self, message: str) -> Path:
         """What was followed, as a result; ``message`` says why it ended early, if it did."""

@@ -15,11 +15,10 @@ from spline_model.continuation.branch import BRANCHES
 from spline_model.continuation.corrector import Corrected, correct
 from spline_model.continuation.point import Point, directed, stand
 from spline_model.continuation.predict import KNOWN_STATES, hermite_extrapolation
-from spline_model.continuation.start import equilibrium
+from spline_model.continuation.start import first_point
 from spline_model.continuation.watch import Watch
 from spline_model.errors import require_choice
 from spline_model.newton import Workspace
-from spline_model.preload import settle
 from spline_model.solution import Path
 
 Array = NDArray[np.float64]
@@ -73,16 +72,16 @@ class _ArcFollower:
     ) -> None:
         self.work, self.end = work, end
         self.watch = Watch(work, leaves=branch == "follow", by_load=False)
-        begin = settle(work) if start is None else equilibrium(work, self.watch.resolution, *start)
-        load_factor = 0.0 if start is None else start[0]
-        point = stand(work, begin.z, load_factor, begin.energies)
-        onward = math.copysign(1.0, end - load_factor)
+        point, norms = first_point(work, self.watch.resolution, start)
+        onward = math.copysign(1.0, end - point.load_factor)
         self.here = directed(work.system, point, onward * point.rate / work.system.scales.unit, onward)
-        self.step = self.first = min(LARGEST_STEP, abs(end - load_factor) / increments / abs(self.here.slope))
+        self.step = self.first = min(
+            LARGEST_STEP, abs(end - point.load_factor) / increments / abs(self.here.slope)
+        )
         self.at = 0.0
         self.known: deque[tuple[float, Point]] = deque([(0.0, self.here)], maxlen=KNOWN_STATES)
         self.points, self.done = [self.here], [0.0]
-        self.history = [begin.norms]
+        self.history = [norms]
 
     def advance(self) -> str:
         """One step, in halves where it has to be; returns why it failed, or nothing."""

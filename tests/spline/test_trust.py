@@ -21,6 +21,7 @@ from spline_model.path import follow
 from spline_model.pivot import cross_axis_pivot
 from spline_model.statics import solve_from, solve_mechanism, solve_path, solve_statics
 from tests import gates
+from tests.spline.frames import opposed
 from tests.table_one import TABLE_ONE
 
 METHODS = ("condensed", "multipliers")
@@ -289,3 +290,10 @@ def test_a_batch_says_what_is_stable():
     assert (batch.inertia[0, :done] == 0).all()
     assert (batch.inertia[0, done:] == -1).all()
     assert np.allclose(batch.moment_defect[0, :done], single.moment_defect[:done], rtol=1e-6)
+
+
+def test_a_scene_that_nothing_lets_move_is_refused():
+    """Requirement: a drive against inextensible strips that cannot give way is refused, with a reason."""
+    line = "the tangent is singular|between load factor 0 and"  # which of both is up to round-off
+    with pytest.raises((InvalidParameter, ConvergenceError), match=line):
+        solve_statics(opposed(stretch="inextensible", control_points=10), rotation=-0.1)
