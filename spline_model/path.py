@@ -4,26 +4,19 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable, Sequence
-from dataclasses import asdict
 
 import numpy as np
 from numpy.typing import NDArray
 
-from spline_model.checks import left_the_branch, refuse
 from spline_model.compile import System
-from spline_model.continuation.balance import jumped
-from spline_model.continuation.branch import BRANCHES, leave
-from spline_model.continuation.critical import BIFURCATION, between
-from spline_model.continuation.integration import UNCONFIRMED, Finer
+from spline_model.continuation.branch import BRANCHES
 from spline_model.continuation.point import Point, stand
 from spline_model.continuation.predict import KNOWN_STATES, hermite_extrapolation
-from spline_model.continuation.remark import left, remark
-from spline_model.continuation.resolution import Resolution
-from spline_model.continuation.start import equilibrium
+from spline_model.continuation.start import first_point
+from spline_model.continuation.watch import Watch
 from spline_model.errors import require_choice
 from spline_model.newton import Newton, Workspace, solve
-from spline_model.preload import settle
-from spline_model.solution import CriticalPoint, Path, Status
+from spline_model.solution import Path
 from spline_model.work import external_work
 
 Array = NDArray[np.float64]
@@ -66,37 +59,20 @@ class _Follower:
     """The state of a path while it is followed; ``points`` holds the states that were asked for."""
 
     def __init__(self, work: Workspace, start: tuple[float, Array] | None, branch: str) -> None:
-        self.work, self.resolution = work, Resolution(work.system)
-        self.leaves = branch == "follow"
-        begin = settle(work) if start is None else equilibrium(work, self.resolution, *start)
-        load_factor = 0.0 if start is None else start[0]
-        self.here = stand(work, begin.z, load_factor, begin.energies)
+        self.work = work
+        self.watch = Watch(work, leaves=branch == "follow", by_load=True)
+        self.here, norms = first_point(work, self.watch.resolution, start)
         self.known: deque[Point] = deque([self.here], maxlen=KNOWN_STATES)
         self.points = [self.here]
-        self.history = [begin.norms]
-        self.critical: list[CriticalPoint] = []
-        self.note = ""
-        self.finer: Finer | None = None
+        self.history = [norms]
 
     def path(self, message: str) -> Path:
         """What was followed, as a result; ``message`` says why it ended early, if it did."""
         t, states, rates = (
             np.array([getattr(p, name) for p in self.points]) for name in ("load_factor", "z", "rate")
         )
-        return Path(
-            status=Status.NOT_CONVERGED if message else Status.CONVERGED,
-            message=message or self.note or remark(self.critical),
-            load_factor=t,
-            states=states,
-            rates=rates,
-            energies=np.array([p.energies for p in self.points]),
-            work=external_work(self.work.system, t, states, rates),
-            inertia=np.array([p.inertia for p in self.points]),
-            moment_defect=np.array([self.resolution.defect(p.z) for p in self.points]),
-            critical_points=tuple(self.critical),
-            counters=asdict(self.work.counters),
-            history=tuple(self.history),
-        )
+        work = external_work(self.work.system, t, states, rates)
+        return self.watch.path(self.points, work, message, self.history)
 
     def advance(self, target: float) -> str:
         """Go on to ``target`` and keep its state; returns why it failed, or nothing."""
@@ -113,7 +89,9 @@ class _Follower:
                 self.work.counters.halved_increments += 1
                 step /= 2
                 if abs(step) < SMALLEST_STEP * abs(whole):
-                    self._keep_sound()
+                    if self.here is not self.points[-1]:
+                        self.points.append(self.here)
+                    self.watch.keep_sound(self.points)
                     return f"stopped between load factor {at:.6g} and {at + 2 * step:.6g}: {reason}"
             elif self.here.load_factor != aim:  # on another branch, and somewhere else
                 begin = self.here.load_factor
@@ -123,53 +101,24 @@ class _Follower:
         self.points.append(self.here)
         return ""
 
-    def _keep_sound(self) -> None:
-        """Keep the last state before a stop, and none that a vanishing stiffness has spoilt."""
-        if self.here is not self.points[-1]:
-            self.points.append(self.here)
-        while self.finer is not None and len(self.points) > 1 and not self.finer.agrees(self.points[-1]):
-            self.points.pop()
-
     def _try(self, load_factor: float) -> tuple[Newton, str]:
         """One step to ``load_factor``; on success the follower stands there, or on another branch."""
         predicted = self._predict(load_factor)
         newton = solve(self.work, predicted, load_factor)
-        system = self.work.system
-        reason = newton.reason or refuse(system, newton.z)
-        reason = reason or left_the_branch(system, self.here.z, predicted, newton.z)
-        reason = reason or self.resolution.refuse(newton.z)
+        reason = newton.reason or self.watch.refuse(self.here, predicted, newton.z)
         if reason:
             return newton, reason
         try:
             point = stand(self.work, newton.z, load_factor, newton.energies)
         except np.linalg.LinAlgError as error:
             return newton, str(error)
-        step = load_factor - self.here.load_factor
-        reason = jumped(self.here, point, step, system.scales.energy)
-        return newton, reason or self._accept(point, step)
-
-    def _accept(self, point: Point, step: float) -> str:
-        """Go to the next point, or from a bifurcation before it to the branch that crosses there."""
-        found = between(self.work, self.here, point, step)
-        if found and self.resolution.judged:
-            self.finer = self.finer or Finer(self.work.system)
-            if not self.finer.confirms(self.work, self.here, point, step):
-                return UNCONFIRMED.format(kind=found[0].kind)
-        crossing = next((c for c in found if c.kind == BIFURCATION), None) if self.leaves else None
-        if crossing is not None:
-            found = found[: found.index(crossing) + 1]
-            branched = leave(self.work, crossing, self.resolution)
-            if branched is None or (branched.load_factor - crossing.load_factor) * step <= 0.0:
-                return (
-                    f"the branch that crosses at load factor {crossing.load_factor:.6g} goes back from there"
-                )
-            self.leaves, self.note = False, left(crossing)
-            self.known.clear()
-            point = branched
-        self.critical += found
-        self.here = point
-        self.known.append(point)
-        return ""
+        reached, reason = self.watch.go(self.here, point, load_factor - self.here.load_factor)
+        if not reason:
+            if reached is not point:
+                self.known.clear()
+            self.here = reached
+            self.known.append(reached)
+        return newton, reason
 
     def _predict(self, load_factor: float) -> Array:
         """Extrapolate the last states and rates; further than twice their distance, the tangent only."""

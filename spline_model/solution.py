@@ -24,7 +24,7 @@ class Status(Enum):
             return "every increment converged"
         return (
             "the path stopped before its end and its last state is the last good one; "
-            "try more increments, more control points or axial_modes = control_points - 2"
+            "try more increments, more control points or gauss_points, or axial_modes = control_points - 2"
         )
 
 

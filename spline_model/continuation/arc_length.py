@@ -5,27 +5,21 @@ from __future__ import annotations
 import math
 from collections import deque
 from collections.abc import Callable
-from dataclasses import asdict
 
 import numpy as np
 from numpy.typing import NDArray
 
-from spline_model.checks import left_the_branch, refuse
 from spline_model.compile import System
-from spline_model.continuation.balance import done_by_load_factor, jumped
-from spline_model.continuation.branch import BRANCHES, leave
+from spline_model.continuation.balance import done_by_load_factor
+from spline_model.continuation.branch import BRANCHES
 from spline_model.continuation.corrector import Corrected, correct
-from spline_model.continuation.critical import BIFURCATION, between
-from spline_model.continuation.integration import UNCONFIRMED, Finer
 from spline_model.continuation.point import Point, directed, stand
 from spline_model.continuation.predict import KNOWN_STATES, hermite_extrapolation
-from spline_model.continuation.remark import left, remark
-from spline_model.continuation.resolution import Resolution
-from spline_model.continuation.start import equilibrium
+from spline_model.continuation.start import first_point
+from spline_model.continuation.watch import Watch
 from spline_model.errors import require_choice
 from spline_model.newton import Workspace
-from spline_model.preload import settle
-from spline_model.solution import CriticalPoint, Path, Status
+from spline_model.solution import Path
 
 Array = NDArray[np.float64]
 
@@ -76,21 +70,18 @@ class _ArcFollower:
     def __init__(
         self, work: Workspace, start: tuple[float, Array] | None, end: float, increments: int, branch: str
     ) -> None:
-        self.work, self.end, self.leaves = work, end, branch == "follow"
-        self.resolution = Resolution(work.system)
-        begin = settle(work) if start is None else equilibrium(work, self.resolution, *start)
-        load_factor = 0.0 if start is None else start[0]
-        point = stand(work, begin.z, load_factor, begin.energies)
-        onward = math.copysign(1.0, end - load_factor)
+        self.work, self.end = work, end
+        self.watch = Watch(work, leaves=branch == "follow", by_load=False)
+        point, norms = first_point(work, self.watch.resolution, start)
+        onward = math.copysign(1.0, end - point.load_factor)
         self.here = directed(work.system, point, onward * point.rate / work.system.scales.unit, onward)
-        self.step = self.first = min(LARGEST_STEP, abs(end - load_factor) / increments / abs(self.here.slope))
+        self.step = self.first = min(
+            LARGEST_STEP, abs(end - point.load_factor) / increments / abs(self.here.slope)
+        )
         self.at = 0.0
         self.known: deque[tuple[float, Point]] = deque([(0.0, self.here)], maxlen=KNOWN_STATES)
         self.points, self.done = [self.here], [0.0]
-        self.history = [begin.norms]
-        self.critical: list[CriticalPoint] = []
-        self.note = ""
-        self.finer: Finer | None = None
+        self.history = [norms]
 
     def advance(self) -> str:
         """One step, in halves where it has to be; returns why it failed, or nothing."""
@@ -102,6 +93,7 @@ class _ArcFollower:
             self.work.counters.halved_increments += 1
             self.step /= 2
             if self.step < SMALLEST_STEP * self.first:
+                self.watch.keep_sound(self.points)
                 return f"stopped at load factor {self.here.load_factor:.6g}: {reason}"
         self.work.counters.increments += 1
         iterations = len(found.norms) - 1
@@ -120,8 +112,7 @@ class _ArcFollower:
             z, load_factor = self._predict_end(z, load_factor)
             normal, along = np.zeros_like(z), 1.0
         found = correct(work, z, load_factor, normal, along)
-        reason = found.reason or refuse(system, found.z)
-        reason = reason or left_the_branch(system, here.z, z, found.z) or self.resolution.refuse(found.z)
+        reason = found.reason or self.watch.refuse(here, z, found.z)
         if reason:
             return found, reason
         try:
@@ -129,40 +120,27 @@ class _ArcFollower:
         except np.linalg.LinAlgError as error:
             return found, str(error)
         point = directed(system, point, *self._across())
-        step = self._distance(point)
         if (self.end - here.load_factor) * (self.end - point.load_factor) < 0.0:
             return found, "the step goes beyond the end"
         if self._cosine(point) < SHARPEST_TURN:
             return found, "the path turns sharply"
-        reason = jumped(here, point, step, system.scales.energy)
-        return found, reason or self._accept(point, step)
+        step = self._distance(point)
+        reached, reason = self.watch.go(here, point, step)
+        if not reason:
+            done = done_by_load_factor(here, point, step)
+            if reached is not point:  # across a kink the work is the potential gained
+                self.known.clear()
+                done, step = reached.potential - here.potential, self._distance(reached)
+            self._go_to(reached, step, done)
+        return found, reason
 
-    def _accept(self, point: Point, step: float) -> str:
-        """Go to the next point, or from a bifurcation before it to the branch that crosses there."""
-        found = between(self.work, self.here, point, step)
-        if found and self.resolution.judged:
-            self.finer = self.finer or Finer(self.work.system)
-            if not self.finer.confirms(self.work, self.here, point, step):
-                return UNCONFIRMED.format(kind=found[0].kind)
-        done = done_by_load_factor(self.here, point, step)
-        crossing = next((c for c in found if c.kind == BIFURCATION), None) if self.leaves else None
-        if crossing is not None:
-            found = found[: found.index(crossing) + 1]
-            branched = leave(self.work, crossing, self.resolution)
-            if branched is None:
-                return f"no other branch was found at load factor {crossing.load_factor:.6g}"
-            self.leaves, self.note = False, left(crossing)
-            self.known.clear()
-            away = (branched.z - crossing.z) / self.work.system.scales.unit
-            point = directed(self.work.system, branched, away, branched.load_factor - crossing.load_factor)
-            done, step = point.potential - self.here.potential, self._distance(point)
-        self.critical += found
+    def _go_to(self, point: Point, step: float, done: float) -> None:
+        """Stand at a point, a step further on; done: int P_lambda d(lambda) over the step [J]."""
         self.at += step
         self.here = point
         self.known.append((self.at, point))
         self.points.append(point)
         self.done.append(done)
-        return ""
 
     def _across(self) -> tuple[Array, float]:
         """The tangent here, in dimensionless coordinates, and its load-factor part."""
@@ -200,23 +178,8 @@ class _ArcFollower:
 
     def path(self, message: str) -> Path:
         """What was followed, as a result; ``message`` says why it ended early, if it did."""
-        t, states, rates, slopes = (
-            np.array([getattr(p, name) for p in self.points])
-            for name in ("load_factor", "z", "rate", "slope")
-        )
         loads, rest = self.work.system.tables.loads, self.work.system.rest
-        by_loads = t * ((states[:, loads.coordinate] - rest[loads.coordinate]) @ loads.value)
-        return Path(
-            status=Status.NOT_CONVERGED if message else Status.CONVERGED,
-            message=message or self.note or remark(self.critical),
-            load_factor=t,
-            states=states,
-            rates=rates / slopes[:, None],
-            energies=np.array([p.energies for p in self.points]),
-            work=by_loads - by_loads[0] + np.cumsum(self.done),
-            inertia=np.array([p.inertia for p in self.points]),
-            moment_defect=np.array([self.resolution.defect(p.z) for p in self.points]),
-            critical_points=tuple(self.critical),
-            counters=asdict(self.work.counters),
-            history=tuple(self.history),
-        )
+        places = np.array([p.z[loads.coordinate] for p in self.points]) - rest[loads.coordinate]
+        by_loads = np.array([p.load_factor for p in self.points]) * (places @ loads.value)
+        work = by_loads - by_loads[0] + np.cumsum(self.done[: len(self.points)])
+        return self.watch.path(self.points, work, message, self.history)

@@ -10,7 +10,7 @@ from spline_model.continuation.point import Point
 from spline_model.effects import Bending, MixedStretching, Stretching
 from spline_model.newton import Workspace
 
-UNCONFIRMED = "a {kind} that is none with twice the Gauss points (use more gauss_points)"
+UNCONFIRMED = "a {kind} that is not found with twice the Gauss points (use more gauss_points)"
 LARGEST_CHANGE = 0.02
 """Largest relative change of stiffness with twice the Gauss points of a state that is kept."""
 

@@ -1,4 +1,4 @@
-"""States to start from that others give: corrected, checked and traced back to rest, or refused."""
+"""Where a path begins: at rest, or at a state that is given, corrected and checked."""
 
 from __future__ import annotations
 
@@ -6,9 +6,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.checks import refuse
+from spline_model.continuation.point import Point, stand
 from spline_model.continuation.resolution import Resolution
 from spline_model.errors import InvalidParameter
 from spline_model.newton import Newton, Workspace, solve
+from spline_model.preload import settle
 from spline_model.solution import MechanismSolution, Path, StaticSolution
 
 Array = NDArray[np.float64]
@@ -27,6 +29,21 @@ def equilibrium(work: Workspace, resolution: Resolution, load_factor: float, z: 
     if reason:
         raise InvalidParameter("start", reason, "a state from which Newton finds an equilibrium")
     return newton
+
+
+def first_point(
+    work: Workspace, resolution: Resolution, start: tuple[float, Array] | None
+) -> tuple[Point, tuple[float, ...]]:
+    """The point where a path begins, and the residual norms: rest, or load factor and unknowns given.
+
+    Raises InvalidParameter where there is none, or where nothing holds the scene.
+    """
+    newton = settle(work) if start is None else equilibrium(work, resolution, *start)
+    try:
+        point = stand(work, newton.z, 0.0 if start is None else start[0], newton.energies)
+    except np.linalg.LinAlgError as error:
+        raise InvalidParameter("scene", str(error), "strips that can move, but not freely") from error
+    return point, newton.norms
 
 
 def last_state(start: Path | StaticSolution | MechanismSolution, angle: float = 1.0) -> tuple[float, Array]:

@@ -6,17 +6,22 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from spline_model.batch import solve_many
 from spline_model.compile import compile_scene
 from spline_model.continuation.balance import jumped
 from spline_model.continuation.point import stand
 from spline_model.continuation.resolution import LARGEST_DEFECT
-from spline_model.design import Discretisation
+from spline_model.design import Discretisation, StripDesign
 from spline_model.errors import ConvergenceError, InvalidParameter
+from spline_model.fast import doubt
+from spline_model.fast.solve import frame_of
+from spline_model.mechanism import mechanism
 from spline_model.newton import Workspace, solve
 from spline_model.path import follow
 from spline_model.pivot import cross_axis_pivot
-from spline_model.statics import solve_from, solve_path, solve_statics
+from spline_model.statics import solve_from, solve_mechanism, solve_path, solve_statics
 from tests import gates
+from tests.spline.frames import opposed
 from tests.table_one import TABLE_ONE
 
 METHODS = ("condensed", "multipliers")
@@ -54,7 +59,7 @@ def test_what_few_gauss_points_make_up_is_no_critical_point(gauss_points, false_
     """Requirement: a limit that only too few Gauss points have is refused, with the states it spoils."""
     answer = to(240, increments=48, method=method, control_points=8, gauss_points=gauss_points)
     assert answer.status.value == "not_converged"
-    assert "none with twice the Gauss points" in answer.message
+    assert "not found with twice the Gauss points" in answer.message
     assert answer.critical_points == ()
     end = math.degrees(answer.rotation[-1])
     assert false_limit - 15 < end < false_limit
@@ -239,3 +244,56 @@ def test_few_and_many_axial_modes_are_followed_or_refused(axial_modes):
     answer = to(90, control_points=6, axial_modes=axial_modes)
     assert answer.status.value == "converged"
     assert abs(answer.torque[-1] / to(90, control_points=12).torque[-1] - 1) < 0.1
+
+
+def weighed(control_points):
+    """Moment defect of a cantilever that hangs far down under its own weight."""
+    names = ("area", "second_moment_of_area", "youngs_modulus", "poisson_ratio", "density")
+    strip = StripDesign(name="s", start=(0.0, 0.0), end=(0.1, 0.0), **{n: TABLE_ONE[n] for n in names})
+    made = mechanism(
+        strips=[strip],
+        effects=("bending", "stretching", "gravity"),
+        parameters={"gravity": {"acceleration": (0.0, -3e5)}},
+        control_points=control_points,
+    )
+    return solve_mechanism(made, increments=1).moment_defect[0]
+
+
+def test_weight_is_in_the_balance_of_moments():
+    """Requirement: the moment defect counts the weight of a strip, and vanishes with more control points."""
+    defects = [weighed(n) for n in (5, 7, 9)]
+    assert defects[0] < 0.1
+    assert defects[1] < 0.3 * defects[0]
+    assert defects[2] < 0.3 * defects[1]
+
+
+def test_the_condensed_path_checks_the_energy():
+    """Requirement: the compiled check takes an energy that is the work done, and no other."""
+    frame = frame_of(cross_axis_pivot(**TABLE_ONE).mechanism)
+    answer = to(90, increments=20)
+    step, stored = answer.rotation[1], answer.bending_energy + answer.axial_energy
+    sides = (*answer.torque[9:11], *answer.stiffness[9:11])
+    gained = stored[10] - stored[9]
+    assert not doubt.jumped(step, *sides, gained, stored[9], frame)
+    assert doubt.jumped(step, *sides, 1.05 * gained, stored[9], frame)
+
+
+def test_a_batch_says_what_is_stable():
+    """Requirement: many designs at once give inertia and moment defect of single solves, -1 behind a stop."""
+    designs = [TABLE_ONE, TABLE_ONE | {"crossing_ratio": 0.3}]
+    batch = solve_many(designs, rotation=2.5, increments=25, control_points=4)
+    single = solve_statics(
+        cross_axis_pivot(**TABLE_ONE, control_points=4), rotation=2.5, increments=25, raise_on_failure=False
+    )
+    done = batch.states[0]
+    assert 1 < done < 26
+    assert (batch.inertia[0, :done] == 0).all()
+    assert (batch.inertia[0, done:] == -1).all()
+    assert np.allclose(batch.moment_defect[0, :done], single.moment_defect[:done], rtol=1e-6)
+
+
+def test_a_scene_that_nothing_lets_move_is_refused():
+    """Requirement: a drive against inextensible strips that cannot give way is refused, with a reason."""
+    line = "the tangent is singular|between load factor 0 and"  # which of both is up to round-off
+    with pytest.raises((InvalidParameter, ConvergenceError), match=line):
+        solve_statics(opposed(stretch="inextensible", control_points=10), rotation=-0.1)

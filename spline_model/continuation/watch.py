@@ -1,0 +1,103 @@
+"""What a path is watched for, whatever its parameter: sound states, critical points, other branches."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import asdict
+
+import numpy as np
+from numpy.typing import NDArray
+
+from spline_model.checks import left_the_branch, refuse
+from spline_model.continuation.balance import jumped
+from spline_model.continuation.branch import leave
+from spline_model.continuation.critical import BIFURCATION, between
+from spline_model.continuation.integration import UNCONFIRMED, Finer
+from spline_model.continuation.point import Point, directed
+from spline_model.continuation.remark import left, remark
+from spline_model.continuation.resolution import Resolution
+from spline_model.newton import Workspace
+from spline_model.solution import CriticalPoint, Path, Status
+
+Array = NDArray[np.float64]
+
+
+class Watch:
+    """The checks of one path, and the critical points that were met on it.
+
+    by_load: whether the load factor is the path's parameter, and only goes one way; leaves:
+    whether the path is to leave its branch at the next bifurcation.
+    """
+
+    def __init__(self, work: Workspace, *, leaves: bool, by_load: bool) -> None:
+        self.work, self.leaves, self.by_load = work, leaves, by_load
+        self.resolution = Resolution(work.system)
+        self.critical: list[CriticalPoint] = []
+        self.note = ""
+        self._finer: Finer | None = None
+
+    def refuse(self, here: Point, predicted: Array, z: Array) -> str:
+        """Why a converged state is not the next one; empty if it may be."""
+        system = self.work.system
+        reason = refuse(system, z) or left_the_branch(system, here.z, predicted, z)
+        return reason or self.resolution.refuse(z)
+
+    def go(self, here: Point, point: Point, step: float) -> tuple[Point, str]:
+        """Where a step from here to a sound point ends: there, or on another branch; or why it is no step."""
+        reason = jumped(here, point, step, self.work.system.scales.energy)
+        if reason:
+            return here, reason
+        found = between(self.work, here, point, step)
+        if found and self.resolution.judged and not self._confirmed(here, point, step):
+            return here, UNCONFIRMED.format(kind=found[0].kind)
+        crossing = next((c for c in found if c.kind == BIFURCATION), None) if self.leaves else None
+        if crossing is not None:
+            found = found[: found.index(crossing) + 1]
+            point, reason = self._leave(crossing, here, step)
+        if not reason:
+            self.critical += found
+        return point, reason
+
+    def _leave(self, crossing: CriticalPoint, here: Point, step: float) -> tuple[Point, str]:
+        """A point on the branch that crosses, going away from there."""
+        branched = leave(self.work, crossing, self.resolution)
+        if branched is None:
+            return here, f"no other branch was found at load factor {crossing.load_factor:.6g}"
+        onward = branched.load_factor - crossing.load_factor
+        if self.by_load and onward * step <= 0.0:
+            return here, f"the branch that crosses at load factor {crossing.load_factor:.6g} goes back there"
+        self.leaves, self.note = False, left(crossing)
+        if self.by_load:
+            return branched, ""
+        away = (branched.z - crossing.z) / self.work.system.scales.unit
+        return directed(self.work.system, branched, away, onward), ""
+
+    def _confirmed(self, here: Point, point: Point, step: float) -> bool:
+        if self._finer is None:
+            self._finer = Finer(self.work.system)
+        return self._finer.confirms(self.work, here, point, step)
+
+    def keep_sound(self, points: list[Point]) -> None:
+        """Drop the last points that a vanishing stiffness has spoilt, where Gauss points were too few."""
+        while self._finer is not None and len(points) > 1 and not self._finer.agrees(points[-1]):
+            points.pop()
+
+    def path(
+        self, points: Sequence[Point], work: Array, message: str, history: Sequence[tuple[float, ...]]
+    ) -> Path:
+        """The result: points (S), work of loads and drives (S,) [J]; why it ended early, if it did."""
+        rates, slopes = (np.array([getattr(p, name) for p in points]) for name in ("rate", "slope"))
+        return Path(
+            status=Status.NOT_CONVERGED if message else Status.CONVERGED,
+            message=message or self.note or remark(self.critical),
+            load_factor=np.array([p.load_factor for p in points]),
+            states=np.array([p.z for p in points]),
+            rates=rates / slopes[:, None],
+            energies=np.array([p.energies for p in points]),
+            work=work,
+            inertia=np.array([p.inertia for p in points]),
+            moment_defect=np.array([self.resolution.defect(p.z) for p in points]),
+            critical_points=tuple(self.critical),
+            counters=asdict(self.work.counters),
+            history=tuple(history),
+        )
