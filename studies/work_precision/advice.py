@@ -33,7 +33,7 @@ INSTANTS = 501
 #: Steps of the paper's pivot, over its first period [s]: other pivots are tried at the same parts of theirs.
 PERIOD = 1.0 / 76.0
 #: Control points of the spline that motions are held against, and of the one that says how uncertain it is.
-REFERENCE = (12, 10)
+REFERENCE = (16, 14)
 
 
 def advise_path(problem: Problem, error: float, progress: Progress = silent) -> pd.DataFrame:
@@ -89,16 +89,16 @@ def advise_motion(problem: Problem, error: float, progress: Progress = silent) -
     frequency = float(answer_modes(problem, SplineSettings(), count=1).frequency[0])
     duration = PERIODS / frequency
     scale = 1.0 / frequency / PERIOD
-    models = moving_series.own_series(scale, dict.fromkeys(moving_series.EXPLICIT_STEPS))
+    models = moving_series.own_series(scale)
     models += moving_series.other_series(scale)
     total = len(REFERENCE) + sum(len(each.members) for each in models)
     instants = np.linspace(0.0, duration, INSTANTS)
+    integrator = _integrator(problem, duration)
     rotations = []
     for done, n in enumerate(REFERENCE):
         progress(done, total)
-        motion = moving(SplineSettings(control_points=n), f"n = {n}", "", integrator="explicit").solve(
-            problem, duration
-        )
+        member = moving(SplineSettings(control_points=n), f"n = {n}", "", integrator=integrator)
+        motion = member.solve(problem, duration)
         if not motion.converged:
             raise NoReference(f"reference with {n} control points: {motion.message}")
         rotations.append(at(motion, np.minimum(instants, motion.time[-1])))
@@ -117,6 +117,15 @@ def advise_motion(problem: Problem, error: float, progress: Progress = silent) -
             )
     progress(total, total)
     return chosen(pd.DataFrame(rows), MOTION_ERRORS, error)
+
+
+def _integrator(problem: Problem, duration: float) -> str:
+    """Return the spline's most accurate integrator that the scene allows, by trying."""
+    for name in ("leapfrog", "explicit"):
+        trial = moving(SplineSettings(control_points=4), "trial", "", integrator=name)
+        if trial.solve(problem, 0.1 * duration).converged:
+            return name
+    return "energy"
 
 
 def chosen(rows: pd.DataFrame, columns: Sequence[str], error: float) -> pd.DataFrame:

@@ -28,8 +28,8 @@ CASES = (CASE,)
 
 DURATION = 0.05
 INSTANTS = np.linspace(0.0, DURATION, 501)
-#: The reference: explicit splines by control points and step [s], the coarser one first.
-REFERENCE = {11: 1.1e-6, 12: 9e-7}
+#: The reference: leapfrog splines by control points and step [s], the coarser one first.
+REFERENCE = {14: 4e-7, 16: 3e-7}
 #: An error is shown where it is this many times that of the reference.
 MARGIN = 10.0
 #: Errors of the rotation [rad] at which models are compared.
@@ -90,7 +90,7 @@ def _reference(problem: Problem, progress: Callable[[int], None]) -> tuple[Array
     for done, (n, step) in enumerate(REFERENCE.items()):
         progress(done)
         member = moving(
-            SplineSettings(control_points=n), f"n = {n}", "reference", integrator="explicit", step=step
+            SplineSettings(control_points=n), f"n = {n}", "reference", integrator="leapfrog", step=step
         )
         rotations.append(at(member.solve(problem, DURATION), INSTANTS))
     coarse, fine = rotations

@@ -4,7 +4,7 @@ All have strips without shear and without rotary inertia of their sections: two 
 apart after 0.05 s, more than any mesh here.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass
 from types import ModuleType
 
@@ -14,12 +14,12 @@ from studies.baselines.peers import exudyn_ancf, openseespy_frame
 from studies.record.style import BLACK, BLUE, GREY, ORANGE, PURPLE, RED, SKY, YELLOW, Look
 from studies.work_precision.motions import MovingMember, moving, moving_baseline
 
-SPLINE, EXPLICIT, ELEMENTS = "spline, energy-consistent", "spline, explicit", "finite elements, explicit"
+SPLINE, IMPLICIT, ELEMENTS = "spline", "spline, energy-consistent", "finite elements"
 
-COUNTS = (4, 5, 6, 8)
-STEPS = (2e-4, 1e-4, 5e-5, 2e-5)
-#: Steps of the explicit integrator by control points: near the largest stable one [s].
-EXPLICIT_STEPS: dict[int, float | None] = {4: 8e-6, 5: 5e-6, 6: 4e-6, 8: 2e-6}
+#: Control points of the splines that take explicit steps of their own choice, near the largest stable one.
+COUNTS = (4, 5, 6, 7, 8, 9, 10, 12)
+#: Control points and steps [s] of those that take large implicit steps.
+IMPLICIT_COUNTS, STEPS = (4, 5, 6, 8), (2e-4, 1e-4, 5e-5, 2e-5)
 MESHES = (5, 10, 16, 24, 36)
 PEER_STEPS = (2e-4, 1e-4, 5e-5, 2e-5)
 FRAME_STEPS = (1e-4, 5e-5, 2e-5)
@@ -58,43 +58,35 @@ BASELINES: dict[str, tuple[ModuleType, Look, tuple[int, ...], tuple[float, ...]]
 }  # fmt: skip
 
 
-def own_series(
-    scale: float = 1.0, explicit_steps: Mapping[int, float | None] = EXPLICIT_STEPS
-) -> list[MovingSeries]:
-    """Return the series of the two models of the suite.
-
-    Args:
-        scale: of the implicit steps [1].
-        explicit_steps: by control points [s]; None for the model's choice.
-    """
-    steps = [scale * step for step in STEPS]
-    implicit = (
-        moving(SplineSettings(control_points=n), f"n = {n}, {1e6 * step:.3g} µs", f"n = {n}", step=step)
-        for n in COUNTS
-        for step in steps
-    )
+def own_series(scale: float = 1.0) -> list[MovingSeries]:
+    """Return the series of the two models of the suite, the implicit steps times `scale` [1]."""
     explicit = (
+        moving(SplineSettings(control_points=n), f"n = {n}", "all", integrator="leapfrog") for n in COUNTS
+    )
+    implicit = (
         moving(
             SplineSettings(control_points=n),
-            f"n = {n}" + (f", {1e6 * step:.3g} µs" if step else ", own step"), "all",
-            integrator="explicit", step=step,
+            f"n = {n}, {1e6 * scale * step:.3g} µs",
+            f"n = {n}",
+            step=scale * step,
         )
-        for n, step in explicit_steps.items()
-    )  # fmt: skip
+        for n in IMPLICIT_COUNTS
+        for step in STEPS
+    )
     meshes = (moving(FeSettings(elements=e), f"{e} elements", "all") for e in MESHES)
     looks = own_looks()
     return [
         MovingSeries(name=name, look=looks[name], members=tuple(members))
-        for name, members in ((SPLINE, implicit), (EXPLICIT, explicit), (ELEMENTS, meshes))
+        for name, members in ((SPLINE, explicit), (IMPLICIT, implicit), (ELEMENTS, meshes))
     ]
 
 
 def own_looks() -> dict[str, Look]:
     """Return the look of the suite's own series by name."""
     return {
-        SPLINE: Look(label="spline, energy-consistent", colour=BLUE, marker="x"),
-        EXPLICIT: Look(label="spline, explicit", colour=SKY, line="--", marker="D"),
-        ELEMENTS: Look(label="finite elements, explicit", colour=BLACK, marker="s"),
+        SPLINE: Look(label="spline, leapfrog", colour=BLUE, marker="x"),
+        IMPLICIT: Look(label="spline, energy-consistent", colour=SKY, line=":", marker="D"),
+        ELEMENTS: Look(label="finite elements, central difference", colour=BLACK, marker="s"),
     }
 
 

@@ -1,9 +1,10 @@
 """Work of a motion that does not depend on machine or language, counted as in `work`.
 
+- spline, leapfrog: every evaluation takes the forces of the strips in control points (`strip_force`) and
+  multiplies those of the inner ones with the constant inverse of their mass; what is done for the tips and
+  the body does not grow with the size and is left out;
 - spline, implicit: every Newton iteration assembles residual and tangent of the bordered system and takes a
   dense LU of it;
-- spline, explicit: every evaluation assembles the gradient as statics does, and with it its tangent, then
-  forms and solves the reduced mass matrix J^T M J of R = 4 n - 5 rows;
 - elements, explicit: every evaluation takes the forces of all elements, and moves three coordinates a node
   by four operations each. Nothing is factorised.
 """
@@ -21,40 +22,52 @@ MOVED_NODE = 12
 def work_of_motion(settings: Settings, counters: Mapping[str, int]) -> dict[str, Any]:
     """Return unknowns, points, steps, evaluations, factorisations and flops of a motion of the pivot."""
     if isinstance(settings, FeSettings):
-        count = STRIPS * settings.elements
-        evaluations = counters["force_evaluations"]
-        return _row(
-            unknowns=3 * STRIPS * (settings.elements - 1) + 3,
-            points=count,
-            steps=counters["steps"],
-            evaluations=evaluations,
-            factorisations=0,
-            flops=evaluations * (count * ELEMENT_FORCES + (count - STRIPS) * MOVED_NODE),
-        )
-    return _of_spline(settings, counters)
+        return _of_elements(settings, counters)
+    return _explicit(settings, counters) if "evaluations" in counters else _implicit(settings, counters)
 
 
-def _of_spline(settings: SplineSettings, counters: Mapping[str, int]) -> dict[str, Any]:
-    n = settings.control_points
+def strip_force_flops(control_points: int) -> int:
+    """Return the operations of `strip_force` for a Bezier strip with n + 2 Gauss points."""
+    points = control_points + 2
+    return points * (16 * (control_points - 1) + 2 * points + 30)
+
+
+def _of_elements(settings: FeSettings, counters: Mapping[str, int]) -> dict[str, Any]:
+    count, evaluations = STRIPS * settings.elements, counters["force_evaluations"]
+    return {
+        "unknowns": 3 * (count - STRIPS) + 3,
+        "points": count,
+        "steps": counters["steps"],
+        "evaluations": evaluations,
+        "factorisations": 0,
+        "flops": evaluations * (count * ELEMENT_FORCES + (count - STRIPS) * MOVED_NODE),
+    }
+
+
+def _explicit(settings: SplineSettings, counters: Mapping[str, int]) -> dict[str, Any]:
+    n, evaluations = settings.control_points, counters["evaluations"]
+    inner = 4 * (n - 3) * (n - 1)
+    return {
+        "unknowns": STRIPS * (2 * n - 6) + 3,
+        "points": STRIPS * (n + 2),
+        "steps": counters["steps"],
+        "evaluations": evaluations,
+        "factorisations": 0,
+        "flops": evaluations * STRIPS * (strip_force_flops(n) + inner),
+    }
+
+
+def _implicit(settings: SplineSettings, counters: Mapping[str, int]) -> dict[str, Any]:
+    n, factorisations = settings.control_points, counters["factorisations"]
     modes, points = n - 1, n + 2
-    assembly = STRIPS * assembly_flops(points, n, modes)
-    coordinates, reduced = STRIPS * 2 * n + 3, STRIPS * (2 * n - 4) + 3
-    size = coordinates + STRIPS * (modes + 6)
-    explicit = "evaluations" in counters
-    evaluations = counters["evaluations"] if explicit else counters["newton_iterations"] + counters["steps"]
-    solves = evaluations if explicit else counters["factorisations"]
-    # two products of matrices and a solve with the reduced mass, or the bordered LU with its substitution
-    products = 2 * coordinates * reduced * (coordinates + reduced) + 2 * reduced**3 // 3
-    solve = products if explicit else 2 * size**3 // 3 + 2 * size**2
-    return _row(
-        unknowns=reduced if explicit else size,
-        points=STRIPS * points,
-        steps=counters["steps"],
-        evaluations=evaluations,
-        factorisations=solves,
-        flops=evaluations * assembly + solves * solve,
-    )
-
-
-def _row(**columns: int) -> dict[str, Any]:
-    return columns
+    size = STRIPS * (2 * n + modes + 6) + 3
+    evaluations = factorisations + counters["steps"]
+    return {
+        "unknowns": size,
+        "points": STRIPS * points,
+        "steps": counters["steps"],
+        "evaluations": evaluations,
+        "factorisations": factorisations,
+        "flops": evaluations * STRIPS * assembly_flops(points, n, modes)
+        + factorisations * (2 * size**3 // 3 + 2 * size**2),
+    }

@@ -117,7 +117,7 @@ def test_dynamic_advice_as_a_table(capsys, monkeypatch):
     """The command with --dynamic prints each model's setting, errors of rotation and frequency, and time."""
     monkeypatch.setattr(advice, "REFERENCE", (6, 5))
     monkeypatch.setattr(advice, "PERIODS", 1.0)
-    one = moving_series.own_series(1.0, {})[0]
+    one = moving_series.own_series()[1]
     small = [moving_series.MovingSeries(name=one.name, look=one.look, members=one.members[8:11])]
     stopped = SolvedMotion(
         status="not_converged", message="it blew up", time=np.zeros(0), rotation=np.zeros(0),

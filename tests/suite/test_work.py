@@ -1,10 +1,13 @@
 """The formulas of counted work are those of the code that is counted."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
 from fe_reference.pivot import cross_axis_pivot as element_pivot
 from spline_model.compile import compile_scene
+from spline_model.fast import strip_force
 from spline_model.fast.condense import condense, recover
 from spline_model.fast.solve import grid_of, mode_count
 from spline_model.fast.strip import Grid, Local, assemble_points, local_arrays
@@ -12,10 +15,11 @@ from spline_model.newton import Workspace
 from spline_model.path import follow
 from spline_model.pivot import cross_axis_pivot
 from spline_model.sparse import LEAST_SIZE
-from studies.answers.adapters import answer_static
+from studies.answers.adapters import answer_release, answer_static
 from studies.answers.settings import FeSettings, SplineSettings
 from studies.cases.problem import named_case
 from studies.work_precision import work
+from studies.work_precision.work_of_motion import strip_force_flops, work_of_motion
 from tests.suite.counted import Counted
 from tests.table_one import TABLE_ONE
 
@@ -34,7 +38,7 @@ def test_operations_of_the_condensed_spline(n):
     """Assembly, condensation and recovery of a strip do as many operations as the formulas say."""
     design = cross_axis_pivot(**TABLE_ONE, control_points=n).mechanism.design
     grid, modes, own = grid_of(design), mode_count(design), 2 * n - 6
-    local = Local(*(counting(array) for array in local_arrays(n, modes)))
+    local = Local(*(counting(array) for array in local_arrays(n, modes, len(grid.weight))))
     points = counting(np.column_stack((np.linspace(0.0, 1.0, n), 0.01 * np.sin(np.arange(n)))))
     compliance = counting(np.ones(modes))
     table = Grid(*(counting(array) for array in grid))
@@ -93,3 +97,40 @@ def test_operations_of_the_sparse_factorisation(n):
     assert (below + 2 * below * right).sum() / size == pytest.approx(work.SPARSE_FLOPS, rel=0.03)
     assert (factors.L.nnz + factors.U.nnz) / size == pytest.approx(work.SPARSE_ENTRIES, rel=0.03)
     assert size >= work.SPARSE_FROM == LEAST_SIZE
+
+
+@pytest.mark.parametrize("n", [4, 7])
+def test_operations_of_a_strip_in_motion(monkeypatch, n):
+    """The forces of a strip without tangent take as many operations as the formula says."""
+    design = cross_axis_pivot(**TABLE_ONE, control_points=n).mechanism.design
+    grid, points = grid_of(design), n + 2
+    monkeypatch.setattr(strip_force, "evaluate_points", strip_force.evaluate_points.py_func)
+    monkeypatch.setattr(strip_force, "math", SimpleNamespace(sqrt=lambda value: value.sqrt()))
+    x, y = (counting(np.ones((1, n)) * values) for values in (np.linspace(0.0, 1.0, n), 0.01))
+    room = [counting(np.zeros(shape)) for shape in ((4, points), points, (1, n), (1, n))]
+    axial = counting(np.ones((1, points, points)))
+    table = Grid(*(counting(array) for array in grid))
+    done = operations(strip_force.strip_force.py_func, 0, x, y, table, axial, *room)
+    assert len(grid.weight) == points
+    assert done == strip_force_flops(n)
+
+
+@pytest.mark.parametrize(
+    ("settings", "options", "unknowns"),
+    [
+        (SplineSettings(control_points=5), {"integrator": "leapfrog"}, 11),
+        (SplineSettings(control_points=5), {"step": 1e-4}, 43),
+        (FeSettings(elements=4), {}, 21),
+    ],
+    ids=["leapfrog", "implicit", "elements"],
+)
+def test_work_of_a_motion(settings, options, unknowns):
+    """Unknowns are those of the integrators, and the operations grow with the steps."""
+    problem = named_case("cross_axis_pivot")
+    short, long = (
+        work_of_motion(settings, answer_release(problem, settings, duration=d, **options).counters)
+        for d in (1e-3, 2e-3)
+    )
+    assert short["unknowns"] == unknowns
+    assert long["steps"] == pytest.approx(2 * short["steps"], abs=2)
+    assert long["flops"] == pytest.approx(2.0 * short["flops"], rel=0.2)
