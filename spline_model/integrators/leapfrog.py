@@ -9,6 +9,8 @@ without damping, loads or drives. Sources: see ``spline_model.fast.leapfrog``.
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from spline_model.compile import System
@@ -16,7 +18,7 @@ from spline_model.errors import InvalidParameter
 from spline_model.fast.acceleration import accelerate, stored_energy
 from spline_model.fast.leapfrog import run
 from spline_model.fast.release import coordinates, is_swing, reduced, swing
-from spline_model.fast.swing import swing_space
+from spline_model.fast.swing import Swing, SwingSpace, swing_space
 from spline_model.integrators.motion import Array, Records
 from spline_model.kernels.motion import Motion
 from spline_model.kernels.record import KINETIC, STRAIN
@@ -26,6 +28,39 @@ STABILITY_LIMIT = 12.0**0.5
 """omega h up to which a step does not amplify an undamped oscillation."""
 MOST_ENERGY = 1.01
 """Strain energy over the initial one at which a run is unstable and stops."""
+
+
+class Flight(NamedTuple):
+    """A swing about to start: constants, working arrays, r, its rates and acceleration, and the records."""
+
+    constants: Swing
+    space: SwingSpace
+    r: Array
+    w: Array
+    acceleration: Array
+    records: tuple[Array, Array, Array, Array]
+
+    def fly(self, step: float, every: int) -> int:
+        """Fill the records, ``every`` steps apart, in compiled code; returns the rows filled."""
+        most = MOST_ENERGY * self.records[3][0]
+        start = (self.r, self.w, self.acceleration)
+        return int(run(*start, step, every, most, self.constants, self.space, self.records))
+
+
+def flight(system: System, motion: Motion, z: Array, rows: int, mechanism: Mechanism) -> Flight:
+    """The swing from z at rest with space for ``rows`` records, the first one filled."""
+    if not is_swing(mechanism, system):
+        raise InvalidParameter(
+            "integrator", "leapfrog", "energy, for other scenes than a free body on straight mixed strips"
+        )
+    constants = swing(mechanism, system, motion)
+    space, r = swing_space(constants), reduced(mechanism, system, constants.frame, z)
+    w, acceleration, strain = np.zeros_like(r), np.zeros_like(r), np.zeros(rows)
+    accelerate(r, w, constants, space, acceleration)
+    strain[0] = stored_energy(r, constants, space)[0]
+    places, rates, accelerations = (np.zeros((rows, len(r))) for _ in range(3))
+    places[0], accelerations[0] = r, acceleration
+    return Flight(constants, space, r, w, acceleration, (places, rates, accelerations, strain))
 
 
 def integrate(
@@ -41,21 +76,11 @@ def integrate(
     mechanism: Mechanism,
 ) -> Records:
     """Take ``steps`` steps from z at rest, recording every ``every``-th one; needs z alone of the start."""
-    if not is_swing(mechanism, system):
-        raise InvalidParameter(
-            "integrator", "leapfrog", "energy, for other scenes than a free body on straight mixed strips"
-        )
-    constants = swing(mechanism, system, motion)
-    space, r = swing_space(constants), reduced(mechanism, system, constants.frame, z)
-    w, acceleration, rows = np.zeros_like(r), np.zeros_like(r), steps // every + 1
-    strain = np.zeros(rows)
-    accelerate(r, w, constants, space, acceleration)
-    strain[0] = stored_energy(r, constants, space)[0]
-    places, rates, accelerations = (np.zeros((rows, len(r))) for _ in range(3))
-    places[0], accelerations[0] = r, acceleration
-    records = (places, rates, accelerations, strain)
-    done = run(r, w, acceleration, step, every, MOST_ENERGY * strain[0], constants, space, records)
-    q, v = coordinates(mechanism, system, constants.frame, places[:done], rates[:done])
+    rows = steps // every + 1
+    start = flight(system, motion, z, rows, mechanism)
+    done = start.fly(step, every)
+    places, rates, _, strain = start.records
+    q, v = coordinates(mechanism, system, start.constants.frame, places[:done], rates[:done])
     table = np.zeros((done, 7))
     table[:, KINETIC] = 0.5 * np.einsum("ti,ij,tj->t", v, motion.mass, v, optimize=True)
     table[:, STRAIN] = strain[:done]

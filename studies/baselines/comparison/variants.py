@@ -58,6 +58,7 @@ def _short(value: Any) -> str:
 def static_variants() -> list[Variant]:
     """Return the settings of the static path."""
     found = [_variant(spline, SPLINE, control_points=n) for n in range(5, 11)]
+    found += [_variant(spline, SPLINE, control_points=n, gauss_points=n - 1 + (n < 8)) for n in (6, 7, 8, 9)]
     for tolerance in (1e-5, 1e-6, 1e-8):
         for elements in (2, 4, 6, 8, 12, 16, 24, 40):
             found.append(_ancf(elements, relative_tolerance=tolerance))
@@ -84,6 +85,10 @@ def release_variants() -> list[Variant]:
         for step in (2e-4, 1e-4, 5e-5, 2e-5)
     ]
     found += [_variant(spline, SPLINE, control_points=n, integrator="explicit", step=2e-6) for n in (6, 7, 8)]
+    found += [
+        _variant(spline, SPLINE, control_points=n, integrator="leapfrog", step=step)
+        for n, step in ((5, 5e-6), (6, 5e-6), (6, 2.5e-6), (7, 4e-6), (8, 2.5e-6), (8, 1.25e-6), (9, 2e-6))
+    ]
     for radius, tolerance in ((0.9, 1e-3), (0.6, 1e-3), (0.9, 1e-5)):
         options = {"spectral_radius": radius, "relative_tolerance": tolerance}
         for step in (2e-4, 1e-4, 5e-5, 2e-5):
