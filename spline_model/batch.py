@@ -172,7 +172,7 @@ def _solve_share(worker: int, workers: int, first: Mechanism, frames: Frame, bat
         worker,
         workers,
         frames,
-        at_rest(frame_of(first), n, modes),
+        at_rest(frame_of(design), n, modes),
         batch.rotation[1:],
         grid_of(design),
         locals_,

@@ -46,6 +46,29 @@ class Path:
     history: tuple[tuple[float, ...], ...]
 
 
+@dataclass(frozen=True, kw_only=True)
+class ErrorEstimate:
+    """Estimated error of a static path that was solved to an ``accuracy``, all relative [1].
+
+    trajectory: largest distance of the centre from where it should be, over its largest
+    displacement; torque, stiffness: largest error over the largest magnitude on the path.
+    control_points that were chosen; trials: numbers of control points that were tried.
+    Leaves out what more control points do not mend: the theory's own simplifications.
+    """
+
+    accuracy: float
+    trajectory: float
+    torque: float
+    stiffness: float
+    control_points: int
+    trials: tuple[int, ...]
+
+    @property
+    def largest(self) -> float:
+        """The larger error of trajectory and torque, which ``accuracy`` is about."""
+        return max(self.trajectory, self.torque)
+
+
 @dataclass(frozen=True, kw_only=True, eq=False)
 class StaticSolution:
     """Answer of a pivot under a driven rotation; S states, G strips, P stations.
@@ -56,7 +79,8 @@ class StaticSolution:
     gravity_energy (S,) [J] against rest, work (S,) of drive and loads since the first state;
     clamp_reactions (S, G, 2, 3): force [N] and moment [N m] of the clamp at the ground
     and at the body end on the strip; stations (P,) reference arc length over L;
-    shape (S, G, P, 2) [m]; axial_force, bending_moment, shear_force (S, G, P) [N, N m, N].
+    shape (S, G, P, 2) [m]; axial_force, bending_moment, shear_force (S, G, P) [N, N m, N];
+    estimate: of the error, where an accuracy was asked for.
     """
 
     status: Status
@@ -78,6 +102,7 @@ class StaticSolution:
     shear_force: Array
     counters: dict[str, int]
     history: tuple[tuple[float, ...], ...]
+    estimate: ErrorEstimate | None = None
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -6,13 +6,17 @@ import math
 from collections.abc import Callable, Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
+from spline_model.accuracy import check_accuracy
+from spline_model.accurate_path import solve_accurately
 from spline_model.compile import System, compile_scene
 from spline_model.effects import DrivenRotation
 from spline_model.effects.base import Constraint
 from spline_model.effects.registry import MOTION_ONLY
 from spline_model.errors import ConvergenceError, InvalidParameter, require_choice, require_count
-from spline_model.fast.solve import follow_fast, is_fast
+from spline_model.fast.path import Answer
+from spline_model.fast.solve import follow_fast, is_fast, path_of
 from spline_model.mechanism import Mechanism
 from spline_model.path import follow
 from spline_model.pivot import BODY, STRIPS, Pivot
@@ -25,6 +29,7 @@ STATIONS = np.linspace(0.0, 1.0, 61)
 """Where sections are recovered, reference arc length over L; both clamped ends are among them."""
 
 METHODS = ("condensed", "multipliers")
+Array = NDArray[np.float64]
 Progress = Callable[[int, int], None]
 
 
@@ -34,6 +39,7 @@ def solve_statics(
     rotation: float | Sequence[float],
     increments: int = 20,
     method: str = "condensed",
+    accuracy: float | None = None,
     raise_on_failure: bool = True,
     progress: Progress | None = None,
 ) -> StaticSolution:
@@ -42,8 +48,11 @@ def solve_statics(
     A sequence of rotations is a path from one to the next (there and back), each leg in
     ``increments``. method: "condensed" runs compiled with the clamps solved and the strips
     condensed, where the scene allows it; "multipliers" is the paper's bordered system. Both
-    agree to 1e-10. Raises ConvergenceError with the converged part of the path, or
-    returns it as a status with ``raise_on_failure=False``.
+    agree to 1e-10. accuracy: wanted error of trajectory and torque over the whole path,
+    relative [1]; the control points are raised from the pivot's until the estimated one is
+    below, axial modes and quadrature with them, and the solution has its ``estimate``. Raises
+    ConvergenceError with the converged part of the path, or with the best one where the
+    accuracy is not reached; returns it as a status with ``raise_on_failure=False``.
     """
     targets = [rotation] if isinstance(rotation, int | float) else list(rotation)
     for angle in targets:
@@ -55,22 +64,50 @@ def solve_statics(
     if largest == 0.0:
         raise InvalidParameter("rotation", rotation, "an angle other than zero [rad]")
     legs = [np.linspace(a, b, increments + 1)[1:] for a, b in zip([0.0, *targets], targets, strict=False)]
-    system = compile_scene(pivot.driven(largest))
     rotations = np.concatenate(legs)
+    if accuracy is None:
+        solution = _along(pivot, rotations, method, progress)
+    else:
+        check_accuracy(accuracy, pivot.mechanism.design)
+        solution = _accurate(pivot, rotations, method, accuracy)
+        if progress is not None:
+            progress(len(rotations), len(rotations))
+    if raise_on_failure and solution.status is not Status.CONVERGED:
+        raise ConvergenceError(
+            solution.message,
+            solution=solution,
+            load_factor=abs(solution.rotation[-1] / targets[-1]) if targets[-1] else 0.0,
+            history=solution.history,
+        )
+    return solution
+
+
+def _along(pivot: Pivot, rotations: Array, method: str, progress: Progress | None) -> StaticSolution:
+    """The solution through the rotations [rad]."""
+    largest = float(np.abs(rotations).max())
+    system = compile_scene(pivot.driven(largest))
     path = None
     if method == "condensed" and is_fast(pivot.mechanism):
         path = follow_fast(pivot.mechanism, system, list(rotations), progress)
     if path is None:  # also where the fast path stops: this one says why
         path = follow(system, list(rotations / largest), progress)
-    solution = _pivot_solution(system, path)
-    if raise_on_failure and path.status is not Status.CONVERGED:
-        raise ConvergenceError(
-            path.message,
-            solution=solution,
-            load_factor=abs(solution.rotation[-1] / targets[-1]) if targets[-1] else 0.0,
-            history=path.history,
-        )
-    return solution
+    return _pivot_solution(system, path)
+
+
+def _accurate(pivot: Pivot, rotations: Array, method: str, accuracy: float) -> StaticSolution:
+    """The solution with as many control points as the accuracy takes."""
+
+    def recover(chosen: Pivot, answer: Answer) -> StaticSolution:
+        system = compile_scene(chosen.driven(float(np.abs(rotations).max())))
+        return _pivot_solution(system, path_of(chosen.mechanism.design, system, list(rotations), answer))
+
+    return solve_accurately(
+        pivot,
+        rotations,
+        accuracy,
+        solve=lambda chosen: _along(chosen, rotations, method, None),
+        recover=recover if method == "condensed" and is_fast(pivot.mechanism) else None,
+    )
 
 
 def solve_path(mechanism: Mechanism, rotation: float, increments: int = 20, body: str | None = None) -> Path:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -52,12 +53,17 @@ def is_fast(mechanism: Mechanism) -> bool:
 def grid_of(design: Design) -> Grid:
     """Basis and modes at the Gauss points of a strip of unit length."""
     settings = design.discretisation
-    basis = bezier(settings.control_points)
-    u, weight = basis.gauss_rule(settings.points_a_span)
+    return _grid(settings.control_points, settings.points_a_span, mode_count(design))
+
+
+@lru_cache(maxsize=64)
+def _grid(control_points: int, gauss_points: int, modes: int) -> Grid:
+    basis = bezier(control_points)
+    u, weight = basis.gauss_rule(gauss_points)
     return Grid(
         d1=np.ascontiguousarray(basis.evaluate(u, 1)),
         d2=np.ascontiguousarray(basis.evaluate(u, 2)),
-        modes=np.ascontiguousarray(legendre.legvander(2 * u - 1, mode_count(design) - 1)),
+        modes=np.ascontiguousarray(legendre.legvander(2 * u - 1, modes - 1)),
         weight=weight,
     )
 
@@ -77,9 +83,8 @@ def compliances(design: Design, axial: Array) -> Array:
     return table
 
 
-def frame_of(mechanism: Mechanism) -> Frame:
+def frame_of(design: Design) -> Frame:
     """Geometry and rigidities of the strips."""
-    design = mechanism.design
     centre = np.array(design.bodies[0].centre, dtype=float)
     start = np.array([s.start for s in design.strips], dtype=float)
     end = np.array([s.end for s in design.strips], dtype=float)
@@ -124,11 +129,10 @@ def at_rest(frame: Frame, control_points: int, modes: int) -> Array:
     return np.concatenate((frame.centre / frame.length[0], np.tile(strip, len(frame.length))))
 
 
-def fast_path(mechanism: Mechanism, rotations: Sequence[float]) -> tuple[int, Answer]:
+def fast_path(design: Design, rotations: Sequence[float]) -> tuple[int, Answer]:
     """Follow the path through the rotations [rad]; returns the converged states and the answer."""
-    design = mechanism.design
     n, modes, strips = design.discretisation.control_points, mode_count(design), len(design.strips)
-    frame, grid = frame_of(mechanism), grid_of(design)
+    frame, grid = frame_of(design), grid_of(design)
     locals_, space = arrays(strips, n, modes)
     answer = empty_answer(len(rotations) + 1, len(space.y))
     targets = np.asarray(rotations, dtype=float)
@@ -153,27 +157,32 @@ def follow_fast(
     rotations: Sequence[float],
     progress: Callable[[int, int], None] | None = None,
 ) -> Path | None:
-    """The path as the multiplier path would give it, or None where the fast one stops.
-
-    ``system`` is the mechanism compiled with its driven rotation; load factors are those of
-    its drive. Of the rates only the drive's multiplier is filled.
-    """
-    drive = system.tables.drives
-    done, answer = fast_path(mechanism, rotations)
+    """The path as the multiplier path would give it, or None where the fast one stops."""
+    done, answer = fast_path(mechanism.design, rotations)
     if done <= len(rotations):
         return None
     if progress is not None:
         for increment in range(len(rotations)):
             progress(increment + 1, len(rotations))
+    return path_of(mechanism.design, system, rotations, answer)
+
+
+def path_of(design: Design, system: System, rotations: Sequence[float], answer: Answer) -> Path:
+    """A complete fast answer as a path of the multiplier path's unknowns.
+
+    ``system`` is the mechanism compiled with its driven rotation; load factors are those of
+    its drive. Of the rates only the drive's multiplier is filled.
+    """
+    drive = system.tables.drives
     angles = np.concatenate(([0.0], rotations))
-    rates = np.zeros((done, system.layout.size))
+    rates = np.zeros((len(angles), system.layout.size))
     rates[:, drive.row[0]] = answer.stiffness * drive.target[0]
     increments, counters = len(rotations), answer.counters
     return Path(
         status=Status.CONVERGED,
         message="",
         load_factor=angles / drive.target[0],
-        states=states_of(system, frame_of(mechanism), angles, answer),
+        states=states_of(system, frame_of(design), angles, answer),
         rates=rates,
         energies=answer.energies,
         counters={
