@@ -29,9 +29,9 @@ MORE = 3
 the torque was 0.3 to 3.7 times the true one on 1800 paths, with three 0.7 to 1.3 times."""
 MOST = {"bezier": 20, "bspline": 67}
 """Control points at which the search ends: round-off of a Bezier strip, 64 spans of a B-spline."""
-FIRST_GAIN = 10.0
+FIRST_GAIN = 6.0
 """By how much a control point is expected to lower the error before it was measured."""
-GAINS = (2.0, 30.0)
+GAINS = (2.0, 12.0)
 """Limits of what is believed of a measured gain: the error does not fall evenly."""
 
 

@@ -10,11 +10,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from spline_model.accurate_motion import Task, solve_accurately
 from spline_model.compile import System, compile_scene
 from spline_model.effects import DrivenRotation
 from spline_model.errors import InvalidParameter, require_choice, require_positive
 from spline_model.integrators import (
-    adaptive,
     energy_consistent,
     explicit,
     generalised_alpha,
@@ -26,7 +26,7 @@ from spline_model.kernels.record import DISSIPATED, KINETIC, POSITION, STRAIN, V
 from spline_model.mechanism import Mechanism
 from spline_model.modes import linear_modes, static_state
 from spline_model.pivot import Pivot
-from spline_model.solution import Status
+from spline_model.solution import MotionEstimate, Status
 
 Array = NDArray[np.float64]
 
@@ -56,7 +56,7 @@ class Trajectory:
     constraint_residual (T,) [m]; velocity_residual (T,) its rate [m/s]; states (T, N) and
     velocities (T, Q) of the system in motion; resolution: empty, or how far the step
     under-resolves the swing; effects: names of the scene's effects; counters: steps,
-    halved_steps, newton_iterations, ...
+    halved_steps, newton_iterations, ...; estimate: of the error, where an accuracy was asked for.
     """
 
     status: Status
@@ -77,6 +77,7 @@ class Trajectory:
     effects: tuple[str, ...]
     counters: dict[str, int]
     settings: dict[str, Any]
+    estimate: MotionEstimate | None = None
 
     @property
     def rotation(self) -> Array:
@@ -118,14 +119,17 @@ def solve_motion(
     integrator : "energy" (default, cannot create energy; with massless strips, only the bodies
         are dynamic), "generalised-alpha" (option
         ``spectral_radius``) or "explicit".
-    accuracy : wanted error of the rotation over the run [rad], by local error control of the
-        energy-consistent steps, instead of a fixed step.
-    records : largest number of records; default every step.
+    accuracy : wanted error of the rotation over the run [rad] instead of a step: steps and control
+        points are chosen, and the trajectory has its ``estimate``.
+    records : largest number of records; default every step, or with an accuracy some 64 a swing.
 
     Raises InvalidParameter, and ConvergenceError if statics does not reach ``start``.
     """
     _check(integrator, duration, start, step, accuracy)
     body = mechanism.design.body_named(body)
+    if accuracy is not None:
+        task = _task(mechanism, start, body, drive, duration)
+        return solve_accurately(mechanism, accuracy, task, records)
     scene = mechanism.released()
     system = compile_scene(scene if drive is None else mechanism.with_effects(drive))
     motion, layout = set_in_motion(system), system.layout
@@ -135,10 +139,6 @@ def solve_motion(
     z[:known] = held[:known]
     acceleration, z = initial_acceleration(system, motion, z, v)
     effects = mechanism.effects
-    if accuracy is not None:
-        run = adaptive.integrate(system, motion, z, v, acceleration, duration=duration, accuracy=accuracy)
-        settings = {"integrator": integrator, "accuracy_rad": accuracy}
-        return _trajectory(system, run, effects, body, settings, "")
     if step is None:
         limit = critical_step(system, motion, z) if integrator == "explicit" else math.inf
         step = min(EXPLICIT_SAFETY * limit, STEP, duration)
@@ -153,6 +153,40 @@ def solve_motion(
         )
     settings = {"integrator": integrator, "step_s": step, **options}
     return _trajectory(system, run, effects, body, settings, _resolution(system, motion, step))
+
+
+def _task(
+    mechanism: Mechanism, start: float, body: str, drive: DrivenRotation | None, duration: float
+) -> Task:
+    """The motion as a task of accuracy on request."""
+    system = compile_scene(mechanism.released())
+    squares = linear_modes(system, system.rest, set_in_motion(system).mass)[0]
+
+    def run(chosen: Mechanism, integrator: str, step: float, records: int) -> Trajectory:
+        return solve_motion(
+            chosen,
+            start=start,
+            body=body,
+            drive=drive,
+            duration=duration,
+            step=step,
+            integrator=integrator,
+            records=records,
+        )
+
+    def critical(chosen: Mechanism) -> float:
+        scene = compile_scene(chosen.released())
+        motion = set_in_motion(scene)
+        explicit.require_explicit(scene, motion)
+        return critical_step(scene, motion, static_state(chosen, start, body=body)[: scene.layout.size])
+
+    return Task(
+        duration=duration,
+        amplitude=abs(start),
+        frequency=math.sqrt(max(float(squares[0]), 0.0)),
+        run=run,
+        critical=critical if drive is None else lambda chosen: 0.0,
+    )
 
 
 def _check(

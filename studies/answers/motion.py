@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from studies.answers.metrics import swing_frequency
+from studies.answers.response import estimate_of
 
 Array = NDArray[np.float64]
 
@@ -83,6 +84,7 @@ class Motion:
         constraint_residual: (T,) largest gap of clamps [m]; velocity_residual: (T,) its rate [m/s].
         counters: work done, by kind.
         wall_s: time of the motion alone, without the static path to its start [s].
+        estimate: as in `Response`.
     """
 
     model: str
@@ -103,6 +105,7 @@ class Motion:
     velocity_residual: Array
     counters: dict[str, int]
     wall_s: float
+    estimate: dict[str, Any] | None = None
 
     @property
     def converged(self) -> bool:
@@ -199,6 +202,7 @@ def motion(
         body=body,
         counters=dict(result.counters),
         wall_s=wall_s,
+        estimate=estimate_of(result),
         **{name: np.asarray(array, dtype=float) for name, array in arrays.items()},
     )
 
@@ -224,6 +228,7 @@ def no_motion(
         body=body,
         counters={},
         wall_s=0.0,
+        estimate=None,
         **{name: np.zeros(0) for name in (*SHARED_ARRAYS, *RESIDUALS)},
     )
 

@@ -69,7 +69,7 @@ def test_estimate_is_the_true_error(number, accuracy):
 
 
 def test_effectivity_gate_has_teeth(monkeypatch):
-    """Requirement: the check notices an estimate from one control point more: the error falls in uneven steps."""
+    """Requirement: the check notices an estimate from one control point more, as errors fall unevenly."""
     monkeypatch.setattr(accuracies, "MORE", gates.teeth("spline_accuracy_effectivity")["more"])
     worst = max(misjudged(number, accuracy) for number in range(len(DESIGNS)) for accuracy in ACCURACIES)
     with pytest.raises(AssertionError, match="x the gate"):

@@ -199,16 +199,6 @@ def test_initial_acceleration_is_consistent():
     assert abs(mean / acceleration[turn] - 1) < 1e-5  # (axial frequency x step)^2 / 12
 
 
-def test_accuracy_controls_the_step():
-    """Requirement: a tighter accuracy takes more steps and comes nearer to the converged swing."""
-    exact = released(duration=0.005, step=5e-7, records=1).rotation[-1]
-    loose, tight = (released(duration=0.005, accuracy=a) for a in (1e-2, 1e-4))
-    assert tight.counters["steps"] > 2 * loose.counters["steps"]
-    assert abs(tight.rotation[-1] - exact) < 1e-4
-    assert abs(loose.rotation[-1] - exact) < 1e-2
-    assert energy_error(loose) < 1e-10  # as at fixed steps
-
-
 def test_an_unstable_explicit_step_is_named():
     """Requirement: an explicit step above the critical one stops with a message, not with NaN."""
     fine = released(duration=0.001, integrator="explicit")
