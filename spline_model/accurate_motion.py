@@ -1,9 +1,9 @@
 """A motion to a wanted accuracy: steps and control points until the estimated error is below it.
 
-Two runs with other steps differ by what the steps are worth, two runs with other strips by what
-the control points are worth. The energy-consistent scheme converges with its order only
+Runs with other steps differ by what the steps are worth, runs with other strips by what the
+control points are worth. The energy-consistent scheme converges with its order only
 where its steps are longer than the axial waves that a release excites, and again where they
-resolve them; in between the error stays where it is. The difference of two runs shows that,
+resolve them; in between the error stays where it is. The differences of runs show that,
 where a local error does not, and the explicit scheme takes over, whose steps resolve the waves.
 """
 
@@ -16,6 +16,7 @@ from functools import cache
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from spline_model.design import swinging_slide_stiffness
 from spline_model.errors import InvalidParameter
@@ -25,12 +26,16 @@ from spline_model.solution import MotionEstimate, Status
 if TYPE_CHECKING:
     from spline_model.dynamics import Trajectory
 
+Array = NDArray[np.float64]
+
 MORE = 2
 """Control points more, for the estimate and from one trial to the next."""
 MOST = 14
 """Control points at which the search ends: each two more halve the explicit step and double its work."""
-INSTANTS = 64
-"""Instants a period of the swing at rest at which runs are compared: at least one step lies between."""
+INSTANTS = 32
+"""Instants a period of the swing at rest at which runs are compared: a step of the coarsest lies between."""
+FINE = 4
+"""Records of the finest run between two such instants."""
 SHARE = 2.0 / 3.0
 """The part of the accuracy that the steps may use; the rest is for the control points."""
 NO_GAIN = 0.5
@@ -38,20 +43,38 @@ NO_GAIN = 0.5
 resolve what it is made of."""
 LARGEST_PART, SMALLEST_PART = 0.7, 0.1
 """First and least explicit step over the critical one."""
+EXPLICIT_RATIO = 4.0 / 3.0
+"""Coarse explicit step over the fine one; the scheme is of order four."""
+DOUBT = 0.25
+"""The part of the difference of explicit runs that is added, for want of a third below the critical step."""
 MOST_STEPS = 500_000
 """Energy-consistent steps at which the search ends where there are no explicit ones."""
 
 
 class Rung(NamedTuple):
-    """A pair of runs: steps between two instants, and for explicit ones the step over the critical one.
-
-    The coarse run has half the steps (order two), or three quarters (explicit, order four):
-    their difference is three or two times the error of the fine run.
-    """
+    """A scheme and how fine it is: steps between two instants, or the step over the critical one."""
 
     integrator: str
     fine: int
     part: float
+
+
+class Resolved(NamedTuple):
+    """Runs of one rung: the fine one, a coarser rotation (S,), and what the fine one still lacks.
+
+    correction (S,): of the fine rotation by the order of the scheme [rad]; doubt: how far the
+    runs depart from that order [rad].
+    """
+
+    fine: Trajectory
+    coarser: Array
+    correction: Array
+    doubt: float
+
+    @property
+    def error(self) -> float:
+        """Estimated error by the steps [rad]."""
+        return largest(self.correction) + self.doubt
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -74,32 +97,45 @@ def solve_accurately(mechanism: Mechanism, accuracy: float, task: Task, records:
     """The motion whose estimated error of the rotation is below ``accuracy`` [rad].
 
     Control points are raised from those of the mechanism on, and the slide stiffness with
-    them; runs are compared at the records, or at more instants. An accuracy that is not
-    reached is the status NOT_CONVERGED of the best motion.
+    them. The estimate is the correction that the order of the scheme and two control points
+    more suggest, and how far the runs depart from that order. An accuracy that is not reached
+    is the status NOT_CONVERGED of the best motion.
     """
-    least = max(math.ceil(INSTANTS * task.duration * task.frequency / (2 * math.pi)), INSTANTS)
-    every = 1 if records is None else math.ceil(least / records)
-    runs = _Runs(mechanism, task, least if records is None else every * records)
+    instants, every = comparison(task, records)
+    runs = _Runs(mechanism, task, instants)
     n = mechanism.design.discretisation.control_points
-    rung = runs.first(n, accuracy)
     while True:
-        rung = runs.resolve(n, rung, SHARE * accuracy)
-        coarse, fine = runs.pair(n, rung)
-        time = difference(coarse, fine)
-        space = difference(coarse, runs.pair(n + MORE, rung, fine=False)[0])
+        rung = runs.resolve(n, runs.first(n, accuracy), accuracy)
+        by_steps, by_points = runs.solved(n, rung), runs.by_points(n, rung)
         estimate = MotionEstimate(
-            accuracy=accuracy, time=time, space=space, control_points=n, runs=runs.count
+            accuracy=accuracy,
+            rotation=largest(by_steps.correction + by_points) + by_steps.doubt,
+            time=by_steps.error,
+            space=largest(by_points),
+            control_points=n,
+            runs=runs.count,
         )
-        if estimate.rotation <= accuracy or time > SHARE * accuracy or n + MORE > MOST:
-            return _answer(fine, estimate, runs.slide_stiffness(n), every)
+        stuck = by_steps.error > SHARE * accuracy and estimate.space <= accuracy + by_steps.error
+        if estimate.rotation <= accuracy or stuck or n + MORE > MOST:
+            return _answer(by_steps.fine, estimate, runs.slide_stiffness(n), every)
         n += MORE
 
 
-def difference(a: Trajectory, b: Trajectory) -> float:
-    """Largest difference of the rotations of two runs with the same instants [rad]; inf if one stopped."""
-    if Status.NOT_CONVERGED in (a.status, b.status):
-        return math.inf
-    return float(np.abs(a.rotation - b.rotation).max())
+def comparison(task: Task, records: int | None) -> tuple[int, int]:
+    """Spacings of the instants at which runs are compared, and every which fine record is kept."""
+    least = max(math.ceil(INSTANTS * task.duration * task.frequency / (2 * math.pi)), INSTANTS)
+    if records is None or records >= FINE * least:
+        return least, 1
+    if records >= least:
+        return least, FINE if records < FINE // 2 * least else FINE // 2
+    each = math.ceil(least / records)
+    return each * records, each * FINE
+
+
+def largest(difference: Array) -> float:
+    """Largest magnitude; inf where there is none because a run stopped."""
+    magnitude = float(np.abs(difference).max())
+    return magnitude if math.isfinite(magnitude) else math.inf
 
 
 def _answer(fine: Trajectory, estimate: MotionEstimate, slide_stiffness: float, every: int) -> Trajectory:
@@ -125,10 +161,11 @@ def _answer(fine: Trajectory, estimate: MotionEstimate, slide_stiffness: float, 
 
 
 class _Runs:
-    """Runs of one mechanism, each solved once."""
+    """Runs of one mechanism, each solved once; compared at ``instants`` + 1 instants."""
 
     def __init__(self, mechanism: Mechanism, task: Task, instants: int) -> None:
         self.mechanism, self.task, self.instants = mechanism, task, instants
+        self.spacing = task.duration / instants
         self.count = 0
         self.with_points = cache(self._with_points)
         self.critical = cache(self._critical)
@@ -140,56 +177,83 @@ class _Runs:
         angle = task.amplitude * task.frequency * task.duration  # that the phase error is a part of
         step = math.inf
         if angle > 0:
-            step = math.sqrt(12 * SHARE * accuracy / 3 / angle) / task.frequency
+            step = math.sqrt(6 * SHARE * accuracy / angle) / task.frequency
         if step < self.critical(n):
-            return Rung("explicit", 4, LARGEST_PART)
-        return Rung("energy", 2 * max(1, math.ceil(self._spacing / (2 * step))), 0.0)
+            return Rung("explicit", FINE, LARGEST_PART)
+        return Rung("energy", FINE * max(1, math.ceil(self.spacing / (FINE * step))), 0.0)
 
-    def resolve(self, n: int, rung: Rung, wanted: float) -> Rung:
-        """The first pair from ``rung`` on whose difference is at most ``wanted`` [rad], or else the best."""
+    def resolve(self, n: int, rung: Rung, accuracy: float) -> Rung:
+        """The first rung from ``rung`` on whose error leaves enough of the accuracy, or else the best.
+
+        Explicit steps are not taken before there are about enough control points.
+        """
         best, least, before = rung, math.inf, math.inf
         following: Rung | None = rung
         while following is not None:
             rung = following
-            time = difference(*self.pair(n, rung))
-            if time < least:
-                best, least = rung, time
-            if time <= wanted:
+            error = self.solved(n, rung).error
+            if error < least:
+                best, least = rung, error
+            if error <= SHARE * accuracy:
                 break
-            following = self.finer(n, rung, time / wanted, stuck=time > NO_GAIN * before)
-            before = time
+            following = self.finer(n, rung, error / (SHARE * accuracy), stuck=error > NO_GAIN * before)
+            before = error
+            dearer = following is not None and following.integrator != rung.integrator
+            if dearer and largest(self.by_points(n, rung)) > accuracy + error:
+                break
         return best
 
     def finer(self, n: int, rung: Rung, excess: float, *, stuck: bool) -> Rung | None:
-        """The next pair after one whose difference is ``excess`` times too large; None if there is none."""
+        """The next rung after one whose error is ``excess`` times too large; None if there is none."""
         critical = self.critical(n)
-        if rung.integrator == "energy":
-            factor = min(max(1.2 * math.sqrt(min(excess, 1e6)), 2.0), 8.0)
-            fine = 2 * math.ceil(rung.fine * factor / 2)
-            if critical == 0.0:
-                return Rung("energy", fine, 0.0) if fine * self.instants <= MOST_STEPS else None
-            if not stuck and self._spacing / fine > critical:
-                return Rung("energy", fine, 0.0)
-            return Rung("explicit", 4, LARGEST_PART)
-        part = rung.part * min(max(0.9 * excess**-0.25, 0.3), 0.8)
-        return Rung("explicit", 4, part) if part >= SMALLEST_PART else None
-
-    def pair(self, n: int, rung: Rung, *, fine: bool = True) -> tuple[Trajectory, Trajectory]:
-        """The coarse and the fine run, or the coarse one twice."""
-        steps = rung.fine
         if rung.integrator == "explicit":
-            steps = 4 * math.ceil(self._spacing / (4 * rung.part * self.critical(n)))
-        coarse = steps // 2 if rung.integrator == "energy" else 3 * steps // 4
-        first = self.run(n, rung.integrator, coarse)
-        return first, self.run(n, rung.integrator, steps) if fine else first
+            part = rung.part * min(max(0.9 * excess**-0.25, 0.3), 0.8)
+            return Rung("explicit", FINE, part) if part >= SMALLEST_PART else None
+        factor = min(max(1.2 * math.sqrt(min(excess, 1e6)), 2.0), 8.0)
+        fine = FINE * math.ceil(rung.fine * factor / FINE)
+        if critical == 0.0:
+            return Rung("energy", fine, 0.0) if fine * self.instants <= MOST_STEPS else None
+        if stuck or self.spacing / fine < critical:
+            return Rung("explicit", FINE, LARGEST_PART)
+        return Rung("energy", fine, 0.0)
 
-    @property
-    def _spacing(self) -> float:
-        return self.task.duration / self.instants
+    def solved(self, n: int, rung: Rung) -> Resolved:
+        """The runs of a rung and what they say of the fine one."""
+        steps = self.steps(n, rung)
+        fine, coarser = self.run(n, rung.integrator, steps), self.coarser(n, rung)
+        change = self.rotation(fine) - coarser
+        if rung.integrator == "explicit":
+            doubt = DOUBT * largest(change)
+            return Resolved(fine, coarser, change / (EXPLICIT_RATIO**4 - 1.0), doubt)
+        before = coarser - self.rotation(self.run(n, rung.integrator, steps // 4))
+        return Resolved(fine, coarser, change / 3.0, largest(before - 4.0 * change) / 4.0)
+
+    def by_points(self, n: int, rung: Rung) -> Array:
+        """What some more control points change of the rotation (S,) [rad]."""
+        return self.coarser(n + MORE, rung) - self.coarser(n, rung)
+
+    def coarser(self, n: int, rung: Rung) -> Array:
+        """Rotation (S,) of the second finest run of a rung [rad]."""
+        steps = self.steps(n, rung)
+        fewer = 3 * steps // 4 if rung.integrator == "explicit" else steps // 2
+        return self.rotation(self.run(n, rung.integrator, fewer))
+
+    def steps(self, n: int, rung: Rung) -> int:
+        """Steps of the finest run between two instants."""
+        if rung.integrator == "explicit":
+            return FINE * math.ceil(self.spacing / (FINE * rung.part * self.critical(n)))
+        return rung.fine
+
+    def rotation(self, run: Trajectory) -> Array:
+        """Rotation at the instants (S,) [rad]; nan for a run that stopped."""
+        if run.status is not Status.CONVERGED:
+            return np.full(self.instants + 1, np.nan)
+        return run.rotation[:: (len(run.time) - 1) // self.instants]
 
     def _run(self, n: int, integrator: str, steps: int) -> Trajectory:
         self.count += 1
-        return self.task.run(self.with_points(n), integrator, self._spacing / steps, self.instants)
+        records = self.instants * (FINE if steps % FINE == 0 else 1)
+        return self.task.run(self.with_points(n), integrator, self.spacing / steps, records)
 
     def _critical(self, n: int) -> float:
         try:

@@ -73,20 +73,17 @@ class ErrorEstimate:
 class MotionEstimate:
     """Estimated error of the rotation of a motion that was solved to an ``accuracy`` [rad].
 
-    time: of the steps, two to three times too large where they converge with their order;
-    space: of the control points, of which ``control_points`` were chosen; runs that it took.
+    rotation: its largest error over the motion, of the steps (``time``) and of the control points
+    (``space``) together, which may cancel in part; control_points that were chosen; runs that
+    it took.
     """
 
     accuracy: float
+    rotation: float
     time: float
     space: float
     control_points: int
     runs: int
-
-    @property
-    def rotation(self) -> float:
-        """Largest error of the rotation over the motion [rad]."""
-        return self.time + self.space
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

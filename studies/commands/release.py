@@ -131,7 +131,9 @@ def _estimate(answer: Motion) -> dict[str, Any]:
     """Return the estimate of the error as a part of the JSON object; none where no accuracy was asked for."""
     if answer.estimate is None:
         return {}
-    angles = {f"{name}_rad": number(answer.estimate[name]) for name in ("accuracy", "time", "space")}
+    angles = {
+        f"{name}_rad": number(answer.estimate[name]) for name in ("accuracy", "rotation", "time", "space")
+    }
     return {"estimate": angles | {name: answer.estimate[name] for name in ("control_points", "runs")}}
 
 
@@ -150,9 +152,8 @@ def _readable(answer: Motion) -> Iterator[str]:
     if math.isfinite(answer.frequency):
         yield f"frequency {answer.frequency:.4f} Hz; energy balanced to {answer.energy_error:.1e}"
     if answer.estimate is not None:
-        by_steps, by_points = answer.estimate["time"], answer.estimate["space"]
-        parts = f"{by_steps:.1e} rad by steps, {by_points:.1e} rad by control points"
-        yield f"estimated error of the rotation: {parts}"
+        whole, *parts = (f"{answer.estimate[name]:.1e} rad" for name in ("rotation", "time", "space"))
+        yield f"estimated error of the rotation {whole}: {parts[0]} by steps, {parts[1]} by control points"
     if answer.resolution:
         yield answer.resolution
     yield ending(answer.status, answer.counters, answer.wall_s)
