@@ -115,7 +115,8 @@ def solve_accurately(mechanism: Mechanism, accuracy: float, task: Task, records:
             control_points=n,
             runs=runs.count,
         )
-        stuck = by_steps.error > SHARE * accuracy and estimate.space <= accuracy + by_steps.error
+        early = rung.integrator == "energy" and estimate.space > accuracy + by_steps.error
+        stuck = by_steps.error > SHARE * accuracy and not early
         if estimate.rotation <= accuracy or stuck or n + MORE > MOST:
             return _answer(by_steps.fine, estimate, runs.slide_stiffness(n), every)
         n += MORE

@@ -121,7 +121,7 @@ def solve_motion(
         ``spectral_radius``) or "explicit".
     accuracy : wanted error of the rotation over the run [rad] instead of a step: steps and control
         points are chosen, and the trajectory has its ``estimate``.
-    records : largest number of records; default every step, or with an accuracy some 64 a swing.
+    records : largest number of records; default every step, or with an accuracy 128 a swing or more.
 
     Raises InvalidParameter, and ConvergenceError if statics does not reach ``start``.
     """

@@ -7,6 +7,7 @@ states start Newton's method so near to the finer ones that no path need be foll
 from __future__ import annotations
 
 import math
+from functools import lru_cache
 
 import numpy as np
 from numba import njit
@@ -78,6 +79,7 @@ def _control_points(w: Array, centre: Array, rotations: Array, frame: Frame, s: 
     return points
 
 
+@lru_cache(maxsize=64)
 def _elevation(count: int, target: int) -> Array:
     """Matrix (target, count) that gives a Bezier curve more control points.
 

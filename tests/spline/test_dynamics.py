@@ -240,3 +240,12 @@ def test_inextensible_strips_have_no_explicit_step():
         released({"stretch": "inextensible"}, integrator="explicit", step=1e-6)
     trajectory = released({"stretch": "inextensible"}, duration=0.005)
     gates.check("spline_swing_energy", energy_error(trajectory))
+
+
+def test_massless_strips_take_short_steps_too():
+    """Requirement: with massless strips steps of a microsecond are of order two like longer ones."""
+    scene = {"effects": ("bending", "stretching", "body_inertia")}
+    ends = [released(scene, duration=2e-4, step=step).rotation[-1] for step in (1e-5, 5e-6, 2.5e-6, 1.25e-6)]
+    coarse, fine, finest = np.abs(np.diff(ends))
+    assert math.log2(coarse / fine) > 1.85
+    assert math.log2(fine / finest) > 1.85
