@@ -1,6 +1,6 @@
 # `make` alone lists the targets. Everything happens in .venv, which `make setup` creates.
 .DEFAULT_GOAL := help
-.PHONY: help setup figures test test-all lint clean
+.PHONY: help setup figures test test-all bench lint clean
 
 PYTHON ?= python3
 BIN := .venv/bin
@@ -33,6 +33,11 @@ test: $(STAMP)  ## run the quick tests
 
 test-all: $(STAMP)  ## run all tests
 	$(BIN)/python -m pytest -q
+
+bench: $(STAMP)  ## time the solvers; counters are stored beside the seconds
+	@mkdir -p .benchmarks
+	$(BIN)/python -m pytest -q tests/bench --benchmark-enable --benchmark-sort=name \
+		--benchmark-columns=min,median,iqr,ops,rounds --benchmark-json=.benchmarks/speed.json
 
 lint: $(STAMP)  ## check style and types
 	$(BIN)/ruff check .

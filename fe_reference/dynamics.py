@@ -18,6 +18,7 @@ from .modes import natural_frequencies
 from .motion import Progress, Samples, sampling
 from .solution import Status
 from .statics import static_state
+from .stopwatch import Stopwatch
 from .structure import Structure
 from .trajectory import MechanismTrajectory, Trajectory, mechanism_trajectory, pivot_trajectory
 
@@ -102,9 +103,11 @@ def solve_release(
         progress=progress,
     )
     pivot.body_index(None)
+    watch = Stopwatch()
     y = _start(pivot, start, None, increments)
-    structure, motion, settings = _integrate(pivot, y, run)
-    trajectory = pivot_trajectory(structure, motion, {"start_rad": start, **settings})
+    watch.stop("start")
+    structure, motion, settings = _integrate(pivot, y, run, watch)
+    trajectory = pivot_trajectory(structure, motion, {"start_rad": start, **settings}, watch)
     _raise_if_stopped(trajectory, motion, run, raise_on_failure)
     return trajectory
 
@@ -152,10 +155,12 @@ def solve_motion(
     )
     if start is not None and not settled:
         raise InvalidParameter("settled", settled, "True for a start at a held rotation [1]")
+    watch = Stopwatch()
     y = _start(mechanism, start, body, increments) if settled else np.zeros(mechanism.structure.size)
-    structure, motion, settings = _integrate(mechanism, y, run)
+    watch.stop("start")
+    structure, motion, settings = _integrate(mechanism, y, run, watch)
     begin: dict[str, float | str] = {} if start is None else {"start_rad": start}
-    trajectory = mechanism_trajectory(structure, motion, begin | settings)
+    trajectory = mechanism_trajectory(structure, motion, begin | settings, watch)
     _raise_if_stopped(trajectory, motion, run, raise_on_failure)
     return trajectory
 
@@ -166,7 +171,9 @@ def _start(model: Model, rotation: float | None, body: str | None, increments: i
     return static_state(model, rotation, body, count("increments", increments), start_load(model.structure))
 
 
-def _integrate(model: Model, y: Array, run: Run) -> tuple[Structure, Samples, dict[str, float | str]]:
+def _integrate(
+    model: Model, y: Array, run: Run, watch: Stopwatch
+) -> tuple[Structure, Samples, dict[str, float | str]]:
     """Integrate from rest at y; return the structure the samples belong to, the samples and the settings."""
     needs_inertia(model.effects)
     structure, bodies = about_mass_centre(model.structure)
@@ -183,7 +190,9 @@ def _integrate(model: Model, y: Array, run: Run) -> tuple[Structure, Samples, di
         longest = run.duration if run.step is not None else 1.0 / (STEPS_PER_PERIOD * _first_frequency(model))
     h, steps = _steps(run.duration, longest if run.step is None else run.step, run.step is None)
     _affordable(run.duration, h, steps, min(run.samples, steps), y.size)
+    watch.stop("compile")
     motion = scheme.run(y, np.zeros_like(y), h, sampling(steps, run.samples), run.progress)
+    watch.stop("solve")
     settings: dict[str, float | str] = {"integrator": run.integrator, "duration_s": run.duration, "step_s": h}
     return structure, motion, settings | choices
 

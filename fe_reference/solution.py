@@ -51,6 +51,7 @@ class StaticSolution:
             adjacent elements, which agree to the residual.
         gravity_energy (S,): energy of the weight, zero in the shape at rest [J].
         work (S,): of drives and loads since the first state, by Hermite's rule over the increments [J].
+        seconds: by part, see `fe_reference.stopwatch`.
         counters: increments, halvings, newton_iterations, residual_evaluations, tangent_evaluations,
             factorisations.
         history: dimensionless residual norms of every accepted increment.
@@ -76,6 +77,7 @@ class StaticSolution:
     shear_force: Array
     counters: Mapping[str, int]
     history: tuple[tuple[float, ...], ...]
+    seconds: Mapping[str, float]
 
     @property
     def strain_energy(self) -> Array:
@@ -98,6 +100,7 @@ class MechanismSolution:
         shape (S, G, P, 2): positions of the nodes [m]. bending_moment (S, G, P): [N m].
         clamp_reactions (S, G, 2, 3): force x, y [N] and moment [N m] on the strip at its root and its tip.
         effects: names of the effects of the scene.
+        seconds: as in `StaticSolution`.
         counters: as in `StaticSolution`, and settling_increments: of the way to the first state.
     """
 
@@ -118,6 +121,7 @@ class MechanismSolution:
     effects: tuple[str, ...]
     counters: Mapping[str, int]
     history: tuple[tuple[float, ...], ...]
+    seconds: Mapping[str, float]
 
     @property
     def strain_energy(self) -> Array:

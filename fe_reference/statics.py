@@ -13,6 +13,7 @@ from .model import Model
 from .path import Path
 from .recovery import recover
 from .solution import MechanismSolution, StaticSolution, Status
+from .stopwatch import Stopwatch
 from .structure import Structure
 
 Array = NDArray[np.float64]
@@ -44,6 +45,7 @@ def solve_statics(
         InvalidParameter: a rotation that is not finite, fewer than one increment, several bodies.
         ConvergenceError: the path ended early; carries the converged part.
     """
+    watch = Stopwatch()
     ends = [finite("rotation", end, "rad") for end in np.ravel(rotation).tolist()]
     steps = count("increments", increments)
     if not ends:
@@ -57,8 +59,10 @@ def solve_statics(
         load=full_load(structure),
         watched=int(structure.turns[body]),
     )
+    watch.stop("compile")
     path = follow(controls, steps, progress)
-    solution: StaticSolution = checked(_pack(path, steps * len(ends)), path, raise_on_failure)
+    watch.stop("solve")
+    solution: StaticSolution = checked(_pack(path, steps * len(ends), watch), path, raise_on_failure)
     return solution
 
 
@@ -78,6 +82,7 @@ def solve_loads(
         force: final force (2,) [N], fixed in space. moment: final moment [N m].
         increments, raise_on_failure, progress: as in `solve_statics`.
     """
+    watch = Stopwatch()
     structure = model.structure
     pull = [finite("force", part, "N") for part in np.ravel(np.asarray(force)).tolist()]
     if len(pull) != 2:
@@ -88,8 +93,10 @@ def solve_loads(
     steps = count("increments", increments)
     led = _displacement(model, None)
     controls = spans(structure, displacement=led, load=load, watched=int(structure.turns[0]))
+    watch.stop("compile")
     path = follow(controls, steps, progress)
-    solution: StaticSolution = checked(_pack(path, steps), path, raise_on_failure)
+    watch.stop("solve")
+    solution: StaticSolution = checked(_pack(path, steps, watch), path, raise_on_failure)
     return solution
 
 
@@ -119,6 +126,7 @@ def solve_mechanism(
         InvalidParameter: an unknown body, a drive without a body, a displacement given twice.
         ConvergenceError: the path ended early; carries the converged part.
     """
+    watch = Stopwatch()
     steps, structure = count("increments", increments), mechanism.structure
     led = _displacement(mechanism, displacement)
     driven = rotation is not None or led is not None
@@ -131,8 +139,10 @@ def solve_mechanism(
         load=full_load(structure),
         watched=int(structure.turns[which]) if which is not None and rotation is not None else None,
     )
+    watch.stop("compile")
     path = follow(controls, steps, progress)
-    packed = _pack_mechanism(path, steps)
+    watch.stop("solve")
+    packed = _pack_mechanism(path, steps, watch)
     solution: MechanismSolution = checked(packed, path, raise_on_failure)
     return solution
 
@@ -164,7 +174,7 @@ def static_state(
         return np.zeros(structure.size)  # rest, whether or not clamps hold it
     steps = count("increments", increments)
     path = follow(controls, steps)
-    checked(_pack_mechanism(path, steps), path, True)
+    checked(_pack_mechanism(path, steps, Stopwatch()), path, True)
     return path.states[-1].y
 
 
@@ -197,7 +207,7 @@ def _energies(path: Path) -> dict[str, Array]:
     }
 
 
-def _pack(path: Path, total: int) -> StaticSolution:
+def _pack(path: Path, total: int, watch: Stopwatch) -> StaticSolution:
     """Gather the states of a path of one body into arrays."""
     structure, states = path.control.structure, path.states
     fields = [recover(structure, state.y) for state in states]
@@ -216,10 +226,11 @@ def _pack(path: Path, total: int) -> StaticSolution:
         history=tuple(state.norms for state in states[1:]),
         **_energies(path),
         **{name: np.array([getattr(each, name) for each in fields]) for name in names},
+        seconds=watch.stop("recover"),
     )
 
 
-def _pack_mechanism(path: Path, total: int) -> MechanismSolution:
+def _pack_mechanism(path: Path, total: int, watch: Stopwatch) -> MechanismSolution:
     """Gather the states of a mechanism."""
     structure, states = path.control.structure, path.states
     y = np.array([state.y for state in states])
@@ -237,6 +248,7 @@ def _pack_mechanism(path: Path, total: int) -> MechanismSolution:
         counters={name: path.counters[name] for name in (*COUNTERS, "settling_increments")},
         history=tuple(state.norms for state in states[1:]),
         **_energies(path),
+        seconds=watch.stop("recover"),
     )
 
 

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from .motion import Samples
 from .solution import Status
 from .statics import body_motion
+from .stopwatch import Stopwatch
 from .structure import Structure
 
 Array = NDArray[np.float64]
@@ -32,6 +33,7 @@ class Trajectory:
         shape (T, G, P, 2): positions of the nodes, same origin [m].
         counters: steps, force_evaluations; implicit also iterations, factorisations, halvings.
         settings: integrator, step_s, critical_step_s (explicit), start_rad and what else defines the run.
+        seconds: by part (`fe_reference.stopwatch`), "start" the static state that is let go.
     """
 
     status: Status
@@ -50,6 +52,7 @@ class Trajectory:
     shape: Array
     counters: Mapping[str, int]
     settings: Mapping[str, float | str]
+    seconds: Mapping[str, float]
 
     @property
     def energy_error(self) -> float:
@@ -68,7 +71,7 @@ class MechanismTrajectory:
         kinetic_energy, strain_energy, gravity_energy, work, dissipated (T,): as in `Trajectory` [J].
         shape (T, G, P, 2): positions of the nodes [m].
         effects: names of the effects of the scene.
-        counters, settings: as in `Trajectory`.
+        counters, settings, seconds: as in `Trajectory`.
     """
 
     status: Status
@@ -85,6 +88,7 @@ class MechanismTrajectory:
     effects: tuple[str, ...]
     counters: Mapping[str, int]
     settings: Mapping[str, float | str]
+    seconds: Mapping[str, float]
 
     @property
     def energy_error(self) -> float:
@@ -124,7 +128,7 @@ def _shared(structure: Structure, motion: Samples, settings: Mapping[str, float 
 
 
 def pivot_trajectory(
-    structure: Structure, motion: Samples, settings: Mapping[str, float | str]
+    structure: Structure, motion: Samples, settings: Mapping[str, float | str], watch: Stopwatch
 ) -> Trajectory:
     """Turn samples in the reduced coordinates into the motion of the one body."""
     fields, y = _shared(structure, motion, settings), np.array(motion.y)
@@ -137,11 +141,12 @@ def pivot_trajectory(
         constraint_residual=np.zeros(len(y)),
         velocity_residual=np.zeros(len(y)),
         **fields,  # type: ignore[arg-type]
+        seconds=watch.stop("recover"),
     )
 
 
 def mechanism_trajectory(
-    structure: Structure, motion: Samples, settings: Mapping[str, float | str]
+    structure: Structure, motion: Samples, settings: Mapping[str, float | str], watch: Stopwatch
 ) -> MechanismTrajectory:
     """Turn samples in the reduced coordinates into the motion of all bodies."""
     y, v, names = np.array(motion.y), np.array(motion.v), structure.model.body_names
@@ -150,6 +155,7 @@ def mechanism_trajectory(
         rates={name: body_rates(structure, y, v, k) for k, name in enumerate(names)},
         effects=structure.model.effects.names,
         **_shared(structure, motion, settings),  # type: ignore[arg-type]
+        seconds=watch.stop("recover"),
     )
 
 

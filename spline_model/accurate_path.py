@@ -10,10 +10,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.accuracy import Along, Errors, Search, distances, finer, search
-from spline_model.design import Design, Discretisation
+from spline_model.design import Discretisation
 from spline_model.fast.path import Answer
 from spline_model.fast.refine import refined
 from spline_model.fast.solve import fast_path
+from spline_model.laps import Laps
+from spline_model.mechanism import Mechanism
 from spline_model.pivot import Pivot
 from spline_model.solution import StaticSolution, Status
 
@@ -41,7 +43,7 @@ def solve_accurately(
     if recover is None:
         outcome = search(pivot.mechanism.design, accuracy, _attempt(pivot, solve))
     else:
-        quick = search(pivot.mechanism.design, accuracy, fast_attempt(pivot.mechanism.design, rotations))
+        quick = search(pivot.mechanism.design, accuracy, fast_attempt(pivot.mechanism, rotations))
         outcome = Search(estimate=quick.estimate, found=None)
         if quick.estimate is not None and quick.found is not None:
             chosen = _with_points(pivot, quick.estimate.control_points)
@@ -53,16 +55,19 @@ def solve_accurately(
 
 
 def fast_attempt(
-    design: Design, rotations: Array
+    mechanism: Mechanism, rotations: Array
 ) -> Callable[[Discretisation], tuple[Errors, Answer] | None]:
     """Attempts on the compiled condensed path through the rotations [rad]."""
+    design = mechanism.design
     length = design.strips[0].length
     angles = np.concatenate(([0.0], rotations))
     checked = np.arange(len(angles) - 1, -1, -2 if len(rotations) > EVERY_STATE else -1)[::-1]
 
     def attempt(grid: Discretisation) -> tuple[Errors, Answer] | None:
-        coarse, fine = replace(design, discretisation=grid), replace(design, discretisation=finer(grid))
-        done, answer = fast_path(coarse, list(rotations))
+        coarse, fine = (  # the scene stays behind: no fast path reads it
+            replace(mechanism, design=replace(design, discretisation=one)) for one in (grid, finer(grid))
+        )
+        done, answer = fast_path(coarse, list(rotations), Laps())
         if done < len(angles):
             return None
         better = refined(coarse, angles[checked], answer.y[checked], fine)

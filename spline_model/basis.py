@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cache, cached_property
 
 import numpy as np
 from numpy.polynomial import legendre
@@ -13,6 +13,22 @@ from scipy.interpolate import BSpline
 from spline_model.errors import require_count
 
 Array = NDArray[np.float64]
+
+
+@cache
+def gauss_legendre(points: int) -> tuple[Array, Array]:
+    """Points and weights of Gauss and Legendre on [-1, 1]; kept, for each is an eigenvalue problem."""
+    nodes, weights = legendre.leggauss(points)
+    for array in (nodes, weights):
+        array.setflags(write=False)
+    return nodes, weights
+
+
+@cache
+def spline_functions(control_points: int, degree: int) -> BSpline:
+    """All functions of a clamped uniform basis as one vector-valued spline; kept, for building it is slow."""
+    basis = SplineBasis(control_points=control_points, degree=degree)
+    return BSpline(basis.knots, np.eye(control_points), degree)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -52,10 +68,9 @@ class SplineBasis:
 
     def evaluate(self, u: Array, derivative: int = 0) -> Array:
         """Values of the derivative of each basis function, shape (len(u), control_points)."""
-        spline = BSpline(self.knots, np.eye(self.control_points), self.degree)
         if derivative > self.degree:
             return np.zeros((len(u), self.control_points))
-        return np.asarray(spline(u, nu=derivative))
+        return np.asarray(spline_functions(self.control_points, self.degree)(u, nu=derivative))
 
     def first_of_support(self, u: Array) -> NDArray[np.int64]:
         """Index of the first of the degree + 1 functions that do not vanish at u, shape (len(u),)."""
@@ -67,7 +82,7 @@ class SplineBasis:
 
         Exact for polynomials of degree 2 * points - 1 in each span.
         """
-        nodes, weights = legendre.leggauss(points)
+        nodes, weights = gauss_legendre(points)
         left, width = self.breakpoints[:-1, None], np.diff(self.breakpoints)[:, None]
         return (left + width * (nodes + 1) / 2).ravel(), (width * weights / 2).ravel()
 

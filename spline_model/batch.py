@@ -40,7 +40,9 @@ class Batch:
     """Answers of D designs at S states each, the unloaded one first; nan behind a path that stopped.
 
     states (D,) converged states; rotation (S,) [rad]; centre (D, S, 2) [m]; torque (D, S)
-    [N m]; stiffness (D, S) [N m/rad]; energy (D, S) [J]; iterations (D,) of Newton.
+    [N m]; stiffness (D, S) [N m/rad]; energy (D, S) [J]; inertia (D, S) negative eigenvalues of
+    the reduced tangent, 0 for a stable state, -1 behind a path that stopped; moment_defect
+    (D, S) as in ``Path``; iterations (D,) of Newton.
     """
 
     states: NDArray[np.int64]
@@ -49,6 +51,8 @@ class Batch:
     torque: Array
     stiffness: Array
     energy: Array
+    inertia: NDArray[np.int64]
+    moment_defect: Array
     iterations: NDArray[np.int64]
 
     @property
@@ -157,6 +161,8 @@ def _empty(designs: int, rotations: Array) -> Batch:
         torque=np.full(shape, np.nan),
         stiffness=np.full(shape, np.nan),
         energy=np.full(shape, np.nan),
+        inertia=np.full(shape, -1, dtype=np.int64),
+        moment_defect=np.full(shape, np.nan),
         iterations=np.zeros(designs, dtype=np.int64),
     )
 
@@ -165,16 +171,26 @@ def _solve_share(worker: int, workers: int, first: Mechanism, frames: Frame, bat
     """Solve the designs of one thread with one set of working arrays."""
     design = first.design
     n, modes = design.discretisation.control_points, mode_count(design)
-    locals_, space = arrays(len(design.strips), n, modes)
+    grid = grid_of(design)
+    locals_, space = arrays(len(design.strips), grid)
     answer = empty_answer(len(batch.rotation), len(space.y))
-    results = (batch.states, batch.centre, batch.torque, batch.stiffness, batch.energy, batch.iterations)
+    results = (
+        batch.states,
+        batch.centre,
+        batch.torque,
+        batch.stiffness,
+        batch.energy,
+        batch.inertia,
+        batch.moment_defect,
+        batch.iterations,
+    )
     follow_share(
         worker,
         workers,
         frames,
-        at_rest(frame_of(design), n, modes),
+        at_rest(frame_of(first), n, modes),
         batch.rotation[1:],
-        grid_of(design),
+        grid,
         locals_,
         space,
         TOLERANCE,

@@ -16,6 +16,9 @@ LARGEST_CORRECTION = 0.5
 """Largest distance from the predicted to the corrected state, over the length of the step: a
 corrector that goes further has probably left the branch."""
 
+SMALLEST_CORRECTION = 1e-9
+"""Corrections below this, in lengths and rad, are round-off: a straight strip under its load stays put."""
+
 
 def refuse(system: System, z: Array) -> str:
     """Why a converged state is no strip: the reason, or an empty string if it is one."""
@@ -37,9 +40,9 @@ def left_the_branch(system: System, previous: Array, predicted: Array, corrected
     """Why a corrected state is not the continuation of the previous one; empty if it is."""
     q = slice(0, system.layout.coordinate_count)
     unit = system.scales.unit[q]
-    step = np.linalg.norm((predicted[q] - previous[q]) / unit)
-    correction = np.linalg.norm((corrected[q] - predicted[q]) / unit)
-    if correction > LARGEST_CORRECTION * step:
+    step = float(np.linalg.norm((predicted[q] - previous[q]) / unit))
+    correction = float(np.linalg.norm((corrected[q] - predicted[q]) / unit))
+    if correction > max(LARGEST_CORRECTION * step, SMALLEST_CORRECTION):
         return f"the solution lies {correction / step:.2g} steps from the predicted one"
     return ""
 

@@ -21,6 +21,7 @@ from spline_model.errors import (
     require_not_negative,
     require_positive,
 )
+from spline_model.rank import singular
 
 BASES = ("bezier", "bspline")
 STRETCH_FORMS = ("mixed", "consistent", "inextensible")
@@ -53,7 +54,8 @@ class Discretisation:
     (forces of Eqs 12, 15); stretch "mixed", "consistent" (Eq 13 by quadrature) or
     "inextensible"; gauss_points in each knot span, default degree + 3, which follows the
     primary branch to a half turn where n - 1 points lose it; slide_stiffness of the strains
-    that the axial modes do not see, in EI/L^2, 0 for none.
+    that the axial modes do not see, in EI/L^2, 0 for none. What makes the tangent of a straight
+    strip singular is refused with the reason (``spline_model.rank``).
     """
 
     control_points: int = 6
@@ -74,11 +76,14 @@ class Discretisation:
             require_count("gauss_points", self.gauss_points, 1)
         if self.measure == "printed" and self.stretch != "consistent":
             raise InvalidParameter("stretch", self.stretch, "consistent, the only form with printed forces")
-        if self.axial_modes is None:
-            return
-        if self.stretch == "consistent":
-            raise InvalidParameter("axial_modes", self.axial_modes, "none with stretch = consistent")
-        require_count("axial_modes", self.axial_modes, 1, self.control_points - 1)
+        if self.axial_modes is not None:
+            if self.stretch == "consistent":
+                raise InvalidParameter("axial_modes", self.axial_modes, "none with stretch = consistent")
+            require_count("axial_modes", self.axial_modes, 1, self.control_points - 1)
+        axial = None if self.stretch == "consistent" else self.modes
+        reason = singular(self.spline, self.points_a_span, axial, self.slide_stiffness > 0)
+        if reason:
+            raise InvalidParameter("discretisation", reason, "a strip whose tangent at rest is regular")
 
     @cached_property
     def spline(self) -> SplineBasis:

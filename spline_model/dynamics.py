@@ -18,11 +18,13 @@ from spline_model.integrators import (
     energy_consistent,
     explicit,
     generalised_alpha,
+    leapfrog,
     quasi_static,
 )
 from spline_model.integrators.motion import Records, initial_acceleration, set_in_motion
 from spline_model.kernels.motion import Motion
 from spline_model.kernels.record import DISSIPATED, KINETIC, POSITION, STRAIN, VELOCITY, WEIGHT, WORK
+from spline_model.laps import Laps
 from spline_model.mechanism import Mechanism
 from spline_model.modes import linear_modes, static_state
 from spline_model.pivot import Pivot
@@ -34,10 +36,14 @@ INTEGRATORS: dict[str, Callable[..., Records]] = {
     "energy": energy_consistent.integrate,
     "generalised-alpha": generalised_alpha.integrate,
     "explicit": explicit.integrate,
+    "leapfrog": leapfrog.integrate,
 }
-EXPLICIT_SAFETY = 0.5
-"""Default explicit step over the critical one of start and rest: stress stiffens the strips on the way,
-and near the limit the axial waves lose energy."""
+EXPLICIT_STEPS = {
+    "explicit": 0.5 * explicit.STABILITY_LIMIT,
+    "leapfrog": 0.9 * leapfrog.STABILITY_LIMIT,
+}
+"""omega h of the default explicit step, omega being the highest frequency at start and at rest: stress
+stiffens the strips on the way, and near its limit Runge-Kutta takes energy from the axial waves."""
 STEP = 5e-5
 """Default step of the implicit integrators [s]: some 240 steps a swing of Table 1."""
 MOST_MEMORY = 2e9
@@ -56,7 +62,8 @@ class Trajectory:
     constraint_residual (T,) [m]; velocity_residual (T,) its rate [m/s]; states (T, N) and
     velocities (T, Q) of the system in motion; resolution: empty, or how far the step
     under-resolves the swing; effects: names of the scene's effects; counters: steps,
-    halved_steps, newton_iterations, ...; estimate: of the error, where an accuracy was asked for.
+    halved_steps, newton_iterations, ...; seconds: by part (``spline_model.laps``), "start" the
+    static state that is let go; estimate: of the error, where an accuracy was asked for.
     """
 
     status: Status
@@ -77,6 +84,7 @@ class Trajectory:
     effects: tuple[str, ...]
     counters: dict[str, int]
     settings: dict[str, Any]
+    seconds: dict[str, float]
     estimate: MotionEstimate | None = None
 
     @property
@@ -114,11 +122,11 @@ def solve_motion(
     ----------
     body : that ``start`` rotates and that the trajectory reports; default the only one.
     drive : a rotation that is held or driven in a part of the run, if any.
-    duration, step : [s]; the step defaults to STEP, or to EXPLICIT_SAFETY times the critical one
-        (explicit); it is shortened so that a whole number of steps fits between the records.
+    duration, step : [s]; the step defaults to STEP, or to that of EXPLICIT_STEPS; it is
+        shortened so that a whole number of steps fits between the records.
     integrator : "energy" (default, cannot create energy; with massless strips, only the bodies
-        are dynamic), "generalised-alpha" (option
-        ``spectral_radius``) or "explicit".
+        are dynamic), "generalised-alpha" (option ``spectral_radius``), "explicit", or "leapfrog":
+        the fastest, for a free body on straight mixed Bezier strips.
     accuracy : wanted error of the rotation over the run [rad] instead of a step: steps and control
         points are chosen, and the trajectory has its ``estimate``.
     records : largest number of records; default every step, or with an accuracy 128 a swing or more.
@@ -126,33 +134,39 @@ def solve_motion(
     Raises InvalidParameter, and ConvergenceError if statics does not reach ``start``.
     """
     _check(integrator, duration, start, step, accuracy)
-    body = mechanism.design.body_named(body)
+    laps, body = Laps(), mechanism.design.body_named(body)
     if accuracy is not None:
         task = _task(mechanism, start, body, drive, duration)
         return solve_accurately(mechanism, accuracy, task, records)
     scene = mechanism.released()
     system = compile_scene(scene if drive is None else mechanism.with_effects(drive))
     motion, layout = set_in_motion(system), system.layout
+    laps.lap("compile")
     held = static_state(mechanism, start, body=body)
     z, v = np.zeros(layout.size), np.zeros(layout.coordinate_count)
     known = min(len(held), layout.size)
     z[:known] = held[:known]
     acceleration, z = initial_acceleration(system, motion, z, v)
     effects = mechanism.effects
+    laps.lap("start")
     if step is None:
-        limit = critical_step(system, motion, z) if integrator == "explicit" else math.inf
-        step = min(EXPLICIT_SAFETY * limit, STEP, duration)
+        step = min(STEP, duration)
+        if integrator in EXPLICIT_STEPS:
+            step = min(step, EXPLICIT_STEPS[integrator] / highest_frequency(system, motion, z))
     steps, every = _count(duration, step, records, layout.size + layout.coordinate_count + 7)
     step = duration / steps
+    laps.lap("compile")
     if integrator == "energy" and massless(system, motion):
         integrator = "quasi-static strips"
         run = quasi_static.integrate(system, motion, z, step=step, steps=steps, every=every)
     else:
+        more = {"mechanism": mechanism} if integrator == "leapfrog" else options
         run = INTEGRATORS[integrator](
-            system, motion, z, v, acceleration, step=step, steps=steps, every=every, **options
+            system, motion, z, v, acceleration, step=step, steps=steps, every=every, **more
         )
+    laps.lap("solve")
     settings = {"integrator": integrator, "step_s": step, **options}
-    return _trajectory(system, run, effects, body, settings, _resolution(system, motion, step))
+    return _trajectory(system, run, effects, body, settings, _resolution(system, motion, step), laps)
 
 
 def _task(
@@ -178,7 +192,8 @@ def _task(
         scene = compile_scene(chosen.released())
         motion = set_in_motion(scene)
         explicit.require_explicit(scene, motion)
-        return critical_step(scene, motion, static_state(chosen, start, body=body)[: scene.layout.size])
+        held = static_state(chosen, start, body=body)[: scene.layout.size]
+        return explicit.STABILITY_LIMIT / highest_frequency(scene, motion, held)
 
     return Task(
         duration=duration,
@@ -209,10 +224,9 @@ def massless(system: System, motion: Motion) -> bool:
     return not motion.mass[:bodies].any()
 
 
-def critical_step(system: System, motion: Motion, z: Array) -> float:
-    """Largest stable step of the explicit integrator at a state and at rest [s], by the highest frequency."""
-    highest = max(linear_modes(system, state, motion.mass)[0][-1] for state in (z, system.rest))
-    return float(explicit.STABILITY_LIMIT / math.sqrt(highest))
+def highest_frequency(system: System, motion: Motion, z: Array) -> float:
+    """Highest circular frequency at a state and at rest [rad/s]."""
+    return math.sqrt(max(linear_modes(system, state, motion.mass)[0][-1] for state in (z, system.rest)))
 
 
 def _count(duration: float, step: float, records: int | None, width: int) -> tuple[int, int]:
@@ -238,6 +252,7 @@ def _trajectory(
     body: str,
     settings: dict[str, Any],
     resolution: str,
+    laps: Laps,
 ) -> Trajectory:
     rows, layout = run.rows, system.layout
     rest = float(system.tables.weight @ system.rest[: system.tables.weight.size])
@@ -260,6 +275,7 @@ def _trajectory(
         effects=effects,
         counters=run.counters,
         settings=settings,
+        seconds=laps.lap("recover"),
     )
 
 

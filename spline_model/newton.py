@@ -10,6 +10,7 @@ from scipy.linalg import get_lapack_funcs
 
 from spline_model.compile import System
 from spline_model.operator import evaluate
+from spline_model.sparse import Pattern, pattern_of
 
 Array = NDArray[np.float64]
 
@@ -51,24 +52,40 @@ class Newton:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Workspace:
-    """A system with the arrays that its kernels fill, and the counters of the work."""
+    """A system with the arrays that its kernels fill, and the counters of the work.
+
+    pattern: of a tangent that is factorised sparse; None for a dense one.
+    """
 
     system: System
     gradient: Array
     hessian: Array
+    pattern: Pattern | None = None
     counters: Counters = field(default_factory=Counters)
 
     @classmethod
     def of(cls, system: System) -> Workspace:
         """Fresh arrays for a system."""
         size = system.layout.size
-        return cls(system=system, gradient=np.empty(size), hessian=np.empty((size, size)))
+        return cls(
+            system=system,
+            gradient=np.empty(size),
+            hessian=np.empty((size, size)),
+            pattern=pattern_of(system),
+        )
 
     def evaluate(self, z: Array, load_factor: float) -> tuple[float, float]:
-        """Fill gradient and hessian at z; returns bending and axial energy [J]."""
+        """Fill gradient and hessian at z; returns bending and axial energy [J].
+
+        Not a number where C' = 0: control points that coincide have neither tangent nor curvature.
+        """
         self.counters.residual_evaluations += 1
         self.counters.tangent_evaluations += 1
-        return evaluate(self.system, z, load_factor, self.gradient, self.hessian)
+        try:
+            return evaluate(self.system, z, load_factor, self.gradient, self.hessian)
+        except ZeroDivisionError:
+            self.gradient[:] = np.nan
+            return np.nan, np.nan
 
     def norm(self) -> float:
         """Largest entry of the dimensionless residual."""
@@ -79,6 +96,8 @@ class Workspace:
         """Solve hessian x = right_side in dimensionless unknowns; raises LinAlgError if singular."""
         unit, energy = self.system.scales.unit, self.system.scales.energy
         self.counters.factorisations += 1
+        if self.pattern is not None:
+            return np.asarray(unit * self.pattern.factorise(self.hessian).solve(right_side * unit / energy))
         matrix = self.hessian * (unit[:, None] * unit / energy)
         if not np.isfinite(matrix).all():
             raise np.linalg.LinAlgError("the tangent is not finite")

@@ -29,11 +29,35 @@ class Status(Enum):
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
+class CriticalPoint:
+    """Where a path loses or regains stability, or where its load or torque is stationary.
+
+    kind: "limit point" of the load factor, or of a driven rotation's torque; "turning point"
+    of a drive, where the driven coordinate itself goes back; "bifurcation" otherwise.
+    load_factor; rotation of the driven body [rad], nan without one; z (N,) unknowns; mode (Q,)
+    change of the coordinates, its largest entry one strip length or 1 rad (for a limit of the
+    torque the rate of the path); inertia: that of the tangent after it.
+    """
+
+    kind: str
+    load_factor: float
+    rotation: float
+    z: Array
+    mode: Array
+    inertia: int
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
 class Path:
     """An equilibrium path, S converged states, the unloaded one first.
 
     load_factor (S,); states (S, N) unknowns z; rates (S, N) dz/d(load factor), from the
-    tangent; energies (S, 2) bending and axial [J]; history: residual norms by increment.
+    tangent; energies (S, 2) bending and axial [J]; work (S,) of loads and drives since the
+    first state [J]; history: residual norms by increment.
+    inertia (S,): negative eigenvalues of the reduced tangent with the drives held, 0 for a
+    stable state, -1 where the printed forces have no potential; moment_defect (S,): what the
+    strips' moments differ from balance by, relative (``continuation.resolution``);
+    critical_points in the order of the path.
     """
 
     status: Status
@@ -42,6 +66,10 @@ class Path:
     states: Array
     rates: Array
     energies: Array
+    work: Array
+    inertia: NDArray[np.int64]
+    moment_defect: Array
+    critical_points: tuple[CriticalPoint, ...]
     counters: dict[str, int]
     history: tuple[tuple[float, ...], ...]
 
@@ -97,6 +125,8 @@ class StaticSolution:
     clamp_reactions (S, G, 2, 3): force [N] and moment [N m] of the clamp at the ground
     and at the body end on the strip; stations (P,) reference arc length over L;
     shape (S, G, P, 2) [m]; axial_force, bending_moment, shear_force (S, G, P) [N, N m, N];
+    inertia, moment_defect, critical_points and states as in ``Path``;
+    seconds: by part, see ``spline_model.laps``;
     estimate: of the error, where an accuracy was asked for.
     """
 
@@ -117,8 +147,13 @@ class StaticSolution:
     axial_force: Array
     bending_moment: Array
     shear_force: Array
+    inertia: NDArray[np.int64]
+    moment_defect: Array
+    critical_points: tuple[CriticalPoint, ...]
+    states: Array
     counters: dict[str, int]
     history: tuple[tuple[float, ...], ...]
+    seconds: dict[str, float]
     estimate: ErrorEstimate | None = None
 
 
@@ -129,7 +164,9 @@ class MechanismSolution:
     load_factor (S,); bodies: x, y, theta (S, 3) by name [m, m, rad]; torque, stiffness (S,)
     of the driven rotation [N m, N m/rad], nan without one; bending_energy, axial_energy,
     gravity_energy, work (S,) [J]; stations (P,); shape (S, G, P, 2) [m]; axial_force,
-    bending_moment, shear_force (S, G, P); effects: names of what was assembled.
+    bending_moment, shear_force (S, G, P); effects: names of what was assembled;
+    inertia, moment_defect, critical_points and states as in ``Path``; seconds: by
+    part, see ``spline_model.laps``.
     """
 
     status: Status
@@ -148,5 +185,10 @@ class MechanismSolution:
     bending_moment: Array
     shear_force: Array
     effects: tuple[str, ...]
+    inertia: NDArray[np.int64]
+    moment_defect: Array
+    critical_points: tuple[CriticalPoint, ...]
+    states: Array
     counters: dict[str, int]
     history: tuple[tuple[float, ...], ...]
+    seconds: dict[str, float]

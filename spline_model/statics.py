@@ -11,25 +11,31 @@ from numpy.typing import NDArray
 from spline_model.accuracy import check_accuracy
 from spline_model.accurate_path import solve_accurately
 from spline_model.compile import System, compile_scene
+from spline_model.continuation.arc_length import follow_arc
+from spline_model.continuation.recover import recover
+from spline_model.continuation.start import last_state
 from spline_model.effects import DrivenRotation
 from spline_model.effects.base import Constraint
 from spline_model.effects.registry import MOTION_ONLY
 from spline_model.errors import ConvergenceError, InvalidParameter, require_choice, require_count
 from spline_model.fast.path import Answer
 from spline_model.fast.solve import follow_fast, is_fast, path_of
+from spline_model.laps import Laps
 from spline_model.mechanism import Mechanism
 from spline_model.path import follow
 from spline_model.pivot import BODY, STRIPS, Pivot
 from spline_model.scene import Scene
 from spline_model.sections import clamp_reactions, sections
 from spline_model.solution import MechanismSolution, Path, StaticSolution, Status
-from spline_model.work import external_work, gravity_energy
+from spline_model.work import gravity_energy
+
+Array = NDArray[np.float64]
 
 STATIONS = np.linspace(0.0, 1.0, 61)
 """Where sections are recovered, reference arc length over L; both clamped ends are among them."""
 
 METHODS = ("condensed", "multipliers")
-Array = NDArray[np.float64]
+CONTROLS = ("load", "arc-length")
 Progress = Callable[[int, int], None]
 
 
@@ -40,6 +46,8 @@ def solve_statics(
     increments: int = 20,
     method: str = "condensed",
     accuracy: float | None = None,
+    branch: str = "primary",
+    start: StaticSolution | None = None,
     raise_on_failure: bool = True,
     progress: Progress | None = None,
 ) -> StaticSolution:
@@ -50,9 +58,11 @@ def solve_statics(
     condensed, where the scene allows it; "multipliers" is the paper's bordered system. Both
     agree to 1e-10. accuracy: wanted error of trajectory and torque over the whole path,
     relative [1]; the control points are raised from the pivot's until the estimated one is
-    below, axial modes and quadrature with them, and the solution has its ``estimate``. Raises
-    ConvergenceError with the converged part of the path, or with the best one where the
-    accuracy is not reached; returns it as a status with ``raise_on_failure=False``.
+    below, axial modes and quadrature with them, and the solution has its ``estimate``.
+    branch: "primary" or "follow" at a bifurcation; start: a solution of the same
+    pivot to go on from, instead of rest; either of them takes the multiplier path and no
+    accuracy. Raises ConvergenceError with the converged part of the path, or with the best one
+    where the accuracy is not reached; returns it as a status with ``raise_on_failure=False``.
     """
     targets = [rotation] if isinstance(rotation, int | float) else list(rotation)
     for angle in targets:
@@ -60,15 +70,18 @@ def solve_statics(
             raise InvalidParameter("rotation", angle, "a finite number [rad]")
     require_count("increments", increments, 1)
     require_choice("method", method, METHODS)
-    largest = max((abs(angle) for angle in targets), default=0.0)
+    origin = 0.0 if start is None else float(start.rotation[-1])
+    largest = max((abs(angle) for angle in (origin, *targets)), default=0.0)
     if largest == 0.0:
         raise InvalidParameter("rotation", rotation, "an angle other than zero [rad]")
-    legs = [np.linspace(a, b, increments + 1)[1:] for a, b in zip([0.0, *targets], targets, strict=False)]
+    legs = [np.linspace(a, b, increments + 1)[1:] for a, b in zip([origin, *targets], targets, strict=False)]
     rotations = np.concatenate(legs)
     if accuracy is None:
-        solution = _along(pivot, rotations, method, progress)
+        solution = _along(pivot, rotations, method, progress, start=start, branch=branch)
     else:
         check_accuracy(accuracy, pivot.mechanism.design)
+        if start is not None or branch != "primary":
+            raise InvalidParameter("accuracy", accuracy, "no start or branch beside it")
         solution = _accurate(pivot, rotations, method, accuracy)
         if progress is not None:
             progress(len(rotations), len(rotations))
@@ -82,43 +95,97 @@ def solve_statics(
     return solution
 
 
-def _along(pivot: Pivot, rotations: Array, method: str, progress: Progress | None) -> StaticSolution:
+def _along(
+    pivot: Pivot,
+    rotations: Array,
+    method: str,
+    progress: Progress | None = None,
+    *,
+    start: StaticSolution | None = None,
+    branch: str = "primary",
+) -> StaticSolution:
     """The solution through the rotations [rad]."""
-    largest = float(np.abs(rotations).max())
+    laps = Laps()
+    largest = max(float(np.abs(rotations).max()), 0.0 if start is None else abs(float(start.rotation[-1])))
     system = compile_scene(pivot.driven(largest))
     path = None
-    if method == "condensed" and is_fast(pivot.mechanism):
-        path = follow_fast(pivot.mechanism, system, list(rotations), progress)
+    if method == "condensed" and branch == "primary" and start is None and is_fast(pivot.mechanism):
+        path = follow_fast(pivot.mechanism, system, list(rotations), laps, progress)
     if path is None:  # also where the fast path stops: this one says why
-        path = follow(system, list(rotations / largest), progress)
-    return _pivot_solution(system, path)
+        laps.lap("compile")
+        begin = None if start is None else last_state(start, largest)
+        path = follow(system, list(rotations / largest), progress, start=begin, branch=branch)
+        laps.lap("solve")
+    return _pivot_solution(system, path, laps)
 
 
 def _accurate(pivot: Pivot, rotations: Array, method: str, accuracy: float) -> StaticSolution:
     """The solution with as many control points as the accuracy takes."""
 
-    def recover(chosen: Pivot, answer: Answer) -> StaticSolution:
+    def recovered(chosen: Pivot, answer: Answer) -> StaticSolution:
+        laps = Laps()
         system = compile_scene(chosen.driven(float(np.abs(rotations).max())))
-        return _pivot_solution(system, path_of(chosen.mechanism.design, system, list(rotations), answer))
+        path = path_of(chosen.mechanism, system, list(rotations), answer)
+        return _along(chosen, rotations, method) if path is None else _pivot_solution(system, path, laps)
 
     return solve_accurately(
         pivot,
         rotations,
         accuracy,
-        solve=lambda chosen: _along(chosen, rotations, method, None),
-        recover=recover if method == "condensed" and is_fast(pivot.mechanism) else None,
+        solve=lambda chosen: _along(chosen, rotations, method),
+        recover=recovered if method == "condensed" and is_fast(pivot.mechanism) else None,
     )
 
 
-def solve_path(mechanism: Mechanism, rotation: float, increments: int = 20, body: str | None = None) -> Path:
-    """The states of the path to one rotation; raises ConvergenceError if it is not reached."""
+def solve_from(
+    pivot: Pivot, *, rotation: float, guess: Array, increments: int = 20, raise_on_failure: bool = True
+) -> StaticSolution:
+    """The state of the primary branch at a rotation [rad] from any guess of the unknowns (N,).
+
+    ``message`` says whether the guess led there or the path from rest did, in ``increments``.
+    A guess that leads elsewhere is never believed: see ``continuation.recover``.
+    """
+    require_count("increments", increments, 1)
+    if not math.isfinite(rotation) or rotation == 0.0:
+        raise InvalidParameter("rotation", rotation, "an angle other than zero [rad]")
+    laps = Laps()
+    system = compile_scene(pivot.driven(rotation))
+    laps.lap("compile")
+    path = recover(system, 1.0, np.asarray(guess, dtype=float), increments)
+    laps.lap("solve")
+    solution = _pivot_solution(system, path, laps)
+    if raise_on_failure and path.status is not Status.CONVERGED:
+        at = float(path.load_factor[-1])
+        raise ConvergenceError(path.message, solution=solution, load_factor=at, history=path.history)
+    return solution
+
+
+def solve_path(
+    mechanism: Mechanism,
+    rotation: float,
+    increments: int = 20,
+    body: str | None = None,
+    *,
+    start: Path | MechanismSolution | None = None,
+    branch: str = "primary",
+) -> Path:
+    """The states of the path to one rotation; raises ConvergenceError if it is not reached.
+
+    start: a result with the same body driven to go on from; branch as in ``solve_loads``.
+    """
     require_count("increments", increments, 1)
     system = compile_scene(mechanism.driven(rotation, body))
-    path = follow(system, list(np.linspace(0.0, 1.0, increments + 1)[1:]))
+    laps, begin = Laps(), None
+    if start is not None:  # its load factors are those of another rotation
+        turn = system.layout.body(mechanism.design.body_named(body)).stop - 1
+        begin = (float(start.states[-1, turn]) / rotation, start.states[-1])
+    factors = np.linspace(0.0 if begin is None else begin[0], 1.0, increments + 1)[1:]
+    path = follow(system, list(factors), start=begin, branch=branch)
+    laps.lap("solve")
     if path.status is not Status.CONVERGED:
         raise ConvergenceError(
             path.message,
-            solution=_mechanism_solution(system, path, mechanism),
+            solution=_mechanism_solution(system, path, mechanism, laps),
             load_factor=float(path.load_factor[-1]),
             history=path.history,
         )
@@ -126,12 +193,32 @@ def solve_path(mechanism: Mechanism, rotation: float, increments: int = 20, body
 
 
 def solve_loads(
-    scene: Scene, *, increments: int = 20, progress: Progress | None = None
+    scene: Scene,
+    *,
+    increments: int = 20,
+    end: float = 1.0,
+    control: str = "load",
+    branch: str = "primary",
+    start: Path | MechanismSolution | None = None,
+    progress: Progress | None = None,
 ) -> tuple[System, Path]:
-    """A scene from rest to load factor 1, all its loads and drives growing in proportion."""
+    """A scene from rest to the load factor ``end``, all its loads and drives growing in proportion.
+
+    control: "load" prescribes the load factors; "arc-length" follows the path through its limit
+    points, with ``increments`` for the first step only. branch: "primary" or "follow" at a
+    bifurcation. start: a result of the same scene to go on from, instead of rest.
+    """
     require_count("increments", increments, 1)
+    require_choice("control", control, CONTROLS)
+    if not math.isfinite(end):
+        raise InvalidParameter("end", end, "a finite load factor")
     system = compile_scene(scene)
-    return system, follow(system, list(np.linspace(0.0, 1.0, increments + 1)[1:]), progress)
+    begin = None if start is None else last_state(start)
+    if control == "arc-length":
+        arc = follow_arc(system, end, increments=increments, start=begin, branch=branch, progress=progress)
+        return system, arc
+    factors = np.linspace(0.0 if begin is None else begin[0], end, increments + 1)[1:]
+    return system, follow(system, list(factors), progress, start=begin, branch=branch)
 
 
 def solve_mechanism(
@@ -140,16 +227,31 @@ def solve_mechanism(
     body: str | None = None,
     rotation: float | None = None,
     increments: int = 20,
+    control: str = "load",
+    branch: str = "primary",
+    start: MechanismSolution | None = None,
+    end: float = 1.0,
     raise_on_failure: bool = True,
     progress: Progress | None = None,
 ) -> MechanismSolution:
     """Any mechanism from rest to load factor 1: its loads and drives grow in proportion.
 
     rotation [rad] drives the named body, or the only one; None leaves all bodies to the loads.
+    control, branch, start and end as in ``solve_loads``.
     """
+    laps = Laps()
     scene = mechanism.scene if rotation is None else mechanism.driven(rotation, body)
-    system, path = solve_loads(scene, increments=increments, progress=progress)
-    solution = _mechanism_solution(system, path, mechanism)
+    system, path = solve_loads(
+        scene,
+        increments=increments,
+        end=end,
+        control=control,
+        branch=branch,
+        start=start,
+        progress=progress,
+    )
+    laps.lap("solve")
+    solution = _mechanism_solution(system, path, mechanism, laps)
     if raise_on_failure and path.status is not Status.CONVERGED:
         raise ConvergenceError(
             path.message,
@@ -160,7 +262,7 @@ def solve_mechanism(
     return solution
 
 
-def _mechanism_solution(system: System, path: Path, mechanism: Mechanism) -> MechanismSolution:
+def _mechanism_solution(system: System, path: Path, mechanism: Mechanism, laps: Laps) -> MechanismSolution:
     """The answer of a mechanism from the states of its path."""
     states, layout = path.states, system.layout
     torque = stiffness = np.full(len(states), np.nan)
@@ -179,19 +281,24 @@ def _mechanism_solution(system: System, path: Path, mechanism: Mechanism) -> Mec
         bending_energy=path.energies[:, 0],
         axial_energy=path.energies[:, 1],
         gravity_energy=gravity_energy(system, states),
-        work=external_work(system, path),
+        work=path.work,
         stations=STATIONS,
         shape=np.stack([s.shape for s in along], axis=1),
         axial_force=np.stack([s.axial_force for s in along], axis=1),
         bending_moment=np.stack([s.bending_moment for s in along], axis=1),
         shear_force=np.stack([s.shear_force for s in along], axis=1),
         effects=tuple(name for name in mechanism.effects if name not in MOTION_ONLY),
+        inertia=path.inertia,
+        moment_defect=path.moment_defect,
+        critical_points=path.critical_points,
+        states=states,
         counters=path.counters,
         history=path.history,
+        seconds=laps.lap("recover"),
     )
 
 
-def _pivot_solution(system: System, path: Path) -> StaticSolution:
+def _pivot_solution(system: System, path: Path, laps: Laps) -> StaticSolution:
     """The pivot's answer from the states of its path."""
     states, layout = path.states, system.layout
     body = states[:, layout.body(BODY)]
@@ -211,13 +318,18 @@ def _pivot_solution(system: System, path: Path) -> StaticSolution:
         axial_energy=path.energies[:, 1],
         shear_energy=np.zeros(len(states)),
         gravity_energy=gravity_energy(system, states),
-        work=external_work(system, path),
+        work=path.work,
         clamp_reactions=np.moveaxis(np.array(reactions), 2, 0),
         stations=STATIONS,
         shape=np.stack([s.shape for s in along], axis=1),
         axial_force=np.stack([s.axial_force for s in along], axis=1),
         bending_moment=np.stack([s.bending_moment for s in along], axis=1),
         shear_force=np.stack([s.shear_force for s in along], axis=1),
+        inertia=path.inertia,
+        moment_defect=path.moment_defect,
+        critical_points=path.critical_points,
+        states=states,
         counters=path.counters,
         history=path.history,
+        seconds=laps.lap("recover"),
     )

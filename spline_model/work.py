@@ -6,7 +6,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.compile import System
-from spline_model.solution import Path
 
 Array = NDArray[np.float64]
 
@@ -17,14 +16,13 @@ def gravity_energy(system: System, states: Array) -> Array:
     return -(states[:, : weight.size] - system.rest[: weight.size]) @ weight
 
 
-def external_work(system: System, path: Path) -> Array:
-    """Work of loads and drives since the first state, (S,) [J].
+def external_work(system: System, t: Array, states: Array, rates: Array) -> Array:
+    """Work of loads and drives since the first state, (S,) [J]; t (S,) are the load factors.
 
     int f . dq with f in proportion to the load factor t, by parts as t f q - int f q dt, and
     int lambda dt of the drives; both integrals by the trapezoidal rule corrected by the end
     slopes, which are known exactly: the error goes with the fourth power of the increment.
     """
-    t, states, rates = path.load_factor, path.states, path.rates
     loads, drives = system.tables.loads, system.tables.drives
     value = states[:, loads.coordinate] @ loads.value
     slope = rates[:, loads.coordinate] @ loads.value

@@ -14,6 +14,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "modes": ("studies.commands.modes", "report natural frequencies, at rest or at a rotation"),
     "converge": ("studies.commands.converge", "refine both models on a design until an accuracy is reached"),
     "audit": ("studies.commands.audit", "say what each effect of a scene is worth, and which are enough"),
+    "advise": ("studies.commands.advise", "say which setting of each model meets an error at the least cost"),
     "list": ("studies.commands.list_studies", "list the studies"),
     "run": ("studies.commands.run", "compute and draw studies"),
     "draw": ("studies.commands.draw", "redraw studies from their stored tables"),
@@ -63,6 +64,26 @@ STUDIES: dict[str, tuple[str, str]] = {
     "effects/worth": (
         "studies.effects.worth",
         "what each effect is worth for four designs, and what simpler strips save",
+    ),
+    "impulses/step_size": (
+        "studies.impulses.step_size",
+        "sequential impulses against their step: error, drift, energy, time, limits and sweeps",
+    ),
+    "baselines/surrogates": (
+        "studies.baselines.comparison.surrogates",
+        "error of pseudo-rigid-body models and the linear pivot over rotation and amplitude",
+    ),
+    "baselines/peers": (
+        "studies.baselines.comparison.peers",
+        "error against time beside other codes, where installed, of the static path and of the swing",
+    ),
+    "work_precision/statics": (
+        "studies.work_precision.statics",
+        "what accuracy costs in statics: error against time and counted work, for every model",
+    ),
+    "work_precision/dynamics": (
+        "studies.work_precision.dynamics",
+        "what accuracy costs in motion: error after the release against time and counted work",
     ),
 }
 

@@ -6,11 +6,11 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from spline_model.fast.compiled import part
 from spline_model.fast.condense import condense
-from spline_model.fast.strip import FAST, evaluate
+from spline_model.fast.strip import evaluate
 
 
 class Frame(NamedTuple):
@@ -41,9 +41,10 @@ class Space(NamedTuple):
     y: NDArray[np.float64]
     rate: NDArray[np.float64]
     predicted: NDArray[np.float64]
+    out: NDArray[np.float64]
 
 
-@njit(cache=True, nogil=True, fastmath=FAST)
+@part()
 def assemble(y, theta, frame, grid, locals_, space, out):
     """Condense all strips at y; the body's tangent and force in space.body, energies in out (3,).
 
@@ -116,7 +117,7 @@ def assemble(y, theta, frame, grid, locals_, space, out):
     return max(norm, max(abs(fx), abs(fy)) / unit)
 
 
-@njit(cache=True, nogil=True, fastmath=FAST)
+@part()
 def turn_into(frame, s, cos_t, sin_t, dx, dy, dtheta, change):
     """Change of a strip's tip pose (3,) for a change of the body's pose."""
     ax = cos_t * frame.arm[s, 0] - sin_t * frame.arm[s, 1]

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from numba import njit
-
-from spline_model.fast.strip import FAST
+from spline_model.fast.compiled import part
 
 
-@njit(cache=True, nogil=True, fastmath=FAST)
+@part()
 def condense(local, compliance, own):
     """Condense in place; returns the number of negative pivots, or -1 for a zero pivot.
 
@@ -41,7 +39,7 @@ def condense(local, compliance, own):
     return negative
 
 
-@njit(cache=True, nogil=True, fastmath=FAST)
+@part()
 def recover(local, compliance, own, change, dw, da):
     """Changes of own coordinates (W,) and axial forces (K,) for a change (3,) of the tip's pose."""
     g, h, b, gap = local.g, local.h, local.b, local.gap
@@ -61,7 +59,7 @@ def recover(local, compliance, own, change, dw, da):
         da[k] = strain * (2 * k + 1) / compliance[k]
 
 
-@njit(cache=True, nogil=True, fastmath=FAST)
+@part()
 def recover_rate(local, compliance, own, change, dw, da):
     """The same along a path of equilibria: no residual, only the rate (3,) of the tip's pose."""
     h, b = local.h, local.b

@@ -27,9 +27,10 @@ def follow_share(begin, stride, frames, start, targets, grid, locals_, space, to
     """Follow every ``stride``-th path from ``begin`` on and fill their rows of the results.
 
     start (Y,) is the state at rest, its first two entries being the body's place; results are
-    the arrays of ``Batch``: states, centre, torque, stiffness, energy, iterations.
+    the arrays of ``Batch``: states, centre, torque, stiffness, energy, inertia, moment_defect,
+    iterations.
     """
-    states, centre, torque, stiffness, energy, iterations = results
+    states, centre, torque, stiffness, energy, inertia, defect, iterations = results
     y = start.copy()
     for i in range(begin, states.size, stride):
         frame = frame_at(frames, i)
@@ -42,4 +43,5 @@ def follow_share(begin, stride, frames, start, targets, grid, locals_, space, to
             centre[i, k, 0] = answer.y[k, 0] * frame.length[0]
             centre[i, k, 1] = answer.y[k, 1] * frame.length[0]
             torque[i, k], stiffness[i, k] = answer.torque[k], answer.stiffness[k]
+            inertia[i, k], defect[i, k] = answer.inertia[k], answer.defect[k]
             energy[i, k] = answer.energies[k, 0] + answer.energies[k, 1]

@@ -6,23 +6,23 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from spline_model.checks import LARGEST_CORRECTION, SLOWEST_SPEED
+from spline_model.continuation.resolution import LARGEST_DEFECT
 from spline_model.fast.body import assemble, turn_into
+from spline_model.fast.compiled import copy, kernel, part
 from spline_model.fast.condense import recover, recover_rate
-from spline_model.fast.strip import FAST
+from spline_model.fast.doubt import defect, inertia, jumped, strip_defect
 
 ITERATIONS, EVALUATIONS, HALVED = range(3)
 KNOWN = 3
 MOST_ITERATIONS = 15
 SMALLEST_STEP = 2.0**-10
-SLOWEST_SPEED = 0.1
-LARGEST_CORRECTION = 0.5
 
 
 class Answer(NamedTuple):
-    """S states: y (S, Y), torque, stiffness (S,), energies (S, 2), counters (3,).
+    """S states: y (S, Y), torque, stiffness (S,), energies (S, 2), inertia, defect (S,), counters (3,).
 
     y is x, y of the centre over the first strip's length, then w and a of each strip.
     """
@@ -31,10 +31,12 @@ class Answer(NamedTuple):
     torque: NDArray[np.float64]
     stiffness: NDArray[np.float64]
     energies: NDArray[np.float64]
+    inertia: NDArray[np.int64]
+    defect: NDArray[np.float64]
     counters: NDArray[np.int64]
 
 
-@njit(cache=True, nogil=True, fastmath=FAST)
+@kernel()
 def newton(y, theta, frame, grid, locals_, space, out, tolerance, counters):
     """Solve at theta in place; True if the residual came below tolerance."""
     strips, modes = frame.length.size, frame.compliance.shape[1]
@@ -67,9 +69,12 @@ def newton(y, theta, frame, grid, locals_, space, out, tolerance, counters):
     return False
 
 
-@njit(cache=True, nogil=True, fastmath=FAST)
-def tangent(y, theta, frame, locals_, space):
-    """Rate dy/dtheta in space.rate at a state that was just assembled; returns torque and stiffness."""
+@part()
+def tangent(y, theta, frame, grid, locals_, space):
+    """Rate dy/dtheta in space.rate at a state that was just assembled.
+
+    Returns torque, stiffness and the energy of the strips' moment defect, twice.
+    """
     strips, modes = frame.length.size, frame.compliance.shape[1]
     own = (y.size - 2) // strips - modes
     body = space.body
@@ -78,17 +83,20 @@ def tangent(y, theta, frame, locals_, space):
     dx = (body[0, 1] * body[1, 2] - body[1, 1] * body[0, 2]) / determinant
     dy = (body[0, 1] * body[0, 2] - body[0, 0] * body[1, 2]) / determinant
     space.rate[0], space.rate[1] = dx / frame.length[0], dy / frame.length[0]
+    wrong = 0.0
     for s in range(strips):
         at = 2 + s * (own + modes)
         turn_into(frame, s, cos_t, sin_t, dx, dy, 1.0, space.change)
         dw, da = space.rate[at : at + own], space.rate[at + own : at + own + modes]
-        recover_rate(locals_[s], frame.compliance[s], own, space.change, dw, da)
+        local = locals_[s]
+        recover_rate(local, frame.compliance[s], own, space.change, dw, da)
+        wrong += frame.rigidity[s] / frame.length[s] * strip_defect(local, grid.d0, grid.weight)
     # the remaining residual is carried to equilibrium by the tangent
     torque = body[2, 3] + dx * body[0, 3] + dy * body[1, 3]
-    return torque, body[2, 2] + dx * body[0, 2] + dy * body[1, 2]
+    return torque, body[2, 2] + dx * body[0, 2] + dy * body[1, 2], wrong
 
 
-@njit(cache=True, nogil=True, fastmath=FAST)
+@part()
 def predict(theta, known, space):
     """Hermite's polynomial through the last ``known`` states and rates, at theta, in space.predicted."""
     at, predicted = space.known_at, space.predicted
@@ -105,7 +113,7 @@ def predict(theta, known, space):
             predicted[k] += by_value * space.known_y[i, k] + by_rate * space.known_rate[i, k]
 
 
-@njit(cache=True, nogil=True, fastmath=FAST)
+@part()
 def accepted(y, known, space, frame, out, own, modes):
     """Whether a solved state is the continuation of the last one, with end tangents forward and no fold."""
     if not out[2] > SLOWEST_SPEED:
@@ -125,7 +133,7 @@ def accepted(y, known, space, frame, out, own, modes):
     return correction <= LARGEST_CORRECTION**2 * step
 
 
-@njit(cache=True, nogil=True, fastmath=FAST)
+@kernel()
 def follow(start, targets, frame, grid, locals_, space, tolerance, answer):
     """Follow the path from rest (theta = 0) through the target rotations; returns the states converged.
 
@@ -133,11 +141,12 @@ def follow(start, targets, frame, grid, locals_, space, tolerance, answer):
     """
     modes = frame.compliance.shape[1]
     own = (start.size - 2) // frame.length.size - modes
-    out, y, counters = np.empty(4), space.y, answer.counters
-    y[:] = start
+    out, y, counters = space.out, space.y, answer.counters
+    copy(start, y)
     if not newton(y, 0.0, frame, grid, locals_, space, out, tolerance, counters):
         return 0
     known, theta = 0, 0.0
+    torque = stiffness = energy = wrong = 0.0
     for row in range(targets.size + 1):
         target = targets[row - 1] if row > 0 else 0.0
         begin, step = theta, target - theta
@@ -146,6 +155,7 @@ def follow(start, targets, frame, grid, locals_, space, tolerance, answer):
             known = 1
         whole = step
         while True:
+            last, here, sound = row == 0, theta, True
             if row > 0:
                 last = abs(target - theta) <= abs(step) * (1 + 1e-9)
                 here = target if last else theta + step
@@ -153,31 +163,40 @@ def follow(start, targets, frame, grid, locals_, space, tolerance, answer):
                     keep_last(known, space)
                     known = 1
                 predict(here, known, space)
-                y[:] = space.predicted
+                copy(space.predicted, y)
                 solved = newton(y, here, frame, grid, locals_, space, out, tolerance, counters)
-                if not (solved and accepted(y, known, space, frame, out, own, modes)):
-                    counters[HALVED] += 1
-                    step *= 0.5
-                    if abs(step) < SMALLEST_STEP * abs(whole):
-                        return row
-                    continue
-                theta = here
-            else:
-                last = True
-            torque, stiffness = tangent(y, theta, frame, locals_, space)
+                sound = solved and accepted(y, known, space, frame, out, own, modes)
+            if sound:
+                before, rate, gained = torque, stiffness, out[0] + out[1] - energy
+                torque, stiffness, wrong = tangent(y, here, frame, grid, locals_, space)
+                wrong = defect(wrong, out[0], frame)
+                sound = row == 0 or not (
+                    wrong > LARGEST_DEFECT
+                    or jumped(here - theta, before, torque, rate, stiffness, gained, energy, frame)
+                )
+                if not sound:
+                    torque, stiffness = before, rate
+            if not sound:
+                counters[HALVED] += 1
+                step *= 0.5
+                if abs(step) < SMALLEST_STEP * abs(whole):
+                    return row
+                continue
+            theta, energy = here, out[0] + out[1]
             known = remember(theta, y, known, space)
             if last:
                 break
             done = abs(theta - begin) / abs(step)
             if abs(step) < abs(whole) and round(done) % 2 == 0:
                 step *= 2.0
-        answer.y[row] = y
+        copy(y, answer.y[row])
         answer.torque[row], answer.stiffness[row] = torque, stiffness
         answer.energies[row, 0], answer.energies[row, 1] = out[0], out[1]
+        answer.inertia[row], answer.defect[row] = inertia(space.body, out), wrong
     return targets.size + 1
 
 
-@njit(cache=True, nogil=True)
+@part()
 def remember(theta, y, known, space):
     """Append a state and its rate to the known ones, dropping the oldest; returns their number."""
     if known > 0 and theta == space.known_at[known - 1]:
@@ -185,18 +204,18 @@ def remember(theta, y, known, space):
     if known == KNOWN:
         for i in range(KNOWN - 1):
             space.known_at[i] = space.known_at[i + 1]
-            space.known_y[i] = space.known_y[i + 1]
-            space.known_rate[i] = space.known_rate[i + 1]
+            copy(space.known_y[i + 1], space.known_y[i])
+            copy(space.known_rate[i + 1], space.known_rate[i])
         known -= 1
     space.known_at[known] = theta
-    space.known_y[known] = y
-    space.known_rate[known] = space.rate
+    copy(y, space.known_y[known])
+    copy(space.rate, space.known_rate[known])
     return known + 1
 
 
-@njit(cache=True, nogil=True)
+@part()
 def keep_last(known, space):
     """Forget all known states but the last."""
     space.known_at[0] = space.known_at[known - 1]
-    space.known_y[0] = space.known_y[known - 1]
-    space.known_rate[0] = space.known_rate[known - 1]
+    copy(space.known_y[known - 1], space.known_y[0])
+    copy(space.known_rate[known - 1], space.known_rate[0])

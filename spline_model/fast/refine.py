@@ -10,30 +10,28 @@ import math
 from functools import lru_cache
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
-from spline_model.design import Design
 from spline_model.fast.body import Frame
+from spline_model.fast.compiled import kernel
 from spline_model.fast.path import Answer, newton, tangent
 from spline_model.fast.solve import TOLERANCE, arrays, empty_answer, frame_of, grid_of, mode_count
-from spline_model.fast.strip import FAST
+from spline_model.mechanism import Mechanism
 
 Array = NDArray[np.float64]
 
 
-def refined(design: Design, rotations: Array, y: Array, finer: Design) -> Answer | None:
-    """Solve ``finer``, the same strips with more control points, from states y (S, Y) of ``design``.
+def refined(coarse: Mechanism, rotations: Array, y: Array, finer: Mechanism) -> Answer | None:
+    """Solve ``finer``, the same strips with more control points, from states y (S, Y) of ``coarse``.
 
     rotations (S,) [rad]. Returns the answer at the same rotations, or None where Newton's
     method does not converge from a state.
     """
-    n, modes = finer.discretisation.control_points, mode_count(finer)
-    frame = frame_of(finer)
-    locals_, space = arrays(len(finer.strips), n, modes)
+    design, grid, frame = coarse.design, grid_of(finer.design), frame_of(finer)
+    locals_, space = arrays(len(design.strips), grid)
     answer = empty_answer(len(rotations), len(space.y))
     answer.y[:] = carried_over(y, rotations, frame, design.discretisation.control_points, mode_count(design))
-    done = correct(rotations, frame, grid_of(finer), locals_, space, TOLERANCE, answer)
+    done = correct(rotations, frame, grid, locals_, space, TOLERANCE, answer)
     return answer if done else None
 
 
@@ -93,14 +91,15 @@ def _elevation(count: int, target: int) -> Array:
     return matrix
 
 
-@njit(cache=True, nogil=True, fastmath=FAST)
+@kernel()
 def correct(rotations, frame, grid, locals_, space, tolerance, answer):
     """Newton's method from each state in answer.y, in place; fills the answer. False where it fails."""
-    out = np.empty(4)
+    out = space.out
     for row in range(rotations.size):
         y = answer.y[row]
         if not newton(y, rotations[row], frame, grid, locals_, space, out, tolerance, answer.counters):
             return False
-        answer.torque[row], answer.stiffness[row] = tangent(y, rotations[row], frame, locals_, space)
+        torque, stiffness, _ = tangent(y, rotations[row], frame, grid, locals_, space)
+        answer.torque[row], answer.stiffness[row] = torque, stiffness
         answer.energies[row, 0], answer.energies[row, 1] = out[0], out[1]
     return True

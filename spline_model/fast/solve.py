@@ -12,6 +12,10 @@ from numpy.typing import NDArray
 
 from spline_model.basis import bezier
 from spline_model.compile import System
+from spline_model.continuation.critical import between
+from spline_model.continuation.integration import Finer
+from spline_model.continuation.point import stand
+from spline_model.continuation.remark import remark
 from spline_model.design import Design
 from spline_model.effects.constraints import GROUND
 from spline_model.effects.registry import MOTION_ONLY
@@ -19,8 +23,11 @@ from spline_model.fast.body import Frame, Space
 from spline_model.fast.path import EVALUATIONS, HALVED, ITERATIONS, Answer, follow
 from spline_model.fast.states import states_of
 from spline_model.fast.strip import Grid, local_arrays
+from spline_model.laps import Laps
 from spline_model.mechanism import Mechanism
-from spline_model.solution import Path, Status
+from spline_model.newton import Workspace
+from spline_model.solution import CriticalPoint, Path, Status
+from spline_model.work import external_work
 
 Array = NDArray[np.float64]
 
@@ -61,6 +68,7 @@ def _grid(control_points: int, gauss_points: int, modes: int) -> Grid:
     basis = bezier(control_points)
     u, weight = basis.gauss_rule(gauss_points)
     return Grid(
+        d0=np.ascontiguousarray(basis.evaluate(u)),
         d1=np.ascontiguousarray(basis.evaluate(u, 1)),
         d2=np.ascontiguousarray(basis.evaluate(u, 2)),
         modes=np.ascontiguousarray(legendre.legvander(2 * u - 1, modes - 1)),
@@ -83,8 +91,9 @@ def compliances(design: Design, axial: Array) -> Array:
     return table
 
 
-def frame_of(design: Design) -> Frame:
+def frame_of(mechanism: Mechanism) -> Frame:
     """Geometry and rigidities of the strips."""
+    design = mechanism.design
     centre = np.array(design.bodies[0].centre, dtype=float)
     start = np.array([s.start for s in design.strips], dtype=float)
     end = np.array([s.end for s in design.strips], dtype=float)
@@ -103,11 +112,12 @@ def frame_of(design: Design) -> Frame:
     )
 
 
-def arrays(strips: int, control_points: int, modes: int) -> tuple[tuple[Any, ...], Space]:
+def arrays(strips: int, grid: Grid) -> tuple[tuple[Any, ...], Space]:
     """Working arrays of a path, to be used again for others of the same size."""
+    (points, control_points), modes = grid.d1.shape, grid.modes.shape[1]
     own = 2 * control_points - 6
     size = 2 + strips * (own + modes)
-    locals_ = tuple(local_arrays(control_points, modes) for _ in range(strips))
+    locals_ = tuple(local_arrays(control_points, modes, points) for _ in range(strips))
     space = Space(
         body=np.zeros((3, 4)),
         change=np.zeros(3),
@@ -117,6 +127,7 @@ def arrays(strips: int, control_points: int, modes: int) -> tuple[tuple[Any, ...
         y=np.zeros(size),
         rate=np.zeros(size),
         predicted=np.zeros(size),
+        out=np.zeros(4),
     )
     return locals_, space
 
@@ -129,15 +140,41 @@ def at_rest(frame: Frame, control_points: int, modes: int) -> Array:
     return np.concatenate((frame.centre / frame.length[0], np.tile(strip, len(frame.length))))
 
 
-def fast_path(design: Design, rotations: Sequence[float]) -> tuple[int, Answer]:
+def fast_path(mechanism: Mechanism, rotations: Sequence[float], laps: Laps) -> tuple[int, Answer]:
     """Follow the path through the rotations [rad]; returns the converged states and the answer."""
+    design = mechanism.design
     n, modes, strips = design.discretisation.control_points, mode_count(design), len(design.strips)
-    frame, grid = frame_of(design), grid_of(design)
-    locals_, space = arrays(strips, n, modes)
+    frame, grid = frame_of(mechanism), grid_of(design)
+    locals_, space = arrays(strips, grid)
     answer = empty_answer(len(rotations) + 1, len(space.y))
     targets = np.asarray(rotations, dtype=float)
-    done = follow(at_rest(frame, n, modes), targets, frame, grid, locals_, space, TOLERANCE, answer)
+    start = at_rest(frame, n, modes)
+    laps.lap("compile")
+    done = follow(start, targets, frame, grid, locals_, space, TOLERANCE, answer)
+    laps.lap("solve")
     return done, answer
+
+
+def _critical_points(
+    system: System, factors: Array, states: Array, answer: Answer
+) -> tuple[CriticalPoint, ...] | None:
+    """The critical points between rows of another inertia or another sign of the stiffness.
+
+    None where one is not found: the multiplier path, whose steps are smaller there, does it.
+    """
+    steps = np.diff(factors)
+    turned = (np.diff(answer.inertia) != 0) | (answer.stiffness[1:] * answer.stiffness[:-1] < 0.0)
+    work = Workspace.of(system)
+    found: list[CriticalPoint] = []
+    for row in np.flatnonzero(turned):
+        before, after = (
+            stand(work, states[i], factors[i], work.evaluate(states[i], factors[i])) for i in (row, row + 1)
+        )
+        points = between(work, before, after, steps[row])
+        if not points or not Finer(system).confirms(work, before, after, steps[row]):
+            return None
+        found += points
+    return tuple(found)
 
 
 def empty_answer(states: int, size: int) -> Answer:
@@ -147,6 +184,8 @@ def empty_answer(states: int, size: int) -> Answer:
         torque=np.zeros(states),
         stiffness=np.zeros(states),
         energies=np.zeros((states, 2)),
+        inertia=np.zeros(states, dtype=np.int64),
+        defect=np.zeros(states),
         counters=np.zeros(3, dtype=np.int64),
     )
 
@@ -155,20 +194,21 @@ def follow_fast(
     mechanism: Mechanism,
     system: System,
     rotations: Sequence[float],
+    laps: Laps,
     progress: Callable[[int, int], None] | None = None,
 ) -> Path | None:
     """The path as the multiplier path would give it, or None where the fast one stops."""
-    done, answer = fast_path(mechanism.design, rotations)
+    done, answer = fast_path(mechanism, rotations, laps)
     if done <= len(rotations):
         return None
     if progress is not None:
         for increment in range(len(rotations)):
             progress(increment + 1, len(rotations))
-    return path_of(mechanism.design, system, rotations, answer)
+    return path_of(mechanism, system, rotations, answer)
 
 
-def path_of(design: Design, system: System, rotations: Sequence[float], answer: Answer) -> Path:
-    """A complete fast answer as a path of the multiplier path's unknowns.
+def path_of(mechanism: Mechanism, system: System, rotations: Sequence[float], answer: Answer) -> Path | None:
+    """A complete fast answer as a path of the multiplier path's unknowns, or None where that has doubts.
 
     ``system`` is the mechanism compiled with its driven rotation; load factors are those of
     its drive. Of the rates only the drive's multiplier is filled.
@@ -178,13 +218,21 @@ def path_of(design: Design, system: System, rotations: Sequence[float], answer: 
     rates = np.zeros((len(angles), system.layout.size))
     rates[:, drive.row[0]] = answer.stiffness * drive.target[0]
     increments, counters = len(rotations), answer.counters
+    states, factors = states_of(system, frame_of(mechanism), angles, answer), angles / drive.target[0]
+    critical = _critical_points(system, factors, states, answer)
+    if critical is None:
+        return None
     return Path(
         status=Status.CONVERGED,
-        message="",
-        load_factor=angles / drive.target[0],
-        states=states_of(system, frame_of(design), angles, answer),
+        message=remark(critical),
+        load_factor=factors,
+        states=states,
         rates=rates,
         energies=answer.energies,
+        work=external_work(system, factors, states, rates),
+        inertia=answer.inertia,
+        moment_defect=answer.defect,
+        critical_points=critical,
         counters={
             "increments": increments,
             "halved_increments": int(counters[HALVED]),

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 import numpy as np
 from numpy.polynomial import legendre
 from numpy.typing import NDArray
 
+from spline_model.basis import AxialModes, gauss_legendre
 from spline_model.compile import System
 from spline_model.effects import Clamp, DrivenRotation, MixedStretching
 from spline_model.effects.base import Constraint
@@ -38,7 +41,7 @@ def states_of(system: System, frame: Frame, rotations: Array, answer: Answer) ->
         force = a * frame.rigidity[s] / frame.length[s] ** 2
         for i, effect in enumerate(scene.of(MixedStretching)):
             if effect.strip == strip.name:
-                states[:, layout.axial_modes(i)] = force @ _in_modes(effect, modes)
+                states[:, layout.axial_modes(i)] = force @ _in_modes(effect.modes, modes)
     _add_multipliers(system, states, answer.torque[: len(rotations)])
     return states
 
@@ -65,11 +68,12 @@ def _control_points(frame: Frame, s: int, centre: Array, rotations: Array, w: Ar
     return points.reshape(count, 2 * n)
 
 
-def _in_modes(effect: MixedStretching, count: int) -> Array:
-    """Legendre coefficients (count,) -> coefficients of the effect's own modes: a matrix (count, modes)."""
-    nodes, weights = legendre.leggauss(count + effect.modes.count)
-    first, values = effect.modes.evaluate((nodes + 1) / 2)
-    full = np.zeros((len(nodes), effect.modes.count))
+@cache
+def _in_modes(modes: AxialModes, count: int) -> Array:
+    """Legendre coefficients (count,) -> coefficients of the modes: a matrix (count, modes)."""
+    nodes, weights = gauss_legendre(count + modes.count)
+    first, values = modes.evaluate((nodes + 1) / 2)
+    full = np.zeros((len(nodes), modes.count))
     np.put_along_axis(full, first[:, None] + np.arange(values.shape[1]), values, axis=1)
     gram = full.T @ (weights[:, None] * full)
     return np.asarray(

@@ -17,15 +17,15 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
-FAST = {"contract", "reassoc", "nsz"}
+from spline_model.fast.compiled import part
 
 
 class Grid(NamedTuple):
-    """Basis at the Gauss points: d1, d2 (G, n), modes (G, K), weight (G,)."""
+    """Basis at the Gauss points: d0, d1, d2 (G, n), modes (G, K), weight (G,)."""
 
+    d0: NDArray[np.float64]
     d1: NDArray[np.float64]
     d2: NDArray[np.float64]
     modes: NDArray[np.float64]
@@ -35,12 +35,15 @@ class Grid(NamedTuple):
 class Local(NamedTuple):
     """What one evaluation fills; n control points, W = 2 n - 6 own coordinates, K modes.
 
-    points (n, 2); gradient (2 n,), hessian (2 n, 2 n), coupling (K, 2 n) in the control
-    points; g (W + 3,), h (W + 3, W + 3), b (K, W + 3) in (w, e); gap (K,) residual of the
-    axial forces.
+    points (n, 2); turning (G,) theta' at the Gauss points; gradient (2 n,), hessian
+    (2 n, 2 n), coupling (K, 2 n) in the control points; g (W + 3,), h (W + 3, W + 3),
+    b (K, W + 3) in (w, e); gap (K,) residual of the axial forces; lever (n,) moment of the
+    tip's force and moment about the control points, filled by ``fast.doubt``.
     """
 
     points: NDArray[np.float64]
+    turning: NDArray[np.float64]
+    lever: NDArray[np.float64]
     gradient: NDArray[np.float64]
     hessian: NDArray[np.float64]
     coupling: NDArray[np.float64]
@@ -50,11 +53,13 @@ class Local(NamedTuple):
     gap: NDArray[np.float64]
 
 
-def local_arrays(control_points: int, modes: int) -> Local:
+def local_arrays(control_points: int, modes: int, gauss_points: int) -> Local:
     """Arrays of a strip of that size."""
     n, own = control_points, 2 * control_points - 6
     return Local(
         points=np.zeros((n, 2)),
+        turning=np.zeros(gauss_points),
+        lever=np.zeros(n),
         gradient=np.zeros(2 * n),
         hessian=np.zeros((2 * n, 2 * n)),
         coupling=np.zeros((modes, 2 * n)),
@@ -65,7 +70,7 @@ def local_arrays(control_points: int, modes: int) -> Local:
     )
 
 
-@njit(cache=True, nogil=True, fastmath=FAST)
+@part()
 def place_points(w, x, y, cos, sin, points):
     """Control points from the own coordinates (W,) and the tip's point and direction."""
     n = points.shape[0]
@@ -79,7 +84,7 @@ def place_points(w, x, y, cos, sin, points):
     points[n - 1, 0], points[n - 1, 1] = x, y
 
 
-@njit(cache=True, nogil=True, fastmath=FAST)
+@part()
 def assemble_points(points, a, compliance, grid, local):
     """Fill gradient, upper hessian blocks, coupling and gap; returns the energies and least |C'|."""
     n, count, modes = points.shape[0], grid.weight.size, a.size
@@ -110,6 +115,7 @@ def assemble_points(points, a, compliance, grid, local):
         slowest = min(slowest, v)
         r = 1.0 / s
         f = (x1 * y2 - y1 * x2) * r  # theta'
+        local.turning[p] = f
         # gradient of f in (x', y', x'', y'')
         f0, f1 = (y2 - 2.0 * f * x1) * r, (-x2 - 2.0 * f * y1) * r
         f2, f3 = -y1 * r, x1 * r
@@ -153,7 +159,7 @@ def assemble_points(points, a, compliance, grid, local):
     return bending, axial, slowest
 
 
-@njit(cache=True, nogil=True, fastmath=FAST)
+@part()
 def to_own(vector, reach, arm, cos, sin, out):
     """A covector in the control points (2 n,) in the coordinates (w, e), (W + 3,).
 
@@ -170,7 +176,7 @@ def to_own(vector, reach, arm, cos, sin, out):
     out[last + 3] = arm * (sin * bx - cos * by)
 
 
-@njit(cache=True, nogil=True, fastmath=FAST)
+@part()
 def hessian_to_own(hessian, gradient, reach, arm, cos, sin, h):
     """The upper triangle of h in (w, e) from the upper blocks of the Hessian in the control points."""
     size, last = gradient.size, h.shape[0] - 4
@@ -207,7 +213,7 @@ def hessian_to_own(hessian, gradient, reach, arm, cos, sin, h):
     h[last + 3, last + 3] = nx * (xx * nx + 2.0 * xy * ny) + yy * ny * ny + arm * (cos * gx + sin * gy)
 
 
-@njit(cache=True, nogil=True, fastmath=FAST)
+@part()
 def evaluate(w, a, x, y, cos, sin, compliance, grid, local):
     """Fill g, the upper triangle of h, b and gap in (w, e) at a tip in (x, y) with direction (cos, sin).
 

@@ -40,7 +40,8 @@ def answer_static(
     """Solve the static path of `problem` with the model that `settings` belongs to.
 
     `wall_s` of the response is the median time of `repeat` solves of the whole path, without import,
-    compilation and set-up: a short solve comes before, and when `repeat` is above 1 a whole one.
+    compilation and set-up: a short solve comes before, and when `repeat` is above 1 a whole one. `solve_s` is
+    the median of what the model says its increments alone took.
 
     Args:
         problem: the design and the path.
@@ -76,7 +77,7 @@ def answer_static(
 
     with refusals(model, settings):
         solve(WARM_UP_ROTATION, 1, raise_on_failure=False)
-        timing = measure(whole_path, repeat=repeat, warm_up=1 if repeat > 1 else 0)
+        timing = measure(whole_path, repeat=repeat, warm_up=1 if repeat > 1 else 0, part=_solve_s)
     return response(
         problem,
         timing.result,
@@ -84,6 +85,7 @@ def answer_static(
         settings=keywords,
         effects=assembled(effects_of(pivot)),
         wall_s=timing.median,
+        solve_s=timing.median_part,
     )
 
 
@@ -114,8 +116,15 @@ def answer_mechanism(
             lambda: whole_path(raise_on_failure=raise_on_failure, progress=progress),
             repeat=repeat,
             warm_up=1 if repeat > 1 else 0,
+            part=_solve_s,
         )
-    return mechanism_response(timing.result, model=settings.model, settings=keywords, wall_s=timing.median)
+    return mechanism_response(
+        timing.result,
+        model=settings.model,
+        settings=keywords,
+        wall_s=timing.median,
+        solve_s=timing.median_part,
+    )
 
 
 def answer_release(
@@ -164,7 +173,7 @@ def answer_release(
         release(start=WARM_UP_ROTATION, duration=short)
     try:
         with refusals(model, settings):
-            timing = measure(release, repeat=repeat, warm_up=1 if repeat > 1 else 0)
+            timing = measure(release, repeat=repeat, warm_up=1 if repeat > 1 else 0, part=_solve_s)
     except model.errors.ConvergenceError as error:
         return no_motion(
             f"statics does not reach the start: {error}",
@@ -182,6 +191,7 @@ def answer_release(
         bodies=_places(timing.result),
         body=body,
         wall_s=max(timing.median - _wall_of_start(release, timing.result, repeat), 0.0),
+        solve_s=timing.median_part,
     )
 
 
@@ -241,6 +251,11 @@ def spline_mechanism(design: Design, settings: SplineSettings) -> Any:
     """Return the spline model's mechanism of a design, as it is in motion; errors as of `answer_release`."""
     asked, _ = built(model_of(settings), design, settings, moving=True)
     return asked.mechanism if isinstance(design, Problem) else asked
+
+
+def _solve_s(result: Any) -> float:
+    """Return what the increments or steps of a solution took, without what is made before and after [s]."""
+    return float(result.seconds["solve"])
 
 
 def _wall_of_start(release: Callable[..., Any], result: Any, repeat: int) -> float:

@@ -28,7 +28,7 @@ class MechanismResponse:
     """Static answer of a mechanism over S converged states, that of load factor 0 first.
 
     Attributes:
-        model, settings, status, message, counters, wall_s: as in `Response`.
+        model, settings, status, message, counters, wall_s, solve_s: as in `Response`.
         effects: names of what was assembled.
         load_factor: (S,) [1].
         bodies: (S, 3) by name: centre of mass x, y [m], rotation, counter-clockwise [rad].
@@ -54,6 +54,7 @@ class MechanismResponse:
     work: Array
     counters: dict[str, int]
     wall_s: float
+    solve_s: float
 
     @property
     def converged(self) -> bool:
@@ -79,7 +80,7 @@ class MechanismResult(StaticResult, Protocol):
 
 
 def mechanism_response(
-    result: MechanismResult, *, model: str, settings: dict[str, Any], wall_s: float
+    result: MechanismResult, *, model: str, settings: dict[str, Any], wall_s: float, solve_s: float
 ) -> MechanismResponse:
     """Return the neutral form of a model's `result`; only elements with shear have its energy."""
     arrays = {name: np.asarray(getattr(result, name), dtype=float) for name in SHARED_ARRAYS}
@@ -94,5 +95,6 @@ def mechanism_response(
         shear_energy=np.asarray(shear, dtype=float),
         counters=dict(result.counters),
         wall_s=wall_s,
+        solve_s=solve_s,
         **arrays,
     )

@@ -48,6 +48,10 @@ class ReleaseResult(Protocol):
     def settings(self) -> Mapping[str, Any]:
         """Integrator and step of the run."""
 
+    @property
+    def seconds(self) -> Mapping[str, float]:
+        """Time by part; "solve" is that of the steps alone."""
+
 
 class ModesResult(Protocol):
     """What the modes of either model offer; see `Spectrum` for the arrays."""
@@ -84,6 +88,7 @@ class Motion:
         constraint_residual: (T,) largest gap of clamps [m]; velocity_residual: (T,) its rate [m/s].
         counters: work done, by kind.
         wall_s: time of the motion alone, without the static path to its start [s].
+        solve_s: of it, the steps alone [s].
         estimate: as in `Response`.
     """
 
@@ -105,6 +110,7 @@ class Motion:
     velocity_residual: Array
     counters: dict[str, int]
     wall_s: float
+    solve_s: float
     estimate: dict[str, Any] | None = None
 
     @property
@@ -186,6 +192,7 @@ def motion(
     bodies: Mapping[str, Array],
     body: str,
     wall_s: float,
+    solve_s: float,
 ) -> Motion:
     """Return the neutral form of a model's trajectory; only some say how well they resolve the swing."""
     exact = np.zeros(len(result.time))
@@ -202,6 +209,7 @@ def motion(
         body=body,
         counters=dict(result.counters),
         wall_s=wall_s,
+        solve_s=solve_s,
         estimate=estimate_of(result),
         **{name: np.asarray(array, dtype=float) for name, array in arrays.items()},
     )
@@ -228,6 +236,7 @@ def no_motion(
         body=body,
         counters={},
         wall_s=0.0,
+        solve_s=0.0,
         estimate=None,
         **{name: np.zeros(0) for name in (*SHARED_ARRAYS, *RESIDUALS)},
     )

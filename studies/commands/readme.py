@@ -1,16 +1,17 @@
-"""Rewrite the figures of agreement in README.md from the stored results.
+"""Rewrite the figures of agreement and of cost in README.md from the stored results.
 
     python -m studies readme
 
-Only what stands between the two marks is written; everything there comes from results/data. Exit code 0:
+Only what stands between marks is written; everything there comes from results/data. Exit code 0:
 done; 2: a study it needs was never run, or README.md has no marks.
 """
 
 import argparse
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 import pandas as pd
 
+from studies.commands.digits import digits
 from studies.commands.parser import Parser
 from studies.errors import BadInput
 from studies.record.files import write_whole
@@ -20,6 +21,8 @@ from studies.record.store import Store
 README = ROOT / "README.md"
 BEGIN = "<!-- agreement: written by `python -m studies readme` -->"
 END = "<!-- end of agreement -->"
+BEGIN_DIGITS = "<!-- digits: written by `python -m studies readme` -->"
+END_DIGITS = "<!-- end of digits -->"
 
 #: Control-point counts that the table shows for the default formulation.
 COUNTS = (4, 6, 8, 12)
@@ -39,22 +42,30 @@ def add_arguments(parser: Parser) -> None:
 
 
 def main(arguments: argparse.Namespace) -> int:
-    """Rewrite the block; return the exit code."""
+    """Rewrite the blocks; return the exit code."""
     write_whole(README, rewritten(README.read_text(encoding="utf-8"), Store()).encode())
     return 0
 
 
 def rewritten(text: str, store: Store) -> str:
-    """Return `text` with the block between the marks made anew from the results in `store`.
+    """Return `text` with what stands between the marks made anew from the results in `store`.
 
     Raises:
         BadInput: the marks are missing, or a study was never run.
     """
-    head, begin, rest = text.partition(BEGIN)
-    _, end, tail = rest.partition(END)
-    if not (begin and end):
-        raise BadInput(f"README.md: got no marks, expected {BEGIN} and {END}")
-    return "\n".join([f"{head}{BEGIN}", "", *_block(store), "", f"{END}{tail}"])
+    text = _between(text, BEGIN, END, _block(store))
+    studies = ("work_precision/statics", "work_precision/dynamics")
+    found = [_table(store, study, "digits_of_time") for study in studies]
+    return _between(text, BEGIN_DIGITS, END_DIGITS, digits(*found))
+
+
+def _between(text: str, begin: str, end: str, lines: Iterable[str]) -> str:
+    """Return `text` with `lines` in place of what stands between the marks."""
+    head, found_begin, rest = text.partition(begin)
+    _, found_end, tail = rest.partition(end)
+    if not (found_begin and found_end):
+        raise BadInput(f"README.md: got no marks, expected {begin} and {end}")
+    return "\n".join([f"{head}{begin}", "", *lines, "", f"{end}{tail}"])
 
 
 def _block(store: Store) -> Iterator[str]:

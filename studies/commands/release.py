@@ -55,8 +55,8 @@ def add_arguments(parser: Parser) -> None:
     parser.add_argument(
         "--integrator",
         metavar="NAME",
-        help="spline: energy (default), generalised-alpha, explicit; fe: central-difference (default), "
-        "generalised-alpha",
+        help="spline: energy (default), generalised-alpha, explicit, leapfrog; "
+        "fe: central-difference (default), generalised-alpha",
     )
     parser.add_argument(
         "--accuracy",

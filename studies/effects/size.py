@@ -4,7 +4,7 @@ import math
 from dataclasses import dataclass
 
 from spline_model.compile import compile_scene
-from spline_model.dynamics import critical_step
+from spline_model.dynamics import highest_frequency
 from spline_model.integrators.explicit import STABILITY_LIMIT
 from spline_model.integrators.motion import set_in_motion
 from spline_model.mechanism import Mechanism
@@ -46,11 +46,11 @@ def size_of(design: Design, settings: SplineSettings) -> Size:
         system = compile_scene(mechanism.released())
         motion = set_in_motion(system)
         start = static_state(mechanism, design.rotation or 0.0, body=body)[: system.layout.size]
-        step = critical_step(system, motion, start)
+        highest = highest_frequency(system, motion, start)
         modes = linear_modes(system, system.rest, motion.mass)[0]
     return Size(
         unknowns=system.layout.size,
         degrees_of_freedom=len(modes),
-        highest_frequency=STABILITY_LIMIT / step / (2.0 * math.pi),
-        explicit_step=step,
+        highest_frequency=highest / (2.0 * math.pi),
+        explicit_step=STABILITY_LIMIT / highest,
     )

@@ -18,15 +18,22 @@ class Timing(Generic[Result]):
     Attributes:
         result: what the work returned.
         seconds: one entry a run, in the order they were made [s].
+        parts: the time of each run that `part` told of [s]; empty without it.
     """
 
     result: Result
     seconds: tuple[float, ...]
+    parts: tuple[float, ...] = ()
 
     @property
     def median(self) -> float:
         """Median time [s]."""
         return float(np.median(self.seconds))
+
+    @property
+    def median_part(self) -> float:
+        """Median time of the part [s]."""
+        return float(np.median(self.parts))
 
     @property
     def quartiles(self) -> tuple[float, float]:
@@ -35,11 +42,22 @@ class Timing(Generic[Result]):
         return float(low), float(high)
 
 
-def measure(work: Callable[[], Result], *, repeat: int, warm_up: int = 1) -> Timing[Result]:
+def measure(
+    work: Callable[[], Result],
+    *,
+    repeat: int,
+    warm_up: int = 1,
+    part: Callable[[Result], float] | None = None,
+) -> Timing[Result]:
     """Run `work` `warm_up` times untimed, then `repeat` times timed, with garbage collection off.
 
     Threads are the caller's affair: they must be set before numpy is imported (the command line and the
     Makefile set one).
+
+    Args:
+        work: what is timed.
+        repeat, warm_up: timed and untimed runs [1].
+        part: the time of a part of the work, from its result [s].
 
     Raises:
         ValueError: `repeat` below 1.
@@ -51,12 +69,14 @@ def measure(work: Callable[[], Result], *, repeat: int, warm_up: int = 1) -> Tim
     collecting = gc.isenabled()
     gc.disable()
     try:
-        seconds = []
+        seconds, parts = [], []
         for _ in range(repeat):
             start = time.perf_counter()
             result = work()
             seconds.append(time.perf_counter() - start)
+            if part is not None:
+                parts.append(part(result))
     finally:
         if collecting:
             gc.enable()
-    return Timing(result=result, seconds=tuple(seconds))
+    return Timing(result=result, seconds=tuple(seconds), parts=tuple(parts))

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
+from studies.answers.adapters import answer_release, answer_static
 from studies.answers.metrics import (
     extrapolate,
     observed_order,
@@ -20,6 +21,7 @@ from studies.answers.metrics import (
 )
 from studies.answers.motion import RESIDUALS, SHARED_ARRAYS, Motion
 from studies.answers.response import centre_shift, extreme_fibre_strain
+from studies.answers.settings import FeSettings, SplineSettings
 from studies.answers.swing import MESHES, limit_of
 from studies.cases.problem import CaseError, named_case
 
@@ -171,6 +173,7 @@ def test_limit_of_swings_removes_the_error_of_the_mesh():
                 body="body",
                 counters={},
                 wall_s=0.0,
+                solve_s=0.0,
                 **arrays,
             )
         )
@@ -179,3 +182,13 @@ def test_limit_of_swings_removes_the_error_of_the_mesh():
     assert limit.uncertainty.max() < 1e-10
     assert limit.frequency == pytest.approx(500.0 / (2.0 * np.pi), rel=1e-4)
     assert levels[0].energy_error == 0.0
+
+
+@pytest.mark.parametrize("settings", [SplineSettings(control_points=4), FeSettings(elements=4)], ids=str)
+def test_solve_time_is_a_part_of_the_wall_time(settings):
+    """The increments or steps alone take some time, and less than the whole answer."""
+    problem = dataclasses.replace(TABLE_1, rotation=0.2, increments=3)
+    path = answer_static(problem, settings, repeat=2)
+    assert 0.0 < path.solve_s < path.wall_s
+    motion = answer_release(problem, settings, duration=1e-3)
+    assert motion.solve_s > 0.0

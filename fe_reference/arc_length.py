@@ -1,0 +1,259 @@
+"""Following an equilibrium path in its arc length: through limit points, and where the critical ones are.
+
+Unknowns are the free coordinates y and the parameter p; lengths count in the longest strip, turns in rad and
+p as it is. A step is predicted along the tangent and brought back to equilibrium on the plane across it, by
+two solves with the same factors: K a = -r, K b = -dr/dp.
+"""
+
+from collections import Counter
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.interpolate import CubicHermiteSpline
+from scipy.sparse import csc_matrix
+
+from .control import Control, factorise, respond
+from .errors import ConvergenceError, InvalidParameter, count
+from .newton import ITERATIONS, TOLERANCE, equilibrate, round_off
+from .path import ROUND_OFF, WORK_MISMATCH
+from .stability import negative_eigenvalues
+
+Array = NDArray[np.float64]
+
+#: Longest step, shortest part of the first one, and how many there may be.
+LONGEST, SHORTEST, MOST = 0.5, 2.0**-14, 2000
+#: Least cosine between the tangents at both ends of a step, and longest correction over the step.
+SHARPEST, FARTHEST = 0.5, 0.5
+#: Iterations up to which the next step is longer.
+EASY = 4
+#: Halvings of a step in which a critical point lies.
+BISECTIONS = 22
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Place:
+    """A state on the path: y (size,), p; tangent dy/ds (size,) and dp/ds; number of negative eigenvalues.
+
+    torque, steepness: of the watched turn and its derivative in p, nan if none is watched.
+    potential [J]; conjugate: its derivative in p along the path, and the derivative of that in s.
+    """
+
+    y: Array
+    parameter: float
+    rate: Array
+    slope: float
+    negative: int
+    torque: float
+    steepness: float
+    potential: float
+    conjugate: tuple[float, float]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Critical:
+    """A critical point of a path.
+
+    kind: "limit point" of p or of the watched torque, "turning point" of a drive, else "bifurcation".
+    """
+
+    kind: str
+    parameter: float
+    y: Array
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class ArcPath:
+    """States of a path (S,) and its critical points in order."""
+
+    parameter: Array
+    y: Array
+    torque: Array
+    negative: NDArray[np.int64]
+    critical: tuple[Critical, ...]
+
+
+@dataclass(kw_only=True, eq=False)
+class _Walk:
+    """A path while it is followed."""
+
+    control: Control
+    counters: Counter[str] = field(default_factory=Counter)
+
+    def __post_init__(self) -> None:
+        structure = self.control.structure
+        length = max(strip.length for strip in structure.model.strips)
+        self.weight = np.full(structure.size, 1.0 / length)
+        self.weight[2::3] = 1.0
+
+    def product(self, a: tuple[Array, float], b: tuple[Array, float]) -> float:
+        """Return the inner product of two changes of (y, p)."""
+        return float((self.weight * a[0]) @ (self.weight * b[0])) + a[1] * b[1]
+
+    def push(self, y: Array, tangent: csc_matrix) -> Array:
+        """Return dr/dp on the free coordinates, the held ones going with p."""
+        control = self.control
+        rate = np.zeros(control.structure.size)
+        rate[control.held] = control.slope
+        change: Array = (tangent @ rate)[control.free]
+        load = control.residual_rate(y)
+        return change if load is None else change + load[control.free]
+
+    def place(self, y: Array, parameter: float, along: tuple[Array, float]) -> Place:
+        """Complete a state in equilibrium; the tangent goes with `along`."""
+        response = respond(self.control, y, parameter, self.counters)
+        rate, slope = response.rate, 1.0
+        size = np.sqrt(self.product((rate, slope), (rate, slope)))
+        scale = float(np.copysign(1.0 / size, self.product((rate, slope), along)))
+        return Place(
+            y=y,
+            parameter=parameter,
+            rate=scale * rate,
+            slope=scale * slope,
+            negative=negative_eigenvalues(self.control, y, parameter),
+            torque=response.torque,
+            steepness=response.stiffness,
+            potential=self.control.potential(y, parameter),
+            conjugate=(response.conjugate, scale * response.slope),
+        )
+
+    def step(self, here: Place, length: float, bend: Array | float = 0.0) -> tuple[Place | None, int]:
+        """Return the state on the plane at `length` along the tangent, or None, and the iterations."""
+        control, free = self.control, self.control.free
+        y = here.y + length * here.rate + 0.5 * length**2 * bend
+        parameter = here.parameter + length * here.slope
+        start, tolerance = (y.copy(), parameter), max(TOLERANCE, round_off(control.structure))
+        for iteration in range(ITERATIONS + 1):
+            y[control.held] = control.prescribed(parameter)
+            residual = control.residual(y, parameter)[free]
+            norm = np.abs(residual / control.structure.scale[free]).max()
+            if norm <= tolerance:
+                break
+            if not np.isfinite(norm) or iteration == ITERATIONS:
+                return None, iteration
+            tangent = control.tangent(y, parameter)
+            try:
+                lu = factorise(control, tangent, self.counters)
+            except RuntimeError:
+                return None, iteration
+            a, b = np.zeros_like(y), np.zeros_like(y)
+            a[free], b[free] = lu.solve(-residual), lu.solve(-self.push(y, tangent))
+            b[control.held] = control.slope
+            normal = (here.rate, here.slope)
+            off = self.product((y - start[0], parameter - start[1]), normal)
+            change = -(off + self.product((a, 0.0), normal)) / self.product((b, 1.0), normal)
+            y, parameter = y + a + change * b, parameter + change
+        away = (y - start[0], parameter - start[1])
+        if np.sqrt(self.product(away, away)) > FARTHEST * abs(length):
+            return None, iteration
+        try:
+            there = self.place(y, parameter, (here.rate, here.slope))
+        except RuntimeError:  # exactly singular: as good a critical point as there is
+            return None, iteration
+        turn = self.product((there.rate, there.slope), (here.rate, here.slope))
+        sound = turn >= SHARPEST and self.balanced(here, there)
+        return (there if sound else None), iteration
+
+    def balanced(self, here: Place, there: Place) -> bool:
+        """Return whether the potential gained is what its rate gives along a path between two states."""
+        moved = (there.y - here.y, there.parameter - here.parameter)
+        ends = (0.0, np.sqrt(self.product(moved, moved)))
+        pairs = [(at.parameter, at.slope, *at.conjugate) for at in (here, there)]
+        p, slope, conjugate, bend = np.array(pairs).T
+        nodes, weights = np.polynomial.legendre.leggauss(4)
+        s = 0.5 * ends[1] * (nodes + 1.0)
+        rate = CubicHermiteSpline(ends, p, slope)(s, 1) * CubicHermiteSpline(ends, conjugate, bend)(s)
+        done, gained = 0.5 * ends[1] * float(weights @ rate), there.potential - here.potential
+        scale = max(abs(gained), 0.5 * ends[1] * float(weights @ np.abs(rate)))
+        unit = self.control.structure.moment_unit + abs(there.potential)
+        return bool(abs(gained - done) <= WORK_MISMATCH * scale + ROUND_OFF * unit)
+
+
+def follow_arc(control: Control, *, increments: int = 20) -> ArcPath:
+    """Return the path from rest to the end of the control's span in p, however p goes up and down on the way.
+
+    Args:
+        control: what is held, driven and loaded. increments: the first step takes that part of the span.
+
+    Raises:
+        ConvergenceError: the end was not reached; InvalidParameter: fewer than one increment.
+    """
+    walk, end = _Walk(control=control), control.span[1]
+    first = equilibrate(control, np.zeros(control.structure.size), control.span[0], walk.counters)
+    if first.failure:
+        raise InvalidParameter("control", first.failure, "a scene at rest at its beginning [1]")
+    here = walk.place(first.y, control.span[0], (np.zeros_like(first.y), end - control.span[0]))
+    length = shortest = abs(end - control.span[0]) / count("increments", increments) / abs(here.slope)
+    length, shortest = min(length, LONGEST), SHORTEST * shortest
+    places, critical = [here], []
+    bend: Array | float = 0.0
+    while len(places) <= MOST and length > shortest:
+        there, iterations = walk.step(here, length, bend)
+        if there is None:
+            length /= 2.0
+            continue
+        critical += _critical(walk, here, there, length, bend)
+        if (there.parameter - end) * (here.parameter - end) <= 0.0:
+            places.append(_last(walk, here, there))
+            return _packed(places, critical)
+        bend = (there.rate - here.rate) / length
+        here = there
+        places.append(here)
+        length = min(1.5 * length, LONGEST) if iterations <= EASY else length
+    raise ConvergenceError(
+        f"p = {end:g} is not reached from {here.parameter:.6g}",
+        solution=_packed(places, critical),
+        load_factor=here.parameter,
+        history=(),
+    )
+
+
+def _critical(walk: _Walk, here: Place, there: Place, length: float, bend: Array | float) -> list[Critical]:
+    """Return the critical points of a step, by bisection of its length."""
+    found = []
+    if here.negative != there.negative:
+        turned = here.slope * there.slope < 0.0
+        turn = "limit point" if walk.control.watched is None else "turning point"
+        at = _bisect(walk, here, length, bend, lambda place: place.negative == here.negative)
+        found.append(Critical(kind=turn if turned else "bifurcation", parameter=at.parameter, y=at.y))
+    if here.steepness * there.steepness < 0.0 and here.slope * there.slope > 0.0:
+        at = _bisect(walk, here, length, bend, lambda place: place.steepness * here.steepness > 0.0)
+        found.append(Critical(kind="limit point", parameter=at.parameter, y=at.y))
+    return found
+
+
+def _bisect(
+    walk: _Walk, here: Place, length: float, bend: Array | float, before: Callable[[Place], bool]
+) -> Place:
+    """Return the last state of a step for which `before` holds."""
+    low, high, best = 0.0, length, here
+    for _ in range(BISECTIONS):
+        middle = 0.5 * (low + high)
+        place, _ = walk.step(here, middle, bend)
+        if place is None:
+            break
+        if before(place):
+            low, best = middle, place
+        else:
+            high = middle
+    return best
+
+
+def _last(walk: _Walk, here: Place, there: Place) -> Place:
+    """Return the state at the end of the span, between two others."""
+    end = walk.control.span[1]
+    share = (end - here.parameter) / (there.parameter - here.parameter)
+    outcome = equilibrate(walk.control, here.y + share * (there.y - here.y), end, walk.counters)
+    place = walk.place(outcome.y, end, (there.rate, there.slope))
+    return place if not outcome.failure else replace(place, y=np.full_like(place.y, np.nan))
+
+
+def _packed(places: list[Place], critical: list[Critical]) -> ArcPath:
+    return ArcPath(
+        parameter=np.array([place.parameter for place in places]),
+        y=np.array([place.y for place in places]),
+        torque=np.array([place.torque for place in places]),
+        negative=np.array([place.negative for place in places]),
+        critical=tuple(critical),
+    )

@@ -1,0 +1,127 @@
+"""A state of equilibrium on a path: how it changes along the path, and how stable it is."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import get_lapack_funcs
+
+from spline_model.compile import System
+from spline_model.effects.elastic import MEASURES
+from spline_model.newton import Workspace
+
+Array = NDArray[np.float64]
+
+sytrf, sytrs = get_lapack_funcs(("sytrf", "sytrs"))
+
+NOT_TRACKED = -1
+"""Inertia of a state whose forces have no potential: its tangent is not symmetric."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Point:
+    """A converged state and its tangent in the parameter s of its path.
+
+    z (N,); rate (N,) dz/ds and slope d(load factor)/ds: s is the load factor itself (slope 1)
+    or the arc length; inertia: negative eigenvalues of the reduced tangent, drives held;
+    energies (bending, axial) [J]; potential P [J], of which dP/d(load factor) = conjugate
+    along any path of equilibria, and conjugate_rate = d(conjugate)/ds.
+    """
+
+    load_factor: float
+    z: Array
+    rate: Array
+    slope: float
+    inertia: int
+    energies: tuple[float, float]
+    potential: float
+    conjugate: float
+    conjugate_rate: float
+
+
+def load_rate(system: System) -> Array:
+    """Minus the derivative of the residual in the load factor, shape (N,)."""
+    force = np.zeros(system.layout.size)
+    drives, loads = system.tables.drives, system.tables.loads
+    force[drives.row] = -drives.target
+    np.add.at(force, loads.coordinate, loads.value)
+    return force
+
+
+def has_potential(system: System) -> bool:
+    """Whether the forces are a gradient: all but the paper's printed ones are."""
+    tables = system.tables
+    printed = MEASURES.index("printed")
+    return not ((tables.bending.measure == printed).any() or (tables.stretching.measure == printed).any())
+
+
+def stand(work: Workspace, z: Array, load_factor: float, energies: tuple[float, float]) -> Point:
+    """The point of a state that ``work`` was just evaluated at, s being the load factor.
+
+    One symmetric factorisation gives both the rate and, by Sylvester's law, the inertia: of
+    the negative eigenvalues of the bordered matrix one belongs to each axial force and to each
+    constraint, the rest to the reduced tangent. Raises LinAlgError if it is singular.
+    """
+    system = work.system
+    force = load_rate(system)
+    rate, inertia = _symmetric(work, force) if has_potential(system) else (work.solve(force), NOT_TRACKED)
+    drives, loads = system.tables.drives, system.tables.loads
+    moved = z[loads.coordinate] - system.rest[loads.coordinate]
+    conjugate = z[drives.row] @ drives.target - moved @ loads.value
+    conjugate_rate = rate[drives.row] @ drives.target - rate[loads.coordinate] @ loads.value
+    return Point(
+        load_factor=load_factor,
+        z=z,
+        rate=rate,
+        slope=1.0,
+        inertia=inertia,
+        energies=energies,
+        potential=sum(energies) + _dead_energy(system, z) - load_factor * float(moved @ loads.value),
+        conjugate=float(conjugate),
+        conjugate_rate=float(conjugate_rate),
+    )
+
+
+def directed(system: System, point: Point, direction: Array, along: float) -> Point:
+    """The point with the arc length as parameter, growing along (direction (N,), along).
+
+    Arc length is measured in dimensionless coordinates (lengths of a strip, rad) and load
+    factors together; multipliers and axial forces have no part in it. Without a direction
+    (zero, and along = 1) the load factor stays the parameter.
+    """
+    if not direction.any():
+        return point
+    count = system.layout.coordinate_count
+    rate = point.rate / system.scales.unit
+    speed = np.hypot(np.linalg.norm(rate[:count]), point.slope)
+    scale = float(np.copysign(1.0 / speed, direction[:count] @ rate[:count] + along * point.slope))
+    return replace(
+        point,
+        rate=scale * point.rate,
+        slope=scale * point.slope,
+        conjugate_rate=scale * point.conjugate_rate,
+    )
+
+
+def _symmetric(work: Workspace, force: Array) -> tuple[Array, int]:
+    """Solve hessian x = force, and count the negative eigenvalues of the reduced tangent."""
+    layout, unit, energy = work.system.layout, work.system.scales.unit, work.system.scales.energy
+    work.counters.factorisations += 1
+    matrix = work.hessian * (unit[:, None] * unit / energy)
+    factors, pivots, failed = sytrf(matrix, lower=1)
+    if failed or not np.isfinite(factors).all():
+        raise np.linalg.LinAlgError("the tangent is singular")
+    single = pivots > 0
+    # a block of two is indefinite: one negative eigenvalue each (Bunch and Kaufman 1977)
+    negative = int((np.diag(factors)[single] < 0.0).sum() + (~single).sum() // 2)
+    rate = unit * sytrs(factors, pivots, force * unit / energy, lower=1)[0].ravel()
+    return np.asarray(rate), negative - (layout.size - layout.coordinate_count)
+
+
+def _dead_energy(system: System, z: Array) -> float:
+    """Energy of dead weight and of potentials in Python [J]."""
+    weight, count = system.tables.weight, system.layout.coordinate_count
+    energy = -float((z[: weight.size] - system.rest[: weight.size]) @ weight)
+    return energy + sum(p.derivatives(z[:count], system.layout)[0] for p in system.open_potentials)

@@ -1,0 +1,143 @@
+"""Whether the control points resolve a state: bending moments by the law against those by balance."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.interpolate import BSpline
+
+from spline_model.basis import SplineBasis
+from spline_model.compile import System
+from spline_model.effects import Bending, Clamp, Stretching, StripGravity
+from spline_model.effects.base import Constraint
+
+Array = NDArray[np.float64]
+
+LARGEST_DEFECT = 0.15
+"""Largest moment defect of a state that is accepted. On the pivot of Table 1 it is reached at
+106 degrees with four control points and near 200 with six, where the torque is wrong by 2 to 4 %;
+with four a torque limit follows at 137 degrees that the pivot has not, then another branch."""
+SMALLEST_MOMENT = 1e-2
+"""Root mean square moment below which strips count as unloaded, EI/L."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _Span:
+    """One strip's rows of the bending table: where its points, its root and its weight stand.
+
+    values (G, n) basis and areas (G, n) its integrals from the root, at the Gauss points;
+    clamp: the multipliers at its root; load (2,) weight per du [N].
+    """
+
+    rows: slice
+    points: slice
+    values: Array
+    areas: Array
+    clamp: slice
+    u: Array
+    load: Array
+
+
+class Resolution:
+    """The moment defect of the states of a system.
+
+    The constitutive moment M = EI (kappa - kappa_0) satisfies the balance M_b, of the root's
+    reaction and the weight, in the mean only; M - M_b is what the discretisation leaves
+    out. Zero for the exact solution. Strips that are not clamped at their root are left out.
+    Source: Prager and Synge, Q Appl Math 5 (1947) 241: the error in energy of two dual fields.
+    """
+
+    def __init__(self, system: System) -> None:
+        self.system = system
+        self.judged = not system.scene.of(Stretching)
+        table = system.tables.bending
+        self.columns = table.first[:, None] + 2 * np.minimum(
+            np.arange(table.d1.shape[1]), table.width[:, None] - 1
+        )
+        self.length = table.weight * table.speed
+        self.spans = tuple(_spans(system))
+
+    def refuse(self, z: Array) -> str:
+        """Why the discretisation no longer describes the strips; empty if it does.
+
+        Stretching by quadrature, the paper's form, is not judged: it is there to show what it does.
+        """
+        defect = self.defect(z) if self.judged else 0.0
+        if defect > LARGEST_DEFECT:
+            return (
+                "the control points do not resolve the strips any more: their moments differ from balance"
+                f" by {defect:.0%}"
+            )
+        return ""
+
+    def defect(self, z: Array) -> float:
+        """Root of the energy of the moment defect over the bending energy."""
+        table = self.system.tables.bending
+        x1, y1, x2, y2 = (
+            np.einsum("pa,pa->p", d, z[self.columns + i]) for d in (table.d1, table.d2) for i in range(2)
+        )
+        square = x1**2 + y1**2
+        speed = np.where(table.measure == 0, table.speed, np.sqrt(square))
+        moment = table.rigidity * ((x1 * y2 - y1 * x2) / square / speed - table.curvature)
+        wrong, stored = 0.0, SMALLEST_MOMENT**2 * self.system.scales.energy
+        for span in self.spans:
+            ds = self.length[span.rows] / table.rigidity[span.rows]
+            mine = moment[span.rows]
+            wrong += float(ds @ (mine - self._balance(span, z)) ** 2)
+            stored += float(ds @ mine**2)
+        return math.sqrt(wrong / stored)
+
+    def _balance(self, span: _Span, z: Array) -> Array:
+        points, reaction = z[span.points].reshape(-1, 2), z[span.clamp]
+        here = span.values @ points
+        arm, weighed = here - points[0], span.u[:, None] * here - span.areas @ points
+        by_weight = weighed[:, 0] * span.load[1] - weighed[:, 1] * span.load[0]
+        return np.asarray(arm[:, 0] * reaction[1] - arm[:, 1] * reaction[0] - reaction[2] + by_weight)
+
+
+def _spans(system: System) -> list[_Span]:
+    scene, layout = system.scene, system.layout
+    roots = {
+        clamp.strip: layout.rows(i)
+        for i, clamp in enumerate(scene.of(Constraint))
+        if isinstance(clamp, Clamp) and clamp.end == "start"
+    }
+    spans, at = [], 0
+    for bending in scene.of(Bending):
+        strip = scene.strip(bending.strip)
+        u = strip.basis.gauss_rule(bending.gauss_points)[0]
+        rows = slice(at, at + len(u))
+        at += len(u)
+        if bending.strip not in roots or bending.flexural_rigidity == 0.0:
+            continue
+        spans.append(
+            _Span(
+                rows=rows,
+                points=layout.strip(bending.strip),
+                values=strip.basis.evaluate(u),
+                areas=_areas(strip.basis, u),
+                clamp=roots[bending.strip],
+                u=u,
+                load=_weight(system, bending.strip),
+            )
+        )
+    return spans
+
+
+def _areas(basis: SplineBasis, u: Array) -> Array:
+    """Integrals of the basis functions from 0 to u, (len(u), n)."""
+    spline = BSpline(basis.knots, np.eye(basis.control_points), basis.degree)
+    return np.asarray(spline.antiderivative()(u) - spline.antiderivative()(0.0))
+
+
+def _weight(system: System, name: str) -> Array:
+    """Weight of a strip (2,) [N], spread evenly over u."""
+    total = np.zeros(2)
+    for effect in system.scene.of(StripGravity):
+        if effect.strip == name:
+            mass = effect.linear_density * float(system.scene.strip(name).share_of_length().sum())
+            total += mass * np.asarray(effect.acceleration)
+    return total

@@ -1,0 +1,1 @@
+"""The kernels of the sequential impulse solver, compiled."""

@@ -1,0 +1,237 @@
+"""The paper's sequential impulse solver (section 4.1, Eqs 21 to 30), and a form that is stable at any step.
+
+Both do an unconstrained update of strips and bodies one by one and then apply impulses until
+the constraints hold, at a fixed step h.
+
+"printed"  Elastic forces explicit, impulses at the level of velocities: symplectic Euler,
+           first order, stable while omega h < 2 for the highest frequency of the constrained
+           system. Nothing pulls positions back, so that the constraints drift.
+"stable"   Elastic forces implicit, the axial ones as constraints with compliance, constraints
+           fulfilled by the positions, iterations begun from the forces of the step before,
+           backward differences of second order. What a step does not resolve is damped. No step
+           gains energy while the ground holds the mechanism and no drive acts: where the
+           differences would, the velocity is reduced.
+
+Impulses are found at once ("direct", Eq 30 as it stands), by sweeps over the strips, each solved
+with its axial forces and both clamps ("strips"), or over single constraints ("constraints").
+Misprints of the paper are corrected: Eqs 22 and 23 begin from the state before, Eq 26 has the
+transposed Jacobian, Eq 30 its minus sign.
+"""
+
+from __future__ import annotations
+
+import math
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from spline_model.compile import compile_scene
+from spline_model.dynamics import MOST_MEMORY, STEPS_PER_PERIOD, Trajectory
+from spline_model.effects import DrivenDisplacement, DrivenRotation
+from spline_model.errors import InvalidParameter, require_count, require_positive
+from spline_model.impulses.run import Run, named
+from spline_model.impulses.solver import TOLERANCE, ImpulseSolver
+from spline_model.impulses.state import Outcome, State
+from spline_model.integrators.events import catch, drive_events, drives_at, from_here
+from spline_model.kernels.record import DISSIPATED, KINETIC, POSITION, STRAIN, VELOCITY, WEIGHT, WORK
+from spline_model.laps import Laps
+from spline_model.mass import mass_matrix
+from spline_model.mechanism import Mechanism
+from spline_model.modes import linear_modes, static_state
+from spline_model.pivot import Pivot
+from spline_model.solution import Status
+
+__all__ = ["ImpulseSolver", "Outcome", "State", "impulse_solver", "solve_impulses", "stability_limit"]
+
+Array = NDArray[np.float64]
+
+STEP = 0.01
+"""The paper's step: a quarter of the time between two pictures at 25 Hz [s]."""
+SWEEPS = 30
+"""Default of the most sweeps for one linear system."""
+STABILITY_LIMIT = 2.0
+"""omega h up to which symplectic Euler does not amplify an oscillation."""
+
+
+def impulse_solver(
+    pivot: Pivot | Mechanism,
+    *,
+    body: str | None = None,
+    form: str = "stable",
+    impulses: str = "direct",
+    sweeps: int = SWEEPS,
+    tolerance: float = TOLERANCE,
+) -> ImpulseSolver:
+    """A solver for steps one at a time, of which the named body, or the only one, can be given a pose.
+
+    Parameters
+    ----------
+    form : "printed" or "stable", see above.
+    impulses, sweeps : how they are found, see above, and the most sweeps for one linear system. Sweeps
+        over strips converge at any step, the slower the longer it is; those over constraints
+        diverge in the stable form where the step is long against the strips' bending.
+    tolerance : residual of a stable step and gap that ends the sweeps, in EI/L^2, EI/L, L, rad.
+
+    Raises InvalidParameter.
+    """
+    mechanism = pivot.mechanism if isinstance(pivot, Pivot) else pivot
+    mechanism.released()
+    scene = mechanism.scene
+    if mechanism.design.bodies:
+        name = mechanism.design.body_named(body)
+        drives = DrivenDisplacement(body=name, displacement=(0.0, 0.0)), DrivenRotation(body=name, angle=0.0)
+        scene = mechanism.with_effects(*drives)
+    return ImpulseSolver(
+        mechanism, compile_scene(scene), form=form, impulses=impulses, sweeps=sweeps, tolerance=tolerance
+    )
+
+
+def stability_limit(pivot: Pivot | Mechanism, rotation: float = 0.0) -> float:
+    """2 / omega [s] of the highest frequency about the static state at a rotation [rad].
+
+    The step of the printed form must stay below it.
+    """
+    mechanism = pivot.mechanism if isinstance(pivot, Pivot) else pivot
+    system = compile_scene(mechanism.released())
+    z = static_state(mechanism, rotation)[: system.layout.size]
+    highest = linear_modes(system, z, mass_matrix(system.scene, system.layout))[0][-1]
+    return STABILITY_LIMIT / math.sqrt(highest)
+
+
+def solve_impulses(
+    pivot: Pivot | Mechanism,
+    *,
+    start: float = 0.0,
+    body: str | None = None,
+    drive: DrivenRotation | None = None,
+    duration: float = 0.05,
+    step: float = STEP,
+    form: str = "stable",
+    impulses: str = "direct",
+    sweeps: int = SWEEPS,
+    tolerance: float = TOLERANCE,
+    records: int | None = None,
+) -> Trajectory:
+    """Motion from the static state at the rotation ``start`` [rad] of a body, at rest, as ``solve_motion``.
+
+    body, drive, duration, records: as there; form, impulses, sweeps, tolerance: as of
+    ``impulse_solver``; step [s] is shortened so that a whole number of steps fits between the
+    records. A body that a drive
+    catches loses the velocity that the drive does not have, and with it energy, which counts as
+    dissipated; what the stable form's steps damp does not.
+
+    Raises InvalidParameter, and ConvergenceError if statics does not reach ``start``.
+    """
+    mechanism = pivot.mechanism if isinstance(pivot, Pivot) else pivot
+    for name, value in (("duration", duration), ("step", step)):
+        require_positive(name, value, "s")
+    if not math.isfinite(start):
+        raise InvalidParameter("start", start, "a finite angle [rad]")
+    if step > duration:
+        raise InvalidParameter("step", step, f"at most the duration, {duration:g} s")
+    laps, body = Laps(), mechanism.design.body_named(body)
+    released = mechanism.released()
+    system = compile_scene(released if drive is None else mechanism.with_effects(drive))
+    solver = ImpulseSolver(
+        mechanism, system, form=form, impulses=impulses, sweeps=sweeps, tolerance=tolerance
+    )
+    steps, every = _count(duration, step, records, 2 * system.layout.size)
+    laps.lap("compile")
+    run = Run(solver, solver.start(start, body), steps // every)
+    laps.lap("start")
+    done = _follow(run, duration / steps, steps, every)
+    laps.lap("solve")
+    message = "" if done == steps else f"stopped at {done * duration / steps:.6g} s: {_reason(form)}"
+    settings = {"integrator": f"sequential impulses, {form}", "step_s": duration / steps}
+    settings |= {"impulses": impulses} | ({} if impulses == "direct" else {"sweeps": sweeps})
+    return _trajectory(run, duration / steps, every, done, message, mechanism, body, settings, laps)
+
+
+def _count(duration: float, step: float, records: int | None, width: int) -> tuple[int, int]:
+    """Number of steps, a multiple of the steps a record; refuses what does not fit into memory."""
+    if records is not None:
+        require_count("records", records, 1)
+    steps = max(1, math.ceil(duration / step * (1 - 1e-12)))  # a whole number but for round-off
+    every = 1 if records is None else max(1, math.ceil(steps / records))
+    memory = 8.0 * width * (steps // every + 1)
+    if memory > MOST_MEMORY:
+        expected = f"records within {MOST_MEMORY / 1e9:g} GB; {steps} steps take {memory / 1e9:.3g}"
+        raise InvalidParameter("duration", duration, expected)
+    return math.ceil(steps / every) * every, every
+
+
+def _follow(run: Run, h: float, steps: int, every: int) -> int:
+    """Take the steps, drives beginning and ending at the nearest one; returns the number taken."""
+    solver = run.solver
+    motion = solver.motion
+    before = np.zeros(len(motion.tables.drives.row), dtype=np.int64)
+    done = 0
+    for begin, end in pairwise(drive_events(motion, h, steps)):
+        active = drives_at(motion, begin, h)
+        z, v = run.moving.z, run.moving.v
+        motion = from_here(motion, z, active, before, begin * h)
+        run.change(*catch(motion, z, v, active, begin * h, h))
+        if begin == 0:
+            run.keep_start()
+        done = run.go(begin, end, h, 0.0, every, active, motion)
+        if done < end:
+            return done
+        before = active
+    return done
+
+
+def _reason(form: str) -> str:
+    if form == "printed":
+        return "the step is above the stability limit"
+    return "no part of the step can be solved, or a strip folds; take a shorter one"
+
+
+def _trajectory(
+    run: Run,
+    h: float,
+    every: int,
+    done: int,
+    message: str,
+    mechanism: Mechanism,
+    body: str,
+    settings: dict[str, Any],
+    laps: Laps,
+) -> Trajectory:
+    system, log, kept = run.solver.system, run.log, done // every + 1
+    rest = float(system.tables.weight @ system.rest[: system.tables.weight.size])
+    states, rows = log.states[:kept], log.rows[:kept]
+    return Trajectory(
+        status=Status.NOT_CONVERGED if message else Status.CONVERGED,
+        message=message,
+        time=np.arange(0.0, kept) * (h * every),
+        bodies={b.name: states[:, system.layout.body(b.name)] for b in system.scene.bodies},
+        body=body,
+        kinetic_energy=rows[:, KINETIC],
+        strain_energy=rows[:, STRAIN],
+        gravity_energy=rows[:, WEIGHT] + rest,
+        work=rows[:, WORK],
+        dissipated=rows[:, DISSIPATED],
+        constraint_residual=rows[:, POSITION],
+        velocity_residual=rows[:, VELOCITY],
+        states=states,
+        velocities=log.rates[:kept],
+        resolution=_resolution(run.solver, h),
+        effects=mechanism.effects,
+        counters=named(run.moving.counters),
+        settings=settings,
+        seconds=laps.lap("recover"),
+    )
+
+
+def _resolution(solver: ImpulseSolver, h: float) -> str:
+    """How far a step under-resolves the swing at rest, or an empty string."""
+    squares = linear_modes(solver.system, solver.system.rest, solver.motion.mass)[0]
+    period = 2 * math.pi / math.sqrt(squares[0]) if squares[0] > 0 else math.inf
+    if h * STEPS_PER_PERIOD <= period:
+        return ""
+    return (
+        f"the step of {h:g} s is {h / period:.3g} of the swing's period at rest: "
+        f"take {period / STEPS_PER_PERIOD:.2g} s or less for its phase and amplitude"
+    )

@@ -1,0 +1,102 @@
+"""Factorising the bordered system of long B-splines by its pattern: cost in proportion to their length.
+
+A control point of a cubic B-spline meets three neighbours on either side, so that of the N^2
+entries of the tangent some 17 N are not zero. A dense factorisation takes time in proportion
+to N^3; one that keeps to the order of the chain, to N.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import csc_matrix
+from scipy.sparse.linalg import SuperLU, splu
+
+from spline_model.compile import System
+from spline_model.kernels.axial_force import AxialForceTable
+from spline_model.kernels.bending import BendingTable
+from spline_model.kernels.stretching import StretchingTable
+
+Array = NDArray[np.float64]
+
+LEAST_SIZE = 150
+"""Unknowns from which on the sparse factorisation is the faster one (measured: two strips of 24 points)."""
+LARGEST_FILL = 0.15
+"""Share of entries that are not zero above which the dense one is: Bezier curves have 0.3 and more."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Pattern:
+    """Where a tangent (N, N) can be other than zero, column by column, and the scale of each such entry.
+
+    rows (K,), starts (N + 1,) as of a compressed column matrix; places (K,) in the flattened
+    tangent; scale (K,) makes an entry dimensionless.
+    """
+
+    rows: NDArray[np.int32]
+    starts: NDArray[np.int32]
+    places: NDArray[np.int64]
+    scale: Array
+
+    def factorise(self, hessian: Array) -> SuperLU:
+        """LU factors of the scaled tangent, with pivoting; raises LinAlgError if it is singular."""
+        size = len(self.starts) - 1
+        entries = hessian.ravel()[self.places] * self.scale
+        if not np.isfinite(entries).all():
+            raise np.linalg.LinAlgError("the tangent is not finite")
+        matrix = csc_matrix((entries, self.rows, self.starts), shape=(size, size))
+        try:
+            return splu(matrix, permc_spec="MMD_AT_PLUS_A", options={"SymmetricMode": True})
+        except RuntimeError:
+            raise np.linalg.LinAlgError("the tangent is singular") from None
+
+
+def pattern_of(system: System) -> Pattern | None:
+    """The pattern of a system's tangent, or None where a dense factorisation is as fast or needed."""
+    size = system.layout.size
+    if size < LEAST_SIZE or system.open_potentials:
+        return None
+    filled = filled_entries(system)
+    if filled.mean() > LARGEST_FILL:
+        return None
+    columns, rows = np.nonzero(filled.T)
+    unit, energy = system.scales.unit, system.scales.energy
+    return Pattern(
+        rows=rows.astype(np.int32),
+        starts=np.concatenate(([0], np.cumsum(filled.sum(axis=0)))).astype(np.int32),
+        places=rows * size + columns,
+        scale=unit[rows] * unit[columns] / energy,
+    )
+
+
+def filled_entries(system: System) -> NDArray[np.bool_]:
+    """Which entries of the tangent (N, N) the compiled tables can reach; potentials in Python not counted."""
+    tables, size = system.tables, system.layout.size
+    filled = np.zeros((size, size), dtype=np.bool_)
+    for block in (*_spans(tables.bending), *_spans(tables.stretching), *_mode_spans(tables.axial_force)):
+        filled[np.ix_(block, block)] = True
+    clamps, drives = tables.clamps, tables.drives
+    for end, inner, body, row in zip(clamps.end, clamps.inner, clamps.body, clamps.row, strict=True):
+        places = [end, end + 1, inner, inner + 1, *range(row, row + 3)]
+        places += [] if body < 0 else range(body, body + 3)
+        filled[np.ix_(places, places)] = True
+    filled[drives.coordinate, drives.row] = filled[drives.row, drives.coordinate] = True
+    return filled
+
+
+def _spans(table: BendingTable | StretchingTable) -> list[NDArray[np.int64]]:
+    """Coordinates that meet at some Gauss point, one array a knot span."""
+    pairs = sorted(set(zip(table.first.tolist(), table.width.tolist(), strict=True)))
+    return [np.arange(first, first + 2 * width) for first, width in pairs]
+
+
+def _mode_spans(table: AxialForceTable) -> list[NDArray[np.int64]]:
+    """The same with the axial forces that do not vanish there."""
+    names = ("first", "width", "mode_first", "mode_width")
+    spans = sorted(set(zip(*(getattr(table, name).tolist() for name in names), strict=True)))
+    return [
+        np.concatenate((np.arange(first, first + 2 * width), np.arange(mode, mode + modes)))
+        for first, width, mode, modes in spans
+    ]

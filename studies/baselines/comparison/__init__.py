@@ -1,0 +1,1 @@
+"""Studies that hold the baselines against the spline."""

@@ -1,0 +1,147 @@
+"""Which settings of which models the comparison with other codes tries, and a common form of the outcome."""
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from types import ModuleType
+from typing import Any
+
+import numpy as np
+
+from studies.baselines import spline
+from studies.baselines.answer import BaselineFailed
+from studies.baselines.peers import exudyn_ancf, exudyn_exact, openseespy_frame
+from studies.baselines.registry import HINT
+
+#: Theories of the rod: the limit that a model tends to.
+WITHOUT_SHEAR, WITH_SHEAR = "without shear", "with shear"
+
+#: Group of a ratio -> modules, and the solver settings that count for it.
+EXUDYN, AS_DELIVERED, OPENSEES = "Exudyn", "Exudyn as delivered", "OpenSees"
+SPLINE = "spline"
+
+#: Passes through all variants, far apart in time, of whose median times the smallest counts: what else the
+#: machine does lasts longer than one variant.
+PASSES = 2
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Variant:
+    """One setting of one model.
+
+    Attributes:
+        module: with the interface of a baseline.
+        group: under which its times are compared.
+        theory: of its rod.
+        settings: keywords; label: the same as a text.
+    """
+
+    module: ModuleType
+    group: str
+    theory: str
+    settings: Mapping[str, Any] = field(default_factory=dict)
+
+    @property
+    def model(self) -> str:
+        """Name of the model."""
+        return str(self.module.MODEL)
+
+    @property
+    def label(self) -> str:
+        """The settings as a text."""
+        return " ".join(f"{name}={_short(value)}" for name, value in self.settings.items())
+
+
+def _short(value: Any) -> str:
+    return f"{value:g}" if isinstance(value, float) else str(value)
+
+
+def static_variants() -> list[Variant]:
+    """Return the settings of the static path."""
+    found = [_variant(spline, SPLINE, control_points=n) for n in range(5, 11)]
+    for tolerance in (1e-5, 1e-6, 1e-8):
+        for elements in (2, 4, 6, 8, 12, 16, 24, 40):
+            found.append(_ancf(elements, relative_tolerance=tolerance))
+        for elements in (1, 2, 3, 4, 6, 8, 12, 16, 20, 24):
+            found.append(_exact(elements, relative_tolerance=tolerance))
+    for integration in (1, 2):
+        for elements in (4, 8, 16, 24, 40):
+            found.append(_ancf(elements, integration=integration, relative_tolerance=1e-6))
+    found += [_variant(exudyn_ancf, AS_DELIVERED, elements=n, solver="as delivered") for n in (4, 8, 16, 40)]
+    found += [_variant(exudyn_exact, AS_DELIVERED, elements=n, solver="as delivered") for n in (2, 4, 8, 20)]
+    return found + [
+        _variant(openseespy_frame, OPENSEES, elements=n, tolerance=tolerance)
+        for n in (5, 10, 20, 40, 80, 160)
+        for tolerance in (1e-8, 1e-10)
+    ]
+
+
+def release_variants() -> list[Variant]:
+    """Return the settings of the release."""
+    found = [
+        _variant(spline, SPLINE, control_points=n, integrator=integrator, step=step)
+        for n in (5, 6, 7, 8)
+        for integrator in ("energy", "generalised-alpha")
+        for step in (2e-4, 1e-4, 5e-5, 2e-5)
+    ]
+    found += [_variant(spline, SPLINE, control_points=n, integrator="explicit", step=2e-6) for n in (6, 7, 8)]
+    for radius, tolerance in ((0.9, 1e-3), (0.6, 1e-3), (0.9, 1e-5)):
+        options = {"spectral_radius": radius, "relative_tolerance": tolerance}
+        for step in (2e-4, 1e-4, 5e-5, 2e-5):
+            found += [_ancf(elements, step=step, **options) for elements in (3, 4, 5, 6, 8)]
+            found += [_exact(elements, step=step, **options) for elements in (2, 3, 4, 6)]
+    return found + [
+        _variant(openseespy_frame, OPENSEES, elements=n, step=step)
+        for n in (10, 20, 40)
+        for step in (1e-4, 5e-5, 2e-5)
+    ]
+
+
+def _variant(module: ModuleType, group: str, **settings: Any) -> Variant:
+    theory = WITH_SHEAR if module is exudyn_exact else WITHOUT_SHEAR
+    return Variant(module=module, group=group, theory=theory, settings=settings)
+
+
+def _ancf(elements: int, **settings: Any) -> Variant:
+    return _variant(exudyn_ancf, EXUDYN, elements=elements, **settings)
+
+
+def _exact(elements: int, **settings: Any) -> Variant:
+    return _variant(exudyn_exact, EXUDYN, elements=elements, **settings)
+
+
+def tried(
+    variants: Sequence[Variant],
+    solve: Callable[[Variant], tuple[dict[str, Any], float]],
+    errors: Iterable[str],
+    progress: Callable[[int], None],
+) -> tuple[list[dict[str, Any]], list[dict[str, Any]]]:
+    """Return the rows of the physics, and those of the times, the best of `PASSES` through all variants.
+
+    `solve` returns errors and work of a variant, and its time [s]. What is not installed has one row, and
+    what fails keeps its own, both without errors.
+    """
+    nothing = dict.fromkeys(errors, np.nan)
+    rows: list[dict[str, Any]] = []
+    solved: list[Variant] = []
+    seconds: dict[Variant, float] = {}
+    for done, variant in enumerate(variants):
+        progress(done)
+        row: dict[str, Any] = {"model": variant.model, "group": variant.group, "variant": variant.label}
+        row |= {"theory": variant.theory, "reason": ""}
+        if not variant.module.installed():
+            row |= {"variant": "", "status": "not installed", "reason": HINT} | nothing
+            rows += [row] if row not in rows else []
+            continue
+        try:
+            outcome, seconds[variant] = solve(variant)
+        except BaselineFailed as error:
+            rows.append(row | {"status": "failed", "reason": str(error)} | nothing)
+            continue
+        rows.append(row | {"status": "converged"} | outcome)
+        solved.append(variant)
+    for again in range(1, PASSES):
+        for done, variant in enumerate(solved):
+            progress(again * len(variants) + done)
+            seconds[variant] = min(seconds[variant], solve(variant)[1])
+    times = [{"model": v.model, "variant": v.label, "solve_s": seconds[v]} for v in solved]
+    return rows, times

@@ -1,0 +1,179 @@
+"""What all surrogates share: models whose only coordinate is the body's rotation.
+
+With p the rotation, M(p) the inertia and V(p) the energy, Lagrange's equation of T = M p'^2 / 2 is
+
+    M p'' + M' p'^2 / 2 + V' = 0
+
+It is integrated by the classical Runge-Kutta method of order four in compiled code, from Chebyshev series of
+M and V' over the range of the swing, exact to round-off. Statics is V' and V'' at the rotations, and the
+body's place.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+import numpy as np
+from numba import njit
+from numpy.polynomial import chebyshev
+
+from studies.baselines.answer import (
+    Array,
+    BaselineMotion,
+    BaselinePath,
+    checked_release,
+    checked_rotations,
+    median_seconds,
+)
+
+#: Highest degree of the series, and the part of their largest coefficient below which they end.
+DEGREE = 64
+ROUND_OFF = 1e-14
+#: Part of the start by which the series reach further, lest round-off leads out of them.
+MARGIN = 0.01
+
+
+class Law(Protocol):
+    """A surrogate of one pivot; p is (S,) [rad]."""
+
+    def centre(self, p: Array) -> Array:
+        """Return the centre of mass of the body (S, 2) [m]."""
+
+    def energy(self, p: Array) -> Array:
+        """Return V (S,) [J]."""
+
+    def torque(self, p: Array) -> Array:
+        """Return V' (S,) [N m]."""
+
+    def stiffness(self, p: Array) -> Array:
+        """Return V'' (S,) [N m / rad]."""
+
+    def inertia(self, p: Array) -> Array:
+        """Return M (S,) [kg m^2]."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Series:
+    """Chebyshev series of M, M' and V' in p / reach."""
+
+    reach: float
+    inertia: Array
+    inertia_rate: Array
+    torque: Array
+
+
+def path_of(law: Law, rotations: Any, *, model: str, settings: dict[str, Any], repeat: int) -> BaselinePath:
+    """Return the path through the rotations [rad]; timed is the evaluation of place, V' and V''."""
+    turns = checked_rotations(rotations)
+
+    def evaluate() -> tuple[Array, Array, Array]:
+        return law.centre(turns), law.torque(turns), law.stiffness(turns)
+
+    seconds = median_seconds(lambda: evaluate, repeat)
+    centre, torque, stiffness = evaluate()
+    return BaselinePath(
+        model=model,
+        settings=settings,
+        rotation=turns,
+        centre=centre,
+        torque=torque,
+        stiffness=stiffness,
+        solve_s=seconds,
+        work={"unknowns": 1},
+    )
+
+
+def motion_of(
+    law: Law,
+    *,
+    start: float,
+    duration: float,
+    step: float,
+    model: str,
+    settings: dict[str, Any],
+    repeat: int,
+) -> BaselineMotion:
+    """Return the motion after a release at rest at `start` [rad]; timed is the compiled integration alone."""
+    steps = checked_release(start, duration, step)
+    series = series_of(law, abs(start) or 1.0)
+    states = np.empty((steps + 1, 2))
+    tables = (series.reach, series.inertia, series.inertia_rate, series.torque)
+    integrate(start, duration / steps, states[:1], *tables)  # compiles
+
+    def prepare() -> Callable[[], Any]:
+        return lambda: integrate(start, duration / steps, states, *tables)
+
+    seconds = median_seconds(prepare, repeat)
+    prepare()()
+    return BaselineMotion(
+        model=model,
+        settings=settings | {"step_s": duration / steps},
+        time=np.linspace(0.0, duration, steps + 1),
+        rotation=states[:, 0].copy(),
+        solve_s=seconds,
+        work={"unknowns": 1, "steps": steps, "evaluations": 4 * steps},
+    )
+
+
+def series_of(law: Law, amplitude: float) -> Series:
+    """Return the series of a law for swings up to an amplitude [rad]."""
+    reach = (1.0 + MARGIN) * amplitude
+    u = np.asarray(chebyshev.chebpts1(DEGREE + 1), dtype=float)
+
+    def fitted(values: Callable[[Array], Array]) -> Array:
+        terms = np.asarray(chebyshev.chebfit(u, values(reach * u), DEGREE), dtype=float)
+        kept = np.flatnonzero(np.abs(terms) > ROUND_OFF * np.abs(terms).max())
+        return terms[: kept[-1] + 1]
+
+    inertia = fitted(law.inertia)
+    return Series(
+        reach=reach,
+        inertia=inertia,
+        inertia_rate=np.asarray(chebyshev.chebder(inertia), dtype=float) / reach,
+        torque=fitted(law.torque),
+    )
+
+
+@njit(cache=True)
+def integrate(
+    start: float,
+    h: float,
+    states: Array,
+    reach: float,
+    inertia: Array,
+    inertia_rate: Array,
+    torque: Array,
+) -> None:
+    """Fill states (T, 2), rotation [rad] and its rate [rad/s], from rest at `start` in steps of h [s]."""
+    p, v = start, 0.0
+    states[0, 0], states[0, 1] = p, v
+    for row in range(1, states.shape[0]):
+        a = acceleration(p, v, reach, inertia, inertia_rate, torque)
+        v2 = v + 0.5 * h * a
+        a2 = acceleration(p + 0.5 * h * v, v2, reach, inertia, inertia_rate, torque)
+        v3 = v + 0.5 * h * a2
+        a3 = acceleration(p + 0.5 * h * v2, v3, reach, inertia, inertia_rate, torque)
+        v4 = v + h * a3
+        a4 = acceleration(p + h * v3, v4, reach, inertia, inertia_rate, torque)
+        p += h * (v + 2.0 * v2 + 2.0 * v3 + v4) / 6.0
+        v += h * (a + 2.0 * a2 + 2.0 * a3 + a4) / 6.0
+        states[row, 0], states[row, 1] = p, v
+
+
+@njit(cache=True)
+def acceleration(
+    p: float, v: float, reach: float, inertia: Array, inertia_rate: Array, torque: Array
+) -> float:
+    """Return p'' [rad/s^2]."""
+    u = p / reach
+    return -(0.5 * clenshaw(inertia_rate, u) * v * v + clenshaw(torque, u)) / clenshaw(inertia, u)
+
+
+@njit(cache=True)
+def clenshaw(terms: Array, u: float) -> float:
+    """Return a Chebyshev series at u."""
+    last: float = 0.0
+    before: float = 0.0
+    for k in range(terms.size - 1, 0, -1):
+        last, before = terms[k] + 2.0 * u * last - before, last
+    return float(terms[0]) + u * last - before

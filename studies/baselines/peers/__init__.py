@@ -1,0 +1,1 @@
+"""The same pivot in other codes; each is optional (`pip install '.[peers]'`)."""

@@ -1,0 +1,142 @@
+"""The dynamic spline with the interface of a baseline, so that all are timed alike: compiled solve alone.
+
+Static paths are timed around `spline_model.fast.path.follow`, with geometry, quadrature and working arrays
+prepared, as the set-up of other codes is left out too.
+"""
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from spline_model.dynamics import solve_release
+from spline_model.fast import path, solve
+from spline_model.pivot import Pivot, cross_axis_pivot, swinging_slide_stiffness
+from studies.baselines.answer import (
+    BaselineFailed,
+    BaselineMotion,
+    BaselinePath,
+    checked_release,
+    checked_rotations,
+    median_seconds,
+)
+from studies.cases.problem import Problem
+from studies.errors import BadInput
+
+MODEL = "spline"
+
+
+def installed() -> bool:
+    """Return True: the model is this repository's."""
+    return True
+
+
+def static_path(
+    problem: Problem, rotations: Any, *, repeat: int = 1, control_points: int = 6
+) -> BaselinePath:
+    """Drive the body through `rotations` (S,) [rad], the first of which is 0, in compiled code.
+
+    Args:
+        problem: the pivot.
+        rotations: (S,) [rad].
+        repeat: timed solves of the whole path [1].
+        control_points: n a strip [1].
+
+    Raises:
+        BadInput: a scene that the condensed path does not cover. BaselineFailed: the path is not reached.
+    """
+    turns = checked_rotations(rotations)
+    mechanism = _pivot(problem, control_points=control_points).mechanism
+    if not solve.is_fast(mechanism):
+        raise BadInput(
+            f"{MODEL}: got the effects {', '.join(mechanism.effects)}, expected a condensed path's"
+        )
+    modes, strips = solve.mode_count(mechanism.design), len(mechanism.design.strips)
+    frame, grid = solve.frame_of(mechanism), solve.grid_of(mechanism.design)
+    start, targets = solve.at_rest(frame, control_points, modes), turns[1:].copy()
+    locals_, space = solve.arrays(strips, grid)
+    answer = solve.empty_answer(len(turns), len(start))
+
+    def prepare() -> Callable[[], int]:
+        answer.counters[:] = 0
+
+        def work() -> int:
+            done: int = path.follow(start, targets, frame, grid, locals_, space, solve.TOLERANCE, answer)
+            return done
+
+        return work
+
+    if prepare()() < len(turns):
+        raise BaselineFailed(f"spline with {control_points} control points: the path is not reached")
+    seconds = median_seconds(prepare, repeat)
+    return BaselinePath(
+        model=MODEL,
+        settings={"control_points": control_points},
+        rotation=turns,
+        centre=answer.y[:, :2] * frame.length[0],
+        torque=answer.torque,
+        stiffness=answer.stiffness,
+        solve_s=seconds,
+        work={
+            "unknowns": len(start),
+            "newton_iterations": int(answer.counters[path.ITERATIONS]),
+            "factorisations": int(answer.counters[path.EVALUATIONS]),
+        },
+    )
+
+
+def release(
+    problem: Problem,
+    *,
+    start: float,
+    duration: float,
+    step: float,
+    repeat: int = 1,
+    control_points: int = 6,
+    integrator: str = "energy",
+) -> BaselineMotion:
+    """Let go of the body at rest at `start` [rad] and follow it for `duration` [s] in steps of `step` [s].
+
+    Timed is `solve_release` less a release of one step: so set-up and the static path to the start are left
+    out.
+
+    Args:
+        control_points: n a strip [1]; integrator: of `spline_model.dynamics`.
+
+    Raises:
+        BaselineFailed: the motion stopped early.
+    """
+    steps = checked_release(start, duration, step)
+    h = duration / steps
+    pivot = _pivot(
+        problem,
+        control_points=control_points,
+        slide_stiffness=swinging_slide_stiffness(control_points),
+    )
+
+    def run(length: float) -> Callable[[], Any]:
+        return lambda: solve_release(pivot, start=start, duration=length, step=h, integrator=integrator)
+
+    motion = run(duration)()
+    if motion.message:
+        raise BaselineFailed(f"spline with {control_points} control points: {motion.message}")
+    seconds = median_seconds(lambda: run(duration), repeat)
+    brief = median_seconds(lambda: run(h), repeat)
+    return BaselineMotion(
+        model=MODEL,
+        settings={"control_points": control_points, "integrator": integrator, "step_s": h},
+        time=motion.time,
+        rotation=np.asarray(motion.rotation),
+        solve_s=max(seconds - brief, 0.0),
+        work=dict(motion.counters),
+    )
+
+
+def _pivot(problem: Problem, **discretisation: Any) -> Pivot:
+    """Return the pivot in the spline model."""
+    return cross_axis_pivot(
+        **problem.pivot_parameters(),
+        effects=problem.effects.names,
+        parameters=problem.effects.parameters(),
+        **discretisation,
+    )

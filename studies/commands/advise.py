@@ -1,0 +1,97 @@
+"""Say which setting of each model meets an error at the least cost, on one pivot.
+
+    python -m studies advise studies/cases/cross_axis_pivot.toml --error 1e-3
+    python -m studies advise my_pivot.toml --error 1e-2 --dynamic --json -
+
+Every setting of every model is tried on the case itself: the spline, the finite elements without and with
+shear, the surrogate models in closed form, and the other codes that are installed. Without --dynamic the
+error is that of path and torque over the static path; with it, that of the rotation (over the rotation at the
+start) and of the frequency in the first four swings after the release. Each model is held against the limit
+of its own theory, whose own error is printed. A setting counts when finer ones keep the error. Times are of
+the increments or steps alone, measured here, on one thread. Exit code 0: done; 2: bad input; 3: there is no
+reference, or no model meets the error.
+"""
+
+import argparse
+import math
+import sys
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+import pandas as pd
+
+from studies.answers.reference import NoReference
+from studies.cases.problem import Problem, read_case
+from studies.commands.answer import NOT_CONVERGED, add_json_argument, deliver, number, require_target
+from studies.commands.parser import Parser, positive
+from studies.errors import BadInput
+from studies.record.progress import Bar
+from studies.work_precision.advice import MOTION_ERRORS, PATH_ERRORS, advise_motion, advise_path
+
+
+def add_arguments(parser: Parser) -> None:
+    """Declare the arguments of the command."""
+    parser.add_argument("case", metavar="CASE.toml", help="the design of a pivot")
+    parser.add_argument("--error", type=positive, default=1e-3, metavar="E", help="wanted, default 1e-3")
+    parser.add_argument("--dynamic", action="store_true", help="advise on the motion after the release")
+    add_json_argument(parser)
+
+
+def main(arguments: argparse.Namespace) -> int:
+    """Try, report; return the exit code."""
+    problem = read_case(arguments.case)
+    if problem.rotation == 0.0:
+        raise BadInput(
+            f"{arguments.case}: drive.rotation_deg: got 0, expected a rotation to relate errors to"
+        )
+    require_target(arguments)
+    advise, columns = (advise_motion, MOTION_ERRORS) if arguments.dynamic else (advise_path, PATH_ERRORS)
+    try:
+        with Bar("advise") as bar:
+            found = advise(problem, arguments.error, bar)
+    except NoReference as error:
+        print(f"studies: not converged: {error}", file=sys.stderr)
+        return NOT_CONVERGED
+    failure = None if found["meets"].any() else f"no model meets {arguments.error:g} here"
+    table = _readable(problem, found, columns, arguments.error)
+    return deliver(arguments, as_document(found, columns, arguments.error), table, failure=failure)
+
+
+def as_document(found: pd.DataFrame, columns: Sequence[str], error: float) -> dict[str, Any]:
+    """Return the advice as the JSON object of the command."""
+    rows = [
+        {
+            "model": row["series"],
+            "setting": row["setting"],
+            "meets": row["meets"],
+            **{name: number(row[name]) for name in columns},
+            "reference_uncertainty": row["uncertainty"],
+            "solve_s": number(row["solve_s"]),
+            "message": row["message"],
+        }
+        for row in found.to_dict("records")
+    ]
+    return {"error": error, "models": rows}
+
+
+def _readable(problem: Problem, found: pd.DataFrame, columns: Sequence[str], error: float) -> Iterator[str]:
+    """Yield the lines of a table, the cheapest model that meets the error first."""
+    names = [name.removeprefix("error_") for name in columns]
+    yield f"error {error:g} in {' and '.join(names)}, from 0 to {math.degrees(problem.rotation):.4g} deg"
+    yield f"error of the references: at most {found['uncertainty'].max():.1e}"
+    head = "".join(f"{name:>12}" for name in names)
+    yield f"{'model':<27}{'setting':<20}{head}{'time':>12}{'x fastest':>11}"
+    ordered = found.sort_values(["meets", "solve_s"], ascending=[False, True])
+    fastest = ordered["solve_s"].iloc[0]
+    for row in ordered.to_dict("records"):
+        errors = "".join(
+            f"{row[name]:12.1e}" if math.isfinite(row[name]) else f"{'-':>12}" for name in columns
+        )
+        line = f"{row['series']:<27}{row['setting']:<20}{errors}"
+        if row["message"]:
+            yield f"{line}  {row['message']}"
+            continue
+        time = f"{1e3 * row['solve_s']:9.3g} ms{row['solve_s'] / fastest:11.3g}"
+        yield f"{line}{time}" if row["meets"] else f"{line}{time}  does not meet it: its best"
+    if not (found["uncertainty"] <= 0.1 * error).all():
+        yield "a reference's own error is more than a tenth of the wanted one: the verdicts are not certain"

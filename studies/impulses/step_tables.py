@@ -1,0 +1,227 @@
+"""Tables of the sequential impulses: error, drift, energy and work against the step, limits and sweeps."""
+
+import math
+import time
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from scipy.interpolate import CubicSpline
+
+from spline_model.dynamics import Trajectory, solve_release
+from spline_model.impulses.convergence import contraction, sweep_errors
+from spline_model.sequential_impulse import impulse_solver, solve_impulses, stability_limit
+from studies.answers.metrics import Array
+from studies.answers.settings import SplineSettings
+from studies.impulses.designs import GROUPS, START, designs, pivot
+from studies.record.timing import measure
+
+FORMS = ("printed", "stable")
+#: Duration of the motions [s]: one swing and two thirds of Table 1; for the polymer a quarter of one, after
+#: which the strips flutter and neighbouring motions part, whatever the integrator.
+DURATION = {"Table 1": 0.02, "polymer": 0.08}
+#: The paper's step [s].
+PAPER_STEP = 0.01
+#: Steps of the stable form [s]; both durations are multiples of them. The polymer's begin at `SHORTEST`.
+STEPS = (1e-6, 2e-6, 5e-6, 1e-5, 2e-5, 5e-5, 1e-4, 2e-4, 5e-4, 1e-3, 2e-3, 5e-3, 1e-2)
+SHORTEST = {"Table 1": 1e-6, "polymer": 5e-6}
+#: Steps of the printed form, over its limit from the spectrum at rest.
+FRACTIONS = (0.3, 0.5, 0.7, 0.9, 1.1, 1.5, 3.0, 10.0)
+#: Records of a motion [1].
+RECORDS = 200
+
+#: Rotation of the swing whose stability is tried [rad], steps of a trial [1] and end of the bisection [1].
+SMALL, TRIAL, BRACKET = 1e-4, 2000, 2e-4
+#: Sweeps over the constraints that the limit is tried with; None for the direct solution.
+LIMITED_SWEEPS = (None, 5, 3, 2, 1)
+
+COUNTS = (4, 5, 6)
+SWEEPS = 30
+#: Pictures timed; at 25 Hz these are four seconds.
+PICTURES = 100
+STEPS_A_PICTURE = 4
+
+
+def steps(progress: Callable[[], None]) -> tuple[pd.DataFrame, pd.DataFrame]:
+    """Return a row a design, form and step after the release from 90 degrees, and the times apart.
+
+    Columns: status, error_rotation_rad (largest, against the explicit integrator on the same spline), drift
+    (largest gap of the clamps over the length), energy_change and energy_gain (at the end, and largest, over
+    the start), steps, solves, limited_steps (whose velocity was reduced so that no energy is gained),
+    stopped_s; times: step_us (of one step), motion_s.
+    """
+    rows, times = [], []
+    for design in designs():
+        limit = stability_limit(pivot(design))
+        # half the step that its stability allows: of order four
+        exact = solve_release(
+            pivot(design), start=START, duration=DURATION[design], integrator="explicit", records=2000
+        )
+        chosen = {
+            "printed": [part * limit for part in FRACTIONS],
+            "stable": [h for h in STEPS if h >= SHORTEST[design]],
+        }
+        for form in FORMS:
+            for step in chosen[form]:
+                key = {"design": design, "form": form, "step_s": step}
+                run = _released(design, form, step)
+                rows.append(key | _quality(run, exact, designs()[design].length))
+                times.append(key | _time(design, form, step, run))
+            progress()
+    return pd.DataFrame(rows), pd.DataFrame(times)
+
+
+def limits(progress: Callable[[], None]) -> pd.DataFrame:
+    """Return a row a design, group of modes and way of the impulses: the printed form's measured limit.
+
+    Columns: sweeps (0 for the direct solution), predicted_s = 2 / omega of the highest frequency at rest,
+    measured_s, ratio.
+    """
+    rows = []
+    for design in designs():
+        for group, settings in GROUPS.items():
+            for sweeps in LIMITED_SWEEPS if group == "axial" else LIMITED_SWEEPS[:1]:
+                predicted = stability_limit(pivot(design, settings))
+                ratio = _measured_limit(design, settings, predicted, sweeps)
+                rows.append(
+                    {
+                        "design": design,
+                        "group": group,
+                        "sweeps": sweeps or 0,
+                        "predicted_s": predicted,
+                        "measured_s": ratio * predicted,
+                        "ratio": ratio,
+                    }
+                )
+        progress()
+    return pd.DataFrame(rows)
+
+
+def sweeps(progress: Callable[[], None]) -> tuple[pd.DataFrame, pd.DataFrame]:
+    """Return the error of the velocity after each sweep, and the factor a sweep leaves, against the step.
+
+    Both for the first linear system of a step from the released state of Table 1, n = 6, against its direct
+    solution. Columns: form, impulses, step_s, sweep, error; contraction.
+    """
+    chosen = pivot("Table 1")
+    limit = stability_limit(chosen)
+    errors, factors = [], []
+    for form in FORMS:
+        direct = impulse_solver(chosen, form=form)
+        state = direct.start(START)
+        for impulses in ("constraints", "strips"):
+            swept = impulse_solver(chosen, form=form, impulses=impulses)
+            for step in [0.5 * limit] if form == "printed" else [0.5 * limit, *STEPS[2:]]:
+                found = sweep_errors(direct, swept, state, step, SWEEPS)
+                key = {"form": form, "impulses": impulses, "step_s": step}
+                errors += [key | {"sweep": k, "error": e} for k, e in enumerate(found, start=1)]
+                factors.append(key | {"contraction": contraction(found)})
+        progress()
+    return pd.DataFrame(errors), pd.DataFrame(factors)
+
+
+def pictures(progress: Callable[[], None]) -> tuple[pd.DataFrame, pd.DataFrame]:
+    """Return the work of the four stable steps of a picture after a release, and their times apart.
+
+    Columns: solves_median, solves_95, solves_most; times: cpu_median_ms, cpu_95_ms, of the
+    processor, since other programs' share of a core is not the solver's.
+    """
+    rows, times = [], []
+    for design in designs():
+        for n in COUNTS:
+            for step in (PAPER_STEP, 1e-3, 2e-4) if design == "Table 1" else (PAPER_STEP,):
+                solves, seconds = _watched(design, n, step)
+                key = {"design": design, "control_points": n, "step_s": step}
+                rows.append(
+                    key
+                    | {
+                        "pictures": len(solves),
+                        "solves_median": np.median(solves),
+                        "solves_95": np.percentile(solves, 95),
+                        "solves_most": np.max(solves),
+                    }
+                )
+                median, high = 1e3 * np.percentile(seconds, (50, 95))
+                times.append(key | {"cpu_median_ms": median, "cpu_95_ms": high})
+        progress()
+    return pd.DataFrame(rows), pd.DataFrame(times)
+
+
+def _released(design: str, form: str, step: float) -> Trajectory:
+    return solve_impulses(
+        pivot(design), start=START, duration=DURATION[design], step=step, form=form, records=RECORDS
+    )
+
+
+def _quality(run: Trajectory, exact: Trajectory, length: float) -> dict[str, Any]:
+    fine = run.status.value == "converged"
+    energy = run.kinetic_energy + run.strain_energy
+    error = np.abs(run.rotation - _at(exact, run.time)).max()
+    return {
+        "status": run.status.value,
+        "error_rotation_rad": error if fine else math.nan,
+        "drift": run.constraint_residual.max() / length if fine else math.nan,
+        "energy_change": energy[-1] / energy[0] - 1.0 if fine else math.nan,
+        "energy_gain": energy.max() / energy[0] - 1.0 if fine else math.nan,
+        "steps": run.counters["steps"],
+        "solves": run.counters["solves"],
+        "limited_steps": run.counters["limited_steps"],
+        "stopped_s": math.nan if fine else run.time[-1],
+    }
+
+
+def _at(run: Trajectory, instants: Array) -> Array:
+    return np.asarray(CubicSpline(run.time, run.rotation)(instants))
+
+
+def _time(design: str, form: str, step: float, run: Trajectory) -> dict[str, Any]:
+    """Time of one step, from as many as the motion has but no more than a few hundred, and of all."""
+    if run.status.value != "converged":
+        return {"step_us": math.nan, "motion_s": math.nan}
+    count = round(DURATION[design] / step)
+    timed = min(count, 200)
+    solver = impulse_solver(pivot(design), form=form)
+    state = solver.start(START)
+    seconds = min(measure(lambda: solver.step(state, step, count=timed), repeat=5).seconds)
+    return {"step_us": 1e6 * seconds / timed, "motion_s": seconds / timed * count}
+
+
+def _measured_limit(design: str, settings: SplineSettings, predicted: float, sweeps: int | None) -> float:
+    """Largest step at which a small swing stays bounded, over the predicted one, by bisection."""
+    options: dict[str, Any] = {} if sweeps is None else {"impulses": "constraints", "sweeps": sweeps}
+
+    def stable(part: float) -> bool:
+        run = solve_impulses(
+            pivot(design, settings),
+            start=SMALL,
+            duration=TRIAL * part * predicted,
+            step=part * predicted,
+            form="printed",
+            records=1,
+            **options,
+        )
+        return bool(run.status.value == "converged")
+
+    low, high = 0.0, 1.5
+    while high - low > BRACKET:
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if stable(middle) else (low, middle)
+    return 0.5 * (low + high)
+
+
+def _watched(design: str, n: int, step: float) -> tuple[list[int], list[float]]:
+    """Return linear systems and seconds of each picture."""
+    solver = impulse_solver(pivot(design, SplineSettings(control_points=n)))
+    state = solver.start(START)
+    solver.step(state, step, count=STEPS_A_PICTURE)
+    solves, seconds = [], []
+    for _ in range(PICTURES):
+        begin = time.thread_time()
+        outcome = solver.step(state, step, count=STEPS_A_PICTURE)
+        seconds.append(time.thread_time() - begin)
+        solves.append(outcome.counters["solves"])
+        if not outcome.complete:
+            break
+        state = outcome.state
+    return solves, seconds

@@ -1,0 +1,135 @@
+"""The cheapest setting of every model that meets an error on one pivot, found by trying them all."""
+
+import math
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from studies.answers.adapters import answer_modes
+from studies.answers.reference import NoReference
+from studies.answers.settings import SplineSettings
+from studies.cases.problem import Problem
+from studies.record.progress import silent
+from studies.work_precision import moving_series, series
+from studies.work_precision.equal_error import coarsest, worst
+from studies.work_precision.limits import limit_of_theory
+from studies.work_precision.motions import at, motion_errors, moving
+from studies.work_precision.paths import path_errors
+
+Progress = Callable[[int, int], None]
+
+PATH_ERRORS = ("error_trajectory", "error_torque")
+MOTION_ERRORS = ("error_rotation", "error_frequency")
+#: Series of the suite's own that are advised on; the others are variants of them.
+OWN = (series.SPLINE, series.ELEMENTS, series.SHEAR)
+#: Control points that are tried in statics, and timed repeats of what is advised.
+COUNTS, REPEAT = range(4, 17), 7
+#: A motion is followed for this many periods of the first mode at rest.
+PERIODS = 4.0
+#: Instants at which swings are compared.
+INSTANTS = 501
+#: Steps of the paper's pivot, over its first period [s]: other pivots are tried at the same parts of theirs.
+PERIOD = 1.0 / 76.0
+#: Control points of the spline that motions are held against, and of the one that says how uncertain it is.
+REFERENCE = (12, 10)
+
+
+def advise_path(problem: Problem, error: float, progress: Progress = silent) -> pd.DataFrame:
+    """Return the advice for the static path of `problem`, each model against the limit of its own theory.
+
+    A row a model: series, setting, meets (whether trajectory and torque are within `error` over the path, and
+    stay so in all finer settings), error_trajectory, error_torque, uncertainty (the larger one of the limit's
+    two), solve_s, wall_s, message (why a model has no answer). Of a model that does not meet the error it is
+    the best setting.
+
+    Raises:
+        NoReference: the finite elements do not reach the end of the path.
+    """
+    models = [each for each in series.own_series() if each.name in OWN]
+    models[0] = series.splines(series.SPLINE, "material", models[0].look, counts=COUNTS)
+    models += series.other_series()
+    total = sum(len(each.members) for each in models) + len(models)
+    limits, members = {}, {}
+    rows: list[dict[str, Any]] = []
+    for model in models:
+        if model.theory not in limits:
+            limits[model.theory] = limit_of_theory(problem, model.theory)
+        limit = limits[model.theory]
+        for member in model.members:
+            progress(len(rows), total)
+            path = member.solve(problem, 1)
+            members[model.name, member.setting] = member
+            rows.append(
+                {"series": model.name, "family": "all", "setting": member.setting, "rank": member.count}
+                | path_errors(path, limit.path)
+                | {"uncertainty": max(limit.uncertainty[name] for name in ("trajectory", "torque"))}
+                | {"solve_s": path.solve_s, "wall_s": path.wall_s, "message": path.message}
+            )
+    found = chosen(pd.DataFrame(rows), PATH_ERRORS, error)
+    for place, row in found.iterrows():
+        progress(len(rows), total)
+        if not row["message"]:
+            again = members[row["series"], row["setting"]].solve(problem, REPEAT)
+            found.loc[place, ["solve_s", "wall_s"]] = again.solve_s, again.wall_s
+    progress(total, total)
+    return found
+
+
+def advise_motion(problem: Problem, error: float, progress: Progress = silent) -> pd.DataFrame:
+    """Return the advice for the motion of `problem` after its release from the end of its path.
+
+    Columns as of `advise_path`, with error_rotation (largest over the motion, over the rotation at the start)
+    and error_frequency instead. All are held against a spline of `REFERENCE` control points.
+
+    Raises:
+        NoReference: that spline's motion stops early.
+    """
+    frequency = float(answer_modes(problem, SplineSettings(), count=1).frequency[0])
+    duration = PERIODS / frequency
+    scale = 1.0 / frequency / PERIOD
+    models = moving_series.own_series(scale, dict.fromkeys(moving_series.EXPLICIT_STEPS))
+    models += moving_series.other_series(scale)
+    total = len(REFERENCE) + sum(len(each.members) for each in models)
+    instants = np.linspace(0.0, duration, INSTANTS)
+    rotations = []
+    for done, n in enumerate(REFERENCE):
+        progress(done, total)
+        motion = moving(SplineSettings(control_points=n), f"n = {n}", "", integrator="explicit").solve(
+            problem, duration
+        )
+        if not motion.converged:
+            raise NoReference(f"reference with {n} control points: {motion.message}")
+        rotations.append(at(motion, np.minimum(instants, motion.time[-1])))
+    uncertainty = float(np.abs(rotations[0] - rotations[1]).max()) / abs(problem.rotation)
+    rows: list[dict[str, Any]] = []
+    for model in models:
+        for rank, member in enumerate(model.members):
+            progress(len(REFERENCE) + len(rows), total)
+            motion = member.solve(problem, duration)
+            off = motion_errors(motion, rotations[0], instants)
+            rows.append(
+                {"series": model.name, "family": member.family, "setting": member.setting, "rank": rank}
+                | {"error_rotation": off["error_rotation_rad"] / abs(problem.rotation)}
+                | {"error_frequency": off["error_frequency"], "uncertainty": uncertainty}
+                | {"solve_s": motion.solve_s, "wall_s": math.nan, "message": motion.message}
+            )
+    progress(total, total)
+    return chosen(pd.DataFrame(rows), MOTION_ERRORS, error)
+
+
+def chosen(rows: pd.DataFrame, columns: Sequence[str], error: float) -> pd.DataFrame:
+    """Return a row a series: the fastest of the coarsest ones whose errors are kept, or the best one.
+
+    Adds the column meets; of a series without any answer the first row stands.
+    """
+    within_error, now = coarsest(rows, columns, "rank", error), worst(rows, columns)
+    found = []
+    for name in rows["series"].unique():
+        mine = rows[rows["series"] == name]
+        within = within_error[within_error["series"] == name]
+        best = now[mine.index].idxmin() if np.isfinite(now[mine.index]).any() else mine.index[0]
+        place = within["solve_s"].idxmin() if len(within) else best
+        found.append(rows.loc[place].to_dict() | {"meets": bool(len(within))})
+    return pd.DataFrame(found)

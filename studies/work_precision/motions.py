@@ -1,0 +1,157 @@
+"""Motions of every model after the release, as what work-precision diagrams need of them."""
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from scipy.interpolate import CubicSpline
+
+from studies.answers.adapters import answer_release
+from studies.answers.metrics import Array, swing_frequency
+from studies.answers.settings import Settings
+from studies.baselines.answer import BaselineFailed
+from studies.cases.problem import Problem
+from studies.errors import BadInput
+from studies.work_precision.work_of_motion import work_of_motion
+
+WORK = ("unknowns", "points", "steps", "evaluations", "factorisations", "flops")
+#: Largest number of records; some 80 a swing of Table 1, between which cubic interpolation is enough.
+RECORDS = 1000
+#: Time that repeats of one setting may take together [s], and their largest number.
+AFFORDED, REPEATS = 0.3, 7
+
+
+@dataclass(frozen=True, kw_only=True)
+class SolvedMotion:
+    """A motion at T records, the start first.
+
+    Attributes:
+        status: "converged" or how it ended; message: why and when.
+        time: (T,) [s]; rotation: (T,) [rad].
+        solve_s: median time of the steps alone [s]; repeats: of how many runs.
+        work: columns of `WORK`, NaN where they are not known.
+    """
+
+    status: str
+    message: str
+    time: Array
+    rotation: Array
+    solve_s: float
+    repeats: int
+    work: Mapping[str, float]
+
+    @property
+    def converged(self) -> bool:
+        """Whether the motion was followed to its end."""
+        return self.status == "converged"
+
+
+@dataclass(frozen=True, kw_only=True)
+class MovingMember:
+    """One setting of a model and integrator, of a family that differs in the step alone.
+
+    Attributes:
+        setting: its name; family: the discretisation; step: [s], NaN where the model chooses.
+        solve: the motion of a problem over a duration [s].
+    """
+
+    setting: str
+    family: str
+    step: float
+    solve: Callable[[Problem, float], SolvedMotion]
+
+
+def moving(settings: Settings, setting: str, family: str, **options: Any) -> MovingMember:
+    """Return the member of one of the suite's own models."""
+
+    def solve(problem: Problem, duration: float) -> SolvedMotion:
+        def run(repeat: int) -> Any:
+            return answer_release(
+                problem, settings, duration=duration, records=RECORDS, repeat=repeat, **options
+            )
+
+        motion, repeats = run(1), 1
+        if motion.converged:
+            repeats = repeats_of(motion.solve_s)
+            motion = run(repeats) if repeats > 1 else motion
+        return SolvedMotion(
+            status=motion.status,
+            message=motion.message,
+            time=motion.time,
+            rotation=motion.rotation,
+            solve_s=motion.solve_s,
+            repeats=repeats,
+            work=work_of_motion(settings, motion.counters) if motion.converged else _unknown(),
+        )
+
+    return MovingMember(setting=setting, family=family, step=options.get("step") or math.nan, solve=solve)
+
+
+def moving_baseline(module: Any, setting: str, family: str, step: float, **options: Any) -> MovingMember:
+    """Return the member of a baseline's module; a pivot that it refuses is a motion that stopped."""
+
+    def solve(problem: Problem, duration: float) -> SolvedMotion:
+        def run(repeat: int) -> Any:
+            return module.release(
+                problem, start=problem.rotation, duration=duration, step=step, repeat=repeat, **options
+            )
+
+        try:
+            motion = run(1)
+            repeats = repeats_of(motion.solve_s)
+            motion = run(repeats) if repeats > 1 else motion
+        except (BaselineFailed, BadInput) as stopped:
+            nothing = np.zeros(0)
+            return SolvedMotion(
+                status="not_converged",
+                message=str(stopped),
+                time=nothing,
+                rotation=nothing,
+                solve_s=math.nan,
+                repeats=0,
+                work=_unknown(),
+            )
+        return SolvedMotion(
+            status="converged",
+            message="",
+            time=motion.time,
+            rotation=motion.rotation,
+            solve_s=motion.solve_s,
+            repeats=repeats,
+            work={name: float(motion.work.get(name, math.nan)) for name in WORK},
+        )
+
+    return MovingMember(setting=setting, family=family, step=step, solve=solve)
+
+
+def repeats_of(seconds: float) -> int:
+    """Return how often a motion that takes so long is timed."""
+    return int(min(REPEATS, max(1.0, AFFORDED / max(seconds, 1e-9))))
+
+
+def at(motion: SolvedMotion, instants: Array) -> Array:
+    """Return the rotation at `instants` [s] by cubic interpolation, NaN beyond the last record."""
+    if len(motion.time) < 2:
+        return np.full(len(instants), math.nan)
+    return np.asarray(CubicSpline(motion.time, motion.rotation, extrapolate=False)(instants))
+
+
+def motion_errors(motion: SolvedMotion, rotation: Array, instants: Array) -> dict[str, float]:
+    """Return the errors of a whole motion against a rotation (T,) at `instants`, NaN of one that stopped.
+
+    Keys: error_rotation_rad (largest over the motion), end_rotation_rad, error_frequency (relative).
+    """
+    names = ("error_rotation_rad", "end_rotation_rad", "error_frequency")
+    if not motion.converged:
+        return dict.fromkeys(names, math.nan)
+    # a last record may fall short of the end by round-off
+    gap = np.abs(at(motion, np.minimum(instants, motion.time[-1])) - rotation)
+    frequency, exact = swing_frequency(motion.time, motion.rotation), swing_frequency(instants, rotation)
+    values = (float(gap.max()), float(gap[-1]), abs(frequency / exact - 1.0))
+    return dict(zip(names, values, strict=True))
+
+
+def _unknown() -> dict[str, float]:
+    return dict.fromkeys(WORK, math.nan)

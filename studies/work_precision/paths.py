@@ -1,0 +1,132 @@
+"""Static paths of every model, ours and others', as what work-precision diagrams need of them."""
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from studies.answers.adapters import answer_static
+from studies.answers.metrics import Array, relative_error, trajectory_error
+from studies.answers.settings import Settings
+from studies.baselines.answer import BaselineFailed
+from studies.cases.problem import Problem
+from studies.errors import BadInput
+from studies.work_precision.work import work_of
+
+QUANTITIES = ("trajectory", "torque", "stiffness")
+#: Columns of machine-neutral work.
+WORK = ("unknowns", "points", "iterations", "factorisation_flops", "assembly_flops", "flops")
+#: Names of these in the counters of a baseline, where they differ.
+THEIRS = {"iterations": "newton_iterations"}
+
+
+@dataclass(frozen=True, kw_only=True)
+class SolvedPath:
+    """A static path, S states, the unloaded one first.
+
+    Attributes:
+        status: "converged" or "not_converged"; message: why and where it stopped.
+        centre: (S, 2) [m]; torque: (S,) [N m]; stiffness: (S,) [N m / rad], NaN where a model gives none.
+        solve_s: time of the increments alone [s]; wall_s: of the whole answer [s], NaN if unknown.
+        work: columns of `WORK`, NaN where they are not known.
+    """
+
+    status: str
+    message: str
+    centre: Array
+    torque: Array
+    stiffness: Array
+    solve_s: float
+    wall_s: float
+    work: Mapping[str, float]
+
+    @property
+    def converged(self) -> bool:
+        """Whether the whole path was reached."""
+        return self.status == "converged"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Member:
+    """One setting of a model: its name, how fine it is, and how a path is asked of it."""
+
+    setting: str
+    count: int
+    solve: Callable[[Problem, int], SolvedPath]
+
+
+def of_settings(settings: Settings, setting: str, count: int) -> Member:
+    """Return the member of one of the suite's own models."""
+
+    def solve(problem: Problem, repeat: int) -> SolvedPath:
+        answer = answer_static(problem, settings, repeat=repeat)
+        return SolvedPath(
+            status=answer.status,
+            message=answer.message,
+            centre=answer.centre,
+            torque=answer.torque,
+            stiffness=answer.stiffness,
+            solve_s=answer.solve_s,
+            wall_s=answer.wall_s,
+            work=dict(work_of(settings, answer.counters).row()),
+        )
+
+    return Member(setting=setting, count=count, solve=solve)
+
+
+def of_baseline(module: Any, setting: str, count: int, **settings: Any) -> Member:
+    """Return the member of a baseline's module; a pivot that it refuses is an answer that stopped."""
+
+    def solve(problem: Problem, repeat: int) -> SolvedPath:
+        rotations = np.linspace(0.0, problem.rotation, problem.increments + 1)
+        try:
+            path = module.static_path(problem, rotations, repeat=repeat, **settings)
+        except (BaselineFailed, BadInput) as stopped:
+            return unsolved(str(stopped))
+        return SolvedPath(
+            status="converged",
+            message="",
+            centre=path.centre,
+            torque=path.torque,
+            stiffness=path.stiffness,
+            solve_s=path.solve_s,
+            wall_s=math.nan,
+            work={name: float(path.work.get(THEIRS.get(name, name), math.nan)) for name in WORK},
+        )
+
+    return Member(setting=setting, count=count, solve=solve)
+
+
+def unsolved(message: str) -> SolvedPath:
+    """Return the answer of a model that did not reach the end of the path."""
+    nothing = np.full(0, np.nan)
+    return SolvedPath(
+        status="not_converged",
+        message=message,
+        centre=nothing.reshape(0, 2),
+        torque=nothing,
+        stiffness=nothing,
+        solve_s=math.nan,
+        wall_s=math.nan,
+        work=dict.fromkeys(WORK, math.nan),
+    )
+
+
+def path_errors(path: SolvedPath, against: SolvedPath) -> dict[str, float]:
+    """Return the largest and the end errors of a whole path, NaN of one that stopped early.
+
+    Keys: error_trajectory, error_torque, error_stiffness (largest magnitude over the path), and the same with
+    end_ for its last state.
+    """
+    names = [f"{kind}_{name}" for kind in ("error", "end") for name in QUANTITIES]
+    if not path.converged or len(path.torque) < len(against.torque):
+        return dict.fromkeys(names, math.nan)
+    errors = {
+        "trajectory": trajectory_error(path.centre, against.centre),
+        "torque": np.abs(relative_error(path.torque, against.torque)),
+        "stiffness": np.abs(relative_error(path.stiffness, against.stiffness)),
+    }
+    largest = {f"error_{name}": float(values.max()) for name, values in errors.items()}
+    return largest | {f"end_{name}": float(values[-1]) for name, values in errors.items()}

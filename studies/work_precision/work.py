@@ -1,0 +1,166 @@
+"""Work of a static path that does not depend on machine or language: counted operations.
+
+One sum, difference, product, quotient, root or angle of two numbers is one operation. The counts per point
+and per element are those of the code as it stands (`assemble_points` and `condense` of the spline, `forces`
+and `tangents` of the elements): a test runs that code on numbers that count and holds it to the formulas
+here. What grows more slowly with the size is left out: moving a strip's tangent to its own coordinates, the
+checks of a state, energies.
+
+Factorisations are those of symmetric elimination in the order of the unknowns that suits each model:
+
+- spline, condensed: m axial forces, then W = 2 n - 6 own coordinates of a strip leave three of its tip;
+- spline, bordered: a dense LU of all N unknowns, 2/3 N^3 (Golub and Van Loan, Matrix Computations, 3.2);
+- B-spline, bordered, from 150 unknowns on: its sparse LU, a constant number for each unknown, which a test
+  counts from the factors;
+- elements: node by node along a strip, three pivots that each reach to the next node's end. The sparse LU
+  that the reference calls spends more; a solver that knows the chain would spend this.
+
+The operations of a pivot with r rows below are 1 + r for the multipliers and r (r + 1) for the symmetric
+update; those of the substitution 4 r + 1.
+"""
+
+import math
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
+
+from studies.answers.settings import FeSettings, Settings, SplineSettings
+
+STRIPS = 2
+#: Operations of one element (see above): its forces, and its tangent as it is assembled from outer products.
+ELEMENT_FORCES, ELEMENT_TANGENT = 50, 839
+#: Least operations of any element's symmetric tangent: one for each of its 21 entries.
+LEAST_TANGENT = 21
+#: Operations of one Gauss point that depend neither on the control points nor on the axial forces.
+POINT = 108
+#: The sparse LU of a long B-spline: from so many unknowns on, and operations and entries of it for each.
+SPARSE_FROM, SPARSE_FLOPS, SPARSE_ENTRIES = 150, 308, 27
+
+
+@dataclass(frozen=True, kw_only=True)
+class Work:
+    """Sizes and operations of one static path.
+
+    Attributes:
+        unknowns: of the system that one iteration solves [1].
+        points: quadrature points of all strips; elements count one each.
+        iterations: of Newton over the path.
+        factorisation_flops: of one factorisation; assembly_flops: of one residual with its tangent.
+        flops: of the whole path, substitutions included; like assembly_flops NaN of the shear-deformable
+            elements, which a library assembles: what it does is not counted.
+    """
+
+    unknowns: int
+    points: int
+    iterations: int
+    factorisation_flops: int
+    assembly_flops: float
+    flops: float
+
+    def row(self) -> dict[str, float]:
+        """Return the columns of a table."""
+        return asdict(self)
+
+
+def work_of(settings: Settings, counters: Mapping[str, int]) -> Work:
+    """Return the work of a path of the pivot with its default effects, from its settings and counters."""
+    if isinstance(settings, FeSettings):
+        return _of_elements(settings, counters)
+    condensed = (settings.basis, settings.measure, settings.stretch) == ("bezier", "material", "mixed")
+    return _condensed(settings, counters) if condensed else _bordered(settings, counters)
+
+
+def pivot_flops(rows: int) -> int:
+    """Return the operations that eliminate one unknown which `rows` others still depend on."""
+    return 1 + rows + rows * (rows + 1)
+
+
+def assembly_flops(points: int, functions: int, modes: int) -> int:
+    """Return the operations of `assemble_points` for one strip.
+
+    Args:
+        points: Gauss points; functions: basis functions at a point; modes: axial forces at a point.
+    """
+    pairs = functions * (functions + 1) // 2
+    point = POINT + 40 * functions + 16 * pairs + modes * (7 + 4 * functions)
+    return points * point + 7 * modes
+
+
+def condensation_flops(own: int, modes: int) -> int:
+    """Return the operations of `condense` for one strip: own coordinates W, axial forces K."""
+    size = own + 3
+    axial = modes * (2 + 3 * size + size * (size + 1))
+    # two more a row carry the residual along
+    return axial + sum(pivot_flops(rows) + 2 * rows for rows in range(3, size))
+
+
+def recovery_flops(own: int, modes: int) -> int:
+    """Return the operations of `recover` for one strip: the substitution."""
+    return own * (own + 6) + modes * (2 * own + 8)
+
+
+def _modes(settings: SplineSettings) -> int:
+    """Return axial forces and slide modes of a strip; none where stretching is by quadrature."""
+    return 0 if settings.stretch == "consistent" else settings.control_points - 1
+
+
+def _points(settings: SplineSettings) -> int:
+    """Return the Gauss points of a strip."""
+    degree = settings.control_points - 1 if settings.basis == "bezier" else 3
+    return (settings.gauss_points or degree + 3) * (settings.control_points - degree)
+
+
+def _condensed(settings: SplineSettings, counters: Mapping[str, int]) -> Work:
+    n, modes, points = settings.control_points, _modes(settings), _points(settings)
+    own = 2 * n - 6
+    assembly = STRIPS * assembly_flops(points, n - 1, modes)
+    factorisation = STRIPS * condensation_flops(own, modes)
+    solves = counters["newton_iterations"] + counters["increments"] + 1
+    return Work(
+        unknowns=2 + STRIPS * (own + modes),
+        points=STRIPS * points,
+        iterations=counters["newton_iterations"],
+        factorisation_flops=factorisation,
+        assembly_flops=assembly,
+        flops=counters["factorisations"] * (assembly + factorisation)
+        + solves * STRIPS * recovery_flops(own, modes),
+    )
+
+
+def _bordered(settings: SplineSettings, counters: Mapping[str, int]) -> Work:
+    n, modes, points = settings.control_points, _modes(settings), _points(settings)
+    bezier = settings.basis == "bezier"
+    # a hat basis has two modes at a point, and the slide mode reaches everywhere
+    at_point = modes if bezier or not modes else min(modes, 3)
+    size = STRIPS * (2 * n + modes + 6) + 3 + 1
+    assembly = STRIPS * assembly_flops(points, n if bezier else 4, at_point)
+    sparse = settings.basis == "bspline" and size >= SPARSE_FROM
+    factorisation = SPARSE_FLOPS * size if sparse else 2 * size**3 // 3
+    substitution = 2 * size * (SPARSE_ENTRIES if sparse else size)
+    return Work(
+        unknowns=size,
+        points=STRIPS * points,
+        iterations=counters["newton_iterations"],
+        factorisation_flops=factorisation,
+        assembly_flops=assembly,
+        flops=counters["residual_evaluations"] * assembly
+        + counters["factorisations"] * (factorisation + substitution),
+    )
+
+
+def _of_elements(settings: FeSettings, counters: Mapping[str, int]) -> Work:
+    inner = max(settings.elements - 1, 0)
+    counted = settings.element == "corotational"
+    rows = STRIPS * ([5, 4, 3] * max(inner - 1, 0) + [4, 3, 2] * min(inner, 1)) + [1, 0]
+    factorisation = sum(pivot_flops(row) for row in rows)
+    count = STRIPS * settings.elements
+    tangents = counters["tangent_evaluations"] * count * (ELEMENT_FORCES + ELEMENT_TANGENT)
+    residuals = counters["residual_evaluations"] * count * ELEMENT_FORCES
+    solves = counters["factorisations"] * (factorisation + sum(4 * row + 1 for row in rows))
+    return Work(
+        unknowns=STRIPS * 3 * inner + 2,
+        points=count,
+        iterations=counters["newton_iterations"],
+        factorisation_flops=factorisation,
+        assembly_flops=count * (2 * ELEMENT_FORCES + ELEMENT_TANGENT) if counted else math.nan,
+        flops=tangents + residuals + solves if counted else math.nan,
+    )

@@ -1,0 +1,220 @@
+"""Surrogates against closed forms, against what they were fitted to, and against themselves."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from studies.baselines import four_bar, linear_pivot, one_coordinate, pin_joint, spline
+from studies.baselines.answer import BaselineMotion, BaselinePath
+from studies.baselines.comparison.surrogates import first_above
+from studies.baselines.registry import MODELS, SURROGATES, installed_module, module_of
+from studies.cases.effects import Effects
+from studies.cases.problem import named_case
+from studies.errors import BadInput
+from tests import gates
+
+CASE = named_case("cross_axis_pivot")
+UNEVEN = replace(CASE, crossing_ratio=0.3, inclination=0.6, centre_offset=(0.01, 0.02))
+LAWS = (linear_pivot, pin_joint, four_bar)
+SMALL = 1e-3
+TURNS = np.linspace(0.0, math.pi / 2, 21)
+
+
+def small_angle_stiffness_error(**changes):
+    """Largest relative difference of the linear closed form's K to the spline's at rest."""
+    problem = replace(CASE, **changes)
+    path = spline.static_path(problem, [0.0, SMALL], control_points=8)
+    return abs(linear_pivot.small_angle_stiffness(problem) / path.stiffness[0] - 1.0)
+
+
+def small_angle_place_error(problem, model, angle):
+    """Difference of the body's place to that of the spline with strips that hardly stretch, in L p^2."""
+    stiff = replace(problem, area=1e4 * problem.area)
+    turns = [0.0, angle]
+    limit = spline.static_path(stiff, turns, control_points=8)
+    path = model.static_path(problem, turns)
+    return np.linalg.norm(path.centre[-1] - limit.centre[-1]) / (problem.length * angle**2)
+
+
+def test_linear_pivot_has_the_exact_stiffness_at_rest():
+    """Requirement: K of the closed form is the spline's at rest to round-off, crossing at mid-length."""
+    gates.check("linear_pivot_stiffness", small_angle_stiffness_error())
+
+
+def test_linear_pivot_gate_has_teeth():
+    """Requirement: the check notices that strips which cross elsewhere stretch."""
+    with pytest.raises(AssertionError, match="x the gate"):
+        gates.check(
+            "linear_pivot_stiffness", small_angle_stiffness_error(**gates.teeth("linear_pivot_stiffness"))
+        )
+
+
+@pytest.mark.parametrize("ratio", [0.1, 0.127322004, 0.3, 0.8])
+def test_linear_pivot_for_any_crossing(ratio):
+    """Requirement: K holds for every crossing ratio up to the stretch of the strips, which falls with 1/A."""
+    errors = [small_angle_stiffness_error(crossing_ratio=ratio, area=f * CASE.area) for f in (1e3, 1e4)]
+    assert errors[0] / errors[1] == pytest.approx(10.0, rel=0.02)
+
+
+@pytest.mark.parametrize("problem", [CASE, UNEVEN], ids=["Table 1", "uneven"])
+@pytest.mark.parametrize("model", [linear_pivot, four_bar], ids=lambda model: model.MODEL)
+def test_small_rotations_shift_the_centre_as_the_spline_does(problem, model):
+    """Requirement: closed form and fitted linkage have the exact centre shift of small rotations."""
+    gates.check("surrogate_centre_shift", small_angle_place_error(problem, model, 0.01))
+
+
+def test_centre_shift_gate_has_teeth():
+    """Requirement: the check notices larger rotations, at which the closed form is no longer exact."""
+    with pytest.raises(AssertionError, match="x the gate"):
+        angle = gates.teeth("surrogate_centre_shift")["angle"]
+        gates.check("surrogate_centre_shift", small_angle_place_error(CASE, linear_pivot, angle))
+
+
+@pytest.mark.parametrize("problem", [CASE, UNEVEN], ids=["Table 1", "uneven"])
+def test_four_bar_reproduces_what_it_was_fitted_to(problem):
+    """Requirement: stiffness at rest and centre shift of the linkage are the closed form's."""
+    law = four_bar.law_of(problem)
+    rest = np.zeros(1)
+    assert law.stiffness(rest)[0] == pytest.approx(linear_pivot.small_angle_stiffness(problem), rel=1e-13)
+    linear = linear_pivot.law_of(problem)
+    p = np.array([1e-3])
+    moved = np.linalg.norm(law.centre(p) - linear.centre(p)) / (problem.length * p[0] ** 2)
+    assert moved < 1e-3  # the next term of the linkage is of third order
+
+
+def test_four_bar_of_table_1():
+    """Requirement: for strips that cross at mid-length the links are 2/3 L and the springs 2 EI/L."""
+    rigidity = CASE.youngs_modulus * CASE.second_moment_of_area / CASE.length
+    assert four_bar.link_length(CASE) == pytest.approx(2.0 / 3.0, rel=1e-14)
+    assert four_bar.spring(CASE) == pytest.approx(2.0 * rigidity, rel=1e-14)
+
+
+@pytest.mark.parametrize("problem", [CASE, UNEVEN], ids=["Table 1", "uneven"])
+def test_four_bar_keeps_its_links_and_its_derivatives(problem):
+    """Requirement: links keep their length; torque, stiffness and speed are derivatives of what they say."""
+    law = four_bar.law_of(problem)
+    p, h = np.linspace(-1.5, 1.5, 13), 1e-5
+    moved = law._shift(p)[0]
+    for direction in law.at_rest.direction:
+        t = complex(*direction)
+        link = np.abs(moved + (law.ground + law.body * np.exp(1j * p)) * t)
+        assert link == pytest.approx(law.ground + law.body, rel=1e-14)
+    scale = law.spring
+    slope = (law.energy(p + h) - law.energy(p - h)) / (2.0 * h)
+    assert law.torque(p) == pytest.approx(slope, abs=1e-8 * scale)
+    assert law.stiffness(p) == pytest.approx(
+        (law.torque(p + h) - law.torque(p - h)) / (2.0 * h), abs=1e-8 * scale
+    )
+    speed = np.linalg.norm((law.centre(p + h) - law.centre(p - h)) / (2.0 * h), axis=1)
+    arm = law.at_rest.centre - law.at_rest.crossing
+    assert np.sqrt(law._speed(p, arm)) == pytest.approx(speed, rel=1e-8, abs=1e-10)
+
+
+def test_pin_joint_polynomial():
+    """Requirement: K_Theta is the published polynomial, at n = 1 the sum of its coefficients."""
+    assert pin_joint.stiffness_coefficient(1.0) == pytest.approx(4.307926, abs=1e-12)
+    rigidity = CASE.youngs_modulus * CASE.second_moment_of_area / CASE.length
+    assert pin_joint.static_path(CASE, TURNS).stiffness / rigidity == pytest.approx(4.307926 / 2.0, rel=1e-12)
+
+
+@pytest.mark.parametrize("changes", [{"crossing_ratio": 0.4}, {"inclination": 0.3}, {"inclination": 1.4}])
+def test_pin_joint_refuses_what_it_was_not_published_for(changes):
+    """Requirement: outside its range of validity the pin joint is refused in one line."""
+    with pytest.raises(BadInput, match=r"^pin joint: got .* expected [^\n]*$"):
+        pin_joint.static_path(replace(CASE, **changes), TURNS)
+
+
+def energy_drift(model, step, duration=0.05):
+    """Largest change of kinetic and potential energy of a swing from 90 degrees, over what is at stake."""
+    law, start = model.law_of(CASE), math.pi / 2
+    states = np.empty((round(duration / step) + 1, 2))
+    series = one_coordinate.series_of(law, start)
+    tables = (series.reach, series.inertia, series.inertia_rate, series.torque)
+    one_coordinate.integrate(start, step, states, *tables)
+    p, v = states.T
+    energy = 0.5 * law.inertia(p) * v**2 + law.energy(p)
+    return np.abs(energy / energy[0] - 1.0).max()
+
+
+@pytest.mark.parametrize("model", LAWS, ids=lambda model: model.MODEL)
+def test_swings_keep_their_energy(model):
+    """Requirement: the energy of a swing is constant up to the error of its integrator."""
+    gates.check("surrogate_energy", energy_drift(model, 1e-5))
+
+
+def test_energy_gate_has_teeth():
+    """Requirement: the check notices a step ten times as long."""
+    with pytest.raises(AssertionError, match="x the gate"):
+        gates.check("surrogate_energy", energy_drift(four_bar, **gates.teeth("surrogate_energy")))
+
+
+def test_pin_joint_swings_harmonically():
+    """Requirement: with constant inertia and stiffness the release is a cosine."""
+    law = pin_joint.law_of(CASE)
+    motion = pin_joint.release(CASE, start=1.0, duration=0.05, step=1e-5)
+    omega = math.sqrt(law.constant / float(law.inertia(np.zeros(1))[0]))
+    assert motion.rotation == pytest.approx(np.cos(omega * motion.time), abs=1e-9)
+
+
+@pytest.mark.parametrize("name", SURROGATES)
+def test_every_surrogate_answers_alike(name):
+    """Requirement: path and motion come in the neutral arrays, with the time of the solver alone."""
+    module = installed_module(name)
+    path = module.static_path(CASE, TURNS, repeat=2)
+    motion = module.release(CASE, start=0.5, duration=0.01, step=1e-4)
+    assert isinstance(path, BaselinePath)
+    assert isinstance(motion, BaselineMotion)
+    assert path.model == motion.model == name
+    assert (path.rotation.shape, path.centre.shape) == ((21,), (21, 2))
+    assert path.torque.shape == path.stiffness.shape == (21,)
+    assert np.isfinite(path.stiffness).all()
+    assert path.centre[0] == pytest.approx(spline.static_path(CASE, TURNS).centre[0], abs=1e-15)
+    assert motion.time[[0, -1]] == pytest.approx([0.0, 0.01])
+    assert motion.rotation[0] == 0.5
+    assert path.solve_s > 0.0
+    assert motion.solve_s > 0.0
+
+
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        (lambda m: m.static_path(CASE, [0.1, 0.2]), "rotations: got"),
+        (lambda m: m.static_path(CASE, [0.0, math.nan]), "rotations: got"),
+        (lambda m: m.static_path(CASE, TURNS, repeat=0), "repeat: got 0"),
+        (lambda m: m.release(CASE, start=1.0, duration=0.01, step=0.02), "step: got 0.02"),
+        (lambda m: m.release(CASE, start=math.inf, duration=0.01, step=1e-4), "start: got inf"),
+        (
+            lambda m: m.static_path(replace(CASE, effects=Effects(names=("bending", "gravity"))), TURNS),
+            "baseline: got the effects bending, gravity",
+        ),
+    ],
+)
+def test_bad_input_is_refused_in_one_line(call, message):
+    """Requirement: what cannot be asked is refused with what was got and expected."""
+    with pytest.raises(BadInput, match=f"^{message}[^\n]*expected[^\n]*$"):
+        call(four_bar)
+
+
+def test_register_names_every_model():
+    """Requirement: a baseline is called by its name; another name is refused with the names there are."""
+    assert {module_of(name).MODEL for name in MODELS} == set(MODELS)
+    with pytest.raises(BadInput, match="got 'spring', expected one of linear pivot"):
+        module_of("spring")
+
+
+def test_first_above():
+    """Requirement: where an error passes a level is interpolated; at rest it is zero, never is NaN."""
+    turns = np.array([0.0, 1.0, 2.0, 3.0])
+    assert first_above(turns, np.array([0.0, 0.1, 0.3, 0.2]), 0.2) == pytest.approx(1.5)
+    assert first_above(turns, np.array([0.0, 0.5, 0.4, 0.1]), 0.2) == 0.0
+    assert first_above(turns, np.array([0.3, 0.1, 0.0, 0.1]), 0.2) == 0.0
+    assert math.isnan(first_above(turns, np.array([0.0, 0.1, 0.1, 0.1]), 0.2))
+
+
+def test_spline_refuses_what_the_condensed_path_does_not_cover():
+    """Requirement: the spline's timed path is the condensed one, and another scene is refused."""
+    weighted = replace(CASE, effects=CASE.effects.renamed([*CASE.effects.names, "gravity"]))
+    with pytest.raises(BadInput, match=r"^spline: got the effects [^\n]*gravity, expected"):
+        spline.static_path(weighted, TURNS)

@@ -1,0 +1,116 @@
+"""What a solve takes, and the work it is: seconds are reported by `make bench`, only counters are judged."""
+
+import math
+
+import numpy as np
+import pytest
+
+from fe_reference.pivot import cross_axis_pivot as element_pivot
+from fe_reference.statics import solve_statics as solve_element_statics
+from spline_model.batch import solve_many
+from spline_model.compile import compile_scene
+from spline_model.dynamics import STEP, solve_release
+from spline_model.fast.solve import fast_path
+from spline_model.integrators import energy_consistent
+from spline_model.integrators.motion import initial_acceleration, set_in_motion
+from spline_model.laps import Laps
+from spline_model.modes import static_state
+from spline_model.pivot import cross_axis_pivot
+from spline_model.statics import solve_statics
+from tests.table_one import TABLE_ONE
+
+QUARTER_TURN = math.pi / 2
+INCREMENTS = 20
+#: Newton iterations of the 20-increment path that no change may exceed.
+MOST_ITERATIONS = 45
+DESIGNS = 200
+
+
+def designs():
+    """Table 1 with strips of many thicknesses, as columns."""
+    return TABLE_ONE | {"second_moment_of_area": np.linspace(0.5e-10, 2e-10, DESIGNS)}
+
+
+@pytest.mark.parametrize("n", [4, 6, 8, 12])
+def test_static_path(benchmark, n):
+    """Requirement: the path to 90 degrees in 20 increments takes 45 Newton iterations or fewer."""
+    pivot = cross_axis_pivot(**TABLE_ONE, control_points=n)
+    solution = benchmark(solve_statics, pivot, rotation=QUARTER_TURN, increments=INCREMENTS)
+    benchmark.extra_info.update(solution.counters | {"solve_s": solution.seconds["solve"]})
+    assert 0 < solution.counters["newton_iterations"] <= MOST_ITERATIONS
+    assert solution.counters["halved_increments"] == 0
+
+
+@pytest.mark.parametrize("n", [6, 8])
+def test_compiled_path(benchmark, n):
+    """Requirement: the condensed path alone, without recovery, reaches every state."""
+    mechanism = cross_axis_pivot(**TABLE_ONE, control_points=n).mechanism
+    rotations = list(np.linspace(0.0, QUARTER_TURN, INCREMENTS + 1)[1:])
+    done, answer = benchmark(lambda: fast_path(mechanism, rotations, Laps()))
+    benchmark.extra_info.update(newton_iterations=int(answer.counters[0]))
+    assert done == INCREMENTS + 1
+
+
+def test_multiplier_path(benchmark):
+    """Requirement: the bordered system needs no more iterations than the condensed one may."""
+    pivot = cross_axis_pivot(**TABLE_ONE)
+    solution = benchmark(
+        solve_statics, pivot, rotation=QUARTER_TURN, increments=INCREMENTS, method="multipliers"
+    )
+    benchmark.extra_info.update(solution.counters)
+    assert 0 < solution.counters["newton_iterations"] <= MOST_ITERATIONS
+
+
+def test_long_bspline(benchmark):
+    """Requirement: a B-spline of 64 control points has one factorisation an evaluation."""
+    pivot = cross_axis_pivot(**TABLE_ONE, control_points=64, basis="bspline")
+    solution = benchmark(solve_statics, pivot, rotation=QUARTER_TURN, increments=INCREMENTS)
+    benchmark.extra_info.update(solution.counters)
+    assert solution.counters["factorisations"] == solution.counters["tangent_evaluations"]
+
+
+def test_release(benchmark):
+    """Requirement: five milliseconds of motion take no more than four iterations a step."""
+    pivot = cross_axis_pivot(**TABLE_ONE)
+    motion = benchmark(solve_release, pivot, duration=5e-3)
+    benchmark.extra_info.update(motion.counters | {"solve_s": motion.seconds["solve"]})
+    assert motion.counters["steps"] == round(5e-3 / STEP)
+    assert motion.counters["newton_iterations"] <= 4 * motion.counters["steps"]
+
+
+def test_single_step(benchmark):
+    """Requirement: one step of the energy-consistent integrator from the release at 90 degrees."""
+    mechanism = cross_axis_pivot(**TABLE_ONE).mechanism
+    system = compile_scene(mechanism.released())
+    motion, layout = set_in_motion(system), system.layout
+    z, v = np.zeros(layout.size), np.zeros(layout.coordinate_count)
+    z[:] = static_state(mechanism, QUARTER_TURN)[: layout.size]
+    acceleration, z = initial_acceleration(system, motion, z, v)
+
+    def step():
+        state = (z.copy(), v.copy(), acceleration.copy())
+        return energy_consistent.integrate(system, motion, *state, step=STEP, steps=1, every=1)
+
+    run = benchmark(step)
+    benchmark.extra_info.update(run.counters)
+    assert not run.message
+    assert run.counters["steps"] == 1
+
+
+@pytest.mark.parametrize("threads", [1, 2])
+def test_batch(benchmark, threads):
+    """Requirement: a batch of designs reaches every end, each with 45 iterations or fewer."""
+    batch = benchmark(solve_many, designs(), rotation=QUARTER_TURN, increments=INCREMENTS, threads=threads)
+    benchmark.extra_info.update(designs=DESIGNS, newton_iterations=int(batch.iterations.sum()))
+    assert batch.converged.all()
+    assert batch.iterations.max() <= MOST_ITERATIONS
+
+
+def test_element_path(benchmark):
+    """Requirement: the path on 20 elements takes no halving and one factorisation an iteration."""
+    pivot = element_pivot(**TABLE_ONE, elements=20)
+    solution = benchmark(solve_element_statics, pivot, rotation=QUARTER_TURN, increments=INCREMENTS)
+    benchmark.extra_info.update(dict(solution.counters) | {"solve_s": solution.seconds["solve"]})
+    counters = solution.counters
+    assert counters["halvings"] == 0
+    assert counters["factorisations"] == counters["newton_iterations"] + INCREMENTS + 1

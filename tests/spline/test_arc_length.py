@@ -1,0 +1,143 @@
+"""Paths through limit points of the load: frames with published limit loads."""
+
+import numpy as np
+import pytest
+
+from spline_model.errors import ConvergenceError
+from spline_model.pivot import cross_axis_pivot
+from spline_model.statics import solve_loads, solve_mechanism, solve_path, solve_statics
+from tests import gates
+from tests.spline.frames import column, lees_frame, toggle
+from tests.table_one import TABLE_ONE
+
+
+def limits(scene, load, **options):
+    """Limit loads of a scene, in units of ``load`` at load factor 1."""
+    path = solve_loads(scene, control="arc-length", **options)[1]
+    assert path.status.value == "converged", path.message
+    assert [c.kind for c in path.critical_points] == ["limit point"] * len(path.critical_points)
+    return load * np.array([c.load_factor for c in path.critical_points])
+
+
+def against_print(name, found, published):
+    """Hold limit loads against published ones."""
+    gates.check(name, np.abs(found - published).max())
+
+
+def test_toggle_snaps_through_both_limit_points():
+    """Requirement: Williams' toggle passes its upper and its lower limit load, as published."""
+    found = limits(toggle(control_points=8).scene, 60.0)
+    against_print("spline_toggle_published", found, (33.9, 31.3))
+
+
+def test_toggle_gate_has_teeth():
+    """Requirement: the check notices a coarser curve."""
+    coarse = limits(toggle(**gates.teeth("spline_toggle_published")).scene, 60.0)
+    with pytest.raises(AssertionError, match="x the gate"):
+        against_print("spline_toggle_published", coarse, (33.9, 31.3))
+
+
+def test_a_flatter_toggle_has_no_limit_point():
+    """Requirement: with a rise of 0.32 the load of the toggle only grows: no critical point is reported."""
+    assert limits(toggle(rise=0.32, control_points=8).scene, 60.0).size == 0
+
+
+def test_lees_frame_passes_both_limit_points():
+    """Requirement: Lee's frame passes its limit load and the one below zero, as published."""
+    against_print("spline_lee_published", limits(lees_frame(control_points=10), 3.0), (1.85, -0.94))
+
+
+def test_lees_frame_gate_has_teeth():
+    """Requirement: the check notices a coarser curve."""
+    coarse = limits(lees_frame(**gates.teeth("spline_lee_published")), 3.0)
+    with pytest.raises(AssertionError, match="x the gate"):
+        against_print("spline_lee_published", coarse, (1.85, -0.94))
+
+
+def work_balance(late=0):
+    """Work of the load on Lee's frame, some states late, against the energy stored at the end of its path."""
+    path = solve_loads(lees_frame(control_points=10), control="arc-length")[1]
+    return abs(path.work[-1 - late] / path.energies[-1].sum() - 1)
+
+
+def test_work_is_booked_through_limit_points():
+    """Requirement: along a path whose load goes up, down and up again the work is the energy stored."""
+    gates.check("spline_arc_length_work", work_balance())
+
+
+def test_work_gate_has_teeth():
+    """Requirement: the check notices a step that is left out."""
+    with pytest.raises(AssertionError, match="x the gate"):
+        gates.check("spline_arc_length_work", work_balance(**gates.teeth("spline_arc_length_work")))
+
+
+def test_inertia_goes_with_the_limit_points():
+    """Requirement: between its two limit points the frame is unstable, before and after it is not."""
+    path = solve_loads(lees_frame(control_points=8), control="arc-length")[1]
+    slope = np.gradient(path.load_factor)
+    turns = np.flatnonzero(np.diff(np.sign(slope))).tolist()
+    assert set(path.inertia[: turns[0] - 1]) == {0}
+    assert set(path.inertia[turns[0] + 3 : turns[1] - 2]) == {1}
+    assert set(path.inertia[turns[1] + 3 :]) == {0}
+
+
+def test_load_control_stops_at_the_limit_point():
+    """Requirement: prescribed loads cannot pass a limit point: the path ends below it and says so."""
+    with pytest.raises(ConvergenceError, match="stopped between load factor") as caught:
+        solve_mechanism(toggle(control_points=8))
+    reached = 60.0 * caught.value.solution.load_factor[-1]
+    assert 33.0 < reached < 33.91
+
+
+def test_a_driven_path_may_use_arc_length():
+    """Requirement: the pivot driven to a rotation ends in the same state in either control."""
+    pivot = cross_axis_pivot(**TABLE_ONE)
+    mechanism = pivot.mechanism
+    by_arc = solve_mechanism(mechanism, rotation=1.5, control="arc-length")
+    by_load = solve_path(mechanism, 1.5)
+    assert by_arc.load_factor[-1] == 1.0
+    scale = np.abs(by_load.states[-1]).max()
+    assert np.abs(by_arc.states[-1] - by_load.states[-1]).max() < 1e-9 * scale
+
+
+def resumed(**settings):
+    """Largest relative difference in torque of a path in two parts and in one."""
+    pivot = cross_axis_pivot(**(TABLE_ONE | settings))
+    first = solve_statics(pivot, rotation=0.8, increments=8)
+    second = solve_statics(pivot, rotation=1.6, increments=8, start=first)
+    whole = solve_statics(cross_axis_pivot(**TABLE_ONE), rotation=1.6, increments=16)
+    assert second.rotation[0] == first.rotation[-1]
+    return np.abs(second.torque - whole.torque[8:]).max() / whole.torque.max()
+
+
+def test_a_path_goes_on_from_a_stored_solution():
+    """Requirement: a path that is continued from a solution is the path in one go."""
+    gates.check("spline_resumed_path", resumed())
+
+
+def test_resumed_gate_has_teeth():
+    """Requirement: the check notices another discretisation."""
+    with pytest.raises(AssertionError, match="x the gate"):
+        gates.check("spline_resumed_path", resumed(**gates.teeth("spline_resumed_path")))
+
+
+def test_arc_length_goes_on_from_beyond_a_limit_point():
+    """Requirement: a path through limit points can be taken up on its unstable part."""
+    scene = toggle(control_points=8).scene
+    whole = solve_loads(scene, control="arc-length")[1]
+    unstable = int(np.flatnonzero(whole.inertia == 1)[0])
+    part = type(whole)(**{**vars(whole), "states": whole.states[: unstable + 1],
+                          "load_factor": whole.load_factor[: unstable + 1]})  # fmt: skip
+    onward = solve_loads(scene, control="arc-length", start=part, end=0.55)[1]
+    assert onward.status.value == "converged", onward.message
+    assert onward.inertia[0] == 1
+
+
+def test_states_of_a_mechanism_go_on():
+    """Requirement: a mechanism under loads goes on from its solution, beyond load factor 1 too."""
+    made = column(load=1.0, side=0.1, control_points=6)
+    half = solve_mechanism(made, end=0.5, increments=5)
+    onward = solve_mechanism(made, start=half, end=2.0, increments=15)
+    whole = solve_mechanism(made, end=2.0)
+    assert onward.load_factor[0] == 0.5
+    assert np.abs(onward.states[-1] - whole.states[-1]).max() < 1e-9

@@ -1,0 +1,180 @@
+"""Critical points of paths: found, located, named, and the same on both paths."""
+
+import math
+
+import numpy as np
+import pytest
+from mpmath import ellipk, mp
+
+from spline_model.compile import compile_scene
+from spline_model.continuation.reduced import reduced_tangent
+from spline_model.errors import InvalidParameter
+from spline_model.newton import Workspace
+from spline_model.pivot import cross_axis_pivot
+from spline_model.statics import solve_loads, solve_mechanism, solve_path, solve_statics
+from tests import gates
+from tests.spline.frames import column, opposed
+from tests.table_one import TABLE_ONE
+
+EULER = math.pi**2 / 4
+TWO_LIMITS = ("limit point", "limit point")
+ANGLES = (20, 40, 60, 80, 100, 120, 140, 160, 176)
+
+
+def euler_load(*, slenderness=100.0, **settings):
+    """Relative error of the located critical load of an extensible column.
+
+    Its critical load P is (1 - P / EA) P = pi^2 EI / (4 L^2): shortened before it buckles.
+    """
+    exact = slenderness**2 / 2 * (1 - math.sqrt(1 - 4 * EULER / slenderness**2))
+    made = column(load=4.0, slenderness=slenderness, **settings)
+    (point,) = solve_mechanism(made, increments=7).critical_points
+    assert (point.kind, point.inertia) == ("bifurcation", 1)
+    return abs(4.0 * point.load_factor / exact - 1)
+
+
+def test_a_column_buckles_at_its_critical_load():
+    """Requirement: the bifurcation of a compressed column is found where theory has it."""
+    gates.check("spline_euler_load", euler_load(control_points=8))
+
+
+def test_euler_gate_has_teeth():
+    """Requirement: the check notices a coarser curve."""
+    with pytest.raises(AssertionError, match="x the gate"):
+        gates.check("spline_euler_load", euler_load(**gates.teeth("spline_euler_load")))
+
+
+def test_the_mode_of_a_column_is_a_quarter_wave():
+    """Requirement: the critical mode moves the tip across and not along, and turns it as a sine does."""
+    (point,) = solve_mechanism(column(load=4.0, slenderness=1e4), increments=7).critical_points
+    layout = compile_scene(column(load=4.0).scene).layout
+    along, across, turn = point.mode[layout.body("tip")]
+    assert abs(along) < 1e-6
+    assert abs(turn / across - math.pi / 2) < 1e-3
+
+
+def post_buckling(angles=ANGLES, **settings):
+    """Largest error of the tip's angle [deg] on the bifurcated branch, at the loads of the elastica.
+
+    P / Pcr = (2 K(sin(angle / 2)) / pi)^2: Timoshenko and Gere, Theory of Elastic Stability (1961), 2.7.
+    """
+    errors = []
+    for angle in angles:
+        ratio = float((2 * ellipk(mp.sin(mp.radians(angle) / 2) ** 2) / mp.pi) ** 2)
+        made = column(load=EULER * ratio, effects=("bending", "inextensible"), **settings)
+        answer = solve_mechanism(made, branch="follow", control="arc-length")
+        assert "goes on along the branch" in answer.message
+        assert answer.inertia[-1] == 0
+        errors.append(abs(abs(math.degrees(answer.bodies["tip"][-1, 2])) - angle))
+    return max(errors)
+
+
+def test_the_bifurcated_branch_is_the_elastica():
+    """Requirement: branch = "follow" leads onto the post-buckling branch, to a tip angle of 176 deg."""
+    gates.check("spline_post_buckling", post_buckling(control_points=14, gauss_points=28))
+
+
+def test_post_buckling_gate_has_teeth():
+    """Requirement: the check notices fewer control points."""
+    with pytest.raises(AssertionError, match="x the gate"):
+        gates.check("spline_post_buckling", post_buckling(**gates.teeth("spline_post_buckling")))
+
+
+def test_published_post_buckling_loads():
+    """Requirement: the loads at which the elastica is checked are the classical ones."""
+    published = (1.015, 1.063, 1.152, 1.293, 1.518, 1.884, 2.541, 4.029, 9.116)
+    for angle, value in zip(ANGLES, published, strict=True):
+        ratio = float((2 * ellipk(mp.sin(mp.radians(angle) / 2) ** 2) / mp.pi) ** 2)
+        assert abs(ratio - value) < 2e-3  # digits as printed
+
+
+def test_an_imperfect_column_has_no_bifurcation():
+    """Requirement: with a small side load the same column bends smoothly and stably to the same place."""
+    load = EULER * 2.541
+    bent = solve_mechanism(column(load=load, side=1e-4, control_points=12), control="arc-length")
+    perfect = solve_mechanism(column(load=load, control_points=12), control="arc-length", branch="follow")
+    assert bent.critical_points == ()
+    assert bent.inertia.max() == 0
+    tips = [abs(answer.bodies["tip"][-1, 2]) for answer in (bent, perfect)]
+    assert abs(tips[0] - tips[1]) < 1e-3
+
+
+@pytest.mark.parametrize("branch", ["primary", "follow"])
+def test_load_control_and_arc_length_end_alike(branch):
+    """Requirement: a branch without limit points ends in the same state in either control."""
+    made = column(load=4.0, control_points=8)
+    by_load, by_arc = (
+        solve_mechanism(made, control=control, branch=branch) for control in ("load", "arc-length")
+    )
+    assert np.abs(by_load.states[-1] - by_arc.states[-1]).max() < 1e-7
+    assert [c.kind for c in by_load.critical_points] == [c.kind for c in by_arc.critical_points]
+    assert by_load.inertia[-1] == by_arc.inertia[-1] == (1 if branch == "primary" else 0)
+    assert by_load.message == by_arc.message
+
+
+@pytest.mark.parametrize(
+    ("pivot", "rotation", "increments", "kinds"),
+    [
+        (opposed(offset=0.01, control_points=8), -0.3, 12, ["bifurcation"]),
+        (opposed(offset=0.03, control_points=8, gauss_points=16), -0.3, 40, ["bifurcation", *TWO_LIMITS]),
+        (cross_axis_pivot(**TABLE_ONE), 1.5, 20, []),
+    ],
+)  # fmt: skip
+def test_both_paths_find_the_same_critical_points(pivot, rotation, increments, kinds):
+    """Requirement: the condensed path has the inertia and the critical points of the multiplier path."""
+    fast, slow = (
+        solve_statics(pivot, rotation=rotation, increments=increments, method=method)
+        for method in ("condensed", "multipliers")
+    )
+    assert np.array_equal(fast.inertia, slow.inertia)
+    assert np.allclose(fast.moment_defect, slow.moment_defect, rtol=1e-6, atol=1e-9)
+    assert [c.kind for c in fast.critical_points] == [c.kind for c in slow.critical_points] == kinds
+    for a, b in zip(fast.critical_points, slow.critical_points, strict=True):
+        assert abs(a.rotation - b.rotation) < math.radians(1e-4)
+        assert np.abs(a.mode - b.mode).max() < 1e-4
+    assert fast.message == slow.message
+
+
+def test_inertia_counts_the_negative_eigenvalues():
+    """Requirement: the inertia of a state is the number of negative eigenvalues of its reduced tangent."""
+    pivot = opposed(offset=0.03, control_points=7)
+    rotation = -0.05
+    path = solve_path(pivot.mechanism, rotation, 8)
+    work = Workspace.of(compile_scene(pivot.driven(rotation)))
+    assert path.inertia.max() > 0
+    for z, factor, inertia in zip(path.states, path.load_factor, path.inertia, strict=True):
+        work.evaluate(z, factor)
+        values = np.linalg.eigvalsh(reduced_tangent(work).stiffness)
+        assert np.count_nonzero(values < 0) == inertia
+
+
+def test_a_critical_point_is_where_an_eigenvalue_vanishes():
+    """Requirement: at a located point the reduced tangent is singular, along the mode."""
+    pivot = opposed(offset=0.02, control_points=8)
+    path = solve_path(pivot.mechanism, -0.1, 10)
+    (point,) = [c for c in path.critical_points if c.kind == "bifurcation"]
+    system = compile_scene(pivot.driven(-0.1))
+    work = Workspace.of(system)
+    work.evaluate(point.z, point.load_factor)
+    tangent = reduced_tangent(work)
+    values = np.linalg.eigvalsh(tangent.stiffness)
+    direction = tangent.free.T @ (point.mode / system.scales.unit[: len(point.mode)])
+    assert np.abs(values).min() < 1e-5 * np.sort(np.abs(values))[1]
+    quotient = direction @ tangent.stiffness @ direction / (direction @ direction)
+    assert abs(quotient) < 1e-5 * np.sort(np.abs(values))[1]
+
+
+def test_printed_forces_have_no_inertia():
+    """Requirement: forces without a potential have no inertia; their paths are followed all the same."""
+    pivot = cross_axis_pivot(**TABLE_ONE, control_points=4, measure="printed", stretch="consistent")
+    answer = solve_statics(pivot, rotation=0.5, increments=5)
+    assert (answer.inertia == -1).all()
+    assert answer.critical_points == ()
+
+
+def test_an_unknown_branch_and_control_are_refused():
+    """Requirement: a branch or a control that does not exist is refused with those that do."""
+    with pytest.raises(InvalidParameter, match="one of primary, follow"):
+        solve_loads(column(load=1.0).scene, branch="lucky")
+    with pytest.raises(InvalidParameter, match="one of load, arc-length"):
+        solve_loads(column(load=1.0).scene, control="time")

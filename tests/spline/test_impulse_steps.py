@@ -1,0 +1,285 @@
+"""Steps of sequential impulses: release and catch, several bodies, damping, weight, loads, refusals."""
+
+import math
+
+import numpy as np
+import pytest
+
+from spline_model.dynamics import solve_motion
+from spline_model.effects import DrivenRotation
+from spline_model.errors import ConvergenceError, InvalidParameter
+from spline_model.mechanism import BodyDesign, StripDesign, mechanism
+from spline_model.pivot import BODY, swinging_slide_stiffness
+from spline_model.sequential_impulse import impulse_solver, solve_impulses
+from tests import gates
+from tests.spline.impulses import POLYMER, QUARTER, pivot, total
+from tests.table_one import TABLE_ONE
+
+DAMPED = {
+    "effects": (
+        "bending",
+        "stretching",
+        "strip_inertia",
+        "body_inertia",
+        "strip_damping",
+        "strip_drag",
+        "body_damping",
+        "gravity",
+    ),
+    "parameters": {
+        "strip_damping": {"relaxation_time": 2e-6},
+        "strip_drag": {"rate": 20.0},
+        "body_damping": {"translation": 5.0, "rotation": 0.02},
+    },
+}
+
+
+def pose_of(solver, state):
+    """x, y and rotation of the body."""
+    place = solver.system.layout.body(BODY)
+    return state.z[place].copy()
+
+
+# ---- release and catch ----
+
+
+@pytest.mark.parametrize("design, step", [(TABLE_ONE, 1e-4), (POLYMER, 1e-3)], ids=["Table 1", "polymer"])
+def test_release_does_not_jump(design, step):
+    """Requirement: the first step after a release moves the body by its square, and creates no energy."""
+    solver = impulse_solver(pivot(design))
+    held = solver.start(1.0)
+    energy = solver.step(held, 1e-9).strain_energy
+    moved = []
+    for h in (step, step / 2):
+        outcome = solver.step(held, h)
+        moved.append(np.abs(pose_of(solver, outcome.state) - pose_of(solver, held)).max())
+        assert outcome.kinetic_energy + outcome.strain_energy <= energy * (1 + 1e-12)
+    assert moved[0] / moved[1] == pytest.approx(4.0, rel=0.02)
+    assert moved[0] < 0.05
+
+
+def test_catch_holds_the_pose_and_creates_no_energy():
+    """Requirement: a caught body stays where it is, the strips lose energy, and it is let go."""
+    solver = impulse_solver(pivot(POLYMER))
+    free = solver.step(solver.start(QUARTER), 0.01, count=12)
+    assert free.complete
+    before = pose_of(solver, free.state)
+    caught = solver.step(free.state, 0.01, count=4, pose=before)
+    assert caught.complete
+    assert np.abs(pose_of(solver, caught.state) - before).max() < 1e-9
+    assert caught.kinetic_energy + caught.strain_energy < free.kinetic_energy + free.strain_energy
+    again = solver.step(caught.state, 0.01)
+    assert again.complete
+    assert again.kinetic_energy + again.strain_energy < caught.kinetic_energy + caught.strain_energy
+
+
+@pytest.mark.parametrize("design", [TABLE_ONE, POLYMER], ids=["Table 1", "polymer"])
+@pytest.mark.parametrize("turn", [-20.0, 20.0])
+def test_catch_reaches_a_pose_that_is_20_degrees_away(design, turn):
+    """Requirement: a swinging body goes to a static pose 20 degrees away within ten steps."""
+    solver = impulse_solver(pivot(design))
+    for count in (3, 12, 20):
+        free = solver.step(solver.start(QUARTER), 0.01, count=count)
+        there = pose_of(solver, solver.start(pose_of(solver, free.state)[2] + math.radians(turn)))
+        caught = solver.step(free.state, 0.01, count=10, pose=there)
+        assert caught.complete
+        assert np.abs(pose_of(solver, caught.state) - there).max() < 1e-9
+        quiet = solver.step(caught.state, 0.01, count=40, pose=there)
+        assert quiet.kinetic_energy < 1e-3 * quiet.strain_energy
+
+
+def caught_swing(step):
+    """Largest difference of a swing, caught and let go by a drive, to the energy-consistent integrator's."""
+    chosen = pivot(control_points=4).mechanism
+    drive = DrivenRotation(body=BODY, angle=0.0, held=(1e-3, 2e-3))
+    options = {"start": 0.5, "drive": drive, "duration": 2.5e-3, "records": 25}
+    exact = solve_motion(chosen, step=1e-6, **options)
+    run = solve_impulses(chosen, step=step, **options)
+    assert run.status.value == exact.status.value == "converged"
+    held = (run.time > 1.05e-3) & (run.time < 1.95e-3)
+    assert np.ptp(run.rotation[held]) < 1e-9
+    return np.abs(run.rotation - exact.rotation).max()
+
+
+def test_a_drive_that_begins_and_ends():
+    """Requirement: a body caught, held and released in a run follows the other integrators' motion."""
+    gates.check("impulse_caught_swing", caught_swing(step=2.5e-6))
+
+
+def test_caught_swing_gate_has_teeth():
+    """Requirement: a longer step fails the same gate."""
+    with pytest.raises(AssertionError, match="x the gate"):
+        gates.check("impulse_caught_swing", caught_swing(**gates.teeth("impulse_caught_swing")))
+
+
+# ---- more than a pivot ----
+
+
+def chain():
+    """Two bodies one behind the other on strips, with weight and a moment on the outer one."""
+    section = {"area": 8e-6, "second_moment_of_area": 4e-13, "youngs_modulus": 2e9, "density": 1100.0}
+    strips = [
+        StripDesign(name="inner", start=(0.0, 0.0), end=(0.08, 0.0), tip="middle", **section),
+        StripDesign(name="outer", start=(0.1, 0.0), end=(0.18, 0.0), root="middle", tip="end", **section),
+    ]
+    bodies = [
+        BodyDesign(name="middle", centre=(0.09, 0.0), mass=5e-3, moment_of_inertia=2e-6),
+        BodyDesign(name="end", centre=(0.19, 0.0), mass=5e-3, moment_of_inertia=2e-6),
+    ]
+    return mechanism(
+        strips=strips,
+        bodies=bodies,
+        effects=(
+            "bending",
+            "inextensible",
+            "strip_inertia",
+            "body_inertia",
+            "gravity",
+            "strip_damping",
+            "applied_moment",
+        ),
+        parameters={
+            "strip_damping": {"relaxation_time": 1e-4},
+            "applied_moment": {"body": "end", "moment": 2e-3, "history": ((0.0, 0.0), (0.02, 1.0))},
+        },
+        control_points=5,
+        slide_stiffness=swinging_slide_stiffness(5),
+    )
+
+
+def chain_error(step):
+    """Largest difference of the outer body's rotation to the energy-consistent integrator's."""
+    options = {"body": "end", "duration": 0.05, "records": 50}
+    exact = solve_motion(chain(), step=2.5e-5, **options)
+    run = solve_impulses(chain(), step=step, **options)
+    assert np.abs(exact.rotation).max() > 0.1
+    return np.abs(run.rotation - exact.rotation).max()
+
+
+def test_several_bodies_with_weight_load_and_damping():
+    """Requirement: two bodies on damped strips under weight and a growing moment move as elsewhere."""
+    gates.check("impulse_chain", chain_error(step=1e-4))
+
+
+def test_chain_gate_has_teeth():
+    """Requirement: a longer step fails the same gate."""
+    with pytest.raises(AssertionError, match="x the gate"):
+        gates.check("impulse_chain", chain_error(**gates.teeth("impulse_chain")))
+
+
+def balance_error(form, step):
+    """Error of the balance of energies over 5 ms with weight and every damping, over the energy."""
+    chosen = pivot(control_points=4, **DAMPED)
+    run = solve_impulses(chosen, start=1.0, duration=5e-3, step=step, form=form, records=50)
+    assert run.status.value == "converged", run.message
+    assert run.dissipated[-1] > 0.01 * total(run)[0]
+    balance = total(run) + run.gravity_energy + run.dissipated - run.work
+    return np.abs(balance - balance[0]).max() / balance[0]
+
+
+@pytest.mark.parametrize("form", ["printed", "stable"])
+def test_damping_is_booked(form):
+    """Requirement: what damping takes is counted, to the accuracy of the step."""
+    gates.check(f"impulse_{form}_balance", balance_error(form, step=4e-6))
+
+
+@pytest.mark.parametrize("form", ["printed", "stable"])
+def test_balance_gates_have_teeth(form):
+    """Requirement: a longer step fails the same gates."""
+    step = gates.teeth(f"impulse_{form}_balance")["step"]
+    with pytest.raises(AssertionError, match="x the gate"):
+        gates.check(f"impulse_{form}_balance", balance_error(form, step))
+
+
+@pytest.mark.parametrize("name, coefficient", [("strip_damping", "relaxation_time"), ("strip_drag", "rate")])
+def test_zero_equals_absent(name, coefficient):
+    """Requirement: an effect with a coefficient of zero gives the motion without it."""
+    plain = ("bending", "stretching", "strip_inertia", "body_inertia")
+    options = {"start": 1.0, "duration": 2e-3, "step": 1e-4}
+    without = solve_impulses(pivot(effects=plain), **options)
+    with_zero = solve_impulses(
+        pivot(effects=(*plain, name), parameters={name: {coefficient: 0.0}}), **options
+    )
+    assert np.abs(with_zero.rotation - without.rotation).max() < 1e-12
+
+
+def test_a_pivot_at_rest_under_its_weight_stays():
+    """Requirement: equilibrium under weight is kept, without motion or energy, in ten thousand steps."""
+    chosen = pivot(POLYMER, effects=("bending", "stretching", "strip_inertia", "body_inertia", "gravity"))
+    run = solve_impulses(chosen, duration=100.0, records=100)
+    assert np.abs(run.centre - run.centre[0]).max() < 1e-9
+    assert run.kinetic_energy.max() < 1e-15 * run.strain_energy[0]
+
+
+# ---- determinism and refusals ----
+
+
+def test_the_same_state_gives_the_same_bits():
+    """Requirement: a step changes neither its state nor its solver's later answers."""
+    solver = impulse_solver(pivot())
+    first = solver.start(1.0)
+    copy = first.z.copy(), first.v.copy()
+    ahead = solver.step(first, 1e-3, count=4)
+    solver.step(ahead.state, 1e-2, count=4)
+    again = solver.step(first, 1e-3, count=4)
+    one_by_one = first
+    for _ in range(4):
+        one_by_one = solver.step(one_by_one, 1e-3).state
+    assert (first.z == copy[0]).all() and (first.v == copy[1]).all()
+    assert (again.state.z == ahead.state.z).all() and (again.state.v == ahead.state.v).all()
+    assert np.abs(one_by_one.z - ahead.state.z).max() <= 1e-12 * np.abs(ahead.state.z).max()
+
+
+@pytest.mark.parametrize(
+    "options, line",
+    [
+        ({"form": "euler"}, "form: got 'euler', expected one of printed, stable"),
+        ({"impulses": "all"}, "impulses: got 'all', expected one of direct, strips, constraints"),
+        ({"sweeps": 0}, "sweeps: got 0, expected an integer >= 1"),
+        ({"tolerance": 0.0}, "tolerance: got 0.0"),
+        ({"step": -1.0}, "step: got -1.0"),
+        ({"step": 1.0}, "step: got 1.0, expected at most the duration"),
+        ({"duration": math.nan}, "duration: got nan"),
+        ({"start": math.inf}, "start: got inf"),
+        ({"records": 0}, "records: got 0"),
+        ({"duration": 1e6, "step": 1e-6}, "duration: got 1000000.0, expected records within 2 GB"),
+        ({"body": "lid"}, "body: got 'lid'"),
+    ],
+    ids=str,
+)
+def test_invalid_options_are_one_line(options, line):
+    """Requirement: a bad option is refused with name, value and expectation."""
+    with pytest.raises(InvalidParameter, match=line):
+        solve_impulses(pivot(control_points=4), **options)
+
+
+def test_states_and_poses_are_checked():
+    """Requirement: a state or pose that cannot be is refused before it reaches a kernel."""
+    solver = impulse_solver(pivot(control_points=4))
+    state = solver.start()
+    with pytest.raises(InvalidParameter, match="z: got nan, expected finite numbers"):
+        solver.start_at(np.full(len(state.z), np.nan))
+    with pytest.raises(InvalidParameter, match="length of v: got 3, expected 19"):
+        solver.start_at(state.z, np.zeros(3))
+    with pytest.raises(InvalidParameter, match="rotation: got nan"):
+        solver.start(math.nan)
+    with pytest.raises(InvalidParameter, match="pose: got nan"):
+        solver.step(state, 0.01, pose=np.array([0.0, np.nan, 0.0]))
+    with pytest.raises(ConvergenceError, match="stopped between load factor"):
+        impulse_solver(pivot(control_points=8, slide_stiffness=10.0)).start(math.radians(230))
+
+
+def test_an_absurd_pose_is_refused_in_bounded_work():
+    """Requirement: a pose that no strip reaches ends at the last good state after bounded work."""
+    solver = impulse_solver(pivot())
+    outcome = solver.step(solver.start(), 0.01, count=4, pose=np.array([5.0, 5.0, 30.0]))
+    assert outcome.counters["solves"] < 4 * 64 * 12
+    assert np.isfinite(outcome.state.z).all()
+    if not outcome.complete:
+        assert outcome.taken < 4
+
+
+def test_massless_strips_are_refused():
+    """Requirement: strips without inertia, which an impulse would move without bound, are refused."""
+    with pytest.raises(InvalidParameter, match="no inertia of strip_1"):
+        impulse_solver(pivot(effects=("bending", "stretching", "body_inertia")))

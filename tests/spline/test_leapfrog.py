@@ -1,0 +1,140 @@
+"""The compiled leapfrog: order, energy, agreement with Runge-Kutta's steps on the full matrices."""
+
+import math
+
+import numpy as np
+import pytest
+
+from spline_model.compile import compile_scene
+from spline_model.dynamics import solve_release
+from spline_model.errors import InvalidParameter
+from spline_model.fast.acceleration import accelerate
+from spline_model.fast.leapfrog import leap
+from spline_model.fast.release import coordinates, reduced
+from spline_model.fast.release import swing as swing_of_mechanism
+from spline_model.fast.swing import swing_space
+from spline_model.integrators.motion import set_in_motion
+from spline_model.kernels.record import POSITION, VELOCITY, record
+from spline_model.modes import linear_modes
+from spline_model.pivot import cross_axis_pivot, swinging_slide_stiffness
+from spline_model.solution import Status
+from tests import gates
+from tests.table_one import TABLE_ONE
+
+QUARTER = math.pi / 2
+
+
+def pivot(control_points=6, **more):
+    """Table 1 as it swings."""
+    slide = swinging_slide_stiffness(control_points)
+    return cross_axis_pivot(**TABLE_ONE, control_points=control_points, slide_stiffness=slide, **more)
+
+
+def swing(step, duration=0.004, integrator="leapfrog", **more):
+    """Rotation at 100 records."""
+    return solve_release(
+        pivot(**more), start=QUARTER, duration=duration, step=step, records=100, integrator=integrator
+    )
+
+
+def difference_to_runge_kutta(step):
+    """Largest difference of the rotation to Runge-Kutta steps of the reference kernels, 4 ms."""
+    reference = swing(5e-7, integrator="explicit")
+    return np.abs(swing(step).rotation - reference.rotation).max()
+
+
+def test_leapfrog_agrees_with_runge_kutta():
+    """Requirement: the condensed kernels and the full matrices tend to one trajectory."""
+    gates.check("spline_leapfrog_agrees", difference_to_runge_kutta(1e-6))
+
+
+def test_agreement_gate_has_teeth():
+    """Requirement: a long step fails the agreement."""
+    with pytest.raises(AssertionError, match="x the gate"):
+        gates.check(
+            "spline_leapfrog_agrees",
+            difference_to_runge_kutta(gates.teeth("spline_leapfrog_agrees")["step"]),
+        )
+
+
+def phase_error(omega_h, mode=14, periods=400):
+    """Phase that a small wave of the highest mode gains over its linear one, in parts of it."""
+    mechanism = pivot().mechanism
+    system = compile_scene(mechanism.released())
+    motion = set_in_motion(system)
+    squares, shapes, _ = linear_modes(system, system.rest, motion.mass)
+    omega, shape, count = math.sqrt(squares[mode]), shapes[:, mode], len(motion.mass)
+    constants = swing_of_mechanism(mechanism, system, motion)
+    z = system.rest.copy()
+    z[:count] += 1e-7 / np.abs(shape).max() * shape
+    space, r = swing_space(constants), reduced(mechanism, system, constants.frame, z)
+    w, acceleration = np.zeros_like(r), np.zeros_like(r)
+    accelerate(r, w, constants, space, acceleration)
+    steps = math.ceil(2 * math.pi * periods / omega_h)
+    assert leap(r, w, acceleration, omega_h / omega, steps, constants, space)
+    q, v = coordinates(mechanism, system, constants.frame, r[None], w[None])
+    weighted = motion.mass @ shape
+    phase = math.atan2(-weighted @ v[0] / omega, weighted @ (q[0] - system.rest[:count]))
+    gained = (phase - steps * omega_h + math.pi) % (2 * math.pi) - math.pi
+    return abs(gained) / (steps * omega_h)
+
+
+def test_phase_of_a_wave_has_order_four():
+    """Requirement: the relative phase error is (omega h)^4 / 480, from two evaluations a step.
+
+    2 sin(phase / 2) = sqrt(x - x^2 / 12) with x = (omega h)^2 expands to a phase of omega h (1 - x^2 / 480).
+    """
+    coarse, fine = phase_error(0.8), phase_error(0.4)
+    assert math.log2(coarse / fine) > 3.85
+    assert 0.7 < fine / (0.4**4 / 480) < 1.3
+
+
+def energy_oscillation(step):
+    """Largest change of the energy over 0.05 s in parts of the initial one."""
+    run = swing(step, duration=0.05)
+    energy = run.kinetic_energy + run.strain_energy
+    return np.abs(energy / energy[0] - 1).max()
+
+
+def test_energy_does_not_drift():
+    """Requirement: over four swings the energy stays, and stays better at a shorter step."""
+    coarse, fine = energy_oscillation(4e-6), energy_oscillation(2e-6)
+    assert coarse < 1e-3
+    assert fine < 0.5 * coarse
+
+
+def test_clamps_hold_by_construction():
+    """Requirement: positions and rates satisfy the full system's clamps to round-off."""
+    mechanism = pivot().mechanism
+    system = compile_scene(mechanism.released())
+    motion = set_in_motion(system)
+    run = swing(4e-6)
+    row = np.empty(7)
+    for z, v in zip(run.states, run.velocities, strict=True):
+        record(z, v, motion, np.empty(len(motion.rigidity)), np.zeros(2), row)
+        assert row[POSITION] < 1e-16
+        assert row[VELOCITY] < 1e-12
+
+
+def test_default_step_is_stable_and_a_long_one_says_so():
+    """Requirement: the step from the highest frequency works; a step above the limit ends with a reason."""
+    run = solve_release(pivot(), duration=0.002, integrator="leapfrog")
+    assert run.status is Status.CONVERGED
+    assert 3e-6 < run.settings["step_s"] < 6e-6
+    run = swing(1e-5)
+    assert run.status is Status.NOT_CONVERGED
+    assert "take a shorter step" in run.message
+
+
+@pytest.mark.parametrize(
+    "more",
+    [
+        {"stretch": "consistent"},
+        {"basis": "bspline"},
+        {"effects": ("bending", "stretching", "strip_inertia", "body_inertia", "gravity")},
+    ],
+)
+def test_other_scenes_are_refused(more):
+    """Requirement: what the reduced coordinates do not hold is refused by name."""
+    with pytest.raises(InvalidParameter, match="integrator: got 'leapfrog'"):
+        swing(1e-6, duration=1e-5, **more)

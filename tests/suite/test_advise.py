@@ -1,0 +1,181 @@
+"""The adviser: the cheapest setting of every model that meets an error."""
+
+import json
+import math
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from studies.__main__ import main
+from studies.cases.problem import FOLDER, named_case
+from studies.commands import advise as command
+from studies.errors import BadInput
+from studies.work_precision import advice, moving_series, series
+from studies.work_precision.equal_error import cheapest, coarsest, kept
+from studies.work_precision.motions import MovingMember, SolvedMotion
+from studies.work_precision.paths import WORK, Member, SolvedPath, of_baseline, path_errors, unsolved
+
+CASE = str(FOLDER / "cross_axis_pivot.toml")
+
+
+def rows(errors, *, names="abc", costs=None):
+    """A table of one series a letter, each with its errors from coarse to fine."""
+    table = [
+        {"series": name, "family": "all", "setting": f"{name}{rank}", "rank": rank, "error_x": error}
+        | {"cost": (costs or {}).get(name, 1.0) * 2.0**rank, "solve_s": 2.0**rank, "message": ""}
+        for name, values in zip(names, errors, strict=False)
+        for rank, error in enumerate(values)
+    ]
+    return pd.DataFrame(table)
+
+
+def test_an_error_by_luck_does_not_count():
+    """A coarse setting that is better than the finer ones has the error that these keep."""
+    table = rows([[1e-5, 1e-2, 1e-3], [1e-2, math.nan, 1e-4]])
+    assert kept(table, ["error_x"], "rank").tolist() == [1e-2, 1e-2, 1e-3, math.inf, math.inf, 1e-4]
+    assert coarsest(table, ["error_x"], "rank", 2e-3)["setting"].tolist() == ["a2", "b2"]
+
+
+def test_cheapest_at_equal_error():
+    """At each error the cheapest setting of every series is found, and its cost over the baseline's."""
+    table = rows([[1e-1, 1e-3, 1e-5], [1e-2, 1e-3]], costs={"b": 10.0})
+    found = cheapest(table, columns=["error_x"], cost="cost", rank="rank", targets=(1e-2, 1e-4), baseline="a")
+    loose, tight = found.iloc[:2].set_index("series"), found.iloc[2:].set_index("series")
+    assert (loose.loc["a", "setting"], loose.loc["b", "setting"]) == ("a1", "b0")
+    assert loose.loc["b", "ratio"] == 10.0 / 2.0
+    assert tight.loc["a", "setting"] == "a2"
+    assert tight.loc["b", "setting"] == "" and math.isnan(tight.loc["b", "ratio"])
+
+
+def test_a_model_that_cannot_says_so_with_its_best():
+    """Of a series that does not reach the error the best setting stands, and that it does not meet it."""
+    found = advice.chosen(rows([[1e-1, 1e-3], [1e-2, 3e-2], [math.nan]]), ["error_x"], 5e-3)
+    assert found["setting"].tolist() == ["a1", "b0", "c0"]
+    assert found["meets"].tolist() == [True, False, False]
+
+
+def exact_path(problem, offset=0.0):
+    """A made-up path of the problem, off by `offset` of its own size."""
+    turns = np.linspace(0.0, problem.rotation, problem.increments + 1)
+    return SolvedPath(
+        status="converged",
+        message="",
+        centre=np.column_stack((np.sin(turns), turns)) * (1.0 + offset),
+        torque=turns * (1.0 + offset),
+        stiffness=np.ones_like(turns),
+        solve_s=1e-3 / max(offset, 1e-9),
+        wall_s=1.0,
+        work=dict.fromkeys(WORK, 1.0),
+    )
+
+
+def test_errors_of_a_path_relate_to_its_reference():
+    """A path one per cent too large has that error everywhere but in what it does not scale."""
+    problem = named_case("cross_axis_pivot")
+    found = path_errors(exact_path(problem, 0.01), exact_path(problem))
+    assert found["error_torque"] == pytest.approx(0.01, rel=1e-9)
+    assert found["end_trajectory"] == pytest.approx(0.01, rel=1e-9)
+    assert found["error_stiffness"] == 0.0
+    assert all(math.isnan(value) for value in path_errors(unsolved("stopped"), exact_path(problem)).values())
+
+
+def test_a_baseline_that_refuses_is_a_row():
+    """A pivot outside of a surrogate's range is an answer that stopped, with the reason."""
+
+    class Refusing:
+        @staticmethod
+        def static_path(*_, **__):
+            raise BadInput("pin joint: got this, expected that")
+
+    path = of_baseline(Refusing, "closed form", 1).solve(named_case("cross_axis_pivot"), 1)
+    assert (path.status, path.message) == ("not_converged", "pin joint: got this, expected that")
+
+
+def test_static_advice_as_json(capsys, monkeypatch):
+    """The command advises on Table 1: the spline and the elements meet 1e-2, the pin joint does not."""
+    monkeypatch.setattr(advice, "COUNTS", range(4, 7))
+    wanted = ("linear pivot", "pin joint", "four-bar")
+    own = [each for each in series.own_series() if each.name in (series.SPLINE, series.ELEMENTS)]
+    others = [each for each in series.other_series() if each.name in wanted]
+    monkeypatch.setattr(series, "own_series", lambda: own)
+    monkeypatch.setattr(series, "other_series", lambda: others)
+    assert main(["advise", CASE, "--error", "1e-2", "--json", "-"]) == 0
+    document = json.loads(capsys.readouterr().out)
+    found = {row["model"]: row for row in document["models"]}
+    assert set(found) == {"spline", "finite elements", *wanted}
+    for name in ("spline", "finite elements"):
+        assert found[name]["meets"]
+        assert 0.0 < found[name]["error_torque"] <= 1e-2
+        assert found[name]["solve_s"] > 0.0
+        assert found[name]["reference_uncertainty"] < 1e-4
+    assert found["spline"]["setting"] == "n = 5"
+    assert not found["pin joint"]["meets"] and found["pin joint"]["error_trajectory"] > 0.1
+
+
+def test_dynamic_advice_as_a_table(capsys, monkeypatch):
+    """The command with --dynamic prints each model's setting, errors of rotation and frequency, and time."""
+    monkeypatch.setattr(advice, "REFERENCE", (6, 5))
+    monkeypatch.setattr(advice, "PERIODS", 1.0)
+    one = moving_series.own_series(1.0, {})[0]
+    small = [moving_series.MovingSeries(name=one.name, look=one.look, members=one.members[8:11])]
+    stopped = SolvedMotion(
+        status="not_converged", message="it blew up", time=np.zeros(0), rotation=np.zeros(0),
+        solve_s=math.nan, repeats=0, work={},
+    )  # fmt: skip
+    failing = MovingMember(setting="one", family="all", step=1.0, solve=lambda *_: stopped)
+    other = moving_series.MovingSeries(name="failing", look=one.look, members=(failing,))
+    monkeypatch.setattr(moving_series, "own_series", lambda *_: small)
+    monkeypatch.setattr(moving_series, "other_series", lambda *_: [other])
+    assert main(["advise", CASE, "--error", "0.1", "--dynamic"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[2].split()[:4] == ["model", "setting", "rotation", "frequency"]
+    assert any(line.startswith("spline, energy-consistent") and " ms" in line for line in lines)
+    assert any(line.startswith("failing") and line.endswith("it blew up") for line in lines)
+
+
+def test_no_model_meets_an_impossible_error(capsys, monkeypatch):
+    """Where no model meets the error the exit code says so, and the best of each is still told."""
+    coarse = Member(setting="coarse", count=1, solve=lambda problem, repeat: exact_path(problem, 0.5))
+    one = series.own_series()[0]
+    bad = series.Series(name="spline", theory="material", look=one.look, members=(coarse,))
+    monkeypatch.setattr(series, "own_series", lambda: [bad])
+    monkeypatch.setattr(series, "splines", lambda *_, **__: bad)
+    monkeypatch.setattr(series, "other_series", list)
+    assert main(["advise", CASE, "--error", "1e-9"]) == 3
+    streams = capsys.readouterr()
+    assert "no model meets 1e-09 here" in streams.err
+    assert "its best" in streams.out
+
+
+@pytest.mark.parametrize(
+    ("words", "expected"),
+    [
+        ([str(FOLDER / "four_bar_of_flexures.toml")], "got a mechanism, expected a cross-axis pivot"),
+        ([CASE, "--error", "0"], "expected a finite number above 0"),
+        ([CASE, "--error", "no"], "expected a finite number above 0"),
+        (["nowhere.toml"], "nowhere.toml"),
+    ],
+    ids=str,
+)
+def test_bad_input_is_one_line(words, expected, capsys):
+    """What cannot be advised on is refused in one line."""
+    assert main(["advise", *words]) == 2
+    error = capsys.readouterr().err
+    assert expected in error and error.count("\n") == 1
+
+
+def test_a_path_without_rotation_is_refused(tmp_path, capsys):
+    """Without a rotation there is nothing to relate errors to."""
+    text = (FOLDER / "cross_axis_pivot.toml").read_text(encoding="utf-8")
+    case = tmp_path / "rest.toml"
+    case.write_text(text.replace("rotation_deg = 90", "rotation_deg = 0"), encoding="utf-8")
+    assert main(["advise", str(case)]) == 2
+    assert "expected a rotation" in capsys.readouterr().err
+
+
+def test_uncertain_references_are_told():
+    """When a reference is too coarse for the wanted error, the table says that the verdict is not certain."""
+    found = advice.chosen(rows([[1e-4]]), ["error_x"], 1e-3).assign(uncertainty=5e-4)
+    lines = list(command._readable(named_case("cross_axis_pivot"), found, ["error_x"], 1e-3))
+    assert "not certain" in lines[-1]
