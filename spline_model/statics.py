@@ -122,9 +122,12 @@ def _along(
 def _accurate(pivot: Pivot, rotations: Array, method: str, accuracy: float) -> StaticSolution:
     """The solution with as many control points as the accuracy takes."""
 
+    laps = Laps()
+
     def recovered(chosen: Pivot, answer: Answer) -> StaticSolution:
-        laps = Laps()
+        laps.lap("solve")  # all trials
         system = compile_scene(chosen.driven(float(np.abs(rotations).max())))
+        laps.lap("compile")
         path = path_of(chosen.mechanism, system, list(rotations), answer)
         return _along(chosen, rotations, method) if path is None else _pivot_solution(system, path, laps)
 
