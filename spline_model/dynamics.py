@@ -10,11 +10,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from spline_model.accurate_motion import Task, solve_accurately
 from spline_model.compile import System, compile_scene
 from spline_model.effects import DrivenRotation
 from spline_model.errors import InvalidParameter, require_choice, require_positive
 from spline_model.integrators import (
-    adaptive,
     energy_consistent,
     explicit,
     generalised_alpha,
@@ -28,7 +28,7 @@ from spline_model.laps import Laps
 from spline_model.mechanism import Mechanism
 from spline_model.modes import linear_modes, static_state
 from spline_model.pivot import Pivot
-from spline_model.solution import Status
+from spline_model.solution import MotionEstimate, Status
 
 Array = NDArray[np.float64]
 
@@ -63,7 +63,7 @@ class Trajectory:
     velocities (T, Q) of the system in motion; resolution: empty, or how far the step
     under-resolves the swing; effects: names of the scene's effects; counters: steps,
     halved_steps, newton_iterations, ...; seconds: by part (``spline_model.laps``), "start" the
-    static state that is let go
+    static state that is let go; estimate: of the error, where an accuracy was asked for.
     """
 
     status: Status
@@ -85,6 +85,7 @@ class Trajectory:
     counters: dict[str, int]
     settings: dict[str, Any]
     seconds: dict[str, float]
+    estimate: MotionEstimate | None = None
 
     @property
     def rotation(self) -> Array:
@@ -126,14 +127,17 @@ def solve_motion(
     integrator : "energy" (default, cannot create energy; with massless strips, only the bodies
         are dynamic), "generalised-alpha" (option ``spectral_radius``), "explicit", or "leapfrog":
         the fastest, for a free body on straight mixed Bezier strips.
-    accuracy : wanted error of the rotation over the run [rad], by local error control of the
-        energy-consistent steps, instead of a fixed step.
-    records : largest number of records; default every step.
+    accuracy : wanted error of the rotation over the run [rad] instead of a step: steps and control
+        points are chosen, and the trajectory has its ``estimate``.
+    records : largest number of records; default every step, or with an accuracy 128 a swing or more.
 
     Raises InvalidParameter, and ConvergenceError if statics does not reach ``start``.
     """
     _check(integrator, duration, start, step, accuracy)
     laps, body = Laps(), mechanism.design.body_named(body)
+    if accuracy is not None:
+        task = _task(mechanism, start, body, drive, duration)
+        return solve_accurately(mechanism, accuracy, task, records)
     scene = mechanism.released()
     system = compile_scene(scene if drive is None else mechanism.with_effects(drive))
     motion, layout = set_in_motion(system), system.layout
@@ -145,11 +149,6 @@ def solve_motion(
     acceleration, z = initial_acceleration(system, motion, z, v)
     effects = mechanism.effects
     laps.lap("start")
-    if accuracy is not None:
-        run = adaptive.integrate(system, motion, z, v, acceleration, duration=duration, accuracy=accuracy)
-        settings = {"integrator": integrator, "accuracy_rad": accuracy}
-        laps.lap("solve")
-        return _trajectory(system, run, effects, body, settings, "", laps)
     if step is None:
         step = min(STEP, duration)
         if integrator in EXPLICIT_STEPS:
@@ -168,6 +167,41 @@ def solve_motion(
     laps.lap("solve")
     settings = {"integrator": integrator, "step_s": step, **options}
     return _trajectory(system, run, effects, body, settings, _resolution(system, motion, step), laps)
+
+
+def _task(
+    mechanism: Mechanism, start: float, body: str, drive: DrivenRotation | None, duration: float
+) -> Task:
+    """The motion as a task of accuracy on request."""
+    system = compile_scene(mechanism.released())
+    squares = linear_modes(system, system.rest, set_in_motion(system).mass)[0]
+
+    def run(chosen: Mechanism, integrator: str, step: float, records: int) -> Trajectory:
+        return solve_motion(
+            chosen,
+            start=start,
+            body=body,
+            drive=drive,
+            duration=duration,
+            step=step,
+            integrator=integrator,
+            records=records,
+        )
+
+    def critical(chosen: Mechanism) -> float:
+        scene = compile_scene(chosen.released())
+        motion = set_in_motion(scene)
+        explicit.require_explicit(scene, motion)
+        held = static_state(chosen, start, body=body)[: scene.layout.size]
+        return explicit.STABILITY_LIMIT / highest_frequency(scene, motion, held)
+
+    return Task(
+        duration=duration,
+        amplitude=abs(start),
+        frequency=math.sqrt(max(float(squares[0]), 0.0)),
+        run=run,
+        critical=critical if drive is None else lambda chosen: 0.0,
+    )
 
 
 def _check(

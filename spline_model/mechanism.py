@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from typing import Any
 
 import numpy as np
@@ -20,11 +20,23 @@ __all__ = ["BodyDesign", "Mechanism", "StripDesign", "mechanism"]
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Mechanism:
-    """A design, the names of its effects, and its scene without a driven rotation."""
+    """A design, the names of its effects with their parameters, and its scene without a driven rotation."""
 
     design: Design
     effects: tuple[str, ...]
+    parameters: Mapping[str, Mapping[str, Any]]
     scene: Scene
+
+    def with_discretisation(self, **changes: Any) -> Mechanism:
+        """The same mechanism with other keywords of ``Discretisation``."""
+        grid = self.design.discretisation
+        return mechanism(
+            strips=self.design.strips,
+            bodies=self.design.bodies,
+            effects=self.effects,
+            parameters=self.parameters,
+            **({part.name: getattr(grid, part.name) for part in fields(grid)} | changes),
+        )
 
     def driven(self, rotation: float, body: str | None = None) -> Scene:
         """The scene with a body's rotation driven to ``rotation`` [rad] at load factor 1 (Eq 7)."""
@@ -78,4 +90,4 @@ def mechanism(
         bodies=tuple(Body(name=b.name, centre=np.asarray(b.centre, dtype=float)) for b in bodies),
         effects=(*build(names, given, design), *attachments),
     )
-    return Mechanism(design=design, effects=names, scene=scene)
+    return Mechanism(design=design, effects=names, parameters=given, scene=scene)

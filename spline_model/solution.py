@@ -74,6 +74,46 @@ class Path:
     history: tuple[tuple[float, ...], ...]
 
 
+@dataclass(frozen=True, kw_only=True)
+class ErrorEstimate:
+    """Estimated error of a static path that was solved to an ``accuracy``, all relative [1].
+
+    trajectory: largest distance of the centre from where it should be, over its largest
+    displacement; torque, stiffness: largest error over the largest magnitude on the path.
+    control_points that were chosen; trials: numbers of control points that were tried.
+    Leaves out what more control points do not mend: the theory's own simplifications.
+    """
+
+    accuracy: float
+    trajectory: float
+    torque: float
+    stiffness: float
+    control_points: int
+    trials: tuple[int, ...]
+
+    @property
+    def largest(self) -> float:
+        """The larger error of trajectory and torque, which ``accuracy`` is about."""
+        return max(self.trajectory, self.torque)
+
+
+@dataclass(frozen=True, kw_only=True)
+class MotionEstimate:
+    """Estimated error of the rotation of a motion that was solved to an ``accuracy`` [rad].
+
+    rotation: its largest error over the motion, of the steps (``time``) and of the control points
+    (``space``) together, which may cancel in part; control_points that were chosen; runs that
+    it took.
+    """
+
+    accuracy: float
+    rotation: float
+    time: float
+    space: float
+    control_points: int
+    runs: int
+
+
 @dataclass(frozen=True, kw_only=True, eq=False)
 class StaticSolution:
     """Answer of a pivot under a driven rotation; S states, G strips, P stations.
@@ -86,7 +126,8 @@ class StaticSolution:
     and at the body end on the strip; stations (P,) reference arc length over L;
     shape (S, G, P, 2) [m]; axial_force, bending_moment, shear_force (S, G, P) [N, N m, N];
     inertia, moment_defect, critical_points and states as in ``Path``;
-    seconds: by part, see ``spline_model.laps``.
+    seconds: by part, see ``spline_model.laps``;
+    estimate: of the error, where an accuracy was asked for.
     """
 
     status: Status
@@ -113,6 +154,7 @@ class StaticSolution:
     counters: dict[str, int]
     history: tuple[tuple[float, ...], ...]
     seconds: dict[str, float]
+    estimate: ErrorEstimate | None = None
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

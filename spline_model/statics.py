@@ -8,6 +8,8 @@ from collections.abc import Callable, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from spline_model.accuracy import check_accuracy
+from spline_model.accurate_path import solve_accurately
 from spline_model.compile import System, compile_scene
 from spline_model.continuation.arc_length import follow_arc
 from spline_model.continuation.recover import recover
@@ -16,7 +18,8 @@ from spline_model.effects import DrivenRotation
 from spline_model.effects.base import Constraint
 from spline_model.effects.registry import MOTION_ONLY
 from spline_model.errors import ConvergenceError, InvalidParameter, require_choice, require_count
-from spline_model.fast.solve import follow_fast, is_fast
+from spline_model.fast.path import Answer
+from spline_model.fast.solve import follow_fast, is_fast, path_of
 from spline_model.laps import Laps
 from spline_model.mechanism import Mechanism
 from spline_model.path import follow
@@ -42,6 +45,7 @@ def solve_statics(
     rotation: float | Sequence[float],
     increments: int = 20,
     method: str = "condensed",
+    accuracy: float | None = None,
     branch: str = "primary",
     start: StaticSolution | None = None,
     raise_on_failure: bool = True,
@@ -52,10 +56,13 @@ def solve_statics(
     A sequence of rotations is a path from one to the next (there and back), each leg in
     ``increments``. method: "condensed" runs compiled with the clamps solved and the strips
     condensed, where the scene allows it; "multipliers" is the paper's bordered system. Both
-    agree to 1e-10. branch: "primary" or "follow" at a bifurcation; start: a solution of the same
-    pivot to go on from, instead of rest; either of them takes the multiplier path. Raises
-    ConvergenceError with the converged part of the path, or returns it as a status with
-    ``raise_on_failure=False``.
+    agree to 1e-10. accuracy: wanted error of trajectory and torque over the whole path,
+    relative [1]; the control points are raised from the pivot's until the estimated one is
+    below, axial modes and quadrature with them, and the solution has its ``estimate``.
+    branch: "primary" or "follow" at a bifurcation; start: a solution of the same
+    pivot to go on from, instead of rest; either of them takes the multiplier path and no
+    accuracy. Raises ConvergenceError with the converged part of the path, or with the best one
+    where the accuracy is not reached; returns it as a status with ``raise_on_failure=False``.
     """
     targets = [rotation] if isinstance(rotation, int | float) else list(rotation)
     for angle in targets:
@@ -67,10 +74,40 @@ def solve_statics(
     largest = max((abs(angle) for angle in (origin, *targets)), default=0.0)
     if largest == 0.0:
         raise InvalidParameter("rotation", rotation, "an angle other than zero [rad]")
-    laps = Laps()
     legs = [np.linspace(a, b, increments + 1)[1:] for a, b in zip([origin, *targets], targets, strict=False)]
-    system = compile_scene(pivot.driven(largest))
     rotations = np.concatenate(legs)
+    if accuracy is None:
+        solution = _along(pivot, rotations, method, progress, start=start, branch=branch)
+    else:
+        check_accuracy(accuracy, pivot.mechanism.design)
+        if start is not None or branch != "primary":
+            raise InvalidParameter("accuracy", accuracy, "no start or branch beside it")
+        solution = _accurate(pivot, rotations, method, accuracy)
+        if progress is not None:
+            progress(len(rotations), len(rotations))
+    if raise_on_failure and solution.status is not Status.CONVERGED:
+        raise ConvergenceError(
+            solution.message,
+            solution=solution,
+            load_factor=abs(solution.rotation[-1] / targets[-1]) if targets[-1] else 0.0,
+            history=solution.history,
+        )
+    return solution
+
+
+def _along(
+    pivot: Pivot,
+    rotations: Array,
+    method: str,
+    progress: Progress | None = None,
+    *,
+    start: StaticSolution | None = None,
+    branch: str = "primary",
+) -> StaticSolution:
+    """The solution through the rotations [rad]."""
+    laps = Laps()
+    largest = max(float(np.abs(rotations).max()), 0.0 if start is None else abs(float(start.rotation[-1])))
+    system = compile_scene(pivot.driven(largest))
     path = None
     if method == "condensed" and branch == "primary" and start is None and is_fast(pivot.mechanism):
         path = follow_fast(pivot.mechanism, system, list(rotations), laps, progress)
@@ -79,15 +116,28 @@ def solve_statics(
         begin = None if start is None else last_state(start, largest)
         path = follow(system, list(rotations / largest), progress, start=begin, branch=branch)
         laps.lap("solve")
-    solution = _pivot_solution(system, path, laps)
-    if raise_on_failure and path.status is not Status.CONVERGED:
-        raise ConvergenceError(
-            path.message,
-            solution=solution,
-            load_factor=abs(solution.rotation[-1] / targets[-1]) if targets[-1] else 0.0,
-            history=path.history,
-        )
-    return solution
+    return _pivot_solution(system, path, laps)
+
+
+def _accurate(pivot: Pivot, rotations: Array, method: str, accuracy: float) -> StaticSolution:
+    """The solution with as many control points as the accuracy takes."""
+
+    laps = Laps()
+
+    def recovered(chosen: Pivot, answer: Answer) -> StaticSolution:
+        laps.lap("solve")  # all trials
+        system = compile_scene(chosen.driven(float(np.abs(rotations).max())))
+        laps.lap("compile")
+        path = path_of(chosen.mechanism, system, list(rotations), answer)
+        return _along(chosen, rotations, method) if path is None else _pivot_solution(system, path, laps)
+
+    return solve_accurately(
+        pivot,
+        rotations,
+        accuracy,
+        solve=lambda chosen: _along(chosen, rotations, method),
+        recover=recovered if method == "condensed" and is_fast(pivot.mechanism) else None,
+    )
 
 
 def solve_from(

@@ -53,6 +53,10 @@ STUDIES: dict[str, tuple[str, str]] = {
         "studies.convergence.frequency",
         "frequency of the swing and of small motion against control points, elements, step and amplitude",
     ),
+    "convergence/error_estimate": (
+        "studies.convergence.error_estimate",
+        "how well the spline model estimates its own error when it is asked for an accuracy",
+    ),
     "convergence/slide_stiffness": (
         "studies.convergence.slide_stiffness",
         "error against the stiffness of the strains that the axial modes do not see",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -59,13 +60,18 @@ def is_fast(mechanism: Mechanism) -> bool:
 def grid_of(design: Design) -> Grid:
     """Basis and modes at the Gauss points of a strip of unit length."""
     settings = design.discretisation
-    basis = bezier(settings.control_points)
-    u, weight = basis.gauss_rule(settings.points_a_span)
+    return _grid(settings.control_points, settings.points_a_span, mode_count(design))
+
+
+@lru_cache(maxsize=64)
+def _grid(control_points: int, gauss_points: int, modes: int) -> Grid:
+    basis = bezier(control_points)
+    u, weight = basis.gauss_rule(gauss_points)
     return Grid(
         d0=np.ascontiguousarray(basis.evaluate(u)),
         d1=np.ascontiguousarray(basis.evaluate(u, 1)),
         d2=np.ascontiguousarray(basis.evaluate(u, 2)),
-        modes=np.ascontiguousarray(legendre.legvander(2 * u - 1, mode_count(design) - 1)),
+        modes=np.ascontiguousarray(legendre.legvander(2 * u - 1, modes - 1)),
         weight=weight,
     )
 
@@ -191,20 +197,25 @@ def follow_fast(
     laps: Laps,
     progress: Callable[[int, int], None] | None = None,
 ) -> Path | None:
-    """The path as the multiplier path would give it, or None where the fast one stops.
-
-    ``system`` is the mechanism compiled with its driven rotation; load factors are those of
-    its drive. Of the rates only the drive's multiplier is filled.
-    """
-    drive = system.tables.drives
+    """The path as the multiplier path would give it, or None where the fast one stops."""
     done, answer = fast_path(mechanism, rotations, laps)
     if done <= len(rotations):
         return None
     if progress is not None:
         for increment in range(len(rotations)):
             progress(increment + 1, len(rotations))
+    return path_of(mechanism, system, rotations, answer)
+
+
+def path_of(mechanism: Mechanism, system: System, rotations: Sequence[float], answer: Answer) -> Path | None:
+    """A complete fast answer as a path of the multiplier path's unknowns, or None where that has doubts.
+
+    ``system`` is the mechanism compiled with its driven rotation; load factors are those of
+    its drive. Of the rates only the drive's multiplier is filled.
+    """
+    drive = system.tables.drives
     angles = np.concatenate(([0.0], rotations))
-    rates = np.zeros((done, system.layout.size))
+    rates = np.zeros((len(angles), system.layout.size))
     rates[:, drive.row[0]] = answer.stiffness * drive.target[0]
     increments, counters = len(rotations), answer.counters
     states, factors = states_of(system, frame_of(mechanism), angles, answer), angles / drive.target[0]

@@ -36,6 +36,16 @@ def reduce(motion: Motion, z: Array, v: Array) -> tuple[Array, Array, NDArray[np
     return r, np.asarray(np.linalg.lstsq(jacobian, v, rcond=None)[0]), free
 
 
+def require_explicit(system: System, motion: Motion) -> None:
+    """Refuse a scene whose accelerations do not follow from its state alone."""
+    if (np.diag(motion.rigidity) == 0).any():
+        raise InvalidParameter("integrator", "explicit", "an implicit one for inextensible strips")
+    require_compiled(system, "explicit")
+    require_conservative(motion, "explicit")
+    if np.linalg.eigvalsh(motion.mass)[0] <= 0:
+        raise InvalidParameter("integrator", "explicit", "an implicit one for strips without mass")
+
+
 def integrate(
     system: System,
     motion: Motion,
@@ -48,12 +58,7 @@ def integrate(
     every: int,
 ) -> Records:
     """Take ``steps`` steps from (z, v), recording every ``every``-th one; ``acceleration`` is not needed."""
-    if (np.diag(motion.rigidity) == 0).any():
-        raise InvalidParameter("integrator", "explicit", "an implicit one for inextensible strips")
-    require_compiled(system, "explicit")
-    require_conservative(motion, "explicit")
-    if np.linalg.eigvalsh(motion.mass)[0] <= 0:
-        raise InvalidParameter("integrator", "explicit", "an implicit one for strips without mass")
+    require_explicit(system, motion)
     r, w, free = reduce(motion, z, v)
     size, count = len(z), len(v)
     work = Workspace(

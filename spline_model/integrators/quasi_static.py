@@ -33,6 +33,9 @@ Array = NDArray[np.float64]
 TOLERANCE = 1e-11
 """Residual of a step in EI/L^2 and EI/L."""
 MOST_ITERATIONS = 30
+ROUND_OFF = 1e-14
+"""Part of the energy below which the gap between its change and the mean gradient's work is round-off: the
+gap goes with the third power of a step, and divided by the second it would drown a short one."""
 SMALLEST_STEP = 2.0**-12
 
 
@@ -198,8 +201,9 @@ class _Mover:
             mean = 0.5 * (pose.gradient + new.gradient)
             metric = delta @ self.mass @ delta
             potential = new.energy + new.weight_energy - pose.energy - pose.weight_energy
-            if metric > 0:
-                mean = mean + (potential - mean @ delta) / metric * (self.mass @ delta)
+            gap = potential - mean @ delta
+            if abs(gap) > ROUND_OFF * (abs(pose.energy) + abs(pose.weight_energy)):
+                mean = mean + gap / metric * (self.mass @ delta)
             residual = 2 / h * self.mass @ (delta / h - v0) + self.drag @ delta / h + mean - force
             if np.abs(residual * self.scale).max() <= TOLERANCE:
                 velocity = 2 * delta / h - v0

@@ -32,6 +32,7 @@ def answer_static(
     problem: Problem,
     settings: Settings,
     *,
+    accuracy: float | None = None,
     repeat: int = 1,
     raise_on_failure: bool = False,
     progress: Progress | None = None,
@@ -45,6 +46,8 @@ def answer_static(
     Args:
         problem: the design and the path.
         settings: names the model and its discretisation.
+        accuracy: wanted error of trajectory and torque [1], which the spline's control points are raised for;
+            None for those of the settings.
         repeat: timed solves of the whole path [1].
         raise_on_failure: raise the model's `ConvergenceError` rather than return the converged part of the
             path.
@@ -63,8 +66,13 @@ def answer_static(
         return result
 
     def whole_path() -> StaticResult:
+        options = {} if accuracy is None else {"accuracy": accuracy}
         return solve(
-            problem.rotation, problem.increments, raise_on_failure=raise_on_failure, progress=progress
+            problem.rotation,
+            problem.increments,
+            raise_on_failure=raise_on_failure,
+            progress=progress,
+            **options,
         )
 
     with refusals(model, settings):
@@ -255,7 +263,9 @@ def _wall_of_start(release: Callable[..., Any], result: Any, repeat: int) -> flo
     if len(result.time) <= 2:
         return 0.0
     # a little longer than the first record, lest round-off make the step longer than the duration
-    brief = {"duration": float(result.time[1]) * (1.0 + 1e-9)}
+    brief: dict[str, float | None] = {"duration": float(result.time[1]) * (1.0 + 1e-9)}
+    if getattr(result, "estimate", None) is not None:  # the step that was chosen, without the search for it
+        brief["accuracy"] = None
     brief |= {name: value for name, value in (("step", result.settings.get("step_s")),) if value}
     return measure(lambda: release(**brief), repeat=repeat, warm_up=0).median
 

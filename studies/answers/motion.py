@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from studies.answers.metrics import swing_frequency
+from studies.answers.response import estimate_of
 
 Array = NDArray[np.float64]
 
@@ -88,6 +89,7 @@ class Motion:
         counters: work done, by kind.
         wall_s: time of the motion alone, without the static path to its start [s].
         solve_s: of it, the steps alone [s].
+        estimate: as in `Response`.
     """
 
     model: str
@@ -109,6 +111,7 @@ class Motion:
     counters: dict[str, int]
     wall_s: float
     solve_s: float
+    estimate: dict[str, Any] | None = None
 
     @property
     def converged(self) -> bool:
@@ -207,6 +210,7 @@ def motion(
         counters=dict(result.counters),
         wall_s=wall_s,
         solve_s=solve_s,
+        estimate=estimate_of(result),
         **{name: np.asarray(array, dtype=float) for name, array in arrays.items()},
     )
 
@@ -233,6 +237,7 @@ def no_motion(
         counters={},
         wall_s=0.0,
         solve_s=0.0,
+        estimate=None,
         **{name: np.zeros(0) for name in (*SHARED_ARRAYS, *RESIDUALS)},
     )
 

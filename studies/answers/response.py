@@ -1,7 +1,7 @@
 """The neutral answer to a static problem: arrays that do not tell which model they came from."""
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import Any, Protocol
 
 import numpy as np
@@ -78,6 +78,7 @@ class Response:
         counters: work done, by kind; history: residual norms of every increment.
         wall_s: time of the answer, without import, compilation and set-up of the model [s].
         solve_s: of it, the increments alone: without tables, recovered multipliers and section forces [s].
+        estimate: what a model that was asked for an accuracy says of its error, by name; None otherwise.
     """
 
     model: str
@@ -105,6 +106,7 @@ class Response:
     history: tuple[tuple[float, ...], ...]
     wall_s: float
     solve_s: float
+    estimate: dict[str, Any] | None = None
 
     @property
     def converged(self) -> bool:
@@ -135,9 +137,10 @@ def response(
     """Return the neutral form of a model's `result`, with what follows from it and the given data."""
     arrays = {name: np.asarray(getattr(result, name), dtype=float) for name in SHARED_ARRAYS}
     strain = extreme_fibre_strain(problem, arrays["axial_force"], arrays["bending_moment"])
+    estimate = estimate_of(result)
     return Response(
         model=model,
-        settings=settings,
+        settings=settings if estimate is None else settings | chosen_by(estimate),
         effects=effects,
         status=str(result.status.value),
         message=result.message,
@@ -148,8 +151,20 @@ def response(
         history=result.history,
         wall_s=wall_s,
         solve_s=solve_s,
+        estimate=estimate,
         **arrays,
     )
+
+
+def estimate_of(result: Any) -> dict[str, Any] | None:
+    """Return a model's estimate of its own error by name; None where no accuracy was asked for."""
+    estimate = getattr(result, "estimate", None)
+    return None if estimate is None else asdict(estimate)
+
+
+def chosen_by(estimate: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the settings that an accuracy has chosen."""
+    return {"control_points": estimate["control_points"]}
 
 
 def assembled(names: Iterable[str]) -> tuple[str, ...]:

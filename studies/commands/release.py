@@ -62,7 +62,7 @@ def add_arguments(parser: Parser) -> None:
         "--accuracy",
         type=float,
         metavar="A",
-        help="wanted error of the rotation in rad, instead of a step (spline)",
+        help="wanted error of the rotation in rad: chooses steps and raises the control points (spline)",
     )
     parser.add_argument(
         "--repeat", type=whole_number(1), default=1, metavar="R", help="wall_s is the median of R releases"
@@ -121,9 +121,20 @@ def as_document(design: Design, answer: Motion) -> dict[str, Any]:
         "strain_J": answer.strain_energy.tolist(),
         **({} if pivot and set(answer.effects) <= {*DEFAULT, "inextensible"} else energies),
         "constraint_residual": answer.constraint_residual.tolist(),
+        **_estimate(answer),
         "counters": answer.counters,
         "wall_s": answer.wall_s,
     }
+
+
+def _estimate(answer: Motion) -> dict[str, Any]:
+    """Return the estimate of the error as a part of the JSON object; none where no accuracy was asked for."""
+    if answer.estimate is None:
+        return {}
+    angles = {
+        f"{name}_rad": number(answer.estimate[name]) for name in ("accuracy", "rotation", "time", "space")
+    }
+    return {"estimate": angles | {name: answer.estimate[name] for name in ("control_points", "runs")}}
 
 
 def _readable(answer: Motion) -> Iterator[str]:
@@ -140,6 +151,9 @@ def _readable(answer: Motion) -> Iterator[str]:
         yield f"{place} {energy} {answer.constraint_residual[record]:10.1e}"
     if math.isfinite(answer.frequency):
         yield f"frequency {answer.frequency:.4f} Hz; energy balanced to {answer.energy_error:.1e}"
+    if answer.estimate is not None:
+        whole, *parts = (f"{answer.estimate[name]:.1e} rad" for name in ("rotation", "time", "space"))
+        yield f"estimated error of the rotation {whole}: {parts[0]} by steps, {parts[1]} by control points"
     if answer.resolution:
         yield answer.resolution
     yield ending(answer.status, answer.counters, answer.wall_s)

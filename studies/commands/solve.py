@@ -5,9 +5,11 @@
     python -m studies solve studies/cases/four_bar_of_flexures.toml --model spline --effects=-gravity
 
 Of a pivot coordinates have their origin at A1, the ground clamp of strip 1; rotation is counter-clockwise.
-The arrays of the JSON run over the increments, the state of load factor 0 first, and effects are those that
-were assembled. A mechanism without a rotation follows the loads of its scene. Exit code 0: converged; 2: bad
-input; 3: not converged, and then the converged part of the path is reported with where and why it stopped.
+With --accuracy control points are added until the estimated error is below it; --control-points are the first
+that are tried. The arrays of the JSON run over the increments, the state of load factor 0 first, and effects
+are those that were assembled. A mechanism without a rotation follows the loads of its scene. Exit code 0:
+converged; 2: bad input; 3: not converged, and then the converged part of the path is reported with where and
+why it stopped.
 """
 
 import argparse
@@ -19,6 +21,7 @@ from typing import Any
 from studies.answers.adapters import answer_mechanism, answer_static
 from studies.answers.assembly import MechanismResponse
 from studies.answers.response import Response
+from studies.answers.settings import Settings
 from studies.cases.design import Design
 from studies.cases.keys import INCREMENTS, ROTATION
 from studies.cases.problem import Problem
@@ -32,7 +35,7 @@ from studies.commands.answer import (
     require_target,
 )
 from studies.commands.model import add_model_arguments, chosen_design, chosen_settings
-from studies.commands.parser import Parser, degrees, whole_number
+from studies.commands.parser import Parser, degrees, positive, whole_number
 from studies.errors import BadInput
 from studies.record.progress import Bar
 
@@ -49,6 +52,12 @@ def add_arguments(parser: Parser) -> None:
     parser.add_argument(
         "--repeat", type=whole_number(1), default=1, metavar="R", help="wall_s is the median of R solves"
     )
+    parser.add_argument(
+        "--accuracy",
+        type=positive,
+        metavar="A",
+        help="wanted error of trajectory and torque, e.g. 1e-4: raises the control points (spline, pivots)",
+    )
     add_json_argument(parser)
 
 
@@ -56,10 +65,13 @@ def main(arguments: argparse.Namespace) -> int:
     """Solve and report; return the exit code."""
     design = _driven(chosen_design(arguments), arguments)
     settings = chosen_settings(arguments)
+    if arguments.accuracy is not None:
+        _require_accurate(design, settings)
     require_target(arguments)
     with Bar(f"solve {settings.model}") as bar:
         if isinstance(design, Problem):
-            pivot = answer_static(design, settings, repeat=arguments.repeat, progress=bar)
+            how = {"repeat": arguments.repeat, "accuracy": arguments.accuracy}
+            pivot = answer_static(design, settings, progress=bar, **how)
             document, table = as_document(pivot), _readable(pivot)
             failure = None if pivot.converged else pivot.message
         else:
@@ -84,6 +96,7 @@ def as_document(answer: Response) -> dict[str, Any]:
         "stiffness_Nm_per_rad": answer.stiffness.tolist(),
         "strain_energy_J": answer.strain_energy.tolist(),
         "max_stress_Pa": answer.max_stress.tolist(),
+        **({} if answer.estimate is None else {"estimate": answer.estimate}),
         "counters": answer.counters,
         "wall_s": answer.wall_s,
     }
@@ -107,6 +120,15 @@ def mechanism_document(answer: MechanismResponse) -> dict[str, Any]:
         "counters": answer.counters,
         "wall_s": answer.wall_s,
     }
+
+
+def _require_accurate(design: Design, settings: Settings) -> None:
+    """Raise BadInput unless the model can choose its own discretisation for the design."""
+    if settings.model != "spline":
+        expected = "--elements: `python -m studies converge` refines the reference"
+        raise BadInput(f"--accuracy: got it with --model {settings.model}, expected {expected}")
+    if not isinstance(design, Problem):
+        raise BadInput("--accuracy: got it for a mechanism, expected a pivot, or --control-points")
 
 
 def _driven(design: Design, arguments: argparse.Namespace) -> Design:
@@ -141,6 +163,10 @@ def _readable(answer: Response) -> Iterator[str]:
     for rotation, (x, y), torque, stiffness, energy, stress in rows:
         place = f"{math.degrees(rotation):9.3f} {x:11.5f} {y:11.5f}"
         yield f"{place} {torque:12.4f} {stiffness:12.4f} {energy:11.4f} {stress:9.1f}"
+    if answer.estimate is not None:
+        errors = (f"{name} {answer.estimate[name]:.1e}" for name in ("trajectory", "torque", "stiffness"))
+        tried = ", ".join(map(str, answer.estimate["trials"]))
+        yield f"estimated error: {', '.join(errors)}; control points tried: {tried}"
     yield ending(answer.status, answer.counters, answer.wall_s)
 
 

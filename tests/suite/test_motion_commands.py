@@ -245,3 +245,17 @@ def test_motion_that_blows_up_is_not_an_answer(case, command):
     assert outcome.code == 3
     assert answer["status"] == "unstable"
     assert "the energy grew from" in outcome.err
+
+
+def test_accuracy_of_a_motion_is_reported(case, command):
+    """With --accuracy the answer has its steps, its control points and the estimate, in JSON and table."""
+    words = ["release", case(), "--model", "spline", "--accuracy", 3e-2, "--duration", 0.004]
+    answer = json.loads(command(*words, "--json", "-").out)
+    estimate = answer["estimate"]
+    names = {"accuracy_rad", "rotation_rad", "time_rad", "space_rad", "control_points", "runs"}
+    assert set(estimate) == names
+    assert 0.0 < estimate["rotation_rad"] <= 3e-2
+    assert answer["settings"]["control_points"] == estimate["control_points"]
+    assert answer["settings"]["step_s"] > 0.0
+    lines = command(*words).out.splitlines()
+    assert any(line.startswith("estimated error of the rotation ") for line in lines)

@@ -6,6 +6,7 @@ import math
 import pytest
 
 from studies.answers import adapters
+from studies.cases.problem import FOLDER
 
 ARRAYS = {
     "rotation_rad",
@@ -109,3 +110,58 @@ def test_not_converged_keeps_the_path_so_far(case, command):
     assert outcome.err == f"studies: not converged: {answer['message']}\n"
     assert 1 <= len(answer["rotation_rad"]) < 4
     assert {len(answer[name]) for name in ARRAYS} == {len(answer["rotation_rad"])}
+
+
+def test_accuracy_raises_the_control_points_and_is_reported(case, command):
+    """With --accuracy the answer has the chosen control points and its estimate, in JSON and in the table."""
+    words = ["solve", case(), "--model", "spline", "--control-points", 4, "--accuracy", 1e-4]
+    answer = json.loads(command(*words, "--json", "-").out)
+    estimate = answer["estimate"]
+    assert set(answer) == KEYS | {"estimate"}
+    assert set(estimate) == {"accuracy", "trajectory", "torque", "stiffness", "control_points", "trials"}
+    assert max(estimate["trajectory"], estimate["torque"]) <= 1e-4
+    assert estimate["trials"][0] == 4 < estimate["control_points"] == estimate["trials"][-1]
+    assert answer["settings"]["control_points"] == estimate["control_points"]
+    lines = command(*words).out.splitlines()
+    assert f"control_points {estimate['control_points']}," in lines[0]
+    assert lines[-2].startswith("estimated error: trajectory ")
+
+
+def test_accuracy_out_of_reach_is_exit_code_3(case, command):
+    """An accuracy below round-off reports the best path and how far its estimate came."""
+    outcome = command("solve", case(), "--model", "spline", "--accuracy", 1e-17, "--json", "-")
+    assert outcome.code == 3
+    assert "accuracy 1e-17 is not reached with up to 20 control points" in outcome.err
+    answer = json.loads(outcome.out)
+    assert len(answer["rotation_rad"]) == 21
+    assert answer["estimate"]["torque"] < 1e-13
+
+
+@pytest.mark.parametrize(
+    ("options", "line"),
+    [
+        (["fe", "--accuracy", 1e-3], "--accuracy: got it with --model fe, expected --elements: "),
+        (["spline", "--accuracy", 0], "--accuracy: got 0, expected a finite number above 0"),
+        (
+            ["spline", "--accuracy", 1e-3, "--axial-modes", 3],
+            "axial_modes: got 3, expected none beside accuracy",
+        ),
+    ],
+    ids=["elements", "zero", "axial modes"],
+)
+def test_accuracy_that_cannot_be_is_one_line(options, line, case, command):
+    """Elements are refined by another command; an accuracy is positive; it chooses the axial modes."""
+    outcome = command("solve", case(), "--model", *options)
+    assert (outcome.code, outcome.out) == (2, "")
+    assert line in outcome.err
+    assert outcome.err.count("\n") == 1
+
+
+def test_accuracy_of_a_mechanism_is_refused(command):
+    """Only pivots have an accuracy; a mechanism says so in a line."""
+    guide = FOLDER / "parallel_strip_guide.toml"
+    outcome = command("solve", guide, "--model", "spline", "--accuracy", 1e-3)
+    assert outcome.code == 2
+    assert (
+        outcome.err == "studies: --accuracy: got it for a mechanism, expected a pivot, or --control-points\n"
+    )

@@ -1,0 +1,227 @@
+"""How well the spline model estimates its own error when it is asked for an accuracy.
+
+Designs from slender to thick, with the crossing from one end to the other, turned by 20 to 120 degrees, are
+solved to accuracies of 1e-2 to 1e-7; some of them are let go and followed to accuracies of the rotation. The
+true error is that against many more control points (in motion also shorter steps). The effectivity is the
+estimate over the true error: below one it is optimistic.
+"""
+
+import math
+from collections.abc import Callable, Iterator, Mapping
+from functools import partial
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from matplotlib.figure import Figure
+
+from studies.answers.adapters import answer_release, answer_static
+from studies.answers.motion import Motion
+from studies.answers.response import Response
+from studies.answers.settings import SplineSettings
+from studies.answers.swing import sampled
+from studies.cases.problem import Problem, named_case
+from studies.convergence.designs import described, drawn, period
+from studies.paper import formulations
+from studies.paper.findings import Finding, table
+from studies.record.style import BLACK, BLUE, GREEN, ORANGE, RED, page
+
+CASE = formulations.CASE
+CASES = (CASE,)
+
+SEED = 2013
+#: Static designs: how many, their bounds, and what is asked for [1].
+DESIGNS = 36
+BOUNDS = {
+    "slenderness": (10.0, 1000.0),
+    "crossing_ratio": (0.1, 0.9),
+    "inclination": (math.radians(20.0), math.radians(70.0)),
+    "rotation": (math.radians(20.0), math.radians(120.0)),
+}
+ACCURACIES = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7)
+#: Control points where the search begins, of the reference, and of the path that its own error is told by.
+FIRST, REFERENCE, CHECK = 4, 22, 19
+
+#: Swinging designs: few, and thick enough that explicit steps are affordable for the reference.
+SWINGS = 6
+SWING_BOUNDS = {
+    "slenderness": (8.0, 20.0),
+    "crossing_ratio": (0.3, 0.7),
+    "inclination": (math.radians(30.0), math.radians(60.0)),
+    "rotation": (math.radians(20.0), math.radians(90.0)),
+}
+SWING_ACCURACIES = (3e-2, 1e-2)
+#: Duration over the period of the swing at rest, and control points of reference and check.
+PERIODS = 1.0
+SWING_REFERENCE, SWING_CHECK = 9, 7
+
+#: The band an effectivity should lie in, the share of designs that must, and the least of any.
+BAND, SHARE, LEAST = (0.3, 10.0), 0.9, 1.0 / 3.0
+#: A true error counts if that of its reference is this many times smaller.
+MARGIN = 10.0
+QUANTITIES = {"trajectory": BLUE, "torque": ORANGE, "rotation": GREEN}
+
+
+def compute(progress: Callable[[int, int], None]) -> dict[str, pd.DataFrame]:
+    """Return a row a design, accuracy and quantity, what the search costs, and the findings."""
+    total = DESIGNS + SWINGS
+    case, rows = named_case(CASE), []
+    for number, problem in enumerate(drawn(case, BOUNDS, count=DESIGNS, seed=SEED)):
+        progress(number, total)
+        rows += list(_static_rows(number, problem))
+    for number, problem in enumerate(drawn(case, SWING_BOUNDS, count=SWINGS, seed=SEED)):
+        progress(DESIGNS + number, total)
+        rows += list(_swing_rows(number, problem))
+    progress(total, total)
+    estimates = pd.DataFrame(rows)
+    return {
+        "estimates": estimates,
+        "timings": pd.DataFrame(_timings(case)),
+        "findings": table(_findings(estimates)),
+    }
+
+
+def draw(tables: Mapping[str, pd.DataFrame]) -> dict[str, Figure]:
+    """Draw the estimates against the true errors, and the true errors against what was asked for."""
+    figure = page(9.5, 4.6)
+    panels = dict(zip(("statics", "motion"), figure.subplots(1, 2), strict=True))
+    rows = tables["estimates"]
+    for problem, panel in panels.items():
+        these = rows[(rows["problem"] == problem) & rows["counts"]]
+        ends = np.array([these["true_error"].min() / 2.0, these["true_error"].max() * 2.0])
+        panel.fill_between(ends, BAND[0] * ends, BAND[1] * ends, color="#eeeeee", zorder=0)
+        panel.loglog(ends, ends, color=BLACK, linewidth=0.8)
+        panel.loglog(ends, LEAST * ends, color=RED, linewidth=0.8, linestyle=":")
+        for quantity, colour in QUANTITIES.items():
+            dots = these[these["quantity"] == quantity]
+            if len(dots):
+                panel.loglog(
+                    dots["true_error"], dots["estimate"], "o", color=colour, markersize=3.0, label=quantity
+                )
+        panel.set(xlabel=f"true error [{these['unit'].iloc[0]}]", ylabel="estimated error")
+        panel.legend(loc="upper left")
+    panels["statics"].set_title(f"Static paths of {DESIGNS} designs, accuracies of 1e-2 to 1e-7")
+    panels["motion"].set_title(f"A period of {SWINGS} designs let go, accuracies of 0.03 and 0.01 rad")
+    panels["motion"].annotate(
+        "grey: 0.3 to 10 times the true error\nred: a third of it",
+        (0.98, 0.03),
+        xycoords="axes fraction",
+        ha="right",
+        fontsize=8,
+    )
+    return {"error_estimate": figure}
+
+
+def _static_rows(number: int, problem: Problem) -> Iterator[dict[str, Any]]:
+    """Yield the rows of one design's static paths."""
+    exact, check = (answer_static(problem, SplineSettings(control_points=n)) for n in (REFERENCE, CHECK))
+    uncertainty = _path_errors(check, exact)
+    for accuracy in ACCURACIES:
+        answer = answer_static(problem, SplineSettings(control_points=FIRST), accuracy=accuracy)
+        identity = {"problem": "statics", **described(number, problem), "accuracy": accuracy}
+        estimate = answer.estimate or {}
+        for quantity, error in _path_errors(answer, exact).items():
+            yield identity | _judged(quantity, "1", estimate, error, uncertainty[quantity], answer)
+
+
+def _swing_rows(number: int, problem: Problem) -> Iterator[dict[str, Any]]:
+    """Yield the rows of one design's swings."""
+    let_go = partial(answer_release, problem, duration=PERIODS * period(problem))
+    exact, check = (
+        let_go(SplineSettings(control_points=n), integrator="explicit")
+        for n in (SWING_REFERENCE, SWING_CHECK)
+    )
+    uncertainty = _rotation_error(check, exact)
+    for accuracy in SWING_ACCURACIES:
+        answer = let_go(SplineSettings(control_points=FIRST), accuracy=accuracy)
+        estimate = answer.estimate or {}
+        identity = {"problem": "motion", **described(number, problem), "accuracy": accuracy}
+        error = _rotation_error(answer, exact)
+        yield identity | _judged("rotation", "rad", estimate, error, uncertainty, answer)
+
+
+def _judged(
+    quantity: str,
+    unit: str,
+    estimate: Mapping[str, Any],
+    error: float,
+    uncertainty: float,
+    answer: Response | Motion,
+) -> dict[str, Any]:
+    """Return the columns that hold an estimate against a true error."""
+    estimated = estimate.get(quantity, math.nan)
+    return {
+        "quantity": quantity,
+        "unit": unit,
+        "status": answer.status,
+        "control_points": estimate.get("control_points", 0),
+        "estimate": estimated,
+        "true_error": error,
+        "uncertainty": uncertainty,
+        "effectivity": estimated / error,
+        "counts": bool(error >= MARGIN * uncertainty),
+    }
+
+
+def _path_errors(answer: Response, exact: Response) -> dict[str, float]:
+    """Return the largest errors of a path over travel and peak torque [1]; NaN for one that stopped."""
+    if len(answer.rotation) != len(exact.rotation):
+        return {"trajectory": math.nan, "torque": math.nan}
+    travel = np.linalg.norm(exact.centre - exact.centre[0], axis=1).max()
+    return {
+        "trajectory": float(np.linalg.norm(answer.centre - exact.centre, axis=1).max() / travel),
+        "torque": float(np.abs(answer.torque - exact.torque).max() / np.abs(exact.torque).max()),
+    }
+
+
+def _rotation_error(motion: Motion, exact: Motion) -> float:
+    """Return the largest error of the rotation at the motion's instants [rad]; NaN for one that stopped."""
+    if not (motion.converged and exact.converged):
+        return math.nan
+    return float(np.abs(motion.rotation - sampled(exact, motion.time).rotation).max())
+
+
+def _timings(problem: Problem) -> Iterator[dict[str, Any]]:
+    """Yield what a search costs over the plain path with the control points that it chose."""
+    for accuracy in ACCURACIES:
+        searched = answer_static(problem, SplineSettings(control_points=FIRST), accuracy=accuracy, repeat=9)
+        chosen = (searched.estimate or {})["control_points"]
+        plain = answer_static(problem, SplineSettings(control_points=chosen), repeat=9)
+        yield {
+            "accuracy": accuracy,
+            "control_points": chosen,
+            "search_wall_s": searched.wall_s,
+            "path_wall_s": plain.wall_s,
+            "time_ratio": searched.wall_s / plain.wall_s,
+        }
+
+
+def _findings(rows: pd.DataFrame) -> Iterator[Finding]:
+    """Yield what the effectivities say, for statics and for motion."""
+    for problem, every in rows.groupby("problem"):
+        these = every[every["counts"]]
+        by_design = these.groupby(["design", "accuracy"])["effectivity"]
+        inside = (by_design.min() >= BAND[0]) & (by_design.max() <= BAND[1])
+        common = {"formulation": f"{problem}, {len(these)} estimates of {these['design'].nunique()} designs"}
+        met = every["true_error"] <= every["accuracy"]
+        yield Finding(
+            claim=f"Estimates lie within {BAND[0]:g} to {BAND[1]:g} times the true error for {SHARE:.0%}",
+            quantity="the share of designs and accuracies whose estimates all do",
+            value=float(inside.mean()),
+            holds=bool(inside.mean() >= SHARE),
+            **common,
+        )
+        yield Finding(
+            claim="No estimate is optimistic by more than three times",
+            quantity="the least estimate over its true error",
+            value=float(these["effectivity"].min()),
+            holds=bool(these["effectivity"].min() >= LEAST),
+            **common,
+        )
+        yield Finding(
+            claim="The true error is below what was asked for",
+            quantity="the share of errors that are",
+            value=float(met.mean()),
+            holds=bool(met.all()),
+            **common,
+        )

@@ -1,0 +1,200 @@
+"""Accuracy on request: control points until the estimated error is below it."""
+
+import math
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+
+from spline_model import accuracy as accuracies
+from spline_model.errors import ConvergenceError, InvalidParameter
+from spline_model.pivot import cross_axis_pivot
+from spline_model.solution import Status
+from spline_model.statics import solve_statics
+from tests import gates
+from tests.table_one import TABLE_ONE
+
+QUARTER = math.pi / 2
+#: Designs from slender to thick and far from symmetric, with rotations [rad].
+DESIGNS = (
+    ({}, QUARTER),
+    ({"crossing_ratio": 0.13, "inclination": 1.1}, 0.8),
+    ({"crossing_ratio": 0.87, "area": 5e-6, "second_moment_of_area": 1.041e-13}, 1.5),
+    ({"inclination": 0.5, "area": 2e-4, "second_moment_of_area": 6.66e-9}, 1.3),
+    (
+        {"crossing_ratio": 0.886, "inclination": 1.147, "area": 6.84e-6, "second_moment_of_area": 2.67e-13},
+        1.481,
+    ),
+    ({"crossing_ratio": 0.3, "centre_offset": (0.01, 0.02), "orientation": 0.4}, -1.2),
+)
+ACCURACIES = (1e-2, 1e-3, 1e-5, 1e-7)
+
+
+def pivot(**settings):
+    """Table 1 with the search beginning at the fewest control points."""
+    return cross_axis_pivot(**(TABLE_ONE | {"control_points": 4} | settings))
+
+
+@cache
+def exact(number):
+    """The path of a design with so many control points that its error is round-off."""
+    changes, rotation = DESIGNS[number]
+    return solve_statics(pivot(**changes, control_points=18), rotation=rotation)
+
+
+def true_errors(solution, reference):
+    """Errors of trajectory and torque over the whole path, relative to travel and peak."""
+    travel = np.linalg.norm(reference.centre - reference.centre[0], axis=1).max()
+    return (
+        np.linalg.norm(solution.centre - reference.centre, axis=1).max() / travel,
+        np.abs(solution.torque - reference.torque).max() / np.abs(reference.torque).max(),
+    )
+
+
+def misjudged(number, accuracy):
+    """Natural logarithm of estimate over true error, the worse of trajectory and torque."""
+    changes, rotation = DESIGNS[number]
+    solution = solve_statics(pivot(**changes), rotation=rotation, accuracy=accuracy)
+    estimates = (solution.estimate.trajectory, solution.estimate.torque)
+    errors = true_errors(solution, exact(number))
+    return max(abs(math.log(e / t)) for e, t in zip(estimates, errors, strict=True))
+
+
+@pytest.mark.parametrize("accuracy", ACCURACIES)
+@pytest.mark.parametrize("number", range(len(DESIGNS)))
+def test_estimate_is_the_true_error(number, accuracy):
+    """Requirement: the estimate lies near the error against eighteen control points."""
+    gates.check("spline_accuracy_effectivity", misjudged(number, accuracy))
+
+
+def test_effectivity_gate_has_teeth(monkeypatch):
+    """Requirement: the check notices an estimate from one control point more, as errors fall unevenly."""
+    monkeypatch.setattr(accuracies, "MORE", gates.teeth("spline_accuracy_effectivity")["more"])
+    worst = max(misjudged(number, accuracy) for number in range(len(DESIGNS)) for accuracy in ACCURACIES)
+    with pytest.raises(AssertionError, match="x the gate"):
+        gates.check("spline_accuracy_effectivity", worst)
+
+
+@pytest.mark.parametrize("accuracy", [1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-9, 1e-11])
+def test_wanted_accuracy_is_met(accuracy):
+    """Requirement: on Table 1 the true error of trajectory and torque is below what was asked for."""
+    solution = solve_statics(pivot(), rotation=QUARTER, accuracy=accuracy)
+    gates.check("spline_accuracy_request", max(true_errors(solution, exact(0))) / accuracy)
+
+
+def test_request_gate_has_teeth():
+    """Requirement: the check notices a path that was solved to a hundredth of the accuracy."""
+    asked = gates.teeth("spline_accuracy_request")["accuracy"]
+    solution = solve_statics(pivot(), rotation=QUARTER, accuracy=asked)
+    with pytest.raises(AssertionError, match="x the gate"):
+        gates.check("spline_accuracy_request", max(true_errors(solution, exact(0))) / 1e-4)
+
+
+@pytest.mark.parametrize("settings", [{}, {"method": "multipliers"}], ids=["condensed", "multipliers"])
+def test_answer_is_that_of_the_chosen_control_points(settings):
+    """Requirement: the search only chooses; its answer is the plain one with the same control points."""
+    chosen = solve_statics(pivot(), rotation=[1.2, 0.3], increments=7, accuracy=1e-4, **settings)
+    n = chosen.estimate.control_points
+    plain = solve_statics(pivot(control_points=n), rotation=[1.2, 0.3], increments=7, **settings)
+    for name in ("rotation", "centre", "torque", "stiffness", "shape", "axial_force", "work"):
+        assert np.array_equal(getattr(chosen, name), getattr(plain, name)), name
+    assert plain.estimate is None
+
+
+def test_both_methods_choose_alike():
+    """Requirement: the compiled path and the multiplier path give the same estimate, to a tenth."""
+    condensed, multipliers = (
+        solve_statics(pivot(), rotation=QUARTER, increments=8, accuracy=1e-5, method=method).estimate
+        for method in ("condensed", "multipliers")
+    )
+    assert condensed.trials == multipliers.trials
+    assert condensed.largest == pytest.approx(multipliers.largest, rel=0.1)
+
+
+@pytest.mark.parametrize(
+    ("settings", "more"),
+    [
+        ({"basis": "bspline"}, {"control_points": 35}),
+        ({"measure": "spatial"}, {"control_points": 12}),
+        ({"stretch": "inextensible"}, {"control_points": 12}),
+        ({"effects": ("bending", "stretching", "gravity")}, {"control_points": 12}),
+    ],
+    ids=["bspline", "spatial", "inextensible", "gravity"],
+)
+def test_other_scenes_have_an_estimate_too(settings, more):
+    """Requirement: where there is no compiled path the multiplier path is solved to the accuracy."""
+    path = {"rotation": 1.0, "increments": 6}
+    solution = solve_statics(pivot(**settings), accuracy=1e-4, **path)
+    reference = solve_statics(pivot(**settings, **more), **path)
+    gates.check("spline_accuracy_request", max(true_errors(solution, reference)) / 1e-4)
+
+
+def test_search_begins_at_the_pivots_own_control_points():
+    """Requirement: control points are raised, never lowered; one trial where they are enough."""
+    solution = solve_statics(pivot(control_points=9), rotation=QUARTER, accuracy=1e-2)
+    assert solution.estimate.trials == (9,)
+    assert solution.estimate.accuracy == 1e-2
+
+
+def test_few_trials_lead_to_the_accuracy():
+    """Requirement: the decay that was measured leads on, so that a path takes four trials at most."""
+    for changes, rotation in DESIGNS:
+        for accuracy in ACCURACIES:
+            found = solve_statics(pivot(**changes), rotation=rotation, accuracy=accuracy).estimate
+            assert len(found.trials) <= 4, (changes, found)
+
+
+def test_wrong_branch_is_never_accepted():
+    """Requirement: where few control points end on another branch the estimate says so and more are taken.
+
+    Four control points fold the strips of this pivot before it reaches 119 degrees.
+    """
+    design = {"inclination": math.radians(27.0), "crossing_ratio": 0.64}
+    rotation = math.radians(119.0)
+    reference = solve_statics(pivot(**design, control_points=18), rotation=rotation)
+    solution = solve_statics(pivot(**design), rotation=rotation, accuracy=0.2)
+    assert max(true_errors(solution, reference)) < 0.2
+    wrong = solve_statics(pivot(**design), rotation=rotation, raise_on_failure=False)
+    assert wrong.status is Status.NOT_CONVERGED or max(true_errors(wrong, reference)) > 0.5
+
+
+def test_accuracy_out_of_reach_is_an_error_with_the_best_answer():
+    """Requirement: an accuracy below round-off says how far it came and keeps that answer."""
+    with pytest.raises(
+        ConvergenceError, match=r"accuracy 1e-17 is not reached with up to 20 control points"
+    ) as caught:
+        solve_statics(pivot(), rotation=QUARTER, accuracy=1e-17)
+    best = caught.value.solution
+    assert best.estimate.largest < 1e-13
+    assert best.rotation[-1] == QUARTER
+    kept = solve_statics(pivot(), rotation=QUARTER, accuracy=1e-17, raise_on_failure=False)
+    assert (kept.status, kept.message) == (Status.NOT_CONVERGED, str(caught.value))
+
+
+@pytest.mark.parametrize("wrong", [0.0, -1e-3, math.nan, math.inf, "1e-3"])
+def test_bad_accuracy_is_refused(wrong):
+    """Requirement: an accuracy is a positive number."""
+    with pytest.raises(InvalidParameter, match=r"accuracy: got .*, expected a finite number > 0 \[1\]"):
+        solve_statics(pivot(), rotation=QUARTER, accuracy=wrong)
+
+
+@pytest.mark.parametrize("choice", [{"axial_modes": 3}, {"gauss_points": 9}], ids=str)
+def test_choices_that_contradict_are_refused(choice):
+    """Requirement: axial modes and quadrature go with the control points that are chosen."""
+    (name,) = choice
+    with pytest.raises(InvalidParameter, match=f"{name}: got {choice[name]}, expected none beside accuracy"):
+        solve_statics(pivot(control_points=6, **choice), rotation=QUARTER, accuracy=1e-3)
+
+
+def test_other_discretisation_keeps_the_scene():
+    """Requirement: a mechanism with more control points has the same effects with the same parameters."""
+    scene = {
+        "effects": ("bending", "stretching", "gravity", "body_inertia"),
+        "parameters": {"gravity": {"acceleration": (0.0, -3.0)}},
+    }
+    given = pivot(**scene).mechanism
+    other = given.with_discretisation(control_points=7)
+    assert other.design.discretisation == replace(given.design.discretisation, control_points=7)
+    assert (other.effects, other.parameters) == (given.effects, given.parameters)
+    assert len(other.scene.strips[0].control_points) == 7

@@ -1,0 +1,143 @@
+"""Accuracy on request in motion: steps and control points until the estimated error is below it."""
+
+import math
+from functools import cache
+
+import numpy as np
+import pytest
+
+from spline_model.dynamics import solve_release
+from spline_model.errors import InvalidParameter
+from spline_model.pivot import cross_axis_pivot, swinging_slide_stiffness
+from spline_model.solution import Status
+from tests import gates
+from tests.table_one import TABLE_ONE
+
+#: Half a swing [s].
+DURATION = 0.006
+
+
+def released(n=6, **settings):
+    """The release of Table 1 from a quarter turn, or with other settings."""
+    options = {"duration": DURATION} | {
+        name: settings.pop(name)
+        for name in ("duration", "accuracy", "records", "integrator", "step", "start")
+        if name in settings
+    }
+    grid = {"control_points": n, "slide_stiffness": swinging_slide_stiffness(n)}
+    return solve_release(cross_axis_pivot(**(TABLE_ONE | grid | settings)), **options)
+
+
+@cache
+def exact():
+    """The swing with ten control points and explicit steps; eight move it by less than 1e-4 rad."""
+    return released(10, integrator="explicit")
+
+
+def true_error(trajectory, reference=None):
+    """Largest error of the rotation at the trajectory's instants [rad]."""
+    reference = exact() if reference is None else reference
+    return np.abs(trajectory.rotation - np.interp(trajectory.time, reference.time, reference.rotation)).max()
+
+
+@pytest.mark.parametrize("n", [4, 6])
+@pytest.mark.parametrize("accuracy", [3e-2, 1e-2, 3e-3])
+def test_wanted_accuracy_is_met_and_estimated(n, accuracy):
+    """Requirement: the true error is below what was asked for, and the estimate within its band."""
+    trajectory = released(n, accuracy=accuracy)
+    assert trajectory.status is Status.CONVERGED
+    assert trajectory.estimate.rotation <= accuracy
+    error = true_error(trajectory)
+    gates.check("spline_motion_accuracy_request", error / accuracy)
+    gates.check("spline_motion_accuracy_optimism", error / trajectory.estimate.rotation)
+    gates.check("spline_motion_accuracy_pessimism", trajectory.estimate.rotation / error)
+
+
+def test_optimism_gate_has_teeth():
+    """Requirement: the check notices what the steps alone say of four control points."""
+    n = gates.teeth("spline_motion_accuracy_optimism")["control_points"]
+    coarse, fine = (released(n, step=step, records=60) for step in (1e-4, 5e-5))
+    by_steps = np.abs(coarse.rotation - fine.rotation).max()
+    with pytest.raises(AssertionError, match="x the gate"):
+        gates.check("spline_motion_accuracy_optimism", true_error(fine) / by_steps)
+
+
+def test_request_and_pessimism_gates_have_teeth():
+    """Requirement: the checks notice a motion that was solved to a worse accuracy than is asked for."""
+    loose = released(4, step=gates.teeth("spline_motion_accuracy_request")["step"])
+    with pytest.raises(AssertionError, match="x the gate"):
+        gates.check("spline_motion_accuracy_request", true_error(loose) / 1e-2)
+    fine = released(10, step=gates.teeth("spline_motion_accuracy_pessimism")["step"])
+    with pytest.raises(AssertionError, match="x the gate"):
+        gates.check("spline_motion_accuracy_pessimism", 1e-1 / true_error(fine))
+
+
+def test_a_plateau_of_the_steps_is_not_taken_for_convergence():
+    """Requirement: where unresolved axial waves keep the error up, the explicit scheme takes over."""
+    trajectory = released(accuracy=2e-3)
+    assert trajectory.settings["integrator"] == "explicit"
+    assert trajectory.settings["accuracy_rad"] == 2e-3
+    assert trajectory.settings["control_points"] == trajectory.estimate.control_points
+
+
+def test_looser_accuracy_takes_fewer_steps():
+    """Requirement: work follows the accuracy, and energy-consistent steps still conserve energy."""
+    loose, tight = (released(accuracy=accuracy) for accuracy in (3e-2, 2e-3))
+    assert loose.settings["integrator"] == "energy"
+    assert loose.counters["steps"] < tight.counters["steps"]
+    energy = loose.kinetic_energy + loose.strain_energy
+    assert np.ptp(energy) < 1e-9 * energy[0]
+
+
+def test_records_are_thinned_not_the_comparison():
+    """Requirement: few records are those of the whole run, and do not blind the estimate."""
+    few, many = (released(accuracy=1e-2, records=records) for records in (2, 64))
+    assert len(few.time) == 3
+    assert len(many.time) == 65
+    assert few.states.shape[0] == few.bodies["body"].shape[0] == len(few.kinetic_energy) == 3
+    assert few.estimate.rotation == pytest.approx(many.estimate.rotation, rel=1e-12)
+    assert np.array_equal(few.rotation, many.rotation[::32])
+
+
+@pytest.mark.parametrize(
+    "settings",
+    [
+        {"stretch": "inextensible"},
+        {"effects": ("bending", "stretching", "body_inertia")},
+        {"effects": ("bending", "stretching", "strip_inertia", "body_inertia", "gravity")},
+        {
+            "effects": ("bending", "stretching", "strip_inertia", "body_inertia", "strip_damping"),
+            "parameters": {"strip_damping": {"relaxation_time": 1e-6}},
+        },
+    ],
+    ids=["inextensible", "massless strips", "gravity", "damping"],
+)
+def test_other_scenes_have_an_estimate_too(settings):
+    """Requirement: scenes without explicit steps, with weight or with losses are solved to an accuracy."""
+    trajectory = released(accuracy=3e-2, duration=0.003, **settings)
+    assert trajectory.status is Status.CONVERGED
+    finer = released(8, duration=0.003, step=1.25e-5, **settings)
+    gates.check("spline_motion_accuracy_request", true_error(trajectory, finer) / 3e-2)
+
+
+def test_accuracy_out_of_reach_is_said():
+    """Requirement: the best motion is returned with its estimate and the reason; nothing is claimed."""
+    trajectory = released(4, accuracy=1e-13, duration=5e-4)
+    assert trajectory.status is Status.NOT_CONVERGED
+    assert "accuracy 1e-13 rad is not reached: the estimated error is" in trajectory.message
+    assert 1e-13 < trajectory.estimate.rotation < 1e-2
+    assert trajectory.time[-1] == pytest.approx(5e-4)
+
+
+@pytest.mark.parametrize("wrong", [0.0, -1.0, math.nan, math.inf])
+def test_bad_accuracy_is_refused(wrong):
+    """Requirement: an accuracy is a positive angle."""
+    with pytest.raises(InvalidParameter, match=r"accuracy: got .*, expected a finite number > 0 \[rad\]"):
+        released(accuracy=wrong)
+
+
+@pytest.mark.parametrize("choice", [{"step": 1e-5}, {"integrator": "explicit"}], ids=str)
+def test_choices_that_contradict_are_refused(choice):
+    """Requirement: step and integrator are the accuracy's to choose."""
+    with pytest.raises(InvalidParameter, match=r"accuracy: got 0\.01, expected no step beside it"):
+        released(accuracy=1e-2, **choice)

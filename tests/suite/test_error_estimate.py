@@ -1,0 +1,44 @@
+"""The study of the error estimate: its designs, and the complete set of them against the true errors."""
+
+import math
+
+import numpy as np
+import pytest
+
+from studies.cases.problem import named_case
+from studies.convergence import error_estimate
+from studies.convergence.designs import drawn
+from studies.record.progress import silent
+from tests import gates
+
+
+def test_designs_fill_their_bounds_and_are_the_same_again():
+    """The hypercube has one design in every stratum of every bound, and depends on its seed alone."""
+    case = named_case(error_estimate.CASE)
+    designs = drawn(case, error_estimate.BOUNDS, count=30, seed=1)
+    again, other = (drawn(case, error_estimate.BOUNDS, count=30, seed=seed) for seed in (1, 2))
+    assert designs == again != other
+    low, high = error_estimate.BOUNDS["rotation"]
+    strata = sorted(int(30 * (design.rotation - low) / (high - low)) for design in designs)
+    assert strata == list(range(30))
+    slenderness = [design.length / design.depth for design in designs]
+    assert 10.0 < min(slenderness) < 12.0
+    assert 850.0 < max(slenderness) < 1000.0
+    assert all(math.isclose(design.area / design.depth, case.area / case.depth) for design in designs)
+
+
+@pytest.mark.slow
+def test_estimates_of_all_designs_are_within_their_band():
+    """Over 36 designs and six accuracies, and some swings: 0.3 to 10 for 90 %, none below a third."""
+    tables = error_estimate.compute(silent)
+    rows = tables["estimates"]
+    assert rows[rows["problem"] == "statics"]["design"].nunique() >= 30
+    assert (rows["status"] == "converged").all()
+    counted = {name: each for name, each in rows[rows["counts"]].groupby("problem")}
+    for problem, every in counted.items():
+        assert every["effectivity"].between(*error_estimate.BAND).mean() >= error_estimate.SHARE, problem
+    statics, motion = counted["statics"], counted["motion"]
+    gates.check("spline_accuracy_request", (statics["true_error"] / statics["accuracy"]).max())
+    gates.check("spline_accuracy_effectivity", np.log(statics["effectivity"]).abs().max())
+    gates.check("spline_motion_accuracy_request", (motion["true_error"] / motion["accuracy"]).max())
+    gates.check("spline_motion_accuracy_optimism", (1.0 / motion["effectivity"]).max())
