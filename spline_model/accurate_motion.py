@@ -44,7 +44,9 @@ resolve what it is made of."""
 LARGEST_PART, SMALLEST_PART = 0.7, 0.1
 """First and least explicit step over the critical one."""
 EXPLICIT_RATIO = 4.0 / 3.0
-"""Coarse explicit step over the fine one; the scheme is of order four."""
+"""Coarse explicit step over the fine one."""
+ORDERS = {"explicit": 4, "leapfrog": 2}
+"""Order of the explicit schemes in the rotation; the leapfrog's is four in the phase of the waves alone."""
 DOUBT = 0.25
 """The part of the difference of explicit runs that is added, for want of a third below the critical step."""
 MOST_STEPS = 500_000
@@ -82,14 +84,15 @@ class Task:
     """What is asked for: a motion of ``duration`` [s] with a swing of ``amplitude`` [rad].
 
     frequency: slowest circular frequency at rest [rad/s], 0 for none; run: solves a mechanism
-    with an integrator, a step [s] and a number of records; critical: the longest stable
-    explicit step of a mechanism [s], 0 where the explicit scheme cannot be used.
+    with an integrator, a step [s] and a number of records; explicit: the explicit integrator;
+    critical: its longest stable step with a mechanism [s], 0 where it cannot be used.
     """
 
     duration: float
     amplitude: float
     frequency: float
     run: Callable[[Mechanism, str, float, int], Trajectory]
+    explicit: str
     critical: Callable[[Mechanism], float]
 
 
@@ -115,7 +118,8 @@ def solve_accurately(mechanism: Mechanism, accuracy: float, task: Task, records:
             control_points=n,
             runs=runs.count,
         )
-        early = rung.integrator == "energy" and estimate.space > accuracy + by_steps.error
+        # explicit steps wait until there are about enough control points
+        early = rung.integrator == "energy" and runs.critical(n) > 0.0
         stuck = by_steps.error > SHARE * accuracy and not early
         if estimate.rotation <= accuracy or stuck or n + MORE > MOST:
             return _answer(by_steps.fine, estimate, runs.slide_stiffness(n), every)
@@ -173,14 +177,19 @@ class _Runs:
         self.run = cache(self._run)
 
     def first(self, n: int, accuracy: float) -> Rung:
-        """Energy-consistent steps whose phase error, amplitude omega t (omega h)^2 / 12, is small enough."""
+        """Energy-consistent steps whose phase error, amplitude omega t (omega h)^2 / 12, is small enough.
+
+        The leapfrog's steps are a hundred times cheaper and resolve all from the start.
+        """
         task = self.task
+        if task.explicit == "leapfrog" and self.critical(n) > 0.0:
+            return Rung(task.explicit, FINE, LARGEST_PART)
         angle = task.amplitude * task.frequency * task.duration  # that the phase error is a part of
         step = math.inf
         if angle > 0:
             step = math.sqrt(6 * SHARE * accuracy / angle) / task.frequency
         if step < self.critical(n):
-            return Rung("explicit", FINE, LARGEST_PART)
+            return Rung(self.task.explicit, FINE, LARGEST_PART)
         return Rung("energy", FINE * max(1, math.ceil(self.spacing / (FINE * step))), 0.0)
 
     def resolve(self, n: int, rung: Rung, accuracy: float) -> Rung:
@@ -207,15 +216,16 @@ class _Runs:
     def finer(self, n: int, rung: Rung, excess: float, *, stuck: bool) -> Rung | None:
         """The next rung after one whose error is ``excess`` times too large; None if there is none."""
         critical = self.critical(n)
-        if rung.integrator == "explicit":
-            part = rung.part * min(max(0.9 * excess**-0.25, 0.3), 0.8)
-            return Rung("explicit", FINE, part) if part >= SMALLEST_PART else None
+        if rung.integrator != "energy":
+            order = ORDERS[rung.integrator]
+            part = rung.part * min(max(0.9 * excess ** (-1.0 / order), 0.3), 0.8)
+            return Rung(self.task.explicit, FINE, part) if part >= SMALLEST_PART else None
         factor = min(max(1.2 * math.sqrt(min(excess, 1e6)), 2.0), 8.0)
         fine = FINE * math.ceil(rung.fine * factor / FINE)
         if critical == 0.0:
             return Rung("energy", fine, 0.0) if fine * self.instants <= MOST_STEPS else None
         if stuck or self.spacing / fine < critical:
-            return Rung("explicit", FINE, LARGEST_PART)
+            return Rung(self.task.explicit, FINE, LARGEST_PART)
         return Rung("energy", fine, 0.0)
 
     def solved(self, n: int, rung: Rung) -> Resolved:
@@ -223,9 +233,10 @@ class _Runs:
         steps = self.steps(n, rung)
         fine, coarser = self.run(n, rung.integrator, steps), self.coarser(n, rung)
         change = self.rotation(fine) - coarser
-        if rung.integrator == "explicit":
+        if rung.integrator != "energy":
             doubt = DOUBT * largest(change)
-            return Resolved(fine, coarser, change / (EXPLICIT_RATIO**4 - 1.0), doubt)
+            gain = EXPLICIT_RATIO ** ORDERS[rung.integrator] - 1.0
+            return Resolved(fine, coarser, change / gain, doubt)
         before = coarser - self.rotation(self.run(n, rung.integrator, steps // 4))
         return Resolved(fine, coarser, change / 3.0, largest(before - 4.0 * change) / 4.0)
 
@@ -236,12 +247,12 @@ class _Runs:
     def coarser(self, n: int, rung: Rung) -> Array:
         """Rotation (S,) of the second finest run of a rung [rad]."""
         steps = self.steps(n, rung)
-        fewer = 3 * steps // 4 if rung.integrator == "explicit" else steps // 2
+        fewer = 3 * steps // 4 if rung.integrator != "energy" else steps // 2
         return self.rotation(self.run(n, rung.integrator, fewer))
 
     def steps(self, n: int, rung: Rung) -> int:
         """Steps of the finest run between two instants."""
-        if rung.integrator == "explicit":
+        if rung.integrator != "energy":
             return FINE * math.ceil(self.spacing / (FINE * rung.part * self.critical(n)))
         return rung.fine
 

@@ -14,6 +14,7 @@ from spline_model.accurate_motion import Task, solve_accurately
 from spline_model.compile import System, compile_scene
 from spline_model.effects import DrivenRotation
 from spline_model.errors import InvalidParameter, require_choice, require_positive
+from spline_model.fast.release import is_swing
 from spline_model.integrators import (
     energy_consistent,
     explicit,
@@ -175,6 +176,8 @@ def _task(
     """The motion as a task of accuracy on request."""
     system = compile_scene(mechanism.released())
     squares = linear_modes(system, system.rest, set_in_motion(system).mass)[0]
+    scheme = "leapfrog" if is_swing(mechanism, system) else "explicit"
+    limit = {"leapfrog": leapfrog.STABILITY_LIMIT, "explicit": explicit.STABILITY_LIMIT}[scheme]
 
     def run(chosen: Mechanism, integrator: str, step: float, records: int) -> Trajectory:
         return solve_motion(
@@ -193,13 +196,14 @@ def _task(
         motion = set_in_motion(scene)
         explicit.require_explicit(scene, motion)
         held = static_state(chosen, start, body=body)[: scene.layout.size]
-        return explicit.STABILITY_LIMIT / highest_frequency(scene, motion, held)
+        return limit / highest_frequency(scene, motion, held)
 
     return Task(
         duration=duration,
         amplitude=abs(start),
         frequency=math.sqrt(max(float(squares[0]), 0.0)),
         run=run,
+        explicit=scheme,
         critical=critical if drive is None else lambda chosen: 0.0,
     )
 

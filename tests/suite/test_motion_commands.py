@@ -102,8 +102,8 @@ def test_release_is_timed_without_its_static_path(case, command, monkeypatch):
     asked = []
     genuine = adapters.measure
 
-    def counted(work, *, repeat, warm_up):
-        timing = genuine(work, repeat=repeat, warm_up=warm_up)
+    def counted(work, *, repeat, warm_up, **part):
+        timing = genuine(work, repeat=repeat, warm_up=warm_up, **part)
         asked.append((repeat, warm_up, round(timing.median, 9), float(timing.result.time[-1])))
         return timing
 

@@ -88,9 +88,9 @@ def test_repeat_takes_the_median_after_a_warm_up(case, command, monkeypatch):
     asked = []
     genuine = adapters.measure
 
-    def counted(work, *, repeat, warm_up):
+    def counted(work, *, repeat, warm_up, **part):
         asked.append((repeat, warm_up))
-        return genuine(work, repeat=repeat, warm_up=warm_up)
+        return genuine(work, repeat=repeat, warm_up=warm_up, **part)
 
     monkeypatch.setattr(adapters, "measure", counted)
     words = ["solve", case(), "--model", "fe", "--rotation-deg", 5, "--increments", 1, "--json", "-"]
