@@ -1,6 +1,6 @@
 # `make` alone lists the targets. Everything happens in .venv, which `make setup` creates.
 .DEFAULT_GOAL := help
-.PHONY: help setup figures test test-all bench lint clean
+.PHONY: help setup figures results test test-all bench lint clean
 
 PYTHON ?= python3
 BIN := .venv/bin
@@ -24,15 +24,19 @@ $(STAMP): requirements.lock pyproject.toml
 	$(BIN)/python -m studies compile
 	@touch $@
 
-figures: $(STAMP)  ## compute all studies anew, draw their figures, refresh the README
+figures: $(STAMP)  ## compute the paper's figures and the convergence studies anew, refresh the README
+	$(BIN)/python -m studies run paper convergence
+	$(BIN)/python -m studies readme
+
+results: $(STAMP)  ## compute all studies anew (some ten minutes), refresh the README
 	$(BIN)/python -m studies run all
 	$(BIN)/python -m studies readme
 
 test: $(STAMP)  ## run the quick tests
-	$(BIN)/python -m pytest -q -m "not slow"
+	$(BIN)/python -m pytest -q -n auto -m "not slow"
 
 test-all: $(STAMP)  ## run all tests
-	$(BIN)/python -m pytest -q
+	$(BIN)/python -m pytest -q -n auto
 
 bench: $(STAMP)  ## time the solvers; counters are stored beside the seconds
 	@mkdir -p .benchmarks
