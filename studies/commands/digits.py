@@ -20,7 +20,6 @@ DYNAMICS = {
     "exudyn ancf": "Exudyn, ANCF cable",
     "openseespy frame": "OpenSees",
     "finite elements": "finite elements",
-    "four-bar": "pseudo-rigid",
 }
 
 
