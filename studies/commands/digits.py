@@ -15,12 +15,11 @@ STATICS = {
     "four-bar": "pseudo-rigid",
 }
 DYNAMICS = {
-    "spline, energy-consistent": "spline",
-    "spline, explicit": "spline, explicit",
+    "spline": "spline",
+    "spline, energy-consistent": "spline, large implicit steps",
     "exudyn ancf": "Exudyn, ANCF cable",
     "openseespy frame": "OpenSees",
-    "finite elements, explicit": "finite elements",
-    "four-bar": "pseudo-rigid",
+    "finite elements": "finite elements",
 }
 
 

@@ -44,7 +44,10 @@ def scaling(tables: Mapping[str, pd.DataFrame]) -> Figure:
     """Draw time and counted work of one Newton iteration over the control points."""
     figure = page(9.5, 3.8)
     timed, counted = figure.subplots(1, 2)
-    styles = {"bezier": ("Bézier curve, condensed", BLUE, "x-"), "bspline": ("cubic B-spline", GREEN, "o-.")}
+    styles = {
+        "bezier": ("Bézier curve, condensed", BLUE, "x-"),
+        "bspline": ("cubic B-spline, sparse from n = 24 on", GREEN, "o-."),
+    }
     for basis, (label, colour, line) in styles.items():
         times, flops = (of_basis(tables[name], basis) for name in ("scaling_of_time", "scaling"))
         n = times["control_points"].to_numpy(float)
@@ -104,7 +107,7 @@ def curves(
         for place, (_, mine) in enumerate(known[known["series"] == name].groupby("family", sort=False)):
             label = {} if place == 0 else {"label": None}
             panel.plot(mine[error], mine[cost], **(look.keywords() | label))
-            if mine["family"].iloc[0] != "all":
+            if cost == "flops" and mine["family"].iloc[0] != "all":
                 panel.annotate(
                     mine["family"].iloc[0], (mine[error].iloc[-1], mine[cost].iloc[-1]), (0, 4),
                     textcoords="offset points", ha="center", fontsize=7, color=look.colour,

@@ -42,12 +42,15 @@ class MovingSeries:
 #: Baseline -> module, look, elements a strip and steps; no elements for a model that has none.
 BASELINES: dict[str, tuple[ModuleType, Look, tuple[int, ...], tuple[float, ...]]] = {
     "linear pivot": (
-        linear_pivot, Look(label="linear closed form", colour=GREY, marker="P"), (), (CLOSED_STEP,),
+        linear_pivot, Look(label="linear closed form", colour=GREY, line="", marker="P"), (), (CLOSED_STEP,),
     ),
     "pin joint": (
-        pin_joint, Look(label="pseudo-rigid: pin joint", colour=YELLOW, marker="*"), (), (CLOSED_STEP,),
+        pin_joint, Look(label="pseudo-rigid: pin joint", colour=YELLOW, line="", marker="*"),
+        (), (CLOSED_STEP,),
     ),
-    "four-bar": (four_bar, Look(label="pseudo-rigid: four-bar", colour=RED, marker="*"), (), (CLOSED_STEP,)),
+    "four-bar": (
+        four_bar, Look(label="pseudo-rigid: four-bar", colour=RED, line="", marker="X"), (), (CLOSED_STEP,),
+    ),
     "exudyn ancf": (
         exudyn_ancf, Look(label="Exudyn, ANCF cable", colour=PURPLE, marker="^"), (4, 8), PEER_STEPS,
     ),

@@ -46,7 +46,7 @@ BASELINES: dict[str, tuple[ModuleType, str, Look, tuple[int, ...]]] = {
         pin_joint, "material", Look(label="pseudo-rigid: pin joint", colour=YELLOW, line="", marker="*"), (),
     ),
     "four-bar": (
-        four_bar, "material", Look(label="pseudo-rigid: four-bar", colour=RED, line="", marker="*"), (),
+        four_bar, "material", Look(label="pseudo-rigid: four-bar", colour=RED, line="", marker="X"), (),
     ),
     "exudyn ancf": (
         exudyn_ancf, "material", Look(label="Exudyn, ANCF cable", colour=PURPLE, marker="^"), PEER_MESHES,

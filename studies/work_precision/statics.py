@@ -29,7 +29,7 @@ CASES = (CASE,)
 MARGIN = 10.0
 ERRORS = ("error_trajectory", "error_torque")
 #: Errors at which models are compared.
-TARGETS = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8)
+TARGETS = (1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8)
 
 
 def compute(progress: Callable[[int, int], None]) -> dict[str, pd.DataFrame]:

@@ -65,7 +65,7 @@ def test_the_gates_of_the_sparse_path_have_teeth(monkeypatch, gate, names):
         {},
         {"stretch": "consistent"},
         {"stretch": "inextensible"},
-        {"slide_stiffness": 0.0},
+        {"slide_stiffness": 5.0},
         {"basis": "bezier", "control_points": 9},
     ],
     ids=str,

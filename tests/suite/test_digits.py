@@ -6,9 +6,10 @@ import pandas as pd
 import pytest
 
 from studies.commands import readme
-from studies.commands.digits import digits
+from studies.commands.digits import DYNAMICS, STATICS, digits
 from studies.errors import BadInput
 from studies.record.store import Store
+from studies.work_precision import moving_series, series
 
 
 def found(rows):
@@ -52,3 +53,9 @@ def test_both_blocks_are_asked_for(monkeypatch):
     assert "old" not in text
     assert text.startswith("head\n") and text.endswith("tail")
     assert text.index("agreement") < text.index(readme.END) < text.index("\ndigits\n")
+
+
+def test_columns_are_series_of_the_studies():
+    """Every column is a series that the studies know by that name."""
+    assert set(STATICS) <= set(series.looks())
+    assert set(DYNAMICS) <= set(moving_series.looks())
