@@ -56,7 +56,10 @@ def follow(
 
 
 class _Follower:
-    """The state of a path while it is followed; ``points`` holds the states that were asked for."""
+    """The state of a path while it is followed.
+
+    ``points`` holds the states that were asked for, ``trail`` those on the way to the next one.
+    """
 
     def __init__(self, work: Workspace, start: tuple[float, Array] | None, branch: str) -> None:
         self.work = work
@@ -64,6 +67,7 @@ class _Follower:
         self.here, norms = first_point(work, self.watch.resolution, start)
         self.known: deque[Point] = deque([self.here], maxlen=KNOWN_STATES)
         self.points = [self.here]
+        self.trail: list[Point] = []
         self.history = [norms]
 
     def path(self, message: str) -> Path:
@@ -89,9 +93,7 @@ class _Follower:
                 self.work.counters.halved_increments += 1
                 step /= 2
                 if abs(step) < SMALLEST_STEP * abs(whole):
-                    if self.here is not self.points[-1]:
-                        self.points.append(self.here)
-                    self.watch.keep_sound(self.points)
+                    self._keep_last_good()
                     return f"stopped between load factor {at:.6g} and {at + 2 * step:.6g}: {reason}"
             elif self.here.load_factor != aim:  # on another branch, and somewhere else
                 begin = self.here.load_factor
@@ -99,7 +101,14 @@ class _Follower:
             elif (abs(aim - begin) / abs(step)) % 2 == 0 and abs(step) < abs(whole):
                 step *= 2  # after an easy part the next may be twice as long, on the grid of halves
         self.points.append(self.here)
+        self.trail.clear()
         return ""
+
+    def _keep_last_good(self) -> None:
+        """Keep the last state of a path that stopped, whether or not it was asked for."""
+        kept = [*self.points, *self.trail]
+        self.watch.keep_sound(kept)
+        self.points = kept[: len(self.points)] + kept[len(self.points) :][-1:]
 
     def _try(self, load_factor: float) -> tuple[Newton, str]:
         """One step to ``load_factor``; on success the follower stands there, or on another branch."""
@@ -118,6 +127,7 @@ class _Follower:
                 self.known.clear()
             self.here = reached
             self.known.append(reached)
+            self.trail.append(reached)
         return newton, reason
 
     def _predict(self, load_factor: float) -> Array:

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import csc_matrix
+from scipy.sparse import csc_matrix, diags_array
 from scipy.sparse.linalg import SuperLU, splu
 
 from spline_model.compile import System
@@ -25,6 +25,9 @@ LEAST_SIZE = 150
 """Unknowns from which on the sparse factorisation is the faster one (measured: two strips of 24 points)."""
 LARGEST_FILL = 0.15
 """Share of entries that are not zero above which the dense one is: Bezier curves have 0.3 and more."""
+
+COMPLIANCE = 1e-8
+"""Of a constraint when eigenvalues are counted, in L^3/EI: the springs are 1e8 times as stiff as a strip."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -40,13 +43,35 @@ class Pattern:
     places: NDArray[np.int64]
     scale: Array
 
-    def factorise(self, hessian: Array) -> SuperLU:
-        """LU factors of the scaled tangent, with pivoting; raises LinAlgError if it is singular."""
+    def matrix(self, hessian: Array) -> csc_matrix:
+        """The scaled tangent; raises LinAlgError if it is not finite."""
         size = len(self.starts) - 1
         entries = hessian.ravel()[self.places] * self.scale
         if not np.isfinite(entries).all():
             raise np.linalg.LinAlgError("the tangent is not finite")
-        matrix = csc_matrix((entries, self.rows, self.starts), shape=(size, size))
+        return csc_matrix((entries, self.rows, self.starts), shape=(size, size))
+
+    def negative(self, hessian: Array) -> int:
+        """Negative eigenvalues of the scaled tangent, by an elimination that stays on the diagonal.
+
+        The empty diagonal of constraints is given a small compliance for it: a stiff spring in the
+        place of the constraint, which has the same inertia.
+        """
+        matrix = self.matrix(hessian)
+        soft = diags_array(np.where(matrix.diagonal() == 0.0, -COMPLIANCE, 0.0))
+        softened = csc_matrix(matrix + soft)
+        options = {"SymmetricMode": True}
+        try:
+            factors = splu(softened, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options=options)
+        except RuntimeError:
+            raise np.linalg.LinAlgError("the tangent is singular") from None
+        if not np.array_equal(factors.perm_r, factors.perm_c):  # it had to leave the diagonal
+            return int((np.linalg.eigvalsh(softened.toarray()) < 0.0).sum())
+        return int((factors.U.diagonal() < 0.0).sum())
+
+    def factorise(self, hessian: Array) -> SuperLU:
+        """LU factors of the scaled tangent, with pivoting; raises LinAlgError if it is singular."""
+        matrix = self.matrix(hessian)
         try:
             return splu(matrix, permc_spec="MMD_AT_PLUS_A", options={"SymmetricMode": True})
         except RuntimeError:

@@ -154,8 +154,11 @@ def _zero(value: Callable[[float], float]) -> float | None:
     for trial in range(MOST_TRIALS):
         t = 0.5 * (a + b) if trial % 3 == 2 else (a * fb - b * fa) / (fb - fa)
         ft = value(t)
+        if not np.isfinite(ft):  # close to the point Newton may fail: elsewhere, or the nearer end
+            t = 0.5 * (a + b)
+            ft = value(t)
         if not np.isfinite(ft):
-            return None
+            return a if abs(fa) < abs(fb) else b
         if abs(ft) <= small or b - a < FINE:
             return t
         if ft * fa > 0.0:

@@ -110,6 +110,9 @@ def directed(system: System, point: Point, direction: Array, along: float) -> Po
 def _symmetric(work: Workspace, force: Array) -> tuple[Array, int]:
     """Solve hessian x = force, and count the negative eigenvalues of the reduced tangent."""
     layout, unit, energy = work.system.layout, work.system.scales.unit, work.system.scales.energy
+    not_free = layout.size - layout.coordinate_count
+    if work.pattern is not None:
+        return work.solve(force), work.pattern.negative(work.hessian) - not_free
     work.counters.factorisations += 1
     matrix = work.hessian * (unit[:, None] * unit / energy)
     # the transpose is as LAPACK stores it; without room for blocks a long B-spline takes three times as long
@@ -120,7 +123,7 @@ def _symmetric(work: Workspace, force: Array) -> tuple[Array, int]:
     # a block of two is indefinite: one negative eigenvalue each (Bunch and Kaufman 1977)
     negative = int((np.diag(factors)[single] < 0.0).sum() + (~single).sum() // 2)
     rate = unit * sytrs(factors, pivots, force * unit / energy, lower=1)[0].ravel()
-    return np.asarray(rate), negative - (layout.size - layout.coordinate_count)
+    return np.asarray(rate), negative - not_free
 
 
 def _dead_energy(system: System, z: Array) -> float:

@@ -10,6 +10,7 @@ from spline_model.pivot import cross_axis_pivot
 from spline_model.sparse import filled_entries
 from spline_model.statics import solve_statics
 from tests import gates
+from tests.spline.frames import opposed
 from tests.table_one import TABLE_ONE
 
 FIELDS = ("centre", "torque", "axial_force", "bending_moment", "clamp_reactions")
@@ -66,6 +67,7 @@ def test_the_gates_of_the_sparse_path_have_teeth(monkeypatch, gate, names):
         {"stretch": "consistent"},
         {"stretch": "inextensible"},
         {"slide_stiffness": 5.0},
+        {"slide_stiffness": 0.0, "axial_modes": 39},
         {"basis": "bezier", "control_points": 9},
     ],
     ids=str,
@@ -79,6 +81,19 @@ def test_the_pattern_holds_every_entry(settings):
     filled = filled_entries(system)
     assert not work.hessian[~filled].any()
     assert (work.hessian[filled] != 0.0).mean() > 0.5
+
+
+def test_both_factorisations_count_the_same_inertia(monkeypatch):
+    """Requirement: a long B-spline's states have the same inertia by either factorisation."""
+    made = opposed(offset=0.03, basis="bspline", control_points=40)
+    sparse = solve_statics(made, rotation=-0.3, increments=12)
+    with monkeypatch.context() as patch:
+        patch.setattr(newton, "pattern_of", lambda system: None)
+        dense = solve_statics(made, rotation=-0.3, increments=12)
+    assert set(sparse.inertia) == {0, 1}
+    assert np.array_equal(sparse.inertia, dense.inertia)
+    points = [[c.rotation for c in answer.critical_points] for answer in (sparse, dense)]
+    assert np.allclose(*points, atol=1e-6)
 
 
 def test_short_splines_and_bezier_curves_stay_dense():

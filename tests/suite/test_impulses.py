@@ -13,7 +13,14 @@ def test_a_motion_by_impulses_is_a_neutral_answer():
     """A trajectory of impulses becomes the neutral motion of the other integrators."""
     run = solve_impulses(pivot("Table 1"), start=0.5, duration=0.05)
     answer = motion(
-        run, model="spline", settings={}, effects=run.effects, bodies=run.bodies, body=run.body, wall_s=0.0
+        run,
+        model="spline",
+        settings={},
+        effects=run.effects,
+        bodies=run.bodies,
+        body=run.body,
+        wall_s=0.0,
+        solve_s=0.0,
     )
     assert answer.converged
     assert answer.settings == {
