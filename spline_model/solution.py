@@ -8,6 +8,8 @@ from enum import Enum
 import numpy as np
 from numpy.typing import NDArray
 
+from spline_model.estimate import resolution
+
 Array = NDArray[np.float64]
 
 
@@ -112,6 +114,11 @@ class StaticSolution:
     counters: dict[str, int]
     history: tuple[tuple[float, ...], ...]
 
+    @property
+    def resolution(self) -> str:
+        """Empty, or how uncertain too few control points make the answer (``spline_model.estimate``)."""
+        return resolution(self.moment_defect)
+
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class MechanismSolution:
@@ -146,3 +153,8 @@ class MechanismSolution:
     states: Array
     counters: dict[str, int]
     history: tuple[tuple[float, ...], ...]
+
+    @property
+    def resolution(self) -> str:
+        """Empty, or how uncertain too few control points make the answer (``spline_model.estimate``)."""
+        return resolution(self.moment_defect)

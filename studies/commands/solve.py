@@ -74,6 +74,7 @@ def as_document(answer: Response) -> dict[str, Any]:
     return {
         "status": answer.status,
         "message": answer.message,
+        "resolution": answer.resolution,
         "model": answer.model,
         "settings": answer.settings,
         "effects": list(answer.effects),
@@ -94,6 +95,7 @@ def mechanism_document(answer: MechanismResponse) -> dict[str, Any]:
     return {
         "status": answer.status,
         "message": answer.message,
+        "resolution": answer.resolution,
         "model": answer.model,
         "settings": answer.settings,
         "effects": list(answer.effects),
@@ -141,6 +143,8 @@ def _readable(answer: Response) -> Iterator[str]:
     for rotation, (x, y), torque, stiffness, energy, stress in rows:
         place = f"{math.degrees(rotation):9.3f} {x:11.5f} {y:11.5f}"
         yield f"{place} {torque:12.4f} {stiffness:12.4f} {energy:11.4f} {stress:9.1f}"
+    if answer.resolution:
+        yield answer.resolution
     yield ending(answer.status, answer.counters, answer.wall_s)
 
 
@@ -157,4 +161,6 @@ def _mechanism_table(answer: MechanismResponse) -> Iterator[str]:
         for x, y, turn in (place[state] for place in answer.bodies.values()):
             line += f" |{1e3 * x:9.4f} {1e3 * y:9.4f} {math.degrees(turn):9.4f}"
         yield line
+    if answer.resolution:
+        yield answer.resolution
     yield ending(answer.status, answer.counters, answer.wall_s)
