@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.compile import System, compile_scene
+from spline_model.content import energy_content, resolution
 from spline_model.effects import DrivenRotation
 from spline_model.errors import InvalidParameter, require_choice, require_positive
 from spline_model.integrators import (
@@ -26,6 +27,8 @@ from spline_model.kernels.record import DISSIPATED, KINETIC, POSITION, STRAIN, V
 from spline_model.mechanism import Mechanism
 from spline_model.modes import linear_modes, static_state
 from spline_model.pivot import Pivot
+from spline_model.restart import counted_on, last_state, later
+from spline_model.scene import Scene
 from spline_model.solution import Status
 
 Array = NDArray[np.float64]
@@ -42,8 +45,6 @@ STEP = 5e-5
 """Default step of the implicit integrators [s]: some 240 steps a swing of Table 1."""
 MOST_MEMORY = 2e9
 """Bytes that the records of one run may take."""
-STEPS_PER_PERIOD = 20
-"""Fewer steps than this in a period of the swing do not resolve it (phase error above 1 %)."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -105,6 +106,7 @@ def solve_motion(
     integrator: str = "energy",
     accuracy: float | None = None,
     records: int | None = None,
+    after: Trajectory | None = None,
     **options: float,
 ) -> Trajectory:
     """Motion of a mechanism from the static state at the rotation ``start`` [rad] of a body, at rest.
@@ -121,6 +123,8 @@ def solve_motion(
     accuracy : wanted error of the rotation over the run [rad], by local error control of the
         energy-consistent steps, instead of a fixed step.
     records : largest number of records; default every step.
+    after : a motion of this mechanism to go on with from its last record, instead of ``start``;
+        time, work, losses and the clock of loads and drives run on.
 
     Raises InvalidParameter, and ConvergenceError if statics does not reach ``start``.
     """
@@ -129,16 +133,21 @@ def solve_motion(
     scene = mechanism.released()
     system = compile_scene(scene if drive is None else mechanism.with_effects(drive))
     motion, layout = set_in_motion(system), system.layout
-    held = static_state(mechanism, start, body=body)
-    z, v = np.zeros(layout.size), np.zeros(layout.coordinate_count)
-    known = min(len(held), layout.size)
-    z[:known] = held[:known]
+    if after is None:
+        held = static_state(mechanism, start, body=body)
+        z, v = np.zeros(layout.size), np.zeros(layout.coordinate_count)
+        known = min(len(held), layout.size)
+        z[:known] = held[:known]
+    else:
+        z, v = last_state(after, system)
+        motion = later(motion, float(after.time[-1]))
     acceleration, z = initial_acceleration(system, motion, z, v)
     effects = mechanism.effects
     if accuracy is not None:
         run = adaptive.integrate(system, motion, z, v, acceleration, duration=duration, accuracy=accuracy)
         settings = {"integrator": integrator, "accuracy_rad": accuracy}
-        return _trajectory(system, run, effects, body, settings, "")
+        trajectory = _trajectory(system, run, effects, body, settings, "")
+        return trajectory if after is None else counted_on(trajectory, after)
     if step is None:
         limit = critical_step(system, motion, z) if integrator == "explicit" else math.inf
         step = min(EXPLICIT_SAFETY * limit, STEP, duration)
@@ -152,7 +161,9 @@ def solve_motion(
             system, motion, z, v, acceleration, step=step, steps=steps, every=every, **options
         )
     settings = {"integrator": integrator, "step_s": step, **options}
-    return _trajectory(system, run, effects, body, settings, _resolution(system, motion, step))
+    warning = _resolution(scene, z, v, step)
+    trajectory = _trajectory(system, run, effects, body, settings, warning)
+    return trajectory if after is None else counted_on(trajectory, after)
 
 
 def _check(
@@ -203,7 +214,7 @@ def _trajectory(
     effects: tuple[str, ...],
     body: str,
     settings: dict[str, Any],
-    resolution: str,
+    warning: str,
 ) -> Trajectory:
     rows, layout = run.rows, system.layout
     rest = float(system.tables.weight @ system.rest[: system.tables.weight.size])
@@ -222,21 +233,20 @@ def _trajectory(
         velocity_residual=rows[:, VELOCITY],
         states=run.states,
         velocities=run.velocities,
-        resolution=resolution,
+        resolution=warning,
         effects=effects,
         counters=run.counters,
         settings=settings,
     )
 
 
-def _resolution(system: System, motion: Motion, step: float) -> str:
-    """How far a step under-resolves the swing at rest, or an empty string."""
-    squares = linear_modes(system, system.rest, motion.mass)[0]
-    omega = math.sqrt(squares[0]) if squares[0] > 0 else 0.0
-    if not 0 < omega * step / (2 * math.pi) * STEPS_PER_PERIOD > 1:
-        return ""
-    return (
-        f"the step of {step:g} s is {omega * step / (2 * math.pi):.3g} of the swing's period at rest: "
-        "energy is right, phase and amplitude are not; "
-        f"take {2 * math.pi / omega / STEPS_PER_PERIOD:.2g} s or less"
-    )
+def _resolution(scene: Scene, z: Array, v: Array, step: float) -> str:
+    """What a step leaves unresolved of the modes that carry the energy of the start; drives let go."""
+    free = compile_scene(scene)
+    motion, size = set_in_motion(free), free.layout.size
+    start = np.zeros(size)
+    start[: min(size, len(z))] = z[:size]
+    acceleration, start = initial_acceleration(free, motion, start, v)
+    lowest = linear_modes(free, free.rest, motion.mass)[0][0]
+    swing = math.sqrt(max(lowest, 0.0)) / (2 * math.pi)
+    return resolution(energy_content(free, motion, start, v, acceleration), swing, step)
