@@ -56,6 +56,14 @@ STUDIES: dict[str, tuple[str, str]] = {
         "studies.convergence.slide_stiffness",
         "error against the stiffness of the strains that the axial modes do not see",
     ),
+    "stability/slenderness": (
+        "studies.stability.statics.slenderness",
+        "hard cases: slenderness from 10 to 1e5 and strips that cannot stretch",
+    ),
+    "stability/geometry": (
+        "studies.stability.statics.geometry",
+        "hard cases: crossing ratios and inclinations to their ends, parallel, unequal and curved strips",
+    ),
     "effects/worth": (
         "studies.effects.worth",
         "what each effect is worth for four designs, and what simpler strips save",
