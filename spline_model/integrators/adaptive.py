@@ -7,6 +7,7 @@ import numpy as np
 from spline_model.compile import System
 from spline_model.integrators import energy_consistent
 from spline_model.integrators.energy_consistent import counts
+from spline_model.integrators.monitor import MOST_GAIN, first_gain
 from spline_model.integrators.motion import Array, Records, require_compiled, require_conservative
 from spline_model.kernels.energy_step import advance
 from spline_model.kernels.motion import Motion
@@ -77,6 +78,9 @@ def integrate(
             acceleration, totals = new_a, new_totals
             rows.append(np.empty(7))
             record(new_z, new_v, motion, strains, totals, rows[-1])
+            if first_gain(np.array((rows[0], rows[-1])), MOST_GAIN) < 2:
+                message = f"stopped at {time[-1]:.6g} s: the energy grows"
+                break
         else:
             rejected += 1
         # the error over its share goes with h^2

@@ -11,6 +11,8 @@ Array = NDArray[np.float64]
 
 MOST_GAIN = 1e-6
 """Largest gain of an energy-consistent run over its energy: a million steps stay below."""
+MOST_GAIN_OF_OTHERS = 1e-2
+"""Largest gain of a run whose scheme keeps energy in the limit of short steps only."""
 
 
 def energy_gain(rows: Array) -> Array:
