@@ -18,6 +18,12 @@ COLUMNS: dict[str, Settings] = {
     FE: FeSettings(),
 }
 
+GENERALISED_ALPHA = "spline, generalised-alpha"
+EXPLICIT = "spline, explicit"
+
+#: All columns, in the order of tables and figures.
+ORDER = (*COLUMNS, GENERALISED_ALPHA, EXPLICIT)
+
 #: Columns that show the paper's own choices: what this suite has an answer say of its resolution does not
 #: count there, as the paper has no such check.
 UNCHECKED = (PAPER, PRINTED)

@@ -2,14 +2,14 @@
 
 import pandas as pd
 
-from studies.stability.columns import COLUMNS
+from studies.stability.columns import ORDER
 from studies.stability.outcome import OUTCOMES
 
 
 def counted(outcomes: pd.DataFrame) -> pd.DataFrame:
     """Return a row a model of `outcomes`: cases tried, one column an outcome, largest right error."""
     rows = []
-    for model in COLUMNS:
+    for model in ORDER:
         mine = outcomes[outcomes["model"] == model]
         if mine.empty:
             continue

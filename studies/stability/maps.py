@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from studies.record.style import GREEN, GREY, RED, YELLOW, page
-from studies.stability.columns import COLUMNS
+from studies.stability.columns import ORDER
 from studies.stability.outcome import BAD_INPUT, REFUSED, RIGHT, WRONG
 
 #: Outcome -> colour and marker, the same in every map.
@@ -41,7 +41,7 @@ def outcome_map(
         axes: properties of the panels, as of `Axes.set`; `yticks` and `xticks` with labels as a mapping of
             place to label.
     """
-    models = [model for model in COLUMNS if (outcomes["model"] == model).any()]
+    models = [model for model in ORDER if (outcomes["model"] == model).any()]
     figure = page(WIDTH * len(models) + margin, height)
     panels = figure.subplots(1, len(models), sharex=True, sharey=True, squeeze=False)[0]
     ticks: dict[str, Any] = {name: axes.pop(name) for name in ("xticks", "yticks") if name in axes}
@@ -71,7 +71,7 @@ def outcome_map(
 def listed(outcomes: pd.DataFrame, cases: Sequence[str], *, title: str) -> Figure:
     """Draw a family without axes: a line a case in the order of `cases`, a mark a model."""
     place = {name: len(cases) - 1 - i for i, name in enumerate(cases)}
-    models = [model for model in COLUMNS if (outcomes["model"] == model).any()]
+    models = [model for model in ORDER if (outcomes["model"] == model).any()]
     across = {model: i for i, model in enumerate(models)}
     figure = page(1.25 * len(models) + 3.6, 1.3 + 0.2 * len(cases))
     panel = figure.subplots()

@@ -23,6 +23,7 @@ class Found:
         reason: what the model itself says about its answer; a limitation that it states makes an answer that
             is off a refusal, provided `states_limit` is set.
         states_limit: whether `reason` warns of what is off in an answer that reached its end.
+        fault: an invariant that the answer breaks, in words; what the model says does not excuse it.
         counters: work done, by kind.
     """
 
@@ -30,6 +31,7 @@ class Found:
     reached: bool = True
     reason: str = ""
     states_limit: bool = False
+    fault: str = ""
     counters: Mapping[str, int] = field(default_factory=dict)
 
 
@@ -66,13 +68,15 @@ def judged(attempt: Callable[[], Found], tolerance: float) -> Verdict:
     return Verdict(
         outcome=_outcome(found, tolerance),
         error=found.error,
-        reason=found.reason,
+        reason=found.fault or found.reason,
         iterations=work.get("newton_iterations", 0),
         halvings=work.get("halved_increments", 0) + work.get("halved_steps", 0),
     )
 
 
 def _outcome(found: Found, tolerance: float) -> str:
+    if found.fault:
+        return WRONG
     # what a path or run holds up to where it stopped is judged as well: a refusal must leave a good state
     if math.isfinite(found.error) and found.error <= tolerance:
         return RIGHT if found.reached else REFUSED
