@@ -64,6 +64,18 @@ STUDIES: dict[str, tuple[str, str]] = {
         "studies.stability.statics.geometry",
         "hard cases: crossing ratios and inclinations to their ends, parallel, unequal and curved strips",
     ),
+    "stability/step_size": (
+        "studies.stability.motion.step_size",
+        "hard cases: steps of a motion from 1e-7 to 1e-2 s: energy, order, and what a step does not resolve",
+    ),
+    "stability/long_run": (
+        "studies.stability.motion.long_run",
+        "hard cases: a million steps without damping, some minutes; goes on where it was interrupted",
+    ),
+    "stability/ratios": (
+        "studies.stability.motion.ratios",
+        "hard cases: light and heavy bodies, massless and heavy strips, one strip far stiffer",
+    ),
     "effects/worth": (
         "studies.effects.worth",
         "what each effect is worth for four designs, and what simpler strips save",

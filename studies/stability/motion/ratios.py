@@ -110,7 +110,7 @@ def stiffer(given: Problem, factor: float) -> Mechanism:
 def _case(case: Ratio) -> tuple[list[dict[str, Any]], dict[str, Any]]:
     start = math.radians(START_DEG)
     period = 1.0 / float(answer_modes(case.design, REFINED, count=1).frequency[0])
-    asked = {"start": start, "duration": period}
+    asked: dict[str, Any] = {"start": start, "duration": period}
     reference = refined_swing(case.design, step=period / REFINED_STEPS, **asked)
     coarser = refined_swing(case.design, step=period / COARSER_STEPS, **asked)
     rows, gap = [], math.inf
