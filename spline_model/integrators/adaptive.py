@@ -78,7 +78,7 @@ def integrate(
             acceleration, totals = new_a, new_totals
             rows.append(np.empty(7))
             record(new_z, new_v, motion, strains, totals, rows[-1])
-            if first_gain(np.array((rows[0], rows[-1])), MOST_GAIN) < 2:
+            if first_gain(np.array((rows[0], rows[-1])), motion.energy, MOST_GAIN) < 2:
                 message = f"stopped at {time[-1]:.6g} s: the energy grows"
                 break
         else:

@@ -166,7 +166,7 @@ class _Mover:
 
     def _is_good(self, solved: bool) -> bool:
         """Whether the run may go on: its steps were solved, and its energy did not grow."""
-        good = first_gain(self.rows[: self.kept], MOST_GAIN)
+        good = first_gain(self.rows[: self.kept], self.motion.energy, MOST_GAIN)
         if good < self.kept:
             at = good * self.every * self.step
             self.message = f"stopped at {at:.6g} s: the energy grows by more than {MOST_GAIN:g} of itself"

@@ -74,7 +74,7 @@ def integrate(
             rates.append(work.jacobian @ w)
             rows.append(np.empty(7))
             record(states[-1], rates[-1], motion, work.strains, totals, rows[-1])
-            fine = first_gain(np.array((rows[0], rows[-1])), MOST_GAIN_OF_OTHERS) == 2
+            fine = first_gain(np.array((rows[0], rows[-1])), motion.energy, MOST_GAIN_OF_OTHERS) == 2
         if not fine:
             kept = k + 1
             states, rates, rows = states[:kept], rates[:kept], rows[:kept]

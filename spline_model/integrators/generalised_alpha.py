@@ -132,7 +132,7 @@ def integrate(
             rows.append(np.empty(7))
             record(stepper.z, stepper.v, motion, strains, totals, rows[-1])
             rows[-1][STRAIN] += open_energy(system, stepper.z)
-            if first_gain(np.array((rows[0], rows[-1])), MOST_GAIN_OF_OTHERS) < 2:
+            if first_gain(np.array((rows[0], rows[-1])), motion.energy, MOST_GAIN_OF_OTHERS) < 2:
                 message = f"stopped at {k * step:.6g} s: the energy grows; take a shorter step"
                 states, rates, rows = states[:-1], rates[:-1], rows[:-1]
                 break

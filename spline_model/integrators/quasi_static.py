@@ -152,7 +152,7 @@ def integrate(system: System, motion: Motion, z: Array, *, step: float, steps: i
             break
         if k % every == 0:
             note()
-            if first_gain(np.array((rows[0], rows[-1])), MOST_GAIN) < 2:
+            if first_gain(np.array((rows[0], rows[-1])), motion.energy, MOST_GAIN) < 2:
                 message = f"stopped at {k * step:.6g} s: the energy grows"
                 states, rates, rows = states[:-1], rates[:-1], rows[:-1]
                 break

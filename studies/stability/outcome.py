@@ -69,7 +69,7 @@ def judged(attempt: Callable[[], Found], tolerance: float) -> Verdict:
         outcome=_outcome(found, tolerance),
         error=found.error,
         reason=found.fault or found.reason,
-        iterations=work.get("newton_iterations", 0),
+        iterations=work.get("newton_iterations", work.get("iterations", 0)),
         halvings=work.get("halved_increments", 0) + work.get("halved_steps", 0),
     )
 
