@@ -56,6 +56,10 @@ STUDIES: dict[str, tuple[str, str]] = {
         "studies.convergence.slide_stiffness",
         "error against the stiffness of the strains that the axial modes do not see",
     ),
+    "stability/rotation": (
+        "studies.stability.statics.rotation",
+        "hard cases: rotation to a half turn and beyond, in any number of increments, there and back",
+    ),
     "stability/slenderness": (
         "studies.stability.statics.slenderness",
         "hard cases: slenderness from 10 to 1e5 and strips that cannot stretch",
@@ -75,6 +79,14 @@ STUDIES: dict[str, tuple[str, str]] = {
     "stability/ratios": (
         "studies.stability.motion.ratios",
         "hard cases: light and heavy bodies, massless and heavy strips, one strip far stiffer",
+    ),
+    "stability/events": (
+        "studies.stability.motion.events",
+        "hard cases: drives reversed, bodies let go and caught a thousand times, targets that jump",
+    ),
+    "stability/environment": (
+        "studies.stability.whole.environment",
+        "hard cases: the same answers on any number of threads and in any order of strips and bodies",
     ),
     "effects/worth": (
         "studies.effects.worth",

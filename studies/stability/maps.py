@@ -30,23 +30,28 @@ WIDTH, HEIGHT = 2.3, 3.5
 
 
 def outcome_map(
-    outcomes: pd.DataFrame, *, title: str, height: float = HEIGHT, margin: float = 0.0, **axes: Any
+    outcomes: pd.DataFrame,
+    *,
+    title: str,
+    panels_by: str = "model",
+    order: Sequence[str] = ORDER,
+    **axes: Any,
 ) -> Figure:
-    """Draw one panel a model: a mark a case at its place (x, y), by its outcome.
+    """Draw one panel a model, or another column of the table: a mark a case at (x, y), by its outcome.
 
     Args:
-        outcomes: columns model, x, y, outcome.
+        outcomes: columns x, y, outcome and `panels_by`.
         title: of the figure.
-        height: [inch]; margin: added to the width, for long labels of y.
+        panels_by: column whose values have a panel each; order: of the panels.
         axes: properties of the panels, as of `Axes.set`; `yticks` and `xticks` with labels as a mapping of
             place to label.
     """
-    models = [model for model in ORDER if (outcomes["model"] == model).any()]
-    figure = page(WIDTH * len(models) + margin, height)
+    models = [model for model in order if (outcomes[panels_by] == model).any()]
+    figure = page(WIDTH * len(models), HEIGHT)
     panels = figure.subplots(1, len(models), sharex=True, sharey=True, squeeze=False)[0]
     ticks: dict[str, Any] = {name: axes.pop(name) for name in ("xticks", "yticks") if name in axes}
     for panel, model in zip(panels, models, strict=True):
-        mine = outcomes[outcomes["model"] == model]
+        mine = outcomes[outcomes[panels_by] == model]
         for outcome, (colour, marker) in LOOKS.items():
             some = mine[mine["outcome"] == outcome]
             if len(some):  # an empty line that is not clipped has no place for the layout

@@ -165,7 +165,7 @@ def jump(settings: Settings, degrees: float, checked: bool) -> Found:
     """Follow a target that jumps from rest in one increment; against the refined path of many."""
     design = replace(named_case(CASE), rotation=math.radians(degrees), increments=1)
     many = traced(replace(design, increments=36), CHECK)
-    reference = replace(many, torque=many.torque[[0, -1]], centre=many.centre[[0, -1]])
+    reference = replace(many, at=many.at[[0, -1]], torque=many.torque[[0, -1]], centre=many.centre[[0, -1]])
     return _bounded(found(traced(design, settings), reference, checked=checked), 1)
 
 

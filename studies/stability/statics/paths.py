@@ -46,8 +46,13 @@ class StaticCase:
 
 @dataclass(frozen=True, kw_only=True)
 class Traced:
-    """A path over S states: torque (S,) [N m], place of the driven body's centre (S, 2) [m]."""
+    """A path over S states.
 
+    Attributes:
+        at: (S,) rotation [rad] or load factor; torque: (S,) [N m]; centre: (S, 2) of the driven body [m].
+    """
+
+    at: Array
     torque: Array
     centre: Array
     reached: bool
@@ -62,6 +67,7 @@ def traced(design: Design, settings: Settings) -> Traced:
         pivot = answer_static(design, settings)
         torque, centre, counters = pivot.torque, pivot.centre, pivot.counters
         return Traced(
+            at=pivot.rotation,
             torque=torque,
             centre=centre,
             reached=pivot.converged,
@@ -71,6 +77,7 @@ def traced(design: Design, settings: Settings) -> Traced:
         )
     answer = answer_mechanism(design, settings)
     return Traced(
+        at=answer.load_factor,
         torque=answer.torque,
         centre=answer.bodies[str(design.body)][:, :2],
         reached=answer.converged,
@@ -83,13 +90,15 @@ def traced(design: Design, settings: Settings) -> Traced:
 def distance(path: Traced, reference: Traced) -> float:
     """Return the largest distance of two paths over the states that both have: of torque or place [1].
 
-    Each over its largest value on the reference's path; infinite where the path is not of finite numbers.
+    Each over its largest value on the reference's path; infinite where the path is not of finite numbers. A
+    path that stopped may end between two of the reference's states.
     """
-    states = min(len(path.torque), len(reference.torque))
+    near = np.abs(path.at[:, None] - reference.at).min(axis=1) < 1e-9
+    same = np.abs(path.at[near][:, None] - reference.at).argmin(axis=1)
     if not (np.isfinite(path.torque).all() and np.isfinite(path.centre).all()):
         return float("inf")
-    torque = np.abs(path.torque[:states] - reference.torque[:states]).max()
-    place = np.linalg.norm(path.centre[:states] - reference.centre[:states], axis=1).max()
+    torque = np.abs(path.torque[near] - reference.torque[same]).max()
+    place = np.linalg.norm(path.centre[near] - reference.centre[same], axis=1).max()
     travel = np.linalg.norm(reference.centre - reference.centre[0], axis=1).max()
     return float(max(torque / np.abs(reference.torque).max(), place / travel if travel > 0.0 else place))
 
