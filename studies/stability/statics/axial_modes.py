@@ -14,7 +14,7 @@ from studies.stability import maps
 from studies.stability.columns import DEFAULT, FE, INDEPENDENT, PAPER, REFINED
 from studies.stability.counts import counted
 from studies.stability.outcome import judged
-from studies.stability.statics.paths import TOLERANCE, distance, found, traced
+from studies.stability.statics.paths import TOLERANCE, attempted, distance, traced
 
 CASE = "cross_axis_pivot"
 CASES = (CASE,)
@@ -49,11 +49,8 @@ def compute(progress: Callable[[int, int], None]) -> dict[str, pd.DataFrame]:
     chosen = list(settings())
     for done, each in enumerate(chosen):
         progress(done, len(chosen))
-
-        def attempt(given: SplineSettings, checked: bool) -> object:
-            return found(traced(design, given), reference, checked=checked)
-
-        verdict = judged(partial(attempt, each.settings, each.model != PAPER), TOLERANCE)
+        attempt = partial(attempted, design, each.settings, reference, checked=each.model != PAPER)
+        verdict = judged(attempt, TOLERANCE)
         place = {"panel": each.panel, "model": each.model, "x": each.count, "y": each.other}
         rows.append({**place, **verdict.row()})
     progress(len(chosen), len(chosen))

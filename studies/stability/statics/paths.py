@@ -127,7 +127,7 @@ def _case(case: StaticCase) -> tuple[list[dict[str, Any]], dict[str, Any]]:
     rows, gap = [], float("inf")
     for model, settings in COLUMNS.items():
         chosen = case.settings.get(model, settings)
-        attempt = partial(_attempt, case.design, chosen, reference, checked=model not in UNCHECKED)
+        attempt = partial(attempted, case.design, chosen, reference, checked=model not in UNCHECKED)
         verdict = judged(attempt, TOLERANCE)
         rows.append({**place, "model": model, **verdict.row()})
         if model == FE:
@@ -138,7 +138,8 @@ def _case(case: StaticCase) -> tuple[list[dict[str, Any]], dict[str, Any]]:
     return rows, {**place, "refinement": spread, "independent": gap, "settled": "yes" if settled else "no"}
 
 
-def _attempt(design: Design, settings: Settings, reference: Traced, *, checked: bool) -> Found:
+def attempted(design: Design, settings: Settings, reference: Traced, *, checked: bool) -> Found:
+    """Solve `design` and compare the path with the reference; see `found`."""
     return found(traced(design, settings), reference, checked=checked)
 
 
