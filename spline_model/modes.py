@@ -149,6 +149,8 @@ def _sorted_modes(stiffness: Array, mass: Array) -> tuple[Array, Array]:
     try:
         inverse, vectors = eigh(mass, stiffness)
     except np.linalg.LinAlgError:  # K is not positive definite
+        inverse = np.zeros(1)
+    if not inverse[0] > 0.0:
         values, vectors = eigh(stiffness, mass)
         return np.asarray(values), np.asarray(vectors)
     return 1.0 / inverse[::-1], vectors[:, ::-1] / np.sqrt(inverse[::-1])

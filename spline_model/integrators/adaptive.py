@@ -38,7 +38,7 @@ def integrate(
     estimates the step's error (Milne's device; Hairer, Norsett and Wanner, III.7). A step is
     accepted if it is below accuracy * h / duration. Every accepted step is a record.
     """
-    counters, strains = np.zeros(5, dtype=np.int64), np.empty(len(motion.rigidity))
+    counters, strains = np.zeros(6, dtype=np.int64), np.empty(len(motion.rigidity))
     totals, active = np.zeros(2), np.zeros(motion.tables.drives.row.size, dtype=np.int64)
     time, states, rates, rows = [0.0], [z.copy()], [v.copy()], [np.empty(7)]
 

@@ -24,7 +24,18 @@ from spline_model.compile import System
 from spline_model.integrators.events import SAME, catch, drives_at, event_times, from_here
 from spline_model.integrators.monitor import MOST_GAIN, first_gain
 from spline_model.integrators.motion import Array, Records, require_compiled
-from spline_model.kernels.energy_step import FACTORISATIONS, FOLDED, HALVED, NEWTON, STEPS, advance, run
+from spline_model.kernels.energy_step import (
+    FACTORISATIONS,
+    FOLDED,
+    HALVED,
+    MOST_HALVED,
+    MOST_HALVED_A_STEP,
+    NEWTON,
+    STEPS,
+    WHOLE,
+    advance,
+    run,
+)
 from spline_model.kernels.motion import Motion
 from spline_model.kernels.record import record
 
@@ -81,7 +92,7 @@ class _Mover:
         self.z, self.v, self.acceleration = z.copy(), v.copy(), acceleration.copy()
         self.states, self.rates = np.zeros((count, z.size)), np.zeros((count, v.size))
         self.rows, self.totals = np.zeros((count, 7)), np.zeros(2)
-        self.counters = np.zeros(5, dtype=np.int64)
+        self.counters = np.zeros(6, dtype=np.int64)
         self.active = np.zeros(motion.tables.drives.row.size, dtype=np.int64)
         self.time, self.kept, self.message = 0.0, 0, ""
 
@@ -175,6 +186,8 @@ class _Mover:
             reason = (
                 "a strip folds; take a shorter step" if self.counters[FOLDED] else "Newton fails at any step"
             )
+            if self.counters[HALVED] > MOST_HALVED + MOST_HALVED_A_STEP * self.counters[WHOLE]:
+                reason = "steps are halved too often; take a shorter one"
             self.message = f"stopped at {self.time:.6g} s: {reason}"
         return not self.message
 
