@@ -80,6 +80,18 @@ STUDIES: dict[str, tuple[str, str]] = {
         "studies.stability.motion.ratios",
         "hard cases: light and heavy bodies, massless and heavy strips, one strip far stiffer",
     ),
+    "stability/axial_modes": (
+        "studies.stability.statics.axial_modes",
+        "hard cases: too few and too many axial modes, too few Gauss points",
+    ),
+    "stability/bad_starts": (
+        "studies.stability.statics.bad_starts",
+        "hard cases: crumpled, reversed and other wrong guesses of a state",
+    ),
+    "stability/fuzz": (
+        "studies.stability.whole.fuzz",
+        "hard cases: random designs and commands",
+    ),
     "stability/events": (
         "studies.stability.motion.events",
         "hard cases: drives reversed, bodies let go and caught a thousand times, targets that jump",

@@ -24,7 +24,8 @@ from spline_model.kernels.drives import subtract_weight
 from spline_model.kernels.record import forward, record
 
 STEPS, HALVED, NEWTON, FACTORISATIONS, FOLDED, WHOLE = range(6)
-"""Places of the counters of a run, STEPS with the parts of halved ones and WHOLE without; FOLDED is 1 if the last refused step was solved, but no strip."""
+"""Places of the counters of a run: STEPS with the parts of halved ones, WHOLE without; FOLDED is 1 if the
+last refused step was solved, but no strip."""
 MOST_HALVED, MOST_HALVED_A_STEP = 500, 150
 """A run is given up when it has been halved more often than this, and this for every step done: the
 swing of Table 1 at steps of its own period takes 120 a step; without a bound a step may take minutes."""

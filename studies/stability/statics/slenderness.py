@@ -1,7 +1,7 @@
 """Slenderness L/h from 10 to 1e5 and strips that cannot stretch: errors, iterations and digits."""
 
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -91,7 +91,7 @@ def inextensible(settings: SplineSettings) -> SplineSettings:
     return replace(settings, stretch="inextensible")
 
 
-def limit_table(settings: Any) -> pd.DataFrame:
+def limit_table(settings: Any, chosen: Sequence[float] = SLENDERNESS) -> pd.DataFrame:
     """Return, slenderness by slenderness, the distance to the inextensible strip, the iterations and digits.
 
     With 1/EA the axial energy and all it changes go with (L/h)^-2. `constant` is the distance times (L/h)^2;
@@ -99,7 +99,7 @@ def limit_table(settings: Any) -> pd.DataFrame:
     """
     rigid = answer_static(slender(SLENDERNESS[-1]), inextensible(settings))
     rows = []
-    for slenderness in SLENDERNESS:
+    for slenderness in chosen:
         here = answer_static(slender(slenderness), settings)
         beside = answer_static(slender(slenderness * NEIGHBOUR), settings)
         gap = _gap(here, rigid)

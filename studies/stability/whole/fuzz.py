@@ -29,7 +29,7 @@ TOLERANCE, BOOKS = 0.05, 1e-8
 #: Control points and increments of the reference.
 REFINED, REFINED_INCREMENTS = 12, 24
 #: Steps of a motion.
-STEPS = 25
+STEPS = 6
 STATIC, MOTION = "path", "motion"
 
 
@@ -130,7 +130,7 @@ def drawn(generator: np.random.Generator) -> Example:
         control_points=int(generator.integers(4, 10)),
         targets=tuple(float(turn) for turn in np.radians(uniform(-200.0, 200.0, legs))),
         increments=int(generator.integers(1, 25)),
-        step=None if generator.random() < 0.6 else 10.0 ** uniform(-3.0, 0.5),
+        step=None if generator.random() < 0.7 else 10.0 ** uniform(-3.0, 0.0),
     )
     if generator.random() < 0.05:
         names = ("length", "crossing_ratio", "youngs_modulus", "slenderness")
