@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from spline_model.accurate_motion import Task, solve_accurately
 from spline_model.compile import System, compile_scene
+from spline_model.content import energy_content, resolution
 from spline_model.effects import DrivenRotation
 from spline_model.errors import InvalidParameter, require_choice, require_positive
 from spline_model.fast.release import is_swing
@@ -29,6 +30,8 @@ from spline_model.laps import Laps
 from spline_model.mechanism import Mechanism
 from spline_model.modes import linear_modes, static_state
 from spline_model.pivot import Pivot
+from spline_model.restart import counted_on, last_state, later
+from spline_model.scene import Scene
 from spline_model.solution import MotionEstimate, Status
 
 Array = NDArray[np.float64]
@@ -49,8 +52,6 @@ STEP = 5e-5
 """Default step of the implicit integrators [s]: some 240 steps a swing of Table 1."""
 MOST_MEMORY = 2e9
 """Bytes that the records of one run may take."""
-STEPS_PER_PERIOD = 20
-"""Fewer steps than this in a period of the swing do not resolve it (phase error above 1 %)."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -115,6 +116,7 @@ def solve_motion(
     integrator: str = "energy",
     accuracy: float | None = None,
     records: int | None = None,
+    after: Trajectory | None = None,
     **options: float,
 ) -> Trajectory:
     """Motion of a mechanism from the static state at the rotation ``start`` [rad] of a body, at rest.
@@ -131,10 +133,14 @@ def solve_motion(
     accuracy : wanted error of the rotation over the run [rad] instead of a step: steps and control
         points are chosen, and the trajectory has its ``estimate``.
     records : largest number of records; default every step, or with an accuracy 128 a swing or more.
+    after : a motion of this mechanism to go on with from its last record, instead of ``start``;
+        time, work, losses and the clock of loads and drives run on.
 
     Raises InvalidParameter, and ConvergenceError if statics does not reach ``start``.
     """
     _check(integrator, duration, start, step, accuracy)
+    if accuracy is not None and after is not None:
+        raise InvalidParameter("accuracy", accuracy, "a step for a motion that goes on after another")
     laps, body = Laps(), mechanism.design.body_named(body)
     if accuracy is not None:
         task = _task(mechanism, start, body, drive, duration)
@@ -143,10 +149,14 @@ def solve_motion(
     system = compile_scene(scene if drive is None else mechanism.with_effects(drive))
     motion, layout = set_in_motion(system), system.layout
     laps.lap("compile")
-    held = static_state(mechanism, start, body=body)
-    z, v = np.zeros(layout.size), np.zeros(layout.coordinate_count)
-    known = min(len(held), layout.size)
-    z[:known] = held[:known]
+    if after is None:
+        held = static_state(mechanism, start, body=body)
+        z, v = np.zeros(layout.size), np.zeros(layout.coordinate_count)
+        known = min(len(held), layout.size)
+        z[:known] = held[:known]
+    else:
+        z, v = last_state(after, system)
+        motion = later(motion, float(after.time[-1]))
     acceleration, z = initial_acceleration(system, motion, z, v)
     effects = mechanism.effects
     laps.lap("start")
@@ -159,7 +169,7 @@ def solve_motion(
     laps.lap("compile")
     if integrator == "energy" and massless(system, motion):
         integrator = "quasi-static strips"
-        run = quasi_static.integrate(system, motion, z, step=step, steps=steps, every=every)
+        run = quasi_static.integrate(system, motion, z, v, step=step, steps=steps, every=every)
     else:
         more = {"mechanism": mechanism} if integrator == "leapfrog" else options
         run = INTEGRATORS[integrator](
@@ -167,7 +177,9 @@ def solve_motion(
         )
     laps.lap("solve")
     settings = {"integrator": integrator, "step_s": step, **options}
-    return _trajectory(system, run, effects, body, settings, _resolution(system, motion, step), laps)
+    warning = _resolution(scene, z, v, step)
+    trajectory = _trajectory(system, run, effects, body, settings, warning, laps)
+    return trajectory if after is None else counted_on(trajectory, after)
 
 
 def _task(
@@ -255,7 +267,7 @@ def _trajectory(
     effects: tuple[str, ...],
     body: str,
     settings: dict[str, Any],
-    resolution: str,
+    warning: str,
     laps: Laps,
 ) -> Trajectory:
     rows, layout = run.rows, system.layout
@@ -275,7 +287,7 @@ def _trajectory(
         velocity_residual=rows[:, VELOCITY],
         states=run.states,
         velocities=run.velocities,
-        resolution=resolution,
+        resolution=warning,
         effects=effects,
         counters=run.counters,
         settings=settings,
@@ -283,14 +295,13 @@ def _trajectory(
     )
 
 
-def _resolution(system: System, motion: Motion, step: float) -> str:
-    """How far a step under-resolves the swing at rest, or an empty string."""
-    squares = linear_modes(system, system.rest, motion.mass)[0]
-    omega = math.sqrt(squares[0]) if squares[0] > 0 else 0.0
-    if not 0 < omega * step / (2 * math.pi) * STEPS_PER_PERIOD > 1:
-        return ""
-    return (
-        f"the step of {step:g} s is {omega * step / (2 * math.pi):.3g} of the swing's period at rest: "
-        "energy is right, phase and amplitude are not; "
-        f"take {2 * math.pi / omega / STEPS_PER_PERIOD:.2g} s or less"
-    )
+def _resolution(scene: Scene, z: Array, v: Array, step: float) -> str:
+    """What a step leaves unresolved of the modes that carry the energy of the start; drives let go."""
+    free = compile_scene(scene)
+    motion, size = set_in_motion(free), free.layout.size
+    start = np.zeros(size)
+    start[: min(size, len(z))] = z[:size]
+    acceleration, start = initial_acceleration(free, motion, start, v)
+    lowest = linear_modes(free, free.rest, motion.mass)[0][0]
+    swing = math.sqrt(max(lowest, 0.0)) / (2 * math.pi)
+    return resolution(energy_content(free, motion, start, v, acceleration), swing, step)

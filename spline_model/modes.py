@@ -133,11 +133,27 @@ def linear_modes(system: System, z: Array, mass: Array) -> tuple[Array, Array, A
     free = null_space(constraints)
     scaled_mass = mass * unit[:count, None] * unit[:count]
     free = _without_massless(free, stiffness, scaled_mass)
-    values, vectors = eigh(free.T @ stiffness @ free, free.T @ scaled_mass @ free)
+    values, vectors = _sorted_modes(free.T @ stiffness @ free, free.T @ scaled_mass @ free)
     shapes = free @ vectors
     strain = np.einsum("im,ij,jm->m", shapes, stiffness, shapes)
     share = np.einsum("im,ij,jm->m", shapes, slide, shapes) / np.abs(strain)
     return values, shapes * unit[:count, None], share
+
+
+def _sorted_modes(stiffness: Array, mass: Array) -> tuple[Array, Array]:
+    """Squared frequencies and shapes of unit modal mass, lowest first.
+
+    About a stable state by M x = K x / w^2, in which the lowest modes are the largest and keep
+    their digits beside axial ones a thousand times as fast.
+    """
+    try:
+        inverse, vectors = eigh(mass, stiffness)
+    except np.linalg.LinAlgError:  # K is not positive definite
+        inverse = np.zeros(1)
+    if not inverse[0] > 0.0:
+        values, vectors = eigh(stiffness, mass)
+        return np.asarray(values), np.asarray(vectors)
+    return 1.0 / inverse[::-1], vectors[:, ::-1] / np.sqrt(inverse[::-1])
 
 
 def _without_massless(free: Array, stiffness: Array, mass: Array) -> Array:

@@ -23,6 +23,7 @@ FLOOR = 1e-8
 (it grows with EA L^2 / EI in the paper's stretch form); above it, that is a failure."""
 MOST_ITERATIONS = 15
 """From a tangent predictor Newton takes two to four; more than this is a wrong start."""
+STANDS_STILL = "the centreline stands still where its curvature is asked for"
 
 
 @dataclass(kw_only=True)
@@ -112,7 +113,11 @@ def solve(work: Workspace, start: Array, load_factor: float) -> Newton:
     z = start.copy()
     norms: list[float] = []
     for iteration in range(MOST_ITERATIONS + 1):
-        energies = work.evaluate(z, load_factor)
+        try:
+            energies = work.evaluate(z, load_factor)
+        except ZeroDivisionError:
+            nothing = (float("nan"), float("nan"))
+            return Newton(z=z, energies=nothing, norms=tuple(norms), reason=STANDS_STILL)
         norms.append(work.norm())
         if not np.isfinite(norms[-1]):
             return Newton(z=z, energies=energies, norms=tuple(norms), reason="the residual is not finite")

@@ -25,3 +25,9 @@ def evaluate(
         gradient[:count] += force
         hessian[:count, :count] += stiffness
     return bending, axial
+
+
+def open_energy(system: System, z: Array) -> float:
+    """Energy of the potentials in Python [J], which the compiled records do not know."""
+    q = z[: system.layout.coordinate_count]
+    return float(sum(potential.derivatives(q, system.layout)[0] for potential in system.open_potentials))

@@ -45,13 +45,14 @@ def sections(system: System, states: Array, strip_name: str, stations: Array) ->
     moment = np.zeros_like(speed)
     if bending is not None:
         length = rest_speed if bending.measure == "material" else speed
-        strain = _cross(tangent, bend) / speed**2 / length - rest_curvature
+        given = bending.natural_curvature
+        strain = _cross(tangent, bend) / speed**2 / length - (rest_curvature if given is None else given)
         moment = bending.flexural_rigidity * strain
 
     force = np.zeros_like(speed)
     for consistent in scene.of(Stretching):
         if consistent.strip == strip_name:
-            force += consistent.axial_rigidity * (speed / rest_speed - 1.0)
+            force += consistent.axial_rigidity * (speed / rest_speed - 1.0 - consistent.natural_strain)
     for i, mixed in enumerate(scene.of(MixedStretching)):
         if mixed.strip == strip_name:
             first, modes = mixed.modes.evaluate(stations)

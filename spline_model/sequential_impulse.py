@@ -28,13 +28,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.compile import compile_scene
-from spline_model.dynamics import MOST_MEMORY, STEPS_PER_PERIOD, Trajectory
+from spline_model.content import STEPS_PER_PERIOD
+from spline_model.dynamics import MOST_MEMORY, Trajectory
 from spline_model.effects import DrivenDisplacement, DrivenRotation
 from spline_model.errors import InvalidParameter, require_count, require_positive
 from spline_model.impulses.run import Run, named
 from spline_model.impulses.solver import TOLERANCE, ImpulseSolver
 from spline_model.impulses.state import Outcome, State
-from spline_model.integrators.events import catch, drive_events, drives_at, from_here
+from spline_model.integrators.events import catch, drives_at, event_times, from_here
 from spline_model.kernels.record import DISSIPATED, KINETIC, POSITION, STRAIN, VELOCITY, WEIGHT, WORK
 from spline_model.laps import Laps
 from spline_model.mass import mass_matrix
@@ -168,8 +169,9 @@ def _follow(run: Run, h: float, steps: int, every: int) -> int:
     motion = solver.motion
     before = np.zeros(len(motion.tables.drives.row), dtype=np.int64)
     done = 0
-    for begin, end in pairwise(drive_events(motion, h, steps)):
-        active = drives_at(motion, begin, h)
+    instants = {round(time / h) for time in event_times(motion, steps * h, h)} - {0, steps}
+    for begin, end in pairwise((0, *sorted(instants), steps)):
+        active = drives_at(motion, (begin + 0.5) * h)
         z, v = run.moving.z, run.moving.v
         motion = from_here(motion, z, active, before, begin * h)
         run.change(*catch(motion, z, v, active, begin * h, h))

@@ -8,6 +8,8 @@ from enum import Enum
 import numpy as np
 from numpy.typing import NDArray
 
+from spline_model.estimate import resolution
+
 Array = NDArray[np.float64]
 
 
@@ -156,6 +158,11 @@ class StaticSolution:
     seconds: dict[str, float]
     estimate: ErrorEstimate | None = None
 
+    @property
+    def resolution(self) -> str:
+        """Empty, or how uncertain too few control points make the answer (``spline_model.estimate``)."""
+        return resolution(self.moment_defect)
+
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class MechanismSolution:
@@ -192,3 +199,8 @@ class MechanismSolution:
     counters: dict[str, int]
     history: tuple[tuple[float, ...], ...]
     seconds: dict[str, float]
+
+    @property
+    def resolution(self) -> str:
+        """Empty, or how uncertain too few control points make the answer (``spline_model.estimate``)."""
+        return resolution(self.moment_defect)

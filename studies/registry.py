@@ -61,6 +61,50 @@ STUDIES: dict[str, tuple[str, str]] = {
         "studies.convergence.slide_stiffness",
         "error against the stiffness of the strains that the axial modes do not see",
     ),
+    "stability/rotation": (
+        "studies.stability.statics.rotation",
+        "hard cases: rotation to a half turn and beyond, in any number of increments, there and back",
+    ),
+    "stability/slenderness": (
+        "studies.stability.statics.slenderness",
+        "hard cases: slenderness from 10 to 1e5 and strips that cannot stretch",
+    ),
+    "stability/geometry": (
+        "studies.stability.statics.geometry",
+        "hard cases: crossing ratios and inclinations to their ends, parallel, unequal and curved strips",
+    ),
+    "stability/step_size": (
+        "studies.stability.motion.step_size",
+        "hard cases: steps of a motion from 1e-7 to 1e-2 s: energy, order, and what a step does not resolve",
+    ),
+    "stability/long_run": (
+        "studies.stability.motion.long_run",
+        "hard cases: a million steps without damping, some minutes; goes on where it was interrupted",
+    ),
+    "stability/ratios": (
+        "studies.stability.motion.ratios",
+        "hard cases: light and heavy bodies, massless and heavy strips, one strip far stiffer",
+    ),
+    "stability/axial_modes": (
+        "studies.stability.statics.axial_modes",
+        "hard cases: too few and too many axial modes, too few Gauss points",
+    ),
+    "stability/bad_starts": (
+        "studies.stability.statics.bad_starts",
+        "hard cases: crumpled, reversed and other wrong guesses of a state",
+    ),
+    "stability/fuzz": (
+        "studies.stability.whole.fuzz",
+        "hard cases: random designs and commands",
+    ),
+    "stability/events": (
+        "studies.stability.motion.events",
+        "hard cases: drives reversed, bodies let go and caught a thousand times, targets that jump",
+    ),
+    "stability/environment": (
+        "studies.stability.whole.environment",
+        "hard cases: the same answers on any number of threads and in any order of strips and bodies",
+    ),
     "effects/worth": (
         "studies.effects.worth",
         "what each effect is worth for four designs, and what simpler strips save",

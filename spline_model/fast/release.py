@@ -37,18 +37,21 @@ def swing(mechanism: Mechanism, system: System, motion: Motion) -> Swing:
     return swing_of(frame_of(mechanism), grid_of(design), masses, body[[0, 2]])
 
 
-def reduced(mechanism: Mechanism, system: System, frame: Frame, z: Array) -> Array:
-    """Coordinates r (R,) of a state z (N,) whose clamps hold."""
+def reduced(mechanism: Mechanism, system: System, frame: Frame, z: Array, v: Array) -> tuple[Array, Array]:
+    """Coordinates r and rates w, (R,) each, of a state z (N,), v (Q,) whose clamps hold."""
     layout, design = system.layout, mechanism.design
-    body = z[layout.body(design.bodies[0].name)]
-    parts = [body]
+    at_body = layout.body(design.bodies[0].name)
+    places, rates = [z[at_body]], [v[at_body]]
     for s, strip in enumerate(design.strips):
         c, d = frame.axis[s]
-        points = z[layout.strip(strip.name)].reshape(-1, 2) - frame.root[s]
-        local = points @ np.array([[c, -d], [d, c]]) / frame.length[s]
-        reach = np.hypot(*(local[-1] - local[-2]))
-        parts += [local[1, :1], local[2:-2].ravel(), np.array([reach])]
-    return np.concatenate(parts)
+        to_local = np.array([[c, -d], [d, c]]) / frame.length[s]
+        local = (z[layout.strip(strip.name)].reshape(-1, 2) - frame.root[s]) @ to_local
+        rate = v[layout.strip(strip.name)].reshape(-1, 2) @ to_local
+        chord = local[-1] - local[-2]
+        reach = float(np.hypot(*chord))
+        places += [local[1, :1], local[2:-2].ravel(), np.array([reach])]
+        rates += [rate[1, :1], rate[2:-2].ravel(), np.array([chord @ (rate[-1] - rate[-2]) / reach])]
+    return np.concatenate(places), np.concatenate(rates)
 
 
 def coordinates(

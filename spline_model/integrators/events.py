@@ -1,4 +1,4 @@
-"""Drives that begin and end during a motion."""
+"""What happens at an instant of a motion: drives that begin, end or change, loads that jump."""
 
 from __future__ import annotations
 
@@ -11,20 +11,29 @@ from spline_model.kernels.motion import Motion
 
 Array = NDArray[np.float64]
 
+SAME = 1e-9
+"""Instants nearer than this share of a step are the same."""
 
-def drive_events(motion: Motion, step: float, steps: int) -> list[int]:
-    """Steps at which a drive begins or ends, with 0 and ``steps``, in order."""
+
+def event_times(motion: Motion, duration: float, step: float) -> list[float]:
+    """Instants inside the motion at which a drive begins or ends or a history has a corner [s].
+
+    A step that ends there keeps its order, and a corner of an active drive, which is a jump of
+    its rate, does not ring on as it would in a step across it.
+    """
+    tables = motion.tables
+    times = np.concatenate(
+        (tables.drives.begin, tables.drives.until, tables.drives.times, tables.loads.times)
+    )
+    inside = np.sort(times[(times > SAME * step) & (times < duration - SAME * step)])
+    apart = np.diff(inside, prepend=-np.inf) > SAME * step
+    return [float(time) for time in inside[apart]]
+
+
+def drives_at(motion: Motion, time: float) -> NDArray[np.int64]:
+    """1 for each drive row that holds at that time [s], 0 for the others."""
     drives = motion.tables.drives
-    times = np.concatenate((drives.begin, drives.until))
-    inside = {round(float(t) / step) for t in times if t < step * steps}
-    return sorted({0, steps} | {k for k in inside if 0 < k < steps})
-
-
-def drives_at(motion: Motion, number: int, step: float) -> NDArray[np.int64]:
-    """1 for each drive row that holds in the step of that number, 0 for the others."""
-    drives = motion.tables.drives
-    middle = (number + 0.5) * step
-    return ((drives.begin < middle) & (middle < drives.until)).astype(np.int64)
+    return ((drives.begin < time) & (time < drives.until)).astype(np.int64)
 
 
 def from_here(
@@ -40,12 +49,13 @@ def from_here(
 
 
 def catch(
-    motion: Motion, z: Array, v: Array, active: NDArray[np.int64], time: float, step: float
+    motion: Motion, z: Array, v: Array, active: NDArray[np.int64], time: float, span: float
 ) -> tuple[Array, float]:
     """Velocity that the active drives allow, and the kinetic energy that the change takes [J].
 
     v+ is the velocity nearest to v in the kinetic metric that satisfies all constraints and
-    the drives' rates: the effect of impulses along the constraints, an inelastic catch.
+    the drives' rates over the next ``span`` [s]: the effect of impulses along the constraints,
+    an inelastic catch.
     """
     drives = motion.tables.drives
     held = np.flatnonzero(active)
@@ -60,8 +70,8 @@ def catch(
     rate = np.zeros(len(rows))
     for i, d in enumerate(held):
         history = (drives.first[d], drives.pairs[d], drives.times, drives.factors)
-        change = factor_at(time + step, *history) - factor_at(time, *history)
-        rate[len(rows) - len(held) + i] = change / step * drives.target[d]
+        change = factor_at(time + span, *history) - factor_at(time, *history)
+        rate[len(rows) - len(held) + i] = change / span * drives.target[d]
     inverse = np.linalg.pinv(motion.mass)
     impulse = np.linalg.lstsq(jacobian @ inverse @ jacobian.T, rate - jacobian @ v, rcond=1e-12)[0]
     caught = v + inverse @ jacobian.T @ impulse

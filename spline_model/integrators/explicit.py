@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from spline_model.compile import System
 from spline_model.errors import InvalidParameter
+from spline_model.integrators.monitor import MOST_GAIN_OF_OTHERS, first_gain
 from spline_model.integrators.motion import Array, Records, require_compiled, require_conservative
 from spline_model.kernels.motion import Motion
 from spline_model.kernels.record import record
@@ -20,8 +21,6 @@ from spline_model.kernels.reduced import Workspace, expand, runge_kutta
 
 STABILITY_LIMIT = 8.0**0.5
 """omega h up to which Runge-Kutta 4 does not amplify an undamped oscillation."""
-MOST_ENERGY = 1.1
-"""A run whose energy exceeds this times the initial one is unstable and stops."""
 
 
 def reduce(motion: Motion, z: Array, v: Array) -> tuple[Array, Array, NDArray[np.int64]]:
@@ -72,7 +71,6 @@ def integrate(
     totals = np.zeros(2)
     states, rates, rows, message = [z], [v], [np.empty(7)], ""
     record(z, v, motion, work.strains, totals, rows[0])
-    most = MOST_ENERGY * (rows[0][0] + rows[0][1])
     for k in range(steps // every):
         fine = runge_kutta(r, w, step, every, free, motion, work)
         if fine:
@@ -81,8 +79,10 @@ def integrate(
             rates.append(work.jacobian @ w)
             rows.append(np.empty(7))
             record(states[-1], rates[-1], motion, work.strains, totals, rows[-1])
-            fine = rows[-1][0] + rows[-1][1] <= most
+            fine = first_gain(np.array((rows[0], rows[-1])), motion.energy, MOST_GAIN_OF_OTHERS) == 2
         if not fine:
+            kept = k + 1
+            states, rates, rows = states[:kept], rates[:kept], rows[:kept]
             message = f"unstable near {k * every * step:.6g} s: the step is above the critical one"
             break
     return Records(

@@ -17,10 +17,11 @@ import numpy as np
 from scipy.linalg import get_lapack_funcs
 
 from spline_model.compile import System
+from spline_model.integrators.monitor import MOST_GAIN_OF_OTHERS, first_gain
 from spline_model.integrators.motion import Array, Records, require_conservative
 from spline_model.kernels.motion import Motion
-from spline_model.kernels.record import forward, record
-from spline_model.operator import evaluate
+from spline_model.kernels.record import STRAIN, forward, record
+from spline_model.operator import evaluate, open_energy
 
 (gesv,) = get_lapack_funcs(("gesv",))  # without the checks and warnings of scipy.linalg.solve
 
@@ -120,6 +121,7 @@ def integrate(
     strains, totals = np.empty(len(motion.rigidity)), np.zeros(2)
     states, rates, rows, message = [z], [v], [np.empty(7)], ""
     record(z, v, motion, strains, totals, rows[0])
+    rows[0][STRAIN] += open_energy(system, z)
     for k in range(1, steps + 1):
         if not stepper.advance(step, step):
             message = f"stopped at {(k - 1) * step:.6g} s: Newton fails at any step"
@@ -129,6 +131,11 @@ def integrate(
             rates.append(stepper.v)
             rows.append(np.empty(7))
             record(stepper.z, stepper.v, motion, strains, totals, rows[-1])
+            rows[-1][STRAIN] += open_energy(system, stepper.z)
+            if first_gain(np.array((rows[0], rows[-1])), motion.energy, MOST_GAIN_OF_OTHERS) < 2:
+                message = f"stopped at {k * step:.6g} s: the energy grows; take a shorter step"
+                states, rates, rows = states[:-1], rates[:-1], rows[:-1]
+                break
     return Records(
         time=np.arange(0.0, len(states)) * (step * every),
         states=np.array(states),

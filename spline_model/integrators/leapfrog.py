@@ -39,28 +39,30 @@ class Flight(NamedTuple):
     w: Array
     acceleration: Array
     records: tuple[Array, Array, Array, Array]
+    most_energy: float
 
     def fly(self, step: float, every: int) -> int:
         """Fill the records, ``every`` steps apart, in compiled code; returns the rows filled."""
-        most = MOST_ENERGY * self.records[3][0]
+        most = self.most_energy
         start = (self.r, self.w, self.acceleration)
         return int(run(*start, step, every, most, self.constants, self.space, self.records))
 
 
-def flight(system: System, motion: Motion, z: Array, rows: int, mechanism: Mechanism) -> Flight:
-    """The swing from z at rest with space for ``rows`` records, the first one filled."""
+def flight(system: System, motion: Motion, z: Array, v: Array, rows: int, mechanism: Mechanism) -> Flight:
+    """The swing from (z, v) with space for ``rows`` records, the first one filled."""
     if not is_swing(mechanism, system):
         raise InvalidParameter(
             "integrator", "leapfrog", "energy, for other scenes than a free body on straight mixed strips"
         )
     constants = swing(mechanism, system, motion)
-    space, r = swing_space(constants), reduced(mechanism, system, constants.frame, z)
-    w, acceleration, strain = np.zeros_like(r), np.zeros_like(r), np.zeros(rows)
+    space, (r, w) = swing_space(constants), reduced(mechanism, system, constants.frame, z, v)
+    acceleration, strain = np.zeros_like(r), np.zeros(rows)
     accelerate(r, w, constants, space, acceleration)
     strain[0] = stored_energy(r, constants, space)[0]
     places, rates, accelerations = (np.zeros((rows, len(r))) for _ in range(3))
-    places[0], accelerations[0] = r, acceleration
-    return Flight(constants, space, r, w, acceleration, (places, rates, accelerations, strain))
+    places[0], rates[0], accelerations[0] = r, w, acceleration
+    most = MOST_ENERGY * (strain[0] + 0.5 * float(v @ motion.mass @ v))
+    return Flight(constants, space, r, w, acceleration, (places, rates, accelerations, strain), most)
 
 
 def integrate(
@@ -75,9 +77,9 @@ def integrate(
     every: int,
     mechanism: Mechanism,
 ) -> Records:
-    """Take ``steps`` steps from z at rest, recording every ``every``-th one; needs z alone of the start."""
+    """Take ``steps`` steps from (z, v), recording every ``every``-th one; finds its own acceleration."""
     rows = steps // every + 1
-    start = flight(system, motion, z, rows, mechanism)
+    start = flight(system, motion, z, v, rows, mechanism)
     done = start.fly(step, every)
     places, rates, _, strain = start.records
     q, v = coordinates(mechanism, system, start.constants.frame, places[:done], rates[:done])

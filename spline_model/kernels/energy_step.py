@@ -23,8 +23,12 @@ from spline_model.kernels.dissipation import dissipation
 from spline_model.kernels.drives import subtract_weight
 from spline_model.kernels.record import forward, record
 
-STEPS, HALVED, NEWTON, FACTORISATIONS, FOLDED = range(5)
-"""Places of the counters of a run; FOLDED is 1 if the last refused step was solved, but no strip."""
+STEPS, HALVED, NEWTON, FACTORISATIONS, FOLDED, WHOLE = range(6)
+"""Places of the counters of a run: STEPS with the parts of halved ones, WHOLE without; FOLDED is 1 if the
+last refused step was solved, but no strip."""
+MOST_HALVED, MOST_HALVED_A_STEP = 500, 150
+"""A run is given up when it has been halved more often than this, and this for every step done: the
+swing of Table 1 at steps of its own period takes 120 a step; without a bound a step may take minutes."""
 
 
 @njit(cache=True, nogil=True)
@@ -139,7 +143,7 @@ def advance(
             counters[HALVED] += 1
             counters[FOLDED] = 1 if solved else 0
             step *= 0.5
-            if step < smallest:
+            if step < smallest or counters[HALVED] > MOST_HALVED + MOST_HALVED_A_STEP * counters[WHOLE]:
                 return done
             continue
         counters[STEPS] += 1
@@ -156,6 +160,7 @@ def advance(
         z[:] = guess
         done += step
         step = min(2.0 * step, first_step)
+    counters[WHOLE] += 1
     return duration
 
 

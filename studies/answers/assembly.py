@@ -28,7 +28,7 @@ class MechanismResponse:
     """Static answer of a mechanism over S converged states, that of load factor 0 first.
 
     Attributes:
-        model, settings, status, message, counters, wall_s, solve_s: as in `Response`.
+        model, settings, status, message, resolution, counters, wall_s, solve_s: as in `Response`.
         effects: names of what was assembled.
         load_factor: (S,) [1].
         bodies: (S, 3) by name: centre of mass x, y [m], rotation, counter-clockwise [rad].
@@ -43,6 +43,7 @@ class MechanismResponse:
     effects: tuple[str, ...]
     status: str
     message: str
+    resolution: str
     load_factor: Array
     bodies: dict[str, Array]
     torque: Array
@@ -91,6 +92,7 @@ def mechanism_response(
         effects=assembled(result.effects),
         status=str(result.status.value),
         message=result.message,
+        resolution=getattr(result, "resolution", ""),
         bodies={name: np.asarray(place, dtype=float) for name, place in result.bodies.items()},
         shear_energy=np.asarray(shear, dtype=float),
         counters=dict(result.counters),

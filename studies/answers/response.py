@@ -62,6 +62,8 @@ class Response:
         model: "spline", "fe" or "fe-shear".
         settings: discretisation keywords.
         status: "converged" or "not_converged"; `message` says why and where it stopped.
+        resolution: how uncertain too coarse a discretisation makes the answer; empty where it is resolved,
+            and of a model that cannot tell.
         rotation: (S,) of the body, counter-clockwise [rad].
         centre: (S, 2) centre of mass of the body, origin at A1 [m].
         torque: (S,) driving torque on the body [N m]; stiffness: (S,) its derivative from the tangent [N m /
@@ -86,6 +88,7 @@ class Response:
     effects: tuple[str, ...]
     status: str
     message: str
+    resolution: str
     rotation: Array
     centre: Array
     torque: Array
@@ -144,6 +147,7 @@ def response(
         effects=effects,
         status=str(result.status.value),
         message=result.message,
+        resolution=getattr(result, "resolution", ""),
         centre_shift=centre_shift(problem, arrays["rotation"], arrays["centre"]),
         extreme_fibre_strain=strain,
         extreme_fibre_stress=problem.youngs_modulus * strain,

@@ -155,7 +155,7 @@ def _leapfrog(pivot: Pivot, motion: Trajectory) -> Callable[[], Callable[[], int
     every = motion.counters["steps"] // (rows - 1)
 
     def prepare() -> Callable[[], int]:
-        start = leapfrog.flight(system, moving, motion.states[0], rows, pivot.mechanism)
+        start = leapfrog.flight(system, moving, motion.states[0], motion.velocities[0], rows, pivot.mechanism)
         return lambda: start.fly(step, every)
 
     return prepare

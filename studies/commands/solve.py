@@ -86,6 +86,7 @@ def as_document(answer: Response) -> dict[str, Any]:
     return {
         "status": answer.status,
         "message": answer.message,
+        "resolution": answer.resolution,
         "model": answer.model,
         "settings": answer.settings,
         "effects": list(answer.effects),
@@ -107,6 +108,7 @@ def mechanism_document(answer: MechanismResponse) -> dict[str, Any]:
     return {
         "status": answer.status,
         "message": answer.message,
+        "resolution": answer.resolution,
         "model": answer.model,
         "settings": answer.settings,
         "effects": list(answer.effects),
@@ -167,6 +169,8 @@ def _readable(answer: Response) -> Iterator[str]:
         errors = (f"{name} {answer.estimate[name]:.1e}" for name in ("trajectory", "torque", "stiffness"))
         tried = ", ".join(map(str, answer.estimate["trials"]))
         yield f"estimated error: {', '.join(errors)}; control points tried: {tried}"
+    if answer.resolution:
+        yield answer.resolution
     yield ending(answer.status, answer.counters, answer.wall_s)
 
 
@@ -183,4 +187,6 @@ def _mechanism_table(answer: MechanismResponse) -> Iterator[str]:
         for x, y, turn in (place[state] for place in answer.bodies.values()):
             line += f" |{1e3 * x:9.4f} {1e3 * y:9.4f} {math.degrees(turn):9.4f}"
         yield line
+    if answer.resolution:
+        yield answer.resolution
     yield ending(answer.status, answer.counters, answer.wall_s)

@@ -42,7 +42,8 @@ def test_energy_and_constraints_hold_at_any_step(step, control_points):
     gates.check("spline_swing_energy", energy_error(trajectory))
     gates.check("spline_swing_constraints", trajectory.constraint_residual.max())
     assert np.abs(trajectory.rotation).max() < 1.01 * math.pi / 2
-    assert bool(trajectory.resolution) == (step > 6.6e-4), trajectory.resolution
+    # a twentieth of the period of the second mode, which has 0.001 of the energy, is 59 to 70 microseconds
+    assert bool(trajectory.resolution) == (step > 5e-5), trajectory.resolution
 
 
 def test_a_folding_strip_stops_the_run_with_the_reason():

@@ -17,7 +17,7 @@ ARRAYS = {
     "strain_energy_J",
     "max_stress_Pa",
 }
-KEYS = ARRAYS | {"status", "message", "model", "settings", "effects", "counters", "wall_s"}
+KEYS = ARRAYS | {"status", "message", "resolution", "model", "settings", "effects", "counters", "wall_s"}
 
 
 @pytest.mark.parametrize("model", ["spline", "fe", "fe-shear"])

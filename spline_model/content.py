@@ -1,0 +1,106 @@
+"""Which natural modes carry a motion's energy at its start, and whether a step resolves them."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from spline_model.basis import SlideModes
+from spline_model.compile import System
+from spline_model.effects import MixedStretching
+from spline_model.kernels.assemble import assemble
+from spline_model.kernels.motion import Motion
+from spline_model.kernels.stretching import add_stretching
+from spline_model.modes import SLIDE_SHARE, linear_modes
+
+Array = NDArray[np.float64]
+
+STEPS_PER_PERIOD = 20
+"""Fewer steps than this in a period do not resolve a mode (phase error above 1 %)."""
+CARRIED = 1e-3
+"""Least share of the energy that counts: a mode with less moves the bodies by some per cent at most."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Content:
+    """A natural mode about a state and the energy it carries there.
+
+    number from 1; kind "swing" (the lowest), "bending", "stretching" or "sliding" of the control
+    points, a number of the discretisation; frequency [Hz], zero where the state is unstable;
+    share of the energy of all modes [1].
+    """
+
+    number: int
+    kind: str
+    frequency: float
+    share: float
+
+    @property
+    def name(self) -> str:
+        """How the mode is called in a sentence."""
+        if self.kind == "swing":
+            return "the swing"
+        return f"mode {self.number} ({self.kind}, {self.frequency:.3g} Hz, {self.share:.1g} of the energy)"
+
+
+def energy_content(system: System, motion: Motion, z: Array, v: Array, acceleration: Array) -> list[Content]:
+    """Energy of every mode at the state (z, v) with its acceleration, lowest mode first.
+
+    About the state a mode of unit modal mass moves as y'' + w^2 y = c with c = phi^T M a and
+    y' = phi^T M v: its energy is c^2 / (2 w^2) + y'^2 / 2. Exact for the motion linearised
+    about the state; what later couples into other modes is left out. A state at rest in
+    equilibrium has no energy; there the swing counts for all of it.
+    """
+    squares, shapes, slide = linear_modes(system, z, motion.mass)
+    push, speed = shapes.T @ motion.mass @ acceleration, shapes.T @ motion.mass @ v
+    frequency = np.sqrt(np.maximum(squares, 0.0))
+    energy = 0.5 * push**2 / np.maximum(np.abs(squares), np.finfo(float).tiny) + 0.5 * speed**2
+    total = float(energy.sum())
+    shares = energy / total if total > 0.0 else np.eye(1, len(energy))[0]
+    stretch = _stretching_share(system, z, shapes, squares)
+    kinds = np.select([slide > SLIDE_SHARE, stretch > 0.5], ["sliding", "stretching"], "bending")
+    kinds[0] = "swing"
+    return [
+        Content(number=i + 1, kind=str(kinds[i]), frequency=frequency[i] / (2 * math.pi), share=shares[i])
+        for i in range(len(energy))
+    ]
+
+
+def resolution(content: list[Content], swing: float, step: float) -> str:
+    """What a step leaves unresolved, or an empty string.
+
+    content: of the start; swing: frequency of the lowest mode at rest [Hz], which a release
+    tends to. The highest mode that carries energy and has too few steps is named.
+    """
+    lowest = Content(number=1, kind="swing", frequency=max(swing, content[0].frequency), share=1.0)
+    carrying = [lowest, *(mode for mode in content[1:] if mode.share >= CARRIED)]
+    missed = [mode for mode in carrying if mode.frequency * step * STEPS_PER_PERIOD > 1.0]
+    if not missed:
+        return ""
+    highest = max(missed, key=lambda mode: mode.frequency)
+    lost = "phase and amplitude are not" if lowest in missed else "the phase of that mode is not"
+    swings = f" and {lowest.frequency * step:.2g} of the swing's" if lowest in missed[:-1] else ""
+    return (
+        f"the step of {step:g} s is {highest.frequency * step:.3g} of the period of {highest.name}{swings}: "
+        f"energy is right, {lost}; take {1.0 / highest.frequency / STEPS_PER_PERIOD:.2g} s or less"
+    )
+
+
+def _stretching_share(system: System, z: Array, shapes: Array, squares: Array) -> Array:
+    """Share of each mode's strain energy in stretching, (F,)."""
+    layout = system.layout
+    count, size = layout.coordinate_count, layout.size
+    gradient, hessian = np.zeros(size), np.zeros((size, size))
+    add_stretching(z, system.tables.stretching, gradient, hessian)
+    stiffness = hessian[:count, :count].copy()
+    assemble(z, system.tables, 0.0, gradient, hessian)
+    for i, effect in enumerate(system.scene.of(MixedStretching)):
+        if effect.axial_compliance > 0 and not isinstance(effect.modes, SlideModes):
+            at = layout.axial_modes(i)
+            coupling = hessian[at, :count]
+            stiffness += coupling.T @ np.linalg.solve(-hessian[at, at], coupling)
+    strain = np.einsum("im,ij,jm->m", shapes, stiffness, shapes)
+    return np.asarray(strain / np.maximum(np.abs(squares), np.finfo(float).tiny))

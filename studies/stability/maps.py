@@ -1,0 +1,111 @@
+"""The map of a family: where each model is right, refuses, is wrong, or is asked what it cannot be."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+from studies.record.style import GREEN, GREY, RED, YELLOW, page
+from studies.stability.columns import ORDER
+from studies.stability.outcome import BAD_INPUT, REFUSED, RIGHT, WRONG
+
+#: Outcome -> colour and marker, the same in every map.
+LOOKS: dict[str, tuple[str, str]] = {
+    RIGHT: (GREEN, "o"),
+    REFUSED: (YELLOW, "D"),
+    WRONG: (RED, "X"),
+    BAD_INPUT: (GREY, "s"),
+}
+LABELS = {
+    RIGHT: "right",
+    REFUSED: "refused, or said to be unresolved",
+    WRONG: "wrong",
+    BAD_INPUT: "cannot be asked",
+}
+#: Size of a panel of a map [inch].
+WIDTH, HEIGHT = 2.3, 3.5
+
+
+def outcome_map(
+    outcomes: pd.DataFrame,
+    *,
+    title: str,
+    panels_by: str = "model",
+    order: Sequence[str] = ORDER,
+    **axes: Any,
+) -> Figure:
+    """Draw one panel a model, or another column of the table: a mark a case at (x, y), by its outcome.
+
+    Args:
+        outcomes: columns x, y, outcome and `panels_by`.
+        title: of the figure.
+        panels_by: column whose values have a panel each; order: of the panels.
+        axes: properties of the panels, as of `Axes.set`; `yticks` and `xticks` with labels as a mapping of
+            place to label.
+    """
+    models = [model for model in order if (outcomes[panels_by] == model).any()]
+    figure = page(WIDTH * len(models), HEIGHT)
+    panels = figure.subplots(1, len(models), sharex=True, sharey=True, squeeze=False)[0]
+    ticks: dict[str, Any] = {name: axes.pop(name) for name in ("xticks", "yticks") if name in axes}
+    for panel, model in zip(panels, models, strict=True):
+        mine = outcomes[outcomes[panels_by] == model]
+        for outcome, (colour, marker) in LOOKS.items():
+            some = mine[mine["outcome"] == outcome]
+            if len(some):  # an empty line that is not clipped has no place for the layout
+                panel.plot(some["x"], some["y"], marker, color=colour, markersize=5.0, clip_on=False)
+        counts = ", ".join(
+            f"{count} {name}" for name in LOOKS if (count := int((mine["outcome"] == name).sum()))
+        )
+        panel.set(**{k: v for k, v in axes.items() if k != "ylabel"})
+        panel.set_title(f"{_broken(model)}\n{counts}", fontsize=8.0)
+        _set_ticks(panel, ticks)
+    panels[0].set_ylabel(axes.get("ylabel", ""))
+    handles = [
+        Line2D([], [], linestyle="", marker=marker, color=colour, label=LABELS[name])
+        for name, (colour, marker) in LOOKS.items()
+        if (outcomes["outcome"] == name).any()
+    ]
+    figure.legend(handles=handles, loc="outside lower center", ncols=len(LOOKS))
+    figure.suptitle(title)
+    return figure
+
+
+def listed(outcomes: pd.DataFrame, cases: Sequence[str], *, title: str) -> Figure:
+    """Draw a family without axes: a line a case in the order of `cases`, a mark a model."""
+    place = {name: len(cases) - 1 - i for i, name in enumerate(cases)}
+    models = [model for model in ORDER if (outcomes["model"] == model).any()]
+    across = {model: i for i, model in enumerate(models)}
+    figure = page(1.25 * len(models) + 3.6, 1.3 + 0.2 * len(cases))
+    panel = figure.subplots()
+    for outcome, (colour, marker) in LOOKS.items():
+        some = outcomes[outcomes["outcome"] == outcome]
+        if some.empty:
+            continue
+        panel.plot(
+            some["model"].map(across), some["case"].map(place), marker, color=colour, label=LABELS[outcome],
+            markersize=6.0,
+        )  # fmt: skip
+    panel.set_xticks(range(len(models)), labels=[_broken(model) for model in models], fontsize=7.5)
+    panel.set_yticks(list(place.values()), labels=list(place), fontsize=7.5)
+    panel.set(xlim=(-0.6, len(models) - 0.4), ylim=(-0.7, len(cases) - 0.3))
+    figure.legend(loc="outside lower center", ncols=len(LOOKS))
+    figure.suptitle(title)
+    return figure
+
+
+def _broken(model: str) -> str:
+    """Return the model's name in two lines, to stand below a column."""
+    return model.replace(", ", ",\n")
+
+
+def _set_ticks(panel: Axes, ticks: Mapping[str, Any]) -> None:
+    for name, given in ticks.items():
+        setter = panel.set_xticks if name == "xticks" else panel.set_yticks
+        if isinstance(given, Mapping):
+            setter(list(given), labels=list(given.values()))
+        else:
+            setter(given)
+        panel.minorticks_off()

@@ -1,0 +1,225 @@
+"""Sudden events: a drive reversed, a body let go and caught a thousand times, targets that jump."""
+
+import math
+import time
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from functools import partial
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from matplotlib.figure import Figure
+
+from spline_model.dynamics import Trajectory, solve_motion
+from spline_model.effects import DrivenRotation
+from studies.answers.adapters import answer_mechanism, answer_static, spline_mechanism
+from studies.answers.models import built, model_of
+from studies.answers.settings import Settings, SplineSettings
+from studies.cases.problem import Problem, named_case
+from studies.stability import maps
+from studies.stability.columns import CHECK, COLUMNS, DEFAULT, LOCKING_FREE, PAPER, UNCHECKED
+from studies.stability.counts import counted
+from studies.stability.outcome import Found, judged
+from studies.stability.statics.geometry import as_mechanism
+from studies.stability.statics.paths import TOLERANCE, found, traced
+
+CASE = "cross_axis_pivot"
+CASES = (CASE,)
+
+#: Reversals, and releases with as many catches: of the default, and of the other columns.
+EVENTS = {DEFAULT: 1000, LOCKING_FREE: 100, PAPER: 100}
+STEP, STEPS_BETWEEN = 5e-5, 20
+#: Rotations of the reversals, and at the first release [rad].
+REVERSAL, RELEASE = math.radians(5.0), math.radians(60.0)
+#: Largest error of the books of energy, and of a driven rotation, that is right [1, rad].
+BOOKS = 1e-8
+
+#: Jumps of a target that is followed statically in one increment each [deg], and how often.
+JUMPS = (60.0, -60.0, 90.0, 120.0, 180.0)
+ROUNDS = 20
+#: Newton iterations a jump may take: more is no bounded work.
+MOST_ITERATIONS = 200
+#: Energies below this are those of a motion at rest [J].
+QUIET = 1e-6
+#: A jump within a motion lasts this long [s].
+INSTANT = 1e-9
+
+
+def compute(progress: Callable[[int, int], None]) -> dict[str, pd.DataFrame]:
+    """Return outcomes, counts, and timings (a row a case and model)."""
+    rows: list[dict[str, Any]] = []
+    times: list[dict[str, Any]] = []
+    tasks = [*_motions(), *_jumps()]
+    for done, (case, model, attempt, tolerance) in enumerate(tasks):
+        progress(done, len(tasks))
+        begin = time.perf_counter()
+        rows.append({"case": case, "model": model, **judged(attempt, tolerance).row()})
+        times.append({"case": case, "model": model, "wall_s": time.perf_counter() - begin})
+    progress(len(tasks), len(tasks))
+    table = pd.DataFrame(rows)
+    return {"outcomes": table, "counts": counted(table), "timings": pd.DataFrame(times)}
+
+
+def draw(tables: Mapping[str, pd.DataFrame]) -> dict[str, Figure]:
+    """Draw every event by every model."""
+    names = list(dict.fromkeys(case for case, *_ in [*_motions(), *_jumps()]))
+    title = f"Sudden events: {EVENTS[DEFAULT]} a motion for the default, {EVENTS[PAPER]} for the others"
+    return {"stability_events": maps.listed(tables["outcomes"], names, title=title)}
+
+
+Task = tuple[str, str, Callable[[], Found], float]
+
+
+def _motions() -> list[Task]:
+    tasks: list[Task] = []
+    for model, count in EVENTS.items():
+        tasks.append(("drive reversed again and again", model, partial(reversals, model, count), BOOKS))
+        tasks.append(("let go and caught again and again", model, partial(catches, model, count), BOOKS))
+        tasks.append(("target jumps by 60° in a motion", model, partial(jump_in_motion, model), BOOKS))
+    return tasks
+
+
+def _jumps() -> list[Task]:
+    tasks: list[Task] = []
+    for model, settings in COLUMNS.items():
+        checked = model not in UNCHECKED
+        for degrees in JUMPS:
+            name = f"target jumps from rest to {degrees:g}°"
+            tasks.append((name, model, partial(jump, settings, degrees, checked), TOLERANCE))
+        name = f"target jumps between 60° and -60°, {ROUNDS} times"
+        tasks.append((name, model, partial(jumping, settings), TOLERANCE))
+        for millimetres in ((0.0, 20.0), (20.0, 0.0), (-20.0, 0.0)):
+            name = "target jumps by {:g}, {:g} mm".format(*millimetres)
+            tasks.append((name, model, partial(displaced, settings, millimetres, checked), TOLERANCE))
+    return tasks
+
+
+def mechanism_of(model: str) -> Any:
+    """Return Table 1 in motion in a column of splines."""
+    settings = COLUMNS[model]
+    assert isinstance(settings, SplineSettings)
+    return spline_mechanism(named_case(CASE), settings)
+
+
+def reversals(model: str, count: int) -> Found:
+    """Drive the body to and fro, reversed `count` times off the grid of steps: books and rotation."""
+    between = (STEPS_BETWEEN + 0.37) * STEP
+    times = [i * between for i in range(count + 1)]
+    factors = [float(i % 2) for i in range(count + 1)]
+    corners = tuple(zip(times, factors, strict=True))
+    drive = DrivenRotation(body="body", angle=REVERSAL, history=corners)
+    run = solve_motion(mechanism_of(model), drive=drive, duration=count * between, step=STEP, records=200)
+    place = np.interp(run.time, times, factors) * REVERSAL
+    return _booked(run, extra=float(np.abs(run.rotation - place).max()))
+
+
+def catches(model: str, count: int) -> Found:
+    """Let the body go and catch it again, `count` times each: books of energy, none of which comes back."""
+    mechanism = mechanism_of(model)
+    held = DrivenRotation(body="body", angle=0.0)
+    span = STEPS_BETWEEN * STEP
+    run = solve_motion(mechanism, start=RELEASE, duration=span, step=STEP, records=1)
+    energy = run.kinetic_energy[0] + run.strain_energy[0]
+    worst, steps = 0.0, 0
+    for number in range(2 * count - 1):
+        drive = None if number % 2 else held
+        run = solve_motion(mechanism, drive=drive, duration=span, step=STEP, records=1, after=run)
+        books = run.kinetic_energy + run.strain_energy - run.work + run.dissipated
+        worst, steps = max(worst, float(np.abs(books / energy - 1.0).max())), steps + run.counters["steps"]
+        if run.message:
+            break
+    return Found(
+        error=worst,
+        reached=not run.message,
+        reason=run.message,
+        fault="a catch gave energy back" if (np.diff(run.dissipated) < -BOOKS * energy).any() else "",
+        counters={"newton_iterations": run.counters["newton_iterations"]},
+    )
+
+
+def jump_in_motion(model: str) -> Found:
+    """Let a drive's target jump by 60 degrees within a nanosecond of a motion: followed, or refused."""
+    history = ((1e-3, 0.0), (1e-3 + INSTANT, 1.0))
+    drive = DrivenRotation(body="body", angle=math.radians(60.0), history=history)
+    run = solve_motion(mechanism_of(model), drive=drive, duration=2e-3, step=STEP)
+    return _booked(run, extra=0.0)
+
+
+def _booked(run: Trajectory, *, extra: float) -> Found:
+    """Return the error of the books of energy over the largest of its parts, or `extra` if that is larger."""
+    stored = run.kinetic_energy + run.strain_energy
+    books = stored - run.work + run.dissipated
+    parts = (stored, run.work, run.dissipated)
+    scale = max(QUIET, *(float(np.abs(part).max()) for part in parts))
+    error = float(np.abs(books - books[0]).max()) / scale
+    return Found(
+        error=max(error, extra),
+        reached=not run.message,
+        reason=run.message,
+        counters=run.counters,
+    )
+
+
+def jump(settings: Settings, degrees: float, checked: bool) -> Found:
+    """Follow a target that jumps from rest in one increment; against the refined path of many."""
+    design = replace(named_case(CASE), rotation=math.radians(degrees), increments=1)
+    many = traced(replace(design, increments=36), CHECK)
+    reference = replace(many, at=many.at[[0, -1]], torque=many.torque[[0, -1]], centre=many.centre[[0, -1]])
+    return _bounded(found(traced(design, settings), reference, checked=checked), 1)
+
+
+def jumping(settings: Settings) -> Found:
+    """Follow a target that jumps to and fro; the torque is the same every time."""
+    design: Problem = replace(named_case(CASE), rotation=math.radians(60.0), increments=1)
+    once = answer_static(design, settings)
+    model = model_of(settings)
+    pivot, _ = built(model, design, settings, moving=False)
+    targets = [design.rotation * (-1) ** k for k in range(ROUNDS)]
+    path = model.statics.solve_statics(pivot, rotation=targets, increments=1, raise_on_failure=False)
+    expected = once.torque[-1] * np.sign(path.rotation[1:])
+    error = float(np.abs(path.torque[1:] / expected - 1.0).max()) if len(path.torque) > 1 else math.inf
+    return _bounded(
+        Found(
+            error=error,
+            reached=path.status.value == "converged",
+            reason=path.message,
+            counters=path.counters,
+        ),
+        ROUNDS,
+    )
+
+
+def displaced(settings: Settings, millimetres: tuple[float, float], checked: bool) -> Found:
+    """Follow a body whose centre's target jumps in one increment, free to rotate: its energy and rotation."""
+    given = as_mechanism(named_case(CASE), 0.0)
+    target = {"displacement": tuple(1e-3 * part for part in millimetres)}
+    effects = replace(
+        given.effects,
+        names=(*given.effects.names, "driven_displacement"),
+        tables={**given.effects.tables, "driven_displacement": target},
+    )
+    design = replace(given, rotation=None, increments=1, effects=effects)
+    reference = answer_mechanism(replace(design, increments=40), CHECK)
+    answer = answer_mechanism(design, settings)
+    energy = abs(answer.strain_energy[-1] / reference.strain_energy[-1] - 1.0)
+    turn = abs(answer.bodies["body"][-1, 2] - reference.bodies["body"][-1, 2])
+    resolution = answer.resolution if checked else ""
+    return _bounded(
+        Found(
+            error=float(max(energy, turn)) if answer.converged else 0.0,
+            reached=answer.converged,
+            reason=answer.message or resolution,
+            states_limit=bool(resolution),
+            counters=answer.counters,
+        ),
+        1,
+    )
+
+
+def _bounded(answer: Found, jumps: int) -> Found:
+    """Return the answer, with a fault where it took more work than so many jumps may."""
+    work = answer.counters.get("newton_iterations", answer.counters.get("iterations", 0))
+    if work > MOST_ITERATIONS * jumps:
+        return replace(answer, fault=f"{work} Newton iterations for {jumps} jumps")
+    return answer

@@ -1,0 +1,136 @@
+"""Ratios: bodies a million times lighter and heavier, massless and heavy strips, one strip far stiffer."""
+
+import math
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, replace
+from typing import Any
+
+import pandas as pd
+from matplotlib.figure import Figure
+
+from studies.answers.adapters import answer_modes, answer_release
+from studies.cases.design import Design
+from studies.cases.mechanism import Mechanism, Strip
+from studies.cases.problem import Problem, named_case
+from studies.stability import maps
+from studies.stability.columns import EXPLICIT, FE
+from studies.stability.counts import counted
+from studies.stability.motion.swings import (
+    INDEPENDENT,
+    REFINED,
+    SWINGING,
+    TOLERANCE,
+    judged_swing,
+    refined_swing,
+    rotation_error,
+)
+from studies.stability.outcome import RIGHT
+from studies.stability.statics.geometry import as_mechanism
+
+CASE = "cross_axis_pivot"
+CASES = (CASE,)
+
+#: Factors on mass and moment of inertia of Table 1's body, and on the flexural rigidity of one strip.
+FACTORS = (1e-6, 1e-4, 1e-2, 1.0, 1e2, 1e4, 1e6)
+STIFFER = (1e2, 1e4)
+START_DEG = 30.0
+#: Steps in a period of the first mode at rest: of the columns, of the reference and of its coarser twin.
+STEPS, REFINED_STEPS, COARSER_STEPS = 200, 1200, 600
+#: Columns that are asked: the explicit scheme's steps follow the strips, whatever the body.
+ASKED = tuple(name for name in SWINGING if name != EXPLICIT)
+STRIP_INERTIA = "strip_inertia"
+KINDS = ("mass and inertia", "mass alone", "inertia alone")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Ratio:
+    """A design with a ratio at its end: name, kind (a line of the map) and factor (its place there)."""
+
+    name: str
+    kind: str
+    factor: float
+    design: Design
+
+
+def compute(progress: Callable[[int, int], None]) -> dict[str, pd.DataFrame]:
+    """Return outcomes (with the gain of energy), references and counts."""
+    outcomes: list[dict[str, Any]] = []
+    references = []
+    chosen = list(cases())
+    for done, case in enumerate(chosen):
+        progress(done, len(chosen))
+        rows, reference = _case(case)
+        outcomes += rows
+        references.append(reference)
+    progress(len(chosen), len(chosen))
+    table = pd.DataFrame(outcomes)
+    return {"outcomes": table, "references": pd.DataFrame(references), "counts": counted(table)}
+
+
+def draw(tables: Mapping[str, pd.DataFrame]) -> dict[str, Figure]:
+    """Draw every case by every model."""
+    names = [case.name for case in cases()]
+    title = (
+        f"Release from {START_DEG:g}°, one period in {STEPS} steps: rotation within 5 %, no gain of energy"
+    )
+    return {"stability_ratios": maps.listed(tables["outcomes"], names, title=title)}
+
+
+def cases() -> Iterator[Ratio]:
+    """Yield all designs."""
+    given = named_case(CASE)
+    for kind in KINDS:
+        for factor in FACTORS:
+            design = replace(
+                given,
+                body_mass=given.body_mass * (1.0 if kind == KINDS[2] else factor),
+                body_moment_of_inertia=given.body_moment_of_inertia * (1.0 if kind == KINDS[1] else factor),
+            )
+            yield Ratio(name=f"body: {kind} x {factor:g}", kind=kind, factor=factor, design=design)
+    heavy = replace(given, density=100.0 * given.density)
+    yield Ratio(name="strips 100 times as dense", kind="strips", factor=100.0, design=heavy)
+    without = [name for name in given.effects.names if name != STRIP_INERTIA]
+    massless = replace(given, effects=given.effects.renamed(without))
+    yield Ratio(name="massless strips", kind="strips", factor=0.0, design=massless)
+    for factor in STIFFER:
+        name = f"second strip {factor:g} times as stiff"
+        yield Ratio(name=name, kind="stiffness", factor=factor, design=stiffer(given, factor))
+
+
+def stiffer(given: Problem, factor: float) -> Mechanism:
+    """Return the pivot with a second strip of another material, `factor` times as stiff."""
+    cross = as_mechanism(given, START_DEG)
+    strips: list[Strip] = [
+        cross.strips[0],
+        replace(cross.strips[1], youngs_modulus=factor * given.youngs_modulus),
+    ]
+    return replace(cross, strips=tuple(strips))
+
+
+def _case(case: Ratio) -> tuple[list[dict[str, Any]], dict[str, Any]]:
+    start = math.radians(START_DEG)
+    period = 1.0 / float(answer_modes(case.design, REFINED, count=1).frequency[0])
+    asked: dict[str, Any] = {"start": start, "duration": period}
+    reference = refined_swing(case.design, step=period / REFINED_STEPS, **asked)
+    coarser = refined_swing(case.design, step=period / COARSER_STEPS, **asked)
+    rows, gap = [], math.inf
+    for name in ASKED:
+        verdict, gain = judged_swing(name, case.design, reference, step=period / STEPS, **asked)
+        place = {"case": case.name, "kind": case.kind, "x": case.factor, "model": name}
+        rows.append({**place, **verdict.row(), "energy_gain": gain})
+        if name == FE and verdict.outcome == RIGHT:
+            gap = verdict.error
+    if not gap <= TOLERANCE:
+        other = answer_release(
+            case.design, INDEPENDENT, integrator="generalised-alpha", step=period / REFINED_STEPS, **asked
+        )
+        gap = rotation_error(other, reference)
+    refinement = rotation_error(coarser, reference)
+    settled = reference.converged and refinement < TOLERANCE / 2.0 and gap <= TOLERANCE
+    return rows, {
+        "case": case.name,
+        "period_s": period,
+        "refinement": refinement,
+        "independent": gap,
+        "settled": "yes" if settled else "no",
+    }

@@ -1,0 +1,130 @@
+"""Motions of hard cases: the swing of each model against a refined and an independent one."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.interpolate import CubicSpline
+
+from studies.answers.adapters import answer_release
+from studies.answers.motion import Motion
+from studies.answers.settings import FeSettings, Settings, SplineSettings
+from studies.cases.design import Design
+from studies.stability.columns import (
+    COLUMNS,
+    DEFAULT,
+    EXPLICIT,
+    FE,
+    GENERALISED_ALPHA,
+    LOCKING_FREE,
+    PAPER,
+    UNCHECKED,
+)
+from studies.stability.outcome import Found, Verdict, judged
+
+Array = NDArray[np.float64]
+
+#: Largest error of the rotation that counts as right, over the rotation at the start [1]. A step of a
+#: twentieth of the swing's period errs by 0.03 after one swing; an answer off by more shows another motion.
+TOLERANCE = 0.05
+#: Largest gain of energy over that at the start: of the energy-consistent scheme, and of those that keep
+#: energy in the limit of short steps only.
+MOST_GAIN, MOST_GAIN_OF_OTHERS = 1e-8, 1e-2
+
+#: The refined spline, the step of its motion [s] for the time scale of Table 1, and finite elements.
+REFINED, REFINED_STEP = SplineSettings(control_points=9), 2.5e-6
+INDEPENDENT = FeSettings(elements=30)
+RECORDS = 400
+
+
+@dataclass(frozen=True, kw_only=True)
+class Swinging:
+    """A column of a family of motions: settings, options of the release, whether energy is kept exactly."""
+
+    settings: Settings
+    options: Mapping[str, Any] = field(default_factory=dict)
+    conserving: bool = True
+
+    @property
+    def most_gain(self) -> float:
+        """Largest gain of energy that is none [1]."""
+        return MOST_GAIN if self.conserving else MOST_GAIN_OF_OTHERS
+
+
+#: Column -> how it is let go. The paper's printed forces have no energy that a motion could keep.
+SWINGING: dict[str, Swinging] = {
+    **{name: Swinging(settings=COLUMNS[name]) for name in (DEFAULT, LOCKING_FREE, PAPER)},
+    GENERALISED_ALPHA: Swinging(
+        settings=COLUMNS[DEFAULT], options={"integrator": "generalised-alpha"}, conserving=False
+    ),
+    EXPLICIT: Swinging(settings=COLUMNS[DEFAULT], options={"integrator": "explicit"}, conserving=False),
+    FE: Swinging(settings=COLUMNS[FE], options={"integrator": "generalised-alpha"}, conserving=False),
+}
+
+
+def swing_of(design: Design, column: Swinging, *, start: float, duration: float, step: float) -> Motion:
+    """Return the motion of `design` in a column, let go at `start` [rad] for `duration` with `step` [s]."""
+    return answer_release(
+        design, column.settings, start=start, duration=duration, step=step, records=RECORDS, **column.options
+    )
+
+
+def refined_swing(design: Design, *, start: float, duration: float, step: float = REFINED_STEP) -> Motion:
+    """Return the swing that others are held against."""
+    return answer_release(design, REFINED, start=start, duration=duration, step=step, records=RECORDS)
+
+
+def independent_swing(design: Design, *, start: float, duration: float) -> Motion:
+    """Return the swing of finite elements, explicit, at their own step."""
+    return answer_release(design, INDEPENDENT, start=start, duration=duration, records=RECORDS)
+
+
+def rotation_error(motion: Motion, reference: Motion) -> float:
+    """Return the largest difference of rotation at the motion's records, as far as the reference goes [1].
+
+    Over the rotation at the start. Infinite for a motion without a record or with one that is no number.
+    """
+    if not len(motion.time) or len(reference.time) < 2 or not np.isfinite(motion.rotation).all():
+        return math.inf
+    known = motion.time <= reference.time[-1] * (1.0 + 1e-9)
+    expected = CubicSpline(reference.time, reference.rotation)(motion.time[known])
+    return float(np.abs(motion.rotation[known] - expected).max() / abs(reference.rotation[0]))
+
+
+def energy_gain(motion: Motion) -> float:
+    """Return the largest gain of the balance of energies over the stored one at the start [1]; NaN without
+    a record."""
+    stored = motion.kinetic_energy + motion.strain_energy
+    balance = stored + motion.gravity_energy - motion.work + motion.dissipated
+    return float((balance / balance[0] - 1.0).max()) if len(balance) else math.nan
+
+
+def compared(motion: Motion, reference: Motion, *, most_gain: float, checked: bool) -> Found:
+    """Return a motion against the reference; without `checked`, as if it said nothing of itself."""
+    gain = energy_gain(motion)
+    resolution = motion.resolution if checked else ""
+    return Found(
+        error=rotation_error(motion, reference),
+        reached=motion.converged,
+        reason=motion.message or resolution,
+        states_limit=bool(resolution),
+        fault=f"the energy grows by {gain:.2g} of itself" if gain > most_gain else "",
+        counters=motion.counters,
+    )
+
+
+def judged_swing(
+    name: str, design: Design, reference: Motion, *, start: float, duration: float, step: float
+) -> tuple[Verdict, float]:
+    """Return the verdict on the column `name` for one design and step, and its gain of energy [1]."""
+    column, gains = SWINGING[name], [math.nan]
+
+    def attempt() -> Found:
+        motion = swing_of(design, column, start=start, duration=duration, step=step)
+        gains.append(energy_gain(motion))
+        return compared(motion, reference, most_gain=column.most_gain, checked=name not in UNCHECKED)
+
+    return judged(attempt, TOLERANCE), gains[-1]

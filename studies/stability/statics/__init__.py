@@ -1,0 +1,1 @@
+"""Families of static paths."""

@@ -1,0 +1,93 @@
+"""Too few and too many axial modes, and too few Gauss points: singular ones are refused, with the reason."""
+
+import math
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, replace
+from functools import partial
+
+import pandas as pd
+from matplotlib.figure import Figure
+
+from studies.answers.settings import SplineSettings
+from studies.cases.problem import Problem, named_case
+from studies.stability import maps
+from studies.stability.columns import DEFAULT, FE, INDEPENDENT, PAPER, REFINED
+from studies.stability.counts import counted
+from studies.stability.outcome import judged
+from studies.stability.statics.paths import TOLERANCE, attempted, distance, traced
+
+CASE = "cross_axis_pivot"
+CASES = (CASE,)
+
+COUNTS = (4, 5, 6, 8, 10)
+ROTATION_DEG = 45.0
+
+MODES = "axial modes,\nslide stiffness 10"
+FLOATING = "axial modes,\nno slide stiffness"
+POINTS = "Gauss points,\nmixed stretch"
+PAPER_POINTS = "Gauss points,\nconsistent stretch"
+PANELS = (MODES, FLOATING, POINTS, PAPER_POINTS)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Setting:
+    """One discretisation: its panel, place there, and which column it counts for."""
+
+    panel: str
+    model: str
+    count: int
+    other: int
+    settings: SplineSettings
+
+
+def compute(progress: Callable[[int, int], None]) -> dict[str, pd.DataFrame]:
+    """Return outcomes (a row a discretisation), references (one row) and counts."""
+    design: Problem = replace(named_case(CASE), rotation=math.radians(ROTATION_DEG))
+    reference = traced(design, REFINED)
+    gap = distance(traced(design, INDEPENDENT), reference)
+    rows = []
+    chosen = list(settings())
+    for done, each in enumerate(chosen):
+        progress(done, len(chosen))
+        attempt = partial(attempted, design, each.settings, reference, checked=each.model != PAPER)
+        verdict = judged(attempt, TOLERANCE)
+        place = {"panel": each.panel, "model": each.model, "x": each.count, "y": each.other}
+        rows.append({**place, **verdict.row()})
+    progress(len(chosen), len(chosen))
+    table = pd.DataFrame(rows)
+    settled = "yes" if gap <= TOLERANCE / 5.0 else "no"
+    references = pd.DataFrame([{"case": CASE, "model": FE, "independent": gap, "settled": settled}])
+    return {"outcomes": table, "references": references, "counts": counted(table)}
+
+
+def draw(tables: Mapping[str, pd.DataFrame]) -> dict[str, Figure]:
+    """Draw the maps over control points and modes or Gauss points."""
+    return {
+        "stability_axial_modes": maps.outcome_map(
+            tables["outcomes"],
+            panels_by="panel",
+            order=PANELS,
+            title=f"Table 1 driven to {ROTATION_DEG:g}°: torque and path within 5 % of the refined answer",
+            xlabel="control points [1]",
+            ylabel="axial modes, Gauss points [1]",
+            xlim=(3.0, 11.0),
+            ylim=(0.0, 13.0),
+            xticks=list(COUNTS),
+        )
+    }
+
+
+def settings() -> Iterator[Setting]:
+    """Yield every count of axial modes, with and without slide stiffness, and of Gauss points."""
+    for n in COUNTS:
+        plain = SplineSettings(control_points=n)
+        for m in range(1, n):
+            modes = replace(plain, axial_modes=m)
+            yield Setting(panel=MODES, model=DEFAULT, count=n, other=m, settings=modes)
+            floating = replace(modes, slide_stiffness=0.0)
+            yield Setting(panel=FLOATING, model=DEFAULT, count=n, other=m, settings=floating)
+        for points in range(1, n + 3):
+            few = replace(plain, gauss_points=points)
+            yield Setting(panel=POINTS, model=DEFAULT, count=n, other=points, settings=few)
+            paper = replace(few, stretch="consistent", measure="spatial")
+            yield Setting(panel=PAPER_POINTS, model=PAPER, count=n, other=points, settings=paper)

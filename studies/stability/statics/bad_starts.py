@@ -1,0 +1,116 @@
+"""Bad starts: crumpled, reversed, coincident and other wrong guesses lead to the right state, or nowhere."""
+
+import math
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import replace
+from functools import partial
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from spline_model.pivot import Pivot
+from spline_model.statics import solve_from, solve_statics
+from studies.answers.models import built, model_of
+from studies.answers.settings import SplineSettings
+from studies.cases.problem import named_case
+from studies.stability import maps
+from studies.stability.columns import COLUMNS, DEFAULT, LOCKING_FREE, PAPER
+from studies.stability.counts import counted
+from studies.stability.outcome import Found, judged
+
+Array = NDArray[np.float64]
+
+CASE = "cross_axis_pivot"
+CASES = (CASE,)
+
+ASKED = (DEFAULT, LOCKING_FREE, PAPER)
+ROTATIONS = (45, 90, 120)
+#: Largest error of the torque, and of the unknowns, against the path from rest: both are solved to round-off.
+TOLERANCE = 1e-7
+#: Sizes of random displacements of the control points [L], and how many of each.
+SIZES, SEEDS = (1e-3, 1e-2, 0.1, 1.0, 10.0), 3
+
+
+def compute(progress: Callable[[int, int], None]) -> dict[str, pd.DataFrame]:
+    """Return outcomes (a row a guess, rotation and model) and counts."""
+    rows: list[dict[str, Any]] = []
+    for i, model in enumerate(ASKED):
+        for k, degrees in enumerate(ROTATIONS):
+            progress(i * len(ROTATIONS) + k, len(ASKED) * len(ROTATIONS))
+            rows += _rows(model, degrees)
+    progress(len(ASKED) * len(ROTATIONS), len(ASKED) * len(ROTATIONS))
+    table = pd.DataFrame(rows)
+    return {"outcomes": table, "counts": counted(table)}
+
+
+def draw(tables: Mapping[str, pd.DataFrame]) -> dict[str, Figure]:
+    """Draw the map over the kinds of guess and the rotation."""
+    outcomes = tables["outcomes"]
+    kinds = list(dict.fromkeys(outcomes["guess"]))
+    place = {kind: i for i, kind in enumerate(sorted(kinds, reverse=True))}
+    return {
+        "stability_bad_starts": maps.outcome_map(
+            outcomes.assign(y=outcomes["guess"].map(place)),
+            title="A state of Table 1 from a bad guess: that of the path from rest, or a refusal",
+            xlabel="rotation [deg]",
+            ylabel="guess",
+            xlim=(30.0, 135.0),
+            ylim=(-0.7, len(kinds) - 0.3),
+            xticks=list(ROTATIONS),
+            yticks={i: kind for kind, i in place.items()},
+        )
+    }
+
+
+def _rows(model: str, degrees: float) -> list[dict[str, Any]]:
+    settings = COLUMNS[model]
+    given = replace(named_case(CASE), rotation=math.radians(degrees))
+    pivot, _ = built(model_of(settings), given, settings, moving=False)
+    path = solve_statics(pivot, rotation=given.rotation, raise_on_failure=False)
+    rows = []
+    for name, guess in guesses(pivot, settings, given.rotation):
+        attempt = partial(_recovered, pivot, given.rotation, guess, path)
+        verdict = judged(attempt, TOLERANCE)
+        rows.append(
+            {"case": f"{name}, {degrees} deg", "guess": name, "x": degrees, "model": model} | verdict.row()
+        )
+    return rows
+
+
+def _recovered(pivot: Pivot, rotation: float, guess: Array, path: Any) -> Found:
+    answer = solve_from(pivot, rotation=rotation, guess=guess, raise_on_failure=False)
+    reached = answer.status.value == "converged"
+    error = abs(answer.torque[-1] / path.torque[-1] - 1.0) if reached else 0.0
+    return Found(error=float(error), reached=reached, reason=answer.message, counters=answer.counters)
+
+
+def guesses(pivot: Pivot, settings: Any, rotation: float) -> Iterator[tuple[str, Array]]:
+    """Yield names and unknowns of guesses that no path would make."""
+    assert isinstance(settings, SplineSettings)
+    good = solve_statics(pivot, rotation=rotation, raise_on_failure=False).states[-1]
+    length = float(np.linalg.norm(pivot.clamp_points[0, 1] - pivot.clamp_points[0, 0]))
+    points = 2 * 2 * settings.control_points  # of both strips, x and y
+    for size in SIZES:
+        for seed in range(SEEDS):
+            bent = good.copy()
+            bent[:points] += size * length * np.random.default_rng(seed).standard_normal(points)
+            yield f"points moved by {size:g} L", bent
+    backwards = good.copy()
+    for start in (0, points // 2):
+        strip = slice(start, start + points // 2)
+        backwards[strip] = good[strip].reshape(-1, 2)[::-1].ravel()
+    yield "control points reversed", backwards
+    yield "all points coincident", np.concatenate((np.full(points, 0.3 * length), good[points:]))
+    yield "everything zero", np.zeros_like(good)
+    inward = good.copy()
+    inward[2:4] = 2 * good[0:2] - good[2:4]
+    yield "first tangent reversed", inward
+    other = solve_statics(pivot, rotation=-rotation, raise_on_failure=False).states[-1]
+    yield "state of the opposite rotation", other
+    wound = good.copy()
+    wound[points + 2] += 2.0 * math.pi
+    yield "body wound once more", wound
+    yield "no numbers", np.full_like(good, np.nan)

@@ -1,0 +1,155 @@
+"""Static paths of hard designs: the answer of each model against a refined and an independent one."""
+
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+from functools import partial
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from studies.answers.adapters import answer_mechanism, answer_static
+from studies.answers.settings import FeSettings, Settings
+from studies.cases.design import Design
+from studies.cases.problem import Problem
+from studies.stability.columns import CHECK, COLUMNS, FE, REFINED, UNCHECKED
+from studies.stability.outcome import Found, judged
+
+Array = NDArray[np.float64]
+
+#: Largest distance of a path that counts as right [1], over the largest torque and displacement. The error of
+#: the spline's default grows to 0.03 at a half turn; another branch is off by more than 0.1.
+TOLERANCE = 0.05
+#: Finer elements, asked where those of the column do not confirm the refined spline.
+ARBITER = FeSettings(elements=80)
+
+
+@dataclass(frozen=True, kw_only=True)
+class StaticCase:
+    """One design and its path: a name, its place on the family's map, and which columns have other settings.
+
+    Attributes:
+        x, y: place on the map, in the units of the family's axes.
+        settings: settings of columns for this case, in place of those in `COLUMNS`.
+        refined, check: of the reference.
+    """
+
+    name: str
+    x: float
+    y: float
+    design: Design
+    settings: Mapping[str, Settings]
+    refined: Settings = REFINED
+    check: Settings = CHECK
+
+
+@dataclass(frozen=True, kw_only=True)
+class Traced:
+    """A path over S states.
+
+    Attributes:
+        at: (S,) rotation [rad] or load factor; torque: (S,) [N m]; centre: (S, 2) of the driven body [m].
+    """
+
+    at: Array
+    torque: Array
+    centre: Array
+    reached: bool
+    message: str
+    resolution: str
+    counters: Mapping[str, int]
+
+
+def traced(design: Design, settings: Settings) -> Traced:
+    """Return the path of `design`; BadInput for what the model refuses to be asked."""
+    if isinstance(design, Problem):
+        pivot = answer_static(design, settings)
+        torque, centre, counters = pivot.torque, pivot.centre, pivot.counters
+        return Traced(
+            at=pivot.rotation,
+            torque=torque,
+            centre=centre,
+            reached=pivot.converged,
+            message=pivot.message,
+            resolution=pivot.resolution,
+            counters=counters,
+        )
+    answer = answer_mechanism(design, settings)
+    return Traced(
+        at=answer.load_factor,
+        torque=answer.torque,
+        centre=answer.bodies[str(design.body)][:, :2],
+        reached=answer.converged,
+        message=answer.message,
+        resolution=answer.resolution,
+        counters=answer.counters,
+    )
+
+
+def distance(path: Traced, reference: Traced) -> float:
+    """Return the largest distance of two paths over the states that both have: of torque or place [1].
+
+    Each over its largest value on the reference's path; infinite where the path is not of finite numbers. A
+    path that stopped may end between two of the reference's states.
+    """
+    near = np.abs(path.at[:, None] - reference.at).min(axis=1) < 1e-9
+    same = np.abs(path.at[near][:, None] - reference.at).argmin(axis=1)
+    if not (np.isfinite(path.torque).all() and np.isfinite(path.centre).all()):
+        return float("inf")
+    torque = np.abs(path.torque[near] - reference.torque[same]).max()
+    place = np.linalg.norm(path.centre[near] - reference.centre[same], axis=1).max()
+    travel = np.linalg.norm(reference.centre - reference.centre[0], axis=1).max()
+    return float(max(torque / np.abs(reference.torque).max(), place / travel if travel > 0.0 else place))
+
+
+def answered(cases: Iterable[StaticCase], progress: Callable[[int, int], None]) -> dict[str, pd.DataFrame]:
+    """Return the tables of a family of paths: `outcomes`, a row a case and model, and `references`.
+
+    A reference is settled where refinement moves it by less than a fifth of the tolerance and elements agree
+    with it within the tolerance.
+    """
+    outcomes, references = [], []
+    chosen = list(cases)
+    for done, case in enumerate(chosen):
+        progress(done, len(chosen))
+        rows, reference = _case(case)
+        outcomes += rows
+        references.append(reference)
+    progress(len(chosen), len(chosen))
+    return {"outcomes": pd.DataFrame(outcomes), "references": pd.DataFrame(references)}
+
+
+def _case(case: StaticCase) -> tuple[list[dict[str, Any]], dict[str, Any]]:
+    reference = traced(case.design, case.refined)
+    spread = distance(traced(case.design, case.check), reference)
+    place = {"case": case.name, "x": case.x, "y": case.y}
+    rows, gap = [], float("inf")
+    for model, settings in COLUMNS.items():
+        chosen = case.settings.get(model, settings)
+        attempt = partial(attempted, case.design, chosen, reference, checked=model not in UNCHECKED)
+        verdict = judged(attempt, TOLERANCE)
+        rows.append({**place, "model": model, **verdict.row()})
+        if model == FE:
+            gap = verdict.error
+    if not gap <= TOLERANCE:
+        gap = distance(traced(case.design, ARBITER), reference)
+    settled = reference.reached and spread <= TOLERANCE / 5.0 and gap <= TOLERANCE
+    return rows, {**place, "refinement": spread, "independent": gap, "settled": "yes" if settled else "no"}
+
+
+def attempted(design: Design, settings: Settings, reference: Traced, *, checked: bool) -> Found:
+    """Solve `design` and compare the path with the reference; see `found`."""
+    return found(traced(design, settings), reference, checked=checked)
+
+
+def found(path: Traced, reference: Traced, *, checked: bool) -> Found:
+    """Return a path compared with the reference; without `checked`, as if it said nothing of itself."""
+    resolution = path.resolution if checked else ""
+    return Found(
+        error=distance(path, reference),
+        reached=path.reached,
+        reason=path.message or resolution,
+        states_limit=bool(resolution),
+        counters=path.counters,
+    )

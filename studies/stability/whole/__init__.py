@@ -1,0 +1,1 @@
+"""Families that ask statics and motion alike, and the summary of all."""

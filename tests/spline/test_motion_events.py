@@ -1,0 +1,155 @@
+"""Sudden events in a motion, the energy monitor, restart, bounded work and what a step leaves unresolved."""
+
+import math
+
+import numpy as np
+import pytest
+
+from spline_model.compile import compile_scene
+from spline_model.content import CARRIED, energy_content
+from spline_model.dynamics import solve_motion, solve_release
+from spline_model.effects import DrivenRotation
+from spline_model.errors import InvalidParameter
+from spline_model.integrators import energy_consistent
+from spline_model.integrators.monitor import energy_gain, first_gain
+from spline_model.integrators.motion import initial_acceleration, set_in_motion
+from spline_model.modes import static_state
+from spline_model.pivot import cross_axis_pivot, swinging_slide_stiffness
+from tests import gates
+from tests.table_one import TABLE_ONE
+
+EFFECTS = ("bending", "stretching", "strip_inertia", "body_inertia")
+
+
+def pivot(control_points=4, **settings):
+    """Table 1 in motion."""
+    slide = swinging_slide_stiffness(control_points)
+    return cross_axis_pivot(**TABLE_ONE, control_points=control_points, slide_stiffness=slide, **settings)
+
+
+def jump_error(step, factor=1.0):
+    """Error of the rotation after a moment that sets in between two steps, against a fine grid."""
+    times = ((0.0, 0.0), (1.0003e-3, 0.0), (1.0003e-3 + 1e-9, 1.0))
+    loaded = pivot(
+        effects=(*EFFECTS, "applied_moment"),
+        parameters={"applied_moment": {"moment": 50.0 * factor, "history": times}},
+    ).mechanism
+
+    def end(h):
+        return solve_motion(loaded, duration=4e-3, step=h, records=1).rotation[-1]
+
+    return abs(end(step) / end(2e-6) - 1.0)
+
+
+def test_a_sudden_load_keeps_the_order():
+    """Requirement: a moment that sets in between two steps is met at its time: the error falls as h^2."""
+    coarse, fine = jump_error(2e-4), jump_error(5e-5)
+    assert math.log(coarse / fine, 4.0) > 2 - 0.3, (coarse, fine)
+    gates.check("spline_sudden_load", fine)
+
+
+def test_sudden_load_gate_has_teeth():
+    """Requirement: a long step fails the gate."""
+    with pytest.raises(AssertionError, match="x the gate"):
+        gates.check("spline_sudden_load", jump_error(gates.teeth("spline_sudden_load")["step"]))
+
+
+def test_a_drive_off_the_grid_ends_where_it_should():
+    """Requirement: a drive that begins, turns and ends between steps is followed, and the books close."""
+    corners = ((0.00203, 0.0), (0.00307, 0.2), (0.00411, -0.1))
+    drive = DrivenRotation(body="body", angle=1.0, history=corners, held=(0.00203, 0.00411))
+    run = solve_motion(pivot().mechanism, drive=drive, duration=6e-3, step=5e-5)
+    assert not run.message
+    inside = (run.time > 0.00204) & (run.time < 0.0041)
+    wanted = np.interp(run.time[inside], *zip(*corners, strict=True))
+    assert np.abs(run.rotation[inside] - wanted).max() < 1e-10  # tolerance of a step's constraints, rad
+    books = run.kinetic_energy + run.strain_energy - run.work + run.dissipated
+    assert np.abs(books - books[0]).max() < 1e-9 * np.abs(run.work).max()
+
+
+def test_a_motion_goes_on_where_another_ended():
+    """Requirement: two halves, one after the other, are the whole run, work and clock included."""
+    whole = solve_release(pivot(), start=1.0, duration=4e-3, step=5e-5)
+    half = solve_release(pivot(), start=1.0, duration=2e-3, step=5e-5)
+    rest = solve_motion(pivot().mechanism, after=half, duration=2e-3, step=5e-5)
+    assert rest.time[0] == pytest.approx(half.time[-1]) and rest.time[-1] == pytest.approx(whole.time[-1])
+    assert abs(rest.rotation[-1] - whole.rotation[-1]) < 1e-11
+    with pytest.raises(InvalidParameter, match="after: got 'a motion of another mechanism'"):
+        solve_motion(pivot(control_points=5).mechanism, after=half, duration=1e-3)
+
+
+def test_the_monitor_stops_a_run_that_gains_energy(monkeypatch):
+    """Requirement: a run whose energy grows is stopped at the last good record, with the reason."""
+    monkeypatch.setattr(energy_consistent, "TOLERANCE", 1e-3)  # a Newton that hardly solves its steps
+    run = solve_release(pivot(), duration=0.02, step=5e-5)
+    assert run.status.value == "not_converged"
+    assert "the energy grows by more than 1e-06 of itself" in run.message
+    stored = run.kinetic_energy + run.strain_energy
+    assert (stored <= stored[0] * (1 + 1e-6)).all()
+
+
+def test_generalised_alpha_stops_before_it_blows_up():
+    """Requirement: a long undamped step of generalised-alpha stops while its energy is still right."""
+    run = solve_release(pivot(6), duration=0.05, step=1e-3, integrator="generalised-alpha")
+    assert run.status.value == "not_converged"
+    stored = run.kinetic_energy + run.strain_energy
+    assert stored.max() < 1.01 * stored[0]
+
+
+def test_gain_has_a_scale_at_rest():
+    """Requirement: a motion at rest, whose energies are round-off, gains nothing; a real gain is seen."""
+    rows = np.zeros((3, 7))
+    rows[:, 0] = 0.0, 1e-28, 2e-28
+    assert first_gain(rows, 250.0, 1e-6) == 3
+    rows[:, 1] = 10.0, 10.0, 10.1
+    assert first_gain(rows, 250.0, 1e-6) == 2
+    assert energy_gain(rows, 250.0)[2] == pytest.approx(0.1 / 10.1)
+    rows[1, 1] = np.nan
+    assert first_gain(rows, 250.0, 1e-6) == 1
+
+
+def test_halving_is_bounded():
+    """Requirement: a step that only works in thousands of parts is refused, not ground through."""
+    length = 0.5258314207995545
+    soft = TABLE_ONE | {
+        "length": length,
+        "inclination": 0.7771367085429312,
+        "crossing_ratio": 0.5807604483474851,
+        "youngs_modulus": 1191366966.6536813,
+        "area": 2.0 * (length / 596.0) ** 2,
+        "second_moment_of_area": 2.0 * (length / 596.0) ** 4 / 12.0,
+        "body_mass": 0.2 * (length / TABLE_ONE["length"]) ** 3,
+        "body_moment_of_inertia": 0.002 * (length / TABLE_ONE["length"]) ** 5,
+    }
+    design = cross_axis_pivot(**soft, control_points=6, slide_stiffness=swinging_slide_stiffness(6))
+    run = solve_release(design, start=1.9748, duration=600.0, step=60.0)
+    assert run.counters["halved_steps"] < 2_500  # 500 and 150 for each of ten steps
+    assert run.status.value == "converged" or "halved too often" in run.message or "folds" in run.message
+
+
+def test_energy_content_adds_up_and_names_the_mode():
+    """Requirement: shares add up to one, the swing has nearly all, a long step names what it misses."""
+    released = pivot(6)
+    system = compile_scene(released.released())
+    motion = set_in_motion(system)
+    start = static_state(released.mechanism, math.pi / 2)[: system.layout.size]
+    v = np.zeros(system.layout.coordinate_count)
+    acceleration, z = initial_acceleration(system, motion, start, v)
+    content = energy_content(system, motion, z, v, acceleration)
+    assert sum(mode.share for mode in content) == pytest.approx(1.0)
+    assert content[0].kind == "swing" and content[0].share > 0.99
+    assert {mode.kind for mode in content} == {"swing", "bending", "stretching"}
+    assert content[1].share > CARRIED > content[2].share
+    run = solve_release(released, duration=2e-4, step=2e-4)
+    assert "mode 2 (bending, 850 Hz" in run.resolution and "take 5.9e-05 s or less" in run.resolution
+
+
+@pytest.mark.parametrize("steps", [200, 800])
+@pytest.mark.parametrize("start", [0.1, 0.5236, 1.0])
+def test_massless_strips_take_short_steps(start, steps):
+    """Requirement: massless strips move at short steps as at long ones, and keep energy."""
+    without = pivot(6, effects=("bending", "stretching", "body_inertia"))
+    run = solve_release(without, start=start, duration=0.013 / 8, step=0.013 / steps)
+    assert not run.message
+    stored = run.kinetic_energy + run.strain_energy
+    assert np.abs(stored / stored[0] - 1).max() < 1e-9  # three orders below a step of 1e-6 of the energy

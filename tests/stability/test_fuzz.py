@@ -1,0 +1,65 @@
+"""Random designs and commands: three outcomes, and never a fourth."""
+
+import math
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from studies.stability.outcome import judged
+from studies.stability.whole.fuzz import TOLERANCE, Example, asked
+
+#: Values that no design can have, among those that it can.
+BAD = (-1.0, 0.0, math.nan, math.inf)
+
+
+def number(low, high):
+    """Return a finite number of that range."""
+    return st.floats(low, high, allow_nan=False, allow_infinity=False)
+
+
+def power(low, high):
+    """Return ten to the power of a number of that range, now and then a bad one."""
+    return st.one_of(*[number(low, high).map(lambda e: 10.0**e)] * 9, st.sampled_from(BAD))
+
+
+EXAMPLES = st.builds(
+    Example,
+    length=power(-3.0, 0.5),
+    inclination=number(0.1, 1.45),
+    crossing_ratio=st.one_of(*[number(0.02, 0.98)] * 9, st.sampled_from(BAD)),
+    slenderness=number(0.7, 4.0).map(lambda e: 10.0**e),
+    youngs_modulus=power(6.0, 12.0),
+    control_points=st.integers(4, 9),
+    targets=st.lists(number(-3.5, 3.5), min_size=1, max_size=3).map(tuple),
+    increments=st.integers(1, 25),
+    step=st.one_of(st.none(), st.none(), st.none(), number(-3.0, 0.0).map(lambda e: 10.0**e)),
+)
+
+
+def hold(example):
+    """Ask the spline, and refuse the outcome that must not be."""
+    verdict = judged(lambda: asked(example), TOLERANCE)
+    assert verdict.outcome in ("right", "refused", "bad input"), (example, verdict)
+    assert verdict.outcome == "right" or len(verdict.reason) > 10, (example, verdict)
+
+
+@settings(max_examples=60, deadline=None, derandomize=True, database=None)
+@given(EXAMPLES)
+def test_some_designs(example):
+    """Requirement: sixty random examples are right, refused or bad input."""
+    hold(example)
+
+
+@pytest.mark.slow
+@settings(
+    max_examples=2000,
+    deadline=None,
+    database=None,
+    derandomize=True,
+    suppress_health_check=[HealthCheck.too_slow],
+)
+@given(EXAMPLES)
+def test_two_thousand_designs(example):
+    """Requirement: two thousand random examples are right, refused or bad input."""
+    hold(example)
