@@ -2,8 +2,9 @@
 
     python -m studies compile
 
-`make setup` does this. The kernels are kept beside their sources and compiled anew when these change. Nothing
-depends on this command: what is not compiled is compiled when it is first called.
+`make setup` does this. The kernels are kept beside their sources. A kernel is compiled anew when its own file
+changes, but not when one changes that it calls: after such a change, run this command, which compiles all
+afresh. Nothing else depends on it: what is not compiled is compiled when it is first called.
 """
 
 import argparse
@@ -17,6 +18,7 @@ from studies.answers.models import built, model_of
 from studies.answers.settings import FeSettings, Settings, SplineSettings
 from studies.cases.problem import named_case
 from studies.commands.parser import Parser
+from studies.record.source import ROOT
 
 #: Small calls that between them enter every kernel: settings, and integrators of a release.
 CALLS: tuple[tuple[Settings, tuple[str, ...]], ...] = (
@@ -36,6 +38,7 @@ def main(arguments: argparse.Namespace) -> int:
     problem = replace(named_case("cross_axis_pivot"), rotation=0.1, increments=1)
     print("studies: compiling the kernels, once (about a minute) ...", file=sys.stderr, flush=True)
     begin = time.perf_counter()
+    forget()
     for settings, integrators in CALLS:
         answer_static(problem, settings, accuracy=1.0 if settings.model == "spline" else None)
         answer_modes(problem, settings)
@@ -46,3 +49,10 @@ def main(arguments: argparse.Namespace) -> int:
         solve_impulses(chosen, duration=1e-5, step=1e-6, form=form)
     print(f"studies: ready after {time.perf_counter() - begin:.0f} s", file=sys.stderr)
     return 0
+
+
+def forget() -> None:
+    """Remove the kernels that were compiled before."""
+    for package in ("spline_model", "fe_reference"):
+        for kept in (ROOT / package).rglob("*.nb[ci]"):
+            kept.unlink()

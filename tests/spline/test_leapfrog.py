@@ -10,8 +10,9 @@ from spline_model.dynamics import solve_release
 from spline_model.errors import InvalidParameter
 from spline_model.fast.acceleration import accelerate
 from spline_model.fast.leapfrog import leap
-from spline_model.fast.release import coordinates
+from spline_model.fast.release import coordinates, reduced
 from spline_model.fast.release import swing as swing_of_mechanism
+from spline_model.fast.swing import swing_space
 from spline_model.integrators.motion import set_in_motion
 from spline_model.kernels.record import POSITION, VELOCITY, record
 from spline_model.modes import linear_modes
@@ -66,8 +67,9 @@ def phase_error(omega_h, mode=14, periods=400):
     constants = swing_of_mechanism(mechanism, system, motion)
     z = system.rest.copy()
     z[:count] += 1e-7 / np.abs(shape).max() * shape
-    space, r = 0
-    w, acceleration = np.zeros_like(r), np.zeros_like(r)
+    space = swing_space(constants)
+    r, w = reduced(mechanism, system, constants.frame, z, np.zeros(count))
+    acceleration = np.zeros_like(r)
     accelerate(r, w, constants, space, acceleration)
     steps = math.ceil(2 * math.pi * periods / omega_h)
     assert leap(r, w, acceleration, omega_h / omega, steps, constants, space)
@@ -113,6 +115,15 @@ def test_clamps_hold_by_construction():
         record(z, v, motion, np.empty(len(motion.rigidity)), np.zeros(2), row)
         assert row[POSITION] < 1e-16
         assert row[VELOCITY] < 1e-12
+
+
+def test_motion_goes_on_where_it_stopped():
+    """Requirement: two halves one after the other are one run, to the centripetal terms' extrapolation."""
+    whole = swing(1e-6, duration=0.002)
+    first = swing(1e-6, duration=0.001)
+    rest = solve_release(pivot(), duration=0.001, step=1e-6, records=100, integrator="leapfrog", after=first)
+    assert rest.time[-1] == pytest.approx(whole.time[-1])
+    assert abs(rest.rotation[-1] - whole.rotation[-1]) < 1e-7
 
 
 def test_default_step_is_stable_and_a_long_one_says_so():
