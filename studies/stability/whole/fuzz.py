@@ -3,6 +3,7 @@
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -86,7 +87,7 @@ def compute(progress: Callable[[int, int], None]) -> dict[str, pd.DataFrame]:
     for number in range(EXAMPLES):
         progress(number, EXAMPLES)
         example = drawn(generator)
-        verdict = judged(lambda e=example: asked(e), TOLERANCE)
+        verdict = judged(partial(asked, example), TOLERANCE)
         place = {
             "case": f"{number}",
             "kind": example.kind,
@@ -136,7 +137,8 @@ def drawn(generator: np.random.Generator) -> Example:
     if generator.random() < 0.05:
         names = ("length", "crossing_ratio", "youngs_modulus", "slenderness")
         bad = (-1.0, 0.0, math.nan, math.inf)
-        return replace(example, **{str(generator.choice(names)): float(generator.choice(bad))})
+        spoilt: dict[str, Any] = {str(generator.choice(names)): float(generator.choice(bad))}
+        return replace(example, **spoilt)
     return example
 
 
