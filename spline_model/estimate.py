@@ -8,8 +8,9 @@ from numpy.typing import NDArray
 TORQUE_SHARE = 4.5
 """Error of torque and energy over the squared moment defect, at most: 2.3 to 4.3 over crossing ratios
 0.05 to 0.95, inclinations 10 to 80 degrees and rotations to 180 degrees, with 4 to 10 control points."""
-UNCERTAIN = 0.05
-"""Estimated error of the torque from which an answer says that it is not resolved."""
+UNCERTAIN = 0.03
+"""Estimated error of the torque from which an answer says that it is not resolved: at the ends of what
+designs may be the factor above is exceeded, and no error of 0.05 shall pass in silence."""
 
 
 def resolution(defect: NDArray[np.float64]) -> str:

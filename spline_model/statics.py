@@ -34,6 +34,9 @@ Array = NDArray[np.float64]
 STATIONS = np.linspace(0.0, 1.0, 61)
 """Where sections are recovered, reference arc length over L; both clamped ends are among them."""
 
+LEAST_ROTATION = 1e-12
+"""Largest rotation of a path that is none [rad]: states are solved to 1e-11."""
+
 METHODS = ("condensed", "multipliers")
 CONTROLS = ("load", "arc-length")
 Progress = Callable[[int, int], None]
@@ -72,7 +75,8 @@ def solve_statics(
     require_choice("method", method, METHODS)
     origin = 0.0 if start is None else float(start.rotation[-1])
     largest = max((abs(angle) for angle in (origin, *targets)), default=0.0)
-    if largest == 0.0:
+    turns = np.abs(np.diff([origin, *targets]))
+    if largest < LEAST_ROTATION or ((turns > 0.0) & (turns < LEAST_ROTATION)).any():
         raise InvalidParameter("rotation", rotation, "an angle other than zero [rad]")
     legs = [np.linspace(a, b, increments + 1)[1:] for a, b in zip([origin, *targets], targets, strict=False)]
     rotations = np.concatenate(legs)

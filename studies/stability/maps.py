@@ -26,7 +26,7 @@ LABELS = {
     BAD_INPUT: "cannot be asked",
 }
 #: Size of a panel of a map [inch].
-WIDTH, HEIGHT = 2.3, 3.5
+WIDTH, HEIGHT, NARROWEST = 2.3, 3.5, 8.0
 
 
 def outcome_map(
@@ -47,7 +47,7 @@ def outcome_map(
             place to label.
     """
     models = [model for model in order if (outcomes[panels_by] == model).any()]
-    figure = page(WIDTH * len(models), HEIGHT)
+    figure = page(max(WIDTH * len(models), NARROWEST), HEIGHT)
     panels = figure.subplots(1, len(models), sharex=True, sharey=True, squeeze=False)[0]
     ticks: dict[str, Any] = {name: axes.pop(name) for name in ("xticks", "yticks") if name in axes}
     for panel, model in zip(panels, models, strict=True):

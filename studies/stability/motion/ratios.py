@@ -35,7 +35,7 @@ FACTORS = (1e-6, 1e-4, 1e-2, 1.0, 1e2, 1e4, 1e6)
 STIFFER = (1e2, 1e4)
 START_DEG = 30.0
 #: Steps in a period of the first mode at rest: of the columns, of the reference and of its coarser twin.
-STEPS, REFINED_STEPS, COARSER_STEPS = 200, 1200, 600
+STEPS, REFINED_STEPS, COARSER_STEPS = 200, 1600, 800
 #: Columns that are asked: the explicit scheme's steps follow the strips, whatever the body.
 ASKED = tuple(name for name in SWINGING if name != EXPLICIT)
 STRIP_INERTIA = "strip_inertia"

@@ -104,6 +104,8 @@ def energy_gain(motion: Motion) -> float:
 
 def compared(motion: Motion, reference: Motion, *, most_gain: float, checked: bool) -> Found:
     """Return a motion against the reference; without `checked`, as if it said nothing of itself."""
+    if not len(motion.time):  # statics does not reach the start
+        return Found(error=0.0, reached=False, reason=motion.message, counters=motion.counters)
     gain = energy_gain(motion)
     resolution = motion.resolution if checked else ""
     return Found(

@@ -135,10 +135,10 @@ def drawn(generator: np.random.Generator) -> Example:
         step=None if generator.random() < 0.7 else 10.0 ** uniform(-3.0, 0.0),
     )
     if generator.random() < 0.05:
-        names = ("length", "crossing_ratio", "youngs_modulus", "slenderness")
+        names = ("length", "crossing_ratio", "youngs_modulus")
         bad = (-1.0, 0.0, math.nan, math.inf)
-        wrong: dict[str, Any] = {str(generator.choice(names)): float(generator.choice(bad))}
-        return replace(example, **wrong)
+        spoilt: dict[str, Any] = {str(generator.choice(names)): float(generator.choice(bad))}
+        return replace(example, **spoilt)
     return example
 
 
