@@ -94,7 +94,8 @@ def test_release_table_is_short_and_says_what_is_not_resolved(case, command):
     assert "clamp gap" in lines[1]
     assert 20 <= len(lines) <= 30
     assert lines[3].split()[:2] == ["0.000", "90.000"]
-    assert "the swing's period" in lines[-2]
+    assert "of the period of mode" in lines[-2]
+    assert "of the swing's" in lines[-2]
 
 
 def test_release_is_timed_without_its_static_path(case, command, monkeypatch):
