@@ -1,4 +1,4 @@
-"""Rewrite the figures of agreement and of cost in README.md from the stored results.
+"""Rewrite the figures of agreement, of cost and of hard cases in README.md from the stored results.
 
     python -m studies readme
 
@@ -17,12 +17,15 @@ from studies.errors import BadInput
 from studies.record.files import write_whole
 from studies.record.source import ROOT
 from studies.record.store import Store
+from studies.stability.summary import lines
 
 README = ROOT / "README.md"
 BEGIN = "<!-- agreement: written by `python -m studies readme` -->"
 END = "<!-- end of agreement -->"
 BEGIN_DIGITS = "<!-- digits: written by `python -m studies readme` -->"
 END_DIGITS = "<!-- end of digits -->"
+BEGIN_HARD = "<!-- hard cases: written by `python -m studies readme` -->"
+END_HARD = "<!-- end of hard cases -->"
 
 #: Control-point counts that the table shows for the default formulation.
 COUNTS = (4, 6, 8, 12)
@@ -56,7 +59,8 @@ def rewritten(text: str, store: Store) -> str:
     text = _between(text, BEGIN, END, _block(store))
     studies = ("work_precision/statics", "work_precision/dynamics")
     found = [_table(store, study, "digits_of_time") for study in studies]
-    return _between(text, BEGIN_DIGITS, END_DIGITS, digits(*found))
+    text = _between(text, BEGIN_DIGITS, END_DIGITS, digits(*found))
+    return _between(text, BEGIN_HARD, END_HARD, lines(store))
 
 
 def _between(text: str, begin: str, end: str, lines: Iterable[str]) -> str:

@@ -21,7 +21,7 @@ COUNTS = (4, 5, 6, 7, 8, 9, 10, 12)
 #: Control points and steps [s] of those that take large implicit steps.
 IMPLICIT_COUNTS, STEPS = (4, 5, 6, 8), (2e-4, 1e-4, 5e-5, 2e-5)
 MESHES = (5, 10, 16, 24, 36)
-PEER_STEPS = (2e-4, 1e-4, 5e-5, 2e-5)
+PEER_STEPS = (2e-4, 1e-4, 5e-5, 2e-5, 1e-5, 5e-6)
 FRAME_STEPS = (1e-4, 5e-5, 2e-5)
 CLOSED_STEP = 1e-4
 

@@ -41,18 +41,23 @@ def test_tables_of_digits():
     ]
 
 
-def test_both_blocks_are_asked_for(monkeypatch):
-    """A README without the marks of the second block is refused with what is expected."""
+def test_every_block_is_asked_for(monkeypatch):
+    """A README without the marks of a block is refused with what is expected."""
     monkeypatch.setattr(readme, "_block", lambda store: ["agreement"])
     monkeypatch.setattr(readme, "_table", lambda store, study, name: found([]))
     first = f"head\n{readme.BEGIN}\nold\n{readme.END}\n"
     with pytest.raises(BadInput, match="digits: written by"):
         readme.rewritten(first, Store())
     monkeypatch.setattr(readme, "digits", lambda statics, dynamics: ["digits"])
-    text = readme.rewritten(f"{first}{readme.BEGIN_DIGITS}\nold\n{readme.END_DIGITS}\ntail", Store())
+    monkeypatch.setattr(readme, "lines", lambda store: ["hard"])
+    second = f"{readme.BEGIN_DIGITS}\nold\n{readme.END_DIGITS}\n"
+    with pytest.raises(BadInput, match="hard cases: written by"):
+        readme.rewritten(first + second, Store())
+    third = f"{readme.BEGIN_HARD}\nold\n{readme.END_HARD}\ntail"
+    text = readme.rewritten(first + second + third, Store())
     assert "old" not in text
     assert text.startswith("head\n") and text.endswith("tail")
-    assert text.index("agreement") < text.index(readme.END) < text.index("\ndigits\n")
+    assert text.index("agreement") < text.index(readme.END) < text.index("\ndigits\n") < text.index("\nhard\n")
 
 
 def test_columns_are_series_of_the_studies():
