@@ -24,6 +24,7 @@ from spline_model.fast.solve import (
     mode_count,
 )
 from spline_model.fast.states import states_of
+from spline_model.fast.strip import place_points
 from spline_model.mechanism import Mechanism
 
 Array = NDArray[np.float64]
@@ -172,6 +173,21 @@ class HeldPivot:
             evaluations=int(counters[EVALUATIONS]),
             halved=int(counters[HALVED]),
         )
+
+    @property
+    def control_points(self) -> Array:
+        """Control points of the strips in the ground's frame, (G, n, 2) [m]."""
+        frame, strips = self.frame, len(self.frame.length)
+        own = len(self._room.step) - frame.compliance.shape[1]
+        points = np.zeros((strips, own // 2 + 3, 2))
+        for s in range(strips):
+            compiled.tip_of(frame, s, self.pose, self._room.tip)
+            x, y, angle = self._room.tip
+            at = 2 + s * len(self._room.step)
+            place_points(self._y[at : at + own], x, y, math.cos(angle), math.sin(angle), points[s])
+            c, d = frame.axis[s]
+            points[s] = frame.root[s] + frame.length[s] * points[s] @ np.array([[c, d], [-d, c]])
+        return points
 
     def full_state(self, system: System) -> Array:
         """The unknowns z (N,) of a compiled scene of the same mechanism, clamp reactions included."""

@@ -1,0 +1,114 @@
+"""The released pivot, step after step: one interface for the solvers of section 4.1."""
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from spline_model.compile import System, compile_scene
+from spline_model.integrators.energy_consistent import TOLERANCE
+from spline_model.integrators.events import drives_at
+from spline_model.integrators.motion import initial_acceleration, set_in_motion
+from spline_model.kernels.energy_step import HALVED, NEWTON, advance
+from spline_model.kernels.record import DISSIPATED, KINETIC, STRAIN, record
+from spline_model.pivot import BODY, STRIPS, Pivot
+
+Array = NDArray[np.float64]
+
+#: Least part of a step before the motion is given up: work stays bounded.
+SMALLEST_PART = 2.0**-6
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Moving:
+    """A state of the released pivot.
+
+    pose, velocity (3,) of the body [m, m, rad and a second]; points (2, n, 2) [m]; kinetic, strain,
+    dissipated
+    energies [J]; iterations of the last steps.
+    """
+
+    pose: Array
+    velocity: Array
+    points: Array
+    kinetic: float
+    strain: float
+    dissipated: float
+    iterations: int
+
+
+class Motion(Protocol):
+    """A solver that was started from a static state; `advance` takes steps and says whether it could."""
+
+    def advance(self, steps: int, step: float) -> bool:
+        """Take `steps` steps of `step` seconds; False where the solver fails, the last good state being
+        kept."""
+
+    def state(self) -> Moving:
+        """Return the present state."""
+
+
+class EnergyMotion:
+    """The energy-consistent integrator, one call a frame."""
+
+    def __init__(self, pivot: Pivot, z: Array, velocity: Array) -> None:
+        self.system = released(pivot)
+        self._motion = set_in_motion(self.system)
+        self._acceleration, self._z = initial_acceleration(self.system, self._motion, z, velocity)
+        self._v = velocity.copy()
+        self._counters, self._totals = np.zeros(5, dtype=np.int64), np.zeros(2)
+        self._active = drives_at(self._motion, 0, 1.0)
+        self._iterations = 0
+
+    def advance(self, steps: int, step: float) -> bool:
+        """Take steps, halved at need down to SMALLEST_PART."""
+        before = int(self._counters[NEWTON])
+        kept = self._z.copy(), self._v.copy(), self._acceleration.copy(), self._totals.copy()
+        for _ in range(steps):
+            done = advance(
+                self._z, self._v, self._acceleration, 0.0, step, step, step * SMALLEST_PART,
+                self._active, self._motion, TOLERANCE, self._counters, self._totals,
+            )  # fmt: skip
+            if done < step:
+                for array, value in zip(
+                    (self._z, self._v, self._acceleration, self._totals), kept, strict=True
+                ):
+                    array[:] = value
+                return False
+        self._iterations = int(self._counters[NEWTON]) - before
+        return True
+
+    @property
+    def halved(self) -> int:
+        """Steps that were halved so far."""
+        return int(self._counters[HALVED])
+
+    def state(self) -> Moving:
+        """Return the present state."""
+        row = np.zeros(7)
+        record(self._z, self._v, self._motion, np.empty(len(self._motion.rigidity)), self._totals, row)
+        return moving(self.system, self._z, self._v, row, self._iterations)
+
+
+def released(pivot: Pivot) -> System:
+    """Return the compiled scene of the released pivot."""
+    return compile_scene(pivot.released())
+
+
+def moving(system: System, z: Array, v: Array, row: Array, iterations: int) -> Moving:
+    """Return the state of the released pivot from its unknowns, velocities and energies."""
+    body = system.layout.body(BODY)
+    return Moving(
+        pose=z[body].copy(),
+        velocity=v[body].copy(),
+        points=np.stack([z[system.layout.strip(name)].reshape(-1, 2) for name in STRIPS]),
+        kinetic=float(row[KINETIC]),
+        strain=float(row[STRAIN]),
+        dissipated=float(row[DISSIPATED]),
+        iterations=iterations,
+    )
+
+
+#: Solvers of the released pivot by the name that the user chooses.
+MOTIONS: dict[str, type[EnergyMotion]] = {"energy": EnergyMotion}
