@@ -56,7 +56,7 @@ PARAMETERS: dict[str, Parameter] = {
             name="inclination", label="inclination", unit="°", per_si=math.degrees(1),
             low=math.radians(25), high=math.radians(65),
         ),
-        Parameter(name="crossing_ratio", label="crossing", unit="of length", per_si=1.0, low=0.2, high=0.8),
+        Parameter(name="crossing_ratio", label="crossing", unit="of L", per_si=1.0, low=0.2, high=0.8),
         Parameter(
             name="youngs_modulus", label="Young's modulus", unit="GPa", per_si=1e-9, low=1e7, high=5e11,
             logarithmic=True,
@@ -79,7 +79,7 @@ PARAMETERS: dict[str, Parameter] = {
             name="relaxation_time", label="strip damping time", unit="ms", per_si=1e3, low=0.0, high=0.05
         ),
         Parameter(
-            name="time_scale", label="time scale", unit="simulated s per s", per_si=1.0, low=1e-4, high=1.0,
+            name="time_scale", label="time scale", unit="s/s", per_si=1.0, low=1e-4, high=1.0,
             logarithmic=True,
         ),
     )

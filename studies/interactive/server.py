@@ -120,6 +120,7 @@ class Server:
         listener.setsockopt(sockets.SOL_SOCKET, sockets.SO_REUSEADDR, 1)
         try:
             listener.bind(("127.0.0.1", self.settings.port))
+            listener.listen(16)
         except OSError as error:
             listener.close()
             raise BadInput(

@@ -3,7 +3,16 @@ import { plot } from "./plots.js";
 
 const at = (id) => document.getElementById(id);
 const deg = (rad) => rad * 180 / Math.PI;
-const short = (value, digits = 3) => (value === null || value === undefined ? "–" : Math.abs(value) >= 1e5 ? value.toExponential(digits - 1) : Number(value.toPrecision(digits)).toString());
+const PREFIXES = [[1e9, "G"], [1e6, "M"], [1e3, "k"], [1, ""], [1e-3, "m"], [1e-6, "µ"], [1e-9, "n"]];
+const short = (value, digits = 3) => (value === null || value === undefined ? "–" : Math.abs(value) < 1e-12 ? "0" : Number(value.toPrecision(digits)).toString());
+// A value with its unit's prefix; a spread behind it takes the same.
+function withUnit(value, unit, spread = null) {
+  if (value === null || value === undefined) return "–";
+  const size = Math.max(Math.abs(value), spread ?? 0);
+  if (size < 1e-9) return `0 ${unit}`;
+  const [scale, prefix] = PREFIXES.find(([s]) => size >= s) ?? PREFIXES[PREFIXES.length - 1];
+  return `${short(value / scale)}${spread === null ? "" : ` ± ${short(spread / scale, 2)}`} ${prefix}${unit}`;
+}
 
 export class Numbers {
   constructor() { this.times = []; this.spoken = 0; this.last = ""; }
@@ -11,21 +20,23 @@ export class Numbers {
   show(state, ring) {
     this.count(state);
     const sd = state.sd, [dx, dy, t] = state.displacement;
-    const moment = state.mode === "held" ? short(state.force[2]) + (state.force_sd ? ` ± ${short(state.force_sd[2], 2)}` : "") : "–";
+    const held = state.mode === "held", spread = state.force_sd ?? [null, null, null];
     const rows = [
       ["rotation", `${deg(t).toFixed(2)}${sd ? ` ± ${deg(sd[2]).toFixed(2)}` : ""} °`],
       ["shift x, y", `${(dx * 1e3).toFixed(2)}, ${(dy * 1e3).toFixed(2)}${sd ? ` ± ${(Math.max(sd[0], sd[1]) * 1e3).toFixed(2)}` : ""} mm`],
-      ["moment", `${moment} N m`],
-      ["stiffness", `${short(state.stiffness)} N m/rad`],
-      ["strain energy", `${short(state.energy.strain)} J`],
-      ["kinetic energy", `${short(state.energy.kinetic)} J`],
-      ["dissipated", `${short(state.energy.dissipated)} J`],
-      ["simulated time", `${short(state.simulated)} s, ${state.steps} steps`],
+      ["moment", held ? withUnit(state.force[2], "N m", spread[2]) : "released"],
+      ["force x", held ? withUnit(state.force[0], "N", spread[0]) : "released"],
+      ["force y", held ? withUnit(state.force[1], "N", spread[1]) : "released"],
+      ["stiffness, centre free", withUnit(state.stiffness, "N m/rad")],
+      ["strain energy", withUnit(state.energy.strain, "J")],
+      ["kinetic energy", withUnit(state.energy.kinetic, "J")],
+      ["dissipated", withUnit(state.energy.dissipated, "J")],
+      ["simulated", `${withUnit(state.simulated, "s")}, ${state.steps} steps`],
       ["time scale", state.values.time_scale >= 1 ? "real time" : `1 : ${short(1 / state.values.time_scale)}`],
       ["solver", `${short(state.solve_ms, 2)} ms, ${state.iterations} iterations`],
     ];
     if (state.track_ms !== undefined) rows.push(["tracking", `${short(state.track_ms, 2)} ms, ${state.sight.state}${state.sight.rms !== undefined ? `, ${state.sight.rms.toFixed(3)} px` : ""}`]);
-    if (state.lag > 0) rows.push(["behind", `${short(state.lag)} steps`]);
+    if (state.lag >= 1) rows.push(["behind", `${short(state.lag)} steps`]);
     at("numbers").replaceChildren(...rows.flatMap(([name, value]) => {
       const term = document.createElement("dt"), data = document.createElement("dd");
       term.textContent = name; data.textContent = value;
@@ -50,7 +61,7 @@ export class Numbers {
     at("gauge").style.width = `${Math.min(100, 100 * share)}%`;
     at("gauge").classList.toggle("over", share > 1);
     const where = state.stress.place === 0 ? "at the ground clamp" : state.stress.place === state.shape[0].length - 1 ? "at the body's clamp" : "in the span";
-    at("gauge-text").textContent = `largest stress ${short(state.stress.max / 1e6)} MPa, ${short(100 * share)} % of yield, strip ${state.stress.strip + 1} ${where}`;
+    at("gauge-text").textContent = share < 1e-9 ? "no stress" : `largest stress ${withUnit(state.stress.max, "Pa")}, ${short(100 * share)} % of yield, strip ${state.stress.strip + 1} ${where}`;
   }
 
   sentences(state) {

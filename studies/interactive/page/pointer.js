@@ -48,7 +48,8 @@ export class Pointer {
 
   nudge(change) {
     if (!this.held) return;
-    const wanted = this.next ?? this.studio.state.wanted;
+    const answered = this.seq === undefined || (this.studio.state.seq ?? -1) >= this.seq;
+    const wanted = this.next ?? (answered ? this.studio.state.wanted : this.last);
     this.post(wanted.map((value, k) => value + change[k]));
   }
 
@@ -56,7 +57,15 @@ export class Pointer {
   post(pose) {
     this.next = pose;
     if (this.waiting) return;
-    this.waiting = requestAnimationFrame(() => { this.waiting = null; this.send({ do: "pose", pose: this.next }); this.next = null; });
+    this.waiting = requestAnimationFrame(() => { this.waiting = null; this.flush(); });
+  }
+
+  // Numbered, so that steps that follow faster than the answers add up.
+  flush() {
+    this.seq = performance.now();
+    this.last = this.next;
+    this.send({ do: "pose", pose: this.next, seq: this.seq });
+    this.next = null;
   }
 }
 
