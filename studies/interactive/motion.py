@@ -1,5 +1,6 @@
 """The released pivot, step after step: one interface for the solvers of section 4.1."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -7,12 +8,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.compile import System, compile_scene
+from spline_model.impulses.solver import Run
 from spline_model.integrators.energy_consistent import TOLERANCE
 from spline_model.integrators.events import drives_at
 from spline_model.integrators.motion import initial_acceleration, set_in_motion
 from spline_model.kernels.energy_step import HALVED, NEWTON, advance
 from spline_model.kernels.record import DISSIPATED, KINETIC, STRAIN, record
 from spline_model.pivot import BODY, STRIPS, Pivot
+from spline_model.sequential_impulse import impulse_solver
 
 Array = NDArray[np.float64]
 
@@ -88,7 +91,38 @@ class EnergyMotion:
         """Return the present state."""
         row = np.zeros(7)
         record(self._z, self._v, self._motion, np.empty(len(self._motion.rigidity)), self._totals, row)
-        return moving(self.system, self._z, self._v, row, self._iterations)
+        energies = float(row[KINETIC]), float(row[STRAIN]), float(row[DISSIPATED])
+        return moving(self.system, self._z, self._v, energies, self._iterations)
+
+
+class ImpulseMotion:
+    """The sequential impulse solver in its form that is stable at any step, impulses solved at once (Eq 30)."""
+
+    def __init__(self, pivot: Pivot, z: Array, velocity: Array) -> None:
+        self._solver = impulse_solver(pivot)
+        self._start = self._out = Run(self._solver, self._solver.start_at(z, velocity)).outcome(
+            0, 0, 0.0, False
+        )
+
+    def advance(self, steps: int, step: float) -> bool:
+        """Take steps; where one must be cut below its least part, none counts."""
+        out = self._solver.step(self._out.state, step, steps)
+        if not out.complete:
+            return False
+        self._out = out
+        return True
+
+    def state(self) -> Moving:
+        """Return the present state; what the steps' own damping took counts as dissipated."""
+        out, start = self._out, self._start
+        lost = start.kinetic_energy + start.strain_energy - out.kinetic_energy - out.strain_energy
+        return moving(
+            self._solver.system,
+            out.state.z,
+            out.state.v,
+            (out.kinetic_energy, out.strain_energy, lost),
+            out.counters["solves"],
+        )
 
 
 def released(pivot: Pivot) -> System:
@@ -96,19 +130,24 @@ def released(pivot: Pivot) -> System:
     return compile_scene(pivot.released())
 
 
-def moving(system: System, z: Array, v: Array, row: Array, iterations: int) -> Moving:
-    """Return the state of the released pivot from its unknowns, velocities and energies."""
+def moving(
+    system: System, z: Array, v: Array, energies: tuple[float, float, float], iterations: int
+) -> Moving:
+    """Return the state from the unknowns, the velocities and the kinetic, strain and dissipated energy [J]."""
     body = system.layout.body(BODY)
     return Moving(
         pose=z[body].copy(),
         velocity=v[body].copy(),
         points=np.stack([z[system.layout.strip(name)].reshape(-1, 2) for name in STRIPS]),
-        kinetic=float(row[KINETIC]),
-        strain=float(row[STRAIN]),
-        dissipated=float(row[DISSIPATED]),
+        kinetic=energies[0],
+        strain=energies[1],
+        dissipated=energies[2],
         iterations=iterations,
     )
 
 
 #: Solvers of the released pivot by the name that the user chooses.
-MOTIONS: dict[str, type[EnergyMotion]] = {"energy": EnergyMotion}
+MOTIONS: dict[str, Callable[[Pivot, Array, Array], Motion]] = {
+    "impulse": ImpulseMotion,
+    "energy": EnergyMotion,
+}

@@ -21,7 +21,10 @@ const camera = new Camera(socket, say);
 const controls = new Controls(send);
 const pointer = new Pointer(at("stage"), view, studio, send);
 
-function send(event) { socket.send(event); }
+function send(event) {
+  if (event.do !== "pose") pointer.forget();
+  socket.send(event);
+}
 function say(text) { at("note").textContent = text; }
 
 function received(message, picture) {

@@ -60,6 +60,9 @@ export class Pointer {
     this.waiting = requestAnimationFrame(() => { this.waiting = null; this.flush(); });
   }
 
+  // What the server says counts again.
+  forget() { this.seq = undefined; }
+
   // Numbered, so that steps that follow faster than the answers add up.
   flush() {
     this.seq = performance.now();
