@@ -96,7 +96,7 @@ class EnergyMotion:
 
 
 class ImpulseMotion:
-    """The sequential impulse solver in its form that is stable at any step, impulses solved at once (Eq 30)."""
+    """Sequential impulses in the form that is stable at any step, all impulses at once (Eq 30)."""
 
     def __init__(self, pivot: Pivot, z: Array, velocity: Array) -> None:
         self._solver = impulse_solver(pivot)
@@ -133,7 +133,7 @@ def released(pivot: Pivot) -> System:
 def moving(
     system: System, z: Array, v: Array, energies: tuple[float, float, float], iterations: int
 ) -> Moving:
-    """Return the state from the unknowns, the velocities and the kinetic, strain and dissipated energy [J]."""
+    """Return the state from the unknowns, the velocities and the energies [J] as in `Moving`."""
     body = system.layout.body(BODY)
     return Moving(
         pose=z[body].copy(),

@@ -6,7 +6,6 @@ what
 """
 
 import math
-from collections import deque
 from collections.abc import Mapping
 from typing import Any
 
@@ -15,7 +14,10 @@ from numpy.typing import NDArray
 
 from studies.errors import BadInput
 from studies.interactive import presets
+from studies.interactive.bench import Bench
 from studies.interactive.design import wrapped
+from studies.interactive.fields import choice, mapping, number, three
+from studies.interactive.hand import Hand
 from studies.interactive.mechanics import Mechanics
 from studies.interactive.motion import MOTIONS
 from studies.interactive.placing import Placing
@@ -26,15 +28,10 @@ Array = NDArray[np.float64]
 
 #: Farthest a pose may lie from rest: shift over the strips' length, and turn [rad].
 FARTHEST_SHIFT, FARTHEST_TURN = 2.0, 3.5
-#: A camera's pose that lies farther from the last one waits for a second one that agrees [m, rad].
-JUMP_SHIFT, JUMP_TURN = 0.025, math.radians(15)
 #: Longest that simulated time is caught up in one frame, in steps.
 MOST_STEPS = 20
-#: Poses that the hand's velocity is taken from.
-HAND_POSES = 5
 #: Mean axial strain that no hand gives a strip: the markers' size or rest place is wrong.
 ODD_STRAIN = 0.015
-UNDO = 100
 #: What the hand holds: the whole pose, or the rotation alone.
 DRIVES = ("pose", "rotation")
 
@@ -54,8 +51,7 @@ class Session:
 
     def _begin(self, preset: str, values: Mapping[str, object], lock_step: bool) -> None:
         """Everything as at the start, with these settings."""
-        self._design(values)
-        self.preset, self.lock_step = preset, lock_step
+        self.bench, self.lock_step = Bench(preset, values), lock_step
         self.warnings = Warnings()
         self.drive, self.solver = DRIVES[0], next(iter(MOTIONS))
         self.paused = False
@@ -64,15 +60,19 @@ class Session:
         self.spread: Array | None = None
         self.start_energy = 0.0
         self.wanted = np.zeros(3)
-        self._past: list[tuple[str, dict[str, float]]] = []
-        self._future: list[tuple[str, dict[str, float]]] = []
-        self._hand: deque[tuple[float, Array]] = deque(maxlen=HAND_POSES)
-        self._odd: Array | None = None
+        self._marker: Array | None = None
+        self._hand = Hand()
         self._last_frame: float | None = None
 
-    seen_marker: Array | None
-    placing: Placing
-    mechanics: Mechanics
+    @property
+    def mechanics(self) -> Mechanics:
+        """The present design at work."""
+        return self.bench.mechanics
+
+    @property
+    def placing(self) -> Placing:
+        """Where its markers sit."""
+        return self.bench.placing
 
     def feed(self, event: Mapping[str, Any]) -> dict[str, Any]:
         """Take one event and return the state after it.
@@ -84,7 +84,7 @@ class Session:
         action = ACTIONS.get(name) if isinstance(name, str) else None
         if action is None:
             raise BadInput(f"do: got {name!r}, expected one of {', '.join(ACTIONS)}")
-        time = _number(event, "t")
+        time = number(event, "t")
         self.warnings.begin()
         action(self, event, time)
         self.time = time
@@ -95,7 +95,7 @@ class Session:
         return {
             "do": "setup",
             "t": self.time,
-            "preset": self.preset,
+            "preset": self.bench.preset,
             "values": dict(self.mechanics.values),
             "drive": self.drive,
             "solver": self.solver,
@@ -105,31 +105,32 @@ class Session:
 
     def _setup(self, event: Mapping[str, Any], time: float) -> None:
         """Begin anew with these settings; the first event of a session file."""
-        presets.preset(event.get("preset"))
-        drive, solver = _choice(event, "drive", DRIVES), _choice(event, "solver", tuple(MOTIONS))
-        rest, values = _three(event, "rest"), presets.checked(event.get("values", {}))
-        self._begin(str(event["preset"]), values, event.get("lock_step") is not False)
+        drive, solver = choice(event, "drive", DRIVES), choice(event, "solver", tuple(MOTIONS))
+        rest, values = three(event, "rest"), presets.checked(mapping(event, "values"))
+        preset = choice(event, "preset", tuple(presets.PRESETS))
+        self._begin(preset, values, event.get("lock_step") is not False)
         self.drive, self.solver = drive, solver
-        self.placing = self.placing.with_rest(rest)
+        if not np.array_equal(rest, self.placing.rest):
+            self.bench.set_rest(rest)
 
     # -- poses ---------------------------------------------------------------------------------------------
 
     def _pose(self, event: Mapping[str, Any], time: float) -> None:
         """A pose from mouse, touch, keys or sliders: displacement from rest and turn."""
         self.sight, self.spread = {"state": "none"}, None
-        pose = _three(event, "pose")
+        pose = three(event, "pose")
         self._to(pose, time)
 
     def _seen(self, event: Mapping[str, Any], time: float) -> None:
         """Marker 1 in marker 0's frame, as the camera sees it."""
-        marker = _three(event, "marker")
+        marker = three(event, "marker")
         self.sight = {key: event[key] for key in ("state", "rms", "plane", "quads") if key in event}
         self.sight.setdefault("state", "found")
-        self.seen_marker = marker
+        self._marker = marker
         for code in event.get("faults", ()):
             self.warnings.say(code, str(event.get("text", "")))
         if not self._frame(time) and not self.paused and self._plausible(marker):
-            self.spread = self.placing.spread(_three(event, "sd")) if "sd" in event else None
+            self.spread = self.placing.spread(three(event, "sd")) if "sd" in event else None
             body = self.placing.body(marker, near=self.wanted[2])
             self._to(np.array([*(body[:2] - self.placing.centre), body[2]]), time)
 
@@ -166,12 +167,7 @@ class Session:
             return False
         body = self.placing.body(marker, near=self.wanted[2])
         pose = np.array([*(body[:2] - self.placing.centre), body[2]])
-        if not self._hand or _close(pose, self._hand[-1][1]):
-            self._odd = None
-            return True
-        known, self._odd = self._odd, pose
-        if known is not None and _close(pose, known):
-            self._odd = None
+        if self._hand.believes(pose):
             return True
         self.warnings.say("jump")
         return False
@@ -184,7 +180,7 @@ class Session:
         if not (far <= FARTHEST_SHIFT and abs(pose[2]) <= FARTHEST_TURN):
             self.warnings.say("absurd", f"shift {far:.2g} strip lengths, turn {math.degrees(pose[2]):.0f}°")
             return
-        self._hand.append((time, pose))
+        self._hand.add(time, pose)
         self.wanted = pose
         self._hold()
 
@@ -205,13 +201,8 @@ class Session:
     def _release(self, event: Mapping[str, Any], time: float) -> None:
         if self.mechanics.moving:
             return
-        velocity = np.zeros(3)
-        if event.get("speed", "zero") == "hand" and len(self._hand) > 1:
-            times = np.array([at for at, _ in self._hand])
-            poses = np.array([pose for _, pose in self._hand])
-            if np.ptp(times) > 0:
-                velocity = np.polyfit(times - times.mean(), poses, 1)[0] / self.mechanics.values["time_scale"]
-        self.mechanics.release(velocity, self.solver)
+        velocity = self._hand.velocity if event.get("speed") == "hand" else np.zeros(3)
+        self.mechanics.release(velocity / self.mechanics.values["time_scale"], self.solver)
         now = self.mechanics.snapshot
         self.steps, self.lag, self.start_energy = 0, 0.0, now.strain + now.kinetic
         self._last_frame = time
@@ -222,7 +213,7 @@ class Session:
         if not self.mechanics.catch():
             self.warnings.say("no-catch")
             return
-        self._hand.clear()
+        self._hand.forget()
         if self.sight["state"] == "none":  # without a camera the hand is where the body is
             pose = self.mechanics.snapshot.pose
             self.wanted = np.array([*(pose[:2] - self.placing.centre), pose[2]])
@@ -253,98 +244,41 @@ class Session:
     def _reset(self, event: Mapping[str, Any], time: float) -> None:
         self.mechanics.reset()
         self.wanted, self.paused, self.steps, self.lag = np.zeros(3), False, 0, 0.0
-        self._hand.clear()
+        self._hand.forget()
 
     # -- settings ------------------------------------------------------------------------------------------
 
-    def _design(self, values: Mapping[str, object]) -> None:
-        """Build a design and hold it at rest; what cannot be built leaves the former one."""
-        self.mechanics = Mechanics(presets.checked(values))
-        self.placing = Placing.of(self.mechanics.pivot)
-        self.seen_marker = None
-
-    def _change(self, name: str, values: Mapping[str, object]) -> None:
-        """Another design, held at the same displacement."""
-        known = (self.preset, dict(self.mechanics.values))
-        rest = self.placing.rest
-        changed_rest = not np.array_equal(rest, Placing.of(self.mechanics.pivot).rest)
-        self._design(values)
-        if changed_rest:
-            self.placing = self.placing.with_rest(rest)
-        self.preset = name
-        self._past = [*self._past[-UNDO:], known]
+    def _parameter(self, event: Mapping[str, Any], time: float) -> None:
+        preset, values = self.bench.design
+        self.bench.change(preset, {**values, str(event.get("name")): event.get("value")})
         self._hold()
 
-    def _parameter(self, event: Mapping[str, Any], time: float) -> None:
-        name = event.get("name")
-        self._change(self.preset, {**self.mechanics.values, str(name): event.get("value")})
-        self._future.clear()
-
     def _preset(self, event: Mapping[str, Any], time: float) -> None:
-        name = event.get("name")
-        values = dict(presets.preset(name).values())
-        given = event.get("values", {})
-        if not isinstance(given, Mapping):
-            raise BadInput(f"values: got {given!r}, expected parameters by name")
-        self._change(str(name), {**values, **given})
-        self._future.clear()
+        values = presets.preset(event.get("name")).values() | dict(mapping(event, "values"))
+        self.bench.change(str(event["name"]), values)
+        self._hold()
 
     def _undo(self, event: Mapping[str, Any], time: float) -> None:
-        self._swap_design(self._past, self._future, "nothing to undo")
+        self._hold() if self.bench.undo() else self.warnings.say("empty", "to undo")
 
     def _redo(self, event: Mapping[str, Any], time: float) -> None:
-        self._swap_design(self._future, self._past, "nothing to redo")
-
-    def _swap_design(self, source: list[Any], target: list[Any], empty: str) -> None:
-        if not source:
-            self.warnings.say("empty", empty)
-            return
-        name, values = source.pop()
-        target.append((self.preset, dict(self.mechanics.values)))
-        kept = list(self._past)
-        self._change(name, values)
-        self._past = kept
+        self._hold() if self.bench.redo() else self.warnings.say("empty", "to redo")
 
     def _set_drive(self, event: Mapping[str, Any], time: float) -> None:
-        self.drive = _choice(event, "by", DRIVES)
+        self.drive = choice(event, "by", DRIVES)
         if not self.mechanics.moving:
             self._hold()
 
     def _set_solver(self, event: Mapping[str, Any], time: float) -> None:
-        self.solver = _choice(event, "name", tuple(MOTIONS))
+        self.solver = choice(event, "name", tuple(MOTIONS))
 
     def _rest(self, event: Mapping[str, Any], time: float) -> None:
         """The markers, as they are seen now, are those of the pivot at rest."""
-        if self.seen_marker is None or self.sight["state"] == "lost":
+        if self._marker is None or self.sight["state"] == "lost":
             self.warnings.say("no-rest")
             return
-        self.placing = self.placing.with_rest(self.seen_marker)
+        self.bench.set_rest(self._marker)
         self._reset(event, time)
-
-
-def _close(pose: Array, other: Array) -> bool:
-    return math.hypot(*(pose[:2] - other[:2])) <= JUMP_SHIFT and abs(pose[2] - other[2]) <= JUMP_TURN
-
-
-def _number(event: Mapping[str, Any], key: str) -> float:
-    value = event.get(key)
-    if not isinstance(value, int | float) or isinstance(value, bool) or not math.isfinite(value):
-        raise BadInput(f"{key}: got {value!r}, expected a finite number")
-    return float(value)
-
-
-def _three(event: Mapping[str, Any], key: str) -> Array:
-    values = event.get(key)
-    if not isinstance(values, list | tuple) or len(values) != 3:
-        raise BadInput(f"{key}: got {values!r}, expected three finite numbers")
-    return np.array([_number({key: value}, key) for value in values])
-
-
-def _choice(event: Mapping[str, Any], key: str, choices: tuple[str, ...]) -> str:
-    value = event.get(key)
-    if value not in choices:
-        raise BadInput(f"{key}: got {value!r}, expected one of {', '.join(choices)}")
-    return str(value)
 
 
 #: What an event may do.
