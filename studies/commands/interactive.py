@@ -56,9 +56,9 @@ def main(arguments: argparse.Namespace) -> int:
             f"interactive: got no {', '.join(missing)}, expected the extra: run `make interactive`, "
             "or pip install -e '.[interactive]'"
         )
-    from studies.interactive import presets
-    from studies.interactive.calibration import Camera
-    from studies.interactive.server import Server, Settings
+    from studies.interactive.pivot import presets
+    from studies.interactive.tracking.calibration import Camera
+    from studies.interactive.web.server import Server, Settings
 
     presets.preset(arguments.preset)
     source, camera = _source(arguments)
@@ -88,8 +88,8 @@ def missing_packages() -> list[str]:
 
 def _source(arguments: argparse.Namespace):  # type: ignore[no-untyped-def]
     """Return what makes the pictures, and how the page shall call it."""
-    from studies.interactive.demo import demo_film
-    from studies.interactive.sources import FilmSource, VideoSource
+    from studies.interactive.film.demo import demo_film
+    from studies.interactive.web.sources import FilmSource, VideoSource
 
     if arguments.film is not None:
         if arguments.camera != "browser":
@@ -118,7 +118,7 @@ def _stream(path: Path | None):  # type: ignore[no-untyped-def]
 
 def _replay(path: Path) -> int:
     """Replay a session file; 0 where every state is the recorded one."""
-    from studies.interactive.recording import replay
+    from studies.interactive.session.recording import replay
 
     try:
         lines = path.read_text(encoding="utf-8").splitlines()

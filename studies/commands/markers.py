@@ -29,7 +29,7 @@ def main(arguments: argparse.Namespace) -> int:
             f"markers: got no {', '.join(missing)}, expected the extra: run `make interactive`, "
             "or pip install -e '.[interactive]'"
         )
-    from studies.interactive.sheet import sheet
+    from studies.interactive.film.sheet import sheet
 
     require_writable_file(arguments.output)
     write_whole(arguments.output, sheet())

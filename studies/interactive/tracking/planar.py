@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from studies.interactive.calibration import Camera
+from studies.interactive.tracking.calibration import Camera
 
 Array = NDArray[np.float64]
 

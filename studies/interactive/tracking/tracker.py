@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from studies.interactive.calibration import Camera
-from studies.interactive.placing import SIDE
+from studies.interactive.pivot.placing import SIDE
 from studies.interactive.tracking import edges, planar
+from studies.interactive.tracking.calibration import Camera
 from studies.interactive.tracking.detector import Detector, Picture, Squares
 
 Array = NDArray[np.float64]

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.pivot import Pivot
-from studies.interactive.design import wrapped
+from studies.interactive.pivot.design import wrapped
 
 Array = NDArray[np.float64]
 

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from studies.errors import BadInput
-from studies.interactive.film import Film
+from studies.interactive.film.painter import Film
 from studies.interactive.tracking.detector import Picture, cv2, decoded, encoded
 
 #: Pictures a second of films that do not say.

@@ -7,9 +7,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.held import HeldPivot, HeldState
-from studies.interactive.design import Reader, Reading, build, free_stiffness, free_turn, pole
-from studies.interactive.motion import MOTIONS, Motion, released
-from studies.interactive.presets import STEP
+from studies.interactive.pivot.design import Reader, Reading, build, free_stiffness, free_turn, pole
+from studies.interactive.pivot.motion import MOTIONS, Motion, released
+from studies.interactive.pivot.presets import STEP
 
 Array = NDArray[np.float64]
 

@@ -7,10 +7,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
-from studies.interactive.design import build
-from studies.interactive.film import BITS, MARGIN, bits
-from studies.interactive.placing import SIDE, Placing
-from studies.interactive.presets import PRESETS
+from studies.interactive.film.painter import BITS, MARGIN, bits
+from studies.interactive.pivot.design import build
+from studies.interactive.pivot.placing import SIDE, Placing
+from studies.interactive.pivot.presets import PRESETS
 
 #: A4, and the pivot's origin on it [mm].
 PAGE = (210.0, 297.0)

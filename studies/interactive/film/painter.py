@@ -11,8 +11,8 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from studies.interactive.calibration import Camera
-from studies.interactive.placing import SIDE
+from studies.interactive.pivot.placing import SIDE
+from studies.interactive.tracking.calibration import Camera
 
 Array = NDArray[np.float64]
 Picture = NDArray[np.uint8]

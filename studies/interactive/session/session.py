@@ -13,16 +13,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from studies.errors import BadInput
-from studies.interactive import presets
-from studies.interactive.bench import Bench
-from studies.interactive.design import wrapped
-from studies.interactive.fields import choice, mapping, number, three
-from studies.interactive.hand import Hand
-from studies.interactive.mechanics import Mechanics
-from studies.interactive.motion import MOTIONS
-from studies.interactive.placing import Placing
-from studies.interactive.presets import STEP, STEPS_A_FRAME
-from studies.interactive.view import Warnings, shown
+from studies.interactive.pivot import presets
+from studies.interactive.pivot.bench import Bench
+from studies.interactive.pivot.design import wrapped
+from studies.interactive.pivot.mechanics import Mechanics
+from studies.interactive.pivot.motion import MOTIONS
+from studies.interactive.pivot.placing import Placing
+from studies.interactive.pivot.presets import STEP, STEPS_A_FRAME
+from studies.interactive.session.fields import choice, mapping, number, three
+from studies.interactive.session.hand import Hand
+from studies.interactive.session.view import Warnings, shown
 
 Array = NDArray[np.float64]
 

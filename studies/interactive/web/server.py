@@ -17,10 +17,10 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
 from studies.errors import BadInput
-from studies.interactive import protocol, security
-from studies.interactive.calibration import Camera
-from studies.interactive.connection import Connection
-from studies.interactive.sources import Source
+from studies.interactive.tracking.calibration import Camera
+from studies.interactive.web import protocol, security
+from studies.interactive.web.connection import Connection
+from studies.interactive.web.sources import Source
 
 LOG = logging.getLogger(__name__)
 

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 if TYPE_CHECKING:
-    from studies.interactive.session import Session
+    from studies.interactive.session.session import Session
 
 #: Fault -> the sentence that explains it and says what to do.
 SENTENCES = {

@@ -10,14 +10,14 @@ from typing import Any
 from starlette.websockets import WebSocket
 
 from studies.errors import BadInput
-from studies.interactive import protocol
-from studies.interactive.calibration import Camera
-from studies.interactive.motion import MOTIONS
-from studies.interactive.presets import PARAMETERS, PRESETS
-from studies.interactive.recording import Recorder, line
-from studies.interactive.session import DRIVES, Session
-from studies.interactive.sources import Shot, Source, grey_of
+from studies.interactive.pivot.motion import MOTIONS
+from studies.interactive.pivot.presets import PARAMETERS, PRESETS
+from studies.interactive.session.recording import Recorder, line
+from studies.interactive.session.session import DRIVES, Session
+from studies.interactive.tracking.calibration import Camera
 from studies.interactive.tracking.tracker import Tracker
+from studies.interactive.web import protocol
+from studies.interactive.web.sources import Shot, Source, grey_of
 
 #: Time of a frame without pictures [s], and how long pictures may stay away before it counts.
 TICK, STILL = 0.04, 0.2

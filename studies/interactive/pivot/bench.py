@@ -5,9 +5,9 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from studies.interactive import presets
-from studies.interactive.mechanics import Mechanics
-from studies.interactive.placing import Placing
+from studies.interactive.pivot import presets
+from studies.interactive.pivot.mechanics import Mechanics
+from studies.interactive.pivot.placing import Placing
 
 #: Designs that can be undone.
 UNDO = 100

@@ -5,7 +5,7 @@ import threading
 from types import TracebackType
 from typing import Self
 
-from studies.interactive.server import Server, Settings
+from studies.interactive.web.server import Server, Settings
 
 
 class Hosted:
