@@ -46,6 +46,10 @@ STUDIES: dict[str, tuple[str, str]] = {
         "studies.paper.fig06_release",
         "Fig 6: motion after the release from 90 degrees and its errors",
     ),
+    "paper/fig07_interactive": (
+        "studies.paper.fig07_interactive",
+        "Fig 7: the interactive environment in a browser, its frame rate and solve time",
+    ),
     "convergence/control_points": (
         "studies.convergence.control_points",
         "error against control points for every basis, measure and stretch form: the locking map",

@@ -10,12 +10,13 @@ import { bindKeys } from "./keys.js";
 import * as files from "./files.js";
 
 const at = (id) => document.getElementById(id);
-const studio = { state: null, picture: null, welcome: null, shown: 0, errors: [], replaying: false };
+const studio = { state: null, picture: null, welcome: null, shown: 0, errors: [], trips: [], replaying: false };
 window.studio = studio;
 
 const view = new View(at("stage"));
 const numbers = new Numbers();
 const ring = new Ring();
+Object.assign(studio, { view, ring });
 const socket = new Socket(received, lost);
 const camera = new Camera(socket, say);
 const controls = new Controls(send);
@@ -35,6 +36,7 @@ function received(message, picture) {
   camera.answered(message.seq);
   studio.state = message;
   if (bitmap) { studio.picture?.close?.(); studio.picture = bitmap; }
+  if (message.seq !== null && message.seq === pointer.seq) studio.trips = [...studio.trips.slice(-199), performance.now() - message.seq];
   ring.add(message);
   studio.shown += 1;
   if (ring.live) show(message, studio.picture);

@@ -48,7 +48,7 @@ export class Pointer {
 
   nudge(change) {
     if (!this.held) return;
-    const answered = this.seq === undefined || (this.studio.state.seq ?? -1) >= this.seq;
+    const answered = this.seq === undefined || this.last === undefined || (this.studio.state.seq ?? -1) >= this.seq;
     const wanted = this.next ?? (answered ? this.studio.state.wanted : this.last);
     this.post(wanted.map((value, k) => value + change[k]));
   }

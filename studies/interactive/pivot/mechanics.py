@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +17,8 @@ Array = NDArray[np.float64]
 #: Time over which strips follow the hand's velocity at a release [s]: short enough that no pose leaves its
 #: branch.
 HAND_STEP = 1e-4
+#: Rotation up to which the path of a free turn is known [rad].
+REACH = 1.8
 #: Rotation rate below which a moving body has no instantaneous centre worth drawing, over the step [rad].
 LEAST_TURN = 2e-4
 
@@ -100,6 +103,28 @@ class Mechanics:
         if state.solved:
             self.snapshot = self._static(state)
         return state.reached
+
+    def off_path(self, pose: Array) -> float:
+        """Distance of `pose` (3,) from where a moment alone would turn the body to [m]; 0 beyond REACH."""
+        if abs(pose[2]) > REACH:
+            return 0.0
+        angles, centres = self._free_path
+        free = [np.interp(pose[2], angles, centres[:, k]) for k in range(2)]
+        return float(np.hypot(*(pose[:2] - free)))
+
+    @cached_property
+    def _free_path(self) -> tuple[Array, Array]:
+        """Rotations (A,) and centres (A, 2) of the body that a moment alone turns."""
+        solver, half = HeldPivot(self.pivot.mechanism), np.linspace(0.0, REACH, 21)
+        found: dict[float, Array] = {}
+        for side in (1.0, -1.0):
+            solver.reset()
+            for angle in side * half:
+                state = solver.turn(float(angle))
+                if state.solved:
+                    found[float(angle)] = state.pose[:2]
+        angles = sorted(found)
+        return np.array(angles), np.array([found[angle] for angle in angles])
 
     def release(self, velocity: Array, solver: str) -> None:
         """Let go of the held body with a `velocity` (3,) of its pose; the strips follow it."""

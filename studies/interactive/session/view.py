@@ -23,8 +23,8 @@ SENTENCES = {
     "jump": "The pose jumped: waiting for a second picture that agrees.",
     "absurd": "The pose is out of reach and was left out.",
     "no-equilibrium": "No equilibrium was found for this pose: the last good state is kept.",
-    "strained": "The strips would be stretched more than a hand can: check the printed size of the markers "
-    "with the ruler, or take the present pose as rest.",
+    "off-path": "The markers are not where the pivot turns by itself: check their printed size with "
+    "the ruler, or take the pose of the unloaded pivot as rest.",
     "no-catch": "The moving body could not be held here: try again.",
     "stopped": "The solver stopped: the last good state is kept and time is paused.",
     "no-rest": "Both markers must be seen to take their pose as rest.",

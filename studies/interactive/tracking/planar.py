@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from studies.interactive.tracking.calibration import Camera
+from studies.interactive.tracking.profiles import INSET
 
 Array = NDArray[np.float64]
 
@@ -21,9 +22,9 @@ Array = NDArray[np.float64]
 #: left on, clockwise as seen from the front.
 CORNERS = np.array([[-0.5, 0.5], [0.5, 0.5], [0.5, -0.5], [-0.5, -0.5]])
 ITERATIONS = 12
-#: Standard deviation of a corner that is expected before the residuals are seen [px], worth as many
-#: residuals.
-EXPECTED_PX, WORTH = 0.02, 1.5
+#: Standard deviation of an edge's offset that is expected before the residuals are seen [px], and how many of
+#: them it is worth.
+EXPECTED_PX, WORTH = 0.006, 1.5
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -82,8 +83,10 @@ def fit(corners: Array, camera: Camera | None = None, start: Fit | None = None) 
         plane, pose = start.plane, start.pose.copy()
     chart = _Free(plane) if camera is None else _Seen(plane, camera)
     known = np.concatenate((chart.start, pose))
-    solved, jacobian, gap = _least_squares(chart, known, data)
-    if start is not None and float(np.sqrt(np.mean(gap**2))) > 1.0:
+    weigh = _independent(data)
+    solved, jacobian, gap = _least_squares(chart, known, data, weigh)
+    corner_gap = _residual(chart, solved, data)[0]
+    if start is not None and _rms(corner_gap) > 1.0:
         return fit(corners, camera)
     freedom = gap.size - solved.size
     variance = (WORTH * EXPECTED_PX**2 + float(gap @ gap)) / (WORTH + freedom)
@@ -93,10 +96,10 @@ def fit(corners: Array, camera: Camera | None = None, start: Fit | None = None) 
     return Fit(
         pose=solved[-3:],
         plane=chart.plane(solved[:-3]),
-        rms=_rms(gap),
+        rms=_rms(corner_gap),
         sd=np.sqrt(np.diag(covariance)[-3:]),
         size_ratio=ratio,
-        rms_sized=left,
+        rms_sized=_rms(np.asarray(np.linalg.solve(weigh, left))),
     )
 
 
@@ -175,15 +178,38 @@ def _residual(chart: _Free | _Seen, known: Array, data: Array, ratio: float = 1.
     return (place - data.reshape(8, 2)).ravel(), jacobian.reshape(16, -1)
 
 
-def _least_squares(chart: _Free | _Seen, known: Array, data: Array) -> tuple[Array, Array, Array]:
+def _independent(corners: Array) -> Array:
+    """Matrix (16, 16) from the corners' residuals to the edges' offsets and turns, whose errors are
+    independent.
+
+    A line through stations spread evenly over an edge has a mean offset and a slope with errors of their
+    own, so
+    that those of its ends, and with them of neighbouring corners, are not.
+    """
+    spread = (1.0 - 2.0 * INSET) / math.sqrt(12.0)
+    matrix = np.zeros((16, 16))
+    for square in range(2):
+        for i in range(4):
+            j = (i + 1) % 4
+            along = corners[square, j] - corners[square, i]
+            normal = np.array([along[1], -along[0]]) / math.hypot(*along)
+            row, at, to = 8 * square + 2 * i, 8 * square + 2 * i, 8 * square + 2 * j
+            matrix[row, at : at + 2] = matrix[row, to : to + 2] = normal / 2.0
+            matrix[row + 1, to : to + 2], matrix[row + 1, at : at + 2] = spread * normal, -spread * normal
+    return matrix
+
+
+def _least_squares(
+    chart: _Free | _Seen, known: Array, data: Array, weigh: Array
+) -> tuple[Array, Array, Array]:
     """Levenberg and Marquardt's method; the solution, its Jacobian and residual."""
-    gap, full = _residual(chart, known, data)
+    gap, full = (weigh @ part for part in _residual(chart, known, data))
     damping = 1e-6
     for _ in range(ITERATIONS):
         jacobian = full[:, :-1]
         normal = jacobian.T @ jacobian
         step = np.linalg.solve(normal + damping * np.diag(np.diag(normal)), -jacobian.T @ gap)
-        trial, trial_full = _residual(chart, known + step, data)
+        trial, trial_full = (weigh @ part for part in _residual(chart, known + step, data))
         before, after = float(gap @ gap), float(trial @ trial)
         if not after <= before:
             damping = max(1e-6, 10.0 * damping)
@@ -194,14 +220,14 @@ def _least_squares(chart: _Free | _Seen, known: Array, data: Array) -> tuple[Arr
     return known, full, gap
 
 
-def _size_ratio(jacobian: Array, gap: Array, freedom: int) -> tuple[tuple[float, float], float]:
+def _size_ratio(jacobian: Array, gap: Array, freedom: int) -> tuple[tuple[float, float], Array]:
     """Ratio of the sides with its standard deviation, and the residual left, to first order about equal
     sides."""
     covariance = np.linalg.inv(jacobian.T @ jacobian)
     step = -covariance @ jacobian.T @ gap
     left = gap + jacobian @ step
     variance = (WORTH * EXPECTED_PX**2 + float(left @ left)) / (WORTH + freedom - 1)
-    return (1.0 + float(step[-1]), math.sqrt(variance * float(covariance[-1, -1]))), _rms(left)
+    return (1.0 + float(step[-1]), math.sqrt(variance * float(covariance[-1, -1]))), left
 
 
 def _rms(gap: Array) -> float:

@@ -68,7 +68,7 @@ class Connection:
             recorder = Recorder(self.session)
             for text in recorder.lines:
                 self._keep(text)
-        await self._feed({"do": "pose", "pose": [0.0, 0.0, 0.0]}, None)
+        await self._feed({"do": "tick"}, None)
         workers = [asyncio.create_task(self._ticks()), asyncio.create_task(self._pictures())]
         if self._source is not None:
             workers.append(asyncio.create_task(self._play(self._source)))

@@ -101,6 +101,6 @@ class VideoSource:
 def grey_of(coding_is_grey: bool, data: bytes, width: int, height: int) -> Picture | None:
     """Return the picture that the page sent, None where its bytes are none of that size."""
     if coding_is_grey:
-        return np.frombuffer(data, dtype=np.uint8).reshape(height, width)
+        return np.frombuffer(data, dtype=np.uint8).reshape(height, width).copy()
     picture = decoded(data)
     return picture if picture is not None and picture.shape == (height, width) else None
