@@ -2,23 +2,29 @@
 
 import math
 from collections.abc import Callable
+from functools import cache
 
 import numpy as np
 
+from spline_model.held import HeldPivot
 from studies.interactive.film.painter import Film, Finger, Marker, Optics, Painter
-from studies.interactive.pivot.placing import SIDE, turned
+from studies.interactive.pivot.design import build
+from studies.interactive.pivot.placing import SIDE, Placing, turned
+from studies.interactive.pivot.presets import PRESETS
 from studies.interactive.tracking.planar import CORNERS, project
 
 #: Frames of a period of the moving marker's turn.
 PERIOD = 40
 
 
+@cache
 def truth(k: int) -> tuple[float, float, float]:
-    """Pose of marker 1 in marker 0's frame in frame k [m, m, rad]: a swing of 50 degrees about a point
-    below it."""
+    """Pose of marker 1 in marker 0's frame in frame k [m, m, rad]: the soft pivot's own path, 50 degrees to
+    either side."""
+    pivot = build(PRESETS["polymer"].values())
     angle = math.radians(50) * math.sin(2 * math.pi * k / PERIOD)
-    x, y = turned(angle, np.array([0.0, 0.075]))
-    return float(x), float(y) + 0.075 + 0.0002 * math.sin(k), angle
+    x, y, turn = Placing.of(pivot).marker(HeldPivot(pivot.mechanism).turn(angle).pose)
+    return float(x), float(y), float(turn)
 
 
 def both(k: int) -> list[Marker]:

@@ -8,6 +8,7 @@ import subprocess
 import tempfile
 import time
 from collections.abc import Sequence
+from contextlib import ExitStack
 from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
@@ -61,7 +62,13 @@ class Browser:
         )
         self._number = 0
         self.console: list[str] = []
-        self._socket = connect(self._page_address(), max_size=None, compression=None)
+        self._stack = ExitStack()
+        try:
+            socket = connect(self._page_address(), max_size=None, compression=None)
+            self._socket = self._stack.enter_context(socket)
+        except BaseException:
+            self._end()
+            raise
         for name in ("Page", "Runtime", "Log"):
             self.call(f"{name}.enable")
         size = {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": False}
@@ -178,12 +185,16 @@ class Browser:
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         try:
-            self._socket.close()
+            self._stack.close()
         finally:
-            self._process.terminate()
-            try:
-                self._process.wait(10.0)
-            except subprocess.TimeoutExpired:
-                self._process.kill()
-                self._process.wait()
-            self._folder.cleanup()
+            self._end()
+
+    def _end(self) -> None:
+        """End the process and remove its folder."""
+        self._process.terminate()
+        try:
+            self._process.wait(10.0)
+        except subprocess.TimeoutExpired:
+            self._process.kill()
+            self._process.wait()
+        self._folder.cleanup()
