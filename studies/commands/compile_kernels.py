@@ -18,6 +18,7 @@ from multiprocessing import get_context
 from studies.answers.settings import FeSettings, Settings, SplineSettings
 from studies.commands.parser import Parser
 from studies.record.source import ROOT
+from studies.interactive.warm_up import warm_up
 
 MIXED, CONSISTENT = SplineSettings(control_points=4), SplineSettings(control_points=4, stretch="consistent")
 #: Small calls that between them enter every kernel, the longest first: settings and integrators of a release.
@@ -43,6 +44,15 @@ def main(arguments: argparse.Namespace) -> int:
     workers = min(len(CALLS), os.cpu_count() or 1)
     with ProcessPoolExecutor(workers, mp_context=get_context("spawn")) as pool:
         list(pool.map(call, *zip(*CALLS, strict=True)))
+    for settings in SETTINGS:
+        answer_static(problem, settings)
+        answer_modes(problem, settings)
+        for integrator in INTEGRATORS["fe" if isinstance(settings, FeSettings) else "spline"]:
+            answer_release(problem, settings, duration=1e-5, integrator=integrator, step=1e-8)
+    chosen = built(model_of(SETTINGS[0]), problem, SETTINGS[0], moving=True)[0]
+    for form in ("printed", "stable"):
+        solve_impulses(chosen, duration=1e-5, step=1e-6, form=form)
+    warm_up()
     print(f"studies: ready after {time.perf_counter() - begin:.0f} s", file=sys.stderr)
     return 0
 

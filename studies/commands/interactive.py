@@ -58,6 +58,7 @@ def main(arguments: argparse.Namespace) -> int:
         )
     from studies.interactive.pivot import presets
     from studies.interactive.tracking.calibration import Camera
+    from studies.interactive.warm_up import warm_up
     from studies.interactive.web.server import Server, Settings
 
     presets.preset(arguments.preset)
@@ -74,6 +75,7 @@ def main(arguments: argparse.Namespace) -> int:
         )
     )
     server.bind()
+    warm_up()
     print(f"studies: open {server.address}   (Ctrl-C ends it)", file=sys.stderr, flush=True)
     if not arguments.no_browser:
         webbrowser.open(server.address)

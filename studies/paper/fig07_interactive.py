@@ -88,17 +88,21 @@ studio.ring.states.filter((s) => s.track_ms !== undefined).map((s, k, all) => ({
 """
 
 
+#: Whether the state on the page is one of the film's frames, not the answer to a key.
+FRAME = "studio.state.track_ms !== undefined"
+
+
 def _snapshots(browser: Any) -> Iterator[dict[str, Any]]:
     """Yield three snapshots: held, swinging after the release, caught again."""
     browser.wait(f"studio.drawn.seq >= {HELD}", 60.0)
     yield _taken(browser, "held")
     browser.wait(f"studio.drawn.seq >= {RELEASED}", 60.0)
     browser.key("r")
-    browser.wait(f"studio.state.mode === 'released' && studio.state.pose[2] < {SWUNG}", 60.0)
+    browser.wait(f"{FRAME} && studio.state.mode === 'released' && studio.state.pose[2] < {SWUNG}", 60.0)
     yield _taken(browser, "released")
     browser.wait(f"studio.drawn.seq >= {CAUGHT}", 60.0)
     browser.key("r")
-    browser.wait("studio.state.mode === 'held'", 60.0)
+    browser.wait(f"{FRAME} && studio.state.mode === 'held'", 60.0)
     yield _taken(browser, "caught")
 
 
@@ -214,6 +218,4 @@ def _share(panel: Axes, times: pd.Series, label: str, colour: str, line: str) ->
     ordered = np.sort(times.to_numpy())
     share = np.arange(1, len(ordered) + 1) / len(ordered)
     late = float(np.percentile(ordered, 95.0))
-    panel.step(
-        ordered, share, where="post", color=colour, linestyle=line, label=f"{label}: 95 % in {late:.2g} ms"
-    )
+    panel.step(ordered, share, where="post", color=colour, linestyle=line, label=f"{label}: {late:.2g} ms")

@@ -62,7 +62,8 @@ CONTRAST = """
     && !e.closest(":disabled"));
   const found = shown.map((e) => {
     const pair = [light(parse(getComputedStyle(e).color)), light(back(e))];
-    return [(Math.max(...pair) + 0.05) / (Math.min(...pair) + 0.05), e.id || e.textContent.trim().slice(0, 20)];
+    const ratio = (Math.max(...pair) + 0.05) / (Math.min(...pair) + 0.05);
+    return [ratio, e.id || e.textContent.trim().slice(0, 20)];
   });
   return found.sort((p, q) => p[0] - q[0])[0];
 })()

@@ -75,6 +75,7 @@ function noCamera(why) {
   at("source").textContent = "no camera";
   at("stage").classList.add("grab");
   pointer.on = true;
+  at("hand-box").hidden = false;
   if (why) say(`${why} Drag the body, or use the arrow keys.`);
   send({ do: "drive", by: "rotation" });
 }

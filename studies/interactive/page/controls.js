@@ -3,8 +3,8 @@ const at = (id) => document.getElementById(id);
 const DELAY = 120;
 const HAND = [
   { name: "rotation", unit: "°", low: -100, high: 100, step: 0.5, place: 2, per: 180 / Math.PI },
-  { name: "shift x", unit: "mm", low: -10, high: 10, step: 0.01, place: 0, per: 1e3 },
-  { name: "shift y", unit: "mm", low: -10, high: 10, step: 0.01, place: 1, per: 1e3 },
+  { name: "shift x", unit: "mm", low: -60, high: 60, step: 0.01, place: 0, per: 1e3 },
+  { name: "shift y", unit: "mm", low: -60, high: 60, step: 0.01, place: 1, per: 1e3 },
 ];
 
 export class Controls {

@@ -15,7 +15,7 @@ function withUnit(value, unit, spread = null) {
 }
 
 export class Numbers {
-  constructor() { this.times = []; this.spoken = 0; this.last = ""; }
+  constructor() { this.times = []; this.spoken = -1000; this.last = ""; }
 
   show(state, ring) {
     this.count(state);
@@ -69,10 +69,18 @@ export class Numbers {
     if ([...list.children].map((item) => item.textContent).join() !== now.join()) {
       list.replaceChildren(...now.map((text) => { const item = document.createElement("li"); item.textContent = text; return item; }));
     }
-    if (performance.now() - this.spoken > 1000 && state.status !== this.last) {
-      at("status").textContent = this.last = state.status;
-      this.spoken = performance.now();
-    }
+    this.say(state);
+  }
+
+  // At most one sentence a second, for screen readers, but never a stale one; a change of mode at once.
+  say(state) {
+    clearTimeout(this.timer);
+    const kind = `${state.mode} ${state.paused}`, wait = 1000 - (performance.now() - this.spoken);
+    if (state.status === this.last) return;
+    if (kind === this.kind && wait > 0) { this.timer = setTimeout(() => this.say(state), wait); return; }
+    at("status").textContent = this.last = state.status;
+    this.kind = kind;
+    this.spoken = performance.now();
   }
 
   plots(ring) {

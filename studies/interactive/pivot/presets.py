@@ -76,7 +76,7 @@ PARAMETERS: dict[str, Parameter] = {
             logarithmic=True,
         ),
         Parameter(
-            name="relaxation_time", label="strip damping time", unit="ms", per_si=1e3, low=0.0, high=0.05
+            name="relaxation_time", label="strip damping", unit="ms", per_si=1e3, low=0.0, high=0.05
         ),
         Parameter(
             name="time_scale", label="time scale", unit="s/s", per_si=1.0, low=1e-4, high=1.0,

@@ -94,7 +94,7 @@ def shown(session: "Session") -> dict[str, Any]:
         "centre": None if now.centre is None else list(now.centre),
         "iterations": now.iterations,
         "sight": session.sight,
-        "sd": None if session.spread is None else plain(session.spread),
+        "sd": None if session.spread is None or mechanics.moving else plain(session.spread),
         "force_sd": _force_spread(session),
         "placing": {
             "ground": plain(session.placing.ground),
