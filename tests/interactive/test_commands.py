@@ -1,10 +1,13 @@
 """The commands `interactive` and `markers`, and what happens without the extra."""
 
+import io
 import re
 import subprocess
 import sys
 
+import numpy as np
 import pytest
+from PIL import Image
 
 from studies.commands import interactive
 from studies.record.source import ROOT
@@ -91,3 +94,23 @@ def test_sheet_is_a_page(tmp_path):
     box = re.search(rb"/MediaBox \[ ?0 0 ([\d.]+) ([\d.]+) ?\]", target.read_bytes())
     assert box
     assert [round(float(side) / 72 * 25.4, 1) for side in box.groups()] == [210.0, 297.0]
+
+
+def test_sheet_is_read_in_size():
+    """Requirement: both markers are read from the sheet as it is printed, 60 mm wide, upright and as far
+    apart as the
+    session takes them to be."""
+    pytest.importorskip("cv2", reason="the extra `interactive` is not installed")
+    from studies.interactive.film.sheet import page
+    from studies.interactive.session.session import Session
+    from studies.interactive.tracking.tracker import Tracker
+
+    stream = io.BytesIO()
+    page().savefig(stream, format="png", dpi=127.0)  # five pixels a millimetre
+    with Image.open(stream) as image:
+        grey = np.asarray(image.convert("L"))
+    event = Tracker().see(grey, 0.0)
+    assert event["marker"] == pytest.approx(Session().placing.rest.tolist(), abs=1e-4)
+    for quad in np.array(event["quads"]):
+        sides = np.linalg.norm(quad - np.roll(quad, 1, axis=0), axis=1) / 5.0
+        assert sides == pytest.approx([60.0] * 4, abs=0.1)

@@ -15,12 +15,13 @@ from websockets.exceptions import ConnectionClosed, InvalidStatus
 from websockets.sync.client import connect
 
 from studies.errors import BadInput
+from studies.interactive.film.painter import counter
 from studies.interactive.session.recording import replay
 from studies.interactive.tracking.detector import encoded
 from studies.interactive.web import protocol, security
 from studies.interactive.web.hosting import Hosted
 from studies.interactive.web.server import Server, Settings
-from studies.interactive.web.sources import FilmSource
+from studies.interactive.web.sources import FilmSource, VideoSource
 from tests.interactive.films import film, truth
 
 
@@ -289,6 +290,36 @@ def test_wrong_size_is_refused_and_right_one_scales(server):
         socket.send(protocol.HEADER.pack(1, 1, 0, 0, 1, 640, 480, 0.0) + film(frames=1).picture(0).tobytes())
         state = answer(socket)
         assert [w["code"] for w in state["warnings"]] == ["off-path"]
+
+
+def test_record_file_replays():
+    """Requirement: what `--record` stores of the first page replays to the same states."""
+    lines = []
+    with Hosted(Settings(camera="none", keep=lines.append)) as hosted, opened(hosted.server) as socket:
+        with opened(hosted.server) as second:
+            say(second, do="pose", pose=[0, 0, 0.3])
+            answer(second)
+        for k in range(5):
+            say(socket, do="pose", pose=[0, 0, 0.1 * k])
+            answer(socket)
+    same = [good for _, good in replay(lines)]
+    assert len(same) == 7
+    assert all(same)
+
+
+def test_film_file_is_played(tmp_path):
+    """Requirement: a film file gives its pictures in order, and begins anew at its end."""
+    import cv2
+
+    path = tmp_path / "film.avi"
+    writer = cv2.VideoWriter(str(path), cv2.VideoWriter.fourcc(*"MJPG"), 25.0, (640, 480), False)
+    for picture in film(frames=3):
+        writer.write(picture)
+    writer.release()
+    shots = [shot for shot, _ in zip(VideoSource(path).shots(), range(5), strict=False)]
+    assert [shot.number for shot in shots] == [0, 1, 2, 3, 4]
+    assert [counter(shot.picture) for shot in shots] == [0, 1, 2, 0, 1]
+    assert shots[4].time == pytest.approx(4 / 25)
 
 
 def test_taken_port_is_one_line(server):

@@ -10,6 +10,7 @@ pytest.importorskip("cv2", reason="the extra `interactive` is not installed")
 from studies.errors import BadInput
 from studies.interactive.film.painter import Marker, Optics, counter
 from studies.interactive.pivot.placing import SIDE
+from studies.interactive.session.session import Session
 from studies.interactive.tracking import tracker as tracking
 from studies.interactive.tracking.calibration import Camera, calibrated
 from studies.interactive.tracking.detector import Detector
@@ -253,6 +254,20 @@ def test_camera_file(tmp_path):
     (tmp_path / "bad.json").write_text('{"fx": "wide"}', encoding="utf-8")
     with pytest.raises(BadInput, match=r"bad.json: got no camera, expected JSON with fx, fy, cx, cy"):
         Camera.read(tmp_path / "bad.json")
+
+
+def test_swapped_markers_are_named():
+    """Requirement: markers that were glued the wrong way round are named in the first picture and give no
+    pose."""
+
+    def swapped(k):
+        return [Marker(number=1 - marker.number, pose=marker.pose) for marker in both(k)]
+
+    session = Session()
+    for k, event in enumerate(watch(film(frames=3, markers=swapped))):
+        state = session.feed({**event, "t": k / 25})
+        assert [warning["code"] for warning in state["warnings"]] == ["swapped"]
+        assert state["displacement"] == [0.0, 0.0, 0.0]
 
 
 def test_texture_alone_shows_no_marker():

@@ -14,12 +14,19 @@ from studies.interactive.pivot.presets import PRESETS
 
 #: A4, and the pivot's origin on it [mm].
 PAGE = (210.0, 297.0)
-ORIGIN = (75.0, 130.0)
+ORIGIN = (75.0, 122.0)
 RULER = 100.0
 
 
 def sheet() -> bytes:
     """Return the sheet as PDF, the same bytes every time."""
+    stream = io.BytesIO()
+    page().savefig(stream, format="pdf", metadata={"CreationDate": None, "Producer": None, "Creator": None})
+    return stream.getvalue()
+
+
+def page() -> Figure:
+    """Return the sheet as a figure of A4 whose axes count millimetres."""
     figure = Figure(figsize=(PAGE[0] / 25.4, PAGE[1] / 25.4))
     axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
     axes.set(xlim=(0, PAGE[0]), ylim=(0, PAGE[1]), aspect="equal")
@@ -39,9 +46,7 @@ def sheet() -> bytes:
     _marker(axes, 1, moving, "MOVING (marker 1): glue to the body that turns", 1)
     _ruler(axes, 30.0, 24.0)
     _words(axes)
-    stream = io.BytesIO()
-    figure.savefig(stream, format="pdf", metadata={"CreationDate": None, "Producer": None, "Creator": None})
-    return stream.getvalue()
+    return figure
 
 
 def _marker(axes: Axes, number: int, centre: np.ndarray, words: str, side: int) -> None:

@@ -66,7 +66,7 @@ function welcome(message) {
   at("camera-box").hidden = message.camera === "none";
   if (message.camera === "browser") camera.start(noCamera);
   if (message.camera === "none") noCamera("");
-  const design = files.designOf(location.hash);
+  const design = files.designOf(location.hash) ?? (studio.state && { preset: studio.state.preset, values: studio.state.values });
   if (design) send({ do: "preset", name: design.preset, values: design.values });
 }
 

@@ -38,7 +38,9 @@ class Settings:
 
     Attributes:
         port: 0 for any; camera: "browser", "none", "film" or "server", which the page is told.
-        source: makes the pictures of a socket, or None; keep: takes the lines of a recording.
+        source: makes the pictures of a socket, or None; keep: takes the lines of a recording, of the first
+            page
+            that is open.
     """
 
     port: int = 0
@@ -183,7 +185,7 @@ class Server:
                 source=source,
                 calibration=self.settings.calibration,
                 preset=self.settings.preset,
-                keep=self.settings.keep,
+                keep=self.settings.keep if self.open == 1 else None,
             ).serve()
         except BadInput as error:
             await _close(socket, BAD, str(error))
