@@ -9,7 +9,7 @@ const short = (value, digits = 3) => (value === null || value === undefined ? "�
 function withUnit(value, unit, spread = null) {
   if (value === null || value === undefined) return "–";
   const size = Math.max(Math.abs(value), spread ?? 0);
-  if (size < 1e-9) return `0 ${unit}`;
+  if (size < 1e-8) return `0 ${unit}`;
   const [scale, prefix] = PREFIXES.find(([s]) => size >= s) ?? PREFIXES[PREFIXES.length - 1];
   return `${short(value / scale)}${spread === null ? "" : ` ± ${short(spread / scale, 2)}`} ${prefix}${unit}`;
 }
@@ -72,13 +72,14 @@ export class Numbers {
     this.say(state);
   }
 
-  // At most one sentence a second, for screen readers, but never a stale one; a change of mode at once.
+  // The sentence is shown at once, and spoken by screen readers at most once a second, but never a stale one.
   say(state) {
+    at("status").textContent = state.status;
     clearTimeout(this.timer);
     const kind = `${state.mode} ${state.paused}`, wait = 1000 - (performance.now() - this.spoken);
     if (state.status === this.last) return;
     if (kind === this.kind && wait > 0) { this.timer = setTimeout(() => this.say(state), wait); return; }
-    at("status").textContent = this.last = state.status;
+    at("spoken").textContent = this.last = state.status;
     this.kind = kind;
     this.spoken = performance.now();
   }
