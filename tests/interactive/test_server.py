@@ -1,9 +1,6 @@
 """The server on a real port, without a browser."""
 
-import contextlib
-import http.client
-import json
-import time
+import math
 from itertools import pairwise
 
 import pytest
@@ -11,180 +8,18 @@ import pytest
 pytest.importorskip("cv2", reason="the extra `interactive` is not installed")
 pytest.importorskip("uvicorn", reason="the extra `interactive` is not installed")
 
-from websockets.exceptions import ConnectionClosed, InvalidStatus
-from websockets.sync.client import connect
 
 from studies.errors import BadInput
 from studies.interactive.film.painter import counter
 from studies.interactive.session.recording import replay
+from studies.interactive.session.session import Session
 from studies.interactive.tracking.detector import encoded
-from studies.interactive.web import protocol, security
+from studies.interactive.web import protocol
 from studies.interactive.web.hosting import Hosted
 from studies.interactive.web.server import Server, Settings
 from studies.interactive.web.sources import FilmSource, VideoSource
 from tests.interactive.films import film, truth
-
-
-@pytest.fixture(scope="module")
-def server():
-    """A server without pictures."""
-    with Hosted(Settings(camera="none")) as hosted:
-        yield hosted.server
-
-
-@contextlib.contextmanager
-def opened(server, *, token=None, hello=True, **options):
-    """A socket that has said hello and taken the welcome."""
-    origin = options.pop("origin", f"http://127.0.0.1:{server.port}")
-    address = f"ws://127.0.0.1:{server.port}/ws"
-    with connect(address, origin=origin, max_size=None, compression=None, **options) as socket:
-        if hello:
-            say(socket, do="hello", version=1, token=token or server.token)
-            assert json.loads(socket.recv(5))["kind"] == "welcome"
-            assert json.loads(socket.recv(5))["kind"] == "state"
-        yield socket
-
-
-def say(socket, **event):
-    """Send an event."""
-    socket.send(json.dumps(event))
-
-
-def answer(socket, kind="state"):
-    """The next message of that kind."""
-    while True:
-        message = json.loads(socket.recv(5))
-        if message["kind"] == kind:
-            return message
-
-
-def closing(socket):
-    """Code and reason that the server closes with."""
-    with pytest.raises(ConnectionClosed) as caught:
-        while True:
-            socket.recv(5)
-    return caught.value.rcvd.code, caught.value.rcvd.reason
-
-
-def get(server, path, host=None):
-    """Answer to a request."""
-    connection = http.client.HTTPConnection("127.0.0.1", server.port, timeout=5)
-    connection.request("GET", path, headers={"Host": host or f"127.0.0.1:{server.port}"})
-    response = connection.getresponse()
-    body = response.read()
-    connection.close()
-    return response, body
-
-
-def test_page_is_served_with_its_headers(server):
-    """Requirement: page and modules come with their kinds and the strict headers."""
-    response, body = get(server, "/")
-    assert (response.status, b"<!doctype html>" in body) == (200, True)
-    for name, value in security.headers(server.port).items():
-        assert response.getheader(name) == value
-    assert get(server, "/page/app.js")[0].getheader("Content-Type").startswith("text/javascript")
-    assert server.address.startswith(f"http://127.0.0.1:{server.port}/#token=")
-
-
-@pytest.mark.parametrize(
-    "path",
-    ["/page/../server.py", "/page/..%2f..%2fserver.py", "/page/__init__.py", "/etc/passwd", "/page/none.js"],
-)
-def test_nothing_else_is_served(server, path):
-    """Requirement: no path leaves the page's folder."""
-    assert get(server, path)[0].status == 404
-
-
-def test_foreign_hosts_are_refused(server):
-    """Requirement: a request for another host (DNS rebinding) gets 400, for page and socket."""
-    assert get(server, "/", host="evil.example")[0].status == 400
-    with pytest.raises(InvalidStatus) as caught, opened(server, additional_headers={"Host": "evil.example"}):
-        pass
-    assert caught.value.response.status_code == 400
-
-
-@pytest.mark.parametrize("origin", ["http://evil.example", "null", None])
-def test_foreign_pages_are_refused(server, origin):
-    """Requirement: a socket opened by another page, or none, gets 403."""
-    with pytest.raises(InvalidStatus) as caught, opened(server, origin=origin):
-        pass
-    assert caught.value.response.status_code == 403
-
-
-def test_token_is_needed(server):
-    """Requirement: without the token nothing is answered."""
-    with opened(server, hello=False) as socket:
-        say(socket, do="hello", version=1, token="x" * 32)
-        assert closing(socket)[0] == 4403
-    with opened(server, hello=False) as socket:
-        say(socket, do="pose", pose=[0, 0, 0])
-        code, reason = closing(socket)
-        assert (code, "expected one first" in reason) == (4400, True)
-
-
-@pytest.mark.parametrize(
-    "message",
-    [
-        "rubbish",
-        '{"do": "tick", "odd": 1}',
-        b"short",
-        protocol.HEADER.pack(1, 1, 1, 0, 1, 640, 480, 0.0) + b"no jpeg at all",
-        protocol.HEADER.pack(1, 1, 0, 0, 1, 641, 480, 0.0) + bytes(9),
-    ],
-    ids=["text", "field", "short", "jpeg", "grey"],
-)
-def test_malformed_messages_close_their_socket_only(server, message):
-    """Requirement: what is no message closes its own socket with 4400 and one line; others go on."""
-    with opened(server) as other:
-        with opened(server) as socket:
-            socket.send(message)
-            code, reason = closing(socket)
-            assert code == 4400
-            assert "got" in reason
-            assert "\n" not in reason
-        say(other, do="pose", pose=[0, 0, 0.1])
-        assert answer(other)["pose"][2] == pytest.approx(0.1)
-
-
-def test_jpeg_whose_inside_is_rubbish_closes_its_socket_only(server):
-    """Requirement: a JPEG with a good header and a bad body is no picture, and the server lives."""
-    head = b"\xff\xd8\xff\xc0\x00\x0b\x08\x01\xe0\x02\x80\x01\x01\x11\x00"
-    with opened(server) as socket:
-        socket.send(protocol.HEADER.pack(1, 1, 1, 0, 1, 640, 480, 0.0) + head + b"\x00" * 4000)
-        assert closing(socket)[0] == 4400
-    assert get(server, "/")[0].status == 200
-
-
-def test_too_large_messages_are_refused(server):
-    """Requirement: a message above the limit closes the socket before it is read as a whole."""
-    with opened(server) as socket:
-        with contextlib.suppress(ConnectionClosed):
-            socket.send(bytes(protocol.LARGEST_PICTURE + 10))
-        assert closing(socket)[0] == 1009
-
-
-def test_floods_are_cut_off(server):
-    """Requirement: more messages than the rate close the socket."""
-    with opened(server) as socket:
-        with contextlib.suppress(ConnectionClosed):
-            for _ in range(400):
-                socket.send('{"do": "shown"}')
-        code, reason = closing(socket)
-        assert (code, "too many" in reason) == (4400, True)
-
-
-def test_sockets_are_few(server):
-    """Requirement: no more than four pages at a time; a closed one makes room."""
-    with contextlib.ExitStack() as stack:
-        for _ in range(security.MOST_SOCKETS):
-            stack.enter_context(opened(server))
-        with opened(server, hello=False) as socket:
-            assert closing(socket)[0] == 4429
-    time.sleep(0.3)
-    with opened(server):
-        pass
-    time.sleep(0.2)
-    assert server.open == 0
+from tests.interactive.sockets import answer, closing, frame, opened, say
 
 
 def test_bad_numbers_are_answered_and_change_nothing(server):
@@ -193,6 +28,23 @@ def test_bad_numbers_are_answered_and_change_nothing(server):
         say(socket, do="parameter", name="length", value=7.0)
         assert "length: got 7000, expected 40 to 120 mm" in answer(socket, "error")["text"]
         say(socket, do="pose", pose=[0, 0, 0.2])
+        assert answer(socket)["pose"][2] == pytest.approx(0.2)
+
+
+def test_failing_solver_keeps_the_last_state(server, monkeypatch):
+    """Requirement: an arithmetic fault of the solver, or a number that is not finite, is answered by a
+    sentence; the
+    next event is answered as ever."""
+    with opened(server) as socket:
+        say(socket, do="pose", pose=[0, 0, 0.2])
+        answer(socket)
+        for fault in (lambda *_: 1 / 0, lambda *_: {"pose": [math.nan]}):
+            with monkeypatch.context() as patch:
+                patch.setattr(Session, "feed", fault)
+                say(socket, do="pose", pose=[0, 0, 0.3])
+                text = answer(socket, "error")["text"]
+                assert text.startswith("The solver failed, the last good state is kept")
+        say(socket, do="tick")
         assert answer(socket)["pose"][2] == pytest.approx(0.2)
 
 
@@ -233,15 +85,6 @@ def test_recording_is_sent_and_replays(server):
     same = [good for _, good in replay(lines["lines"])]
     assert len(same) >= 14
     assert all(same)
-
-
-def frame(socket):
-    """State and JPEG of the next picture of a film."""
-    while True:
-        message = socket.recv(10)
-        if isinstance(message, bytes):
-            size = int.from_bytes(message[:4], "little")
-            return json.loads(message[4 : 4 + size]), message[4 + size :]
 
 
 def test_film_is_tracked_and_sent():

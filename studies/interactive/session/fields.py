@@ -40,3 +40,11 @@ def mapping(event: Mapping[str, Any], key: str) -> Mapping[str, Any]:
     if not isinstance(value, Mapping):
         raise BadInput(f"{key}: got {value!r}, expected values by name")
     return value
+
+
+def words(event: Mapping[str, Any], key: str) -> list[str]:
+    """Return a list of texts, empty where the key is absent."""
+    value = event.get(key, [])
+    if not isinstance(value, list) or not all(isinstance(word, str) for word in value):
+        raise BadInput(f"{key}: got {value!r}, expected a list of texts")
+    return value

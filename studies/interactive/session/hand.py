@@ -8,8 +8,9 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-#: A camera's pose that lies farther from the last one waits for a second one that agrees [m, rad].
-JUMP_SHIFT, JUMP_TURN = 0.025, math.radians(15)
+#: A camera's pose that lies farther from the last one, for each frame's time since, waits for a second one
+#: that agrees [m, rad, s].
+JUMP_SHIFT, JUMP_TURN, FRAME = 0.025, math.radians(15), 0.04
 #: Poses that the velocity is taken from.
 POSES = 5
 
@@ -30,10 +31,13 @@ class Hand:
         self._poses.clear()
         self._odd = None
 
-    def believes(self, pose: Array) -> bool:
-        """Whether a pose may be taken: near the last one, or far from it and seen twice."""
+    def believes(self, time: float, pose: Array) -> bool:
+        """Whether a pose may be taken: as near the last one as a hand moves in that time, or seen twice."""
         known, self._odd = self._odd, None
-        if not self._poses or _close(pose, self._poses[-1][1]) or (known is not None and _close(pose, known)):
+        if not self._poses or (known is not None and _close(pose, known, 1.0)):
+            return True
+        last, before = self._poses[-1]
+        if _close(pose, before, max(1.0, (time - last) / FRAME)):
             return True
         self._odd = pose
         return False
@@ -48,5 +52,6 @@ class Hand:
         return np.asarray(np.polyfit(times - times.mean(), poses, 1)[0])
 
 
-def _close(pose: Array, other: Array) -> bool:
-    return math.hypot(*(pose[:2] - other[:2])) <= JUMP_SHIFT and abs(pose[2] - other[2]) <= JUMP_TURN
+def _close(pose: Array, other: Array, frames: float) -> bool:
+    shift, turn = math.hypot(*(pose[:2] - other[:2])), abs(pose[2] - other[2])
+    return shift <= frames * JUMP_SHIFT and turn <= frames * JUMP_TURN

@@ -20,7 +20,7 @@ from studies.interactive.pivot.mechanics import Mechanics
 from studies.interactive.pivot.motion import MOTIONS
 from studies.interactive.pivot.placing import Placing
 from studies.interactive.pivot.presets import STEP, STEPS_A_FRAME
-from studies.interactive.session.fields import choice, mapping, number, three
+from studies.interactive.session.fields import choice, mapping, number, three, words
 from studies.interactive.session.hand import Hand
 from studies.interactive.session.view import Warnings, shown
 
@@ -42,9 +42,7 @@ class Session:
 
     Args:
         preset: name of the design to start with.
-        lock_step: whether every frame is four steps whatever its time (films, replays), or as many as its
-            time
-            asks for (cameras).
+        lock_step: every frame is four steps (films, replays), not as many as its time asks for (cameras).
     """
 
     def __init__(self, preset: str = "polymer", *, lock_step: bool = True) -> None:
@@ -128,12 +126,19 @@ class Session:
         self.sight = {key: event[key] for key in ("state", "rms", "plane", "quads") if key in event}
         self.sight.setdefault("state", "found")
         self._marker = marker
-        for code in event.get("faults", ()):
-            self.warnings.say(code, str(event.get("text", "")))
-        if not self._frame(time) and not self.paused and self._plausible(marker):
+        for code in words(event, "faults"):
+            self.warnings.say(code)
+        if self._frame(time) or self.paused:
+            return
+        body = self.placing.body(marker, near=self.wanted[2])
+        pose = np.array([*(body[:2] - self.placing.centre), body[2]])
+        if self.placing.looks_swapped(marker):
+            self.warnings.say("swapped")
+        elif not self._hand.believes(time, pose):
+            self.warnings.say("jump")
+        else:
             self.spread = self.placing.spread(three(event, "sd")) if "sd" in event else None
-            body = self.placing.body(marker, near=self.wanted[2])
-            self._to(np.array([*(body[:2] - self.placing.centre), body[2]]), time)
+            self._to(pose, time)
 
     def _unseen(self, event: Mapping[str, Any], time: float) -> None:
         """A frame without a pose: the last one is held, and why is said."""
@@ -160,18 +165,6 @@ class Session:
             self.lag = max(0.0, due - steps)
         self._advance(steps)
         return True
-
-    def _plausible(self, marker: Array) -> bool:
-        """Whether a camera's pose may be taken: not swapped, and no jump that was seen but once."""
-        if self.placing.looks_swapped(marker):
-            self.warnings.say("swapped")
-            return False
-        body = self.placing.body(marker, near=self.wanted[2])
-        pose = np.array([*(body[:2] - self.placing.centre), body[2]])
-        if self._hand.believes(pose):
-            return True
-        self.warnings.say("jump")
-        return False
 
     def _to(self, pose: Array, time: float) -> None:
         """Drive the body to `pose` (3,), displacement from rest and turn."""

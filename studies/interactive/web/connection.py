@@ -2,11 +2,13 @@
 own."""
 
 import asyncio
+import logging
 import time
 from collections.abc import Callable
 from dataclasses import asdict
 from typing import Any
 
+from numpy.linalg import LinAlgError
 from starlette.websockets import WebSocket
 
 from studies.errors import BadInput
@@ -18,6 +20,8 @@ from studies.interactive.tracking.calibration import Camera
 from studies.interactive.tracking.tracker import Tracker
 from studies.interactive.web import protocol
 from studies.interactive.web.sources import Shot, Source, grey_of
+
+LOG = logging.getLogger(__name__)
 
 #: Time of a frame without pictures [s], and how long pictures may stay away before it counts.
 TICK, STILL = 0.04, 0.2
@@ -161,8 +165,12 @@ class Connection:
         begin = time.perf_counter()
         try:
             state = self.session.feed(event)
+            protocol.text(state)  # a number that is not finite must not be sent
         except BadInput as error:
             return {"kind": "error", "text": str(error)}
+        except (ArithmeticError, ValueError, LinAlgError) as error:
+            LOG.exception("the session failed at %s", event)
+            return {"kind": "error", "text": f"The solver failed, the last good state is kept ({error})."}
         took = time.perf_counter() - begin
         if self._recorder is not None:
             self._recorder.write(event, state)
