@@ -15,6 +15,7 @@ that did not; 2: bad input.
 """
 
 import argparse
+import contextlib
 import importlib.util
 import sys
 import webbrowser
@@ -79,7 +80,8 @@ def main(arguments: argparse.Namespace) -> int:
     print(f"studies: open {server.address}   (Ctrl-C ends it)", file=sys.stderr, flush=True)
     if not arguments.no_browser:
         webbrowser.open(server.address)
-    server.run()
+    with contextlib.suppress(KeyboardInterrupt):
+        server.run()
     return 0
 
 

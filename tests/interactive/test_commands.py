@@ -2,8 +2,10 @@
 
 import io
 import re
+import signal
 import subprocess
 import sys
+import time
 
 import numpy as np
 import pytest
@@ -41,6 +43,29 @@ def test_the_rest_does_not_need_the_extra():
     done = run("status", code=WITHOUT)
     assert (done.returncode, done.stderr) == (0, "")
     assert "paper/fig07_interactive" in done.stdout
+
+
+def test_figure_is_left_as_it_is_without_the_extra(tmp_path):
+    """Requirement: `run` says what the figure's study lacks, leaves its result alone and goes on."""
+    done = run("run", "fig07_interactive", "--results", str(tmp_path), code=WITHOUT)
+    assert done.returncode == 0
+    assert done.stderr == (
+        "paper/fig07_interactive: left as it is: it needs the extra `interactive` (cv2 not installed)\n"
+    )
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_interrupt_ends_the_server():
+    """Requirement: the address with its token is printed, and Ctrl-C ends the server with exit code 0."""
+    pytest.importorskip("cv2", reason="the extra `interactive` is not installed")
+    words = [sys.executable, "-m", "studies", "interactive", "--camera", "none", "--no-browser"]
+    with subprocess.Popen(words, cwd=ROOT, stderr=subprocess.PIPE, text=True) as process:
+        assert process.stderr
+        said = process.stderr.readline()
+        assert re.match(r"studies: open http://127\.0\.0\.1:\d+/#token=[\w-]{32,} ", said)
+        time.sleep(0.5)
+        process.send_signal(signal.SIGINT)
+        assert process.wait(10.0) == 0
 
 
 @pytest.mark.parametrize(
