@@ -1,10 +1,11 @@
 # `make` alone lists the targets. Everything happens in .venv, which `make setup` creates.
 .DEFAULT_GOAL := help
-.PHONY: help setup figures results test test-all bench lint clean
+.PHONY: help setup figures results interactive test test-all bench lint clean
 
 PYTHON ?= python3
 BIN := .venv/bin
 STAMP := .venv/installed
+EXTRA := .venv/interactive
 
 # One thread: the matrices are small, and timings must not depend on what else runs.
 export OMP_NUM_THREADS := 1
@@ -12,7 +13,7 @@ export OPENBLAS_NUM_THREADS := 1
 export MKL_NUM_THREADS := 1
 
 help:  ## list the targets
-	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-9s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-11s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
 
 setup: $(STAMP)  ## create .venv with the pinned packages and this one, compile the kernels
 
@@ -31,6 +32,13 @@ figures: $(STAMP)  ## compute the paper's figures and the convergence studies an
 results: $(STAMP)  ## compute all studies anew (some ten minutes), refresh the README
 	$(BIN)/python -m studies run all
 	$(BIN)/python -m studies readme
+
+interactive: $(EXTRA)  ## drive the pivot by camera or mouse in the browser; ARGS="--film demo" passes options on
+	$(BIN)/python -m studies interactive $(ARGS)
+
+$(EXTRA): $(STAMP)
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-build-isolation --editable '.[interactive]'
+	@touch $@
 
 test: $(STAMP)  ## run the quick tests
 	$(BIN)/python -m pytest -q -n auto -m "not slow"

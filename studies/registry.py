@@ -15,6 +15,11 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "converge": ("studies.commands.converge", "refine both models on a design until an accuracy is reached"),
     "audit": ("studies.commands.audit", "say what each effect of a scene is worth, and which are enough"),
     "advise": ("studies.commands.advise", "say which setting of each model meets an error at the least cost"),
+    "interactive": (
+        "studies.commands.interactive",
+        "drive a pivot by camera or mouse and let it go, in the browser",
+    ),
+    "markers": ("studies.commands.markers", "print the sheet with the two markers"),
     "list": ("studies.commands.list_studies", "list the studies"),
     "run": ("studies.commands.run", "compute and draw studies"),
     "draw": ("studies.commands.draw", "redraw studies from their stored tables"),
@@ -40,6 +45,10 @@ STUDIES: dict[str, tuple[str, str]] = {
     "paper/fig06_release": (
         "studies.paper.fig06_release",
         "Fig 6: motion after the release from 90 degrees and its errors",
+    ),
+    "paper/fig07_interactive": (
+        "studies.paper.fig07_interactive",
+        "Fig 7: the interactive environment in a browser, its frame rate and solve time",
     ),
     "convergence/control_points": (
         "studies.convergence.control_points",

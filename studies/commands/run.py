@@ -4,13 +4,17 @@
     python -m studies run paper convergence
 
 A name is a study, its last part, a group of studies or "all". Tables and their provenance go to results/data,
-figures to results/figures. Exit code 0: done; 2: bad input, for example a folder that cannot be written to.
+figures to results/figures. A study that this machine cannot compute, for want of a browser, says so and
+keeps its stored
+result. Exit code 0: done; 2: bad input, for example a folder that cannot be written to.
 """
 
 import argparse
 import sys
 import time
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 from studies.commands.parser import Parser
 from studies.record import style
@@ -31,9 +35,19 @@ def main(arguments: argparse.Namespace) -> int:
     store = Store(arguments.results)
     store.require_writable()
     for name in names:
+        reason = missing(module_of(name))
+        if reason:
+            print(f"{name}: left as it is: {reason}", file=sys.stderr)
+            continue
         seconds = _run(name, store)
         print(f"{name}: {seconds:.1f} s", file=sys.stderr)
     return 0
+
+
+def missing(module: Any) -> str:
+    """Return what a study asks of the machine, and this one lacks; nothing for most studies."""
+    lacks: Callable[[], str] = getattr(module, "missing", str)
+    return lacks()
 
 
 def _run(name: str, store: Store) -> float:

@@ -1,0 +1,133 @@
+"""Start the interactive environment of the paper's section 4 and open its page in the browser.
+
+    python -m studies interactive
+    python -m studies interactive --film demo
+    python -m studies interactive --camera none --preset table-1
+    python -m studies interactive --replay session.jsonl
+
+Two printed markers (`python -m studies markers`) before the browser's camera drive the pivot; without a
+camera
+mouse, touch and keys do. The server is open to this machine only. It needs the extra `interactive`, which
+`make
+interactive` installs. Exit code 0: stopped with Ctrl-C, or a replay that gave the recorded states; 1: a
+replay
+that did not; 2: bad input.
+"""
+
+import argparse
+import contextlib
+import importlib.util
+import sys
+import webbrowser
+from pathlib import Path
+
+from studies.commands.parser import Parser, whole_number
+from studies.errors import BadInput
+
+#: What the extra brings: module -> package.
+EXTRA = {
+    "cv2": "opencv-python-headless",
+    "starlette": "starlette",
+    "uvicorn": "uvicorn",
+    "websockets": "websockets",
+}
+
+
+def add_arguments(parser: Parser) -> None:
+    """Declare the arguments of the command."""
+    parser.add_argument("--port", type=whole_number(0), default=0, help="default: any free one")
+    parser.add_argument("--no-browser", action="store_true", help="print the address, open nothing")
+    parser.add_argument("--film", metavar="FILE|demo", help="pictures from a film instead of a camera")
+    parser.add_argument(
+        "--camera", default="browser", metavar="browser|none|N", help="the browser's, none, or this machine's"
+    )
+    parser.add_argument("--calibration", type=Path, metavar="FILE", help="the camera's constants as JSON")
+    parser.add_argument("--preset", default="polymer", help="design to start with: polymer, table-1")
+    parser.add_argument("--record", type=Path, metavar="FILE", help="store the session's events")
+    parser.add_argument("--replay", type=Path, metavar="FILE", help="replay a stored session and compare")
+
+
+def main(arguments: argparse.Namespace) -> int:
+    """Serve until interrupted, or replay; return the exit code."""
+    if arguments.replay is not None:
+        return _replay(arguments.replay)
+    missing = missing_packages()
+    if missing:
+        raise BadInput(
+            f"interactive: got no {', '.join(missing)}, expected the extra: run `make interactive`, "
+            "or pip install -e '.[interactive]'"
+        )
+    from studies.interactive.pivot import presets
+    from studies.interactive.tracking.calibration import Camera
+    from studies.interactive.warm_up import warm_up
+    from studies.interactive.web.server import Server, Settings
+
+    presets.preset(arguments.preset)
+    source, camera = _source(arguments)
+    stream = _stream(arguments.record)
+    server = Server(
+        Settings(
+            port=arguments.port,
+            camera=camera,
+            source=source,
+            calibration=None if arguments.calibration is None else Camera.read(arguments.calibration),
+            preset=arguments.preset,
+            keep=None if stream is None else stream.write,
+        )
+    )
+    server.bind()
+    warm_up()
+    print(f"studies: open {server.address}   (Ctrl-C ends it)", file=sys.stderr, flush=True)
+    if not arguments.no_browser:
+        webbrowser.open(server.address)
+    with contextlib.suppress(KeyboardInterrupt):
+        server.run()
+    return 0
+
+
+def missing_packages() -> list[str]:
+    """Return the packages of the extra that are not installed."""
+    return [package for module, package in EXTRA.items() if importlib.util.find_spec(module) is None]
+
+
+def _source(arguments: argparse.Namespace):  # type: ignore[no-untyped-def]
+    """Return what makes the pictures, and how the page shall call it."""
+    from studies.interactive.film.demo import demo_film
+    from studies.interactive.web.sources import FilmSource, VideoSource
+
+    if arguments.film is not None:
+        if arguments.camera != "browser":
+            raise BadInput(f"--camera: got {arguments.camera} beside --film, expected one of them")
+        made = FilmSource(demo_film()) if arguments.film == "demo" else VideoSource(Path(arguments.film))
+        return (lambda: made), "film"
+    if arguments.camera in ("browser", "none"):
+        return None, arguments.camera
+    if not arguments.camera.isdecimal():
+        raise BadInput(f"--camera: got {arguments.camera}, expected browser, none or a number")
+    video = VideoSource(int(arguments.camera))
+    return (lambda: video), "server"
+
+
+def _stream(path: Path | None):  # type: ignore[no-untyped-def]
+    """Open the file of a recording; BadInput if it cannot be written."""
+    if path is None:
+        return None
+    try:
+        return path.open("w", encoding="utf-8", buffering=1)
+    except OSError as error:
+        raise BadInput(
+            f"--record: got {path}, expected a file that can be written ({error.strerror})"
+        ) from None
+
+
+def _replay(path: Path) -> int:
+    """Replay a session file; 0 where every state is the recorded one."""
+    from studies.interactive.session.recording import replay
+
+    try:
+        lines = path.read_text(encoding="utf-8").splitlines()
+    except (OSError, UnicodeDecodeError) as error:
+        raise BadInput(f"--replay: got {path}, expected a session file ({error})") from None
+    same = [good for _, good in replay(lines)]
+    print(f"{path}: {sum(same)} of {len(same)} states are those recorded")
+    return 0 if same and all(same) else 1

@@ -1,0 +1,263 @@
+"""Films of both markers with known truth: drawn exactly, blurred, unevenly lit and noisy as a camera's.
+
+Every pixel is the mean of exact black and white over its area, so that the truth holds to a small part of a
+pixel.
+"""
+
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from studies.interactive.pivot.placing import SIDE
+from studies.interactive.tracking.calibration import Camera
+
+Array = NDArray[np.float64]
+Picture = NDArray[np.uint8]
+
+#: Bits of a marker's side with its black border, and the white margin around it in bits.
+BITS = 8
+MARGIN = 1.5
+WHITE, BLACK, TABLE = 225.0, 25.0, 150.0
+#: Blocks of the frame counter in the upper left corner: side [px], and how many bits.
+BLOCK, COUNTER_BITS = 6, 16
+
+
+@dataclass(frozen=True, kw_only=True)
+class Optics:
+    """How the plane is seen.
+
+    Attributes:
+        width, height, focal [px]; distance [m] to the point `target` (2,) [m] of the plane; tilt, roll [rad].
+        blur, noise: standard deviations [px], [grey levels]; light: change of brightness across the picture;
+        k1: of the lens; mirrored: left and right exchanged.
+    """
+
+    width: int = 640
+    height: int = 480
+    focal: float = 600.0
+    distance: float = 0.48
+    target: tuple[float, float] = (0.0, 0.075)
+    tilt: float = math.radians(20)
+    roll: float = math.radians(3)
+    blur: float = 0.8
+    noise: float = 4.0
+    light: float = 0.25
+    k1: float = 0.0
+    mirrored: bool = False
+
+    @property
+    def camera(self) -> Camera:
+        """The camera's constants."""
+        return Camera(
+            fx=self.focal, fy=self.focal, cx=(self.width - 1) / 2, cy=(self.height - 1) / 2, k1=self.k1
+        )
+
+    @property
+    def plane(self) -> Array:
+        """Homography (3, 3) from the plane [m] to the picture [px], the lens apart."""
+        ct, st, cr, sr = math.cos(self.tilt), math.sin(self.tilt), math.cos(self.roll), math.sin(self.roll)
+        roll = np.array([[cr, -sr, 0.0], [sr, cr, 0.0], [0.0, 0.0, 1.0]])
+        tilt = np.array([[1.0, 0.0, 0.0], [0.0, -ct, -st], [0.0, st, -ct]])  # picture y runs down
+        turn = roll @ tilt
+        place = np.array([0.0, 0.0, self.distance]) - turn @ np.array([*self.target, 0.0])
+        return np.asarray(self.camera.matrix @ np.column_stack((turn[:, 0], turn[:, 1], place)))
+
+
+@dataclass(frozen=True, kw_only=True)
+class Marker:
+    """A square of that id with its centre and turn in the plane (3,) [m, m, rad], its side [m], and height
+    above
+    the plane [m]."""
+
+    number: int
+    pose: tuple[float, float, float]
+    side: float = SIDE
+    height: float = 0.0
+
+
+@dataclass(frozen=True, kw_only=True)
+class Finger:
+    """A disc that covers part of the picture: centre and radius in the plane [m]."""
+
+    centre: tuple[float, float]
+    radius: float = 0.012
+
+
+@dataclass(eq=False)
+class Painter:
+    """Draws pictures of markers through fixed optics; noise follows from `seed` and the frame's number.
+
+    samples: in each direction of a pixel, whose mean it becomes.
+    """
+
+    optics: Optics
+    seed: int = 1
+    samples: int = 5
+    _ground: Array = field(init=False)
+
+    def __post_init__(self) -> None:
+        rng = np.random.default_rng(self.seed)
+        height, width = self.optics.height, self.optics.width
+        coarse = rng.normal(0.0, 10.0, (height // 40 + 2, width // 40 + 2))
+        rows, columns = np.arange(height) / 40.0, np.arange(width) / 40.0
+        i, j = rows.astype(int), columns.astype(int)
+        fi, fj = (rows - i)[:, None], (columns - j)[None, :]
+        texture = (
+            coarse[np.ix_(i, j)] * (1 - fi) * (1 - fj)
+            + coarse[np.ix_(i + 1, j)] * fi * (1 - fj)
+            + coarse[np.ix_(i, j + 1)] * (1 - fi) * fj
+            + coarse[np.ix_(i + 1, j + 1)] * fi * fj
+        )
+        self._ground = TABLE + texture
+
+    def draw(self, markers: list[Marker], number: int = 0, fingers: tuple[Finger, ...] = ()) -> Picture:
+        """Return the picture (height, width) of the markers and fingers; `number` is burned in and seeds
+        the noise."""
+        import cv2
+
+        optics = self.optics
+        picture = self._ground.copy()
+        for marker in markers:
+            self._marker(picture, marker)
+        for finger in fingers:
+            self._finger(picture, finger)
+        if optics.blur > 0:
+            picture = np.asarray(cv2.GaussianBlur(picture, (0, 0), optics.blur), dtype=float)
+        ramp = 1.0 - optics.light * np.arange(optics.width) / optics.width  # never brighter than white
+        rng = np.random.default_rng((self.seed, number))
+        noise = rng.standard_normal(picture.shape, dtype=np.float32) * np.float32(optics.noise)
+        done = np.clip(np.rint(picture * ramp + noise), 0, 255).astype(np.uint8)
+        if optics.mirrored:
+            done = np.ascontiguousarray(done[:, ::-1])
+        burn_in(done, number)
+        return done
+
+    def _plane_of(self, marker: Marker) -> Array:
+        """Homography from the marker's own frame, in sides, to the picture."""
+        x, y, angle = marker.pose
+        c, s = marker.side * math.cos(angle), marker.side * math.sin(angle)
+        own = np.array([[c, -s, x], [s, c, y], [0.0, 0.0, 1.0]])
+        plane = self.optics.plane
+        if marker.height:
+            up = np.cross(*(np.linalg.inv(self.optics.camera.matrix) @ plane[:, :2]).T)
+            plane = plane + np.outer(self.optics.camera.matrix @ up, [0.0, 0.0, marker.height])
+        return np.asarray(plane @ own)
+
+    def _marker(self, picture: Array, marker: Marker) -> None:
+        plane = self._plane_of(marker)
+        half = 0.5 + MARGIN / BITS
+        outline = self._lens(_seen(plane, half * np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]])))
+        area = self._box(outline)
+        if area is None:
+            return
+        rows, columns, x, y = area
+        own = self._straight(np.stack((x, y), axis=-1))
+        image = np.concatenate((own, np.ones((*own.shape[:-1], 1))), axis=-1) @ np.linalg.inv(plane).T
+        u, v = image[..., 0] / image[..., 2], image[..., 1] / image[..., 2]
+        inside = (np.abs(u) < half) & (np.abs(v) < half)
+        i = np.clip(np.floor((0.5 - v) * BITS), -1, BITS).astype(int)
+        j = np.clip(np.floor((u + 0.5) * BITS), -1, BITS).astype(int)
+        values = np.pad(bits(marker.number), 1, constant_values=WHITE)[i + 1, j + 1]
+        self._mix(picture, rows, columns, values, inside)
+
+    def _finger(self, picture: Array, finger: Finger) -> None:
+        angle = np.linspace(0, 2 * math.pi, 33)
+        edge = np.array(finger.centre) + finger.radius * np.column_stack((np.cos(angle), np.sin(angle)))
+        area = self._box(self._lens(_seen(self.optics.plane, edge)))
+        if area is None:
+            return
+        rows, columns, x, y = area
+        own = self._straight(np.stack((x, y), axis=-1))
+        image = (
+            np.concatenate((own, np.ones((*own.shape[:-1], 1))), axis=-1) @ np.linalg.inv(self.optics.plane).T
+        )
+        gap = image[..., :2] / image[..., 2:] - finger.centre
+        inside = np.hypot(gap[..., 0], gap[..., 1]) < finger.radius
+        self._mix(picture, rows, columns, np.full(inside.shape, 105.0), inside)
+
+    def _mix(
+        self, picture: Array, rows: slice, columns: slice, values: Array, inside: NDArray[np.bool_]
+    ) -> None:
+        """Put the mean of the samples over the picture where they are inside."""
+        height, width = rows.stop - rows.start, columns.stop - columns.start
+        shape = (height, self.samples, width, self.samples)
+        cover = inside.reshape(shape).mean(axis=(1, 3))
+        paint = (values * inside).reshape(shape).mean(axis=(1, 3))
+        picture[rows, columns] = picture[rows, columns] * (1.0 - cover) + paint
+
+    def _box(self, outline: Array) -> tuple[slice, slice, Array, Array] | None:
+        """Pixels around an outline, and their samples' places; None outside the picture."""
+        low, high = (
+            np.floor(outline.min(axis=0)).astype(int) - 1,
+            np.ceil(outline.max(axis=0)).astype(int) + 2,
+        )
+        left, top = max(0, low[0]), max(0, low[1])
+        right, bottom = min(self.optics.width, high[0]), min(self.optics.height, high[1])
+        if left >= right or top >= bottom:
+            return None
+        inner = (np.arange(self.samples) + 0.5) / self.samples - 0.5
+        x = (np.arange(left, right)[:, None] + inner).ravel()
+        y = (np.arange(top, bottom)[:, None] + inner).ravel()
+        grid_x, grid_y = np.meshgrid(x, y)
+        return slice(top, bottom), slice(left, right), grid_x, grid_y
+
+    def _straight(self, picture: Array) -> Array:
+        return self.optics.camera.undistorted(picture) if self.optics.k1 else picture
+
+    def _lens(self, straight: Array) -> Array:
+        if not self.optics.k1:
+            return straight
+        camera = self.optics.camera
+        centre = np.array([camera.cx, camera.cy])
+        flat = (straight - centre) / camera.fx
+        return np.asarray(
+            flat * (1.0 + camera.k1 * np.sum(flat**2, axis=-1, keepdims=True)) * camera.fx + centre
+        )
+
+
+def _seen(plane: Array, points: Array) -> Array:
+    image = points @ plane[:, :2].T + plane[:, 2]
+    return np.asarray(image[:, :2] / image[:, 2:])
+
+
+def bits(number: int) -> Array:
+    """Return the grey levels (8, 8) of a marker of the family 36h11, black border included."""
+    import cv2
+
+    family = cv2.aruco.getPredefinedDictionary(cv2.aruco.DICT_APRILTAG_36h11)
+    image = cv2.aruco.generateImageMarker(family, number, BITS)
+    return np.where(image > 127, WHITE, BLACK)
+
+
+def burn_in(picture: Picture, number: int) -> None:
+    """Write `number` into the upper left corner as white and black blocks."""
+    for bit in range(COUNTER_BITS):
+        value = 255 if number >> bit & 1 else 0
+        picture[0 : 2 * BLOCK, bit * BLOCK : (bit + 1) * BLOCK] = value
+
+
+def counter(picture: Picture) -> int:
+    """Return the number that `burn_in` wrote into a picture."""
+    places = BLOCK // 2 + BLOCK * np.arange(COUNTER_BITS)
+    return int(sum(1 << bit for bit, x in enumerate(places) if picture[BLOCK, x] > 127))
+
+
+@dataclass(frozen=True, kw_only=True)
+class Film:
+    """Frames at 25 Hz by number: `scene(k)` gives the markers and fingers of frame k."""
+
+    painter: Painter
+    frames: int
+    scene: Callable[[int], tuple[list[Marker], tuple[Finger, ...]]]
+    rate: float = 25.0
+
+    def picture(self, k: int) -> Picture:
+        """Return frame k, from 0."""
+        markers, fingers = self.scene(k % self.frames)
+        return self.painter.draw(markers, k % self.frames, fingers)
+
+    def __iter__(self) -> Iterator[Picture]:
+        return (self.picture(k) for k in range(self.frames))

@@ -1,0 +1,134 @@
+// What holds the page together: one state at a time from the server, shown with the picture it belongs to.
+import { Socket } from "./socket.js";
+import { Camera } from "./camera.js";
+import { View } from "./view.js";
+import { Numbers } from "./numbers.js";
+import { Ring } from "./ring.js";
+import { Controls } from "./controls.js";
+import { Pointer } from "./pointer.js";
+import { bindKeys } from "./keys.js";
+import * as files from "./files.js";
+
+const at = (id) => document.getElementById(id);
+const studio = { state: null, picture: null, welcome: null, shown: 0, errors: [], trips: [], replaying: false };
+window.studio = studio;
+
+const view = new View(at("stage"));
+const numbers = new Numbers();
+const ring = new Ring();
+Object.assign(studio, { view, ring });
+const socket = new Socket(received, lost);
+const camera = new Camera(socket, say);
+const controls = new Controls(send);
+const pointer = new Pointer(at("stage"), view, studio, send);
+
+function send(event) {
+  if (event.do !== "pose") pointer.forget();
+  socket.send(event);
+}
+function say(text) { at("note").textContent = text; }
+
+function received(message, picture) {
+  if (message.kind === "welcome") return welcome(message);
+  if (message.kind === "error") { studio.errors.push(message.text); camera.answered(message.seq); return say(message.text); }
+  if (message.kind === "recording") return recorded(message);
+  const bitmap = picture ?? camera.picture(message.seq);
+  camera.answered(message.seq);
+  studio.state = message;
+  if (bitmap) { studio.picture?.close?.(); studio.picture = bitmap; }
+  if (message.seq !== null && message.seq === pointer.seq) studio.trips = [...studio.trips.slice(-199), performance.now() - message.seq];
+  ring.add(message);
+  studio.shown += 1;
+  if (ring.live) show(message, studio.picture);
+}
+
+function show(state, picture) {
+  view.draw(state, picture, ring.centres);
+  numbers.show(state, ring);
+  controls.follow(state);
+  at("mode").textContent = state.mode + (state.paused ? ", paused" : "");
+  at("mode").classList.toggle("released", state.mode === "released");
+  at("release").firstChild.textContent = state.mode === "released" ? "Catch " : "Release ";
+  at("pause").firstChild.textContent = state.paused ? "Resume " : "Pause ";
+  at("pause").disabled = state.mode !== "released" && !state.paused;
+  at("step").disabled = state.mode !== "released";
+  at("scrub").max = ring.length - 1;
+  at("scrub").value = ring.place;
+  at("when").textContent = ring.live ? "live" : `${ring.age.toFixed(1)} s ago`;
+  at("live").disabled = ring.live;
+  studio.drawn = { seq: state.seq, t: state.t };
+}
+
+function welcome(message) {
+  studio.welcome = message;
+  controls.build(message);
+  at("source").textContent = { browser: "camera", film: "film", none: "no camera", server: "camera of the server" }[message.camera];
+  at("camera-box").hidden = message.camera === "none";
+  if (message.camera === "browser") camera.start(noCamera);
+  if (message.camera === "none") noCamera("");
+  const design = files.designOf(location.hash) ?? (studio.state && { preset: studio.state.preset, values: studio.state.values });
+  if (design) send({ do: "preset", name: design.preset, values: design.values });
+}
+
+// Without pictures the page's own hand drives, by the rotation alone: a pull would stretch the strips at once.
+function noCamera(why) {
+  at("source").textContent = "no camera";
+  at("stage").classList.add("grab");
+  pointer.on = true;
+  at("hand-box").hidden = false;
+  if (why) say(`${why} Drag the body, or use the arrow keys.`);
+  send({ do: "drive", by: "rotation" });
+}
+
+function lost(text) {
+  at("source").textContent = "not connected";
+  say(text);
+}
+
+function recorded(message) {
+  at("record").classList.toggle("on", message.on);
+  at("record").firstChild.textContent = message.on ? "Stop " : "Record ";
+  if (message.on) say("Recording: poses and events, no pictures.");
+  else files.save("session.jsonl", message.lines.join(""), "application/jsonl");
+}
+
+const actions = {
+  release: () => send(studio.state?.mode === "released" ? { do: "catch" } : { do: "release", speed: at("hand").checked ? "hand" : "zero" }),
+  pause: () => send({ do: studio.state?.paused ? "resume" : "pause" }),
+  step: () => send({ do: "step" }),
+  reset: () => send({ do: "reset" }),
+  undo: () => send({ do: "undo" }),
+  redo: () => send({ do: "redo" }),
+  record: () => send({ do: "record", on: !at("record").classList.contains("on") }),
+  rest: () => send({ do: "rest" }),
+  csv: () => files.save("pivot.csv", files.csv(ring.states), "text/csv"),
+  png: () => at("stage").toBlob((blob) => files.save("pivot.png", blob, "image/png")),
+  link: async () => say(await files.copyLink(studio.state)),
+  live: () => { ring.goLive(); if (studio.state) show(studio.state, studio.picture); },
+  help: () => at("shortcuts").showModal(),
+  replay: () => at("file").click(),
+  back: () => scrub(ring.place - 5),
+  forth: () => scrub(ring.place + 5),
+  drive: () => send({ do: "drive", by: studio.state?.drive === "pose" ? "rotation" : "pose" }),
+  turn: (angle) => pointer.nudge([0, 0, angle]),
+  move: (x, y) => pointer.nudge([x, y, 0]),
+};
+
+function scrub(place) {
+  ring.go(place);
+  const state = ring.current;
+  if (state) show(state, ring.live ? studio.picture : null);
+}
+
+for (const id of ["release", "pause", "step", "reset", "undo", "redo", "record", "rest", "csv", "png", "link", "live", "help", "replay"]) {
+  at(id).addEventListener("click", actions[id]);
+}
+at("scrub").addEventListener("input", () => scrub(Number(at("scrub").value)));
+at("mirror").addEventListener("change", () => at("stage").classList.toggle("mirrored", at("mirror").checked));
+at("side").addEventListener("change", () => at("side").checkValidity() && send({ do: "size", side_mm: Number(at("side").value) }));
+at("camera").addEventListener("change", () => camera.start(noCamera, at("camera").value));
+at("file").addEventListener("change", async () => { const file = at("file").files[0]; if (file) await files.play(await file.text(), send, say, studio); at("file").value = ""; });
+bindKeys(actions, at("keys"), at("shortcuts"));
+window.addEventListener("error", (event) => studio.errors.push(String(event.message)));
+window.addEventListener("unhandledrejection", (event) => studio.errors.push(String(event.reason)));
+socket.open();

@@ -1,0 +1,85 @@
+// Presets, sliders with typed values in their units, and the hand's three sliders.
+const at = (id) => document.getElementById(id);
+const DELAY = 120;
+const HAND = [
+  { name: "rotation", unit: "°", low: -100, high: 100, step: 0.5, place: 2, per: 180 / Math.PI },
+  { name: "shift x", unit: "mm", low: -60, high: 60, step: 0.01, place: 0, per: 1e3 },
+  { name: "shift y", unit: "mm", low: -60, high: 60, step: 0.01, place: 1, per: 1e3 },
+];
+
+export class Controls {
+  constructor(send) { this.send = send; this.rows = new Map(); this.hand = []; this.seen = ""; }
+
+  build(welcome) {
+    this.welcome = welcome;
+    at("preset").replaceChildren(...Object.entries(welcome.presets).map(([name, p]) => new Option(p.title, name)));
+    at("solver").replaceChildren(...welcome.solvers.map((name) => new Option({ energy: "energy-consistent", impulse: "sequential impulses" }[name] ?? name, name)));
+    at("preset").onchange = () => this.send({ do: "preset", name: at("preset").value });
+    at("drive").onchange = () => this.send({ do: "drive", by: at("drive").value });
+    at("solver").onchange = () => this.send({ do: "solver", name: at("solver").value });
+    at("side").value = (welcome.side * 1e3).toFixed(1);
+    at("sliders").replaceChildren(...welcome.parameters.map((p) => this.row(p)));
+    this.hand = [];
+    at("hand-sliders").replaceChildren(...HAND.map((h) => this.handRow(h)));
+  }
+
+  row(p) {
+    const on = (si) => (p.logarithmic ? Math.log(Math.max(si, p.low)) : si), back = (v) => (p.logarithmic ? Math.exp(v) : v);
+    const { line, range, number } = pair(p.label, p.unit);
+    Object.assign(range, { min: on(p.low), max: on(p.high), step: (on(p.high) - on(p.low)) / 400 });
+    Object.assign(number, { min: p.low * p.per_si, max: p.high * p.per_si, step: "any" });
+    let timer = 0;
+    const change = (si) => { clearTimeout(timer); timer = setTimeout(() => this.send({ do: "parameter", name: p.name, value: si }), DELAY); };
+    range.oninput = () => { const si = Math.min(p.high, Math.max(p.low, back(Number(range.value)))); number.value = tidy(si * p.per_si); change(si); };
+    number.onchange = () => { if (number.checkValidity() && number.value !== "") change(Number(number.value) / p.per_si); };
+    this.rows.set(p.name, { range, number, set: (si) => { range.value = on(si); number.value = tidy(si * p.per_si); } });
+    return line;
+  }
+
+  handRow(h) {
+    const { line, range, number } = pair(h.name, h.unit);
+    for (const input of [range, number]) Object.assign(input, { min: h.low, max: h.high, step: h.step });
+    number.step = "any";
+    const change = (value) => {
+      const pose = [...(window.studio.state?.wanted ?? [0, 0, 0])];
+      pose[h.place] = value / h.per;
+      this.send({ do: "pose", pose });
+    };
+    range.oninput = () => change(Number(range.value));
+    number.onchange = () => { if (number.checkValidity() && number.value !== "") change(Number(number.value)); };
+    this.hand.push({ h, range, number });
+    return line;
+  }
+
+  // Show the server's values, but leave alone what the user is typing or dragging.
+  follow(state) {
+    for (const { h, range, number } of this.hand) {
+      const value = state.displacement[h.place] * h.per;
+      if (document.activeElement !== range) range.value = value;
+      if (document.activeElement !== number) number.value = value.toFixed(2);
+    }
+    at("drive").value = state.drive;
+    at("solver").value = state.solver;
+    const seen = JSON.stringify([state.preset, state.values]);
+    if (seen === this.seen) return;
+    this.seen = seen;
+    at("preset").value = state.preset;
+    at("preset-note").textContent = this.welcome?.presets[state.preset]?.note ?? "";
+    for (const [name, row] of this.rows) row.set(state.values[name]);
+  }
+}
+
+const tidy = (value) => Number(value.toPrecision(5)).toString();
+
+function pair(label, unit) {
+  const line = document.createElement("div"), name = document.createElement("span"), range = document.createElement("input");
+  const number = document.createElement("input"), mark = document.createElement("span");
+  line.className = "slider";
+  name.textContent = label;
+  range.type = "range"; number.type = "number";
+  range.setAttribute("aria-label", `${label}, slider`);
+  number.setAttribute("aria-label", `${label} in ${unit}`);
+  mark.className = "unit"; mark.textContent = unit;
+  line.append(name, range, number, mark);
+  return { line, range, number };
+}

@@ -1,0 +1,41 @@
+// Every key and what it does: the same table drives the keyboard and the list on "?".
+const DEGREE = Math.PI / 180;
+const KEYS = [
+  ["R", "release, or catch", (a) => a.release()],
+  [" ", "pause and resume", (a) => a.pause(), "Space"],
+  [".", "one step", (a) => a.step()],
+  ["0", "reset to rest", (a) => a.reset()],
+  ["ArrowLeft", "turn by 1°; with Shift move by 0.1 mm", (a, s) => (s ? a.move(-1e-4, 0) : a.turn(DEGREE)), "←"],
+  ["ArrowRight", "turn back by 1°; with Shift move by 0.1 mm", (a, s) => (s ? a.move(1e-4, 0) : a.turn(-DEGREE)), "→"],
+  ["ArrowUp", "turn by 5°; with Shift move by 0.1 mm", (a, s) => (s ? a.move(0, 1e-4) : a.turn(5 * DEGREE)), "↑"],
+  ["ArrowDown", "turn back by 5°; with Shift move by 0.1 mm", (a, s) => (s ? a.move(0, -1e-4) : a.turn(-5 * DEGREE)), "↓"],
+  ["M", "hold the whole pose, or the rotation alone", (a) => a.drive()],
+  ["Z", "undo", (a) => a.undo()],
+  ["Y", "redo", (a) => a.redo()],
+  ["[", "back in the last minute", (a) => a.back()],
+  ["]", "forth in the last minute", (a) => a.forth()],
+  ["L", "back to live", (a) => a.live()],
+  ["V", "begin or end a recording", (a) => a.record()],
+  ["C", "save the last minute as CSV", (a) => a.csv()],
+  ["P", "save the picture", (a) => a.png()],
+  ["K", "copy a link to this design", (a) => a.link()],
+  ["?", "this list", (a) => a.help()],
+];
+
+export function bindKeys(actions, table, dialog) {
+  table.replaceChildren(...KEYS.map(([key, text, , shown]) => {
+    const row = document.createElement("tr"), cell = document.createElement("td"), mark = document.createElement("kbd"), what = document.createElement("td");
+    mark.textContent = shown ?? key; what.textContent = text;
+    cell.append(mark); row.append(cell, what);
+    return row;
+  }));
+  window.addEventListener("keydown", (event) => {
+    if (event.ctrlKey || event.altKey || event.metaKey || dialog.open) return;
+    const tag = event.target.tagName;
+    if (tag === "INPUT" || tag === "SELECT" || (tag === "BUTTON" && (event.key === " " || event.key === "Enter"))) return;
+    const found = KEYS.find(([key]) => key.toLowerCase() === event.key.toLowerCase());
+    if (!found) return;
+    event.preventDefault();
+    found[2](actions, event.shiftKey);
+  });
+}

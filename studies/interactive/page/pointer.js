@@ -1,0 +1,78 @@
+// Mouse and touch on the picture: drag turns the body, or moves it where its whole pose is held; two fingers do both.
+const WHEEL = 0.5 * Math.PI / 180;
+
+export class Pointer {
+  constructor(canvas, view, studio, send) {
+    Object.assign(this, { canvas, view, studio, send, on: false, down: new Map(), start: null, waiting: null });
+    canvas.addEventListener("pointerdown", (event) => this.press(event));
+    canvas.addEventListener("pointermove", (event) => this.move(event));
+    for (const name of ["pointerup", "pointercancel"]) canvas.addEventListener(name, (event) => this.lift(event));
+    canvas.addEventListener("wheel", (event) => { if (this.on) { event.preventDefault(); this.nudge([0, 0, -Math.sign(event.deltaY) * WHEEL]); } }, { passive: false });
+  }
+
+  get held() { return this.on && this.studio.state?.mode === "held"; }
+
+  press(event) {
+    if (!this.held) return;
+    this.canvas.setPointerCapture(event.pointerId);
+    this.canvas.focus();
+    this.down.set(event.pointerId, this.view.from(event.clientX, event.clientY));
+    this.begin();
+  }
+
+  begin() { this.start = { at: new Map(this.down), wanted: [...this.studio.state.displacement], pose: [...this.studio.state.pose] }; }
+
+  move(event) {
+    if (!this.down.has(event.pointerId) || !this.held) return;
+    this.down.set(event.pointerId, this.view.from(event.clientX, event.clientY));
+    this.post(this.down.size > 1 ? this.two() : this.one(event.shiftKey));
+  }
+
+  lift(event) { this.down.delete(event.pointerId); if (this.down.size) this.begin(); }
+
+  one(shift) {
+    const [id] = this.down.keys(), p = this.start.at.get(id), q = this.down.get(id), [dx, dy, t] = this.start.wanted;
+    if (this.studio.state.drive === "pose" && !shift) return [dx + q[0] - p[0], dy + q[1] - p[1], t];
+    const clamps = this.studio.state.placing.clamps;
+    const centre = [(clamps[0][0][0] + clamps[1][0][0]) / 2, (clamps[0][0][1] + clamps[0][1][1]) / 2];
+    return [dx, dy, t + turn(p, q, this.studio.state.drive === "pose" ? this.start.pose : centre)];
+  }
+
+  two() {
+    const [a, b] = this.down.keys(), s = this.start.at, d = this.down, [dx, dy, t] = this.start.wanted;
+    const before = [s.get(b)[0] - s.get(a)[0], s.get(b)[1] - s.get(a)[1]], after = [d.get(b)[0] - d.get(a)[0], d.get(b)[1] - d.get(a)[1]];
+    const angle = Math.atan2(before[0] * after[1] - before[1] * after[0], before[0] * after[0] + before[1] * after[1]);
+    const mid = (m) => [(m.get(a)[0] + m.get(b)[0]) / 2, (m.get(a)[1] + m.get(b)[1]) / 2], p = mid(s), q = mid(d);
+    return [dx + q[0] - p[0], dy + q[1] - p[1], t + angle];
+  }
+
+  nudge(change) {
+    if (!this.held) return;
+    const answered = this.seq === undefined || this.last === undefined || (this.studio.state.seq ?? -1) >= this.seq;
+    const wanted = this.next ?? (answered ? this.studio.state.wanted : this.last);
+    this.post(wanted.map((value, k) => value + change[k]));
+  }
+
+  // One pose a drawn frame: the newest wins.
+  post(pose) {
+    this.next = pose;
+    if (this.waiting) return;
+    this.waiting = requestAnimationFrame(() => { this.waiting = null; this.flush(); });
+  }
+
+  // What the server says counts again.
+  forget() { this.seq = undefined; }
+
+  // Numbered, so that steps that follow faster than the answers add up.
+  flush() {
+    this.seq = performance.now();
+    this.last = this.next;
+    this.send({ do: "pose", pose: this.next, seq: this.seq });
+    this.next = null;
+  }
+}
+
+function turn(p, q, centre) {
+  const a = [p[0] - centre[0], p[1] - centre[1]], b = [q[0] - centre[0], q[1] - centre[1]];
+  return Math.atan2(a[0] * b[1] - a[1] * b[0], a[0] * b[0] + a[1] * b[1]);
+}

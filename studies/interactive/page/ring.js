@@ -1,0 +1,29 @@
+// The last minute of states, to scrub through, to plot and to export.
+const SPAN = 60, MOST = 3000;
+
+export class Ring {
+  constructor() { this.states = []; this.place = 0; this.live = true; }
+
+  get length() { return this.states.length; }
+  get current() { return this.states[this.place]; }
+  get age() { return this.states.length ? this.states[this.states.length - 1].at - this.current.at : 0; }
+  get centres() { return this.states.slice(Math.max(0, this.place - 300), this.place + 1).filter((s) => s.centre).map((s) => s.centre); }
+
+  add(state) {
+    state.at = performance.now() / 1000;
+    const kept = { ...state, sight: { state: state.sight.state, plane: state.sight.plane } };
+    this.states.push(kept);
+    while (this.states.length > MOST || (this.states.length && state.at - this.states[0].at > SPAN)) {
+      this.states.shift();
+      if (!this.live && this.place > 0) this.place -= 1;
+    }
+    if (this.live) this.place = this.states.length - 1;
+  }
+
+  go(place) {
+    this.place = Math.max(0, Math.min(this.states.length - 1, place));
+    this.live = this.place === this.states.length - 1;
+  }
+
+  goLive() { this.go(this.states.length - 1); }
+}

@@ -1,0 +1,136 @@
+// The picture with the pivot over it. Places are in the pivot's frame [m]; a homography takes them to pixels.
+const COLOURS = { strips: ["#1e90ff", "#ff9500"], ground: "#00e5ff", moving: "#ff2bd6", plate: "#dfe6ec", path: "#7dff6a" };
+const WIDTH = 640, HEIGHT = 480;
+
+export const multiply = (a, b) => [0, 3, 6].flatMap((r) => [0, 1, 2].map((c) => a[r] * b[c] + a[r + 1] * b[c + 3] + a[r + 2] * b[c + 6]));
+
+export class View {
+  constructor(canvas) {
+    this.canvas = canvas;
+    this.context = canvas.getContext("2d");
+    this.plane = null;
+    this.size = [WIDTH, HEIGHT];
+    this.resize();
+  }
+
+  resize() {
+    const scale = Math.max(1, Math.min(3, Math.ceil(1280 / this.size[0])));
+    if (this.canvas.width === this.size[0] * scale && this.canvas.height === this.size[1] * scale) return;
+    this.scale = scale;
+    this.canvas.width = this.size[0] * scale;
+    this.canvas.height = this.size[1] * scale;
+  }
+
+  // Without a picture: the rest place of both plates in the middle, millimetres alike in x and y.
+  own(state) {
+    const [a, b] = state.placing.clamps, x = (a[0][0] + b[0][0]) / 2, y = (a[0][1] + a[1][1]) / 2;
+    const zoom = 0.3 * HEIGHT / Math.max(0.02, a[1][1] - a[0][1]);
+    return [zoom, 0, this.size[0] / 2 - zoom * x, 0, -zoom, this.size[1] * 0.56 + zoom * y, 0, 0, 1];
+  }
+
+  choose(state, picture) {
+    if (picture) {
+      this.size = [picture.width, picture.height];
+      if (state.sight.plane) {
+        const [gx, gy] = state.placing.ground;
+        this.plane = multiply(state.sight.plane, [1, 0, -gx, 0, 1, -gy, 0, 0, 1]);
+      }
+    } else if (state.sight.state === "none" || !this.plane) this.plane = this.own(state);
+    this.resize();
+  }
+
+  // Pixel centres have whole coordinates in the homography and half ones on a canvas.
+  to(x, y) {
+    const h = this.plane, w = h[6] * x + h[7] * y + h[8];
+    return [(h[0] * x + h[1] * y + h[2]) / w + 0.5, (h[3] * x + h[4] * y + h[5]) / w + 0.5];
+  }
+
+  // From a pointer's place on the page to the pivot's frame.
+  from(clientX, clientY) {
+    const box = this.canvas.getBoundingClientRect(), h = this.plane;
+    const u = (clientX - box.left) / box.width * this.size[0] - 0.5, v = (clientY - box.top) / box.height * this.size[1] - 0.5;
+    const a = h[0] - u * h[6], b = h[1] - u * h[7], c = u * h[8] - h[2], d = h[3] - v * h[6], e = h[4] - v * h[7], f = v * h[8] - h[5];
+    const det = a * e - b * d;
+    return [(c * e - b * f) / det, (a * f - c * d) / det];
+  }
+
+  draw(state, picture, centres) {
+    this.choose(state, picture);
+    const c = this.context, stale = state.warnings.some((w) => ["no-equilibrium", "absurd", "jump", "lost-0", "lost-1", "lost-both"].includes(w.code));
+    c.setTransform(this.scale, 0, 0, this.scale, 0, 0);
+    if (picture) c.drawImage(picture, 0, 0, ...this.size);
+    else { c.fillStyle = "#0c0f12"; c.fillRect(0, 0, ...this.size); if (this.plane) this.grid(); }
+    if (!this.plane) return;
+    this.outlines(state);
+    this.plates(state);
+    for (const [x, y] of centres.slice(-150)) this.dot(x, y, 1.3, COLOURS.path);
+    state.shape.forEach((strip, s) => {
+      c.setLineDash(stale ? [6, 5] : []);
+      this.line(strip, "#000a", 6);
+      this.line(strip, COLOURS.strips[s], 3);
+      c.setLineDash([]);
+    });
+    if (state.centre) this.cross(...state.centre, COLOURS.path);
+    this.dot(state.pose[0], state.pose[1], 3.5, COLOURS.plate);
+  }
+
+  grid() {
+    const c = this.context;
+    c.strokeStyle = "#222b33"; c.lineWidth = 1;
+    for (let k = -20; k <= 30; k++) {
+      this.line([[k / 100, -0.2], [k / 100, 0.3]], "#20272e", 1);
+      this.line([[-0.2, k / 100], [0.3, k / 100]], "#20272e", 1);
+    }
+    const [x, y] = this.to(0, 0), [x1] = this.to(0.01, 0);
+    c.fillStyle = "#94a3b1"; c.font = "12px system-ui, sans-serif";
+    c.fillText(`grid 10 mm`, 10, this.size[1] - 10);
+    return [x, y, x1];
+  }
+
+  outlines(state) {
+    const c = this.context;
+    (state.sight.quads ?? []).forEach((quad, i) => {
+      c.beginPath();
+      quad.forEach(([x, y], k) => (k ? c.lineTo(x + 0.5, y + 0.5) : c.moveTo(x + 0.5, y + 0.5)));
+      c.closePath();
+      c.strokeStyle = i ? COLOURS.moving : COLOURS.ground;
+      c.lineWidth = 1.5;
+      c.stroke();
+    });
+  }
+
+  plates(state) {
+    const [a, b] = state.placing.clamps, [x, y, t] = state.pose, [x0, y0] = state.placing.centre;
+    const cos = Math.cos(t), sin = Math.sin(t);
+    const moved = ([px, py]) => [x + cos * (px - x0) - sin * (py - y0), y + sin * (px - x0) + cos * (py - y0)];
+    const over = 0.006, bar = (p, q) => {
+      const d = Math.hypot(q[0] - p[0], q[1] - p[1]) || 1, ex = (q[0] - p[0]) / d * over, ey = (q[1] - p[1]) / d * over;
+      return [[p[0] - ex, p[1] - ey], [q[0] + ex, q[1] + ey]];
+    };
+    this.line(bar(a[0], b[0]), "#9fb0bf", 7);
+    this.line(bar(moved(a[1]), moved(b[1])), COLOURS.plate, 7);
+    if (state.mode === "released" || state.sight.state === "none") {
+      const [mx, my] = [(a[1][0] + b[1][0]) / 2, a[1][1] + 0.02];
+      this.line([moved([(a[1][0] + b[1][0]) / 2, a[1][1]]), moved([mx, my])], COLOURS.plate, 3);
+    }
+  }
+
+  line(points, colour, width) {
+    const c = this.context;
+    c.beginPath();
+    points.forEach(([x, y], k) => (k ? c.lineTo(...this.to(x, y)) : c.moveTo(...this.to(x, y))));
+    c.strokeStyle = colour; c.lineWidth = width; c.lineJoin = "round"; c.lineCap = "butt";
+    c.stroke();
+  }
+
+  dot(x, y, radius, colour) {
+    const c = this.context;
+    c.beginPath(); c.arc(...this.to(x, y), radius, 0, 7); c.fillStyle = colour; c.fill();
+  }
+
+  cross(x, y, colour) {
+    const c = this.context, [u, v] = this.to(x, y);
+    c.beginPath(); c.moveTo(u - 7, v); c.lineTo(u + 7, v); c.moveTo(u, v - 7); c.lineTo(u, v + 7);
+    c.strokeStyle = colour; c.lineWidth = 1.5; c.stroke();
+  }
+}

@@ -1,0 +1,156 @@
+"""Designs to start from, and the parameters that a user may change while they run."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from studies.cases.problem import named_case
+from studies.errors import BadInput
+
+#: Simulated time of one step over the time scale [s]: four of them make a frame of 25 Hz (section 4.1).
+STEP = 0.01
+STEPS_A_FRAME = 4
+
+
+@dataclass(frozen=True, kw_only=True)
+class Parameter:
+    """One number of a design that the user sets, between low and high in SI units.
+
+    Attributes:
+        unit: what the user types it in, and how many of it make one SI unit.
+        logarithmic: whether a slider should run over its decades.
+    """
+
+    name: str
+    label: str
+    unit: str
+    per_si: float
+    low: float
+    high: float
+    logarithmic: bool = False
+
+    def checked(self, value: object) -> float:
+        """Return `value` as a float in SI units.
+
+        Raises:
+            BadInput: not a finite number between low and high; one line.
+        """
+        good = isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
+        if not good or not self.low <= value <= self.high:  # type: ignore[operator]
+            low, high = self.low * self.per_si, self.high * self.per_si
+            got = f"{float(value) * self.per_si:g}" if good else repr(value)  # type: ignore[arg-type]
+            raise BadInput(f"{self.name}: got {got}, expected {low:g} to {high:g} {self.unit}")
+        return float(value)  # type: ignore[arg-type]
+
+
+PARAMETERS: dict[str, Parameter] = {
+    parameter.name: parameter
+    for parameter in (
+        Parameter(name="length", label="strip length", unit="mm", per_si=1e3, low=0.04, high=0.12),
+        Parameter(
+            name="thickness", label="strip thickness", unit="mm", per_si=1e3, low=1e-4, high=8e-3,
+            logarithmic=True,
+        ),
+        Parameter(name="width", label="strip width", unit="mm", per_si=1e3, low=2e-3, high=0.05),
+        Parameter(
+            name="inclination", label="inclination", unit="°", per_si=math.degrees(1),
+            low=math.radians(25), high=math.radians(65),
+        ),
+        Parameter(name="crossing_ratio", label="crossing", unit="of L", per_si=1.0, low=0.2, high=0.8),
+        Parameter(
+            name="youngs_modulus", label="Young's modulus", unit="GPa", per_si=1e-9, low=1e7, high=5e11,
+            logarithmic=True,
+        ),
+        Parameter(
+            name="yield_strength", label="yield strength", unit="MPa", per_si=1e-6, low=1e6, high=5e9,
+            logarithmic=True,
+        ),
+        Parameter(
+            name="density", label="density", unit="kg/m³", per_si=1.0, low=100.0, high=2e4, logarithmic=True
+        ),
+        Parameter(
+            name="body_mass", label="body mass", unit="g", per_si=1e3, low=1e-3, high=2.0, logarithmic=True
+        ),
+        Parameter(
+            name="body_moment_of_inertia", label="body inertia", unit="g·cm²", per_si=1e7, low=1e-7, high=0.1,
+            logarithmic=True,
+        ),
+        Parameter(
+            name="relaxation_time", label="strip damping", unit="ms", per_si=1e3, low=0.0, high=0.05
+        ),
+        Parameter(
+            name="time_scale", label="time scale", unit="s/s", per_si=1.0, low=1e-4, high=1.0,
+            logarithmic=True,
+        ),
+    )
+}  # fmt: skip
+
+
+@dataclass(frozen=True, kw_only=True)
+class Preset:
+    """A design by the name of its case, what the case leaves open, and how fast its time runs.
+
+    Attributes:
+        yield_strength: of the material [Pa], a choice; relaxation_time: of the strips' damping [s], a choice.
+        time_scale: simulated seconds in one second; note: why, in a sentence.
+    """
+
+    case: str
+    title: str
+    yield_strength: float
+    relaxation_time: float
+    time_scale: float
+    note: str
+
+    def values(self) -> dict[str, float]:
+        """Return all parameters of the design by name, in SI units."""
+        problem = named_case(self.case)
+        thickness = math.sqrt(12.0 * problem.second_moment_of_area / problem.area)
+        values = {
+            "thickness": thickness,
+            "width": problem.area / thickness,
+            "yield_strength": self.yield_strength,
+            "relaxation_time": self.relaxation_time,
+            "time_scale": self.time_scale,
+        }
+        return {
+            name: values[name] if name in values else float(getattr(problem, name)) for name in PARAMETERS
+        }
+
+
+PRESETS: dict[str, Preset] = {
+    "polymer": Preset(
+        case="polymer_pivot",
+        title="soft polymer pivot",
+        yield_strength=30e6,
+        relaxation_time=2e-3,
+        time_scale=1.0,
+        note="swings about once a second, in real time",
+    ),
+    "table-1": Preset(
+        case="cross_axis_pivot",
+        title="Table 1 of the paper",
+        yield_strength=1.2e9,
+        relaxation_time=0.0,
+        time_scale=1.0 / 200.0,
+        note="swings 76 times a second: shown 200 times slower, with steps shorter in proportion",
+    ),
+}
+
+
+def checked(values: Mapping[str, object]) -> dict[str, float]:
+    """Return all parameters in SI units, each checked; BadInput names an unknown, missing or bad one."""
+    for name in values:
+        if name not in PARAMETERS:
+            raise BadInput(f"parameter: got {name!r}, expected one of {', '.join(PARAMETERS)}")
+    for name in PARAMETERS:
+        if name not in values:
+            raise BadInput(f"parameter: got no {name}, expected all of {', '.join(PARAMETERS)}")
+    return {name: PARAMETERS[name].checked(values[name]) for name in PARAMETERS}
+
+
+def preset(name: object) -> Preset:
+    """Return the preset of that name; BadInput lists the names."""
+    if not isinstance(name, str) or name not in PRESETS:
+        raise BadInput(f"preset: got {name!r}, expected one of {', '.join(PRESETS)}")
+    return PRESETS[name]

@@ -1,0 +1,1 @@
+"""What the environment does, without input or output: events in, states out."""

@@ -1,0 +1,298 @@
+"""A session: events in, states out. No input or output, no clock: the same events give the same states.
+
+An event is a mapping with "do" and "t" [s], as the page sends it and a session file stores it. A state is
+what
+`view.shown` makes of the session: plain numbers in SI units and sentences.
+"""
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from studies.errors import BadInput
+from studies.interactive.pivot import presets
+from studies.interactive.pivot.bench import Bench
+from studies.interactive.pivot.design import wrapped
+from studies.interactive.pivot.mechanics import Mechanics
+from studies.interactive.pivot.motion import MOTIONS
+from studies.interactive.pivot.placing import Placing
+from studies.interactive.pivot.presets import STEP, STEPS_A_FRAME
+from studies.interactive.session.fields import choice, mapping, number, three, words
+from studies.interactive.session.hand import Hand
+from studies.interactive.session.view import Warnings, shown
+
+Array = NDArray[np.float64]
+
+#: Farthest a pose may lie from rest: shift over the strips' length, and turn [rad].
+FARTHEST_SHIFT, FARTHEST_TURN = 2.0, 3.5
+#: Longest that simulated time is caught up in one frame, in steps.
+MOST_STEPS = 20
+#: Distance of the body from where the pivot turns by itself, over the strips' length, that is named: few
+#: hands pull so hard, but 1.5 % of a wrong printed size do it.
+OFF_PATH = 0.02
+#: What the hand holds: the whole pose, or the rotation alone.
+DRIVES = ("pose", "rotation")
+
+
+class Session:
+    """The state machine behind the page.
+
+    Args:
+        preset: name of the design to start with.
+        lock_step: every frame is four steps (films, replays), not as many as its time asks for (cameras).
+    """
+
+    def __init__(self, preset: str = "polymer", *, lock_step: bool = True) -> None:
+        self._begin(preset, presets.preset(preset).values(), lock_step)
+
+    def _begin(self, preset: str, values: Mapping[str, object], lock_step: bool) -> None:
+        """Everything as at the start, with these settings."""
+        self.bench, self.lock_step = Bench(preset, values), lock_step
+        self.warnings = Warnings()
+        self.drive, self.solver = DRIVES[0], next(iter(MOTIONS))
+        self.paused = False
+        self.steps, self.lag, self.time = 0, 0.0, 0.0
+        self.sight: dict[str, Any] = {"state": "none"}
+        self.spread: Array | None = None
+        self.start_energy = 0.0
+        self.wanted = np.zeros(3)
+        self._marker: Array | None = None
+        self._hand = Hand()
+        self._last_frame: float | None = None
+
+    @property
+    def mechanics(self) -> Mechanics:
+        """The present design at work."""
+        return self.bench.mechanics
+
+    @property
+    def placing(self) -> Placing:
+        """Where its markers sit."""
+        return self.bench.placing
+
+    def feed(self, event: Mapping[str, Any]) -> dict[str, Any]:
+        """Take one event and return the state after it.
+
+        Raises:
+            BadInput: an event that is none; the session is as it was.
+        """
+        name = event.get("do")
+        action = ACTIONS.get(name) if isinstance(name, str) else None
+        if action is None:
+            raise BadInput(f"do: got {name!r}, expected one of {', '.join(ACTIONS)}")
+        time = number(event, "t")
+        self.warnings.begin()
+        action(self, event, time)
+        self.time = time
+        return shown(self)
+
+    def setup(self) -> dict[str, Any]:
+        """Return the event that makes a new session of this one's settings."""
+        return {
+            "do": "setup",
+            "t": self.time,
+            "preset": self.bench.preset,
+            "values": dict(self.mechanics.values),
+            "drive": self.drive,
+            "solver": self.solver,
+            "lock_step": self.lock_step,
+            "rest": self.placing.rest.tolist(),
+        }
+
+    def _setup(self, event: Mapping[str, Any], time: float) -> None:
+        """Begin anew with these settings; the first event of a session file."""
+        drive, solver = choice(event, "drive", DRIVES), choice(event, "solver", tuple(MOTIONS))
+        rest, values = three(event, "rest"), presets.checked(mapping(event, "values"))
+        preset = choice(event, "preset", tuple(presets.PRESETS))
+        self._begin(preset, values, event.get("lock_step") is not False)
+        self.drive, self.solver = drive, solver
+        if not np.array_equal(rest, self.placing.rest):
+            self.bench.set_rest(rest)
+
+    # -- poses ---------------------------------------------------------------------------------------------
+
+    def _pose(self, event: Mapping[str, Any], time: float) -> None:
+        """A pose from mouse, touch, keys or sliders: displacement from rest and turn."""
+        self.sight, self.spread = {"state": "none"}, None
+        pose = three(event, "pose")
+        self._to(pose, time)
+
+    def _seen(self, event: Mapping[str, Any], time: float) -> None:
+        """Marker 1 in marker 0's frame, as the camera sees it."""
+        marker = three(event, "marker")
+        self.sight = {key: event[key] for key in ("state", "rms", "plane", "quads") if key in event}
+        self.sight.setdefault("state", "found")
+        self._marker = marker
+        for code in words(event, "faults"):
+            self.warnings.say(code)
+        if self._frame(time) or self.paused:
+            return
+        body = self.placing.body(marker, near=self.wanted[2])
+        pose = np.array([*(body[:2] - self.placing.centre), body[2]])
+        if self.placing.looks_swapped(marker):
+            self.warnings.say("swapped")
+        elif not self._hand.believes(time, pose):
+            self.warnings.say("jump")
+        else:
+            self.spread = self.placing.spread(three(event, "sd")) if "sd" in event else None
+            self._to(pose, time)
+
+    def _unseen(self, event: Mapping[str, Any], time: float) -> None:
+        """A frame without a pose: the last one is held, and why is said."""
+        self.sight = {"state": "lost", **{key: event[key] for key in ("plane", "quads") if key in event}}
+        self.warnings.say(str(event.get("code", "lost")), str(event.get("text", "")))
+        self._frame(time)
+
+    def _tick(self, event: Mapping[str, Any], time: float) -> None:
+        """A frame's time has passed without a camera."""
+        self._frame(time)
+
+    def _frame(self, time: float) -> bool:
+        """Advance the released body by a frame; False while it is held."""
+        if not self.mechanics.moving:
+            self._last_frame = time
+            return False
+        before, self._last_frame = self._last_frame, time
+        if self.paused:
+            return True
+        steps = STEPS_A_FRAME
+        if not self.lock_step and before is not None:
+            due = self.lag + (time - before) / STEP
+            steps = max(0, min(MOST_STEPS, round(due)))
+            self.lag = max(0.0, due - steps)
+        self._advance(steps)
+        return True
+
+    def _to(self, pose: Array, time: float) -> None:
+        """Drive the body to `pose` (3,), displacement from rest and turn."""
+        if self.mechanics.moving:
+            return
+        far = math.hypot(pose[0], pose[1]) / self.mechanics.values["length"]
+        if not (far <= FARTHEST_SHIFT and abs(pose[2]) <= FARTHEST_TURN):
+            self.warnings.say("absurd", f"shift {far:.2g} strip lengths, turn {math.degrees(pose[2]):.0f}°")
+            return
+        self._hand.add(time, pose)
+        self.wanted = pose
+        self._hold()
+
+    def _hold(self) -> None:
+        """Static solve at the wanted pose; on failure the last good state stays."""
+        target = np.array([*(self.wanted[:2] + self.placing.centre), self.wanted[2]])
+        by_pose = self.drive == "pose"
+        reached = self.mechanics.hold(target) if by_pose else self.mechanics.turn(float(target[2]))
+        if reached < 1.0:
+            self.warnings.say("no-equilibrium", f"{100 * reached:.0f} % of the way")
+        elif by_pose and self.sight["state"] != "none":
+            gap = self.mechanics.off_path(target)
+            if gap > OFF_PATH * self.mechanics.values["length"]:
+                self.warnings.say("off-path", f"{1e3 * gap:.1f} mm")
+
+    # -- release and catch ---------------------------------------------------------------------------------
+
+    def _release(self, event: Mapping[str, Any], time: float) -> None:
+        if self.mechanics.moving:
+            return
+        velocity = self._hand.velocity if event.get("speed") == "hand" else np.zeros(3)
+        self.mechanics.release(velocity / self.mechanics.values["time_scale"], self.solver)
+        now = self.mechanics.snapshot
+        self.steps, self.lag, self.start_energy = 0, 0.0, now.strain + now.kinetic
+        self._last_frame = time
+
+    def _catch(self, event: Mapping[str, Any], time: float) -> None:
+        if not self.mechanics.moving:
+            return
+        if not self.mechanics.catch():
+            self.warnings.say("no-catch")
+            return
+        self._hand.forget()
+        if self.sight["state"] == "none":  # without a camera the hand is where the body is
+            pose = self.mechanics.snapshot.pose
+            self.wanted = np.array([*(pose[:2] - self.placing.centre), pose[2]])
+        self.wanted[2] = self.mechanics.snapshot.pose[2] + wrapped(
+            self.wanted[2] - self.mechanics.snapshot.pose[2]
+        )
+        self._hold()
+
+    def _advance(self, steps: int) -> None:
+        if steps and not self.mechanics.advance(steps):
+            self.warnings.say("stopped")
+            self.paused = True
+            return
+        self.steps += steps
+
+    def _pause(self, event: Mapping[str, Any], time: float) -> None:
+        self.paused = True
+
+    def _resume(self, event: Mapping[str, Any], time: float) -> None:
+        self.paused, self._last_frame = False, time
+
+    def _step(self, event: Mapping[str, Any], time: float) -> None:
+        """One step of a released body that is paused."""
+        self.paused = True
+        if self.mechanics.moving:
+            self._advance(1)
+
+    def _reset(self, event: Mapping[str, Any], time: float) -> None:
+        self.mechanics.reset()
+        self.wanted, self.paused, self.steps, self.lag = np.zeros(3), False, 0, 0.0
+        self._hand.forget()
+
+    # -- settings ------------------------------------------------------------------------------------------
+
+    def _parameter(self, event: Mapping[str, Any], time: float) -> None:
+        preset, values = self.bench.design
+        self.bench.change(preset, {**values, str(event.get("name")): event.get("value")})
+        self._hold()
+
+    def _preset(self, event: Mapping[str, Any], time: float) -> None:
+        values = presets.preset(event.get("name")).values() | dict(mapping(event, "values"))
+        self.bench.change(str(event["name"]), values)
+        self._hold()
+
+    def _undo(self, event: Mapping[str, Any], time: float) -> None:
+        self._hold() if self.bench.undo() else self.warnings.say("empty", "to undo")
+
+    def _redo(self, event: Mapping[str, Any], time: float) -> None:
+        self._hold() if self.bench.redo() else self.warnings.say("empty", "to redo")
+
+    def _set_drive(self, event: Mapping[str, Any], time: float) -> None:
+        self.drive = choice(event, "by", DRIVES)
+        if not self.mechanics.moving:
+            self._hold()
+
+    def _set_solver(self, event: Mapping[str, Any], time: float) -> None:
+        self.solver = choice(event, "name", tuple(MOTIONS))
+
+    def _rest(self, event: Mapping[str, Any], time: float) -> None:
+        """The markers, as they are seen now, are those of the pivot at rest."""
+        if self._marker is None or self.sight["state"] == "lost":
+            self.warnings.say("no-rest")
+            return
+        self.bench.set_rest(self._marker)
+        self._reset(event, time)
+
+
+#: What an event may do.
+ACTIONS = {
+    "setup": Session._setup,
+    "pose": Session._pose,
+    "seen": Session._seen,
+    "unseen": Session._unseen,
+    "tick": Session._tick,
+    "release": Session._release,
+    "catch": Session._catch,
+    "pause": Session._pause,
+    "resume": Session._resume,
+    "step": Session._step,
+    "reset": Session._reset,
+    "parameter": Session._parameter,
+    "preset": Session._preset,
+    "undo": Session._undo,
+    "redo": Session._redo,
+    "drive": Session._set_drive,
+    "solver": Session._set_solver,
+    "rest": Session._rest,
+}

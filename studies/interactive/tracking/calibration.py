@@ -1,0 +1,81 @@
+"""A camera's constants: optional, for lens distortion and as a check that the markers lie in one plane."""
+
+import json
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from studies.errors import BadInput
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Camera:
+    """A pinhole with a radial lens: focal lengths and principal point [px], k1 and k2 of Brown's model."""
+
+    fx: float
+    fy: float
+    cx: float
+    cy: float
+    k1: float = 0.0
+    k2: float = 0.0
+
+    @property
+    def matrix(self) -> Array:
+        """The camera matrix (3, 3)."""
+        return np.array([[self.fx, 0.0, self.cx], [0.0, self.fy, self.cy], [0.0, 0.0, 1.0]])
+
+    def undistorted(self, picture: Array) -> Array:
+        """Return where points (..., 2) [px] would be seen without the lens."""
+        scale, centre = np.array([self.fx, self.fy]), np.array([self.cx, self.cy])
+        seen = (picture - centre) / scale
+        straight = seen.copy()
+        for _ in range(20):
+            square = np.sum(straight**2, axis=-1, keepdims=True)
+            straight = seen / (1.0 + square * (self.k1 + square * self.k2))
+        return np.asarray(straight * scale + centre)
+
+    @classmethod
+    def read(cls, path: Path) -> "Camera":
+        """Return the camera of a file that `write` made; BadInput in one line if it is none."""
+        try:
+            values = json.loads(path.read_text(encoding="utf-8"))
+            return cls(**{name: float(value) for name, value in values.items()})
+        except (OSError, ValueError, TypeError, AttributeError) as error:
+            raise BadInput(f"{path}: got no camera, expected JSON with fx, fy, cx, cy ({error})") from None
+
+    def write(self, path: Path) -> None:
+        """Store the camera."""
+        path.write_text(json.dumps(asdict(self), indent=2) + "\n", encoding="utf-8")
+
+
+def calibrated(points: Sequence[Array], pictures: Sequence[Array], size: tuple[int, int]) -> Camera:
+    """Return the camera that saw plane points (P, 2) [m] as pictures (P, 2) [px] in three views or more.
+
+    Args:
+        size: width and height of the pictures [px].
+
+    Raises:
+        BadInput: fewer than three views.
+    """
+    import cv2
+
+    if len(points) < 3:
+        raise BadInput(f"views: got {len(points)}, expected at least 3 of the sheet at different tilts")
+    flat = [np.column_stack((view, np.zeros(len(view)))).astype(np.float32) for view in points]
+    seen = [np.asarray(view, dtype=np.float32)[:, None] for view in pictures]
+    flags = cv2.CALIB_FIX_K3 | cv2.CALIB_ZERO_TANGENT_DIST
+    _, matrix, lens, _, _ = cv2.calibrateCamera(flat, seen, size, None, None, flags=flags)
+    k1, k2 = (float(value) for value in np.ravel(lens)[:2])
+    return Camera(
+        fx=float(matrix[0, 0]),
+        fy=float(matrix[1, 1]),
+        cx=float(matrix[0, 2]),
+        cy=float(matrix[1, 2]),
+        k1=k1,
+        k2=k2,
+    )

@@ -1,0 +1,175 @@
+"""From pictures to the events of a session: find, follow where a corner is covered, fit, and say what is
+wrong."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from studies.interactive.pivot.placing import SIDE
+from studies.interactive.tracking import edges, planar
+from studies.interactive.tracking.calibration import Camera
+from studies.interactive.tracking.detector import Detector, Picture, Squares
+
+Array = NDArray[np.float64]
+
+#: Residuals of the fit [px] from which it is doubted, and refused.
+DOUBT_PX, REFUSE_PX = 0.12, 0.25
+#: Longest that a marker is followed by its edges without its id being read [s].
+FOLLOW = 1.0
+#: Time without any marker after which a mirrored picture is tried [s].
+BLIND = 1.0
+#: Share of good stations below which an edge is called blurred, and least that a followed one keeps.
+CLEAR, KEPT = 0.6, edges.LEAST_SHARE
+#: Difference of the sides that is named, and how many standard deviations it must be.
+ODD_SIZE, ODD_SIGMA = 0.01, 6.0
+
+
+@dataclass(eq=False)
+class _Known:
+    """The last place of a square: corners, their velocity [px/s], when, and when its id was last read."""
+
+    corners: Array
+    velocity: Array
+    time: float
+    read: float
+
+
+class Tracker:
+    """Follows markers 0 and 1 through the pictures of one camera.
+
+    Args:
+        side: printed side of the black squares [m].
+        camera: if it is known.
+    """
+
+    def __init__(self, side: float = SIDE, camera: Camera | None = None) -> None:
+        self.side, self.camera = side, camera
+        self._detector = Detector()
+        self._known: dict[int, _Known] = {}
+        self._fit: planar.Fit | None = None
+        self._blind_since: float | None = None
+        self._mirrored = False
+        self._tries = 0
+
+    def see(self, picture: Picture, time: float) -> dict[str, Any]:
+        """Return the event "seen" or "unseen" of a picture taken at `time` [s]; see `session`."""
+        squares = self._detector.find(picture)
+        if len(squares.corners) < 2 and not squares.doubles:
+            self._tries += 1
+            if not self._known or self._tries % 5 == 0:  # far away: look at every pixel, now and then
+                squares = self._detector.find(picture, whole=True)
+        else:
+            self._tries = 0
+        if squares.doubles:
+            return _unseen(f"duplicate-{min(squares.doubles)}")
+        quads, followed = self._quads(squares, time)
+        if set(quads) != {0, 1}:
+            return self._missing(picture, squares, quads, time)
+        self._blind_since = None
+        return self._fitted(picture, quads, followed, time)
+
+    def _quads(self, squares: Squares, time: float) -> tuple[dict[int, Array], set[int]]:
+        """Corners of both squares, found or predicted, and which were predicted."""
+        quads, followed = dict(squares.corners), set()
+        for number in {0, 1} - set(quads):
+            known = self._known.get(number)
+            if known is not None and time - known.read <= FOLLOW:
+                quads[number] = known.corners + known.velocity * (time - known.time)
+                followed.add(number)
+        return quads, followed
+
+    def _fitted(
+        self, picture: Picture, quads: dict[int, Array], followed: set[int], time: float
+    ) -> dict[str, Any]:
+        refined = edges.refine(picture, np.stack((quads[0], quads[1])))
+        fit = self._fit_to(refined.corners)
+        torn = fit is None or fit.rms > REFUSE_PX
+        if torn and not followed:  # a corner that is covered pulls the square: take the last one instead
+            predicted = {n: k for n, k in self._known.items() if time - k.read <= FOLLOW}
+            for number, known in predicted.items():
+                other = dict(quads)
+                other[number] = known.corners + known.velocity * (time - known.time)
+                again = edges.refine(picture, np.stack((other[0], other[1])))
+                second = self._fit_to(again.corners)
+                if second is not None and second.rms <= REFUSE_PX:
+                    refined, fit, followed, torn = again, second, {number}, False
+                    break
+        if any((refined.share[n] < KEPT).any() for n in followed):
+            return _unseen(_lost(set(followed)))
+        if fit is None or torn:
+            if followed:
+                return _unseen(_lost(followed))
+            sized = fit is not None and fit.rms_sized < 0.5 * fit.rms and _odd_sizes(fit)
+            return _unseen("sizes" if sized else "refused")
+        self._remember(refined.corners, followed, time)
+        self._fit = fit
+        return self._seen(fit, refined, followed)
+
+    def _fit_to(self, corners: Array) -> planar.Fit | None:
+        try:
+            fit = planar.fit(corners, self.camera, self._fit)
+        except np.linalg.LinAlgError:
+            return None
+        return fit if np.isfinite(fit.pose).all() and np.isfinite(fit.sd).all() else None
+
+    def _remember(self, corners: Array, followed: set[int], time: float) -> None:
+        for number in (0, 1):
+            known, now = self._known.get(number), corners[number]
+            velocity = np.zeros((4, 2))
+            if known is not None and 0.0 < time - known.time < 0.3:
+                velocity = (now - known.corners) / (time - known.time)
+            read = time if number not in followed or known is None else known.read
+            self._known[number] = _Known(corners=now, velocity=velocity, time=time, read=read)
+
+    def _seen(self, fit: planar.Fit, refined: edges.Refined, followed: set[int]) -> dict[str, Any]:
+        faults = []
+        if followed:
+            faults.append("followed")
+        if fit.rms > DOUBT_PX:
+            faults.append("not-flat")
+        if (refined.share < CLEAR).any() and not followed:
+            faults.append("blurred")
+        if _odd_sizes(fit):
+            faults.append("sizes")
+        scale = np.array([self.side, self.side, 1.0])
+        return {
+            "do": "seen",
+            "marker": (fit.pose * scale).tolist(),
+            "sd": (fit.sd * scale).tolist(),
+            "rms": fit.rms,
+            "state": "followed" if followed else "found",
+            "plane": (fit.plane @ np.diag([1.0 / self.side, 1.0 / self.side, 1.0])).ravel().tolist(),
+            "quads": refined.corners.tolist(),
+            "faults": faults,
+        }
+
+    def _missing(
+        self, picture: Picture, squares: Squares, quads: dict[int, Array], time: float
+    ) -> dict[str, Any]:
+        """Why there is no pose."""
+        seen = set(quads)
+        if seen:
+            self._blind_since = None
+            return _unseen(_lost({0, 1} - seen))
+        if squares.others:
+            return _unseen("other-ids", ", ".join(str(n) for n in sorted(squares.others)))
+        if self._blind_since is None:
+            self._blind_since, self._mirrored = time, False
+        if time - self._blind_since >= BLIND and (self._mirrored or self._tries % 5 == 0):
+            self._mirrored = bool(self._detector.find(np.ascontiguousarray(picture[:, ::-1])).corners)
+        return _unseen("mirrored" if self._mirrored else "lost-both")
+
+
+def _odd_sizes(fit: planar.Fit) -> bool:
+    ratio, spread = fit.size_ratio
+    return abs(ratio - 1.0) > max(ODD_SIZE, ODD_SIGMA * spread)
+
+
+def _lost(numbers: set[int]) -> str:
+    return "lost-both" if len(numbers) > 1 else f"lost-{min(numbers)}"
+
+
+def _unseen(code: str, text: str = "") -> dict[str, Any]:
+    return {"do": "unseen", "code": code, "text": text}

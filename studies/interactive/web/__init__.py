@@ -1,0 +1,1 @@
+"""The local server, its sockets and pictures, and a browser to try them with."""

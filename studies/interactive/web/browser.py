@@ -1,0 +1,200 @@
+"""A Chromium without a window, driven through its debugging socket: pages, scripts, mouse, keys, pictures."""
+
+import base64
+import json
+import os
+import shutil
+import subprocess
+import tempfile
+import time
+from collections.abc import Sequence
+from contextlib import ExitStack
+from pathlib import Path
+from types import TracebackType
+from typing import Any, Self
+
+from websockets.sync.client import connect
+
+NAMES = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable", "chrome")
+#: How long a browser may take to start, and a script or a condition to be answered [s].
+PATIENCE = 30.0
+OPTIONS = (
+    "--headless=new",
+    "--no-first-run",
+    "--no-default-browser-check",
+    "--disable-gpu",
+    "--disable-extensions",
+    "--disable-background-networking",
+    "--disable-dev-shm-usage",
+    "--hide-scrollbars",
+    "--force-device-scale-factor=1",
+    "--mute-audio",
+    "--remote-debugging-port=0",
+    "--use-fake-ui-for-media-stream",
+)
+
+
+def executable() -> str | None:
+    """Return the path of a Chromium, or None if there is none on the PATH."""
+    return next((path for path in map(shutil.which, NAMES) if path), None)
+
+
+class Browser:
+    """One page of one browser, ended with the context.
+
+    Args:
+        film: a .mjpeg or .y4m file that stands for the camera; without one there is no camera.
+        width, height: of the page [px].
+    """
+
+    def __init__(self, *, film: Path | None = None, width: int = 1280, height: int = 1000) -> None:
+        path = executable()
+        if path is None:
+            raise FileNotFoundError(f"no browser: expected one of {', '.join(NAMES)} on the PATH")
+        self._folder = tempfile.TemporaryDirectory(prefix="browser-", ignore_cleanup_errors=True)
+        words = [path, *OPTIONS, f"--user-data-dir={self._folder.name}", f"--window-size={width},{height}"]
+        if film is not None:
+            words += ["--use-fake-device-for-media-stream", f"--use-file-for-fake-video-capture={film}"]
+        if hasattr(os, "geteuid") and os.geteuid() == 0:
+            words.append("--no-sandbox")  # its sandbox refuses to run for root
+        self._process = subprocess.Popen(
+            [*words, "about:blank"], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
+        )
+        self._number = 0
+        self.console: list[str] = []
+        self._stack = ExitStack()
+        try:
+            socket = connect(self._page_address(), max_size=None, compression=None)
+            self._socket = self._stack.enter_context(socket)
+        except BaseException:
+            self._end()
+            raise
+        for name in ("Page", "Runtime", "Log"):
+            self.call(f"{name}.enable")
+        size = {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": False}
+        self.call("Emulation.setDeviceMetricsOverride", **size)
+
+    def _page_address(self) -> str:
+        """The address of the page's debugging socket, which the browser writes into its folder."""
+        note, end = Path(self._folder.name) / "DevToolsActivePort", time.monotonic() + PATIENCE
+        while time.monotonic() < end:
+            if self._process.poll() is not None:
+                raise RuntimeError(f"browser: ended at once with code {self._process.returncode}")
+            text = note.read_text(encoding="utf-8").split() if note.is_file() else []
+            if len(text) >= 2:
+                return self._first_page(f"ws://127.0.0.1:{text[0]}{text[1]}", text[0])
+            time.sleep(0.05)
+        raise TimeoutError("browser: did not start")
+
+    @staticmethod
+    def _first_page(browser: str, port: str) -> str:
+        """The socket of the first page, asked for through the browser's own."""
+        with connect(browser, compression=None) as socket:
+            socket.send(json.dumps({"id": 1, "method": "Target.getTargets"}))
+            while True:
+                answer = json.loads(socket.recv(PATIENCE))
+                if answer.get("id") == 1:
+                    break
+        pages = [t for t in answer["result"]["targetInfos"] if t["type"] == "page"]
+        return f"ws://127.0.0.1:{port}/devtools/page/{pages[0]['targetId']}"
+
+    def call(self, method: str, **parameters: Any) -> dict[str, Any]:
+        """Call a method of the debugging protocol and return its result; RuntimeError for an error."""
+        self._number += 1
+        self._socket.send(json.dumps({"id": self._number, "method": method, "params": parameters}))
+        while True:
+            answer = json.loads(self._socket.recv(PATIENCE))
+            self._note(answer)
+            if answer.get("id") == self._number:
+                if "error" in answer:
+                    raise RuntimeError(f"{method}: {answer['error']}")
+                return dict(answer["result"])
+
+    def _note(self, answer: dict[str, Any]) -> None:
+        """Keep what the page complains of."""
+        given = answer.get("params", {})
+        if answer.get("method") == "Runtime.exceptionThrown":
+            self.console.append(str(given["exceptionDetails"].get("exception", given)))
+        if answer.get("method") == "Log.entryAdded" and given["entry"]["level"] == "error":
+            self.console.append(given["entry"]["text"])
+        if answer.get("method") == "Runtime.consoleAPICalled" and given["type"] == "error":
+            self.console.append(str(given["args"]))
+
+    def open(self, address: str) -> None:
+        """Load a page."""
+        self.call("Page.navigate", url=address)
+
+    def ask(self, script: str) -> Any:
+        """Return the value of a script, awaited where it is a promise; RuntimeError where it throws."""
+        answer = self.call("Runtime.evaluate", expression=script, awaitPromise=True, returnByValue=True)
+        if "exceptionDetails" in answer:
+            raise RuntimeError(str(answer["exceptionDetails"].get("exception", answer)))
+        return answer["result"].get("value")
+
+    def wait(self, script: str, patience: float = PATIENCE) -> Any:
+        """Return the script's value once it is true; TimeoutError after `patience` seconds."""
+        end = time.monotonic() + patience
+        while time.monotonic() < end:
+            value = self.ask(script)
+            if value:
+                return value
+            time.sleep(0.03)
+        raise TimeoutError(f"page: {script} did not come true in {patience:g} s; console: {self.console[:3]}")
+
+    def key(self, key: str, *, shift: bool = False) -> None:
+        """Press and let go of a key, by its name as events have it."""
+        text = key if len(key) == 1 else ("\r" if key == "Enter" else "")
+        codes = {"Enter": 13, "Tab": 9, "Escape": 27, " ": 32}
+        more: dict[str, Any] = {"text": text} if text else {}
+        if key in codes:
+            more["windowsVirtualKeyCode"] = codes[key]
+        modifiers = 8 if shift else 0
+        kind = "keyDown" if text else "rawKeyDown"
+        self.call("Input.dispatchKeyEvent", type=kind, key=key, modifiers=modifiers, **more)
+        more.pop("text", None)
+        self.call("Input.dispatchKeyEvent", type="keyUp", key=key, modifiers=modifiers, **more)
+
+    def drag(self, places: Sequence[tuple[float, float]]) -> None:
+        """Press the mouse at the first place [px], move through the others and let go at the last."""
+        left = {"button": "left", "buttons": 1, "clickCount": 1}
+        (x, y), *others = places
+        self.call("Input.dispatchMouseEvent", type="mouseMoved", x=x, y=y)
+        self.call("Input.dispatchMouseEvent", type="mousePressed", x=x, y=y, **left)
+        for x, y in others:
+            self.call("Input.dispatchMouseEvent", type="mouseMoved", x=x, y=y, button="left", buttons=1)
+        self.call("Input.dispatchMouseEvent", type="mouseReleased", x=x, y=y, button="left", clickCount=1)
+
+    def touch(self, kind: str, points: Sequence[tuple[float, float]]) -> None:
+        """Send a touch event, "touchStart", "touchMove" or "touchEnd", with the fingers' places [px]."""
+        fingers = [{"x": x, "y": y, "id": k} for k, (x, y) in enumerate(points)]
+        self.call("Input.dispatchTouchEvent", type=kind, touchPoints=fingers)
+
+    def picture(self) -> bytes:
+        """Return a PNG of the page as it is shown."""
+        return base64.b64decode(self.call("Page.captureScreenshot", format="png")["data"])
+
+    def canvas(self, name: str) -> bytes:
+        """Return a PNG of the canvas with that id, pixel by pixel."""
+        data = self.ask(f"document.getElementById({json.dumps(name)}).toDataURL('image/png')")
+        return base64.b64decode(data.partition(",")[2])
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        try:
+            self._stack.close()
+        finally:
+            self._end()
+
+    def _end(self) -> None:
+        """End the process and remove its folder."""
+        self._process.terminate()
+        try:
+            self._process.wait(10.0)
+        except subprocess.TimeoutExpired:
+            self._process.kill()
+            self._process.wait()
+        self._folder.cleanup()

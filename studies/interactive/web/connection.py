@@ -1,0 +1,242 @@
+"""One socket: its session, its tracker, its recording; everything that is slow runs in a thread of its
+own."""
+
+import asyncio
+import logging
+import time
+from collections.abc import Callable
+from dataclasses import asdict
+from typing import Any
+
+from numpy.linalg import LinAlgError
+from starlette.websockets import WebSocket
+
+from studies.errors import BadInput
+from studies.interactive.pivot.motion import MOTIONS
+from studies.interactive.pivot.presets import PARAMETERS, PRESETS
+from studies.interactive.session.recording import Recorder, line
+from studies.interactive.session.session import DRIVES, Session
+from studies.interactive.tracking.calibration import Camera
+from studies.interactive.tracking.tracker import Tracker
+from studies.interactive.web import protocol
+from studies.interactive.web.sources import Shot, Source, grey_of
+
+LOG = logging.getLogger(__name__)
+
+#: Time of a frame without pictures [s], and how long pictures may stay away before it counts.
+TICK, STILL = 0.04, 0.2
+#: Pictures down that the page has not yet shown.
+IN_FLIGHT = 2
+#: Printed sides that are taken [m].
+SIDES = (0.01, 0.3)
+
+
+class Connection:
+    """Serves one socket from the first message to the last.
+
+    Args:
+        source: pictures of this machine, or None where the page sends them or there are none.
+        keep: takes every line of the session as it is recorded, for `--record`.
+    """
+
+    def __init__(
+        self,
+        socket: WebSocket,
+        *,
+        camera: str,
+        source: Source | None = None,
+        calibration: Camera | None = None,
+        preset: str = "polymer",
+        keep: Callable[[str], None] | None = None,
+    ) -> None:
+        self._socket, self._source, self._camera_name = socket, source, camera
+        self._calibration = calibration
+        self.session = Session(preset, lock_step=source is not None and source.lock_step)
+        self._tracker = Tracker(camera=calibration)
+        self._keep = keep
+        self._recorder: Recorder | None = None
+        self._begin = time.monotonic()
+        self._lock = asyncio.Lock()
+        self._pending: protocol.Sent | None = None
+        self._wake = asyncio.Event()
+        self._last_picture = -1e9
+        self._offset: float | None = None
+        self._shown = 0
+        self._sent = 0
+        self._seen_shown = asyncio.Event()
+
+    async def serve(self) -> None:
+        """Answer until the socket closes; raises BadInput for a message that is none."""
+        await self._socket.send_text(protocol.text(self._welcome()))
+        if self._keep is not None:
+            recorder = Recorder(self.session)
+            for text in recorder.lines:
+                self._keep(text)
+        await self._feed({"do": "tick"}, None)
+        workers = [asyncio.create_task(self._ticks()), asyncio.create_task(self._pictures())]
+        if self._source is not None:
+            workers.append(asyncio.create_task(self._play(self._source)))
+        receiver = asyncio.create_task(self._receive())
+        try:
+            done, _ = await asyncio.wait([receiver, *workers], return_when=asyncio.FIRST_COMPLETED)
+            for task in done:
+                task.result()
+        finally:
+            for task in (receiver, *workers):
+                task.cancel()
+            await asyncio.gather(receiver, *workers, return_exceptions=True)
+
+    def _welcome(self) -> dict[str, Any]:
+        """What the page needs to know once."""
+        parameters = [asdict(parameter) for parameter in PARAMETERS.values()]
+        designs = {
+            name: {"title": p.title, "note": p.note, "values": p.values()} for name, p in PRESETS.items()
+        }
+        return {
+            "kind": "welcome",
+            "version": protocol.VERSION,
+            "camera": self._camera_name,
+            "parameters": parameters,
+            "presets": designs,
+            "drives": list(DRIVES),
+            "solvers": list(MOTIONS),
+            "side": self._tracker.side,
+        }
+
+    async def _receive(self) -> None:
+        """Take messages; a newer picture replaces one that waits."""
+        meter = protocol.Meter()
+        while True:
+            message = await self._socket.receive()
+            if message["type"] == "websocket.disconnect":
+                return
+            if not meter.passes(time.monotonic()):
+                raise BadInput(f"messages: got too many, expected at most {protocol.RATE:.0f} a second")
+            if message.get("bytes") is not None:
+                self._pending = protocol.sent_picture(message["bytes"])
+                self._wake.set()
+            else:
+                await self._text(protocol.event(message.get("text") or ""))
+
+    async def _text(self, event: dict[str, Any]) -> None:
+        seq = event.pop("seq", None)
+        name = event["do"]
+        if name == "shown":
+            self._shown += 1
+            self._seen_shown.set()
+        elif name == "record":
+            await self._record(event.get("on") is True)
+        elif name == "size":
+            self._set_side(event.get("side_mm"))
+        elif name == "hello":
+            raise BadInput("do: got a second hello, expected one")
+        else:
+            event.pop("t", None)
+            await self._feed(event, seq)
+
+    def _set_side(self, side_mm: object) -> None:
+        good = isinstance(side_mm, int | float) and not isinstance(side_mm, bool)
+        if not good or not SIDES[0] <= side_mm / 1e3 <= SIDES[1]:  # type: ignore[operator]
+            raise BadInput(f"side_mm: got {side_mm!r}, expected {SIDES[0] * 1e3:g} to {SIDES[1] * 1e3:g}")
+        self._tracker = Tracker(side=float(side_mm) / 1e3, camera=self._calibration)  # type: ignore[arg-type]
+
+    async def _record(self, on: bool) -> None:
+        """Begin a recording, or end it and send its lines."""
+        if on:
+            self._recorder = Recorder(self.session)
+            await self._socket.send_text(protocol.text({"kind": "recording", "on": True}))
+        elif self._recorder is not None:
+            lines, self._recorder = self._recorder.lines, None
+            await self._socket.send_text(protocol.text({"kind": "recording", "on": False, "lines": lines}))
+
+    async def _feed(self, event: dict[str, Any], seq: object, **more: Any) -> None:
+        """Give one event to the session and send its state."""
+        content = await self._state_after(event)
+        await self._socket.send_text(protocol.text({**content, **more, "seq": seq}))
+
+    async def _state_after(self, event: dict[str, Any]) -> dict[str, Any]:
+        async with self._lock:
+            if "t" not in event:
+                event = {**event, "t": time.monotonic() - self._begin}
+            return await asyncio.to_thread(self._fed, event)
+
+    def _fed(self, event: dict[str, Any]) -> dict[str, Any]:
+        """Feed the session, in a thread; bad numbers come back as an error and change nothing."""
+        begin = time.perf_counter()
+        try:
+            state = self.session.feed(event)
+            protocol.text(state)  # a number that is not finite must not be sent
+        except BadInput as error:
+            return {"kind": "error", "text": str(error)}
+        except (ArithmeticError, ValueError, LinAlgError) as error:
+            LOG.exception("the session failed at %s", event)
+            return {"kind": "error", "text": f"The solver failed, the last good state is kept ({error})."}
+        took = time.perf_counter() - begin
+        if self._recorder is not None:
+            self._recorder.write(event, state)
+        if self._keep is not None:
+            self._keep(line(event, state))
+        return {"kind": "state", **state, "solve_ms": 1e3 * took}
+
+    def _on_clock(self, captured: float) -> float:
+        """A picture's time on the session's clock: the first one's is when it came."""
+        if self._offset is None:
+            self._offset = time.monotonic() - self._begin - captured
+        return captured + self._offset
+
+    async def _ticks(self) -> None:
+        """Drive a released body on where no pictures do."""
+        while True:
+            await asyncio.sleep(TICK)
+            still = time.monotonic() - self._last_picture > STILL
+            if still and self.session.mechanics.moving and not self.session.paused:
+                await self._feed({"do": "tick"}, None)
+
+    async def _pictures(self) -> None:
+        """Track the newest picture of the page."""
+        while True:
+            await self._wake.wait()
+            self._wake.clear()
+            sent, self._pending = self._pending, None
+            if sent is None:
+                continue
+            self._last_picture = time.monotonic()
+            grey = sent.coding == protocol.GREY
+            picture = await asyncio.to_thread(grey_of, grey, sent.data, sent.width, sent.height)
+            if picture is None:
+                raise BadInput("picture: got bytes that are none, expected a JPEG of the stated size")
+            begin = time.perf_counter()
+            event = await asyncio.to_thread(self._tracker.see, picture, sent.time)
+            event["t"] = self._on_clock(sent.time)
+            took = 1e3 * (time.perf_counter() - begin)
+            await self._feed(event, sent.seq, track_ms=took, picture=[sent.width, sent.height])
+
+    async def _play(self, source: Source) -> None:
+        """Track the pictures of a source and send each with its state, no faster than they are shown."""
+        shots = source.shots()
+        due = time.monotonic()
+        while True:
+            shot: Shot | None = await asyncio.to_thread(next, shots, None)
+            if shot is None:
+                await self._socket.send_text(
+                    protocol.text(
+                        {"kind": "error", "text": "camera: got no picture, expected one: is it unplugged?"}
+                    )
+                )
+                await asyncio.sleep(3600.0)
+                continue
+            while self._sent - self._shown >= IN_FLIGHT:
+                self._seen_shown.clear()
+                await self._seen_shown.wait()
+            self._last_picture = time.monotonic()
+            begin = time.perf_counter()
+            event = await asyncio.to_thread(self._tracker.see, shot.picture, shot.time)
+            event["t"] = self._on_clock(shot.time)
+            took = 1e3 * (time.perf_counter() - begin)
+            content = await self._state_after(event)
+            height, width = shot.picture.shape
+            head = {**content, "seq": shot.number, "track_ms": took, "picture": [width, height]}
+            self._sent += 1
+            await self._socket.send_bytes(protocol.with_picture(head, shot.jpeg))
+            due = max(due + 1.0 / source.rate, time.monotonic() - 0.5)
+            await asyncio.sleep(max(0.0, due - time.monotonic()))

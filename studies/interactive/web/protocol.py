@@ -1,0 +1,155 @@
+"""Messages of the web socket: text events up, pictures up, states down; everything that comes in is checked
+here."""
+
+import json
+import struct
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from studies.errors import BadInput
+
+VERSION = 1
+#: Longest text and picture that are taken [bytes], and the largest picture [px].
+LONGEST_TEXT = 4096
+LARGEST_PICTURE = 3_000_000
+MOST_WIDTH, MOST_HEIGHT = 1920, 1080
+LEAST_SIDE = 64
+#: Picture: kind, version, coding, flags, seq, width, height, time of capture [ms].
+HEADER = struct.Struct("<BBBBIHHd")
+PICTURE = 1
+GREY, JPEG = 0, 1
+
+#: Messages a second that a connection may send, and how many at once.
+RATE, BURST = 120.0, 120.0
+
+#: Event -> the fields it may have besides "do", "t" and "seq".
+FIELDS: dict[str, frozenset[str]] = {
+    "hello": frozenset({"version", "token"}),
+    "setup": frozenset({"preset", "values", "drive", "solver", "lock_step", "rest"}),
+    "pose": frozenset({"pose"}),
+    "seen": frozenset({"marker", "sd", "rms", "state", "plane", "quads", "faults"}),
+    "unseen": frozenset({"code", "text"}),
+    "tick": frozenset(),
+    "release": frozenset({"speed"}),
+    "catch": frozenset(),
+    "pause": frozenset(),
+    "resume": frozenset(),
+    "step": frozenset(),
+    "reset": frozenset(),
+    "parameter": frozenset({"name", "value"}),
+    "preset": frozenset({"name", "values"}),
+    "undo": frozenset(),
+    "redo": frozenset(),
+    "drive": frozenset({"by"}),
+    "solver": frozenset({"name"}),
+    "rest": frozenset(),
+    "record": frozenset({"on"}),
+    "size": frozenset({"side_mm"}),
+    "shown": frozenset(),
+}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Sent:
+    """A picture that the page sent: its number, time of capture [s], size and bytes."""
+
+    seq: int
+    time: float
+    width: int
+    height: int
+    coding: int
+    data: bytes
+
+
+def event(text: str) -> dict[str, Any]:
+    """Return the event in a text message.
+
+    Raises:
+        BadInput: too long, no JSON, not finite, an unknown event or field; one line.
+    """
+    if len(text.encode()) > LONGEST_TEXT:
+        raise BadInput(f"message: got {len(text)} characters, expected at most {LONGEST_TEXT}")
+    try:
+        content = json.loads(text, parse_constant=_refuse)
+    except (ValueError, RecursionError):
+        raise BadInput("message: got no JSON, expected an object") from None
+    if not isinstance(content, dict):
+        raise BadInput(f"message: got {type(content).__name__}, expected an object")
+    fields = FIELDS.get(str(content.get("do")))
+    if fields is None:
+        raise BadInput(f"do: got {str(content.get('do'))[:40]!r}, expected one of {', '.join(FIELDS)}")
+    odd = set(content) - fields - {"do", "t", "seq"}
+    if odd:
+        raise BadInput(
+            f"{min(odd)[:40]!r}: got an unknown field of {content['do']}, expected {sorted(fields)}"
+        )
+    return content
+
+
+def _refuse(constant: str) -> float:
+    raise ValueError(constant)
+
+
+def sent_picture(data: bytes) -> Sent:
+    """Return the picture in a binary message.
+
+    Raises:
+        BadInput: a header, size or coding that does not fit; one line.
+    """
+    if not HEADER.size < len(data) <= LARGEST_PICTURE:
+        raise BadInput(f"picture: got {len(data)} bytes, expected {HEADER.size} to {LARGEST_PICTURE}")
+    kind, version, coding, _, seq, width, height, time = HEADER.unpack_from(data)
+    if (kind, version) != (PICTURE, VERSION) or coding not in (GREY, JPEG):
+        raise BadInput(f"picture: got kind {kind}, version {version}, coding {coding}, expected 1, 1, 0 or 1")
+    if not (LEAST_SIDE <= width <= MOST_WIDTH and LEAST_SIDE <= height <= MOST_HEIGHT):
+        raise BadInput(f"picture: got {width} x {height}, expected at most {MOST_WIDTH} x {MOST_HEIGHT}")
+    body = data[HEADER.size :]
+    if coding == GREY and len(body) != width * height:
+        raise BadInput(f"picture: got {len(body)} grey levels, expected {width} x {height}")
+    if coding == JPEG and jpeg_size(body) != (width, height):
+        raise BadInput(f"picture: got a JPEG of {jpeg_size(body)}, expected {width} x {height}")
+    if not 0.0 <= time < 1e15:
+        raise BadInput(f"picture: got time {time}, expected milliseconds")
+    return Sent(seq=seq, time=time / 1e3, width=width, height=height, coding=coding, data=body)
+
+
+def jpeg_size(data: bytes) -> tuple[int, int] | None:
+    """Return width and height that a JPEG's header states, before anything is decoded; None if it states
+    none."""
+    if data[:2] != b"\xff\xd8":
+        return None
+    at = 2
+    while at + 9 < len(data):
+        if data[at] != 0xFF:
+            return None
+        kind, length = data[at + 1], int.from_bytes(data[at + 2 : at + 4], "big")
+        if 0xC0 <= kind <= 0xCF and kind not in (0xC4, 0xC8, 0xCC):
+            return int.from_bytes(data[at + 7 : at + 9], "big"), int.from_bytes(data[at + 5 : at + 7], "big")
+        at += 2 + length
+    return None
+
+
+def text(content: Mapping[str, Any]) -> str:
+    """Return a message down; ValueError for a number that is not finite."""
+    return json.dumps(content, allow_nan=False, separators=(",", ":"))
+
+
+def with_picture(content: Mapping[str, Any], picture: bytes) -> bytes:
+    """Return a binary message down: length of the text, text, JPEG."""
+    head = text(content).encode()
+    return struct.pack("<I", len(head)) + head + picture
+
+
+class Meter:
+    """Refuses what comes faster than RATE a second; time is given, so that it can be tested."""
+
+    def __init__(self) -> None:
+        self._left, self._last = BURST, 0.0
+
+    def passes(self, now: float) -> bool:
+        """Return whether one more message at time `now` [s] is within the rate."""
+        self._left = min(BURST, self._left + (now - self._last) * RATE)
+        self._last = now
+        self._left -= 1.0
+        return self._left >= 0.0

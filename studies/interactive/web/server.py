@@ -1,0 +1,223 @@
+"""The local web server: the page's files, and one web socket at /ws. Loopback only."""
+
+import asyncio
+import logging
+import socket as sockets
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from importlib.resources import files
+
+import uvicorn
+from starlette.applications import Starlette
+from starlette.requests import Request
+from starlette.responses import PlainTextResponse, Response
+from starlette.routing import Route, WebSocketRoute
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
+from starlette.websockets import WebSocket, WebSocketDisconnect
+
+from studies.errors import BadInput
+from studies.interactive.tracking.calibration import Camera
+from studies.interactive.web import protocol, security
+from studies.interactive.web.connection import Connection
+from studies.interactive.web.sources import Source
+
+LOG = logging.getLogger(__name__)
+
+#: Kinds of the page's files.
+KINDS = {".html": "text/html; charset=utf-8", ".js": "text/javascript; charset=utf-8", ".css": "text/css"}
+#: Closing codes: bad message, no right, too many.
+BAD, FORBIDDEN, FULL = 4400, 4403, 4429
+#: How long a socket may take to say hello [s].
+PATIENCE = 5.0
+
+
+@dataclass(frozen=True, kw_only=True)
+class Settings:
+    """What one server serves.
+
+    Attributes:
+        port: 0 for any; camera: "browser", "none", "film" or "server", which the page is told.
+        source: makes the pictures of a socket, or None; keep: takes the lines of a recording, of the first
+            page
+            that is open.
+    """
+
+    port: int = 0
+    camera: str = "browser"
+    source: Callable[[], Source] | None = None
+    calibration: Camera | None = None
+    preset: str = "polymer"
+    keep: Callable[[str], None] | None = None
+
+
+class Guard:
+    """Refuses foreign hosts and adds the headers of `security` to every answer."""
+
+    def __init__(self, app: ASGIApp, port: Callable[[], int]) -> None:
+        self._app, self._port = app, port
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Answer one request."""
+        if scope["type"] not in ("http", "websocket"):
+            await self._app(scope, receive, send)
+            return
+        given = {name.decode("latin-1"): value.decode("latin-1") for name, value in scope["headers"]}
+        port = self._port()
+        if not security.good_host(given.get("host"), port):
+            await self._refuse(scope, receive, send, 400, "host: expected this machine")
+            return
+        if scope["type"] == "websocket":
+            if not security.good_origin(given.get("origin"), port):
+                await self._refuse(scope, receive, send, 403, "origin: expected this page")
+                return
+            await self._app(scope, receive, send)
+            return
+
+        async def with_headers(message: Message) -> None:
+            if message["type"] == "http.response.start":
+                extra = [(k.encode(), v.encode()) for k, v in security.headers(port).items()]
+                message["headers"] = [*message.get("headers", []), *extra]
+            await send(message)
+
+        await self._app(scope, receive, with_headers)
+
+    @staticmethod
+    async def _refuse(scope: Scope, receive: Receive, send: Send, code: int, text: str) -> None:
+        if scope["type"] == "http":
+            await PlainTextResponse(text, status_code=code)(scope, receive, send)
+        else:
+            await WebSocket(scope, receive, send).send_denial_response(
+                PlainTextResponse(text, status_code=code)
+            )
+
+
+class Server:
+    """A server with a token; `run` blocks, `start` and `stop` are for tests."""
+
+    def __init__(self, settings: Settings) -> None:
+        self.settings = settings
+        self.token = security.new_token()
+        self.port = settings.port
+        self.open = 0
+        self._listener: sockets.socket | None = None
+        self._uvicorn: uvicorn.Server | None = None
+        app = Starlette(
+            routes=[
+                Route("/", self._file),
+                Route("/page/{name}", self._file),
+                WebSocketRoute("/ws", self._socket),
+            ]
+        )
+        self.app: ASGIApp = Guard(app, lambda: self.port)
+
+    @property
+    def address(self) -> str:
+        """The page's address with its token, which the browser keeps to itself."""
+        return f"http://127.0.0.1:{self.port}/#token={self.token}"
+
+    def bind(self) -> None:
+        """Take the port, on the loopback only; BadInput if it is taken."""
+        listener = sockets.socket(sockets.AF_INET, sockets.SOCK_STREAM)
+        listener.setsockopt(sockets.SOL_SOCKET, sockets.SO_REUSEADDR, 1)
+        try:
+            listener.bind(("127.0.0.1", self.settings.port))
+            listener.listen(16)
+        except OSError as error:
+            listener.close()
+            raise BadInput(
+                f"--port: got {self.settings.port}, expected a free one ({error.strerror})"
+            ) from None
+        self._listener, self.port = listener, listener.getsockname()[1]
+
+    def run(self) -> None:
+        """Serve until interrupted."""
+        asyncio.run(self.serve())
+
+    async def serve(self) -> None:
+        """Serve within a running loop, until `stop`."""
+        if self._listener is None:
+            self.bind()
+        assert self._listener is not None
+        self._uvicorn = uvicorn.Server(
+            uvicorn.Config(
+                self.app,
+                log_level="warning",
+                access_log=False,
+                lifespan="off",
+                ws="websockets-sansio",
+                ws_max_size=protocol.LARGEST_PICTURE,
+                ws_per_message_deflate=False,
+                timeout_graceful_shutdown=1,
+                server_header=False,
+            )
+        )
+        await self._uvicorn.serve(sockets=[self._listener])
+
+    def stop(self) -> None:
+        """End `serve` soon."""
+        if self._uvicorn is not None:
+            self._uvicorn.should_exit = True
+
+    async def _file(self, request: Request) -> Response:
+        name = request.path_params.get("name", "index.html")
+        known = {path.name: path for path in files("studies.interactive.page").iterdir()}
+        suffix = "." + name.rpartition(".")[2]
+        if name not in known or suffix not in KINDS:
+            return PlainTextResponse("not found", status_code=404)
+        return Response(known[name].read_bytes(), media_type=KINDS[suffix])
+
+    async def _socket(self, socket: WebSocket) -> None:
+        """One socket: hello with the token, then its connection; any fault closes this socket only."""
+        await socket.accept()
+        if self.open >= security.MOST_SOCKETS:
+            await socket.close(FULL, "too many pages are open")
+            return
+        self.open += 1
+        begin = time.monotonic()
+        try:
+            if not await self._hello(socket):
+                return
+            source = self.settings.source() if self.settings.source else None
+            await Connection(
+                socket,
+                camera=self.settings.camera,
+                source=source,
+                calibration=self.settings.calibration,
+                preset=self.settings.preset,
+                keep=self.settings.keep if self.open == 1 else None,
+            ).serve()
+        except BadInput as error:
+            await _close(socket, BAD, str(error))
+        except WebSocketDisconnect:
+            pass
+        except RuntimeError as error:
+            LOG.debug("socket closed while it was written to: %s", error)
+        finally:
+            self.open -= 1
+            LOG.info("a page was open for %.0f s", time.monotonic() - begin)
+
+    async def _hello(self, socket: WebSocket) -> bool:
+        """Whether the first message holds the token; closes the socket if not."""
+        try:
+            message = await asyncio.wait_for(socket.receive(), PATIENCE)
+        except TimeoutError:
+            await _close(socket, FORBIDDEN, "no hello")
+            return False
+        if message["type"] == "websocket.disconnect":
+            return False
+        event = protocol.event(message.get("text") or "")
+        if event["do"] != "hello" or event.get("version") != protocol.VERSION:
+            raise BadInput("do: got no hello of this version, expected one first")
+        if not security.same(self.token, event.get("token")):
+            await _close(socket, FORBIDDEN, "token: expected the one of the address that was printed")
+            return False
+        return True
+
+
+async def _close(socket: WebSocket, code: int, reason: str) -> None:
+    """Close with a reason as long as the protocol takes it."""
+    try:
+        await socket.close(code, reason.encode()[:120].decode(errors="ignore"))
+    except RuntimeError:
+        LOG.debug("socket was closed already")

@@ -1,0 +1,106 @@
+"""Where pictures come from when the page's own camera does not send them: a film file, a camera of this
+machine, the
+demo film."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from studies.errors import BadInput
+from studies.interactive.film.painter import Film
+from studies.interactive.tracking.detector import Picture, cv2, decoded, encoded
+
+#: Pictures a second of films that do not say.
+RATE = 25.0
+
+
+@dataclass(frozen=True, kw_only=True)
+class Shot:
+    """One picture: its number in the film, its time [s], its grey levels and the JPEG that the page shows."""
+
+    number: int
+    time: float
+    picture: NDArray[np.uint8]
+    jpeg: bytes
+
+
+class Source(Protocol):
+    """A series of pictures; `lock_step` says whether each stands for a frame whatever the clock says."""
+
+    rate: float
+    lock_step: bool
+
+    def shots(self) -> Iterator[Shot]:
+        """Yield pictures for ever, or until the camera fails."""
+
+
+class FilmSource:
+    """A film that is drawn when it is first shown, and kept as JPEG."""
+
+    lock_step = True
+
+    def __init__(self, film: Film) -> None:
+        self._film, self.rate = film, film.rate
+        self._kept: dict[int, bytes] = {}
+
+    def shots(self) -> Iterator[Shot]:
+        """Yield the film again and again; the times run on."""
+        number = 0
+        while True:
+            k = number % self._film.frames
+            if k not in self._kept:
+                self._kept[k] = encoded(self._film.picture(k))
+            picture = decoded(self._kept[k])
+            assert picture is not None
+            yield Shot(number=number, time=number / self.rate, picture=picture, jpeg=self._kept[k])
+            number += 1
+
+
+class VideoSource:
+    """A film file, played again and again, or a camera of this machine by its number."""
+
+    def __init__(self, place: Path | int) -> None:
+        self._place = place
+        self.lock_step = isinstance(place, Path)
+        if isinstance(place, Path) and not place.is_file():
+            raise BadInput(f"--film: got {place}, expected a film file or demo")
+        video = cv2.VideoCapture(str(place) if isinstance(place, Path) else place)
+        good, picture = video.read()
+        rate = video.get(cv2.CAP_PROP_FPS)
+        video.release()
+        if not good or picture is None:
+            expected = "a film that OpenCV reads" if self.lock_step else "the number of a camera"
+            raise BadInput(f"{'--film' if self.lock_step else '--camera'}: got {place}, expected {expected}")
+        self.rate = rate if 1.0 <= rate <= 120.0 else RATE
+
+    def shots(self) -> Iterator[Shot]:
+        """Yield the pictures; a film begins anew at its end, a camera ends when it fails."""
+        number = 0
+        while True:
+            video = cv2.VideoCapture(str(self._place) if isinstance(self._place, Path) else self._place)
+            first = number
+            try:
+                while True:
+                    good, picture = video.read()
+                    if not good or picture is None:
+                        break
+                    flat = picture if picture.ndim == 2 else cv2.cvtColor(picture, cv2.COLOR_BGR2GRAY)
+                    grey: Picture = np.array(flat, dtype=np.uint8)
+                    yield Shot(number=number, time=number / self.rate, picture=grey, jpeg=encoded(grey))
+                    number += 1
+            finally:
+                video.release()
+            if number == first or not self.lock_step:
+                return
+
+
+def grey_of(coding_is_grey: bool, data: bytes, width: int, height: int) -> Picture | None:
+    """Return the picture that the page sent, None where its bytes are none of that size."""
+    if coding_is_grey:
+        return np.frombuffer(data, dtype=np.uint8).reshape(height, width).copy()
+    picture = decoded(data)
+    return picture if picture is not None and picture.shape == (height, width) else None

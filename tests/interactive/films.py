@@ -1,0 +1,69 @@
+"""Films with known truth for the tests: two markers on the path of a pivot."""
+
+import math
+from collections.abc import Callable
+from functools import cache
+
+import numpy as np
+
+from spline_model.held import HeldPivot
+from studies.interactive.film.painter import Film, Finger, Marker, Optics, Painter
+from studies.interactive.pivot.design import build
+from studies.interactive.pivot.placing import SIDE, Placing, turned
+from studies.interactive.pivot.presets import PRESETS
+from studies.interactive.tracking.planar import CORNERS, project
+
+#: Frames of a period of the moving marker's turn.
+PERIOD = 40
+
+
+@cache
+def truth(k: int) -> tuple[float, float, float]:
+    """Pose of marker 1 in marker 0's frame in frame k [m, m, rad]: the soft pivot's own path, 50 degrees to
+    either side."""
+    pivot = build(PRESETS["polymer"].values())
+    angle = math.radians(50) * math.sin(2 * math.pi * k / PERIOD)
+    x, y, turn = Placing.of(pivot).marker(HeldPivot(pivot.mechanism).turn(angle).pose)
+    return float(x), float(y), float(turn)
+
+
+def both(k: int) -> list[Marker]:
+    """Both markers as they should be in frame k."""
+    return [Marker(number=0, pose=(0.0, 0.0, 0.0)), Marker(number=1, pose=truth(k))]
+
+
+def film(
+    optics: Optics | None = None,
+    frames: int = PERIOD,
+    markers: Callable[[int], list[Marker]] = both,
+    fingers: Callable[[int], tuple[Finger, ...]] = lambda k: (),
+    samples: int = 4,
+) -> Film:
+    """A film of these markers and fingers."""
+    painter = Painter(optics or Optics(), samples=samples)
+    return Film(painter=painter, frames=frames, scene=lambda k: (markers(k), fingers(k)))
+
+
+def true_corners(optics: Optics, marker: Marker) -> np.ndarray:
+    """Pictures (4, 2) of a marker's corners, the lens apart."""
+    x, y, angle = marker.pose
+    own = np.array([turned(angle, corner) for corner in marker.side * CORNERS])
+    return project(optics.plane, own + np.array([x, y]))
+
+
+def on_corner(k: int, radius: float) -> tuple[Finger, ...]:
+    """A finger on the upper right corner of marker 1."""
+    x, y, angle = truth(k)
+    corner = np.array([x, y]) + turned(angle, np.array([SIDE / 2, SIDE / 2]))
+    return (Finger(centre=(float(corner[0]), float(corner[1])), radius=radius),)
+
+
+def error(event: dict, k: int) -> tuple[float, float]:
+    """Error of a sighting against the truth of frame k: angle [deg] and shift [mm]."""
+    gap = np.array(event["marker"]) - truth(k)
+    return math.degrees(gap[2]), 1e3 * float(np.hypot(gap[0], gap[1]))
+
+
+def rms(values: list[float]) -> float:
+    """Root mean square."""
+    return float(np.sqrt(np.mean(np.square(values))))

@@ -1,0 +1,141 @@
+"""The commands `interactive` and `markers`, and what happens without the extra."""
+
+import io
+import re
+import signal
+import subprocess
+import sys
+import time
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from studies.commands import interactive
+from studies.record.source import ROOT
+
+WITHOUT = (
+    "import sys; sys.modules['cv2'] = None; import importlib.util as u; known = u.find_spec; "
+    "u.find_spec = lambda name, *more: None if name == 'cv2' else known(name, *more); "
+    "from studies.__main__ import main; sys.exit(main(sys.argv[1:]))"
+)
+
+
+def run(*words, code=None):
+    """Run the command line, in a process without cv2 if `code` says so."""
+    start = [sys.executable, *(["-c", code] if code else ["-m", "studies"])]
+    return subprocess.run([*start, *words], cwd=ROOT, capture_output=True, text=True, check=False, timeout=60)
+
+
+@pytest.mark.parametrize("command", ["interactive", "markers"])
+def test_without_the_extra_it_is_one_line(command):
+    """Requirement: a missing package is named in one line with what to do, exit code 2."""
+    done = run(command, code=WITHOUT)
+    assert done.returncode == 2
+    assert done.stderr == (
+        f"studies: {command}: got no opencv-python-headless, expected the extra: run `make interactive`, "
+        "or pip install -e '.[interactive]'\n"
+    )
+
+
+def test_the_rest_does_not_need_the_extra():
+    """Requirement: listing the studies and the state of the results works without it."""
+    done = run("status", code=WITHOUT)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert "paper/fig07_interactive" in done.stdout
+
+
+def test_figure_is_left_as_it_is_without_the_extra(tmp_path):
+    """Requirement: `run` says what the figure's study lacks, leaves its result alone and goes on."""
+    done = run("run", "fig07_interactive", "--results", str(tmp_path), code=WITHOUT)
+    assert done.returncode == 0
+    assert done.stderr == (
+        "paper/fig07_interactive: left as it is: it needs the extra `interactive` (cv2 not installed)\n"
+    )
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_interrupt_ends_the_server():
+    """Requirement: the address with its token is printed, and Ctrl-C ends the server with exit code 0."""
+    pytest.importorskip("cv2", reason="the extra `interactive` is not installed")
+    words = [sys.executable, "-m", "studies", "interactive", "--camera", "none", "--no-browser"]
+    with subprocess.Popen(words, cwd=ROOT, stderr=subprocess.PIPE, text=True) as process:
+        assert process.stderr
+        said = process.stderr.readline()
+        assert re.match(r"studies: open http://127\.0\.0\.1:\d+/#token=[\w-]{32,} ", said)
+        time.sleep(0.5)
+        process.send_signal(signal.SIGINT)
+        assert process.wait(10.0) == 0
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (["--film", "none.mp4"], "--film: got none.mp4, expected a film file or demo"),
+        (["--film", "pyproject.toml"], "--film: got pyproject.toml, expected a film that OpenCV reads"),
+        (["--film", "demo", "--camera", "0"], "--camera: got 0 beside --film, expected one of them"),
+        (["--camera", "front"], "--camera: got front, expected browser, none or a number"),
+        (["--preset", "rubber"], "preset: got 'rubber', expected one of polymer, table-1"),
+        (["--port", "-1"], "got -1, expected a whole number of at least 0"),
+        (["--replay", "none.jsonl"], "--replay: got none.jsonl, expected a session file"),
+        (
+            ["--record", "no/such/folder/x"],
+            "--record: got no/such/folder/x, expected a file that can be written",
+        ),
+        (["--calibration", "none.json"], "none.json: got no camera"),
+    ],
+    ids=lambda value: " ".join(value) if isinstance(value, list) else "",
+)
+def test_bad_arguments_are_one_line(words, message, capfd):
+    """Requirement: bad arguments are refused in one line with exit code 2."""
+    pytest.importorskip("cv2", reason="the extra `interactive` is not installed")
+    from studies.__main__ import main
+
+    assert main(["interactive", *words]) == 2
+    lines = [line for line in capfd.readouterr().err.splitlines() if line.startswith("studies:")]
+    assert len(lines) == 1
+    assert message in lines[0]
+
+
+def test_packages_of_the_extra_are_those_of_pyproject():
+    """Requirement: what the command asks for is what the extra installs."""
+    import tomllib
+
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+    asked = {need.partition(">")[0] for need in project["project"]["optional-dependencies"]["interactive"]}
+    assert asked == set(interactive.EXTRA.values())
+
+
+def test_sheet_is_a_page(tmp_path):
+    """Requirement: the sheet is a PDF of A4, the same bytes each time."""
+    pytest.importorskip("cv2", reason="the extra `interactive` is not installed")
+    from studies.interactive.film.sheet import sheet
+
+    target = tmp_path / "markers.pdf"
+    done = run("markers", "-o", str(target))
+    assert (done.returncode, done.stderr) == (0, "")
+    assert target.read_bytes()[:5] == b"%PDF-"
+    assert target.read_bytes() == sheet()
+    box = re.search(rb"/MediaBox \[ ?0 0 ([\d.]+) ([\d.]+) ?\]", target.read_bytes())
+    assert box
+    assert [round(float(side) / 72 * 25.4, 1) for side in box.groups()] == [210.0, 297.0]
+
+
+def test_sheet_is_read_in_size():
+    """Requirement: both markers are read from the sheet as it is printed, 60 mm wide, upright and as far
+    apart as the
+    session takes them to be."""
+    pytest.importorskip("cv2", reason="the extra `interactive` is not installed")
+    from studies.interactive.film.sheet import page
+    from studies.interactive.session.session import Session
+    from studies.interactive.tracking.tracker import Tracker
+
+    stream = io.BytesIO()
+    page().savefig(stream, format="png", dpi=127.0)  # five pixels a millimetre
+    with Image.open(stream) as image:
+        grey = np.asarray(image.convert("L"))
+    event = Tracker().see(grey, 0.0)
+    assert event["marker"] == pytest.approx(Session().placing.rest.tolist(), abs=1e-4)
+    for quad in np.array(event["quads"]):
+        sides = np.linalg.norm(quad - np.roll(quad, 1, axis=0), axis=1) / 5.0
+        assert sides == pytest.approx([60.0] * 4, abs=0.1)

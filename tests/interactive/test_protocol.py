@@ -1,0 +1,120 @@
+"""Messages of the web socket: what fits is read, everything else is one line."""
+
+import math
+import struct
+
+import pytest
+
+from studies.errors import BadInput
+from studies.interactive.web import protocol, security
+
+JPEG_64 = b"\xff\xd8\xff\xc0\x00\x0b\x08\x00\x40\x00\x40\x01\x01\x11\x00" + b"\x00" * 20
+
+
+def picture(coding=0, width=64, height=64, body=None, kind=1, version=1, time=40.0):
+    """A binary message."""
+    body = bytes(width * height) if body is None else body
+    return protocol.HEADER.pack(kind, version, coding, 0, 7, width, height, time) + body
+
+
+def test_pictures_are_read():
+    """Requirement: grey levels and JPEG come through with number, time and size."""
+    sent = protocol.sent_picture(picture())
+    assert (sent.seq, sent.time, sent.width, sent.height, len(sent.data)) == (7, 0.04, 64, 64, 4096)
+    assert protocol.sent_picture(picture(coding=1, body=JPEG_64)).data == JPEG_64
+
+
+@pytest.mark.parametrize(
+    ("message", "text"),
+    [
+        (b"", "got 0 bytes"),
+        (b"short", "got 5 bytes"),
+        (bytes(protocol.LARGEST_PICTURE + 1), "got 3000001 bytes"),
+        (picture(kind=9), "got kind 9"),
+        (picture(version=2), "version 2"),
+        (picture(coding=5), "coding 5"),
+        (picture(width=63), "got 63 x 64"),
+        (picture(width=9999, body=b"x"), "got 9999 x 64"),
+        (picture(body=bytes(4095)), "got 4095 grey levels"),
+        (picture(coding=1, body=b"rubbish" * 9), "got a JPEG of None"),
+        (picture(coding=1, width=128, body=JPEG_64), r"got a JPEG of \(64, 64\), expected 128 x 64"),
+        (picture(time=math.nan), "got time nan"),
+        (picture(time=-1.0), "got time -1.0"),
+    ],
+)
+def test_bad_pictures_are_refused(message, text):
+    """Requirement: header, size and coding are checked before anything is decoded."""
+    with pytest.raises(BadInput, match=text):
+        protocol.sent_picture(message)
+
+
+@pytest.mark.parametrize(
+    ("message", "text"),
+    [
+        ("", "got no JSON"),
+        ("{", "got no JSON"),
+        ("[1]", "got list"),
+        ('{"do": "pose", "pose": [0, 0, NaN]}', "got no JSON"),
+        ('{"do": "format_disk"}', "do: got 'format_disk'"),
+        ('{"do": "tick", "path": "x"}', "'path': got an unknown field of tick"),
+        ('{"do": "tick"' + " " * 5000 + "}", "got 5014 characters"),
+        ("[" * 4000, "got no JSON"),
+    ],
+    ids=["empty", "half", "list", "nan", "name", "field", "long", "deep"],
+)
+def test_bad_events_are_refused(message, text):
+    """Requirement: a text that is no known event with known fields is refused in one line."""
+    with pytest.raises(BadInput, match=text):
+        protocol.event(message)
+
+
+def test_states_down_are_finite():
+    """Requirement: NaN is never sent, and a picture's text is found by its length."""
+    with pytest.raises(ValueError, match="not JSON compliant"):
+        protocol.text({"x": math.nan})
+    message = protocol.with_picture({"a": 1}, b"jpeg")
+    assert struct.unpack("<I", message[:4])[0] == len(b'{"a":1}')
+    assert message[4:] == b'{"a":1}jpeg'
+
+
+def test_rate_is_limited():
+    """Requirement: a burst passes, a flood does not, and time lets more through."""
+    meter = protocol.Meter()
+    passed = sum(meter.passes(0.0) for _ in range(500))
+    assert passed == protocol.BURST
+    meter = protocol.Meter()
+    assert all(meter.passes(k / 60.0) for k in range(1000))
+
+
+def test_only_this_machine_and_this_page():
+    """Requirement: hosts and origins are this machine's with this port, the token is compared whole."""
+    assert security.good_host("127.0.0.1:80", 80)
+    assert security.good_host("localhost:80", 80)
+    for host in (
+        "evil.example",
+        "evil.example:80",
+        "127.0.0.1",
+        "127.0.0.1:81",
+        "127.0.0.1.evil.example:80",
+        None,
+        "",
+    ):
+        assert not security.good_host(host, 80)
+    assert security.good_origin("http://127.0.0.1:80", 80)
+    for origin in ("null", None, "http://127.0.0.1:81", "https://127.0.0.1:80", "http://evil.example"):
+        assert not security.good_origin(origin, 80)
+    token = security.new_token()
+    assert len(token) >= 32
+    assert token != security.new_token()
+    assert security.same(token, token)
+    for other in (token[:-1], token + "x", "", None, 5):
+        assert not security.same(token, other)
+
+
+def test_policy_is_strict():
+    """Requirement: the page may load and reach nothing but this server, and run no script from a string."""
+    policy = security.headers(80)["Content-Security-Policy"]
+    assert "default-src 'none'" in policy
+    assert "frame-ancestors 'none'" in policy
+    assert "unsafe" not in policy
+    assert "*" not in policy

@@ -1,0 +1,80 @@
+"""Session files: the same events give the same states."""
+
+import math
+import subprocess
+import sys
+
+import pytest
+
+from studies.errors import BadInput
+from studies.interactive.session.recording import Recorder, line, mark, replay
+from studies.interactive.session.session import Session
+from studies.record.source import ROOT
+
+
+def recorded(preset="polymer"):
+    """Lines of a session with turns, a change, release, swing and catch."""
+    session = Session(preset)
+    recorder = Recorder(session)
+    events = [{"do": "drive", "by": "rotation"}]
+    events += [{"do": "pose", "pose": [0.0, 0.0, math.radians(3 * k)]} for k in range(15)]
+    events += [{"do": "parameter", "name": "width", "value": 0.012}, {"do": "release", "speed": "hand"}]
+    events += [{"do": "tick"}] * 20
+    events += [{"do": "catch"}, {"do": "drive", "by": "pose"}, {"do": "pose", "pose": [1e-3, -2e-3, 0.4]}]
+    for k, event in enumerate(events):
+        stamped = {**event, "t": 0.04 * k}
+        recorder.write(stamped, session.feed(stamped))
+    return recorder.lines
+
+
+@pytest.mark.parametrize("preset", ["polymer", "table-1"])
+def test_a_session_replays_to_the_same_states(preset):
+    """Requirement: every state of a replay is the recorded one, digit by digit."""
+    lines = recorded(preset)
+    same = [good for _, good in replay(lines)]
+    assert all(same)
+    assert len(same) == len(lines)
+
+
+def test_a_changed_event_is_noticed():
+    """Requirement: the comparison has teeth: a pose that differs in the last digits gives other states."""
+    lines = recorded()
+    lines[10] = lines[10].replace("0.4188790204786391", "0.4188790204786395")
+    assert lines[10] != recorded()[10]
+    assert not all(good for _, good in replay(lines))
+
+
+def test_the_command_replays_in_another_process(tmp_path):
+    """Requirement: `--replay` gives the recorded states in a new process without the extra's packages."""
+    path = tmp_path / "session.jsonl"
+    path.write_text("".join(recorded()), encoding="utf-8")
+    words = [sys.executable, "-m", "studies", "interactive", "--replay", str(path)]
+    done = subprocess.run(words, cwd=ROOT, capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert "42 of 42 states are those recorded" in done.stdout
+
+
+@pytest.mark.parametrize(
+    ("lines", "message"),
+    [
+        (["no json"], "line 1: got no JSON"),
+        (['{"do": "tick", "t": 0}'], "line 1: got .*expected an event, the first a setup"),
+        (["[1, 2]"], "line 1: got"),
+    ],
+)
+def test_what_is_no_session_file_is_one_line(lines, message):
+    """Requirement: a file that is no session is refused with the number of the line."""
+    with pytest.raises(BadInput, match=message):
+        list(replay(lines))
+
+
+def test_a_recording_is_bounded():
+    """Requirement: a recording that is forgotten stops growing."""
+    recorder = Recorder(Session())
+    recorder.MOST = 5000
+    state = {"t": 0.0}
+    for _ in range(1000):
+        recorder.write({"do": "tick", "t": 0.0}, state)
+    assert recorder.full
+    assert sum(map(len, recorder.lines)) < 5200
+    assert line({"do": "tick"}, state) == f'{{"do": "tick", "mark": "{mark(state)}"}}\n'

@@ -1,0 +1,125 @@
+"""What the server lets in: hosts, pages, tokens, sizes, rates."""
+
+import contextlib
+import time
+
+import pytest
+
+pytest.importorskip("cv2", reason="the extra `interactive` is not installed")
+pytest.importorskip("uvicorn", reason="the extra `interactive` is not installed")
+
+from websockets.exceptions import ConnectionClosed, InvalidStatus
+
+from studies.interactive.web import protocol, security
+from tests.interactive.sockets import answer, closing, get, opened, say
+
+
+def test_page_is_served_with_its_headers(server):
+    """Requirement: page and modules come with their kinds and the strict headers."""
+    response, body = get(server, "/")
+    assert (response.status, b"<!doctype html>" in body) == (200, True)
+    for name, value in security.headers(server.port).items():
+        assert response.getheader(name) == value
+    assert get(server, "/page/app.js")[0].getheader("Content-Type").startswith("text/javascript")
+    assert server.address.startswith(f"http://127.0.0.1:{server.port}/#token=")
+
+
+@pytest.mark.parametrize(
+    "path",
+    ["/page/../server.py", "/page/..%2f..%2fserver.py", "/page/__init__.py", "/etc/passwd", "/page/none.js"],
+)
+def test_nothing_else_is_served(server, path):
+    """Requirement: no path leaves the page's folder."""
+    assert get(server, path)[0].status == 404
+
+
+def test_foreign_hosts_are_refused(server):
+    """Requirement: a request for another host (DNS rebinding) gets 400, for page and socket."""
+    assert get(server, "/", host="evil.example")[0].status == 400
+    with pytest.raises(InvalidStatus) as caught, opened(server, additional_headers={"Host": "evil.example"}):
+        pass
+    assert caught.value.response.status_code == 400
+
+
+@pytest.mark.parametrize("origin", ["http://evil.example", "null", None])
+def test_foreign_pages_are_refused(server, origin):
+    """Requirement: a socket opened by another page, or none, gets 403."""
+    with pytest.raises(InvalidStatus) as caught, opened(server, origin=origin):
+        pass
+    assert caught.value.response.status_code == 403
+
+
+def test_token_is_needed(server):
+    """Requirement: without the token nothing is answered."""
+    with opened(server, hello=False) as socket:
+        say(socket, do="hello", version=1, token="x" * 32)
+        assert closing(socket)[0] == 4403
+    with opened(server, hello=False) as socket:
+        say(socket, do="pose", pose=[0, 0, 0])
+        code, reason = closing(socket)
+        assert (code, "expected one first" in reason) == (4400, True)
+
+
+@pytest.mark.parametrize(
+    "message",
+    [
+        "rubbish",
+        '{"do": "tick", "odd": 1}',
+        b"short",
+        protocol.HEADER.pack(1, 1, 1, 0, 1, 640, 480, 0.0) + b"no jpeg at all",
+        protocol.HEADER.pack(1, 1, 0, 0, 1, 641, 480, 0.0) + bytes(9),
+    ],
+    ids=["text", "field", "short", "jpeg", "grey"],
+)
+def test_malformed_messages_close_their_socket_only(server, message):
+    """Requirement: what is no message closes its own socket with 4400 and one line; others go on."""
+    with opened(server) as other:
+        with opened(server) as socket:
+            socket.send(message)
+            code, reason = closing(socket)
+            assert code == 4400
+            assert "got" in reason
+            assert "\n" not in reason
+        say(other, do="pose", pose=[0, 0, 0.1])
+        assert answer(other)["pose"][2] == pytest.approx(0.1)
+
+
+def test_jpeg_whose_inside_is_rubbish_closes_its_socket_only(server):
+    """Requirement: a JPEG with a good header and a bad body is no picture, and the server lives."""
+    head = b"\xff\xd8\xff\xc0\x00\x0b\x08\x01\xe0\x02\x80\x01\x01\x11\x00"
+    with opened(server) as socket:
+        socket.send(protocol.HEADER.pack(1, 1, 1, 0, 1, 640, 480, 0.0) + head + b"\x00" * 4000)
+        assert closing(socket)[0] == 4400
+    assert get(server, "/")[0].status == 200
+
+
+def test_too_large_messages_are_refused(server):
+    """Requirement: a message above the limit closes the socket before it is read as a whole."""
+    with opened(server) as socket:
+        with contextlib.suppress(ConnectionClosed):
+            socket.send(bytes(protocol.LARGEST_PICTURE + 10))
+        assert closing(socket)[0] == 1009
+
+
+def test_floods_are_cut_off(server):
+    """Requirement: more messages than the rate close the socket."""
+    with opened(server) as socket:
+        with contextlib.suppress(ConnectionClosed):
+            for _ in range(400):
+                socket.send('{"do": "shown"}')
+        code, reason = closing(socket)
+        assert (code, "too many" in reason) == (4400, True)
+
+
+def test_sockets_are_few(server):
+    """Requirement: no more than four pages at a time; a closed one makes room."""
+    with contextlib.ExitStack() as stack:
+        for _ in range(security.MOST_SOCKETS):
+            stack.enter_context(opened(server))
+        with opened(server, hello=False) as socket:
+            assert closing(socket)[0] == 4429
+    time.sleep(0.3)
+    with opened(server):
+        pass
+    time.sleep(0.2)
+    assert server.open == 0

@@ -1,0 +1,160 @@
+"""The session without input or output: events in, states out."""
+
+import json
+import math
+
+import numpy as np
+import pytest
+
+from studies.interactive.pivot.presets import PRESETS, STEPS_A_FRAME
+from tests.interactive.events import FRAME, codes, seen, session, total, turned
+
+
+@pytest.mark.parametrize("preset", PRESETS)
+def test_state_is_plain_finite_numbers(preset):
+    """Requirement: a state goes into JSON as it is, without NaN, and says what it shows in a sentence."""
+    state = turned(session(preset), 10, 20)
+    assert json.loads(json.dumps(state, allow_nan=False)) == state
+    assert state["status"].startswith("Held at 20.0°: moment ")
+    assert state["values"] == PRESETS[preset].values()
+
+
+def test_table_one_is_the_case_of_the_paper():
+    """Requirement: the preset has the section of Table 1 and its torque at 40 degrees is that of the
+    solver."""
+    from spline_model.pivot import cross_axis_pivot
+    from spline_model.statics import solve_statics
+    from tests.table_one import TABLE_ONE
+
+    state = turned(session("table-1"), 20, 40)
+    path = solve_statics(cross_axis_pivot(**TABLE_ONE), rotation=math.radians(40))
+    assert abs(state["force"][2] / path.torque[-1] - 1) < 2e-6
+    assert abs(state["stiffness"] / path.stiffness[-1] - 1) < 2e-5
+    assert np.abs(np.array(state["pose"][:2]) - path.centre[-1]).max() < 1e-7
+
+
+def test_stress_is_that_of_the_section_forces():
+    """Requirement: the largest stress is |N|/A + |M| h/(2 I) of the model's section forces."""
+    from spline_model.pivot import cross_axis_pivot
+    from spline_model.statics import solve_statics
+    from tests.table_one import TABLE_ONE
+
+    state = turned(session("table-1"), 15, 30)
+    path = solve_statics(cross_axis_pivot(**TABLE_ONE), rotation=math.radians(30))
+    half = math.sqrt(3 * TABLE_ONE["second_moment_of_area"] / TABLE_ONE["area"])
+    bending = np.abs(path.bending_moment[-1]) * half / TABLE_ONE["second_moment_of_area"]
+    stress = bending + np.abs(path.axial_force[-1]) / TABLE_ONE["area"]
+    assert abs(state["stress"]["max"] / stress.max() - 1) < 1e-3
+
+
+def test_instantaneous_centre_is_that_of_the_path():
+    """Requirement: the centre of rotation agrees with the one from neighbouring states."""
+    made = session()
+    turned(made, 15, 29.9)
+    before = np.array(turned(made, 29.9)["pose"])
+    after = np.array(turned(made, 30.1)["pose"])
+    state = turned(made, 30.0)
+    rate = (after - before) / (after[2] - before[2])
+    here = np.array(state["pose"])
+    centre = [here[0] - rate[1], here[1] + rate[0]]
+    assert np.abs(np.array(state["centre"]) - centre).max() < 1e-6
+
+
+@pytest.mark.parametrize("solver", ["impulse", "energy"])
+@pytest.mark.parametrize("preset", PRESETS)
+def test_release_takes_four_steps_a_frame_and_gains_no_energy(preset, solver):
+    """Requirement: N frames are exactly 4 N steps; the first state is the held one; energy never rises."""
+    made = session(preset)
+    made.feed({"do": "solver", "name": solver, "t": 0.0})
+    held = turned(made, 15, 30, 40)
+    state = made.feed({"do": "release", "t": 1.0})
+    assert np.abs(np.array(state["shape"]) - held["shape"]).max() < 1e-12
+    assert abs(total(state) / total(held) - 1) < 1e-9
+    before = start = total(state)
+    for k in range(50):
+        state = made.feed({"do": "tick", "t": 1.0 + (k + 1) * FRAME})
+        assert total(state) <= before + 1e-6 * start
+        before = total(state)
+    assert state["steps"] == 50 * STEPS_A_FRAME
+    assert state["simulated"] == pytest.approx(2.0 * PRESETS[preset].time_scale)
+    assert state["pose"][2] != pytest.approx(held["pose"][2], abs=0.01)
+
+
+def test_steps_follow_the_clock_of_a_camera():
+    """Requirement: off lock-step, time decides: a late frame is caught up to 20 steps, the rest is lag."""
+    made = session(lock_step=False)
+    turned(made, 10, 20)
+    made.feed({"do": "release", "t": 1.0})
+    assert made.feed({"do": "tick", "t": 1.1})["steps"] == 10
+    assert made.feed({"do": "tick", "t": 1.115})["steps"] in (11, 12)
+    late = made.feed({"do": "tick", "t": 1.515})
+    assert late["steps"] <= 12 + 20
+    assert late["lag"] > 15
+
+
+def test_catch_goes_to_where_the_hand_is():
+    """Requirement: after swing and catch the body is held statically, with the camera at the marker's pose,
+    without one where it was; nothing is left of the motion."""
+    made = session(drive="pose")
+    path = session()
+    pose = turned(path, 20, 40)["displacement"]
+    for k in range(3):
+        made.feed({**seen(made, np.array(pose[:2]) * (k / 2), pose[2] * k / 2), "t": k * FRAME})
+    made.feed({"do": "drive", "by": "rotation", "t": 0.2})
+    made.feed({"do": "drive", "by": "pose", "t": 0.2})
+    made.feed({**seen(made, np.array(pose[:2]), pose[2]), "t": 0.24})
+    held = made.feed({**seen(made, np.array(pose[:2]), pose[2]), "t": 0.28})
+    assert codes(held) == []
+    made.feed({"do": "release", "t": 0.3})
+    for k in range(10):
+        state = made.feed({**seen(made, np.array(pose[:2]), pose[2]), "t": 0.3 + (k + 1) * FRAME})
+    assert abs(state["pose"][2] - pose[2]) > math.radians(20)
+    caught = made.feed({"do": "catch", "t": 1.0})
+    assert (caught["mode"], codes(caught)) == ("held", [])
+    assert np.abs(np.array(caught["displacement"]) - held["displacement"]).max() < 1e-12
+    assert caught["energy"]["strain"] == pytest.approx(held["energy"]["strain"], rel=1e-6)
+    free = session()
+    turned(free, 20, 40)
+    free.feed({"do": "release", "t": 1.0})
+    moving = free.feed({"do": "tick", "t": 1.3})
+    stopped = free.feed({"do": "catch", "t": 1.31})
+    assert stopped["mode"] == "held"
+    assert stopped["pose"][2] == pytest.approx(moving["pose"][2], abs=1e-12)
+
+
+def test_hand_gives_its_velocity():
+    """Requirement: released with the hand's speed, the body starts with the slope of the last poses."""
+    made = session()
+    turned(made, 0, 2, 4, 6, 8, 10)
+    state = made.feed({"do": "release", "speed": "hand", "t": 0.2})
+    assert state["velocity"][2] == pytest.approx(math.radians(2) / FRAME, rel=1e-6)
+    assert state["energy"]["kinetic"] > 0
+    still = session()
+    turned(still, 0, 2, 4)
+    assert still.feed({"do": "release", "t": 0.2})["energy"]["kinetic"] == 0.0
+
+
+def test_pause_and_single_step():
+    """Requirement: paused, frames do nothing and one step is one step; resumed, frames count again."""
+    made = session()
+    turned(made, 20)
+    made.feed({"do": "release", "t": 1.0})
+    assert made.feed({"do": "pause", "t": 1.0})["paused"]
+    assert made.feed({"do": "tick", "t": 1.04})["steps"] == 0
+    assert made.feed({"do": "step", "t": 1.05})["steps"] == 1
+    made.feed({"do": "resume", "t": 1.06})
+    assert made.feed({"do": "tick", "t": 1.1})["steps"] == 1 + STEPS_A_FRAME
+    state = made.feed({"do": "reset", "t": 2.0})
+    assert (state["mode"], state["steps"], state["displacement"]) == ("held", 0, [0.0, 0.0, 0.0])
+
+
+def test_uncertainty_is_carried_to_the_force():
+    """Requirement: the said spread of force and moment is the tangent times that of the pose."""
+    made = session(drive="pose")
+    sd = [3e-5, 3e-5, 5e-4]
+    state = made.feed({**seen(made, np.zeros(2), 0.0), "sd": sd, "t": 0.0})
+    assert state["sd"][2] == sd[2]
+    assert state["sd"][0] > sd[0]  # the turn moves the centre, which lies beside the marker
+    tangent = made.mechanics.snapshot.tangent
+    expected = [math.sqrt(sum((tangent[i, k] * state["sd"][k]) ** 2 for k in range(3))) for i in range(3)]
+    assert state["force_sd"] == pytest.approx(expected)

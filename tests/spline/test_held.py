@@ -1,0 +1,154 @@
+"""A body held in a pose: strips solved one by one, against the bordered system with driven constraints."""
+
+import math
+
+import numpy as np
+import pytest
+
+from spline_model.effects import DrivenDisplacement, DrivenRotation
+from spline_model.errors import InvalidParameter
+from spline_model.held import HeldPivot
+from spline_model.pivot import BODY, cross_axis_pivot
+from spline_model.statics import solve_loads, solve_statics
+from tests import gates
+from tests.table_one import TABLE_ONE
+
+THIN = {"area": 5e-6, "second_moment_of_area": 1.041e-13, "youngs_modulus": 1.4e9}
+ROBUST = {"slide_stiffness": 1000.0}
+POSES = ((0.0004, -0.0003, 0.3), (-0.0008, 0.0002, -0.6), (0.0, 0.001, 1.2))
+"""Displacement of the centre from where a free turn would have it [m, m], and rotation [rad]."""
+
+
+def held(shift, rotation, **settings):
+    """Solver and state of the pivot held away from the centre of a free turn."""
+    pivot = cross_axis_pivot(**(TABLE_ONE | settings))
+    solver = HeldPivot(pivot.mechanism)
+    centre = solver.turn(rotation).pose[:2]
+    solver.reset()
+    return solver, solver.hold(*(centre + shift), rotation)
+
+
+def disagreement(pose, increments=8, slide=None, **settings):
+    """Largest relative difference of force and control points to the multiplier path of the same pose."""
+    *shift, rotation = pose
+    solver, state = held(np.array(shift), rotation, **settings)
+    other = {} if slide is None else {"slide_stiffness": slide}
+    pivot = cross_axis_pivot(**(TABLE_ONE | settings | other))
+    reference, displacement = pivot.mechanism, state.pose[:2] - pivot.centre
+    drives = (
+        DrivenRotation(body=BODY, angle=rotation),
+        DrivenDisplacement(body=BODY, displacement=tuple(displacement)),
+    )
+    system, path = solve_loads(reference.with_effects(*drives), increments=increments)
+    z = path.states[-1]
+    rows = system.layout.multipliers[-2:]
+    torque = z[rows[0][0]]
+    force = z[rows[1][0] : rows[1][0] + 2]
+    full = solver.full_state(system)
+    points = slice(0, system.layout.coordinate_count)
+    strips = [full[system.layout.strip(strip.name)].reshape(-1, 2) for strip in system.scene.strips]
+    assert np.abs(solver.control_points - np.array(strips)).max() < 1e-15
+    assert state.solved
+    return max(
+        abs(state.force[2] - torque) / abs(torque),
+        np.abs(state.force[:2] - force).max() / np.abs(force).max(),
+        np.abs(full - z)[points].max() / TABLE_ONE["length"],
+    )
+
+
+@pytest.mark.parametrize("pose", POSES, ids=str)
+def test_agrees_with_the_multiplier_path(pose):
+    """Requirement: forces, moment and shape are those of the driven rotation and displacements to 1e-9."""
+    gates.check("spline_held_pose", disagreement(pose))
+
+
+def test_held_pose_gate_has_teeth():
+    """Requirement: the check notices a slide stiffness that differs by a per mille."""
+    with pytest.raises(AssertionError, match="x the gate"):
+        gates.check(
+            "spline_held_pose", disagreement(POSES[2], slide=gates.teeth("spline_held_pose")["slide"])
+        )
+
+
+def test_free_turn_is_the_driven_path():
+    """Requirement: with the rotation alone held, torque and centre are those of the driven rotation."""
+    pivot = cross_axis_pivot(**TABLE_ONE)
+    path = solve_statics(pivot, rotation=1.5)
+    state = HeldPivot(pivot.mechanism).turn(1.5)
+    assert state.solved
+    assert abs(state.force[2] / path.torque[-1] - 1) < 1e-10
+    assert np.abs(state.pose[:2] - path.centre[-1]).max() < 1e-11
+    assert np.abs(state.force[:2]).max() < 1e-9 * path.torque[-1] / TABLE_ONE["length"]
+
+
+def test_tangent_is_the_derivative_of_the_force():
+    """Requirement: the tangent is the central difference of force and moment in the pose, and symmetric."""
+    solver, state = held(np.array([0.0003, 0.0002]), 0.4)
+    known, step = solver.unknowns, np.array([1e-7, 1e-7, 1e-6])
+    columns = []
+    for k in range(3):
+        ends = []
+        for sign in (1.0, -1.0):
+            solver.restore(known)
+            ends.append(solver.hold(*(state.pose + sign * step * (np.arange(3) == k))).force)
+        columns.append((ends[0] - ends[1]) / (2 * step[k]))
+    scale = np.sqrt(np.outer(np.diag(state.tangent), np.diag(state.tangent)))
+    assert np.abs((np.array(columns).T - state.tangent) / scale).max() < 1e-6
+
+
+def test_a_compressed_strip_buckles_to_a_stable_shape():
+    """Requirement: pushed straight towards the ground past the Euler load, the strips leave the unstable
+    straight shape, and the energy is below that of the straight one."""
+    state = held(np.array([0.0, -0.004]), 0.0, **THIN, **ROBUST)[1]
+    assert state.solved
+    assert state.unstable == 0
+    strain = 0.004 * math.sin(math.pi / 4) / TABLE_ONE["length"]
+    straight = THIN["youngs_modulus"] * THIN["area"] * strain**2 * TABLE_ONE["length"]
+    assert state.bending_energy + state.axial_energy < 0.2 * straight
+
+
+def test_jumps_end_in_bounded_work_with_a_good_state():
+    """Requirement: jumps of up to 60 degrees and 20 mm are solved, or the last good state is kept, in bounded
+    work; most are solved, and every state that is given is an equilibrium of the held strips."""
+    pivot = cross_axis_pivot(**(TABLE_ONE | THIN | ROBUST))
+    solver, rng = HeldPivot(pivot.mechanism), np.random.default_rng(7)
+    solved = 0
+    for _ in range(60):
+        target = (*(pivot.centre + rng.uniform(-0.02, 0.02, 2)), rng.uniform(-1.05, 1.05))
+        before = solver.unknowns
+        state = solver.hold(*target)
+        solved += state.solved
+        assert state.iterations < 700
+        assert np.isfinite(state.force).all()
+        if not state.solved:
+            assert np.array_equal(solver.unknowns, before)
+            assert 0 <= state.reached < 1
+        else:
+            assert np.array_equal(state.pose, target)
+    assert solved >= 50
+
+
+def test_warm_start_needs_few_iterations():
+    """Requirement: from one frame to the next, 2 degrees on, at most four Newton iterations a strip."""
+    pivot = cross_axis_pivot(**TABLE_ONE)
+    path = solve_statics(pivot, rotation=1.0, increments=30)
+    solver = HeldPivot(pivot.mechanism)
+    work = [
+        solver.hold(*centre, angle).iterations
+        for angle, centre in zip(path.rotation, path.centre, strict=True)
+    ]
+    assert max(work) <= 8
+
+
+def test_bad_poses_are_refused_and_change_nothing():
+    """Requirement: NaN and infinite poses raise in one line and leave the state alone."""
+    solver, _ = held(np.zeros(2), 0.2)
+    before = solver.unknowns
+    for bad in ((math.nan, 0.0, 0.0), (0.0, math.inf, 0.0)):
+        with pytest.raises(InvalidParameter, match="pose: got"):
+            solver.hold(*bad)
+    with pytest.raises(InvalidParameter, match="rotation: got nan"):
+        solver.turn(math.nan)
+    assert np.array_equal(solver.unknowns, before)
+    with pytest.raises(InvalidParameter, match="straight Bezier strips"):
+        HeldPivot(cross_axis_pivot(**TABLE_ONE, stretch="consistent").mechanism)
