@@ -36,8 +36,8 @@ results: $(STAMP)  ## compute all studies anew (some ten minutes), refresh the R
 interactive: $(EXTRA)  ## drive the pivot by camera or mouse in the browser; ARGS="--film demo" passes options on
 	$(BIN)/python -m studies interactive $(ARGS)
 
-$(EXTRA): $(STAMP)
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-build-isolation --editable '.[interactive]'
+$(EXTRA): $(STAMP) requirements-interactive.lock
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -r requirements-interactive.lock
 	@touch $@
 
 test: $(STAMP)  ## run the quick tests
