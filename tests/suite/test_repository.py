@@ -33,13 +33,15 @@ def test_packages_are_all_named():
     assert found == set(PROJECT["tool"]["setuptools"]["packages"])
 
 
-def test_lock_pins_everything_that_is_asked_for():
-    """requirements.lock pins each package with ==, has every dependency, and names no host or path."""
-    lines = (ROOT / "requirements.lock").read_text(encoding="utf-8").splitlines()
+@pytest.mark.parametrize(("lock", "extra"), [("", "dev"), ("-interactive", "interactive")])
+def test_lock_pins_everything_that_is_asked_for(lock, extra):
+    """A lock pins each package with ==, has every dependency, and names no host or path."""
+    lines = (ROOT / f"requirements{lock}.lock").read_text(encoding="utf-8").splitlines()
     pins = [line for line in lines if not line.startswith("#")]
     assert [line for line in pins if not re.fullmatch(r"[\w.-]+==[\w.]+", line)] == []
     locked = {re.sub(r"[-_.]+", "-", line.split("==")[0]).lower() for line in pins}
-    asked = PROJECT["project"]["dependencies"] + PROJECT["project"]["optional-dependencies"]["dev"]
+    asked = PROJECT["project"]["optional-dependencies"][extra]
+    asked = asked if lock else asked + PROJECT["project"]["dependencies"]
     assert {re.split(r"[^\w-]", need)[0] for need in asked} - locked == set()
 
 
