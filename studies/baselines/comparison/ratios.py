@@ -23,6 +23,8 @@ def ratios(
 ) -> pd.DataFrame:
     """Return a row a level and group: the fastest variants, their times [s] and the ratio.
 
+    Where no variant of a group gets there, `tried_s` says how long the longest of them took.
+
     Args:
         rows: model, group, variant, status and the column `error`; times: model, variant, solve_s.
         error: column that must not be above the level.
@@ -47,6 +49,7 @@ def ratios(
                     "spline": spline["name"],
                     "spline_s": spline["solve_s"],
                     "ratio": peer["solve_s"] / spline["solve_s"],
+                    "tried_s": sure.loc[sure["group"] == group, "solve_s"].max(),
                 }
             )
     return pd.DataFrame(found)
