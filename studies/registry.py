@@ -82,6 +82,10 @@ STUDIES: dict[str, tuple[str, str]] = {
         "studies.stability.statics.geometry",
         "hard cases: crossing ratios and inclinations to their ends, parallel, unequal and curved strips",
     ),
+    "stability/buckling": (
+        "studies.stability.statics.buckling",
+        "hard cases: columns beyond the Euler load, frames that snap through, the pivot pushed down",
+    ),
     "stability/step_size": (
         "studies.stability.motion.step_size",
         "hard cases: steps of a motion from 1e-7 to 1e-2 s: energy, order, and what a step does not resolve",

@@ -18,11 +18,18 @@ COLUMNS: dict[str, Settings] = {
     FE: FeSettings(),
 }
 
+#: Finer splines, for families in which the default reaches its end.
+EIGHT, TWELVE = "spline n = 8", "spline n = 12"
+FINER: dict[str, Settings] = {
+    EIGHT: SplineSettings(control_points=8),
+    TWELVE: SplineSettings(control_points=12),
+}
+
 GENERALISED_ALPHA = "spline, generalised-alpha"
 EXPLICIT = "spline, explicit"
 
 #: All columns, in the order of tables and figures.
-ORDER = (*COLUMNS, GENERALISED_ALPHA, EXPLICIT)
+ORDER = (*COLUMNS, GENERALISED_ALPHA, EXPLICIT, *FINER)
 
 #: Columns that show the paper's own choices: what this suite has an answer say of its resolution does not
 #: count there, as the paper has no such check.

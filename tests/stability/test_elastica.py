@@ -1,0 +1,52 @@
+"""The elastica that columns are held against: published loads and its own equation."""
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+from studies.stability.frames.elastica import EULER, PUBLISHED, load_ratio, tip
+from tests import gates
+
+
+def published_error(factor=1.0):
+    """Largest difference of load ratio to those in print, at `factor` times their angles."""
+    angles = np.radians(list(PUBLISHED)) * factor
+    found = np.array([load_ratio(angle) for angle in angles])
+    return np.abs(found - list(PUBLISHED.values())).max()
+
+
+def test_published_loads():
+    """Requirement: the loads over the Euler load are those in print."""
+    gates.check("elastica_published", published_error())
+
+
+def test_published_gate_has_teeth():
+    """Requirement: angles that are off by little do not have the printed loads."""
+    with pytest.raises(AssertionError, match="x the gate"):
+        gates.check("elastica_published", published_error(**gates.teeth("elastica_published")))
+
+
+def equation_error(rtol=1e-10):
+    """Largest miss of the tip, integrated from the root: theta'' = -P sin theta, no moment at the end."""
+    missed = []
+    for angle in np.radians(list(PUBLISHED)):
+        load = EULER * load_ratio(angle)
+
+        def along(_, y, load=load):
+            return [y[1], -load * np.sin(y[0]), np.cos(y[0]), np.sin(y[0])]
+
+        start = [0.0, np.sqrt(2.0 * load * (1.0 - np.cos(angle))), 0.0, 0.0]
+        end = solve_ivp(along, (0.0, 1.0), start, rtol=rtol, atol=1e-2 * rtol).y[:, -1]
+        missed.append(np.abs(end - [angle, 0.0, *tip(angle)]).max())
+    return max(missed)
+
+
+def test_tip_solves_the_elastica():
+    """Requirement: angle, place and vanishing moment of the tip are those of the column's equation."""
+    gates.check("elastica_equation", equation_error())
+
+
+def test_equation_gate_has_teeth():
+    """Requirement: the check notices a coarse integration."""
+    with pytest.raises(AssertionError, match="x the gate"):
+        gates.check("elastica_equation", equation_error(**gates.teeth("elastica_equation")))
