@@ -63,6 +63,13 @@ def tip_of(frame, s, pose, tip):
 
 
 @njit(cache=True, nogil=True, fastmath=FAST)
+def strip_at(w, a, tip, compliance, grid, local):
+    """Evaluate one strip at a tip pose (3,); returns bending and axial energy over EI/L and the least
+    |C'|."""
+    return evaluate(w, a, tip[0], tip[1], math.cos(tip[2]), math.sin(tip[2]), compliance, grid, local)
+
+
+@njit(cache=True, nogil=True, fastmath=FAST)
 def residual_norm(local, own):
     """Largest residual of a strip's own equations, in EI/L^2 and L."""
     norm = 0.0
@@ -77,12 +84,11 @@ def residual_norm(local, own):
 def correct(w, a, tip, compliance, grid, local, room, tolerance, counters):
     """Newton of one strip at a tip pose, in place; negative pivots of the solution, or -1 if it fails."""
     own = w.size
-    cos_t, sin_t = math.cos(tip[2]), math.sin(tip[2])
     dw, da = room.step[:own], room.step[own:]
     room.change[:] = 0.0
     before = np.inf
     for _ in range(MOST_ITERATIONS + 1):
-        slowest = evaluate(w, a, tip[0], tip[1], cos_t, sin_t, compliance, grid, local)[2]
+        slowest = strip_at(w, a, tip, compliance, grid, local)[2]
         counters[EVALUATIONS] += 1
         norm = residual_norm(local, own)
         if not norm < 1e12:
@@ -104,8 +110,7 @@ def correct(w, a, tip, compliance, grid, local, room, tolerance, counters):
 @njit(cache=True, nogil=True)
 def energy_at(w, a, tip, compliance, grid, local):
     """Strain energy of a strip over EI/L with the axial forces a made to follow w; inf for a fold."""
-    cos_t, sin_t = math.cos(tip[2]), math.sin(tip[2])
-    energy, _, slowest = evaluate(w, a, tip[0], tip[1], cos_t, sin_t, compliance, grid, local)
+    energy, _, slowest = strip_at(w, a, tip, compliance, grid, local)
     for k in range(a.size):
         a[k] += local.gap[k] * (2 * k + 1) / compliance[k]
         energy += 0.5 * compliance[k] * a[k] * a[k] / (2 * k + 1)
@@ -118,13 +123,12 @@ def energy_at(w, a, tip, compliance, grid, local):
 def descend(w, a, tip, compliance, grid, local, room, tolerance, counters):
     """From any w downhill to a stable equilibrium: Newton with a shift on the diagonal that keeps it so."""
     own = w.size
-    cos_t, sin_t = math.cos(tip[2]), math.sin(tip[2])
     dw, da = room.step[:own], room.step[own:]
     trial = np.empty(own)
     room.change[:] = 0.0
     energy, shift = energy_at(w, a, tip, compliance, grid, local), 0.0
     for _ in range(DESCENTS):
-        evaluate(w, a, tip[0], tip[1], cos_t, sin_t, compliance, grid, local)
+        strip_at(w, a, tip, compliance, grid, local)
         counters[EVALUATIONS] += 1
         for i in range(own):
             local.h[i, i] += shift
@@ -180,7 +184,7 @@ def advance(y, before, pose, frame, grid, locals_, room, tolerance, counters):
         dw, da = room.step[:own], room.step[own:]
         tip_of(frame, s, before, room.tip)
         x, z, phi = room.tip[0], room.tip[1], room.tip[2]
-        evaluate(w, a, x, z, math.cos(phi), math.sin(phi), compliance, grid, local)
+        strip_at(w, a, room.tip, compliance, grid, local)
         counters[EVALUATIONS] += 1
         if condense(local, compliance, own) < 0:
             return False

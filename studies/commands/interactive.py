@@ -6,12 +6,9 @@
     python -m studies interactive --replay session.jsonl
 
 Two printed markers (`python -m studies markers`) before the browser's camera drive the pivot; without a
-camera
-mouse, touch and keys do. The server is open to this machine only. It needs the extra `interactive`, which
-`make
-interactive` installs. Exit code 0: stopped with Ctrl-C, or a replay that gave the recorded states; 1: a
-replay
-that did not; 2: bad input.
+camera mouse, touch and keys do. The server is open to this machine only. It needs the extra `interactive`,
+which `make interactive` installs. Exit code 0: stopped with Ctrl-C, or a replay that gave the recorded
+states; 1: a replay that did not; 2: bad input.
 """
 
 import argparse

@@ -3,8 +3,7 @@
     python -m studies markers -o markers.pdf
 
 Print it at 100 %, measure the ruler, and type its length into the page if it is not 100 mm: no picture can
-tell the
-printed size. It needs the extra `interactive`. Exit code 0: done; 2: bad input.
+tell the printed size. It needs the extra `interactive`. Exit code 0: done; 2: bad input.
 """
 
 import argparse

@@ -5,8 +5,7 @@
 
 A name is a study, its last part, a group of studies or "all". Tables and their provenance go to results/data,
 figures to results/figures. A study that this machine cannot compute, for want of a browser, says so and
-keeps its stored
-result. Exit code 0: done; 2: bad input, for example a folder that cannot be written to.
+keeps its stored result. Exit code 0: done; 2: bad input, for example a folder that cannot be written to.
 """
 
 import argparse

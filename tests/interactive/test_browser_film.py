@@ -58,8 +58,7 @@ def places(image, colour, within=30.0):
 
 def test_film_as_camera(camera):
     """Requirement: the page's camera drives the pivot: first state within 5 s, at least 8 Hz here, every
-    pose that is
-    given within 0.12 degrees and 0.20 mm of the truth of the picture it is shown with."""
+    pose that is given within 0.12 degrees and 0.20 mm of the truth of the picture it is shown with."""
     with Hosted(Settings(camera="browser")) as hosted, Browser(film=camera) as browser:
         assert load(browser, hosted.server) <= 5.0
         browser.wait("studio.state.sight?.state === 'found'", 20.0)

@@ -123,8 +123,7 @@ def test_sheet_is_a_page(tmp_path):
 
 def test_sheet_is_read_in_size():
     """Requirement: both markers are read from the sheet as it is printed, 60 mm wide, upright and as far
-    apart as the
-    session takes them to be."""
+    apart as the session takes them to be."""
     pytest.importorskip("cv2", reason="the extra `interactive` is not installed")
     from studies.interactive.film.sheet import page
     from studies.interactive.session.session import Session

@@ -113,8 +113,7 @@ def test_every_parameter_can_be_set_over_its_range():
 
 def test_camera_faults_are_named_and_never_shown_as_right():
     """Requirement: swapped markers, a single jump, stretched strips and lost markers are named at once, and
-    the
-    first two leave the pose as it was."""
+    the first two leave the pose as it was."""
     made = session(drive="pose")
     start = made.feed({**seen(made, np.zeros(2), 0.0), "t": 0.0})
     rest = made.placing.rest

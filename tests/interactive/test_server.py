@@ -33,8 +33,7 @@ def test_bad_numbers_are_answered_and_change_nothing(server):
 
 def test_failing_solver_keeps_the_last_state(server, monkeypatch):
     """Requirement: an arithmetic fault of the solver, or a number that is not finite, is answered by a
-    sentence; the
-    next event is answered as ever."""
+    sentence; the next event is answered as ever."""
     with opened(server) as socket:
         say(socket, do="pose", pose=[0, 0, 0.2])
         answer(socket)

@@ -12,7 +12,7 @@ from spline_model.impulses.solver import Run
 from spline_model.integrators.energy_consistent import TOLERANCE
 from spline_model.integrators.events import drives_at
 from spline_model.integrators.motion import initial_acceleration, set_in_motion
-from spline_model.kernels.energy_step import HALVED, NEWTON, advance
+from spline_model.kernels.energy_step import HALVED, NEWTON, WHOLE, advance
 from spline_model.kernels.record import DISSIPATED, KINETIC, STRAIN, record
 from spline_model.pivot import BODY, STRIPS, Pivot
 from spline_model.sequential_impulse import impulse_solver
@@ -60,7 +60,7 @@ class EnergyMotion:
         self._motion = set_in_motion(self.system)
         self._acceleration, self._z = initial_acceleration(self.system, self._motion, z, velocity)
         self._v = velocity.copy()
-        self._counters, self._totals = np.zeros(6, dtype=np.int64), np.zeros(2)
+        self._counters, self._totals = np.zeros(WHOLE + 1, dtype=np.int64), np.zeros(2)
         self._active = drives_at(self._motion, 0.0)
         self._iterations = 0
 

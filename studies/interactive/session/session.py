@@ -1,8 +1,7 @@
 """A session: events in, states out. No input or output, no clock: the same events give the same states.
 
 An event is a mapping with "do" and "t" [s], as the page sends it and a session file stores it. A state is
-what
-`view.shown` makes of the session: plain numbers in SI units and sentences.
+what `view.shown` makes of the session: plain numbers in SI units and sentences.
 """
 
 import math

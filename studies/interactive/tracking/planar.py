@@ -1,10 +1,8 @@
 """Relative pose of two squares in one plane: one least-squares fit of both, with its covariance.
 
 Unknowns are the picture of the plane (a homography: 8 numbers, or 6 with a known camera) and x, y, theta of
-    the
-second square in the frame of the first; the data are eight corners. No calibration is needed. What no
-residual can
-tell is the printed size.
+the second square in the frame of the first; the data are eight corners. No calibration is needed. What no
+residual can tell is the printed size.
 """
 
 import math
@@ -183,8 +181,7 @@ def _independent(corners: Array) -> Array:
     independent.
 
     A line through stations spread evenly over an edge has a mean offset and a slope with errors of their
-    own, so
-    that those of its ends, and with them of neighbouring corners, are not.
+    own, so that those of its ends, and with them of neighbouring corners, are not.
     """
     spread = (1.0 - 2.0 * INSET) / math.sqrt(12.0)
     matrix = np.zeros((16, 16))

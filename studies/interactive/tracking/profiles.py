@@ -2,8 +2,8 @@
 places.
 
 The place is at first where the area under the profile says, which a symmetric blur of any width does not
-shift, and in
-the last pass where a blurred step of the edge's own width fits best, which has the least noise.
+shift, and in the last pass where a blurred step of the edge's own width fits best, which has the least
+noise.
 """
 
 import math

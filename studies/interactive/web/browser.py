@@ -63,16 +63,17 @@ class Browser:
         self._number = 0
         self.console: list[str] = []
         self._stack = ExitStack()
-        try:
+        try:  # whatever fails from here on, the process must not stay
             socket = connect(self._page_address(), max_size=None, compression=None)
             self._socket = self._stack.enter_context(socket)
+            for name in ("Page", "Runtime", "Log"):
+                self.call(f"{name}.enable")
+            size = {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": False}
+            self.call("Emulation.setDeviceMetricsOverride", **size)
         except BaseException:
+            self._stack.close()
             self._end()
             raise
-        for name in ("Page", "Runtime", "Log"):
-            self.call(f"{name}.enable")
-        size = {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": False}
-        self.call("Emulation.setDeviceMetricsOverride", **size)
 
     def _page_address(self) -> str:
         """The address of the page's debugging socket, which the browser writes into its folder."""

@@ -223,7 +223,7 @@ class Connection:
                         {"kind": "error", "text": "camera: got no picture, expected one: is it unplugged?"}
                     )
                 )
-                await asyncio.sleep(3600.0)
+                await asyncio.Event().wait()  # the page stays open until it is closed
                 continue
             while self._sent - self._shown >= IN_FLIGHT:
                 self._seen_shown.clear()

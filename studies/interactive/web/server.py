@@ -39,8 +39,7 @@ class Settings:
     Attributes:
         port: 0 for any; camera: "browser", "none", "film" or "server", which the page is told.
         source: makes the pictures of a socket, or None; keep: takes the lines of a recording, of the first
-            page
-            that is open.
+            page that is open.
     """
 
     port: int = 0

@@ -1,6 +1,5 @@
 """Where pictures come from when the page's own camera does not send them: a film file, a camera of this
-machine, the
-demo film."""
+machine, the demo film."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
