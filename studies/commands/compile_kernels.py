@@ -22,10 +22,8 @@ from studies.record.source import ROOT
 MIXED, CONSISTENT = SplineSettings(control_points=4), SplineSettings(control_points=4, stretch="consistent")
 #: Small calls that between them enter every kernel, the longest first: settings and integrators of a release.
 CALLS: tuple[tuple[Settings, tuple[str, ...]], ...] = (
-    (MIXED, ("energy",)),
-    (MIXED, ("interactive",)),
     (MIXED, ("sequential impulses",)),
-    (MIXED, ("leapfrog", "generalised-alpha", "explicit")),
+    (MIXED, ("energy", "leapfrog", "generalised-alpha", "explicit")),
     (FeSettings(elements=4), ("central-difference",)),
     (FeSettings(elements=4, element="reissner"), ("central-difference",)),
     (CONSISTENT, ("energy", "generalised-alpha", "explicit")),
@@ -61,13 +59,10 @@ def call(settings: Settings, integrators: tuple[str, ...]) -> None:
     from studies.answers.adapters import answer_modes, answer_release, answer_static
     from studies.answers.models import built, model_of
     from studies.cases.problem import named_case
-    from studies.interactive.warm_up import warm_up
 
     problem = replace(named_case("cross_axis_pivot"), rotation=0.1, increments=1)
     for integrator in integrators:
-        if integrator == "interactive":
-            warm_up()
-        elif integrator == "sequential impulses":
+        if integrator == "sequential impulses":
             pivot = built(model_of(settings), problem, settings, moving=True)[0]
             for form in ("printed", "stable"):
                 solve_impulses(pivot, duration=1e-5, step=1e-6, form=form)

@@ -72,4 +72,4 @@ def encoded(picture: Picture, quality: int = 90) -> bytes:
     """Return a grey picture as a JPEG."""
     done, data = cv2.imencode(".jpg", picture, [cv2.IMWRITE_JPEG_QUALITY, quality])
     assert done
-    return data.tobytes()
+    return bytes(data.tobytes())
