@@ -4,6 +4,7 @@ import pandas as pd
 
 from studies.record.store import Store
 from studies.registry import STUDIES
+from studies.stability.columns import DEFAULT
 from studies.stability.outcome import OUTCOMES
 
 GROUP = "stability/"
@@ -27,7 +28,7 @@ def summary(store: Store) -> pd.DataFrame:
 def lines(store: Store) -> list[str]:
     """Return the summary as the lines of a Markdown table: "right / refused / wrong / bad input" a cell."""
     rows = summary(store)
-    models = list(dict.fromkeys(rows["model"]))
+    models = list(dict.fromkeys((DEFAULT, *rows["model"])))
     found = ["| family | " + " | ".join(models) + " |", "|---" * (len(models) + 1) + "|"]
     for family, some in rows.groupby("family", sort=False):
         cells = {
