@@ -20,13 +20,13 @@ from studies.commands.parser import Parser
 from studies.record.source import ROOT
 
 MIXED, CONSISTENT = SplineSettings(control_points=4), SplineSettings(control_points=4, stretch="consistent")
-#: Small calls that between them enter every kernel, the longest first: settings and integrators of a release.
+#: Small calls that between them enter every kernel, the longest first: settings and what is solved with them.
 CALLS: tuple[tuple[Settings, tuple[str, ...]], ...] = (
     (MIXED, ("sequential impulses",)),
-    (MIXED, ("energy", "leapfrog", "generalised-alpha", "explicit")),
-    (FeSettings(elements=4), ("central-difference",)),
-    (FeSettings(elements=4, element="reissner"), ("central-difference",)),
-    (CONSISTENT, ("energy", "generalised-alpha", "explicit")),
+    (MIXED, ("accuracy", "modes", "energy", "leapfrog", "generalised-alpha", "explicit")),
+    (FeSettings(elements=4), ("static", "modes", "central-difference")),
+    (FeSettings(elements=4, element="reissner"), ("static", "modes", "central-difference")),
+    (CONSISTENT, ("static", "modes", "energy", "generalised-alpha", "explicit")),
 )
 
 
@@ -53,21 +53,22 @@ def forget() -> None:
             kept.unlink()
 
 
-def call(settings: Settings, integrators: tuple[str, ...]) -> None:
-    """Solve something small by a model and by each integrator."""
+def call(settings: Settings, tasks: tuple[str, ...]) -> None:
+    """Solve something small by a model: statics, modes, and releases by integrators."""
     from spline_model.sequential_impulse import solve_impulses
     from studies.answers.adapters import answer_modes, answer_release, answer_static
     from studies.answers.models import built, model_of
     from studies.cases.problem import named_case
 
     problem = replace(named_case("cross_axis_pivot"), rotation=0.1, increments=1)
-    for integrator in integrators:
-        if integrator == "sequential impulses":
+    for task in tasks:
+        if task in ("static", "accuracy"):
+            answer_static(problem, settings, accuracy=1.0 if task == "accuracy" else None)
+        elif task == "modes":
+            answer_modes(problem, settings)
+        elif task == "sequential impulses":
             pivot = built(model_of(settings), problem, settings, moving=True)[0]
             for form in ("printed", "stable"):
                 solve_impulses(pivot, duration=1e-5, step=1e-6, form=form)
         else:
-            answer_release(problem, settings, duration=1e-5, integrator=integrator, step=1e-8)
-    accuracy = 1.0 if "leapfrog" in integrators else None
-    answer_static(problem, settings, accuracy=accuracy)
-    answer_modes(problem, settings)
+            answer_release(problem, settings, duration=1e-5, integrator=task, step=1e-8)

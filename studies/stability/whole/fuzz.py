@@ -89,7 +89,7 @@ def compute(progress: Callable[[int, int], None]) -> dict[str, pd.DataFrame]:
         example = drawn(generator)
         verdict = judged(partial(asked, example), TOLERANCE)
         place = {
-            "case": f"{number}",
+            "case": f"example {number:03d}",
             "kind": example.kind,
             "model": DEFAULT,
             "x": math.degrees(max(example.targets, key=abs)),
