@@ -1,6 +1,8 @@
-"""The fast static path: whole paths of Bezier strips under one body inside compiled code.
+"""Compiled code for straight Bezier strips under one body: whole paths, held poses, whole swings.
 
-The clamps are solved instead of enforced, the axial forces and the strips' own coordinates
-condensed, and what remains are the body's x and y. The multiplier path of
-``spline_model.path`` is the readable reference; both agree to 1e-10.
+The clamps are solved instead of enforced and the axial forces condensed. ``path`` follows a
+driven rotation (``solve`` is its way in, ``many`` a batch); the multiplier path of
+``spline_model.path`` is its readable reference, and both agree to 1e-10. ``pose`` holds the
+body (``spline_model.held``). ``leapfrog`` and ``acceleration`` let it go, with the constants of
+``swing`` (``release`` is their way in); ``spline_model.integrators.explicit`` is the reference.
 """
