@@ -4,7 +4,8 @@ Fourth order in the phase of every oscillation, with two evaluations of the stri
 step; clamps hold because they are solved, not enforced. Stable while omega_max h < sqrt(12),
 omega_max being an axial frequency. The energy is not kept to round-off: Table 1 with six
 control points changes it by 1.5e-4 of its value over 0.05 s at a step of 5 microseconds. For a
-released body on straight Bezier strips with inertia, without damping, loads or drives. Sources: see ``spline_model.fast.leapfrog``.
+released body on straight Bezier strips with inertia, without damping, loads or drives.
+Sources: see ``spline_model.fast.leapfrog``.
 """
 
 from __future__ import annotations
