@@ -24,7 +24,7 @@ from spline_model.mechanism import Mechanism
 from spline_model.solution import MotionEstimate, Status
 
 if TYPE_CHECKING:
-    from spline_model.dynamics import Trajectory
+    from spline_model.integrators.trajectory import Trajectory
 
 Array = NDArray[np.float64]
 

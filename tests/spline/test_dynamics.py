@@ -220,6 +220,10 @@ def test_an_unstable_explicit_step_is_named():
         ({"integrator": "euler"}, "expected one of energy, generalised-alpha, explicit"),
         ({"start": math.nan}, "start: got nan"),
         ({"accuracy": 1e-3, "step": 1e-4}, "accuracy: got 0.001"),
+        ({"accuracy": 1e-3, "spectral_radius": 0.9}, "spectral_radius: got 0.9, expected none"),
+        ({"records": 0}, "records: got 0, expected an integer >= 1"),
+        ({"integrator": "generalised-alpha", "spectral_radius": 1.5}, "spectral_radius: got 1.5, expected a"),
+        ({"integrator": "generalised-alpha", "radius": 0.9}, "reads only spectral_radius"),
     ],
     ids=str,
 )
@@ -227,6 +231,16 @@ def test_invalid_options_are_one_line(options, line):
     """Requirement: a bad option is refused with name, value and expectation."""
     with pytest.raises(InvalidParameter, match=line):
         released(**options)
+
+
+@pytest.mark.parametrize("integrator", sorted(INTEGRATORS))
+def test_an_option_that_is_not_read_is_refused(integrator):
+    """Requirement: every integrator names an option that it would ignore."""
+    line = (
+        rf"^tolerance: got 0.001, expected none: the integrator {integrator} reads (no option|only [a-z_]+)$"
+    )
+    with pytest.raises(InvalidParameter, match=line):
+        released(integrator=integrator, tolerance=1e-3)
 
 
 def test_a_start_that_statics_cannot_reach_is_refused():
