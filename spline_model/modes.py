@@ -17,7 +17,8 @@ from spline_model.mechanism import Mechanism
 from spline_model.operator import evaluate
 from spline_model.path import follow
 from spline_model.pivot import Pivot
-from spline_model.statics import STATIONS, solve_path
+from spline_model.proportional import solve_path
+from spline_model.static_answers import STATIONS
 
 Array = NDArray[np.float64]
 
