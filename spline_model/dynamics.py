@@ -89,7 +89,8 @@ def solve_motion(
     require_options(integrator, options)
     if accuracy is not None and after is not None:
         raise InvalidParameter("accuracy", accuracy, "a step for a motion that goes on after another")
-    laps, body = Laps(), mechanism.design.body_named(body)
+    laps, mechanism = Laps(), mechanism.in_motion()
+    body = mechanism.design.body_named(body)
     if accuracy is not None:
         task = _task(mechanism, start, body, drive, duration)
         return solve_accurately(mechanism, accuracy, task, records)

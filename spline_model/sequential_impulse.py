@@ -39,7 +39,7 @@ from spline_model.laps import Laps
 from spline_model.mass import mass_matrix
 from spline_model.mechanism import Mechanism
 from spline_model.modes import linear_modes, static_state
-from spline_model.pivot import Pivot
+from spline_model.pivot import Pivot, mechanism_in_motion
 
 __all__ = ["ImpulseSolver", "Outcome", "State", "impulse_solver", "solve_impulses", "stability_limit"]
 
@@ -72,7 +72,7 @@ def impulse_solver(
 
     Raises InvalidParameter.
     """
-    mechanism = pivot.mechanism if isinstance(pivot, Pivot) else pivot
+    mechanism = mechanism_in_motion(pivot)
     mechanism.released()
     scene = mechanism.scene
     if mechanism.design.bodies:
@@ -89,7 +89,7 @@ def stability_limit(pivot: Pivot | Mechanism, rotation: float = 0.0) -> float:
 
     The step of the printed form must stay below it.
     """
-    mechanism = pivot.mechanism if isinstance(pivot, Pivot) else pivot
+    mechanism = mechanism_in_motion(pivot)
     system = compile_scene(mechanism.released())
     z = static_state(mechanism, rotation)[: system.layout.size]
     highest = linear_modes(system, z, mass_matrix(system.scene, system.layout))[0][-1]
@@ -120,7 +120,7 @@ def solve_impulses(
 
     Raises InvalidParameter, and ConvergenceError if statics does not reach ``start``.
     """
-    mechanism = pivot.mechanism if isinstance(pivot, Pivot) else pivot
+    mechanism = mechanism_in_motion(pivot)
     for name, value in (("duration", duration), ("step", step)):
         require_positive(name, value, "s")
     if not math.isfinite(start):
