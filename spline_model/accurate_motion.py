@@ -24,7 +24,7 @@ from spline_model.mechanism import Mechanism
 from spline_model.solution import MotionEstimate, Status
 
 if TYPE_CHECKING:
-    from spline_model.dynamics import Trajectory
+    from spline_model.integrators.trajectory import Trajectory
 
 Array = NDArray[np.float64]
 
@@ -282,4 +282,4 @@ class _Runs:
         """That of the mechanism, in the proportion that goes with n control points [EI/L^2]."""
         grid = self.mechanism.design.discretisation
         own = swinging_slide_stiffness(grid.control_points)
-        return grid.slide_stiffness * swinging_slide_stiffness(n) / own
+        return grid.slide * swinging_slide_stiffness(n) / own

@@ -9,12 +9,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.basis import SlideModes
-from spline_model.compile import System
+from spline_model.compile import System, compile_scene
 from spline_model.effects import MixedStretching
+from spline_model.integrators.motion import initial_acceleration, set_in_motion
 from spline_model.kernels.assemble import assemble
 from spline_model.kernels.motion import Motion
 from spline_model.kernels.stretching import add_stretching
 from spline_model.modes import SLIDE_SHARE, linear_modes
+from spline_model.scene import Scene
 
 Array = NDArray[np.float64]
 
@@ -87,6 +89,21 @@ def resolution(content: list[Content], swing: float, step: float) -> str:
         f"the step of {step:g} s is {highest.frequency * step:.3g} of the period of {highest.name}{swings}: "
         f"energy is right, {lost}; take {1.0 / highest.frequency / STEPS_PER_PERIOD:.2g} s or less"
     )
+
+
+def unresolved(scene: Scene, z: Array, v: Array, step: float) -> str:
+    """What a step [s] leaves unresolved of the modes that carry the energy of a start (z, v).
+
+    The scene is that in motion, without the drives that z may have multipliers of: they let go.
+    """
+    free = compile_scene(scene)
+    motion, size = set_in_motion(free), free.layout.size
+    start = np.zeros(size)
+    start[: min(size, len(z))] = z[:size]
+    acceleration, start = initial_acceleration(free, motion, start, v)
+    lowest = linear_modes(free, free.rest, motion.mass)[0][0]
+    swing = math.sqrt(max(lowest, 0.0)) / (2 * math.pi)
+    return resolution(energy_content(free, motion, start, v, acceleration), swing, step)
 
 
 def _stretching_share(system: System, z: Array, shapes: Array, squares: Array) -> Array:

@@ -26,7 +26,7 @@ from spline_model.rank import singular
 BASES = ("bezier", "bspline")
 STRETCH_FORMS = ("mixed", "consistent", "inextensible")
 SLIDE_STIFFNESS = 10.0
-"""Default stiffness of the strains that the axial modes do not see, in EI/L^2.
+"""Default stiffness of the strains that the axial modes do not see in statics, in EI/L^2.
 
 With control_points - 2 modes the control points of a straight strip slide along it without
 resistance and the tangent at rest is singular. Any value from 1e-6 to 10 mends that and moves
@@ -36,7 +36,7 @@ for n = 6 and 10 (results of convergence/slide_stiffness); from 100 on the strip
 
 
 def swinging_slide_stiffness(control_points: int) -> float:
-    """The slide stiffness for a motion, in EI/L^2: 100 ((n - 2) / 6)^3.
+    """The default slide stiffness of a motion, in EI/L^2: 100 ((n - 2) / 6)^3.
 
     In a motion the sliding has inertia and must be fast against the strips' bending, or it
     takes part in the swing; how stiff it may be before it locks grows with n. The rule goes
@@ -54,8 +54,9 @@ class Discretisation:
     (forces of Eqs 12, 15); stretch "mixed", "consistent" (Eq 13 by quadrature) or
     "inextensible"; gauss_points in each knot span, default degree + 3, which follows the
     primary branch to a half turn where n - 1 points lose it; slide_stiffness of the strains
-    that the axial modes do not see, in EI/L^2, 0 for none. What makes the tangent of a straight
-    strip singular is refused with the reason (``spline_model.rank``).
+    that the axial modes do not see, in EI/L^2, 0 for none, default SLIDE_STIFFNESS in statics
+    and ``swinging_slide_stiffness`` in motions and modes (``Mechanism.in_motion``). What makes
+    the tangent of a straight strip singular is refused with the reason (``spline_model.rank``).
     """
 
     control_points: int = 6
@@ -64,14 +65,15 @@ class Discretisation:
     measure: str = "material"
     stretch: str = "mixed"
     gauss_points: int | None = None
-    slide_stiffness: float = SLIDE_STIFFNESS
+    slide_stiffness: float | None = None
 
     def __post_init__(self) -> None:
         require_count("control_points", self.control_points, 4)
         require_choice("basis", self.basis, BASES)
         require_choice("measure", self.measure, MEASURES)
         require_choice("stretch", self.stretch, STRETCH_FORMS)
-        require_not_negative("slide_stiffness", self.slide_stiffness, "EI/L^2")
+        if self.slide_stiffness is not None:
+            require_not_negative("slide_stiffness", self.slide_stiffness, "EI/L^2")
         if self.gauss_points is not None:
             require_count("gauss_points", self.gauss_points, 1)
         if self.measure == "printed" and self.stretch != "consistent":
@@ -81,7 +83,7 @@ class Discretisation:
                 raise InvalidParameter("axial_modes", self.axial_modes, "none with stretch = consistent")
             require_count("axial_modes", self.axial_modes, 1, self.control_points - 1)
         axial = None if self.stretch == "consistent" else self.modes
-        reason = singular(self.spline, self.points_a_span, axial, self.slide_stiffness > 0)
+        reason = singular(self.spline, self.points_a_span, axial, self.slide > 0)
         if reason:
             raise InvalidParameter("discretisation", reason, "a strip whose tangent at rest is regular")
 
@@ -95,6 +97,11 @@ class Discretisation:
         """The axial-force modes: Legendre's for one span, hats for a B-spline."""
         count = self.control_points - 2 if self.axial_modes is None else self.axial_modes
         return LegendreModes(count=count) if self.basis == "bezier" else HatModes(count=count)
+
+    @property
+    def slide(self) -> float:
+        """The slide stiffness that was given, or that of statics [EI/L^2]."""
+        return SLIDE_STIFFNESS if self.slide_stiffness is None else self.slide_stiffness
 
     @property
     def points_a_span(self) -> int:

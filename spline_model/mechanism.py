@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from spline_model.design import BodyDesign, Design, Discretisation, StripDesign
+from spline_model.design import BodyDesign, Design, Discretisation, StripDesign, swinging_slide_stiffness
 from spline_model.effects import Clamp, DrivenRotation
 from spline_model.effects.base import Inertia
 from spline_model.effects.registry import DEFAULT_EFFECTS, INERTIA, build, check_names
@@ -38,6 +38,16 @@ class Mechanism:
             **({part.name: getattr(grid, part.name) for part in fields(grid)} | changes),
         )
 
+    def in_motion(self) -> Mechanism:
+        """The mechanism as it swings: with ``swinging_slide_stiffness`` where no slide stiffness was given.
+
+        Motions and modes, and the static states that they begin from, are those of this mechanism.
+        """
+        grid = self.design.discretisation
+        if grid.slide_stiffness is not None:
+            return self
+        return self.with_discretisation(slide_stiffness=swinging_slide_stiffness(grid.control_points))
+
     def driven(self, rotation: float, body: str | None = None) -> Scene:
         """The scene with a body's rotation driven to ``rotation`` [rad] at load factor 1 (Eq 7)."""
         drive = DrivenRotation(body=self.design.body_named(body), angle=rotation)
@@ -48,10 +58,10 @@ class Mechanism:
         return replace(self.scene, effects=(*self.scene.effects, *more))
 
     def released(self) -> Scene:
-        """The scene in motion; refused if none of its effects has inertia."""
+        """The scene in motion (``in_motion``); refused if none of its effects has inertia."""
         if not self.scene.of(Inertia):
             raise InvalidParameter("effects", list(self.effects), f"one of {', '.join(INERTIA)} for a motion")
-        return self.scene
+        return self.in_motion().scene
 
 
 def mechanism(

@@ -16,8 +16,9 @@ from spline_model.mass import mass_matrix
 from spline_model.mechanism import Mechanism
 from spline_model.operator import evaluate
 from spline_model.path import follow
-from spline_model.pivot import Pivot
-from spline_model.statics import STATIONS, solve_path
+from spline_model.pivot import Pivot, mechanism_in_motion
+from spline_model.proportional import solve_path
+from spline_model.static_answers import STATIONS
 
 Array = NDArray[np.float64]
 
@@ -64,7 +65,7 @@ def natural_frequencies(
     (``held=True``). Raises ConvergenceError if statics does not reach the state.
     """
     require_count("count", count, 1)
-    mechanism = pivot.mechanism if isinstance(pivot, Pivot) else pivot
+    mechanism = mechanism_in_motion(pivot)
     body = mechanism.design.body_named(body) if mechanism.design.bodies else None
     released = mechanism.released()
     scene = mechanism.driven(rotation, body) if held else released

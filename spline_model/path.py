@@ -21,6 +21,8 @@ from spline_model.work import external_work
 
 Array = NDArray[np.float64]
 
+Progress = Callable[[int, int], None]
+"""What is called with the increments done and the increments in all."""
 SMALLEST_STEP = 2.0**-10
 """Least fraction of an increment before the path is given up."""
 
@@ -28,7 +30,7 @@ SMALLEST_STEP = 2.0**-10
 def follow(
     system: System,
     load_factors: Sequence[float],
-    progress: Callable[[int, int], None] | None = None,
+    progress: Progress | None = None,
     *,
     start: tuple[float, Array] | None = None,
     branch: str = "primary",

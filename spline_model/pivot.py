@@ -146,6 +146,11 @@ def cross_axis_pivot(
     )
 
 
+def mechanism_in_motion(pivot: Pivot | Mechanism) -> Mechanism:
+    """The mechanism of a pivot, or any other, as it swings."""
+    return (pivot.mechanism if isinstance(pivot, Pivot) else pivot).in_motion()
+
+
 def _clamps_at_rest(
     length: float, inclination: float, crossing_ratio: float, orientation: float
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

@@ -22,31 +22,26 @@ from __future__ import annotations
 
 import math
 from itertools import pairwise
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from spline_model.compile import compile_scene
 from spline_model.content import STEPS_PER_PERIOD
-from spline_model.dynamics import MOST_MEMORY, Trajectory
 from spline_model.effects import DrivenDisplacement, DrivenRotation
-from spline_model.errors import InvalidParameter, require_count, require_positive
-from spline_model.impulses.run import Run, named
+from spline_model.errors import InvalidParameter, require_positive
+from spline_model.impulses.run import Run
 from spline_model.impulses.solver import TOLERANCE, ImpulseSolver
 from spline_model.impulses.state import Outcome, State
 from spline_model.integrators.events import catch, drives_at, event_times, from_here
-from spline_model.kernels.record import DISSIPATED, KINETIC, POSITION, STRAIN, VELOCITY, WEIGHT, WORK
+from spline_model.integrators.steps import count_steps
+from spline_model.integrators.trajectory import Trajectory, trajectory_of
 from spline_model.laps import Laps
 from spline_model.mass import mass_matrix
 from spline_model.mechanism import Mechanism
 from spline_model.modes import linear_modes, static_state
-from spline_model.pivot import Pivot
-from spline_model.solution import Status
+from spline_model.pivot import Pivot, mechanism_in_motion
 
 __all__ = ["ImpulseSolver", "Outcome", "State", "impulse_solver", "solve_impulses", "stability_limit"]
-
-Array = NDArray[np.float64]
 
 STEP = 0.01
 """The paper's step: a quarter of the time between two pictures at 25 Hz [s]."""
@@ -77,7 +72,7 @@ def impulse_solver(
 
     Raises InvalidParameter.
     """
-    mechanism = pivot.mechanism if isinstance(pivot, Pivot) else pivot
+    mechanism = mechanism_in_motion(pivot)
     mechanism.released()
     scene = mechanism.scene
     if mechanism.design.bodies:
@@ -94,7 +89,7 @@ def stability_limit(pivot: Pivot | Mechanism, rotation: float = 0.0) -> float:
 
     The step of the printed form must stay below it.
     """
-    mechanism = pivot.mechanism if isinstance(pivot, Pivot) else pivot
+    mechanism = mechanism_in_motion(pivot)
     system = compile_scene(mechanism.released())
     z = static_state(mechanism, rotation)[: system.layout.size]
     highest = linear_modes(system, z, mass_matrix(system.scene, system.layout))[0][-1]
@@ -125,20 +120,18 @@ def solve_impulses(
 
     Raises InvalidParameter, and ConvergenceError if statics does not reach ``start``.
     """
-    mechanism = pivot.mechanism if isinstance(pivot, Pivot) else pivot
+    mechanism = mechanism_in_motion(pivot)
     for name, value in (("duration", duration), ("step", step)):
         require_positive(name, value, "s")
     if not math.isfinite(start):
         raise InvalidParameter("start", start, "a finite angle [rad]")
-    if step > duration:
-        raise InvalidParameter("step", step, f"at most the duration, {duration:g} s")
     laps, body = Laps(), mechanism.design.body_named(body)
     released = mechanism.released()
     system = compile_scene(released if drive is None else mechanism.with_effects(drive))
     solver = ImpulseSolver(
         mechanism, system, form=form, impulses=impulses, sweeps=sweeps, tolerance=tolerance
     )
-    steps, every = _count(duration, step, records, 2 * system.layout.size)
+    steps, every = count_steps(duration, step, records, 2 * system.layout.size)
     laps.lap("compile")
     run = Run(solver, solver.start(start, body), steps // every)
     laps.lap("start")
@@ -147,20 +140,15 @@ def solve_impulses(
     message = "" if done == steps else f"stopped at {done * duration / steps:.6g} s: {_reason(form)}"
     settings = {"integrator": f"sequential impulses, {form}", "step_s": duration / steps}
     settings |= {"impulses": impulses} | ({} if impulses == "direct" else {"sweeps": sweeps})
-    return _trajectory(run, duration / steps, every, done, message, mechanism, body, settings, laps)
-
-
-def _count(duration: float, step: float, records: int | None, width: int) -> tuple[int, int]:
-    """Number of steps, a multiple of the steps a record; refuses what does not fit into memory."""
-    if records is not None:
-        require_count("records", records, 1)
-    steps = max(1, math.ceil(duration / step * (1 - 1e-12)))  # a whole number but for round-off
-    every = 1 if records is None else max(1, math.ceil(steps / records))
-    memory = 8.0 * width * (steps // every + 1)
-    if memory > MOST_MEMORY:
-        expected = f"records within {MOST_MEMORY / 1e9:g} GB; {steps} steps take {memory / 1e9:.3g}"
-        raise InvalidParameter("duration", duration, expected)
-    return math.ceil(steps / every) * every, every
+    return trajectory_of(
+        system,
+        run.records(duration / steps * every, done // every + 1, message),
+        effects=mechanism.effects,
+        body=body,
+        settings=settings,
+        resolution=_resolution(solver, duration / steps),
+        laps=laps,
+    )
 
 
 def _follow(run: Run, h: float, steps: int, every: int) -> int:
@@ -188,43 +176,6 @@ def _reason(form: str) -> str:
     if form == "printed":
         return "the step is above the stability limit"
     return "no part of the step can be solved, or a strip folds; take a shorter one"
-
-
-def _trajectory(
-    run: Run,
-    h: float,
-    every: int,
-    done: int,
-    message: str,
-    mechanism: Mechanism,
-    body: str,
-    settings: dict[str, Any],
-    laps: Laps,
-) -> Trajectory:
-    system, log, kept = run.solver.system, run.log, done // every + 1
-    rest = float(system.tables.weight @ system.rest[: system.tables.weight.size])
-    states, rows = log.states[:kept], log.rows[:kept]
-    return Trajectory(
-        status=Status.NOT_CONVERGED if message else Status.CONVERGED,
-        message=message,
-        time=np.arange(0.0, kept) * (h * every),
-        bodies={b.name: states[:, system.layout.body(b.name)] for b in system.scene.bodies},
-        body=body,
-        kinetic_energy=rows[:, KINETIC],
-        strain_energy=rows[:, STRAIN],
-        gravity_energy=rows[:, WEIGHT] + rest,
-        work=rows[:, WORK],
-        dissipated=rows[:, DISSIPATED],
-        constraint_residual=rows[:, POSITION],
-        velocity_residual=rows[:, VELOCITY],
-        states=states,
-        velocities=log.rates[:kept],
-        resolution=_resolution(run.solver, h),
-        effects=mechanism.effects,
-        counters=named(run.moving.counters),
-        settings=settings,
-        seconds=laps.lap("recover"),
-    )
 
 
 def _resolution(solver: ImpulseSolver, h: float) -> str:

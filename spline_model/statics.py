@@ -3,43 +3,44 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.accuracy import check_accuracy
 from spline_model.accurate_path import solve_accurately
-from spline_model.compile import System, compile_scene
-from spline_model.continuation.arc_length import follow_arc
+from spline_model.compile import compile_scene
 from spline_model.continuation.recover import recover
 from spline_model.continuation.start import last_state
-from spline_model.effects import DrivenRotation
-from spline_model.effects.base import Constraint
-from spline_model.effects.registry import MOTION_ONLY
 from spline_model.errors import ConvergenceError, InvalidParameter, require_choice, require_count
 from spline_model.fast.path import Answer
 from spline_model.fast.solve import follow_fast, is_fast, path_of
 from spline_model.laps import Laps
-from spline_model.mechanism import Mechanism
-from spline_model.path import follow
-from spline_model.pivot import BODY, STRIPS, Pivot
-from spline_model.scene import Scene
-from spline_model.sections import clamp_reactions, sections
-from spline_model.solution import MechanismSolution, Path, StaticSolution, Status
-from spline_model.work import gravity_energy
+from spline_model.path import Progress, follow
+from spline_model.pivot import Pivot
+from spline_model.proportional import CONTROLS, solve_loads, solve_mechanism, solve_path
+from spline_model.solution import StaticSolution, Status
+from spline_model.static_answers import STATIONS, pivot_answer
+
+__all__ = [
+    "CONTROLS",
+    "METHODS",
+    "STATIONS",
+    "solve_from",
+    "solve_loads",
+    "solve_mechanism",
+    "solve_path",
+    "solve_statics",
+]
 
 Array = NDArray[np.float64]
-
-STATIONS = np.linspace(0.0, 1.0, 61)
-"""Where sections are recovered, reference arc length over L; both clamped ends are among them."""
 
 LEAST_ROTATION = 1e-12
 """Largest rotation of a path that is none [rad]: states are solved to 1e-11."""
 
 METHODS = ("condensed", "multipliers")
-CONTROLS = ("load", "arc-length")
-Progress = Callable[[int, int], None]
 
 
 def solve_statics(
@@ -67,19 +68,9 @@ def solve_statics(
     accuracy. Raises ConvergenceError with the converged part of the path, or with the best one
     where the accuracy is not reached; returns it as a status with ``raise_on_failure=False``.
     """
-    targets = [rotation] if isinstance(rotation, int | float) else list(rotation)
-    for angle in targets:
-        if not math.isfinite(angle):
-            raise InvalidParameter("rotation", angle, "a finite number [rad]")
     require_count("increments", increments, 1)
     require_choice("method", method, METHODS)
-    origin = 0.0 if start is None else float(start.rotation[-1])
-    largest = max((abs(angle) for angle in (origin, *targets)), default=0.0)
-    turns = np.abs(np.diff([origin, *targets]))
-    if largest < LEAST_ROTATION or ((turns > 0.0) & (turns < LEAST_ROTATION)).any():
-        raise InvalidParameter("rotation", rotation, "an angle other than zero [rad]")
-    legs = [np.linspace(a, b, increments + 1)[1:] for a, b in zip([origin, *targets], targets, strict=False)]
-    rotations = np.concatenate(legs)
+    rotations = _rotations(rotation, increments, 0.0 if start is None else float(start.rotation[-1]))
     if accuracy is None:
         solution = _along(pivot, rotations, method, progress, start=start, branch=branch)
     else:
@@ -93,10 +84,23 @@ def solve_statics(
         raise ConvergenceError(
             solution.message,
             solution=solution,
-            load_factor=abs(solution.rotation[-1] / targets[-1]) if targets[-1] else 0.0,
+            load_factor=abs(solution.rotation[-1] / rotations[-1]) if rotations[-1] else 0.0,
             history=solution.history,
         )
     return solution
+
+
+def _rotations(rotation: float | Sequence[float], increments: int, origin: float) -> Array:
+    """The rotations of a path from ``origin`` [rad] on, each leg in ``increments``."""
+    targets = [rotation] if isinstance(rotation, int | float) else list(rotation)
+    for angle in targets:
+        if not math.isfinite(angle):
+            raise InvalidParameter("rotation", angle, "a finite number [rad]")
+    stops = [origin, *targets]
+    largest, turns = max(abs(angle) for angle in stops), np.abs(np.diff(stops))
+    if largest < LEAST_ROTATION or ((turns > 0.0) & (turns < LEAST_ROTATION)).any():
+        raise InvalidParameter("rotation", rotation, "an angle other than zero [rad]")
+    return np.concatenate([np.linspace(a, b, increments + 1)[1:] for a, b in pairwise(stops)])
 
 
 def _along(
@@ -120,7 +124,7 @@ def _along(
         begin = None if start is None else last_state(start, largest)
         path = follow(system, list(rotations / largest), progress, start=begin, branch=branch)
         laps.lap("solve")
-    return _pivot_solution(system, path, laps)
+    return pivot_answer(system, path, laps)
 
 
 def _accurate(pivot: Pivot, rotations: Array, method: str, accuracy: float) -> StaticSolution:
@@ -133,7 +137,7 @@ def _accurate(pivot: Pivot, rotations: Array, method: str, accuracy: float) -> S
         system = compile_scene(chosen.driven(float(np.abs(rotations).max())))
         laps.lap("compile")
         path = path_of(chosen.mechanism, system, list(rotations), answer)
-        return _along(chosen, rotations, method) if path is None else _pivot_solution(system, path, laps)
+        return _along(chosen, rotations, method) if path is None else pivot_answer(system, path, laps)
 
     return solve_accurately(
         pivot,
@@ -160,183 +164,8 @@ def solve_from(
     laps.lap("compile")
     path = recover(system, 1.0, np.asarray(guess, dtype=float), increments)
     laps.lap("solve")
-    solution = _pivot_solution(system, path, laps)
+    solution = pivot_answer(system, path, laps)
     if raise_on_failure and path.status is not Status.CONVERGED:
         at = float(path.load_factor[-1])
         raise ConvergenceError(path.message, solution=solution, load_factor=at, history=path.history)
     return solution
-
-
-def solve_path(
-    mechanism: Mechanism,
-    rotation: float,
-    increments: int = 20,
-    body: str | None = None,
-    *,
-    start: Path | MechanismSolution | None = None,
-    branch: str = "primary",
-) -> Path:
-    """The states of the path to one rotation; raises ConvergenceError if it is not reached.
-
-    start: a result with the same body driven to go on from; branch as in ``solve_loads``.
-    """
-    require_count("increments", increments, 1)
-    system = compile_scene(mechanism.driven(rotation, body))
-    laps, begin = Laps(), None
-    if start is not None:  # its load factors are those of another rotation
-        turn = system.layout.body(mechanism.design.body_named(body)).stop - 1
-        begin = (float(start.states[-1, turn]) / rotation, start.states[-1])
-    factors = np.linspace(0.0 if begin is None else begin[0], 1.0, increments + 1)[1:]
-    path = follow(system, list(factors), start=begin, branch=branch)
-    laps.lap("solve")
-    if path.status is not Status.CONVERGED:
-        raise ConvergenceError(
-            path.message,
-            solution=_mechanism_solution(system, path, mechanism, laps),
-            load_factor=float(path.load_factor[-1]),
-            history=path.history,
-        )
-    return path
-
-
-def solve_loads(
-    scene: Scene,
-    *,
-    increments: int = 20,
-    end: float = 1.0,
-    control: str = "load",
-    branch: str = "primary",
-    start: Path | MechanismSolution | None = None,
-    progress: Progress | None = None,
-) -> tuple[System, Path]:
-    """A scene from rest to the load factor ``end``, all its loads and drives growing in proportion.
-
-    control: "load" prescribes the load factors; "arc-length" follows the path through its limit
-    points, with ``increments`` for the first step only. branch: "primary" or "follow" at a
-    bifurcation. start: a result of the same scene to go on from, instead of rest.
-    """
-    require_count("increments", increments, 1)
-    require_choice("control", control, CONTROLS)
-    if not math.isfinite(end):
-        raise InvalidParameter("end", end, "a finite load factor")
-    system = compile_scene(scene)
-    begin = None if start is None else last_state(start)
-    if control == "arc-length":
-        arc = follow_arc(system, end, increments=increments, start=begin, branch=branch, progress=progress)
-        return system, arc
-    factors = np.linspace(0.0 if begin is None else begin[0], end, increments + 1)[1:]
-    return system, follow(system, list(factors), progress, start=begin, branch=branch)
-
-
-def solve_mechanism(
-    mechanism: Mechanism,
-    *,
-    body: str | None = None,
-    rotation: float | None = None,
-    increments: int = 20,
-    control: str = "load",
-    branch: str = "primary",
-    start: MechanismSolution | None = None,
-    end: float = 1.0,
-    raise_on_failure: bool = True,
-    progress: Progress | None = None,
-) -> MechanismSolution:
-    """Any mechanism from rest to load factor 1: its loads and drives grow in proportion.
-
-    rotation [rad] drives the named body, or the only one; None leaves all bodies to the loads.
-    control, branch, start and end as in ``solve_loads``.
-    """
-    laps = Laps()
-    scene = mechanism.scene if rotation is None else mechanism.driven(rotation, body)
-    system, path = solve_loads(
-        scene,
-        increments=increments,
-        end=end,
-        control=control,
-        branch=branch,
-        start=start,
-        progress=progress,
-    )
-    laps.lap("solve")
-    solution = _mechanism_solution(system, path, mechanism, laps)
-    if raise_on_failure and path.status is not Status.CONVERGED:
-        raise ConvergenceError(
-            path.message,
-            solution=solution,
-            load_factor=float(path.load_factor[-1]),
-            history=path.history,
-        )
-    return solution
-
-
-def _mechanism_solution(system: System, path: Path, mechanism: Mechanism, laps: Laps) -> MechanismSolution:
-    """The answer of a mechanism from the states of its path."""
-    states, layout = path.states, system.layout
-    torque = stiffness = np.full(len(states), np.nan)
-    for i, drive in enumerate(system.scene.of(Constraint)):
-        if isinstance(drive, DrivenRotation):
-            row = layout.rows(i).start
-            torque, stiffness = states[:, row], path.rates[:, row] / drive.angle
-    along = [sections(system, states, strip.name, STATIONS) for strip in system.scene.strips]
-    return MechanismSolution(
-        status=path.status,
-        message=path.message,
-        load_factor=path.load_factor,
-        bodies={body.name: states[:, layout.body(body.name)] for body in system.scene.bodies},
-        torque=torque,
-        stiffness=stiffness,
-        bending_energy=path.energies[:, 0],
-        axial_energy=path.energies[:, 1],
-        gravity_energy=gravity_energy(system, states),
-        work=path.work,
-        stations=STATIONS,
-        shape=np.stack([s.shape for s in along], axis=1),
-        axial_force=np.stack([s.axial_force for s in along], axis=1),
-        bending_moment=np.stack([s.bending_moment for s in along], axis=1),
-        shear_force=np.stack([s.shear_force for s in along], axis=1),
-        effects=tuple(name for name in mechanism.effects if name not in MOTION_ONLY),
-        inertia=path.inertia,
-        moment_defect=path.moment_defect,
-        critical_points=path.critical_points,
-        states=states,
-        counters=path.counters,
-        history=path.history,
-        seconds=laps.lap("recover"),
-    )
-
-
-def _pivot_solution(system: System, path: Path, laps: Laps) -> StaticSolution:
-    """The pivot's answer from the states of its path."""
-    states, layout = path.states, system.layout
-    body = states[:, layout.body(BODY)]
-    constraints = system.scene.of(Constraint)
-    i, drive = next((i, c) for i, c in enumerate(constraints) if isinstance(c, DrivenRotation))
-    row = layout.rows(i).start
-    along = [sections(system, states, name, STATIONS) for name in STRIPS]
-    reactions = [[clamp_reactions(system, states, name, end) for end in ("start", "end")] for name in STRIPS]
-    return StaticSolution(
-        status=path.status,
-        message=path.message,
-        rotation=path.load_factor * drive.angle,
-        centre=body[:, :2],
-        torque=states[:, row],
-        stiffness=path.rates[:, row] / drive.angle,
-        bending_energy=path.energies[:, 0],
-        axial_energy=path.energies[:, 1],
-        shear_energy=np.zeros(len(states)),
-        gravity_energy=gravity_energy(system, states),
-        work=path.work,
-        clamp_reactions=np.moveaxis(np.array(reactions), 2, 0),
-        stations=STATIONS,
-        shape=np.stack([s.shape for s in along], axis=1),
-        axial_force=np.stack([s.axial_force for s in along], axis=1),
-        bending_moment=np.stack([s.bending_moment for s in along], axis=1),
-        shear_force=np.stack([s.shear_force for s in along], axis=1),
-        inertia=path.inertia,
-        moment_defect=path.moment_defect,
-        critical_points=path.critical_points,
-        states=states,
-        counters=path.counters,
-        history=path.history,
-        seconds=laps.lap("recover"),
-    )

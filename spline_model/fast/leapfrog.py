@@ -46,10 +46,10 @@ def leap(r, w, acceleration, h, steps, swing, space):
 def run(r, w, acceleration, h, every, most_energy, swing, space, records):
     """Fill the rows of the records from row 1 on, ``every`` steps apart; returns the rows filled.
 
-    records: r, w, acceleration (K, R) and strain energy (K,). A state whose |C'| falls below a
+    records: r, w (K, R) and strain energy (K,). A state whose |C'| falls below a
     tenth, whose tangents at the tips turn back or whose energy leaves ``most_energy`` ends the run.
     """
-    places, rates, accelerations, strain = records
+    places, rates, strain = records
     own = 2 * space.x.shape[1] - 6
     for row in range(1, places.shape[0]):
         if not leap(r, w, acceleration, h, every, swing, space):
@@ -62,5 +62,4 @@ def run(r, w, acceleration, h, every, most_energy, swing, space, records):
                 return row
         copy(r, places[row])
         copy(w, rates[row])
-        copy(acceleration, accelerations[row])
     return places.shape[0]

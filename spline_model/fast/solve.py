@@ -79,15 +79,15 @@ def _grid(control_points: int, gauss_points: int, modes: int) -> Grid:
 def mode_count(design: Design) -> int:
     """Axial modes and slide modes together."""
     settings = design.discretisation
-    return settings.control_points - 1 if settings.slide_stiffness > 0 else settings.modes.count
+    return settings.control_points - 1 if settings.slide > 0 else settings.modes.count
 
 
 def compliances(design: Design, axial: Array) -> Array:
     """Compliance of each mode, (D, K) [L^2/EI]: the strips' axial one (D,), and the slide stiffness's."""
     settings = design.discretisation
     table = np.repeat(axial[:, None], mode_count(design), axis=1)
-    if settings.slide_stiffness > 0:
-        table[:, settings.modes.count :] = 1.0 / settings.slide_stiffness
+    if settings.slide > 0:
+        table[:, settings.modes.count :] = 1.0 / settings.slide
     return table
 
 

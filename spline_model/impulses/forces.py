@@ -9,6 +9,7 @@ from numba import njit
 from spline_model.kernels.axial_force import add_axial_force
 from spline_model.kernels.bending import add_bending
 from spline_model.kernels.clamps import subtract_clamps
+from spline_model.kernels.curve import derivatives, tangent
 from spline_model.kernels.drives import factor_at, subtract_weight
 from spline_model.kernels.stretching import add_stretching
 
@@ -50,12 +51,8 @@ def axial_rates(z, v, table, start, rates):
     rates[:] = 0.0
     for p in range(table.first.size):
         first, d1 = table.first[p], table.d1[p]
-        x = y = vx = vy = 0.0
-        for a in range(table.width[p]):
-            x += d1[a] * z[first + 2 * a]
-            y += d1[a] * z[first + 2 * a + 1]
-            vx += d1[a] * v[first + 2 * a]
-            vy += d1[a] * v[first + 2 * a + 1]
+        x, y = tangent(z, first, table.width[p], d1)
+        vx, vy = tangent(v, first, table.width[p], d1)
         rate = table.weight[p] * (x * vx + y * vy) / math.hypot(x, y)
         for k in range(table.mode_width[p]):
             rates[table.mode_first[p] - start + k] += table.modes[p, k] * rate
@@ -77,13 +74,7 @@ def add_bending_damping(z, table, drag):
     """Add the Kelvin-Voigt damping of bending at z to drag (Q, Q): int beta EI (db/dq)^T (db/dq) W du."""
     for p in range(table.first.size):
         first, d1, d2 = table.first[p], table.d1[p], table.d2[p]
-        x1 = y1 = x2 = y2 = 0.0
-        for a in range(table.width[p]):
-            x, y = z[first + 2 * a], z[first + 2 * a + 1]
-            x1 += d1[a] * x
-            y1 += d1[a] * y
-            x2 += d2[a] * x
-            y2 += d2[a] * y
+        x1, y1, x2, y2 = derivatives(z, first, table.width[p], d1, d2)
         s = x1 * x1 + y1 * y1
         w = table.speed[p] if table.measure[p] == 0 else math.sqrt(s)
         power = 2.0 if table.measure[p] == 0 else 3.0
@@ -108,17 +99,14 @@ def add_stretching_damping(z, table, drag):
     """Add that of stretching by quadrature: int beta EA (d(eps)/dq)^T (d(eps)/dq) W du."""
     for p in range(table.first.size):
         first, d1 = table.first[p], table.d1[p]
-        x = y = 0.0
-        for a in range(table.width[p]):
-            x += d1[a] * z[first + 2 * a]
-            y += d1[a] * z[first + 2 * a + 1]
+        x, y = tangent(z, first, table.width[p], d1)
         length, speed = math.hypot(x, y), table.speed[p]
         w = speed if table.measure[p] == 0 else length
-        tangent = (x / length, y / length)
+        along = (x / length, y / length)
         weight = table.weight[p] * table.rigidity[p] * w / (speed * speed)
         for a in range(table.width[p]):
             for b in range(table.width[p]):
                 for i in range(2):
                     for j in range(2):
-                        share = weight * d1[a] * d1[b] * tangent[i] * tangent[j]
+                        share = weight * d1[a] * d1[b] * along[i] * along[j]
                         drag[first + 2 * a + i, first + 2 * b + j] += share

@@ -12,6 +12,7 @@ from spline_model.impulses.energies import energy_of
 from spline_model.impulses.space import Log, Moving
 from spline_model.impulses.state import Outcome, State
 from spline_model.impulses.totals import HALVED, LIMITED, SOLVES, STEPS, SWEEPS
+from spline_model.integrators.motion import Records
 from spline_model.kernels.motion import Motion
 from spline_model.kernels.record import KINETIC, POSITION, STRAIN, VELOCITY, WEIGHT, record
 
@@ -85,6 +86,18 @@ class Run:
         """Record where the run stands as its start."""
         self.log.states[0], self.log.rates[0] = self.moving.z, self.moving.v
         self.log.rows[0] = self.row()
+
+    def records(self, spacing: float, kept: int, message: str) -> Records:
+        """The first ``kept`` records, ``spacing`` [s] apart; message: why the run stopped, if it did."""
+        log = self.log
+        return Records(
+            time=np.arange(0.0, kept) * spacing,
+            states=log.states[:kept],
+            velocities=log.rates[:kept],
+            rows=log.rows[:kept],
+            message=message,
+            counters=named(self.moving.counters),
+        )
 
     def outcome(self, taken: int, asked: int, time: float, held: bool) -> Outcome:
         """Where the run stands, for who asked for steps."""

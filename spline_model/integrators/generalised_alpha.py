@@ -17,6 +17,7 @@ import numpy as np
 from scipy.linalg import get_lapack_funcs
 
 from spline_model.compile import System
+from spline_model.errors import InvalidParameter
 from spline_model.integrators.monitor import MOST_GAIN_OF_OTHERS, first_gain
 from spline_model.integrators.motion import Array, Records, require_conservative
 from spline_model.kernels.motion import Motion
@@ -117,6 +118,8 @@ def integrate(
 ) -> Records:
     """Take ``steps`` steps from (z, v), recording every ``every``-th one."""
     require_conservative(motion, "generalised-alpha")
+    if not 0.0 <= spectral_radius <= 1.0:
+        raise InvalidParameter("spectral_radius", spectral_radius, "a number from 0 to 1")
     stepper = Stepper(system, motion, z, v, acceleration, spectral_radius)
     strains, totals = np.empty(len(motion.rigidity)), np.zeros(2)
     states, rates, rows, message = [z], [v], [np.empty(7)], ""

@@ -28,7 +28,7 @@ from spline_model.mechanism import Mechanism
 STABILITY_LIMIT = 12.0**0.5
 """omega h up to which a step does not amplify an undamped oscillation."""
 MOST_ENERGY = 1.01
-"""Strain energy over the initial one at which a run is unstable and stops."""
+"""Strain energy over the whole energy of the start at which a run is unstable and stops."""
 
 
 class Flight(NamedTuple):
@@ -39,7 +39,7 @@ class Flight(NamedTuple):
     r: Array
     w: Array
     acceleration: Array
-    records: tuple[Array, Array, Array, Array]
+    records: tuple[Array, Array, Array]
     most_energy: float
 
     def fly(self, step: float, every: int) -> int:
@@ -60,10 +60,10 @@ def flight(system: System, motion: Motion, z: Array, v: Array, rows: int, mechan
     acceleration, strain = np.zeros_like(r), np.zeros(rows)
     accelerate(r, w, constants, space, acceleration)
     strain[0] = stored_energy(r, constants, space)[0]
-    places, rates, accelerations = (np.zeros((rows, len(r))) for _ in range(3))
-    places[0], rates[0], accelerations[0] = r, w, acceleration
+    places, rates = (np.zeros((rows, len(r))) for _ in range(2))
+    places[0], rates[0] = r, w
     most = MOST_ENERGY * (strain[0] + 0.5 * float(v @ motion.mass @ v))
-    return Flight(constants, space, r, w, acceleration, (places, rates, accelerations, strain), most)
+    return Flight(constants, space, r, w, acceleration, (places, rates, strain), most)
 
 
 def integrate(
@@ -82,7 +82,7 @@ def integrate(
     rows = steps // every + 1
     start = flight(system, motion, z, v, rows, mechanism)
     done = start.fly(step, every)
-    places, rates, _, strain = start.records
+    places, rates, strain = start.records
     q, v = coordinates(mechanism, system, start.constants.frame, places[:done], rates[:done])
     table = np.zeros((done, 7))
     table[:, KINETIC] = 0.5 * np.einsum("ti,ij,tj->t", v, motion.mass, v, optimize=True)

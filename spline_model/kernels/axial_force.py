@@ -10,6 +10,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from spline_model.kernels.chain import add_isotropic
+from spline_model.kernels.curve import tangent
 
 
 class AxialForceTable(NamedTuple):
@@ -45,10 +46,7 @@ def add_axial_force(z, table, gradient, hessian):
         first, width, d1 = table.first[p], table.width[p], table.d1[p]
         mode_first, mode_width, modes = table.mode_first[p], table.mode_width[p], table.modes[p]
         speed, c, weight = table.speed[p], table.compliance[p], table.weight[p]
-        x1 = y1 = 0.0
-        for a in range(width):
-            x1 += d1[a] * z[first + 2 * a]
-            y1 += d1[a] * z[first + 2 * a + 1]
+        x1, y1 = tangent(z, first, width, d1)
         v = math.sqrt(x1 * x1 + y1 * y1)
         tx, ty = x1 / v, y1 / v
         force = 0.0

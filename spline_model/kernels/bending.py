@@ -10,6 +10,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from spline_model.kernels.chain import add_to_gradient, add_to_hessian
+from spline_model.kernels.curve import derivatives
 
 
 class BendingTable(NamedTuple):
@@ -88,13 +89,7 @@ def add_bending(z, table, gradient, hessian):
     for p in range(table.first.size):
         first, width = table.first[p], table.width[p]
         d1, d2 = table.d1[p], table.d2[p]
-        x1 = y1 = x2 = y2 = 0.0
-        for a in range(width):
-            x, y = z[first + 2 * a], z[first + 2 * a + 1]
-            x1 += d1[a] * x
-            y1 += d1[a] * y
-            x2 += d2[a] * x
-            y2 += d2[a] * y
+        x1, y1, x2, y2 = derivatives(z, first, width, d1, d2)
         weight = table.weight[p]
         energy += weight * point_bending(
             x1, y1, x2, y2, table.speed[p], table.curvature[p], table.rigidity[p], table.measure[p], g, h

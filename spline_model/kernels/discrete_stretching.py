@@ -10,17 +10,14 @@ import math
 
 from numba import njit
 
+from spline_model.kernels.curve import tangent
+
 
 @njit(cache=True, nogil=True)
 def tangents(z0, z1, first, width, d1):
     """C' at both states: x0', y0', x1', y1'."""
-    x0 = y0 = x1 = y1 = 0.0
-    for a in range(width):
-        at = first + 2 * a
-        x0 += d1[a] * z0[at]
-        y0 += d1[a] * z0[at + 1]
-        x1 += d1[a] * z1[at]
-        y1 += d1[a] * z1[at + 1]
+    x0, y0 = tangent(z0, first, width, d1)
+    x1, y1 = tangent(z1, first, width, d1)
     return x0, y0, x1, y1
 
 

@@ -8,22 +8,7 @@ import numpy as np
 from numba import njit
 
 from spline_model.kernels.discrete_stretching import tangents
-
-
-@njit(cache=True, nogil=True)
-def strain_of_bending(z, table, p):
-    """Bending strain b [1/m] and length element w [m] at a point."""
-    first, d1, d2 = table.first[p], table.d1[p], table.d2[p]
-    x1 = y1 = x2 = y2 = 0.0
-    for a in range(table.width[p]):
-        x, y = z[first + 2 * a], z[first + 2 * a + 1]
-        x1 += d1[a] * x
-        y1 += d1[a] * y
-        x2 += d2[a] * x
-        y2 += d2[a] * y
-    s = x1 * x1 + y1 * y1
-    w = table.speed[p] if table.measure[p] == 0 else math.sqrt(s)
-    return (x1 * y2 - y1 * x2) / (s * w) - table.curvature[p], w
+from spline_model.kernels.energy import strain_of_bending
 
 
 @njit(cache=True, nogil=True)

@@ -7,6 +7,8 @@ import math
 import numpy as np
 from numba import njit
 
+from spline_model.kernels.curve import derivatives, tangent
+
 
 @njit(cache=True, nogil=True)
 def axial_strains(z, table, start, strains):
@@ -14,13 +16,20 @@ def axial_strains(z, table, start, strains):
     strains[:] = 0.0
     for p in range(table.first.size):
         first, d1 = table.first[p], table.d1[p]
-        x = y = 0.0
-        for a in range(table.width[p]):
-            x += d1[a] * z[first + 2 * a]
-            y += d1[a] * z[first + 2 * a + 1]
+        x, y = tangent(z, first, table.width[p], d1)
         gap = table.weight[p] * (math.hypot(x, y) - (1.0 + table.strain[p]) * table.speed[p])
         for k in range(table.mode_width[p]):
             strains[table.mode_first[p] - start + k] += table.modes[p, k] * gap
+
+
+@njit(cache=True, nogil=True)
+def strain_of_bending(z, table, p):
+    """Bending strain b [1/m] and length element w [m] at a point."""
+    first, d1, d2 = table.first[p], table.d1[p], table.d2[p]
+    x1, y1, x2, y2 = derivatives(z, first, table.width[p], d1, d2)
+    s = x1 * x1 + y1 * y1
+    w = table.speed[p] if table.measure[p] == 0 else math.sqrt(s)
+    return (x1 * y2 - y1 * x2) / (s * w) - table.curvature[p], w
 
 
 @njit(cache=True, nogil=True)
@@ -29,25 +38,12 @@ def strain_energy(z, tables, rigidity, start, strains):
     energy = 0.0
     bending = tables.bending
     for p in range(bending.first.size):
-        first, d1, d2 = bending.first[p], bending.d1[p], bending.d2[p]
-        x1 = y1 = x2 = y2 = 0.0
-        for a in range(bending.width[p]):
-            x, y = z[first + 2 * a], z[first + 2 * a + 1]
-            x1 += d1[a] * x
-            y1 += d1[a] * y
-            x2 += d2[a] * x
-            y2 += d2[a] * y
-        s = x1 * x1 + y1 * y1
-        w = bending.speed[p] if bending.measure[p] == 0 else math.sqrt(s)
-        b = (x1 * y2 - y1 * x2) / (s * w) - bending.curvature[p]
+        b, w = strain_of_bending(z, bending, p)
         energy += 0.5 * bending.weight[p] * bending.rigidity[p] * b * b * w
     table = tables.stretching
     for p in range(table.first.size):
         first, d1 = table.first[p], table.d1[p]
-        x = y = 0.0
-        for a in range(table.width[p]):
-            x += d1[a] * z[first + 2 * a]
-            y += d1[a] * z[first + 2 * a + 1]
+        x, y = tangent(z, first, table.width[p], d1)
         v = math.hypot(x, y)
         eps = v / table.speed[p] - 1.0 - table.strain[p]
         w = table.speed[p] if table.measure[p] == 0 else v

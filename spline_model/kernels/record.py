@@ -7,6 +7,7 @@ import math
 import numpy as np
 from numba import njit
 
+from spline_model.kernels.curve import tangent
 from spline_model.kernels.energy import strain_energy
 
 KINETIC, STRAIN, POSITION, VELOCITY, WEIGHT, WORK, DISSIPATED = range(7)
@@ -27,10 +28,7 @@ def forward(z, tables):
     table = tables.bending
     for p in range(table.first.size):
         first, d1 = table.first[p], table.d1[p]
-        x = y = 0.0
-        for a in range(table.width[p]):
-            x += d1[a] * z[first + 2 * a]
-            y += d1[a] * z[first + 2 * a + 1]
+        x, y = tangent(z, first, table.width[p], d1)
         if not math.hypot(x, y) > 0.1 * table.speed[p]:
             return False
     return True

@@ -10,6 +10,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from spline_model.kernels.chain import add_isotropic
+from spline_model.kernels.curve import tangent
 
 
 class StretchingTable(NamedTuple):
@@ -55,10 +56,7 @@ def add_stretching(z, table, gradient, hessian):
     energy = 0.0
     for p in range(table.first.size):
         first, width, d1 = table.first[p], table.width[p], table.d1[p]
-        x1 = y1 = 0.0
-        for a in range(width):
-            x1 += d1[a] * z[first + 2 * a]
-            y1 += d1[a] * z[first + 2 * a + 1]
+        x1, y1 = tangent(z, first, width, d1)
         v = math.sqrt(x1 * x1 + y1 * y1)
         density, force, slope = point_stretching(
             v, table.speed[p], table.strain[p], table.rigidity[p], table.measure[p]

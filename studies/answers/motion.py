@@ -1,4 +1,4 @@
-"""The neutral answers to a release and to small motion: arrays that do not tell which model they are of."""
+"""The neutral answer to a release: arrays that do not tell which model they are of."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from studies.answers.metrics import swing_frequency
-from studies.answers.response import estimate_of
+from studies.answers.response import Result, estimate_of
 
 Array = NDArray[np.float64]
 
@@ -25,48 +25,16 @@ SHARED_ARRAYS = (
 RESIDUALS = ("constraint_residual", "velocity_residual")
 
 
-class ReleaseResult(Protocol):
+class ReleaseResult(Result, Protocol):
     """What the trajectory of either model offers; see `Motion` for the arrays."""
-
-    @property
-    def status(self) -> Any:
-        """Enumeration of how the run ended; its value is "converged" unless it stopped early."""
-
-    @property
-    def message(self) -> str:
-        """Why and when the run stopped; empty when it did not."""
 
     @property
     def time(self) -> Array:
         """Instants of the records, the start first [s]."""
 
     @property
-    def counters(self) -> Mapping[str, int]:
-        """Work done, by kind."""
-
-    @property
     def settings(self) -> Mapping[str, Any]:
         """Integrator and step of the run."""
-
-    @property
-    def seconds(self) -> Mapping[str, float]:
-        """Time by part; "solve" is that of the steps alone."""
-
-
-class ModesResult(Protocol):
-    """What the modes of either model offer; see `Spectrum` for the arrays."""
-
-    @property
-    def held(self) -> bool:
-        """Whether the body's rotation is held."""
-
-    @property
-    def frequency(self) -> Array:
-        """Frequencies, ascending [Hz]."""
-
-    @property
-    def body_shapes(self) -> Array:
-        """Displacement x, y and rotation of one or all bodies side by side, of unit modal mass."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -146,43 +114,6 @@ class Motion:
         return swing_frequency(self.time, self.rotation)
 
 
-@dataclass(frozen=True, kw_only=True)
-class Spectrum:
-    """Natural modes of small motion about a static state, F modes, the lowest first.
-
-    Attributes:
-        model: "spline", "fe" or "fe-shear".
-        settings: discretisation keywords.
-        status: "converged" or "not_converged", when statics does not reach the state; `message` says where it
-            stopped.
-        rotation: of the static state [rad]; held: whether it is held.
-        effects: names of what was assembled.
-        frequency: (F,) [Hz]; negative where the state is unstable.
-        body: name of the body that may be driven; None without one.
-        body_shapes: (F, 3) its displacement x, y and rotation at unit modal mass.
-        slide_frequency: frequencies that are left out because they are the discretisation's alone [Hz].
-        wall_s: time of the static path to the state and of the modes [s].
-    """
-
-    model: str
-    settings: dict[str, Any]
-    status: str
-    message: str
-    effects: tuple[str, ...]
-    rotation: float
-    held: bool
-    frequency: Array
-    body: str | None
-    body_shapes: Array
-    slide_frequency: Array
-    wall_s: float
-
-    @property
-    def converged(self) -> bool:
-        """Whether there are modes: whether statics reached the state."""
-        return self.status == "converged"
-
-
 def motion(
     result: ReleaseResult,
     *,
@@ -239,63 +170,4 @@ def no_motion(
         solve_s=0.0,
         estimate=None,
         **{name: np.zeros(0) for name in (*SHARED_ARRAYS, *RESIDUALS)},
-    )
-
-
-def spectrum(
-    result: ModesResult,
-    *,
-    model: str,
-    settings: dict[str, Any],
-    effects: tuple[str, ...],
-    rotation: float,
-    body: str | None,
-    place: int,
-    wall_s: float,
-) -> Spectrum:
-    """Return the neutral form of a model's modes; only a spline has slide modes.
-
-    `place` is that of the body among those whose shapes the result holds side by side.
-    """
-    shapes = np.asarray(result.body_shapes, dtype=float)
-    return Spectrum(
-        model=model,
-        settings=settings,
-        status="converged",
-        message="",
-        effects=effects,
-        rotation=rotation,
-        held=result.held,
-        frequency=np.asarray(result.frequency, dtype=float),
-        body=body,
-        body_shapes=shapes[:, 3 * place : 3 * place + 3],
-        slide_frequency=np.asarray(getattr(result, "slide_frequency", ()), dtype=float),
-        wall_s=wall_s,
-    )
-
-
-def no_spectrum(
-    message: str,
-    *,
-    model: str,
-    settings: dict[str, Any],
-    effects: tuple[str, ...],
-    rotation: float,
-    held: bool,
-    body: str | None,
-) -> Spectrum:
-    """Return the modes about a state that statics does not reach: none."""
-    return Spectrum(
-        model=model,
-        settings=settings,
-        status="not_converged",
-        message=message,
-        effects=effects,
-        rotation=rotation,
-        held=held,
-        frequency=np.zeros(0),
-        body=body,
-        body_shapes=np.zeros((0, 3)),
-        slide_frequency=np.zeros(0),
-        wall_s=0.0,
     )

@@ -30,16 +30,16 @@ SHARED_ARRAYS = (
 )
 
 
-class StaticResult(Protocol):
-    """What the solution of either model offers; see `Response` for the arrays."""
+class Result(Protocol):
+    """What every answer of either model says of how it came about."""
 
     @property
     def status(self) -> Any:
-        """Enumeration of how the solve ended; its value is "converged" or "not_converged"."""
+        """Enumeration of how the solve ended; its value is "converged" unless it stopped early."""
 
     @property
     def message(self) -> str:
-        """Why and where the solve stopped; empty when it converged."""
+        """Why and where or when the solve stopped; empty when it did not."""
 
     @property
     def counters(self) -> Mapping[str, int]:
@@ -47,7 +47,11 @@ class StaticResult(Protocol):
 
     @property
     def seconds(self) -> Mapping[str, float]:
-        """Time by part; "solve" is the path's solve alone."""
+        """Time by part; "solve" is that of the path or of the steps alone."""
+
+
+class StaticResult(Result, Protocol):
+    """What the solution of either model offers; see `Response` for the arrays."""
 
     @property
     def history(self) -> tuple[tuple[float, ...], ...]:

@@ -15,7 +15,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from studies.answers.adapters import answer_modes
-from studies.answers.motion import Spectrum
+from studies.answers.spectrum import Spectrum
 from studies.cases.keys import ROTATION
 from studies.commands.answer import add_json_argument, deliver, described, ending, require_target
 from studies.commands.model import add_model_arguments, chosen_design, chosen_settings

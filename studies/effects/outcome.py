@@ -10,9 +10,10 @@ from numpy.typing import NDArray
 from studies.answers.adapters import answer_mechanism, answer_modes, answer_release, answer_static
 from studies.answers.assembly import MechanismResponse
 from studies.answers.metrics import whole_swing_frequency
-from studies.answers.motion import Motion, Spectrum
+from studies.answers.motion import Motion
 from studies.answers.response import Response
 from studies.answers.settings import SplineSettings
+from studies.answers.spectrum import Spectrum
 from studies.cases.design import Design
 from studies.cases.problem import Problem
 from studies.effects.size import Size, size_of

@@ -118,13 +118,20 @@ def uncertain(panel: Axes, level: float) -> None:
 
 def rendered(figure: Figure) -> Mapping[str, bytes]:
     """Return `figure` as {"svg": ..., "png": ...}: the same bytes for the same figure."""
-    files = {}
+    return {"svg": vector(figure), "png": _in_palette(_saved(figure, "png", "Software"))}
+
+
+def vector(figure: Figure) -> bytes:
+    """Return the SVG of `figure` alone."""
+    return _short(_saved(figure, "svg", "Date"))
+
+
+def _saved(figure: Figure, kind: str, unsaid: str) -> bytes:
+    """Return `figure` in a format, without what differs from one day or machine to the next."""
+    stream = io.BytesIO()
     with applied():
-        for kind, metadata in (("svg", {"Date": None}), ("png", {"Software": None})):
-            stream = io.BytesIO()
-            figure.savefig(stream, format=kind, metadata=metadata)
-            files[kind] = stream.getvalue()
-    return {"svg": _short(files["svg"]), "png": _in_palette(files["png"])}
+        figure.savefig(stream, format=kind, metadata={unsaid: None})
+    return stream.getvalue()
 
 
 def _short(svg: bytes) -> bytes:

@@ -1,7 +1,7 @@
 """Motions of every model after the release, as what work-precision diagrams need of them."""
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -14,6 +14,7 @@ from studies.answers.settings import Settings
 from studies.baselines.answer import BaselineFailed
 from studies.cases.problem import Problem
 from studies.errors import BadInput
+from studies.work_precision.answered import Answered, counted
 from studies.work_precision.work_of_motion import work_of_motion
 
 WORK = ("unknowns", "points", "steps", "evaluations", "factorisations", "flops")
@@ -27,28 +28,17 @@ AFFORDED, REPEATS = 0.3, 7
 
 
 @dataclass(frozen=True, kw_only=True)
-class SolvedMotion:
-    """A motion at T records, the start first.
+class SolvedMotion(Answered):
+    """A motion at T records, the start first; its work has the columns of `WORK`.
 
     Attributes:
-        status: "converged" or how it ended; message: why and when.
         time: (T,) [s]; rotation: (T,) [rad].
-        solve_s: median time of the steps alone [s]; repeats: of how many runs.
-        work: columns of `WORK`, NaN where they are not known.
+        repeats: number of runs whose median time is `solve_s` [1].
     """
 
-    status: str
-    message: str
     time: Array
     rotation: Array
-    solve_s: float
     repeats: int
-    work: Mapping[str, float]
-
-    @property
-    def converged(self) -> bool:
-        """Whether the motion was followed to its end."""
-        return self.status == "converged"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -88,7 +78,7 @@ def moving(settings: Settings, setting: str, family: str, **options: Any) -> Mov
             rotation=motion.rotation,
             solve_s=timed.solve_s,
             repeats=repeats,
-            work=work_of_motion(settings, motion.counters) if motion.converged else _unknown(),
+            work=work_of_motion(settings, motion.counters) if motion.converged else counted(WORK, {}),
         )
 
     return MovingMember(setting=setting, family=family, step=options.get("step") or math.nan, solve=solve)
@@ -116,7 +106,7 @@ def moving_baseline(module: Any, setting: str, family: str, step: float, **optio
             rotation=motion.rotation,
             solve_s=motion.solve_s,
             repeats=repeats,
-            work={name: float(motion.work.get(name, math.nan)) for name in WORK},
+            work=counted(WORK, motion.work),
         )
 
     return MovingMember(setting=setting, family=family, step=step, solve=solve)
@@ -131,7 +121,7 @@ def stopped(message: str) -> SolvedMotion:
         rotation=np.zeros(0),
         solve_s=math.nan,
         repeats=0,
-        work=_unknown(),
+        work=counted(WORK, {}),
     )
 
 
@@ -160,7 +150,3 @@ def motion_errors(motion: SolvedMotion, rotation: Array, instants: Array) -> dic
     frequency, exact = swing_frequency(motion.time, motion.rotation), swing_frequency(instants, rotation)
     values = (float(gap.max()), float(gap[-1]), abs(frequency / exact - 1.0))
     return dict(zip(names, values, strict=True))
-
-
-def _unknown() -> dict[str, float]:
-    return dict.fromkeys(WORK, math.nan)

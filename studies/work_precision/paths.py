@@ -1,7 +1,7 @@
 """Static paths of every model, ours and others', as what work-precision diagrams need of them."""
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -13,6 +13,7 @@ from studies.answers.settings import Settings
 from studies.baselines.answer import BaselineFailed
 from studies.cases.problem import Problem
 from studies.errors import BadInput
+from studies.work_precision.answered import Answered, counted
 from studies.work_precision.work import work_of
 
 QUANTITIES = ("trajectory", "torque", "stiffness")
@@ -23,29 +24,18 @@ THEIRS = {"iterations": "newton_iterations"}
 
 
 @dataclass(frozen=True, kw_only=True)
-class SolvedPath:
-    """A static path, S states, the unloaded one first.
+class SolvedPath(Answered):
+    """A static path, S states, the unloaded one first; its work has the columns of `WORK`.
 
     Attributes:
-        status: "converged" or "not_converged"; message: why and where it stopped.
         centre: (S, 2) [m]; torque: (S,) [N m]; stiffness: (S,) [N m / rad], NaN where a model gives none.
-        solve_s: time of the increments alone [s]; wall_s: of the whole answer [s], NaN if unknown.
-        work: columns of `WORK`, NaN where they are not known.
+        wall_s: time of the whole answer [s], NaN if unknown.
     """
 
-    status: str
-    message: str
     centre: Array
     torque: Array
     stiffness: Array
-    solve_s: float
     wall_s: float
-    work: Mapping[str, float]
-
-    @property
-    def converged(self) -> bool:
-        """Whether the whole path was reached."""
-        return self.status == "converged"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -93,7 +83,7 @@ def of_baseline(module: Any, setting: str, count: int, **settings: Any) -> Membe
             stiffness=path.stiffness,
             solve_s=path.solve_s,
             wall_s=math.nan,
-            work={name: float(path.work.get(THEIRS.get(name, name), math.nan)) for name in WORK},
+            work=counted(WORK, path.work, THEIRS),
         )
 
     return Member(setting=setting, count=count, solve=solve)
@@ -110,7 +100,7 @@ def unsolved(message: str) -> SolvedPath:
         stiffness=nothing,
         solve_s=math.nan,
         wall_s=math.nan,
-        work=dict.fromkeys(WORK, math.nan),
+        work=counted(WORK, {}),
     )
 
 

@@ -1,6 +1,7 @@
 """The release: energy, constraints, order, three integrators, momenta."""
 
 import math
+from functools import cache
 
 import numpy as np
 import pytest
@@ -64,12 +65,17 @@ def test_swing_gates_have_teeth(gate):
         gates.check(gate, error)
 
 
+@cache
+def two_milliseconds(step, integrator="energy"):
+    """Rotation within 2 ms after the release, at 20 instants."""
+    options = {"duration": 0.002, "records": 20, "step": step, "integrator": integrator}
+    return released({"control_points": 4}, **options).rotation
+
+
 def time_errors(steps):
     """Largest error of the rotation within 2 ms after the release, against an explicit run, for each step."""
-    options = {"duration": 0.002, "records": 20}
-    exact = released({"control_points": 4}, step=2e-7, integrator="explicit", **options).rotation
-    paths = [released({"control_points": 4}, step=step, **options).rotation for step in steps]
-    return np.array([np.abs(path - exact).max() for path in paths])
+    exact = two_milliseconds(2e-7, "explicit")
+    return np.array([np.abs(two_milliseconds(step) - exact).max() for step in steps])
 
 
 def test_order_two_in_time():
@@ -220,6 +226,10 @@ def test_an_unstable_explicit_step_is_named():
         ({"integrator": "euler"}, "expected one of energy, generalised-alpha, explicit"),
         ({"start": math.nan}, "start: got nan"),
         ({"accuracy": 1e-3, "step": 1e-4}, "accuracy: got 0.001"),
+        ({"accuracy": 1e-3, "spectral_radius": 0.9}, "spectral_radius: got 0.9, expected none"),
+        ({"records": 0}, "records: got 0, expected an integer >= 1"),
+        ({"integrator": "generalised-alpha", "spectral_radius": 1.5}, "spectral_radius: got 1.5, expected a"),
+        ({"integrator": "generalised-alpha", "radius": 0.9}, "reads only spectral_radius"),
     ],
     ids=str,
 )
@@ -227,6 +237,16 @@ def test_invalid_options_are_one_line(options, line):
     """Requirement: a bad option is refused with name, value and expectation."""
     with pytest.raises(InvalidParameter, match=line):
         released(**options)
+
+
+@pytest.mark.parametrize("integrator", sorted(INTEGRATORS))
+def test_an_option_that_is_not_read_is_refused(integrator):
+    """Requirement: every integrator names an option that it would ignore."""
+    line = (
+        rf"^tolerance: got 0.001, expected none: the integrator {integrator} reads (no option|only [a-z_]+)$"
+    )
+    with pytest.raises(InvalidParameter, match=line):
+        released(integrator=integrator, tolerance=1e-3)
 
 
 def test_a_start_that_statics_cannot_reach_is_refused():

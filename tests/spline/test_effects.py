@@ -1,42 +1,20 @@
-"""Effects: present ones are exact, absent ones cost nothing, and a new one is one class and one line."""
-
-import os
-import subprocess
-import sys
-from dataclasses import dataclass
+"""Effects: each is exact, and a scene of all of them balances its work and energies."""
 
 import numpy as np
 import pytest
 
 from spline_model.compile import compile_scene
 from spline_model.dynamics import solve_motion
-from spline_model.effects import DrivenRotation, registry
-from spline_model.effects.base import OpenPotential
-from spline_model.effects.registry import DEFAULT_EFFECTS, REGISTRY
-from spline_model.errors import InvalidParameter
+from spline_model.effects import DrivenRotation
+from spline_model.effects.registry import DEFAULT_EFFECTS
 from spline_model.integrators.motion import set_in_motion
-from spline_model.kernels import bending, energy_step
-from spline_model.kernels.assemble import assemble
-from spline_model.mechanism import StripDesign, mechanism
-from spline_model.modes import natural_frequencies
-from spline_model.newton import Workspace
+from spline_model.kernels import energy_step
 from spline_model.pivot import cross_axis_pivot, swinging_slide_stiffness
 from spline_model.statics import solve_mechanism
 from tests import gates
+from tests.spline.effect_scenes import EXTRA, PARAMETERS, scene_with
 from tests.table_one import TABLE_ONE
 
-#: Parameters with which each registered effect is tried; a new effect without its own is tried without.
-PARAMETERS = {
-    "gravity": {"acceleration": (300.0, -500.0)},
-    "strip_damping": {"relaxation_time": 1e-5},
-    "strip_drag": {"rate": 30.0},
-    "body_damping": {"translation": 2.0, "rotation": 0.01},
-    "applied_force": {"force": (30.0, -50.0)},
-    "applied_moment": {"moment": 30.0, "history": ((0.0, 0.0), (0.005, 1.0), (0.02, -1.0))},
-    "tip_force": {"strip": "free", "force": (3.0, 5.0)},
-    "driven_displacement": {"displacement": (-0.0148, -0.0011)},  # near the free path at 0.5 rad
-    "pre_strain": {"curvature": 1.0, "strain": 1e-4},
-}
 #: The same effects at zero: legal, and the same answer as without them.
 ZERO = {
     "gravity": {"acceleration": (0.0, 0.0)},
@@ -47,35 +25,6 @@ ZERO = {
     "applied_moment": {"moment": 0.0},
     "pre_strain": {"curvature": 0.0, "strain": 0.0},
 }
-EXTRA = [name for name in REGISTRY if name not in (*DEFAULT_EFFECTS, "inextensible")]
-
-
-def scene_with(*names, parameters=None, **settings):
-    """Table 1 with a free strip on its body, whose scene holds the default effects and the named ones."""
-    pivot = cross_axis_pivot(**TABLE_ONE).mechanism.design
-    strips = list(pivot.strips)
-    if "tip_force" in names:
-        strips.append(
-            StripDesign(
-                name="free",
-                start=(0.03, 0.06),
-                end=(0.03, 0.12),
-                root="body",
-                area=5e-6,
-                second_moment_of_area=1e-12,
-                youngs_modulus=206e9,
-                density=7800.0,
-            )
-        )
-    given = PARAMETERS if parameters is None else parameters
-    effects = tuple(n for n in DEFAULT_EFFECTS if not (n == "stretching" and "inextensible" in names))
-    return mechanism(
-        strips=strips,
-        bodies=pivot.bodies,
-        effects=effects + names,
-        parameters={name: given[name] for name in names if name in given},
-        **settings,
-    )
 
 
 def static_balance(increments, **more):
@@ -176,174 +125,6 @@ def test_zero_equals_absent(name):
         for scene in (scene_with(), scene_with(name, parameters=ZERO))
     )
     assert np.abs(run.rotation - same.rotation).max() <= 1e-14
-
-
-def test_unnamed_kinds_have_tables_of_length_zero():
-    """Requirement: what the scene does not name is not there: no row, no matrix."""
-    system = compile_scene(scene_with().scene)
-    motion = set_in_motion(system)
-    empty = (
-        system.tables.stretching.first,
-        system.tables.drives.row,
-        system.tables.loads.coordinate,
-        system.tables.weight,
-        motion.drag,
-        motion.bending_damping.first,
-        motion.stretching_damping.first,
-        motion.axial_relaxation,
-    )
-    assert [array.size for array in empty] == [0] * len(empty)
-    full = set_in_motion(compile_scene(scene_with(*(n for n in EXTRA if n != "driven_displacement")).scene))
-    assert full.drag.size and full.bending_damping.first.size and full.axial_relaxation.size
-
-
-def test_no_combination_recompiles():
-    """Requirement: every scene runs the same compiled code."""
-    if not hasattr(energy_step.run, "signatures"):
-        pytest.skip("the compiler is switched off")
-    solve_motion(scene_with(), start=0.5, duration=2e-4)
-    before = [len(kernel.signatures) for kernel in (assemble, energy_step.run, bending.add_bending)]
-    for name in EXTRA:
-        solve_motion(scene_with(name), start=0.5, duration=2e-4)
-    after = [len(kernel.signatures) for kernel in (assemble, energy_step.run, bending.add_bending)]
-    assert after == before
-
-
-def test_an_unnamed_effect_is_never_asked(monkeypatch):
-    """Requirement: with the makers of all other effects poisoned, a scene runs on its own."""
-
-    def poison(*_, **__):
-        raise RuntimeError("this effect is not in the scene")
-
-    for name in REGISTRY:
-        if name not in DEFAULT_EFFECTS:
-            monkeypatch.setitem(registry.REGISTRY, name, poison)
-    solution = solve_mechanism(scene_with(), rotation=1.0, increments=4)
-    run = solve_motion(scene_with(), start=0.5, duration=2e-4)
-    assert solution.effects == ("bending", "stretching")  # statics asks for no inertia
-    assert run.effects == DEFAULT_EFFECTS
-    with pytest.raises(RuntimeError, match="not in the scene"):
-        scene_with("gravity")
-
-
-POISONED = """
-import spline_model.kernels.stretching as stretching, spline_model.kernels.drives as drives
-def poison(*_):
-    raise RuntimeError("not in the scene")
-stretching.point_stretching = drives.factor_at = poison
-from spline_model.pivot import cross_axis_pivot
-from spline_model.statics import solve_statics
-from tests.table_one import TABLE_ONE
-for stretch in ("mixed", "consistent"):
-    pivot = cross_axis_pivot(**TABLE_ONE, control_points=4, stretch=stretch)
-    solve_statics(pivot, rotation=0.1, increments=1)
-    print(stretch, "runs")
-"""
-
-
-def test_an_unnamed_kernel_is_never_entered():
-    """Requirement: without the compiler, a poisoned kernel stops the scenes that name it and no other."""
-    environment = os.environ | {"NUMBA_DISABLE_JIT": "1"}
-    run = subprocess.run([sys.executable, "-c", POISONED], env=environment, capture_output=True, text=True)
-    assert run.stdout.split() == ["mixed", "runs"]
-    assert "RuntimeError: not in the scene" in run.stderr
-
-
-def test_inextensible_strips_have_no_axial_modes():
-    """Requirement: dropping the stretch lowers the highest frequency at least twofold for n = 4 to 8."""
-    for control_points in (4, 5, 6, 7, 8):
-        slide = swinging_slide_stiffness(control_points)
-        grid = {"control_points": control_points, "slide_stiffness": slide}
-        highest = []
-        for names in ((), ("inextensible",)):
-            modes = natural_frequencies(scene_with(*names, **grid), count=100)
-            highest.append(max(modes.frequency.max(), modes.slide_frequency.max()))
-        assert highest[0] > 2 * highest[1], (control_points, highest)
-
-
-def test_massless_strips_leave_the_body_alone_dynamic():
-    """Requirement: without strip inertia three degrees of freedom are dynamic, and energy is kept."""
-    pivot = cross_axis_pivot(**TABLE_ONE).mechanism.design
-    scene = mechanism(
-        strips=pivot.strips, bodies=pivot.bodies, effects=("bending", "stretching", "body_inertia")
-    )
-    massive = natural_frequencies(scene_with(), count=1).frequency[0]
-    modes = natural_frequencies(scene, count=10)
-    assert len(modes.frequency) == 3
-    assert 0 < modes.frequency[0] / massive - 1 < 0.02  # the strips weigh a third of the body
-    run = solve_motion(scene, start=1.2, duration=0.01)
-    assert run.settings["integrator"] == "quasi-static strips"
-    energy = run.kinetic_energy + run.strain_energy
-    gates.check("spline_motion_balance", np.abs(energy / energy[0] - 1).max())
-
-
-@pytest.mark.parametrize(
-    "effects, parameters, line",
-    [
-        (("bending", "gravty"), {}, "effects: got 'gravty', expected one of bending, .*nearest: gravity"),
-        (("bending", "stretching", "inextensible"), {}, "not both"),
-        (("bending",), {}, "stretching or inextensible beside bending"),
-        (("stretching",), {}, "bending, without which"),
-        (DEFAULT_EFFECTS, {"gravity": {}}, "an effect of the scene"),
-        ((*DEFAULT_EFFECTS, "strip_drag"), {"strip_drag": {"speed": 1.0}}, "only rate"),
-        ((*DEFAULT_EFFECTS, "strip_drag"), {"strip_drag": {"rate": -1.0}}, "rate: got -1.0"),
-        ((*DEFAULT_EFFECTS, "bending"), {}, "each name once"),
-    ],
-    ids=str,
-)
-def test_senseless_scenes_are_refused(effects, parameters, line):
-    """Requirement: unknown, contradictory and missing effects are one clear line that lists what there is."""
-    with pytest.raises(InvalidParameter, match=line):
-        cross_axis_pivot(**TABLE_ONE, effects=effects, parameters=parameters)
-
-
-def test_a_motion_without_inertia_is_refused():
-    """Requirement: dynamics without any inertia says which effects would give it some."""
-    pivot = cross_axis_pivot(**TABLE_ONE, effects=("bending", "stretching"))
-    with pytest.raises(InvalidParameter, match="strip_inertia, section_rotary_inertia, body_inertia"):
-        solve_motion(pivot.mechanism, start=0.5)
-
-
-@dataclass(frozen=True, kw_only=True)
-class GroundSpring(OpenPotential):
-    """The toy of CONTRIBUTING: a linear spring from a body's centre to the point where it rests."""
-
-    body: str
-    stiffness: float
-    rest: tuple[float, float]
-
-    def derivatives(self, q, layout):
-        """V = 1/2 k |r - r0|^2."""
-        at = layout.body(self.body)
-        place = np.arange(at.start, at.start + 2)
-        gap = q[place] - self.rest
-        gradient, hessian = np.zeros(len(q)), np.zeros((len(q), len(q)))
-        gradient[place] = self.stiffness * gap
-        hessian[place, place] = self.stiffness
-        return 0.5 * self.stiffness * gap @ gap, gradient, hessian
-
-
-def ground_spring(design, stiffness):
-    """The registry's entry of the toy effect."""
-    for body in design.bodies:
-        yield GroundSpring(body=body.name, stiffness=stiffness, rest=body.centre)
-
-
-def test_a_new_effect_is_one_class_and_one_line(monkeypatch):
-    """Requirement: an effect added by the recipe of CONTRIBUTING works in statics, modes and motion."""
-    monkeypatch.setitem(registry.REGISTRY, "ground_spring", ground_spring)
-    names = (*DEFAULT_EFFECTS, "ground_spring")
-    pivot = cross_axis_pivot(**TABLE_ONE, effects=names, parameters={"ground_spring": {"stiffness": 1e5}})
-    plain = solve_mechanism(scene_with(), rotation=1.0)
-    sprung = solve_mechanism(pivot.mechanism, rotation=1.0)
-    assert sprung.torque[-1] > 1.05 * plain.torque[-1]
-    assert natural_frequencies(pivot).frequency[0] >= natural_frequencies(scene_with()).frequency[0]
-    run = solve_motion(pivot.mechanism, start=1.0, duration=0.002, integrator="generalised-alpha")
-    assert run.status.value == "converged"
-    with pytest.raises(InvalidParameter, match="generalised-alpha"):
-        solve_motion(pivot.mechanism, start=1.0, duration=0.002)
-    work = Workspace.of(compile_scene(pivot.scene))
-    assert work.system.open_potentials[0].stiffness == 1e5
 
 
 def frame_difference(turned_by=0.7):

@@ -46,9 +46,7 @@ def test_stored_tables_draw_the_stored_figures(name):
             pytest.skip(f"drawn with {library} {record['versions'][library]}")
     with style.applied():
         figures = module_of(name).draw(store.load_tables(name))
-    drawn = {
-        f"{title}.svg": provenance.sha256(style.rendered(page)["svg"]) for title, page in figures.items()
-    }
+    drawn = {f"{title}.svg": provenance.sha256(style.vector(page)) for title, page in figures.items()}
     assert drawn == {file: digest for file, digest in record["figures"].items() if file.endswith(".svg")}
 
 

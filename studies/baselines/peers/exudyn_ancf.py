@@ -10,13 +10,14 @@ of 7 and 3, 2 mixed Lobatto and Gauss. Their errors differ by a factor of two or
 other being the smallest; 1 and 2 save 5 to 10 % of the time.
 """
 
+from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any
 
 import numpy as np
 
-from studies.baselines.answer import Array, BaselineMotion, BaselinePath, checked_choice, checked_count
-from studies.baselines.peers.exudyn_solve import follow, let_go
+from studies.baselines.answer import Array, checked_choice, checked_count
+from studies.baselines.peers.exudyn_code import Code
 from studies.baselines.peers.exudyn_system import System, hold, installed, system_of
 from studies.cases.problem import Problem
 
@@ -25,104 +26,41 @@ __all__ = ["installed", "release", "static_path"]
 MODEL = "exudyn ancf"
 
 
-def static_path(
-    problem: Problem,
-    rotations: Any,
-    *,
-    repeat: int = 1,
-    elements: int = 8,
-    integration: int = 0,
-    relative_tolerance: float = 1e-8,
-    solver: str = "tuned",
-) -> BaselinePath:
-    """Drive the body through `rotations` [rad], the first of which is 0, one load step each.
+@dataclass(frozen=True)
+class Cables:
+    """Strips of ANCF cables: elements a strip [1]; integration: rule, 0, 1 or 2."""
 
-    Args:
-        problem: the pivot.
-        rotations: (S,) [rad].
-        repeat: timed solves of the whole path [1].
-        elements: a strip [1].
-        integration: rule, 0, 1 or 2.
-        relative_tolerance: of Newton's residual against that at the step's start [1].
-        solver: "tuned", or "as delivered" for Exudyn's own defaults but for files and messages.
+    elements: int = 8
+    integration: int = 0
 
-    Raises:
-        BadInput: a setting out of range. BaselineFailed: no convergence.
-    """
-    settings = {
-        "elements": elements,
-        "integration": integration,
-        "relative_tolerance": relative_tolerance,
-        "solver": solver,
-    }
-    return follow(
-        _system(problem, elements, integration), rotations, model=MODEL, settings=settings, repeat=repeat
-    )
+    def __post_init__(self) -> None:
+        checked_count("elements", self.elements, 1)
+        checked_choice("integration", self.integration, (0, 1, 2))
 
+    def system(self, problem: Problem) -> System:
+        """Return the pivot with such strips in Exudyn."""
 
-def release(
-    problem: Problem,
-    *,
-    start: float,
-    duration: float,
-    step: float,
-    repeat: int = 1,
-    elements: int = 8,
-    integration: int = 0,
-    relative_tolerance: float = 1e-4,
-    spectral_radius: float = 0.9,
-) -> BaselineMotion:
-    """Let go of the body at rest at `start` [rad] and follow it by generalised-alpha for `duration` [s].
-
-    Args:
-        step: [s]; spectral_radius: of generalised-alpha at infinite frequency, 0 to 1. The others as of
-            `static_path`.
-
-    Raises:
-        BadInput: a setting out of range. BaselineFailed: no convergence.
-    """
-    settings = {
-        "elements": elements,
-        "integration": integration,
-        "relative_tolerance": relative_tolerance,
-        "spectral_radius": spectral_radius,
-    }
-    return let_go(
-        _system(problem, elements, integration),
-        start=start,
-        duration=duration,
-        step=step,
-        model=MODEL,
-        settings=settings,
-        repeat=repeat,
-    )
-
-
-def _system(problem: Problem, elements: int, integration: int) -> System:
-    checked_count("elements", elements, 1)
-    checked_choice("integration", integration, (0, 1, 2))
-
-    def strip(items: Any, mbs: Any, zero: int, root: Array, direction: Array) -> tuple[int, float]:
-        places = root + np.linspace(0.0, problem.length, elements + 1)[:, None] * direction
-        nodes = [
-            mbs.AddNode(items.NodePoint2DSlope1(referenceCoordinates=[*place, *direction]))
-            for place in places
-        ]
-        for pair in pairwise(nodes):
-            mbs.AddObject(
-                items.ObjectANCFCable2D(
-                    length=problem.length / elements,
-                    massPerLength=problem.density * problem.area,
-                    bendingStiffness=problem.youngs_modulus * problem.second_moment_of_area,
-                    axialStiffness=problem.youngs_modulus * problem.area,
-                    nodeNumbers=list(pair),
-                    useReducedOrderIntegration=integration,
+        def strip(items: Any, mbs: Any, zero: int, root: Array, direction: Array) -> tuple[int, float]:
+            places = root + np.linspace(0.0, problem.length, self.elements + 1)[:, None] * direction
+            nodes = [
+                mbs.AddNode(items.NodePoint2DSlope1(referenceCoordinates=[*place, *direction]))
+                for place in places
+            ]
+            for pair in pairwise(nodes):
+                mbs.AddObject(
+                    items.ObjectANCFCable2D(
+                        length=problem.length / self.elements,
+                        massPerLength=problem.density * problem.area,
+                        bendingStiffness=problem.youngs_modulus * problem.second_moment_of_area,
+                        axialStiffness=problem.youngs_modulus * problem.area,
+                        nodeNumbers=list(pair),
+                        useReducedOrderIntegration=self.integration,
+                    )
                 )
-            )
-        _clamp(items, mbs, zero, nodes[0], direction)
-        return nodes[-1], float(np.arctan2(direction[1], direction[0]))
+            _clamp(items, mbs, zero, nodes[0], direction)
+            return nodes[-1], float(np.arctan2(direction[1], direction[0]))
 
-    return system_of(problem, strip)
+        return system_of(problem, strip)
 
 
 def _clamp(items: Any, mbs: Any, zero: int, node: int, direction: Array) -> None:
@@ -141,3 +79,7 @@ def _clamp(items: Any, mbs: Any, zero: int, node: int, direction: Array) -> None
             offset=[0.0],
         )
     )
+
+
+CODE = Code(MODEL, Cables)
+static_path, release = CODE.static_path, CODE.release

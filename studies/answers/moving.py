@@ -1,0 +1,201 @@
+"""Put a design in motion to either model: its release and its natural modes."""
+
+from collections.abc import Callable, Mapping
+from contextlib import suppress
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from studies.answers.models import Model, built, effects_of, model_of, refusals
+from studies.answers.motion import Motion, motion, no_motion
+from studies.answers.settings import Settings, SplineSettings
+from studies.answers.spectrum import Spectrum, no_spectrum, spectrum
+from studies.cases.design import Design
+from studies.cases.effects import LOADS
+from studies.cases.mechanism import Mechanism
+from studies.cases.problem import Problem
+from studies.record.timing import measure
+
+#: Rotation of the first solve, which only compiles [rad]: small enough for any design and discretisation.
+WARM_UP_ROTATION = 1e-3
+#: The body of a pivot, as both models call it.
+PIVOT_BODY = "body"
+#: Duration of the first release, which only compiles [s], unless its step is longer.
+WARM_UP_DURATION = 1e-3
+
+
+def answer_release(
+    design: Design,
+    settings: Settings,
+    *,
+    duration: float,
+    start: float | None = None,
+    records: int | None = None,
+    repeat: int = 1,
+    **options: Any,
+) -> Motion:
+    """Drive a body to a rotation, let it go at rest and follow the motion.
+
+    `wall_s` of the motion is the median time of `repeat` releases, less that of releases that are over after
+    their first record: so the static path to the start, and what is set up, are left out. A short release
+    comes before, and when `repeat` is above 1 a whole one.
+
+    Args:
+        design: the pivot or mechanism; one without a rotation begins where its weight settles it.
+        settings: names the model and its discretisation.
+        duration: of the motion [s].
+        start: rotation at the start [rad]; None for the end of the design's path.
+        records: largest number of records; None for what the model keeps.
+        repeat: timed releases [1].
+        options: `step` [s], `integrator` and `accuracy` [rad], as the model names and checks them; None for
+            its own choice.
+
+    Raises:
+        BadInput: a setting or option that the model refuses; one line.
+    """
+    model = model_of(settings)
+    asked, keywords = built(model, design, settings, moving=True)
+    given = {name: value for name, value in options.items() if value is not None} | model.release_options
+    if records is not None:
+        given[model.records] = records
+    run = _release_of(model, design, asked)
+    angle = design.rotation if start is None else start
+    body = _reported(design) or ""
+
+    def release(**changes: Any) -> Any:
+        return run(**({"start": angle, "duration": duration} | given | changes))
+
+    with suppress(model.errors.InvalidParameter, model.errors.ConvergenceError):
+        short = min(duration, max(WARM_UP_DURATION, given.get("step", 0.0)))
+        release(start=WARM_UP_ROTATION, duration=short)
+    try:
+        with refusals(model, settings):
+            timing = measure(release, repeat=repeat, warm_up=1 if repeat > 1 else 0, part=solve_s)
+    except model.errors.ConvergenceError as error:
+        return no_motion(
+            f"statics does not reach the start: {error}",
+            model=settings.model,
+            settings=keywords,
+            effects=effects_of(asked),
+            names=_body_names(design),
+            body=body,
+        )
+    return motion(
+        timing.result,
+        model=settings.model,
+        settings=keywords,
+        effects=effects_of(asked),
+        bodies=_places(timing.result),
+        body=body,
+        wall_s=max(timing.median - _wall_of_start(release, timing.result, repeat), 0.0),
+        solve_s=timing.median_part,
+    )
+
+
+def answer_modes(
+    design: Design,
+    settings: Settings,
+    *,
+    rotation: float = 0.0,
+    count: int = 10,
+    held: bool = False,
+) -> Spectrum:
+    """Return the lowest natural modes about the static state at a rotation, by the settings' model.
+
+    At rest loads are absent, but weight and pre-strain act; at a rotation loads are in full.
+
+    Args:
+        design: the pivot or mechanism.
+        settings: names the model and its discretisation.
+        rotation: of the static state [rad].
+        count: of modes [1].
+        held: whether the rotation is held; if not, the driving torque acts on as it is.
+
+    Raises:
+        BadInput: a setting or option that the model refuses; one line.
+    """
+    model = model_of(settings)
+    if rotation == 0.0:
+        unloaded = [name for name in design.effects.names if name not in LOADS]
+        design = replace(design, effects=design.effects.renamed(unloaded))
+    asked, keywords = built(model, design, settings, moving=True)
+    body = _reported(design)
+    state = model.at_rest if isinstance(design, Mechanism) and rotation == 0.0 and not held else rotation
+    identity: dict[str, Any] = {
+        "model": settings.model,
+        "settings": keywords,
+        "effects": effects_of(asked),
+        "rotation": rotation,
+        "body": body,
+    }
+    try:
+        with refusals(model, settings):
+            timing = measure(
+                lambda: model.modes.natural_frequencies(
+                    asked, rotation=state, count=count, held=held, body=body
+                ),
+                repeat=1,
+                warm_up=0,
+            )
+    except model.errors.ConvergenceError as error:
+        return no_spectrum(f"statics does not reach the state: {error}", held=held, **identity)
+    names = _body_names(design)
+    place = names.index(body) if model.all_shapes and body is not None else 0
+    return spectrum(timing.result, place=place, wall_s=timing.median, **identity)
+
+
+def spline_mechanism(design: Design, settings: SplineSettings) -> Any:
+    """Return the spline model's mechanism of a design, as it is in motion; errors as of `answer_release`."""
+    asked, _ = built(model_of(settings), design, settings, moving=True)
+    return asked.mechanism if isinstance(design, Problem) else asked
+
+
+def solve_s(result: Any) -> float:
+    """Return what the increments or steps of a solution took, without what is made before and after [s]."""
+    return float(result.seconds["solve"])
+
+
+def _wall_of_start(release: Callable[..., Any], result: Any, repeat: int) -> float:
+    """Return the median time of releases that are over after the first record of `result` [s]."""
+    if len(result.time) <= 2:
+        return 0.0
+    # a little longer than the first record, lest round-off make the step longer than the duration
+    brief: dict[str, float | None] = {"duration": float(result.time[1]) * (1.0 + 1e-9)}
+    if getattr(result, "estimate", None) is not None:  # the step that was chosen, without the search for it
+        brief["accuracy"] = None
+    brief |= {name: value for name, value in (("step", result.settings.get("step_s")),) if value}
+    return measure(lambda: release(**brief), repeat=repeat, warm_up=0).median
+
+
+def _release_of(model: Model, design: Design, asked: Any) -> Callable[..., Any]:
+    """Return what releases the design in the model, by the keywords `start`, `duration` and options."""
+    if isinstance(design, Problem):
+
+        def release_pivot(**keywords: Any) -> Any:
+            return model.dynamics.solve_release(asked, **keywords)
+
+        return release_pivot
+
+    def release(start: float | None, **keywords: Any) -> Any:
+        begin = start or model.at_rest
+        return model.dynamics.solve_motion(asked, start=begin, body=design.body, **keywords)
+
+    return release
+
+
+def _reported(design: Design) -> str | None:
+    """Return the name of the body that is driven and whose swing is reported."""
+    return design.body if isinstance(design, Mechanism) else PIVOT_BODY
+
+
+def _body_names(design: Design) -> list[str]:
+    return [body.name for body in design.bodies] if isinstance(design, Mechanism) else [PIVOT_BODY]
+
+
+def _places(result: Any) -> Mapping[str, Any]:
+    """Return the places of all bodies by name, (T, 3), from a trajectory of many or of one."""
+    if hasattr(result, "bodies"):
+        places: Mapping[str, Any] = result.bodies
+        return places
+    return {PIVOT_BODY: np.column_stack((result.centre, result.rotation))}

@@ -1,0 +1,48 @@
+"""Table 1 with any of the registered effects, and a free strip where one needs it."""
+
+from spline_model.effects.registry import DEFAULT_EFFECTS, REGISTRY
+from spline_model.mechanism import StripDesign, mechanism
+from spline_model.pivot import cross_axis_pivot
+from tests.table_one import TABLE_ONE
+
+#: Parameters with which each registered effect is tried; a new effect without its own is tried without.
+PARAMETERS = {
+    "gravity": {"acceleration": (300.0, -500.0)},
+    "strip_damping": {"relaxation_time": 1e-5},
+    "strip_drag": {"rate": 30.0},
+    "body_damping": {"translation": 2.0, "rotation": 0.01},
+    "applied_force": {"force": (30.0, -50.0)},
+    "applied_moment": {"moment": 30.0, "history": ((0.0, 0.0), (0.005, 1.0), (0.02, -1.0))},
+    "tip_force": {"strip": "free", "force": (3.0, 5.0)},
+    "driven_displacement": {"displacement": (-0.0148, -0.0011)},  # near the free path at 0.5 rad
+    "pre_strain": {"curvature": 1.0, "strain": 1e-4},
+}
+EXTRA = [name for name in REGISTRY if name not in (*DEFAULT_EFFECTS, "inextensible")]
+
+
+def scene_with(*names, parameters=None, **settings):
+    """Table 1 with a free strip on its body, whose scene holds the default effects and the named ones."""
+    pivot = cross_axis_pivot(**TABLE_ONE).mechanism.design
+    strips = list(pivot.strips)
+    if "tip_force" in names:
+        strips.append(
+            StripDesign(
+                name="free",
+                start=(0.03, 0.06),
+                end=(0.03, 0.12),
+                root="body",
+                area=5e-6,
+                second_moment_of_area=1e-12,
+                youngs_modulus=206e9,
+                density=7800.0,
+            )
+        )
+    given = PARAMETERS if parameters is None else parameters
+    effects = tuple(n for n in DEFAULT_EFFECTS if not (n == "stretching" and "inextensible" in names))
+    return mechanism(
+        strips=strips,
+        bodies=pivot.bodies,
+        effects=effects + names,
+        parameters={name: given[name] for name in names if name in given},
+        **settings,
+    )
