@@ -33,20 +33,36 @@ def at_nodes(first: Array, last: Array) -> Array:
     return np.concatenate([first[:, :1], 0.5 * (first[:, 1:] + last[:, :-1]), last[:, -1:]], axis=1)
 
 
+def force_at_nodes(force: Array) -> Array:
+    """Return a component of the force, constant in each element (G, E), at the nodes (G, P).
+
+    It is the means of the adjacent elements, and at the ends the line through the last two elements: so the
+    weight or the inertia of half an element that stands at an end node is part of the section force there.
+    """
+    inner = 0.5 * (force[:, 1:] + force[:, :-1])
+    if force.shape[1] == 1:
+        return np.repeat(force, 2, axis=1)
+    first, last = 1.5 * force[:, :1] - 0.5 * force[:, 1:2], 1.5 * force[:, -1:] - 0.5 * force[:, -2:-1]
+    return np.concatenate([first, inner, last], axis=1)
+
+
 def recover(structure: Structure, y: Array) -> Recovery:
     """Return shape, section forces and reactions of the state y.
 
     The end forces of an element are those of its own equilibrium: of the part beyond on the element at its
-    end, and the opposite at its beginning. The shape is in the frame of the model.
+    end, and the opposite at its beginning. Reactions are the section forces at the ends. The shape is in the
+    frame of the model.
     """
     grid = (structure.strips, structure.stations)
     nodal = structure.displacement(y).reshape(*grid, 3)
     rest = np.array([strip.nodes for strip in structure.model.strips])
     forces = structure.element_forces(structure.element_displacement(y)).reshape(6, structure.strips, -1)
-    force_x, force_y, moment = (at_nodes(-forces[i], forces[i + 3]) for i in range(3))
+    force_x, force_y = (force_at_nodes(forces[i]) for i in (3, 4))
+    moment = at_nodes(-forces[2], forces[5])
     angle = nodal_angles(structure) + nodal[..., 2]
     c, s = np.cos(angle), np.sin(angle)
-    reactions = np.stack([forces[0:3, :, 0].T, forces[3:6, :, -1].T], axis=1)
+    beyond = np.stack([force_x, force_y, moment], axis=-1)
+    reactions = np.stack([-beyond[:, 0], beyond[:, -1]], axis=1)
     return Recovery(
         shape=rest + nodal[..., :2],
         axial_force=force_x * c + force_y * s,
