@@ -56,7 +56,7 @@ class Fields:
             stretch: [1]; axial_force, shear_force: [N]; bending_moment: [N m].
         reactions: (S, G, 2, 3) force x, y [N] and moment [N m] on the strip at root and tip.
         bodies: (S, B, 3) centre x, y [m], rotation [rad].
-        torque: (S,) of the drive of a static path [N m], NaN without one; None of other analyses.
+        torque: (S,) of the drive of a static path [N m]; None without one.
         frequency: (S,) of modes [Hz]; mode_shape: (S, G, P, 2), mode_bodies: (S, B, 3) displacement and
             rotation at unit modal mass; None of other analyses. The other fields of modes are those of the
             static state that the motion is about, the same in all.

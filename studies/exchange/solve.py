@@ -46,7 +46,7 @@ def static_fields(design: Design, settings: Settings, *, progress: Progress | No
         effects=assembled(effects_of(asked)),
         series="load_factor",
         values=np.asarray(values),
-        torque=np.asarray(result.torque),
+        torque=None if np.isnan(result.torque).all() else np.asarray(result.torque),
         **strip_arrays(model.static_fields(asked, result.states)),
     )
 
@@ -146,7 +146,7 @@ def _place(body: str, design: Design) -> int:
     return [block.name for block in blocks_of(design)].index(body)
 
 
-def _ended(result: Any) -> dict[str, str]:
+def _ended(result: Any) -> dict[str, Any]:
     return {"status": str(result.status.value), "message": result.message}
 
 

@@ -32,7 +32,7 @@ def svg(fields: Fields, states: list[int]) -> dict[str, bytes]:
     over the state that they are about.
     """
     with style.applied():
-        return {f"{fields.analysis}.svg": style.rendered(drawing(fields, states))["svg"]}
+        return {f"{fields.analysis}.svg": style.as_svg(drawing(fields, states))}
 
 
 def drawing(fields: Fields, states: list[int]) -> Figure:
@@ -78,7 +78,7 @@ def _rest(panel: Axes, fields: Fields, shape: Array, bodies: Array) -> None:
     _bodies(panel, fields, shape, bodies, colour=REST, width=2.0, style="--")
     for strip in shape:
         panel.plot(*(1e3 * strip.T), color=REST, linestyle="--", linewidth=1.0)
-    size = 4e-2 * float(fields.arc_length.max())
+    size = 0.03 * float(np.ptp(np.concatenate([*shape, bodies]), axis=0).max())
     for part, strip in zip(fields.parts, shape, strict=True):
         for on, point, inner in ((part.root, strip[0], strip[1]), (part.tip, strip[-1], strip[-2])):
             if on == GROUND:
@@ -133,10 +133,9 @@ def _legend(fields: Fields, states: list[int]) -> list[Line2D]:
 
 
 def _named(fields: Fields, state: int) -> str:
-    """Return what a state is called: its time or load factor, and the rotation of the driven body."""
+    """Return what a state is called: the rotation of the driven body, its time, or its load factor."""
     value = fields.values[state]
-    names = [f"{1e3 * value:.4g} ms" if fields.series == "time_s" else f"load factor {value:.3g}"]
-    if fields.blocks:
-        turn = f"{math.degrees(fields.bodies[state, fields.driven, 2]):.4g}°"
-        names = [turn] if fields.series == "load_factor" else [*names, turn]
-    return ", ".join(names)
+    if fields.series == "load_factor" and fields.torque is None:
+        return f"load factor {value:.3g}"
+    turn = f"{math.degrees(fields.bodies[state, fields.driven, 2]):.4g}°"
+    return turn if fields.series == "load_factor" else f"{1e3 * value:.4g} ms, {turn}"

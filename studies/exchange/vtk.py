@@ -8,13 +8,17 @@ Modes stand out by a tenth of the longest strip; `mode_per_sqrt_kg` is their sha
 import tempfile
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 from xml.sax.saxutils import quoteattr
 
 import meshio
 import numpy as np
+from numpy.typing import NDArray
 
 from studies.answers.fields import Array, Fields
 from studies.cases.mechanism import GROUND
+
+Indices = NDArray[np.int64]
 
 #: Values of `part_kind`.
 STRIP, BODY_ARM, BODY_CENTRE, CLAMP = range(4)
@@ -46,12 +50,12 @@ def vtk(fields: Fields) -> dict[str, bytes]:
 def mesh(fields: Fields, state: int) -> meshio.Mesh:
     """Return one state: strips as lines, bodies as centres with lines to the ends they carry, and clamps.
 
-    Points are those of the strips, strip by strip from root to tip, and then the bodies' centres. What the
-    state has as a whole is data of every cell.
+    Points are those of the strips, strip by strip from root to tip, then the bodies' centres, then once more
+    the ends that bodies carry, as points of the bodies. What the state has as a whole is data of every cell.
     """
     cells = list(_cells(fields))
     whole = {fields.series: fields.values, "torque_Nm": fields.torque, "frequency_Hz": fields.frequency}
-    of_cells: dict[str, list[Array]] = {
+    of_cells: dict[str, list[Any]] = {
         "part_kind": [np.full(len(parts), kind) for kind, _, parts, _ in cells],
         "part_number": [parts for _, _, parts, _ in cells],
     }
@@ -71,24 +75,39 @@ def mesh(fields: Fields, state: int) -> meshio.Mesh:
     )
 
 
-def _cells(fields: Fields) -> Iterator[tuple[int, str, Array, Array]]:
+def _cells(fields: Fields) -> Iterator[tuple[int, str, Indices, Indices]]:
     """Yield kind, VTK shape, numbers of the parts and points (cells, 1 or 2) of the blocks that there are."""
     strips, stations = fields.rotation.shape[1:]
     first = stations * np.arange(strips)
     nodes = (first[:, None] + np.arange(stations - 1)).ravel()
     yield STRIP, "line", np.repeat(np.arange(strips), stations - 1), np.stack([nodes, nodes + 1], axis=1)
-    centres = {block.name: strips * stations + k for k, block in enumerate(fields.blocks)}
-    ends = [(part.root, start) for part, start in zip(fields.parts, first, strict=True)]
-    ends += [(part.tip, start + stations - 1) for part, start in zip(fields.parts, first, strict=True)]
-    arms = [(list(centres).index(on), (centres[on], node)) for on, node in ends if on in centres]
-    if centres:
-        places = np.array(list(centres.values()))
-        yield BODY_CENTRE, "vertex", np.arange(len(places)), places[:, None]
-    if arms:
-        yield BODY_ARM, "line", np.array([part for part, _ in arms]), np.array([cell for _, cell in arms])
-    clamps = [node for on, node in ends if on == GROUND]
+    centres = strips * stations + np.arange(len(fields.blocks))
+    if len(centres):
+        yield BODY_CENTRE, "vertex", np.arange(len(centres)), centres[:, None]
+    ends = list(_carried(fields))
+    if ends:
+        bodies = np.array([body for body, _, _ in ends])
+        feet = strips * stations + len(fields.blocks) + np.arange(len(ends))
+        yield BODY_ARM, "line", bodies, np.stack([centres[bodies], feet], axis=1)
+    clamps = [start for part, start in zip(fields.parts, first, strict=True) if part.root == GROUND]
+    clamps += [start + stations - 1 for p, start in zip(fields.parts, first, strict=True) if p.tip == GROUND]
     if clamps:
         yield CLAMP, "vertex", np.arange(len(clamps)), np.array(clamps)[:, None]
+
+
+def _carried(fields: Fields) -> Iterator[tuple[int, int, int]]:
+    """Yield body, strip and station of every end that a body carries."""
+    names = [block.name for block in fields.blocks]
+    for strip, part in enumerate(fields.parts):
+        for on, station in ((part.root, 0), (part.tip, -1)):
+            if on in names:
+                yield names.index(on), strip, station
+
+
+def _everywhere(fields: Fields, strips: Array, bodies: Array) -> Array:
+    """Return vectors at all points (K, 2) from those of strips (G, P, 2) and bodies' centres (B, 2)."""
+    feet = [strips[strip, station] for _, strip, station in _carried(fields)]
+    return np.concatenate([strips.reshape(-1, 2), bodies, np.array(feet).reshape(-1, 2)])
 
 
 def mode_scale(fields: Fields, state: int) -> float:
@@ -100,35 +119,35 @@ def mode_scale(fields: Fields, state: int) -> float:
 
 
 def _points(fields: Fields, state: int) -> Array:
-    still = np.concatenate([fields.shape[state].reshape(-1, 2), fields.bodies[state, :, :2]])
-    scale, mode = mode_scale(fields, state), _mode(fields, state)
-    return _spatial(still if mode is None else still + scale * mode)
+    still = _everywhere(fields, fields.shape[state], fields.bodies[state, :, :2])
+    mode = _mode(fields, state)
+    return _spatial(still if mode is None else still + mode_scale(fields, state) * mode)
 
 
 def _mode(fields: Fields, state: int) -> Array | None:
     """Return the mode at unit modal mass at all points (K, 2); None of other analyses."""
     if fields.mode_shape is None or fields.mode_bodies is None:
         return None
-    return np.concatenate([fields.mode_shape[state].reshape(-1, 2), fields.mode_bodies[state, :, :2]])
+    return _everywhere(fields, fields.mode_shape[state], fields.mode_bodies[state, :, :2])
 
 
-def _point_data(fields: Fields, state: int) -> dict[str, Array]:
-    bodies = fields.bodies[state]
-    nothing = np.full(len(bodies), np.nan)
+def _point_data(fields: Fields, state: int) -> dict[str, Any]:
+    carried, bodies = [body for body, _, _ in _carried(fields)], fields.bodies[state]
+    beyond = len(bodies) + len(carried)
+    nothing, still = np.full(beyond, np.nan), np.zeros(beyond)
     forces = np.zeros((*fields.rotation.shape[1:], 2))
     moments = np.zeros(fields.rotation.shape[1:])
     for end, station in enumerate((0, -1)):
         forces[:, station] = fields.reactions[state, :, end, :2]
         moments[:, station] = fields.reactions[state, :, end, 2]
-    still = np.zeros((len(bodies), 2))
-    moved = np.concatenate([fields.displacement[state].reshape(-1, 2), bodies[:, :2] - fields.rest_bodies])
+    moved = _everywhere(fields, fields.displacement[state], bodies[:, :2] - fields.rest_bodies)
     found = {
         "displacement_m": _spatial(moved),
-        "rotation_rad": np.concatenate([fields.rotation[state].ravel(), bodies[:, 2]]),
+        "rotation_rad": np.concatenate([fields.rotation[state].ravel(), bodies[:, 2], bodies[carried, 2]]),
         "arc_length_m": np.concatenate([fields.arc_length.ravel(), nothing]),
         **{n: np.concatenate([getattr(fields, a)[state].ravel(), nothing]) for n, a in ALONG.items()},
-        "reaction_force_N": _spatial(np.concatenate([forces.reshape(-1, 2), still])),
-        "reaction_moment_Nm": np.concatenate([moments.ravel(), still[:, 0]]),
+        "reaction_force_N": _spatial(np.concatenate([forces.reshape(-1, 2), np.zeros((beyond, 2))])),
+        "reaction_moment_Nm": np.concatenate([moments.ravel(), still]),
     }
     mode = _mode(fields, state)
     return found if mode is None else found | {"mode_per_sqrt_kg": _spatial(mode)}

@@ -118,13 +118,19 @@ def uncertain(panel: Axes, level: float) -> None:
 
 def rendered(figure: Figure) -> Mapping[str, bytes]:
     """Return `figure` as {"svg": ..., "png": ...}: the same bytes for the same figure."""
-    files = {}
+    return {"svg": as_svg(figure), "png": _in_palette(_saved(figure, "png", {"Software": None}))}
+
+
+def as_svg(figure: Figure) -> bytes:
+    """Return `figure` as SVG alone, as `rendered` has it."""
+    return _short(_saved(figure, "svg", {"Date": None}))
+
+
+def _saved(figure: Figure, kind: str, metadata: dict[str, None]) -> bytes:
+    stream = io.BytesIO()
     with applied():
-        for kind, metadata in (("svg", {"Date": None}), ("png", {"Software": None})):
-            stream = io.BytesIO()
-            figure.savefig(stream, format=kind, metadata=metadata)
-            files[kind] = stream.getvalue()
-    return {"svg": _short(files["svg"]), "png": _in_palette(files["png"])}
+        figure.savefig(stream, format=kind, metadata=metadata)
+    return stream.getvalue()
 
 
 def _short(svg: bytes) -> bytes:
