@@ -2,7 +2,7 @@
 
     python -m studies export studies/cases/cross_axis_pivot.toml --model spline --out exported
     python -m studies export studies/cases/four_bar_of_flexures.toml --model fe --analysis modes --out modes
-    python -m studies export my_pivot.toml --model fe --analysis release --formats vtk,parquet --out swing
+    python -m studies export my_pivot.toml --model spline --analysis release --duration 0.01 --out swing
 
 vtk: NAME.pvd, which ParaView opens as one series, with NAME_0000.vtu ... for the states; svg: a drawing of
 the design at rest and deformed; csv, parquet: tables NAME_states, NAME_strips, NAME_bodies, NAME_reactions;
@@ -63,7 +63,8 @@ def add_arguments(parser: Parser) -> None:
         "--rotation-deg",
         type=degrees,
         metavar="X",
-        help="end of the path, start of the motion, or state of the modes, in deg (default: the case's)",
+        help="end of the path, start of the motion, or state of the modes, in deg "
+        "(default: the case's; of modes 0)",
     )
     parser.add_argument(
         "--draw-deg",
