@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from .effects.named import PreStrain
 from .model import Model
-from .recovery import nodal_angles, recover
+from .recovery import at_nodes, nodal_angles, recover
 from .statics import body_motion
 
 Array = NDArray[np.float64]
@@ -62,28 +62,16 @@ def strip_fields(model: Model, states: Array) -> StripFields:
     elements, rows = structure.elements, (structure.strips, -1)
     bending = elements.flexural_rigidity.reshape(rows)[:, :1]
     axial = elements.axial_rigidity.reshape(rows)[:, :1]
-    at_rest = _rest_curvature(nodal_angles(structure), elements.length.reshape(rows))
+    turning = np.diff(nodal_angles(structure), axis=1) / elements.length.reshape(rows)
     moved = [body_motion(structure, y, k) for k in range(len(model.bodies))]
     return StripFields(
         arc_length=structure.basis.mesh.p[0].reshape(grid),
         rest_shape=np.array([strip.nodes for strip in model.strips]),
         rotation=np.array([structure.displacement(each)[:, 2].reshape(grid) for each in y]),
-        curvature=at_rest + found["bending_moment"] / bending + pre_strain.curvature,
+        curvature=at_nodes(turning, turning) + found["bending_moment"] / bending + pre_strain.curvature,
         stretch=1.0 + found["axial_force"] / axial + pre_strain.strain,
         reactions=np.array([each.clamp_reactions for each in recovered]),
         rest_bodies=np.array([body.centre for body in model.bodies]).reshape(-1, 2),
         bodies=np.array(moved).reshape(-1, len(y), 3).swapaxes(0, 1),
         **found,
     )
-
-
-def _rest_curvature(angle: Array, length: Array) -> Array:
-    """Return d angle / d s0 at rest (G, P) [1/m] from directions at nodes (G, P) and element lengths (G, E).
-
-    The direction of an end node is that of its element's middle, half an element away.
-    """
-    steps = length.copy()
-    steps[:, 0], steps[:, -1] = 0.5 * steps[:, 0], 0.5 * steps[:, -1]
-    inner = np.diff(angle, axis=1) / steps
-    ends = (inner[:, :1], 0.5 * (inner[:, 1:] + inner[:, :-1]), inner[:, -1:])
-    return np.concatenate(ends, axis=1)
