@@ -129,7 +129,10 @@ def test_example_runs(words, tmp_path, monkeypatch, capsys):
         return
     if name == "markers":
         pytest.importorskip("cv2")
-    shutil.copytree(FOLDER, tmp_path / "studies" / "cases")
+    for path in (ROOT / "studies").rglob("*.toml"):
+        place = tmp_path / path.relative_to(ROOT)
+        place.parent.mkdir(parents=True, exist_ok=True)
+        shutil.copy(path, place)
     shutil.copy(FOLDER / "cross_axis_pivot.toml", tmp_path / "my_pivot.toml")
     _own_results(name, tmp_path / "results")
     monkeypatch.chdir(tmp_path)
