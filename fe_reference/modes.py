@@ -30,6 +30,7 @@ class Modes:
         frequency (C,): [Hz], ascending; negative where the state is unstable: -growth rate / (2 pi).
         shapes (C, G, P, 2): displacements of the nodes, of unit modal mass [m / sqrt(kg m^2)].
         body_shapes (C, 3 B): displacement of the centre of mass and rotation of every body, same scale.
+        state (size,): reduced coordinates of the static state.
     """
 
     rotation: float
@@ -38,6 +39,7 @@ class Modes:
     frequency: Array
     shapes: Array
     body_shapes: Array
+    state: Array
 
 
 def natural_frequencies(
@@ -87,6 +89,7 @@ def natural_frequencies(
         frequency=np.sign(values) * np.sqrt(np.abs(values)) / (2.0 * np.pi),
         shapes=_nodal_shapes(structure, full, y),
         body_shapes=full[:, structure.first_body :],
+        state=y,
     )
 
 

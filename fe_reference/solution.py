@@ -52,6 +52,7 @@ class StaticSolution:
         gravity_energy (S,): energy of the weight, zero in the shape at rest [J].
         work (S,): of drives and loads since the first state, by Hermite's rule over the increments [J].
         seconds: by part, see `fe_reference.stopwatch`.
+        states (S, size): reduced coordinates, for `section_forces`.
         counters: increments, halvings, newton_iterations, residual_evaluations, tangent_evaluations,
             factorisations.
         history: dimensionless residual norms of every accepted increment.
@@ -75,6 +76,7 @@ class StaticSolution:
     axial_force: Array
     bending_moment: Array
     shear_force: Array
+    states: Array
     counters: Mapping[str, int]
     history: tuple[tuple[float, ...], ...]
     seconds: Mapping[str, float]
@@ -99,6 +101,7 @@ class MechanismSolution:
         work (S,): of drives and loads since the first state [J].
         shape (S, G, P, 2): positions of the nodes [m]. bending_moment (S, G, P): [N m].
         clamp_reactions (S, G, 2, 3): force x, y [N] and moment [N m] on the strip at its root and its tip.
+        states (S, size): reduced coordinates, for `section_forces`.
         effects: names of the effects of the scene.
         seconds: as in `StaticSolution`.
         counters: as in `StaticSolution`, and settling_increments: of the way to the first state.
@@ -118,6 +121,7 @@ class MechanismSolution:
     shape: Array
     bending_moment: Array
     clamp_reactions: Array
+    states: Array
     effects: tuple[str, ...]
     counters: Mapping[str, int]
     history: tuple[tuple[float, ...], ...]

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from .mass import carried_over
 from .motion import Samples
 from .solution import Status
 from .statics import body_motion
@@ -31,6 +32,7 @@ class Trajectory:
         constraint_residual (T,) [m], velocity_residual (T,) [m/s]: zero: clamps and attachments are
             eliminated exactly, not enforced.
         shape (T, G, P, 2): positions of the nodes, same origin [m].
+        states (T, size): reduced coordinates, for `section_forces`.
         counters: steps, force_evaluations; implicit also iterations, factorisations, halvings.
         settings: integrator, step_s, critical_step_s (explicit), start_rad and what else defines the run.
         seconds: by part (`fe_reference.stopwatch`), "start" the static state that is let go.
@@ -50,6 +52,7 @@ class Trajectory:
     constraint_residual: Array
     velocity_residual: Array
     shape: Array
+    states: Array
     counters: Mapping[str, int]
     settings: Mapping[str, float | str]
     seconds: Mapping[str, float]
@@ -70,6 +73,7 @@ class MechanismTrajectory:
         bodies, rates: by name, place of the centre and turn (T, 3) [m, rad], and their rates.
         kinetic_energy, strain_energy, gravity_energy, work, dissipated (T,): as in `Trajectory` [J].
         shape (T, G, P, 2): positions of the nodes [m].
+        states (T, size): reduced coordinates, for `section_forces`.
         effects: names of the effects of the scene.
         counters, settings, seconds: as in `Trajectory`.
     """
@@ -85,6 +89,7 @@ class MechanismTrajectory:
     work: Array
     dissipated: Array
     shape: Array
+    states: Array
     effects: tuple[str, ...]
     counters: Mapping[str, int]
     settings: Mapping[str, float | str]
@@ -121,6 +126,8 @@ def _shared(structure: Structure, motion: Samples, settings: Mapping[str, float 
         "message": motion.message,
         "time": np.array(motion.time),
         "shape": nodes + moved.reshape(-1, *nodes.shape),
+        # the motion may be reduced about other points of the bodies than the model's own structure
+        "states": np.array([carried_over(structure, each, structure.model.structure) for each in motion.y]),
         "counters": dict(motion.counters),
         "settings": settings,
         **{field: motion.energies(part) for field, part in names.items()},

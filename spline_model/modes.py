@@ -37,17 +37,19 @@ class Modes:
 
     frequency (F,) [Hz], negative where the state is unstable (growth rate over 2 pi);
     shapes (F, G, P, 2) and body_shapes (F, 3): displacement of the strips' stations and of
-    the body (x, y, theta; zero without one) at unit modal mass; slide_frequency: those left out as
-    slide modes
-    [Hz]; held: whether the body's rotation was held.
+    the body (x, y, theta; zero without one) at unit modal mass; bodies: those of every body by
+    name; slide_frequency: those left out as slide modes [Hz]; held: whether the body's
+    rotation was held; state: unknowns of the static state (N,).
     """
 
     frequency: Array
     shapes: Array
     body_shapes: Array
+    bodies: dict[str, Array]
     slide_frequency: Array
     rotation: float
     held: bool
+    state: Array
 
 
 def natural_frequencies(
@@ -85,9 +87,11 @@ def natural_frequencies(
         frequency=frequency[kept],
         shapes=np.stack([b @ s for b, s in zip(values_at, shapes, strict=True)], axis=1),
         body_shapes=np.zeros((len(kept), 3)) if body is None else vectors[layout.body(body)][:, kept].T,
+        bodies={each.name: vectors[layout.body(each.name)][:, kept].T for each in system.scene.bodies},
         slide_frequency=frequency[slide],
         rotation=rotation,
         held=held,
+        state=z,
     )
 
 

@@ -38,6 +38,13 @@ class Strip:
         u, length = self.gauss_points()
         return np.asarray(length @ self.basis.evaluate(u))
 
+    def length_to(self, stations: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Arc length at rest from the start to ``stations`` (P,), u in [0, 1], shape (P,) [m]."""
+        u, weight = self.basis.gauss_rule(self.basis.degree + 1)
+        inner = np.asarray(stations)[:, None] * u
+        tangent = self.basis.evaluate(inner.ravel(), 1) @ self.control_points
+        return np.asarray(stations * (np.hypot(*tangent.T).reshape(inner.shape) @ weight))
+
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Body:

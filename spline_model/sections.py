@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.compile import System
-from spline_model.effects import Clamp, MixedStretching, Stretching
+from spline_model.effects import Clamp, MixedStretching, Stretching, StripGravity
 from spline_model.effects.base import Constraint
 
 Array = NDArray[np.float64]
@@ -20,7 +20,8 @@ class Sections:
 
     shape (S, P, 2) [m]; axial_force N and bending_moment M by the constitutive law, so
     that the oscillation of a locking strain is seen; shear_force V from the balance with
-    the clamp's reaction (no law gives it in a shear-rigid strip); (S, P) [N, N m, N].
+    the clamp's reaction and the strip's weight (no law gives it in a shear-rigid strip), so
+    of a static state only; (S, P) [N, N m, N].
     """
 
     shape: Array
@@ -61,6 +62,10 @@ def sections(system: System, states: Array, strip_name: str, stations: Array) ->
 
     normal = np.stack((-tangent[..., 1], tangent[..., 0]), axis=-1) / speed[..., None]
     pull = -clamp_reactions(system, states, strip_name, "start")[:, None, :2]
+    for weight in scene.of(StripGravity):
+        if weight.strip == strip_name:
+            mass = weight.linear_density * strip.length_to(stations)
+            pull = pull - mass[:, None] * np.asarray(weight.acceleration)
     return Sections(
         shape=shape,
         axial_force=force,

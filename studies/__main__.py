@@ -17,6 +17,8 @@ from studies.registry import COMMANDS  # noqa: E402
 
 BAD_INPUT = 2
 INTERRUPTED = 130
+#: What the overview shows: an example of one command.
+EXAMPLE = "solve studies/cases/cross_axis_pivot.toml --model spline --control-points 8"
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -55,10 +57,11 @@ def _dispatch(words: list[str]) -> int:
 
 
 def _overview() -> Parser:
-    lines = "\n".join(f"  {name:10s} {text}" for name, (_, text) in COMMANDS.items())
+    lines = "\n".join(f"  {name:12s} {text}" for name, (_, text) in COMMANDS.items())
     parser = Parser(
         prog="python -m studies",
-        description=f"Studies of the cross-axis flexural pivot.\n\ncommands:\n{lines}",
+        description="Studies of the cross-axis flexural pivot, by splines and by finite elements.\n\n"
+        f"    python -m studies {EXAMPLE}\n\ncommands:\n{lines}",
         epilog="`python -m studies COMMAND --help` explains a command, with an example.",
     )
     parser.add_argument(

@@ -12,6 +12,10 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "solve": ("studies.commands.solve", "drive a pivot through a rotation and report its path"),
     "release": ("studies.commands.release", "let go of a driven pivot and report its motion"),
     "modes": ("studies.commands.modes", "report natural frequencies, at rest or at a rotation"),
+    "export": (
+        "studies.commands.export",
+        "write deformed shapes and section forces as VTK, SVG, CSV, Parquet",
+    ),
     "converge": ("studies.commands.converge", "refine both models on a design until an accuracy is reached"),
     "audit": ("studies.commands.audit", "say what each effect of a scene is worth, and which are enough"),
     "advise": ("studies.commands.advise", "say which setting of each model meets an error at the least cost"),

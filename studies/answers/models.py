@@ -22,6 +22,7 @@ class Model:
         moving: discretisation keywords of a pivot in motion, from its settings, where they say nothing.
         at_rest: the rotation at which no body is held.
         all_shapes: whether modes hold the shapes of all bodies side by side, or of one.
+        static_fields, moving_fields: fields along the strips from the design in the model and its states.
     """
 
     pivot: ModuleType
@@ -35,6 +36,8 @@ class Model:
     moving: Callable[[Settings], dict[str, Any]]
     at_rest: float | None
     all_shapes: bool
+    static_fields: Callable[[Any, Any], Any]
+    moving_fields: Callable[[Any, Any], Any]
 
 
 def model_of(settings: Settings) -> Model:
@@ -45,6 +48,7 @@ def model_of(settings: Settings) -> Model:
         import fe_reference.mechanism
         import fe_reference.modes
         import fe_reference.pivot
+        import fe_reference.section_forces
         import fe_reference.statics
 
         return Model(
@@ -59,12 +63,15 @@ def model_of(settings: Settings) -> Model:
             moving=lambda settings: {},
             at_rest=None,
             all_shapes=True,
+            static_fields=fe_reference.section_forces.strip_fields,
+            moving_fields=fe_reference.section_forces.strip_fields,
         )
     import spline_model.dynamics
     import spline_model.errors
     import spline_model.mechanism
     import spline_model.modes
     import spline_model.pivot
+    import spline_model.section_forces
     import spline_model.statics
 
     return Model(
@@ -79,6 +86,8 @@ def model_of(settings: Settings) -> Model:
         moving=_swinging_spline,
         at_rest=0.0,
         all_shapes=False,
+        static_fields=spline_model.section_forces.static_fields,
+        moving_fields=spline_model.section_forces.moving_fields,
     )
 
 

@@ -32,7 +32,9 @@ from studies.work_precision.advice import MOTION_ERRORS, PATH_ERRORS, advise_mot
 def add_arguments(parser: Parser) -> None:
     """Declare the arguments of the command."""
     parser.add_argument("case", metavar="CASE.toml", help="the design of a pivot")
-    parser.add_argument("--error", type=positive, default=1e-3, metavar="E", help="wanted, default 1e-3")
+    parser.add_argument(
+        "--error", type=positive, default=1e-3, metavar="E", help="wanted relative error, default 1e-3"
+    )
     parser.add_argument("--dynamic", action="store_true", help="advise on the motion after the release")
     add_json_argument(parser)
 

@@ -17,7 +17,9 @@ NOT_CONVERGED = 3
 def add_json_argument(parser: Parser) -> None:
     """Declare where the answer goes."""
     parser.add_argument(
-        "--json", metavar="FILE|-", help="write the answer as JSON to FILE or the output stream"
+        "--json",
+        metavar="FILE|-",
+        help="write the answer as JSON to FILE or the output stream (default: a table to read)",
     )
 
 

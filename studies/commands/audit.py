@@ -40,7 +40,7 @@ def add_arguments(parser: Parser) -> None:
         help="control points a strip, default 6",
     )
     parser.add_argument(
-        "--tolerance", type=positive, default=1e-3, metavar="T", help="allowed change, default 1e-3"
+        "--tolerance", type=positive, default=1e-3, metavar="T", help="allowed relative change, default 1e-3"
     )
     add_json_argument(parser)
 

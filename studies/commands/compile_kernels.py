@@ -5,6 +5,7 @@
 `make setup` does this. The kernels are kept beside their sources. A kernel is compiled anew when its own file
 changes, but not when one changes that it calls: after such a change, run this command, which compiles all
 afresh. Nothing else depends on it: what is not compiled is compiled when it is first called.
+Exit code 0.
 """
 
 import argparse

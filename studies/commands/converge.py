@@ -37,22 +37,41 @@ ACCURACIES = (1e-3, 1e-4, 1e-6)
 
 def add_arguments(parser: Parser) -> None:
     """Declare the arguments of the command."""
-    parser.add_argument("case", metavar="CASE.toml", help="the design")
+    parser.add_argument("case", metavar="CASE.toml", help="the design of a pivot")
     parser.add_argument(
-        "--control-points", type=counts(4), default=(4, 12), metavar="A:B", help="default 4:12, in steps of 1"
+        "--control-points",
+        type=counts(4),
+        default=(4, 12),
+        metavar="A:B",
+        help="of the splines, in steps of 1, default 4:12",
     )
     parser.add_argument(
-        "--elements", type=counts(1), default=(5, 160), metavar="A:B", help="default 5:160, by doubling"
-    )
-    parser.add_argument("--basis", choices=("bezier", "bspline"), default="bezier", help="default bezier")
-    parser.add_argument(
-        "--measure", choices=("material", "spatial"), default="material", help="default material"
-    )
-    parser.add_argument(
-        "--stretch", choices=("mixed", "consistent", "inextensible"), default="mixed", help="default mixed"
+        "--elements",
+        type=counts(1),
+        default=(5, 160),
+        metavar="A:B",
+        help="of the meshes, by doubling, default 5:160",
     )
     parser.add_argument(
-        "--output", type=Path, metavar="FOLDER", help="default: results/designs/<name of the case>"
+        "--basis", choices=("bezier", "bspline"), default="bezier", help="of the splines, default bezier"
+    )
+    parser.add_argument(
+        "--measure",
+        choices=("material", "spatial"),
+        default="material",
+        help="of the splines, default material",
+    )
+    parser.add_argument(
+        "--stretch",
+        choices=("mixed", "consistent", "inextensible"),
+        default="mixed",
+        help="of the splines, default mixed",
+    )
+    parser.add_argument(
+        "--output",
+        type=Path,
+        metavar="FOLDER",
+        help="of tables and figure (default: results/designs/<name of the case>)",
     )
 
 

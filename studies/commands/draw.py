@@ -18,8 +18,14 @@ from studies.registry import module_of, selected
 
 def add_arguments(parser: Parser) -> None:
     """Declare the arguments of the command."""
-    parser.add_argument("names", nargs="+", metavar="NAME", help="studies, groups, or all")
-    parser.add_argument("--results", type=Path, default=RESULTS, metavar="FOLDER", help="default: results/")
+    parser.add_argument("names", nargs="+", metavar="NAME", help="studies, groups, or all; `list` names them")
+    parser.add_argument(
+        "--results",
+        type=Path,
+        default=RESULTS,
+        metavar="FOLDER",
+        help="where tables and figures are, default results/",
+    )
 
 
 def main(arguments: argparse.Namespace) -> int:

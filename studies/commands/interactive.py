@@ -32,16 +32,34 @@ EXTRA = {
 
 def add_arguments(parser: Parser) -> None:
     """Declare the arguments of the command."""
-    parser.add_argument("--port", type=whole_number(0), default=0, help="default: any free one")
-    parser.add_argument("--no-browser", action="store_true", help="print the address, open nothing")
-    parser.add_argument("--film", metavar="FILE|demo", help="pictures from a film instead of a camera")
     parser.add_argument(
-        "--camera", default="browser", metavar="browser|none|N", help="the browser's, none, or this machine's"
+        "--port", type=whole_number(0), default=0, metavar="P", help="of the server, default any free one"
     )
-    parser.add_argument("--calibration", type=Path, metavar="FILE", help="the camera's constants as JSON")
-    parser.add_argument("--preset", default="polymer", help="design to start with: polymer, table-1")
-    parser.add_argument("--record", type=Path, metavar="FILE", help="store the session's events")
-    parser.add_argument("--replay", type=Path, metavar="FILE", help="replay a stored session and compare")
+    parser.add_argument("--no-browser", action="store_true", help="print the address, open nothing")
+    parser.add_argument(
+        "--film", metavar="FILE|demo", help="pictures from a film, not a camera (default: none)"
+    )
+    parser.add_argument(
+        "--camera",
+        default="browser",
+        metavar="browser|none|N",
+        help="the browser's, none, or number N of this machine, default browser",
+    )
+    parser.add_argument(
+        "--calibration", type=Path, metavar="FILE", help="the camera's constants as JSON (default: none)"
+    )
+    parser.add_argument(
+        "--preset",
+        default="polymer",
+        metavar="NAME",
+        help="design to start with: polymer (default) or table-1",
+    )
+    parser.add_argument(
+        "--record", type=Path, metavar="FILE", help="store the session's events (default: none)"
+    )
+    parser.add_argument(
+        "--replay", type=Path, metavar="FILE", help="replay a stored session and compare (default: none)"
+    )
 
 
 def main(arguments: argparse.Namespace) -> int:

@@ -2,7 +2,7 @@
 
     python -m studies list
 
-A study may also be called by its last part, its group, or as one of "all".
+A study may also be called by its last part, its group, or as one of "all". Exit code 0.
 """
 
 import argparse

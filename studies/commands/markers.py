@@ -17,7 +17,9 @@ from studies.record.files import require_writable_file, write_whole
 
 def add_arguments(parser: Parser) -> None:
     """Declare the arguments of the command."""
-    parser.add_argument("-o", "--output", type=Path, default=Path("markers.pdf"), metavar="FILE")
+    parser.add_argument(
+        "-o", "--output", type=Path, default=Path("markers.pdf"), metavar="FILE", help="default markers.pdf"
+    )
 
 
 def main(arguments: argparse.Namespace) -> int:

@@ -25,24 +25,42 @@ FE_OPTIONS = ("elements",)
 
 def add_model_arguments(parser: Parser) -> None:
     """Declare the case, the model and the options of either discretisation."""
-    parser.add_argument("case", metavar="CASE.toml", help="the design")
+    parser.add_argument("case", metavar="CASE.toml", help="the design, such as studies/cases/*.toml")
     add_effects_argument(parser)
     parser.add_argument(
         "--model", choices=MODELS, required=True, help="spline, corotational or shear-deformable FE"
     )
-    parser.add_argument("--control-points", type=int, metavar="N", help="control points a strip (default 6)")
     parser.add_argument(
-        "--axial-modes", type=int, metavar="M", help="axial-force modes a strip (default N - 2)"
+        "--control-points", type=int, metavar="N", help="control points a strip (spline; default 6)"
     )
-    parser.add_argument("--basis", choices=("bezier", "bspline"), help="default bezier")
-    parser.add_argument("--measure", choices=("material", "spatial", "printed"), help="default material")
-    parser.add_argument("--stretch", choices=("mixed", "consistent", "inextensible"), help="default mixed")
-    parser.add_argument("--gauss-points", type=int, metavar="G", help="quadrature points a strip")
+    parser.add_argument(
+        "--axial-modes", type=int, metavar="M", help="axial-force modes a strip (spline; default N - 2)"
+    )
+    parser.add_argument(
+        "--basis", choices=("bezier", "bspline"), help="of the curve (spline; default bezier)"
+    )
+    parser.add_argument(
+        "--measure",
+        choices=("material", "spatial", "printed"),
+        help="of curvature and strain: spatial as in the paper, printed with its forces "
+        "(spline; default material)",
+    )
+    parser.add_argument(
+        "--stretch",
+        choices=("mixed", "consistent", "inextensible"),
+        help="form of the axial strain: consistent as the paper, which locks (spline; default mixed)",
+    )
+    parser.add_argument(
+        "--gauss-points",
+        type=int,
+        metavar="G",
+        help="quadrature points of a knot span (spline; default: degree + 3)",
+    )
     parser.add_argument(
         "--slide-stiffness",
         type=not_negative,
         metavar="S",
-        help="of the strains that the axial modes do not see, in EI/L^2 (default: the model's)",
+        help="of the strains that the axial modes do not see, in EI/L^2 (spline; default: the model's)",
     )
     parser.add_argument(
         "--elements", type=int, metavar="N", help="elements a strip (fe, fe-shear; default 20)"
@@ -54,7 +72,8 @@ def add_effects_argument(parser: Parser) -> None:
     parser.add_argument(
         "--effects",
         metavar="LIST",
-        help="changes of the scene's effects, as in --effects=+gravity,-strip_inertia; names alone are all",
+        help="changes of the scene's effects, as in --effects=+gravity,-strip_inertia; names alone are all "
+        "(default: the case's)",
     )
 
 

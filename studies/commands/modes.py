@@ -27,7 +27,11 @@ def add_arguments(parser: Parser) -> None:
     """Declare the arguments of the command."""
     add_model_arguments(parser)
     parser.add_argument(
-        "--rotation-deg", type=degrees, default=0.0, metavar="X", help="of the static state, default 0"
+        "--rotation-deg",
+        type=degrees,
+        default=0.0,
+        metavar="X",
+        help="of the static state, in deg, default 0",
     )
     parser.add_argument("--held", action="store_true", help="hold the rotation of the body")
     parser.add_argument(

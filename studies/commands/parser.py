@@ -4,7 +4,7 @@ import argparse
 import difflib
 import math
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from typing import Any, NoReturn
 
 from studies.errors import BadInput
@@ -86,3 +86,23 @@ def not_negative(text: str) -> float:
     if not 0.0 <= value < math.inf:
         raise argparse.ArgumentTypeError(f"got {text}, expected a finite number of at least 0")
     return value
+
+
+def names_of(known: Iterable[str]) -> Callable[[str], tuple[str, ...]]:
+    """Return a parser of comma-separated names, each one of `known` and none twice."""
+    choices = tuple(known)
+
+    def parse(text: str) -> tuple[str, ...]:
+        given = tuple(text.split(","))
+        for name in given:
+            if name not in choices or given.count(name) > 1:
+                expected = f"one or more of {', '.join(choices)}, separated by commas"
+                raise argparse.ArgumentTypeError(f"got {name or 'nothing'}, expected {expected}")
+        return given
+
+    return parse
+
+
+def degrees_list(text: str) -> tuple[float, ...]:
+    """Parse comma-separated angles in degrees."""
+    return tuple(degrees(part) for part in text.split(","))

@@ -1,4 +1,4 @@
-"""Rewrite the figures of agreement, of cost and of hard cases in README.md from the stored results.
+"""Rewrite the figures of agreement, of cost and of hard cases in the README from the stored results.
 
     python -m studies readme
 

@@ -48,10 +48,12 @@ def add_arguments(parser: Parser) -> None:
     """Declare the arguments of the command."""
     add_model_arguments(parser)
     parser.add_argument(
-        "--from-deg", type=degrees, metavar="X", help="rotation at the release (default: the case's)"
+        "--from-deg", type=degrees, metavar="X", help="rotation at the release, in deg (default: the case's)"
     )
-    parser.add_argument("--duration", type=float, default=0.05, metavar="T", help="in s, default 0.05")
-    parser.add_argument("--step", type=float, metavar="S", help="in s (default: the integrator's)")
+    parser.add_argument(
+        "--duration", type=float, default=0.05, metavar="T", help="of the motion, in s, default 0.05"
+    )
+    parser.add_argument("--step", type=float, metavar="S", help="of the integrator, in s (default: its own)")
     parser.add_argument(
         "--integrator",
         metavar="NAME",
@@ -62,10 +64,15 @@ def add_arguments(parser: Parser) -> None:
         "--accuracy",
         type=float,
         metavar="A",
-        help="wanted error of the rotation in rad: chooses steps and raises the control points (spline)",
+        help="wanted error of the rotation, in rad: chooses steps and raises the control points "
+        "(spline; default: none is asked for)",
     )
     parser.add_argument(
-        "--repeat", type=whole_number(1), default=1, metavar="R", help="wall_s is the median of R releases"
+        "--repeat",
+        type=whole_number(1),
+        default=1,
+        metavar="R",
+        help="wall_s is the median of R releases, default 1",
     )
     add_json_argument(parser)
 

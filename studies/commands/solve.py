@@ -44,19 +44,24 @@ def add_arguments(parser: Parser) -> None:
     """Declare the arguments of the command."""
     add_model_arguments(parser)
     parser.add_argument(
-        "--rotation-deg", type=degrees, metavar="X", help="end of the path (default: the case's)"
+        "--rotation-deg", type=degrees, metavar="X", help="end of the path, in deg (default: the case's)"
     )
     parser.add_argument(
         "--increments", type=int, metavar="K", help="increments of the path (default: the case's)"
     )
     parser.add_argument(
-        "--repeat", type=whole_number(1), default=1, metavar="R", help="wall_s is the median of R solves"
+        "--repeat",
+        type=whole_number(1),
+        default=1,
+        metavar="R",
+        help="wall_s is the median of R solves, default 1",
     )
     parser.add_argument(
         "--accuracy",
         type=positive,
         metavar="A",
-        help="wanted error of trajectory and torque, e.g. 1e-4: raises the control points (spline, pivots)",
+        help="wanted relative error of trajectory and torque, e.g. 1e-4: raises the control points "
+        "(spline, pivots; default: none is asked for)",
     )
     add_json_argument(parser)
 

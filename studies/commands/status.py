@@ -16,7 +16,13 @@ from studies.registry import STUDIES, module_of
 
 def add_arguments(parser: Parser) -> None:
     """Declare the arguments of the command."""
-    parser.add_argument("--results", type=Path, default=RESULTS, metavar="FOLDER", help="default: results/")
+    parser.add_argument(
+        "--results",
+        type=Path,
+        default=RESULTS,
+        metavar="FOLDER",
+        help="where tables and figures are, default results/",
+    )
 
 
 def main(arguments: argparse.Namespace) -> int:

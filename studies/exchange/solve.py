@@ -1,0 +1,159 @@
+"""Solve a design by either model for the fields along its strips: static path, motion or natural modes."""
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from studies.answers.fields import Array, Fields, blocks_of, parts_of, strip_arrays
+from studies.answers.models import built, effects_of, model_of, refusals
+from studies.answers.response import assembled
+from studies.answers.settings import Settings
+from studies.cases.design import Design
+from studies.cases.effects import LOADS
+from studies.cases.problem import Problem
+
+#: Arrays of the design, not of its states.
+GIVEN = ("arc_length", "rest_shape", "rest_bodies")
+Progress = Callable[[int, int], None]
+
+
+class NoState(ValueError):
+    """Statics does not reach the state that a motion or modes begin at; the text says where it stops."""
+
+
+def static_fields(design: Design, settings: Settings, *, progress: Progress | None = None) -> Fields:
+    """Return the fields of the states of a design's static path, the converged part if it stops early.
+
+    Raises:
+        BadInput: a setting that the model refuses; one line.
+    """
+    model = model_of(settings)
+    asked, keywords = built(model, design, settings, moving=False)
+    how: dict[str, Any] = {"increments": design.increments, "raise_on_failure": False, "progress": progress}
+    with refusals(model, settings):
+        if isinstance(design, Problem):
+            result = model.statics.solve_statics(asked, rotation=design.rotation, **how)
+            values = result.rotation / design.rotation
+        else:
+            drive = {"body": design.body, "rotation": design.rotation}
+            result = model.statics.solve_mechanism(asked, **drive, **how)
+            values = result.load_factor
+    return Fields(
+        **_identity("static", design, settings, keywords),
+        **_ended(result),
+        effects=assembled(effects_of(asked)),
+        series="load_factor",
+        values=np.asarray(values),
+        torque=None if np.isnan(result.torque).all() else np.asarray(result.torque),
+        **strip_arrays(model.static_fields(asked, result.states)),
+    )
+
+
+def release_fields(
+    design: Design, settings: Settings, *, duration: float, records: int, **options: Any
+) -> Fields:
+    """Return the fields of the records of a motion after a release from the end of the design's static path.
+
+    Args:
+        design, settings: as in `static_fields`.
+        duration: of the motion [s].
+        records: largest number of records [1], the start apart.
+        options: `step` [s] and `integrator`; None for the model's own choice.
+
+    Raises:
+        BadInput: a setting or option that the model refuses; one line.
+        NoState: statics does not reach the start.
+    """
+    model = model_of(settings)
+    asked, keywords = built(model, design, settings, moving=True)
+    given = {name: value for name, value in options.items() if value is not None} | model.release_options
+    given |= {"duration": duration, model.records: records}
+    with refusals(model, settings):
+        try:
+            if isinstance(design, Problem):
+                result = model.dynamics.solve_release(asked, start=design.rotation, **given)
+            else:
+                begin = design.rotation or model.at_rest
+                result = model.dynamics.solve_motion(asked, start=begin, body=design.body, **given)
+        except model.errors.ConvergenceError as error:
+            raise NoState(f"statics does not reach the start: {error}") from None
+    return Fields(
+        **_identity("release", design, settings, keywords | dict(result.settings)),
+        **_ended(result),
+        effects=effects_of(asked),
+        series="time_s",
+        values=np.asarray(result.time),
+        **strip_arrays(model.moving_fields(asked, result.states)),
+    )
+
+
+def mode_fields(design: Design, settings: Settings, *, count: int, held: bool) -> Fields:
+    """Return the fields of the lowest modes about the end of a design's static path, or about rest.
+
+    Args:
+        design, settings: as in `static_fields`; at rotation 0 no loads act, but weight and pre-strain do.
+        count: of modes [1].
+        held: whether the rotation is held.
+
+    Raises:
+        BadInput: a setting or option that the model refuses; one line.
+        NoState: statics does not reach the rotation.
+    """
+    rotation = design.rotation or 0.0
+    if rotation == 0.0:
+        unloaded = [name for name in design.effects.names if name not in LOADS]
+        design = replace(design, effects=design.effects.renamed(unloaded))
+    model = model_of(settings)
+    asked, keywords = built(model, design, settings, moving=True)
+    body = "body" if isinstance(design, Problem) else design.body
+    about = model.at_rest if not isinstance(design, Problem) and rotation == 0.0 and not held else rotation
+    with refusals(model, settings):
+        try:
+            result = model.modes.natural_frequencies(asked, rotation=about, count=count, held=held, body=body)
+        except model.errors.ConvergenceError as error:
+            raise NoState(f"statics does not reach the state: {error}") from None
+    count = len(result.frequency)
+    still = strip_arrays(model.static_fields(asked, np.asarray(result.state)[None]))
+    moving = {name: np.repeat(array, count, axis=0) for name, array in still.items() if name not in GIVEN}
+    return Fields(
+        **_identity("modes", design, settings, keywords),
+        status="converged",
+        message="",
+        effects=effects_of(asked),
+        series="mode",
+        values=np.arange(1.0, count + 1.0),
+        frequency=np.asarray(result.frequency),
+        mode_shape=np.asarray(result.shapes),
+        mode_bodies=_all_bodies(result, [block.name for block in blocks_of(design)]),
+        **(still | moving),
+    )
+
+
+def _identity(analysis: str, design: Design, settings: Settings, keywords: dict[str, Any]) -> dict[str, Any]:
+    return {
+        "analysis": analysis,
+        "model": settings.model,
+        "settings": keywords,
+        "parts": parts_of(design),
+        "blocks": blocks_of(design),
+        "driven": 0 if isinstance(design, Problem) or design.body is None else _place(design.body, design),
+    }
+
+
+def _place(body: str, design: Design) -> int:
+    return [block.name for block in blocks_of(design)].index(body)
+
+
+def _ended(result: Any) -> dict[str, Any]:
+    return {"status": str(result.status.value), "message": result.message}
+
+
+def _all_bodies(result: Any, names: list[str]) -> Array:
+    """Return the modal displacements of all bodies (C, B, 3), which one model holds by name, one by place."""
+    count = len(result.frequency)
+    if hasattr(result, "bodies"):
+        shapes = np.array([result.bodies[name] for name in names]).reshape(-1, count, 3)
+        return shapes.swapaxes(0, 1)
+    return np.asarray(result.body_shapes, dtype=float).reshape(count, -1, 3)

@@ -1,0 +1,130 @@
+"""Fields as tidy tables: one observation a row, units in the names of the columns."""
+
+import numpy as np
+import pandas as pd
+
+from studies.answers.fields import Fields
+
+#: What each column holds; the first of a table is what runs over the states.
+COLUMNS = {
+    "load_factor": "part of the static path, 0 to 1 [1]",
+    "time_s": "time since the release [s]",
+    "mode": "number of the mode, the lowest 1",
+    "frequency_Hz": "of the mode; negative where the state is unstable [Hz]",
+    "torque_Nm": "of the drive of a static path [N m]",
+    "strip": "name of the strip",
+    "body": "name of the body",
+    "end": "root or tip of the strip",
+    "on": "what that end is on: ground, a body, or free",
+    "arc_length_m": "along the strip at rest, from its root [m]",
+    "x_m": "place; of a body that of its centre of mass [m]",
+    "y_m": "place; of a body that of its centre of mass [m]",
+    "displacement_x_m": "from rest [m]",
+    "displacement_y_m": "from rest [m]",
+    "rotation_rad": "of the section or of the body from rest, counter-clockwise [rad]",
+    "curvature_per_m": "of the deformed strip, by its length at rest [1/m]",
+    "stretch": "length over length at rest [1]",
+    "axial_force_N": "tension positive [N]",
+    "shear_force_N": "of the part beyond on the part before, along the normal to the left [N]",
+    "bending_moment_Nm": "positive for counter-clockwise curvature from root to tip [N m]",
+    "extreme_fibre_stress_Pa": "larger magnitude of axial and bending stress at the two outer fibres [Pa]",
+    "mass_kg": "of the body [kg]",
+    "moment_of_inertia_kg_m2": "of the body about its centre of mass [kg m^2]",
+    "force_x_N": "of what the end is on, on the strip [N]",
+    "force_y_N": "of what the end is on, on the strip [N]",
+    "moment_Nm": "of what the end is on, on the strip [N m]",
+    "mode_x_per_sqrt_kg": "displacement of the mode at unit modal mass [m / sqrt(kg m^2)]",
+    "mode_y_per_sqrt_kg": "displacement of the mode at unit modal mass [m / sqrt(kg m^2)]",
+    "mode_rotation_per_m_sqrt_kg": "rotation of the mode at unit modal mass [rad / sqrt(kg m^2)]",
+}
+
+
+def tables(fields: Fields) -> dict[str, pd.DataFrame]:
+    """Return `states`, `strips`, `bodies` and `reactions`; a design without bodies has no table of them."""
+    found = {"states": _states(fields), "strips": _strips(fields), "reactions": _reactions(fields)}
+    return found | ({"bodies": _bodies(fields)} if fields.blocks else {})
+
+
+def _states(fields: Fields) -> pd.DataFrame:
+    """One row a state: what runs, and what the state has as a whole."""
+    columns = {fields.series: _series(fields)}
+    if fields.torque is not None:
+        columns["torque_Nm"] = fields.torque
+    if fields.frequency is not None:
+        columns["frequency_Hz"] = fields.frequency
+    return pd.DataFrame(columns)
+
+
+def _strips(fields: Fields) -> pd.DataFrame:
+    """One row a state, strip and station."""
+    states, strips, stations = fields.rotation.shape
+    columns = {
+        fields.series: np.repeat(_series(fields), strips * stations),
+        "strip": np.tile(np.repeat([part.name for part in fields.parts], stations), states),
+        "arc_length_m": np.tile(fields.arc_length.ravel(), states),
+    }
+    per_point = {
+        "x_m": fields.shape[..., 0],
+        "y_m": fields.shape[..., 1],
+        "displacement_x_m": fields.displacement[..., 0],
+        "displacement_y_m": fields.displacement[..., 1],
+        "rotation_rad": fields.rotation,
+        "curvature_per_m": fields.curvature,
+        "stretch": fields.stretch,
+        "axial_force_N": fields.axial_force,
+        "shear_force_N": fields.shear_force,
+        "bending_moment_Nm": fields.bending_moment,
+        "extreme_fibre_stress_Pa": fields.stress,
+    }
+    if fields.mode_shape is not None:
+        per_point["mode_x_per_sqrt_kg"] = fields.mode_shape[..., 0]
+        per_point["mode_y_per_sqrt_kg"] = fields.mode_shape[..., 1]
+    return pd.DataFrame(columns | {name: array.ravel() for name, array in per_point.items()})
+
+
+def _bodies(fields: Fields) -> pd.DataFrame:
+    """One row a state and body."""
+    states, bodies = fields.bodies.shape[:2]
+    x, y, turn = np.moveaxis(fields.bodies, 2, 0)
+    per_body = {
+        "x_m": x,
+        "y_m": y,
+        "displacement_x_m": x - fields.rest_bodies[:, 0],
+        "displacement_y_m": y - fields.rest_bodies[:, 1],
+        "rotation_rad": turn,
+    }
+    if fields.mode_bodies is not None:
+        names = ("mode_x_per_sqrt_kg", "mode_y_per_sqrt_kg", "mode_rotation_per_m_sqrt_kg")
+        per_body |= dict(zip(names, np.moveaxis(fields.mode_bodies, 2, 0), strict=True))
+    return pd.DataFrame(
+        {
+            fields.series: np.repeat(_series(fields), bodies),
+            "body": np.tile([block.name for block in fields.blocks], states),
+            **{name: array.ravel() for name, array in per_body.items()},
+            "mass_kg": np.tile([block.mass for block in fields.blocks], states),
+            "moment_of_inertia_kg_m2": np.tile([block.moment_of_inertia for block in fields.blocks], states),
+        }
+    )
+
+
+def _reactions(fields: Fields) -> pd.DataFrame:
+    """One row a state, strip and end."""
+    states, strips = fields.reactions.shape[:2]
+    on = [place or "free" for part in fields.parts for place in (part.root, part.tip)]
+    return pd.DataFrame(
+        {
+            fields.series: np.repeat(_series(fields), 2 * strips),
+            "strip": np.tile(np.repeat([part.name for part in fields.parts], 2), states),
+            "end": np.tile(["root", "tip"], states * strips),
+            "on": np.tile(on, states),
+            **{
+                name: fields.reactions[..., k].ravel()
+                for k, name in enumerate(("force_x_N", "force_y_N", "moment_Nm"))
+            },
+        }
+    )
+
+
+def _series(fields: Fields) -> np.ndarray:
+    """Return what runs over the states: modes are counted in whole numbers."""
+    return fields.values.astype(np.int64) if fields.series == "mode" else fields.values

@@ -1,0 +1,129 @@
+"""docs/data.md describes every table, column, key and array that there is, and nothing else."""
+
+import json
+import re
+from functools import cache
+
+import pandas as pd
+import pytest
+
+from studies.__main__ import main
+from studies.cases.problem import FOLDER
+from studies.exchange.tables import COLUMNS
+from studies.exchange.vtk import mesh
+from studies.record.source import ROOT
+from studies.record.store import RESULTS
+from tests.exchange.test_files import fields
+
+PAGE = (ROOT / "docs" / "data.md").read_text(encoding="utf-8")
+#: Tables that are the same in all studies.
+COMMON = ("findings", "findings_of_time", "counts")
+#: What a name that ends so says of its unit.
+UNITS = {
+    "Nm_per_rad": "N m/rad", "per_s": "1/s", "rad": "rad", "deg": "deg", "Nm": "N m", "Pa": "Pa", "Hz": "Hz",
+    "mm": "mm", "ms": "ms", "us": "us", "MB": "MB", "J": "J", "m": "m", "s": "s",
+}  # fmt: skip
+
+
+def described(heading: str) -> dict[str, list[str]]:
+    """Return the rows of the tables below a heading by the names in their first cell, each once."""
+    text = re.split(r"^#+ |^\*\*(?=[A-Z])", PAGE.split(heading, 1)[1], flags=re.MULTILINE)[0]
+    found: dict[str, list[str]] = {}
+    for line in text.splitlines():
+        cells = [cell.strip() for cell in line.strip("|").split("|")]
+        for name in re.findall(r"`([^`]+)`", cells[0]) if line.startswith("| `") else ():
+            assert name not in found, f"{name} is described twice"
+            assert all(cells[1:]), f"{name}: an empty cell"
+            found[name] = cells[1:]
+    return found
+
+
+@cache
+def stored() -> dict[str, list[str]]:
+    """Columns of every stored table by its name."""
+    return {
+        path.relative_to(RESULTS / "data").with_suffix("").as_posix(): pd.read_csv(
+            path, nrows=0
+        ).columns.tolist()
+        for path in sorted((RESULTS / "data").rglob("*.csv"))
+    }
+
+
+def test_every_table_is_described():
+    """A table of results that is not described fails, and so does a description without a table."""
+    tables = {name for name in stored() if name.rsplit("/", 1)[1] not in COMMON}
+    assert set(described("## Tables of results")) == tables
+
+
+def test_every_column_is_described():
+    """A column of results that is not described fails, and so does a description without a column."""
+    assert set(described("## Columns of results")) == {name for table in stored().values() for name in table}
+
+
+def test_units_are_those_in_the_names():
+    """The unit of a column is the one that its name ends in; a name without one has no unit of its own."""
+    plain = {"1", "–", "EI/L^2"}
+    for name, (unit, _) in described("## Columns of results").items():
+        ends = [short for short in UNITS if name.endswith(f"_{short}")]
+        assert unit in ({UNITS[max(ends, key=len)]} if ends else plain), name
+
+
+def test_the_line_that_loads_a_table_works(monkeypatch):
+    """The code of the page runs as it is written, from the repository's root."""
+    monkeypatch.chdir(ROOT)
+    (code,) = re.findall(r"```python\n(.*?)```", PAGE, flags=re.DOTALL)
+    names: dict[str, pd.DataFrame] = {}
+    exec(code, names)
+    assert {"formulation", "rotation_rad", "torque_Nm"} <= set(names["curves"].columns)
+
+
+def test_the_export_of_the_page_runs(tmp_path, monkeypatch):
+    """The command of the page writes what the page says, and its Parquet loads as it is written."""
+    (words,) = re.findall(r"```\npython -m studies (.*?)\n```", PAGE, flags=re.DOTALL)
+    monkeypatch.chdir(tmp_path)
+    assert main(words.replace("studies/cases", str(FOLDER)).split()) == 0
+    (line,) = re.findall(r"`(pd\.read_parquet\(.*?\))`", PAGE)
+    assert set(COLUMNS) > set(eval(line, {"pd": pd}).columns)
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ["solve", "cross_axis_pivot", "--increments", "1"],
+        ["solve", "cross_axis_pivot", "--increments", "2", "--rotation-deg", "5", "--accuracy", "0.1"],
+        ["solve", "four_bar_of_flexures", "--increments", "1"],
+        ["release", "cross_axis_pivot", "--duration", "1e-4", "--from-deg", "5"],
+        ["release", "cantilever_with_body", "--duration", "1e-4"],
+        ["modes", "cross_axis_pivot", "--count", "1"],
+    ],
+    ids=lambda words: " ".join(words[:2]),
+)
+def test_keys_of_json_are_described(words, capsys):
+    """Every key of the commands' JSON is described, and the commands that have it are named."""
+    command, case, *options = words
+    path = str(FOLDER / f"{case}.toml")
+    assert main([command, path, "--model", "spline", "--control-points", "4", "--json", "-", *options]) == 0
+    document = json.loads(capsys.readouterr().out)
+    known = described("## JSON of the commands")
+    assert set(document) <= set(known)
+    for key in document:
+        places = known[key][2]
+        kinds = (command, "all", "pivots" if case == "cross_axis_pivot" else "mechanisms")
+        assert any(kind in places for kind in kinds), f"{key} in {command}"
+
+
+def test_arrays_of_vtk_are_described():
+    """Every array of a .vtu is described with whether it is of points or cells."""
+    known = described("**VTK.**")
+    points, cells = set(), set()
+    for kind in ("static", "modes", "release"):
+        made = mesh(fields(kind), 0)
+        points |= set(made.point_data)
+        cells |= set(made.cell_data)
+    assert {name for name, row in known.items() if row[1] == "points"} == points
+    assert {name for name, row in known.items() if row[1] == "cells"} == cells
+
+
+def test_columns_of_exports_are_described():
+    """The columns of exported tables are described in the words that the JSON has."""
+    assert {name: row[0] for name, row in described("**Tables.**").items()} == COLUMNS

@@ -1,0 +1,226 @@
+"""What is exported reads back as it was solved, in full or not at all."""
+
+import errno
+import io
+import json
+from dataclasses import replace
+from functools import cache
+from pathlib import Path
+from xml.etree import ElementTree
+
+import meshio
+import numpy as np
+import pandas as pd
+import pytest
+
+from studies.__main__ import main
+from studies.answers.fields import Fields
+from studies.answers.settings import FeSettings, SplineSettings
+from studies.cases.design import named_design
+from studies.cases.problem import FOLDER
+from studies.exchange.formats import FORMATS, contents
+from studies.exchange.solve import mode_fields, release_fields, static_fields
+from studies.exchange.tables import COLUMNS, tables
+from studies.exchange.vtk import BODY_ARM, BODY_CENTRE, CLAMP, STRIP, mesh, mode_scale
+
+PIVOT, FOUR_BAR = str(FOLDER / "cross_axis_pivot.toml"), str(FOLDER / "four_bar_of_flexures.toml")
+SMALL = ["--increments", "2"]
+
+
+@cache
+def fields(kind: str) -> Fields:
+    """Fields of each analysis, of a pivot and of mechanisms with and without bodies that are driven."""
+    spline, elements = SplineSettings(control_points=5), FeSettings(elements=5)
+    pivot, linkage = (replace(named_design(name), increments=3) for name in
+                      ("cross_axis_pivot", "four_bar_of_flexures"))  # fmt: skip
+    if kind == "static":
+        return static_fields(pivot, spline)
+    if kind == "mechanism":
+        return static_fields(linkage, elements)
+    if kind == "modes":
+        return mode_fields(linkage, spline, count=3, held=False)
+    if kind == "loads":
+        return static_fields(replace(named_design("parallel_strip_guide"), increments=2), spline)
+    step = {"step": 1e-4, "integrator": "generalised-alpha"}
+    return release_fields(pivot, elements, duration=5e-4, records=5, **step)
+
+
+KINDS = pytest.mark.parametrize("kind", ["static", "mechanism", "loads", "modes", "release"])
+
+
+@KINDS
+def test_vtk_reads_back(kind, tmp_path):
+    """Every .vtu holds its state, and the .pvd names them in order with their times."""
+    found = fields(kind)
+    files = contents(found, ("vtk",), [])
+    for name, content in files.items():
+        (tmp_path / name).write_bytes(content)
+    series = ElementTree.parse(tmp_path / f"{found.analysis}.pvd").getroot().findall("Collection/DataSet")
+    assert [float(each.attrib["timestep"]) for each in series] == pytest.approx(found.values)
+    for state, each in enumerate(series):
+        read, made = meshio.read(tmp_path / each.attrib["file"]), mesh(found, state)
+        assert np.array_equal(read.points, made.points)
+        assert read.point_data.keys() == made.point_data.keys()
+        for name, values in made.point_data.items():
+            assert np.array_equal(read.point_data[name], values, equal_nan=True), name
+        for name, values in made.cell_data.items():
+            assert np.array_equal(np.concatenate(read.cell_data[name]), np.concatenate(values)), name
+    assert len(series) == len(files) - 1 == len(found.values)
+
+
+@KINDS
+def test_mesh_holds_what_was_solved(kind):
+    """Points, displacements, forces and parts of the mesh are those of the fields."""
+    found = fields(kind)
+    last, made = len(found.values) - 1, mesh(found, len(found.values) - 1)
+    strips, stations = found.rotation.shape[1:]
+    count = strips * stations
+    mode = 0.0 if found.mode_shape is None else mode_scale(found, last) * found.mode_shape[last]
+    assert made.points[:count, :2] == pytest.approx((found.shape[last] + mode).reshape(-1, 2))
+    assert not made.points[:, 2].any()
+    rest = made.points[:count, :2] - made.point_data["displacement_m"][:count, :2]
+    if found.mode_shape is None:
+        assert rest == pytest.approx(found.rest_shape.reshape(-1, 2), abs=1e-15)
+    for name, array in (("axial_force_N", found.axial_force), ("bending_moment_Nm", found.bending_moment)):
+        assert made.point_data[name][:count] == pytest.approx(array[last].ravel())
+        assert np.isnan(made.point_data[name][count:]).all()
+    kinds = np.concatenate(made.cell_data["part_kind"])
+    carried = [end for part in found.parts for end in (part.root, part.tip) if end not in ("ground", None)]
+    clamped = [end for part in found.parts for end in (part.root, part.tip) if end == "ground"]
+    assert (kinds == STRIP).sum() == count - strips
+    assert (kinds == BODY_CENTRE).sum() == len(found.blocks)
+    assert (kinds == BODY_ARM).sum() == len(carried)
+    assert (kinds == CLAMP).sum() == len(clamped)
+    assert np.concatenate(made.cell_data["mass_kg"])[kinds == BODY_CENTRE].sum() == pytest.approx(
+        sum(block.mass for block in found.blocks)
+    )
+    total = made.point_data["reaction_force_N"].sum(axis=0)[:2]
+    assert total == pytest.approx(found.reactions[last, ..., :2].sum(axis=(0, 1)))
+
+
+@KINDS
+def test_tables_agree_in_every_format(kind):
+    """CSV, Parquet and JSON hold the same tables, whose columns are all described."""
+    found = fields(kind)
+    files, name = contents(found, ("csv", "parquet", "json"), []), found.analysis
+    document = json.loads(files[f"{name}.json"])
+    assert document["model"] == found.model
+    for table, frame in tables(found).items():
+        assert set(frame.columns) <= set(COLUMNS)
+        pd.testing.assert_frame_equal(pd.read_csv(io.BytesIO(files[f"{name}_{table}.csv"])), frame)
+        pd.testing.assert_frame_equal(pd.read_parquet(io.BytesIO(files[f"{name}_{table}.parquet"])), frame)
+        read = pd.DataFrame(document["tables"][table])
+        pd.testing.assert_frame_equal(read.astype(frame.dtypes), frame)
+        assert {column: COLUMNS[column] for column in frame}.items() <= document["columns"].items()
+    rows = tables(found)["strips"]
+    assert len(rows) == found.axial_force.size
+    assert rows["axial_force_N"].to_numpy() == pytest.approx(found.axial_force.ravel())
+
+
+@KINDS
+def test_drawing_shows_every_strip_of_every_state(kind):
+    """An SVG has a line in the model's colour for every strip of every state that is drawn."""
+    found, drawn = fields(kind), [0, 1]
+    picture = contents(found, ("svg",), drawn)[f"{found.analysis}.svg"]
+    colour = {"spline": b"#0072b2", "fe": b"#000000"}[found.model]
+    assert picture.count(b"stroke: " + colour) >= len(drawn) * len(found.parts)
+
+
+def test_drawing_has_the_same_bytes_every_time():
+    """An SVG of the same fields is the same file."""
+    first, second = (contents(fields("static"), ("svg",), [1]) for _ in range(2))
+    assert first == second
+
+
+def export(folder: Path, *options: str) -> int:
+    return main(["export", PIVOT, "--model", "spline", "--out", str(folder), *SMALL, *options])
+
+
+def test_command_writes_what_is_asked_for(tmp_path, capsys):
+    """The command writes the formats it is asked for, and names the files in a manifest."""
+    assert export(tmp_path / "new" / "out", "--formats", "vtk,svg,json", "--draw-deg", "0,90") == 0
+    written = {path.name for path in (tmp_path / "new" / "out").iterdir()}
+    expected = {"static.pvd", "static_0000.vtu", "static_0001.vtu", "static_0002.vtu"}
+    assert written == expected | {"static.svg", "static.json", "export.json"}
+    manifest = json.loads((tmp_path / "new" / "out" / "export.json").read_text())
+    assert set(manifest["files"]) == written - {"export.json"}
+    assert "3 states" in capsys.readouterr().out
+
+
+def test_a_former_export_is_replaced_whole(tmp_path):
+    """A second export leaves no file of the first; a folder with anything else in it is refused untouched."""
+    assert export(tmp_path / "out", "--formats", "vtk") == 0
+    assert export(tmp_path / "out", "--formats", "csv", "--increments", "1") == 0
+    assert not list((tmp_path / "out").glob("*.vtu"))
+    (tmp_path / "out" / "notes.txt").write_text("mine")
+    before = {path.name: path.read_bytes() for path in (tmp_path / "out").iterdir()}
+    assert export(tmp_path / "out") == 2
+    assert {path.name: path.read_bytes() for path in (tmp_path / "out").iterdir()} == before
+
+
+def test_full_disk_leaves_the_former_export(tmp_path, monkeypatch, capsys):
+    """When the disk is full in mid-writing, one line says so and the former export stands as it was."""
+    assert export(tmp_path / "out", "--formats", "csv") == 0
+    before = {path.name: path.read_bytes() for path in (tmp_path / "out").iterdir()}
+    written, whole = [], Path.write_bytes
+
+    def full(path: Path, content: bytes) -> int:
+        written.append(path)
+        if len(written) > 2:
+            raise OSError(errno.ENOSPC, "No space left on device")
+        return whole(path, content)
+
+    monkeypatch.setattr(Path, "write_bytes", full)
+    capsys.readouterr()
+    assert export(tmp_path / "out", "--formats", "csv") == 2
+    said = capsys.readouterr().err
+    assert "No space left on device" in said
+    assert said.strip().count("\n") == 0
+    assert {path.name: path.read_bytes() for path in (tmp_path / "out").iterdir()} == before
+    assert [path.name for path in tmp_path.iterdir()] == ["out"]
+
+
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        (["--formats", "vtk,step"], "got step, expected one or more of vtk, svg"),
+        (["--formats", "vtk,vtk"], "got vtk, expected one or more of vtk, svg"),
+        (["--formats", ""], "got nothing, expected one or more"),
+        (["--duration", "0.1"], "--duration: got it with --analysis static, expected release"),
+        (["--analysis", "modes"], "--increments: got it with --analysis modes, expected static"),
+        (["--draw-deg", "0,ninety"], "got ninety, expected a finite number of degrees"),
+        (["--formats", "vtk", "--draw-deg", "0"], "--draw-deg: got it without"),
+        (["--elements", "5"], "--elements: got it with --model spline"),
+        (["--rotation-deg", "0"], "rotation: got 0"),
+        (["--out", "/proc/out"], "/proc: cannot be written"),
+        (["--out", PIVOT], "expected a folder"),
+        (["--out", "."], "expected a folder below"),
+    ],
+)
+def test_bad_input_is_one_line_and_writes_nothing(tmp_path, capsys, options, said):
+    """What cannot be exported is refused in one line before anything is written."""
+    assert export(tmp_path / "out", *options) == 2
+    line = capsys.readouterr().err.strip()
+    assert said in line
+    assert "\n" not in line
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_path_that_stops_is_exported_as_far_as_it_goes(tmp_path, capsys):
+    """The converged part of a path that stops early is written, with exit code 3 and why."""
+    options = ["--model", "fe", "--elements", "2", "--rotation-deg", "350", "--increments", "2"]
+    code = main(["export", PIVOT, *options, "--out", str(tmp_path / "out"), "--formats", "json"])
+    assert code == 3
+    assert "not converged" in capsys.readouterr().err
+    document = json.loads((tmp_path / "out" / "static.json").read_text())
+    assert document["status"] == "not_converged"
+    assert document["message"]
+    assert document["tables"]["states"]["load_factor"] == [0.0, 0.5]
+
+
+def test_every_format_is_named_in_the_help(capsys):
+    """The help names every format."""
+    with pytest.raises(SystemExit):
+        main(["export", "--help"])
+    said = capsys.readouterr().out
+    assert all(name in said for name in FORMATS)

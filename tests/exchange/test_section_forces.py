@@ -1,0 +1,214 @@
+"""Section forces hold the balance of a cut strip in either model, and both models agree on them."""
+
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+
+from studies.answers.adapters import answer_static
+from studies.answers.fields import Fields
+from studies.answers.settings import FeSettings, Settings, SplineSettings
+from studies.cases.design import Design, named_design, read_design
+from studies.exchange.solve import mode_fields, release_fields, static_fields
+from tests import gates
+
+SPLINE, ELEMENTS = SplineSettings(control_points=12), FeSettings(elements=40)
+SHEAR = FeSettings(elements=20, element="reissner")
+MODELS = pytest.mark.parametrize("settings", [SPLINE, ELEMENTS, SHEAR], ids=lambda s: s.model)
+GRAVITY = 9.81
+
+
+def design_of(case: str) -> Design:
+    return replace(named_design(case), increments=8)
+
+
+@cache
+def solved(case: str, settings: Settings) -> Fields:
+    return static_fields(design_of(case), settings)
+
+
+def force(fields: Fields, state: int = -1) -> np.ndarray:
+    """Force of the part beyond on the part before (G, P, 2) [N], in the fixed frame."""
+    rest = np.diff(fields.rest_shape, axis=1)
+    angle = fields.rotation[state] + np.arctan2(rest[:, :1, 1], rest[:, :1, 0])  # straight strips
+    along, across = fields.axial_force[state], fields.shear_force[state]
+    c, s = np.cos(angle), np.sin(angle)
+    return np.stack((along * c - across * s, along * s + across * c), axis=-1)
+
+
+def cross(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    return a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
+
+
+def imbalance(fields: Fields) -> float:
+    """Largest defect of a strip cut anywhere, of its force and of its moment, over the largest of each."""
+    pull, reaction = force(fields), fields.reactions[-1, :, 0]
+    apart = np.abs(pull + reaction[:, None, :2]).max() / np.abs(pull).max()
+    arm = fields.shape[-1] - fields.shape[-1, :, :1]
+    moment = fields.bending_moment[-1] + reaction[:, None, 2] - cross(arm, reaction[:, None, :2])
+    return max(apart, np.abs(moment).max() / np.abs(fields.bending_moment[-1]).max())
+
+
+@pytest.mark.parametrize("settings", [FeSettings(elements=20), SHEAR], ids=lambda s: s.model)
+def test_elements_balance_where_they_are_cut(settings):
+    """Without distributed load an element strip's force is constant and its moment linear in position."""
+    # Newton stops at residuals of 1e-9 EI/L^2 or below, and N is thousands of times that unit
+    assert imbalance(solved("cross_axis_pivot", settings)) < 1e-8
+
+
+def test_spline_balances_where_it_is_cut():
+    """N and M from the spline's strains balance the clamps' reactions at any cut, but for its own error."""
+    gates.check("section_forces_balance", imbalance(solved("cross_axis_pivot", SPLINE)))
+    coarse = SplineSettings(**gates.teeth("section_forces_balance"))
+    with pytest.raises(AssertionError, match="x the gate"):
+        gates.check("section_forces_balance", imbalance(solved("cross_axis_pivot", coarse)))
+
+
+@MODELS
+def test_end_forces_of_both_strips_are_the_driving_torque(settings):
+    """What the body puts on the strips' tips has no resultant, and its moment is the driving torque."""
+    fields = solved("cross_axis_pivot", settings)
+    tips, arm = fields.reactions[:, :, 1], fields.shape[:, :, -1] - fields.bodies[:, :1, :2]
+    moment = (tips[..., 2] + cross(arm, tips[..., :2])).sum(axis=1)
+    largest = np.abs(fields.torque).max()
+    assert np.abs(moment - fields.torque).max() < 1e-8 * largest
+    assert np.abs(tips[..., :2].sum(axis=1)).max() < 1e-8 * np.abs(tips[..., :2]).max()
+    ground = fields.reactions[:, :, 0, :2]
+    assert np.abs(ground + tips[..., :2]).max() < 1e-8 * np.abs(tips[..., :2]).max()
+
+
+def difference(fine: Fields, other: Fields) -> float:
+    """Largest difference of N, V and M between elements and the spline, over the largest of each."""
+    worst = 0.0
+    for name in ("axial_force", "shear_force", "bending_moment"):
+        values, against = getattr(other, name)[-1], getattr(fine, name)[-1]
+        for strip, (value, known) in enumerate(zip(values, against, strict=True)):
+            at = fine.arc_length[strip], other.arc_length[strip]
+            apart = np.abs(
+                known[::15] - np.interp(at[0][::15], at[1], value)
+            ).max()  # quarters: nodes of both
+            worst = max(worst, apart / np.abs(against).max())
+    return worst
+
+
+def test_both_models_agree_on_section_forces():
+    """Spline and shear-rigid elements have the same section forces at a quarter turn."""
+    fine, coarse = solved("cross_axis_pivot", SPLINE), FeSettings(**gates.teeth("section_forces_agree"))
+    gates.check("section_forces_agree", difference(fine, solved("cross_axis_pivot", ELEMENTS)))
+    with pytest.raises(AssertionError, match="x the gate"):
+        gates.check("section_forces_agree", difference(fine, solved("cross_axis_pivot", coarse)))
+
+
+CURVED = """
+[[strips]]
+name = "strip"
+start_m = [0, 0]
+end_m = [0.1, 0]
+rise_m = 0.01
+tip = "free"
+
+[section]
+area_m2 = 5e-6
+second_moment_m4 = 1.0416667e-13
+
+[material]
+youngs_modulus_Pa = 206e9
+poisson_ratio = 0.29
+density_kg_m3 = 7800
+
+[drive]
+increments = 4
+
+[scene]
+effects = ["bending", "stretching", "gravity", "tip_force"]
+
+[effects.tip_force]
+strip = "strip"
+force_N = [0, 1]
+"""
+
+
+def test_both_models_agree_on_a_curved_strip_with_a_free_tip(tmp_path):
+    """A heavy curved strip that is loaded at its free tip has the same section forces in both models."""
+    path = tmp_path / "curved.toml"
+    path.write_text(CURVED)
+    design, teeth = read_design(path), FeSettings(**gates.teeth("section_forces_curved"))
+    fine, elements, coarse = (static_fields(design, each) for each in (SPLINE, ELEMENTS, teeth))
+    gates.check("section_forces_curved", difference(fine, elements))
+    with pytest.raises(AssertionError, match="x the gate"):
+        gates.check("section_forces_curved", difference(fine, coarse))
+    # a free end has the force that acts there, in the elements: to what Newton leaves of EA = 1e6 N
+    assert elements.reactions[-1, 0, 1] == pytest.approx([0.0, 1.0, 0.0], abs=1e-6)
+    assert not fine.reactions[-1, 0, 1].any()
+
+
+@pytest.mark.parametrize("settings", [SPLINE, SplineSettings(control_points=4), ELEMENTS, SHEAR], ids=str)
+def test_clamps_carry_the_weight_of_the_strip(settings):
+    """Forces at both ends of a heavy strip hold its weight, and so does the change of its section force."""
+    fields, strip = solved("cantilever_with_body", settings), named_design("cantilever_with_body").strips[0]
+    weight = strip.area * strip.density * float(fields.arc_length[0, -1]) * GRAVITY
+    ends = fields.reactions[-1, 0, :, :2].sum(axis=0)
+    assert ends == pytest.approx([0.0, weight], rel=1e-8, abs=1e-8 * weight)
+    pull = force(fields)[0]
+    if settings in (ELEMENTS, SHEAR):  # N of the spline follows from its strains and has their error
+        assert pull[-1] - pull[0] == pytest.approx([0.0, weight], rel=1e-8, abs=1e-8 * weight)
+
+
+@MODELS
+def test_fields_are_those_of_the_answer(settings):
+    """Stress and section forces that are exported are those that `solve` reports."""
+    fields = solved("cross_axis_pivot", settings)
+    answer = answer_static(design_of("cross_axis_pivot"), settings)
+    assert fields.axial_force == pytest.approx(answer.axial_force)
+    assert fields.stress == pytest.approx(answer.extreme_fibre_stress)
+    assert fields.torque == pytest.approx(answer.torque)
+    assert fields.bodies[:, 0, :2] == pytest.approx(answer.centre)
+
+
+@pytest.mark.parametrize("settings", [SPLINE, FeSettings(elements=20)], ids=lambda s: s.model)
+def test_a_release_begins_with_the_static_section_forces(settings):
+    """The first record of a motion has the fields of the static state that was let go."""
+    step = {"step": 1e-4} if settings is SPLINE else {"integrator": "generalised-alpha", "step": 1e-4}
+    begin = release_fields(design_of("cross_axis_pivot"), settings, duration=2e-4, records=2, **step)
+    static = solved("cross_axis_pivot", settings)
+    assert begin.bending_moment[0] == pytest.approx(static.bending_moment[-1], rel=1e-3)
+    # by the moments' balance the spline's shear force is a derivative, and its strips are stiffer in motion
+    size = np.abs(static.shear_force[-1]).max()
+    assert np.abs(begin.shear_force[0] - static.shear_force[-1]).max() < 0.02 * size
+    assert np.abs(begin.reactions[0] - static.reactions[-1]).max() < 0.02 * size
+    assert np.abs(begin.bodies[0] - static.bodies[-1]).max() < 1e-4
+
+
+@pytest.mark.parametrize("settings", [SPLINE, ELEMENTS], ids=lambda s: s.model)
+def test_motion_keeps_the_bodies_and_strips_together(settings):
+    """Ends of strips stay on their bodies in every record of a mechanism whose reference points differ."""
+    design = design_of("four_bar_of_flexures")
+    step = {} if settings is SPLINE else {"integrator": "generalised-alpha", "step": 1e-4}
+    fields = release_fields(design, settings, duration=1e-3, records=4, **step)
+    crank = [block.name for block in fields.blocks].index("crank")
+    turn, centre = fields.bodies[:, crank, 2], fields.bodies[:, crank, :2]
+    offset = fields.rest_shape[0, -1] - fields.rest_bodies[crank]
+    turned = np.stack(
+        (
+            np.cos(turn) * offset[0] - np.sin(turn) * offset[1],
+            np.sin(turn) * offset[0] + np.cos(turn) * offset[1],
+        ),
+        axis=-1,
+    )
+    assert fields.shape[:, 0, -1] == pytest.approx(centre + turned, abs=1e-8)
+    assert fields.rotation[:, 0, -1] == pytest.approx(turn, abs=1e-8)
+
+
+def test_modes_move_strips_with_their_bodies():
+    """A mode moves the tip of a strip as its body carries it, in both models alike."""
+    found = []
+    for settings in (SPLINE, ELEMENTS):
+        fields = mode_fields(design_of("four_bar_of_flexures"), settings, count=2, held=False)
+        x, y = fields.shape[0, 0, -1] - fields.bodies[0, 0, :2]
+        body = fields.mode_bodies[:, 0]
+        carried = body[:, :2] + body[:, 2:] * np.array([-y, x])
+        assert fields.mode_shape[:, 0, -1] == pytest.approx(carried, abs=1e-8 * np.abs(carried).max())
+        found.append((fields.frequency, np.abs(fields.mode_bodies)))
+    assert found[0][0] == pytest.approx(found[1][0], rel=1e-4)
+    assert found[0][1] == pytest.approx(found[1][1], abs=1e-3 * found[1][1].max())

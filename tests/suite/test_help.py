@@ -1,0 +1,147 @@
+"""Every command explains itself: a purpose, examples that run, and each option with its unit and default."""
+
+import argparse
+import re
+import shutil
+from functools import cache
+from importlib import import_module
+from pathlib import Path
+
+import pytest
+
+from studies.__main__ import main
+from studies.cases.problem import FOLDER
+from studies.commands.parser import Parser, degrees, degrees_list, not_negative, positive
+from studies.record.source import ROOT
+from studies.registry import COMMANDS, selected
+
+#: Commands whose examples take a second or two; those of all others run with the slow tests.
+QUICK = ("solve", "modes", "export", "markers", "list")
+#: Examples, by how they begin, that are parsed and not run, and why.
+PARSED = {
+    "run paper": "takes minutes, and `make results` runs it",
+    "interactive": "serves until it is stopped; tests/interactive runs it",
+    "compile": "removes the kernels that other tests run at the same time; `make setup` runs it",
+    "readme": "rewrites README.md; tests/suite/test_digits.py and others call it on a copy",
+}
+#: What an example is run with beside its own words, so that it writes nowhere but here.
+BESIDE = {"run": ["--results", "results"], "draw": ["--results", "results"]}
+
+NUMBERS = (float, positive, not_negative, degrees, degrees_list)
+UNIT = re.compile(r"\bin (s|deg|rad|m|mm|EI/L\^2)\b|\brelative\b|\bin s or rad\b")
+
+
+@cache
+def parser_of(name: str) -> Parser:
+    module = import_module(COMMANDS[name][0])
+    parser = Parser(prog=f"python -m studies {name}", description=module.__doc__)
+    module.add_arguments(parser)
+    return parser
+
+
+def examples(name: str) -> list[str]:
+    """Return what the examples of a command's help say after `python -m studies`."""
+    return re.findall(r"^    python -m studies (.+)$", parser_of(name).description or "", flags=re.MULTILINE)
+
+
+def why_parsed(words: str) -> str:
+    """Return why an example is not run; empty for one that is."""
+    return next((why for begin, why in PARSED.items() if words.startswith(begin)), "")
+
+
+EXAMPLES = [
+    pytest.param(words, marks=() if name in QUICK or why_parsed(words) else pytest.mark.slow, id=words)
+    for name in COMMANDS
+    for words in examples(name)
+]
+
+
+def test_overview_names_every_command(capsys):
+    """`--help` lists every command with what it does, and an example."""
+    with pytest.raises(SystemExit):
+        main(["--help"])
+    said = capsys.readouterr().out
+    for name, (_, text) in COMMANDS.items():
+        assert f"  {name:12s} {text}\n" in said
+    assert max(map(len, said.splitlines())) <= 110
+    (example,) = re.findall(r"^    python -m studies (.+)$", said, flags=re.MULTILINE)
+    assert example in examples(example.split()[0])
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_help_has_purpose_and_example(name):
+    """A command's help begins with its purpose in one sentence and an example, and tells the exit codes."""
+    purpose, shown, *rest = (parser_of(name).description or "").split("\n\n")
+    assert re.fullmatch(r"[A-Z][^.]+\.", purpose.replace("\n", " "))
+    assert len(purpose) <= 140
+    found = examples(name)
+    assert len(found) == len(shown.splitlines()) >= 1, "the second paragraph is examples alone"
+    assert all(words.split()[0] == name for words in found)
+    assert "xit code" in " ".join(rest).replace("\n", " ")
+
+
+def undocumented(action: argparse.Action) -> str:
+    """Return what the help of an option lacks; empty for nothing."""
+    said = action.help or ""
+    if not said or said == argparse.SUPPRESS:
+        return "no help"
+    if action.nargs != 0 and action.option_strings and not action.required and "default" not in said:
+        return "no default"
+    if action.type in NUMBERS and not UNIT.search(said):
+        return "no unit"
+    if action.nargs != 0 and action.choices is None and action.metavar is None:
+        return "no name of its value"
+    return ""
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_every_option_is_documented(name):
+    """Each option says what it is, its default where it has one, and the unit of a number."""
+    lacks = {"/".join(a.option_strings) or a.dest: undocumented(a) for a in parser_of(name)._actions}
+    assert {option: lack for option, lack in lacks.items() if lack} == {}
+
+
+@pytest.mark.parametrize(
+    ("keywords", "lack"),
+    [
+        ({"help": "a length in m", "type": float, "metavar": "L"}, "no default"),
+        ({"help": "a length, default 1", "type": float, "metavar": "L"}, "no unit"),
+        ({"help": "a file, default none"}, "no name of its value"),
+        ({}, "no help"),
+        ({"help": "a length in m, default 1", "type": float, "metavar": "L"}, ""),
+        ({"help": "a length in m", "type": float, "metavar": "L", "required": True}, ""),
+        ({"help": "a switch", "action": "store_true"}, ""),
+    ],
+)
+def test_what_an_option_lacks_is_found(keywords, lack):
+    """The check finds options without help, default, unit or the name of their value."""
+    assert undocumented(Parser().add_argument("--option", **keywords)) == lack
+
+
+@pytest.mark.parametrize("words", EXAMPLES)
+def test_example_runs(words, tmp_path, monkeypatch, capsys):
+    """An example of a help runs as it is written, on a design of one's own as on those of the suite."""
+    name, *rest = words.split()
+    arguments = parser_of(name).parse_args(rest)
+    if name in ("run", "draw"):
+        assert selected(arguments.names)
+    if why_parsed(words):
+        return
+    if name == "markers":
+        pytest.importorskip("cv2")
+    for path in (ROOT / "studies").rglob("*.toml"):
+        place = tmp_path / path.relative_to(ROOT)
+        place.parent.mkdir(parents=True, exist_ok=True)
+        shutil.copy(path, place)
+    shutil.copy(FOLDER / "cross_axis_pivot.toml", tmp_path / "my_pivot.toml")
+    _own_results(name, tmp_path / "results")
+    monkeypatch.chdir(tmp_path)
+    assert main([name, *rest, *BESIDE.get(name, ())]) == 0
+    assert capsys.readouterr().out or any(tmp_path.iterdir())
+
+
+def _own_results(name: str, folder: Path) -> None:
+    """Give `draw` a copy of what it redraws."""
+    if name == "draw":
+        shutil.copytree(ROOT / "results" / "data" / "paper", folder / "data" / "paper")
+        (folder / "figures").mkdir()
