@@ -66,7 +66,7 @@ def compile_scene(scene: Scene) -> System:
         scales=scene_scales(scene, layout),
         rest=rest,
         rest_curvature=build.bending_table(
-            scene, layout, [replace(e, natural_curvature=None) for e in bending]
+            scene, layout, [replace(e, natural_curvature=0.0) for e in bending]
         ).curvature,
     )
 

@@ -46,8 +46,7 @@ def sections(system: System, states: Array, strip_name: str, stations: Array) ->
     moment = np.zeros_like(speed)
     if bending is not None:
         length = rest_speed if bending.measure == "material" else speed
-        given = bending.natural_curvature
-        strain = _cross(tangent, bend) / speed**2 / length - (rest_curvature if given is None else given)
+        strain = _cross(tangent, bend) / speed**2 / length - rest_curvature - bending.natural_curvature
         moment = bending.flexural_rigidity * strain
 
     force = np.zeros_like(speed)

@@ -38,9 +38,8 @@ Array = NDArray[np.float64]
 
 
 def bending_table(scene: Scene, layout: Layout, effects: Sequence[Bending]) -> BendingTable:
-    """Gauss points of bending effects; the natural curvature is the one at rest unless given."""
+    """Gauss points of bending effects; the stress-free curvature is the one at rest and the natural one."""
     points = strip_points([(scene.strip(e.strip), e.gauss_points) for e in effects], layout)
-    given = points.spread([np.nan if e.natural_curvature is None else e.natural_curvature for e in effects])
     return BendingTable(
         first=points.first,
         width=points.width,
@@ -48,7 +47,7 @@ def bending_table(scene: Scene, layout: Layout, effects: Sequence[Bending]) -> B
         d2=points.d2,
         weight=points.weight,
         speed=points.speed,
-        curvature=np.where(np.isnan(given), points.curvature, given),
+        curvature=points.curvature + points.spread([e.natural_curvature for e in effects]),
         rigidity=points.spread([e.flexural_rigidity for e in effects]),
         measure=_measures(points, effects),
     )

@@ -28,7 +28,7 @@ def bending(design: Design) -> Iterator[Effect]:
         yield Bending(
             strip=strip.name,
             flexural_rigidity=strip.flexural_rigidity,
-            natural_curvature=design.pre_strain.get("curvature"),
+            natural_curvature=design.pre_strain.get("curvature", 0.0),
             measure=grid.measure,
             gauss_points=grid.points_a_span,
         )
@@ -147,7 +147,7 @@ def driven_displacement(
     yield DrivenDisplacement(body=design.body_named(body), displacement=displacement, history=history)
 
 
-def pre_strain(design: Design, curvature: float | None = None, strain: float = 0.0) -> Iterator[Effect]:
-    """Natural curvature [1/m] and strain of the strips: taken up by bending and stretching themselves."""
+def pre_strain(design: Design, curvature: float = 0.0, strain: float = 0.0) -> Iterator[Effect]:
+    """Natural curvature [1/m] and strain of the strips, from rest: bending and stretching take them up."""
     del design, curvature, strain  # the design carries them to the two potentials
     yield from ()

@@ -19,8 +19,8 @@ class Bending(Potential):
     C(u) is the centreline, ' = d/du, J0 = |C0'| the reference speed and
     phi = (x' y'' - y' x'') / |C'|^2 = d(theta)/du the turning of the tangent.
 
-    material    V = 1/2 int EI (phi / J0 - kappa_0)^2 J0 du                        [J]
-    spatial     V = 1/2 int EI (phi / |C'| - kappa_0)^2 |C'| du        (Eq 10)     [J]
+    material    V = 1/2 int EI (phi / J0 - kappa_0 - kappa_n)^2 J0 du              [J]
+    spatial     V = 1/2 int EI (phi / |C'| - kappa_0 - kappa_n)^2 |C'| du  (Eq 10) [J]
     printed     the spatial energy with the forces of Eq 12 as they are printed:
                 d|C'|/dq is left out, so that they are no gradient and the work of
                 the drive differs from the stored energy. For comparison only.
@@ -29,7 +29,8 @@ class Bending(Potential):
     ----------
     strip : name of the strip.
     flexural_rigidity : EI >= 0.                                               [N m^2]
-    natural_curvature : of the stress-free strip, kappa_0; None for its shape at rest.  [1/m]
+    natural_curvature : kappa_n of the stress-free strip, counted from kappa_0 at rest,
+        as the natural strain is counted from the length at rest.                  [1/m]
     gauss_points : Gauss points in each knot span.
 
     Exact for: material: the geometrically exact (extensible, unshearable) elastica.
@@ -40,7 +41,7 @@ class Bending(Potential):
 
     strip: str
     flexural_rigidity: float
-    natural_curvature: float | None = None
+    natural_curvature: float = 0.0
     measure: str = "material"
     gauss_points: int
 
