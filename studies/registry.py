@@ -126,6 +126,10 @@ STUDIES: dict[str, tuple[str, str]] = {
         "studies.effects.worth",
         "what each effect is worth for four designs, and what simpler strips save",
     ),
+    "design/sizing": (
+        "studies.design.sizing",
+        "Table 1 sized anew by exact gradients: least centre shift, least variation of stiffness",
+    ),
     "impulses/step_size": (
         "studies.impulses.step_size",
         "sequential impulses against their step: error, drift, energy, time, limits and sweeps",
