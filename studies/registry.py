@@ -19,6 +19,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "converge": ("studies.commands.converge", "refine both models on a design until an accuracy is reached"),
     "audit": ("studies.commands.audit", "say what each effect of a scene is worth, and which are enough"),
     "advise": ("studies.commands.advise", "say which setting of each model meets an error at the least cost"),
+    "size": ("studies.commands.size", "size a pivot for a range, stiffness and stress by exact gradients"),
     "interactive": (
         "studies.commands.interactive",
         "drive a pivot by camera or mouse and let it go, in the browser",

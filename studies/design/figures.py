@@ -9,10 +9,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure, SubFigure
 
 from studies.design.questions import BASELINE, QUESTIONS, WIDE
-from studies.record.style import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, RED, SKY, YELLOW, page
+from studies.record.style import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, RED, SKY, page
 
 COLOURS = dict(zip((BASELINE, *QUESTIONS), (BLACK, BLUE, RED, SKY, ORANGE), strict=True))
-STARTS = (BLACK, BLUE, RED, GREEN, ORANGE, PURPLE, SKY, YELLOW, GREY)
+STARTS = (BLACK, BLUE, RED, GREEN, ORANGE, PURPLE, SKY, GREY)
 #: Answers over the rotation: column, unit's factor, label.
 ANSWERS = (
     ("centre_shift_m", 1e3, "centre shift [mm]"),
@@ -43,7 +43,9 @@ def designs(tables: Mapping[str, pd.DataFrame]) -> Figure:
                 )
         panel.set(xlabel="rotation [deg]", ylabel=label, xticks=range(0, 46, 15))
     panels[0].set_ylim(bottom=0.0)
-    panels[0].plot([], [], "o", color=GREY, markersize=3.0, label="the same design in the FE model")
+    panels[0].plot(
+        [], [], "o", color=GREY, markersize=3.0, label="the same design in the FE model (lines: spline)"
+    )
     below.legend(*panels[0].get_legend_handles_labels(), loc="outside upper center", ncols=3)
     return figure
 
@@ -96,6 +98,7 @@ def _geometry(figure: SubFigure, tables: Mapping[str, pd.DataFrame]) -> None:
         panel.set(title=_broken(name), xlabel="x [mm]", aspect="equal")
         panel.annotate(sizes, (0.5, 0.99), xycoords="axes fraction", ha="center", va="top", fontsize=7)
         panel.set_ylim(-8.0, 118.0)
+        panel.set_axisbelow(True)
     panels[0].set_ylabel("y [mm]")
 
 
@@ -153,4 +156,6 @@ def _prices(panel: Axes, tables: Mapping[str, pd.DataFrame]) -> None:
         panel.barh(place + 0.2 * (1.5 - i), prices[name], height=0.18, color=COLOURS[name])
     panel.set_yticks(place, labels=[label.replace("_", " ") for label in prices.index])
     panel.axvline(0.0, color=BLACK, linewidth=0.8)
+    panel.set_xscale("symlog", linthresh=1.0)
+    panel.set_axisbelow(True)
     panel.set(xlabel="change of the objective over that of the limit [% / %]")

@@ -66,7 +66,7 @@ def by_elements(problem: Problem) -> tuple[Measured, Response]:
     return measured, limit.finest
 
 
-def gradient_error(task: Task, problem: Problem) -> float:
+def gradient_error(task: Task, problem: Problem, levels: int = LEVELS) -> float:
     """Return the largest error of the gradients that the optimiser was given, against differences [1].
 
     Central differences of halved steps, extrapolated; relative to the largest
@@ -77,7 +77,7 @@ def gradient_error(task: Task, problem: Problem) -> float:
     errors: list[float] = []
     for i in range(len(VARIABLES)):
         rows = []
-        for level in range(LEVELS):
+        for level in range(levels):
             step = STEP / 2**level * task.span * (np.arange(len(at)) == i)
             up, down = (_rows(answers(task.problem(at + sign * step))) for sign in (1.0, -1.0))
             rows.append({name: (up[name] - down[name]) / (2.0 * step[i]) for name in up})
