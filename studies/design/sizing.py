@@ -9,8 +9,9 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from studies.answers.response import Response
-from studies.cases.problem import Problem
+from studies.cases.problem import Problem, named_case
 from studies.design import figures, questions
+from studies.design.cost import timings
 from studies.design.evaluate import Answers, answers
 from studies.design.optimise import Outcome, best, numbered, search, starts
 from studies.design.questions import BASELINE, QUESTIONS, STARTS, TRADE
@@ -30,7 +31,7 @@ def compute(progress: Callable[[int, int], None]) -> dict[str, pd.DataFrame]:
     model and rotation); shapes (finite-element stations at rest and at the end); starts (a row a start:
     where it led); history (a row an iteration); active (constraints that hold each optimum, and what they
     cost); checks (splines against finite elements, gradients against differences); trade (a row a limit of
-    the variation).
+    the variation); timings (sensitivities beside their path).
     """
     start = questions.baseline()
     own = answers(start)
@@ -60,6 +61,7 @@ def compute(progress: Callable[[int, int], None]) -> dict[str, pd.DataFrame]:
             + [_gradient(name, found[name][0], each) for name, each in optima.items()]
         ),
         "trade": pd.DataFrame(trade),
+        "timings": pd.DataFrame(timings(named_case(questions.CASE))),
     }
 
 
