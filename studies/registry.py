@@ -129,7 +129,7 @@ STUDIES: dict[str, tuple[str, str]] = {
     ),
     "design/sizing": (
         "studies.design.sizing",
-        "Table 1 sized anew by exact gradients: least centre shift, least variation of stiffness",
+        "two pivots sized by exact gradients: least centre shift, least variation of stiffness",
     ),
     "impulses/step_size": (
         "studies.impulses.step_size",

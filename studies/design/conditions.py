@@ -47,7 +47,7 @@ def conditions(programme: Programme, y: Array) -> tuple[tuple[Active, ...], floa
     active = tuple(
         Active(name=name, multiplier=m, price=m * _per_limit(programme, y, name) / (squared * y[5]))
         for name, m in summed.items()
-        if name != programme.task.objective
+        if name != programme.task.objective and m != 0.0
     )
     return active, float(residual)
 

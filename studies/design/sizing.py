@@ -1,4 +1,4 @@
-"""Table 1's pivot sized anew: least centre shift, least variation of stiffness, and their trade."""
+"""Two pivots sized anew: least centre shift, least variation of stiffness, and their trade."""
 
 import math
 from collections.abc import Callable, Mapping, Sequence
@@ -14,12 +14,12 @@ from studies.design import figures, questions
 from studies.design.cost import timings
 from studies.design.evaluate import Answers, answers
 from studies.design.optimise import Outcome, best, numbered, search, starts
-from studies.design.questions import BASELINE, QUESTIONS, STARTS, TRADE
+from studies.design.questions import BASELINES, QUESTIONS, SPRING_STEEL, STARTS, TABLE_ONE, TRADE
 from studies.design.task import CENTRE_SHIFT, OBJECTIVES, VARIATION, Task, variables_of
 from studies.design.verify import Measured, by_elements, gradient_error, of_spline
 from studies.record.progress import silent
 
-CASES = (questions.CASE,)
+CASES = tuple(BASELINES.values())
 
 UNITS = ("length_m", "inclination_rad", "crossing_ratio", "thickness_m", "width_m")
 
@@ -27,24 +27,27 @@ UNITS = ("length_m", "inclination_rad", "crossing_ratio", "thickness_m", "width_
 def compute(progress: Callable[[int, int], None]) -> dict[str, pd.DataFrame]:
     """Return the designs found, how they were searched for, and what the finite elements say of them.
 
-    Tables: designs (a row a question and Table 1: variables, objectives, factor); curves (a row a design,
+    Tables: designs (a row a question and baseline: variables, objectives, factor); curves (a row a design,
     model and rotation); shapes (finite-element stations at rest and at the end); starts (a row a start:
     where it led); history (a row an iteration); active (constraints that hold each optimum, and what they
     cost); checks (splines against finite elements, gradients against differences); trade (a row a limit of
     the variation); timings (sensitivities beside their path).
     """
-    start = questions.baseline()
-    own = answers(start)
+    baselines = {name: questions.baseline(name) for name in BASELINES}
+    own = {name: answers(problem) for name, problem in baselines.items()}
     total = len(QUESTIONS) * STARTS + len(TRADE)
     found: dict[str, tuple[Task, list[Outcome]]] = {}
-    for i, (name, (objective, aspect)) in enumerate(QUESTIONS.items()):
-        task = questions.task(start, own, objective, aspect)
+    for i, (name, question) in enumerate(QUESTIONS.items()):
+        task = questions.task(baselines[question.baseline], own[question.baseline], question)
         found[name] = task, search(task, starts(task, STARTS), _part(progress, i * STARTS, total))
     optima = {name: _required(name, best(outcomes)) for name, (_, outcomes) in found.items()}
-    designs = {BASELINE: (start, own)} | {name: (each.problem, each.answers) for name, each in optima.items()}
+    designs = {name: (baselines[name], own[name]) for name in BASELINES} | {
+        name: (each.problem, each.answers) for name, each in optima.items()
+    }
     elements = {name: by_elements(problem) for name, (problem, _) in designs.items()}
     ends = [optima[name] for name in questions.WIDE]
-    trade = _trade(start, own, ends, _part(progress, total - len(TRADE), total))
+    table_one = baselines[TABLE_ONE], own[TABLE_ONE]
+    trade = _trade(*table_one, ends, _part(progress, total - len(TRADE), total))
     progress(total, total)
     return {
         "designs": pd.DataFrame([_design(name, *each, own) for name, each in designs.items()]),
@@ -61,13 +64,17 @@ def compute(progress: Callable[[int, int], None]) -> dict[str, pd.DataFrame]:
             + [_gradient(name, found[name][0], each) for name, each in optima.items()]
         ),
         "trade": pd.DataFrame(trade),
-        "timings": pd.DataFrame(timings(named_case(questions.CASE))),
+        "timings": pd.DataFrame(timings(named_case(BASELINES[TABLE_ONE]))),
     }
 
 
 def draw(tables: Mapping[str, pd.DataFrame]) -> dict[str, Figure]:
     """Draw the designs to scale with their answers, and how they were found."""
-    return {"sizing": figures.designs(tables), "sizing_search": figures.search(tables)}
+    return {
+        "sizing": figures.designs(tables, TABLE_ONE),
+        "sizing_spring_steel": figures.designs(tables, SPRING_STEEL),
+        "sizing_search": figures.search(tables, TABLE_ONE),
+    }
 
 
 def _part(progress: Callable[[int, int], None], before: int, total: int) -> Callable[[int, int], None]:
@@ -92,7 +99,7 @@ def _trade(
     begin = [each.at[:5] for each in ends]
     for limit in TRADE:
         progress(len(rows), len(TRADE))
-        task = questions.task(start, own, CENTRE_SHIFT, 1.0, variation=limit)
+        task = questions.task(start, own, QUESTIONS[questions.WIDE[0]], variation=limit)
         found = best(search(task, np.array(begin), silent))
         rows.append(_trade_row(limit, found))
         begin = begin[:2] if found is None else [*begin[:2], found.at[:5]]
@@ -111,19 +118,24 @@ def _trade_row(limit: float, found: Outcome | None) -> dict[str, Any]:
     }
 
 
-def _design(name: str, problem: Problem, found: Answers, own: Answers) -> dict[str, Any]:
-    """Return one design's variables and objectives; factors are Table 1's objective over the design's."""
+def _design(name: str, problem: Problem, found: Answers, own: Mapping[str, Answers]) -> dict[str, Any]:
+    """Return a design's variables and objectives; factors are the baseline's objective over the design's."""
+    baseline = name if name in BASELINES else QUESTIONS[name].baseline
     measured = of_spline(found)
-    reach = float(np.interp(questions.SPRING_STEEL, measured.stress, measured.rotation))
+    reach = float(np.interp(questions.ALLOWABLE, measured.stress, measured.rotation))
     return {
         "design": name,
+        "baseline": baseline,
         **dict(zip(UNITS, variables_of(problem), strict=True)),
         "stiffness_Nm_per_rad": found.stiffness,
         "largest_stress_Pa": float(measured.stress.max()),
         "centre_shift_m": found.largest(CENTRE_SHIFT),
         "variation": found.largest(VARIATION),
-        **{f"factor_{key.replace('-', '_')}": own.largest(key) / found.largest(key) for key in OBJECTIVES},
-        "range_in_spring_steel_rad": reach,
+        **{
+            f"factor_{key.replace('-', '_')}": own[baseline].largest(key) / found.largest(key)
+            for key in OBJECTIVES
+        },
+        "range_at_500MPa_rad": reach,
     }
 
 
@@ -190,7 +202,7 @@ def _history(name: str, outcomes: list[Outcome]) -> list[dict[str, Any]]:
             "question": name,
             "start": start,
             "iteration": i,
-            "objective_over_table_1": value,
+            "objective_over_baseline": value,
             "violation": worst,
         }
         for start, each in enumerate(outcomes)

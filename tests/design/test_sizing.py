@@ -34,7 +34,8 @@ def narrow(own):
 
 def _task(own, objective=CENTRE_SHIFT, aspect=questions.NARROW, **changes):
     limits = {"variation": changes.pop("variation")} if "variation" in changes else {}
-    return replace(questions.task(*own, objective, aspect, **limits), **changes)
+    question = questions.Question(baseline=questions.TABLE_ONE, objective=objective, aspect=aspect)
+    return replace(questions.task(*own, question, **limits), **changes)
 
 
 def _quick(task):
