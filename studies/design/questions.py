@@ -14,7 +14,7 @@ from studies.design.task import CENTRE_SHIFT, VARIATION, Room, Task, variables_o
 TABLE_ONE, SPRING_STEEL = "Table 1", "spring steel"
 BASELINES: Mapping[str, str] = {TABLE_ONE: "cross_axis_pivot", SPRING_STEEL: "spring_steel_pivot"}
 
-#: Range of Table 1's pivot to either side; its 90 degrees would take 13 GPa.
+#: Range of Table 1's pivot to either side; at its 90 degrees the stress is above 14 GPa.
 RANGE_DEG = 45.0
 #: Increments of the path to the end of the range.
 INCREMENTS = 12
