@@ -1,14 +1,12 @@
 """Size a pivot: least centre shift or least variation of stiffness at given range, stiffness and stress.
 
     python -m studies size studies/cases/cross_axis_pivot.toml --objective centre-shift --rotation-deg 45
-    python -m studies size my_pivot.toml --objective stiffness-variation --stress-MPa 500 --width-mm 5:20
+    python -m studies size studies/cases/spring_steel_pivot.toml --objective stiffness-variation --aspect 0.5
 
 The case gives the material, the range to either side (its rotation) and the design to compare with; the
 wanted stiffness at rest and the allowable stress at the end of the range are its own unless they are given.
-Both strips are alike, with a rectangular section. Unless LOW:HIGH is given, length, thickness and width stay
-between shares of the case's own (0.5 to 1, 0.1 to 1.6, and 0.2 to the case's length), the inclination between
-20 and 70 degrees, the crossing ratio between 0.1 and 0.9. Strips become neither thicker for their length than
-the case's nor wider than --aspect times their length. Gradients are exact; several starts show local optima.
+Both strips are alike, with a rectangular section; they become neither thicker for their length than the
+case's nor wider than --aspect times their length. Gradients are exact; several starts show local optima.
 The optimum is solved once more by the finite elements in the limit of refinement. A price is the change of
 the objective over that of a limit, in % over %. Exit code 0: an optimum was found; 2: bad input; 3: none was
 found, and then the table of the starts says how near they came.
@@ -33,13 +31,13 @@ from studies.design.verify import Measured, by_elements, of_spline
 from studies.errors import BadInput
 from studies.record.progress import Bar
 
-#: Option -> its unit in SI and the interval that it must be within, in its own unit.
-BOUNDS: dict[str, tuple[str, float, float]] = {
-    "length": ("length_mm", 1e-3, math.inf),
-    "inclination": ("inclination_deg", math.radians(1.0), 90.0),
-    "crossing_ratio": ("crossing_ratio", 1.0, 1.0),
-    "thickness": ("thickness_mm", 1e-3, math.inf),
-    "width": ("width_mm", 1e-3, math.inf),
+#: Variable -> option, its unit in SI, what the option must be below, and its bounds where it is not given.
+BOUNDS: dict[str, tuple[str, float, float, str]] = {
+    "length": ("length_mm", 1e-3, math.inf, "in mm, default 0.5 to 1 of the case's"),
+    "inclination": ("inclination_deg", math.radians(1.0), 90.0, "in deg, default 20:70"),
+    "crossing_ratio": ("crossing_ratio", 1.0, 1.0, "relative to the length, default 0.1:0.9"),
+    "thickness": ("thickness_mm", 1e-3, math.inf, "in mm, default 0.1 to 1.6 of the case's"),
+    "width": ("width_mm", 1e-3, math.inf, "in mm, default 0.2 of the case's to its length"),
 }
 #: What the table calls the quantities, with the factor to the unit it shows them in.
 SHOWN = {
@@ -56,25 +54,31 @@ def add_arguments(parser: Parser) -> None:
     parser.add_argument("case", metavar="CASE.toml", help="the pivot to start from and to compare with")
     parser.add_argument("--objective", choices=list(OBJECTIVES), required=True, help="what is to be least")
     parser.add_argument(
-        "--rotation-deg", type=degrees, metavar="X", help="range to either side (default: the case's)"
+        "--rotation-deg", type=degrees, metavar="X", help="range to either side, in deg (default: the case's)"
     )
     parser.add_argument(
-        "--stiffness", type=positive, metavar="K", help="at rest [N m/rad] (default: the case's own)"
+        "--stiffness", type=positive, metavar="K", help="at rest, in N m/rad (default: the case's own)"
     )
     parser.add_argument(
-        "--stress-MPa", type=positive, metavar="S", help="allowable (default: the case's own)"
+        "--stress-MPa", type=positive, metavar="S", help="allowable, in MPa (default: the case's own)"
     )
-    for name, (option, _, most) in BOUNDS.items():
+    for name, (option, _, most, said) in BOUNDS.items():
         parser.add_argument(
             f"--{option.replace('_', '-')}",
             type=_interval(most),
             metavar="LOW:HIGH",
-            help=f"bounds of the {name}",
+            help=f"bounds of the {name.replace('_', ' ')}, {said}",
         )
     parser.add_argument(
-        "--aspect", type=positive, default=1.0, metavar="R", help="largest width over length (default 1)"
+        "--aspect",
+        type=positive,
+        default=1.0,
+        metavar="R",
+        help="largest width, relative to the length, default 1",
     )
-    parser.add_argument("--starts", type=whole_number(1), default=8, metavar="N", help="default 8")
+    parser.add_argument(
+        "--starts", type=whole_number(1), default=8, metavar="N", help="starts of the search, default 8"
+    )
     add_json_argument(parser)
 
 
@@ -153,7 +157,7 @@ def _start(arguments: argparse.Namespace) -> Problem:
 def _task(start: Problem, arguments: argparse.Namespace) -> Task:
     own = answers(start)
     bounds = Room().bounds(start)
-    for name, (option, unit, _) in BOUNDS.items():
+    for name, (option, unit, _, _) in BOUNDS.items():
         given = getattr(arguments, option)
         if given is not None:
             bounds[name] = given[0] * unit, given[1] * unit
