@@ -19,6 +19,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "converge": ("studies.commands.converge", "refine both models on a design until an accuracy is reached"),
     "audit": ("studies.commands.audit", "say what each effect of a scene is worth, and which are enough"),
     "advise": ("studies.commands.advise", "say which setting of each model meets an error at the least cost"),
+    "size": ("studies.commands.size", "size a pivot for a range, stiffness and stress by exact gradients"),
     "interactive": (
         "studies.commands.interactive",
         "drive a pivot by camera or mouse and let it go, in the browser",
@@ -125,6 +126,10 @@ STUDIES: dict[str, tuple[str, str]] = {
     "effects/worth": (
         "studies.effects.worth",
         "what each effect is worth for four designs, and what simpler strips save",
+    ),
+    "design/sizing": (
+        "studies.design.sizing",
+        "two pivots sized by exact gradients: least centre shift, least variation of stiffness",
     ),
     "impulses/step_size": (
         "studies.impulses.step_size",

@@ -28,7 +28,7 @@ PARSED = {
 BESIDE = {"run": ["--results", "results"], "draw": ["--results", "results"]}
 
 NUMBERS = (float, positive, not_negative, degrees, degrees_list)
-UNIT = re.compile(r"\bin (s|deg|rad|m|mm|EI/L\^2)\b|\brelative\b|\bin s or rad\b")
+UNIT = re.compile(r"\bin (s|deg|rad|m|mm|MPa|N m/rad|EI/L\^2)\b|\brelative\b|\bin s or rad\b")
 
 
 @cache

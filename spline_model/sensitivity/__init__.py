@@ -1,0 +1,1 @@
+"""Exact derivatives of a static path with respect to the design of the pivot."""

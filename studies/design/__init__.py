@@ -1,0 +1,1 @@
+"""Design questions answered: sizing by exact gradients, checked by the finite elements."""

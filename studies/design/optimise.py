@@ -1,0 +1,207 @@
+"""Sizing from several starts: sequential quadratic programming with exact gradients."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import minimize
+from scipy.stats import qmc
+
+from studies.cases.problem import Problem
+from studies.design.conditions import Active, conditions
+from studies.design.evaluate import Answers, answers
+from studies.design.programme import Programme
+from studies.design.task import CENTRE_SHIFT, OBJECTIVES, Task, variables_of
+
+Array = NDArray[np.float64]
+
+MOST_ITERATIONS = 100
+#: Times that the optimiser is started again where it stopped short of an optimum.
+MOST_RUNS = 4
+#: Change of the objective, over the start's, below which the optimiser stops.
+PRECISION = 1e-10
+#: Largest violation of any row that counts as none [1].
+FEASIBLE = 1e-6
+#: Residual of the Karush-Kuhn-Tucker conditions below which a point is an optimum, relative to the gradient.
+STATIONARY = 1e-3
+#: Two optima are one if objective, inclination and crossing ratio differ by less [1].
+SAME = 1e-3
+
+
+@dataclass(frozen=True, kw_only=True)
+class Outcome:
+    """Where one start led.
+
+    Attributes:
+        start: scaled variables (5,) of the start; at: (6,) where it ended, t last.
+        converged: whether it is feasible and meets the Karush-Kuhn-Tucker conditions; message: otherwise why.
+        problem: the design there; answers: its own.
+        objective: largest value over the range [m or 1]; violation: of the worst row [1].
+        residual: of the Karush-Kuhn-Tucker conditions, relative; active: the constraints that hold.
+        history: (iterations + 1, 2) objective over the start's, and violation.
+        solved, failed: designs that were solved, and those whose path ended early.
+    """
+
+    start: Array
+    at: Array
+    converged: bool
+    message: str
+    problem: Problem
+    answers: Answers
+    objective: float
+    violation: float
+    residual: float
+    active: tuple[Active, ...]
+    history: Array
+    solved: int
+    failed: int
+
+
+def starts(task: Task, count: int, seed: int = 8) -> Array:
+    """Return scaled starts (count, 5): the task's own design, clipped to the bounds, and Sobol's points."""
+    own = np.clip((variables_of(task.start) - task.low) / task.span, 0.0, 1.0)
+    spread = qmc.Sobol(5, seed=seed).random_base2(int(np.ceil(np.log2(max(count - 1, 1)))))
+    return np.vstack((own, spread[: count - 1]))
+
+
+def optimise(task: Task, start: Array) -> Outcome | None:
+    """Minimise from a scaled start (5,); None where the start itself has no answer.
+
+    An end that is feasible but not stationary is gone on from, with a fresh approximation of the curvature.
+    """
+    given = answers(task.start)
+    programme = Programme(task=task, scale={name: given.largest(name) for name in OBJECTIVES})
+    if programme.answers(start) is None:
+        return None
+    history = [_progress(programme, start)]
+    outcome, at = None, start
+    for _ in range(MOST_RUNS):
+        outcome = _run(programme, start, at, history)
+        if outcome is None or outcome.converged or outcome.violation > FEASIBLE:
+            break
+        at = outcome.at[:5]
+    return outcome
+
+
+def _run(programme: Programme, start: Array, at: Array, history: list[tuple[float, float]]) -> Outcome | None:
+    """Run the optimiser once from ``at``; its steps go to the history."""
+    begin = programme.answers(at)
+    if begin is None:
+        return None
+    found = minimize(
+        lambda x: (x[5], np.eye(6)[5]),
+        np.append(at, _t(programme, begin)),
+        jac=True,
+        method="SLSQP",
+        bounds=[(0.0, 1.0)] * 5 + [(0.0, None)],
+        constraints=[
+            {"type": "ineq", "fun": programme.inequalities, "jac": programme.inequality_jacobian},
+            {"type": "eq", "fun": programme.equality, "jac": programme.equality_jacobian},
+        ],
+        options={"maxiter": MOST_ITERATIONS, "ftol": PRECISION},
+        callback=lambda x: history.append(_progress(programme, x)),
+    )
+    return _outcome(programme, start, found.x, str(found.message), np.array(history))
+
+
+def search(task: Task, begin: Array, progress: Callable[[int, int], None]) -> list[Outcome]:
+    """Optimise from scaled starts (K, 5); those without an answer are left out."""
+    found = []
+    for done, start in enumerate(begin):
+        progress(done, len(begin))
+        found.append(optimise(task, start))
+    progress(len(begin), len(begin))
+    return [each for each in found if each is not None]
+
+
+def best(outcomes: list[Outcome]) -> Outcome | None:
+    """Return the optimum with the least objective; None if no start has led to one.
+
+    Of a design and its mirror image, which answer the same, the one with the smaller body.
+    """
+    good = [each for each in outcomes if each.converged]
+    if not good:
+        return None
+    least = min(each.objective for each in good) * (1.0 + SAME)
+    return max(
+        (each for each in good if each.objective <= least), key=lambda each: each.problem.crossing_ratio
+    )
+
+
+def numbered(outcomes: list[Outcome]) -> list[int]:
+    """Return the number of every outcome's optimum, the best 1; 0 for what is none.
+
+    Two are one if objective, inclination and crossing ratio agree: sizes may then lie on a line of equals. A
+    design and its mirror image, with ground and body exchanged (crossing ratio r and 1 - r), have the same
+    stiffness, shift and stress and count as one.
+    """
+    good = [k for k, each in enumerate(outcomes) if each.converged]
+    known: list[Array] = []
+    numbers = [0] * len(outcomes)
+    for k in sorted(good, key=lambda k: outcomes[k].objective):
+        place = _place(outcomes[k])
+        near = [i for i, other in enumerate(known) if np.abs(place / other - 1.0).max() < SAME]
+        if not near:
+            known.append(place)
+        numbers[k] = near[0] + 1 if near else len(known)
+    return numbers
+
+
+def _place(outcome: Outcome) -> Array:
+    ratio = outcome.problem.crossing_ratio
+    return np.array([outcome.objective, outcome.problem.inclination, min(ratio, 1.0 - ratio)])
+
+
+def _t(programme: Programme, found: Answers) -> float:
+    """Return the objective over the start's, squared for the centre shift."""
+    name = programme.task.objective
+    ratio = found.largest(name) / programme.scale[name]
+    return float(ratio**2 if name == CENTRE_SHIFT else ratio)
+
+
+def _progress(programme: Programme, y: Array) -> tuple[float, float]:
+    found = programme.answers(y)
+    if found is None:
+        return np.nan, np.nan
+    name = programme.task.objective
+    return found.largest(name) / programme.scale[name], _violation(programme, y)
+
+
+def _violation(programme: Programme, y: Array) -> float:
+    """Return the worst violation of what does not depend on t."""
+    whole = np.append(y[:5], np.inf)
+    worst = max(float(-programme.inequalities(whole).min()), float(np.abs(programme.equality(y)).max()))
+    return max(worst, 0.0)
+
+
+def _outcome(programme: Programme, start: Array, at: Array, message: str, history: Array) -> Outcome | None:
+    task = programme.task
+    found = programme.answers(at)
+    if found is None:
+        return None
+    at = np.append(at[:5], _t(programme, found))
+    violation = _violation(programme, at)
+    active, residual = conditions(programme, at)
+    converged = violation <= FEASIBLE and residual <= STATIONARY
+    return Outcome(
+        start=start,
+        at=at,
+        converged=converged,
+        message="" if converged else _reason(message, violation, residual),
+        problem=task.problem(programme.variables(at)),
+        answers=found,
+        objective=found.largest(task.objective),
+        violation=violation,
+        residual=residual,
+        active=active,
+        history=history,
+        solved=programme.solved,
+        failed=programme.failed,
+    )
+
+
+def _reason(message: str, violation: float, residual: float) -> str:
+    if violation > FEASIBLE:
+        return f"no design here meets the constraints (worst by {100.0 * violation:.3g} %)"
+    return f"not stationary (residual {residual:.1e}): {message}"

@@ -1,0 +1,194 @@
+"""Sizing by exact gradients: the programme, its optima, what constraints cost, and the finite elements."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from studies.design import questions
+from studies.design.evaluate import answers
+from studies.design.optimise import best, numbered, optimise, search, starts
+from studies.design.programme import OUTSIDE, Programme
+from studies.design.task import CENTRE_SHIFT, OBJECTIVES, VARIATION
+from studies.design.verify import by_elements, gradient_error, of_spline
+from studies.record.progress import silent
+from tests import gates
+
+#: Starts of the searches that lead to the best optimum in few paths, by question.
+SHORT = {CENTRE_SHIFT: 6, VARIATION: 5}
+
+
+@pytest.fixture(scope="module")
+def own():
+    """Table 1's pivot over the range, and its answers."""
+    start = questions.baseline()
+    return start, answers(start)
+
+
+@pytest.fixture(scope="module")
+def narrow(own):
+    """The task of narrow strips and its optimum."""
+    task = _task(own)
+    return task, _quick(task)
+
+
+def _task(own, objective=CENTRE_SHIFT, aspect=questions.NARROW, **changes):
+    limits = {"variation": changes.pop("variation")} if "variation" in changes else {}
+    question = questions.Question(baseline=questions.TABLE_ONE, objective=objective, aspect=aspect)
+    return replace(questions.task(*own, question, **limits), **changes)
+
+
+def _quick(task):
+    """The optimum of narrow strips from a start that reaches it in six paths."""
+    found = optimise(task, starts(task, 8)[3])
+    assert found is not None and found.converged, found
+    return found
+
+
+@pytest.mark.parametrize("objective", list(OBJECTIVES))
+def test_jacobian_agrees_with_differences(own, objective):
+    """Rows and Jacobian of the programme fit together at a design that is no optimum, limits included."""
+    gates.check("sizing_jacobian", _jacobian_error(own, objective, levels=4))
+
+
+def test_the_gate_of_the_jacobian_has_teeth(own):
+    """Differences that are not extrapolated fail the same check."""
+    with pytest.raises(AssertionError, match="x the gate"):
+        gates.check("sizing_jacobian", _jacobian_error(own, CENTRE_SHIFT, **gates.teeth("sizing_jacobian")))
+
+
+def _jacobian_error(own, objective, levels):
+    other = {CENTRE_SHIFT: {"variation": 0.05}, VARIATION: {}}[objective]
+    task = _task(own, objective, 1.0, **other)
+    programme = Programme(task=task, scale={name: own[1].largest(name) for name in OBJECTIVES})
+    y = np.array([0.4, 0.3, 0.7, 0.35, 0.45, 0.8])
+    exact = np.vstack((programme.inequality_jacobian(y), programme.equality_jacobian(y)))
+
+    def rows(at):
+        return np.concatenate((programme.inequalities(at), programme.equality(at)))
+
+    worst = 0.0
+    for i in range(6):
+        steps = [0.02 / 2**level for level in range(levels)]
+        row = [(rows(y + h * np.eye(6)[i]) - rows(y - h * np.eye(6)[i])) / (2.0 * h) for h in steps]
+        for order in range(1, levels):
+            row = [(4**order * row[k + 1] - row[k]) / (4**order - 1) for k in range(len(row) - 1)]
+        worst = max(worst, np.abs(exact[:, i] - row[0]).max() / np.abs(exact).max())
+    return worst
+
+
+def test_optimum_of_narrow_strips(own, narrow):
+    """A search of a few paths halves Table 1's shift, and says which constraints stop it there."""
+    task, found = narrow
+    assert found.violation < 1e-9 and found.residual < 1e-6
+    assert found.objective < 0.5 * own[1].largest(CENTRE_SHIFT)
+    assert {each.name for each in found.active} == {
+        "stress",
+        "slenderness",
+        "aspect",
+        "inclination at its most",
+        "stiffness",
+    }
+    begin = answers(task.problem(_variables(task, 3))).largest(CENTRE_SHIFT)
+    assert found.history[0, 0] == pytest.approx(begin / own[1].largest(CENTRE_SHIFT))
+    assert found.solved < 20 and found.failed == 0
+
+
+def _variables(task, start):
+    return task.low + task.span * starts(task, 8)[start]
+
+
+@pytest.mark.parametrize("name", ["stress", "aspect", "slenderness", "stiffness", "inclination at its most"])
+def test_price_is_what_another_limit_costs(narrow, name):
+    """The price of a constraint foretells the optimum with its limit changed by a thousandth."""
+    (task, found), change = narrow, 1e-3
+    price = {each.name: each.price for each in found.active}[name]
+    low, high = task.bounds["inclination"]
+    changed = {
+        "stress": {"allowable_stress": task.allowable_stress * (1.0 + change)},
+        "aspect": {"largest_aspect": task.largest_aspect * (1.0 + change)},
+        "slenderness": {"least_slenderness": task.least_slenderness * (1.0 + change)},
+        "stiffness": {"stiffness": task.stiffness * (1.0 + change)},
+        "inclination at its most": {"bounds": {**task.bounds, "inclination": (low, high * (1.0 + change))}},
+    }[name]
+    moved = _quick(replace(task, **changed)).objective / found.objective - 1.0
+    assert moved / change == pytest.approx(price, rel=0.02)
+
+
+def test_a_start_without_a_path_is_outside(own):
+    """A design whose path ends early stands far outside and is counted; it is no error of the search."""
+    start = replace(own[0], rotation=3.5, increments=1)
+    task = replace(_task(own), start=start)
+    programme = Programme(task=task, scale={name: 1.0 for name in OBJECTIVES})
+    y = np.array([0.5, 0.9, 0.05, 0.9, 0.5, 1.0])
+    assert programme.answers(y) is None
+    assert (programme.inequalities(y) == OUTSIDE).all() and programme.equality(y) == OUTSIDE
+    assert not programme.inequality_jacobian(y).any() and not programme.equality_jacobian(y).any()
+    assert (programme.solved, programme.failed) == (1, 1)
+
+
+def test_constraints_that_no_design_meets(own):
+    """With a stress that nothing meets, no start leads to an optimum and each says by how much it misses."""
+    task = _task(own, allowable_stress=1e6)
+    found = search(task, starts(task, 2)[1:], silent)
+    assert best(found) is None and numbered(found) == [0] * len(found)
+    assert all("no design here meets the constraints (worst by" in each.message for each in found)
+
+
+def test_mirror_image_answers_the_same(own):
+    """A pivot with ground and body exchanged has the same stiffness, shift and stress at every rotation."""
+    task = _task(own)
+    values = _variables(task, 2)
+    mirrored = values * (1, 1, 0, 1, 1) + (0, 0, 1.0 - values[2], 0, 0)
+    one, other = (of_spline(answers(task.problem(each))) for each in (values, mirrored))
+    np.testing.assert_allclose(one.shift, other.shift, rtol=1e-9, atol=1e-15)
+    np.testing.assert_allclose(one.stiffness, other.stiffness, rtol=1e-9)
+    np.testing.assert_allclose(one.stress, other.stress, rtol=1e-9, atol=1.0)
+
+
+def test_optimum_holds_in_the_finite_elements(narrow):
+    """Objectives and constraints of the quick optimum are those of the finite elements."""
+    _, found = narrow
+    gates.check("sizing_finite_elements", _difference(found.problem, found.answers))
+
+
+def test_gradients_at_the_optimum(narrow):
+    """The gradients that the optimiser had are those of the answers."""
+    task, found = narrow
+    gates.check("sizing_gradients", gradient_error(task, found.problem))
+    with pytest.raises(AssertionError, match="x the gate"):
+        teeth = gates.teeth("sizing_gradients")
+        gates.check("sizing_gradients", gradient_error(task, found.problem, **teeth))
+
+
+def _difference(problem, found):
+    spline, elements = of_spline(found).quantities(), by_elements(problem)[0].quantities()
+    return max(abs(spline[name] / elements[name] - 1.0) for name in spline)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("objective", "gate"), [(CENTRE_SHIFT, "sizing_centre_shift"), (VARIATION, "sizing_variation")]
+)
+def test_factor_over_table_one(own, objective, gate):
+    """The best optimum is many times better than Table 1, in both models; other starts end at worse ones."""
+    task = _task(own, objective, 1.0)
+    every = starts(task, 8)
+    found = optimise(task, every[SHORT[objective]])
+    assert found is not None and found.converged
+    gates.check(gate, found.objective / own[1].largest(objective))
+    gates.check("sizing_finite_elements", _difference(found.problem, found.answers))
+    gates.check("sizing_gradients", gradient_error(task, found.problem))
+    from_table_one = optimise(task, every[gates.teeth(gate)["start"]])
+    assert from_table_one is not None and from_table_one.converged
+    with pytest.raises(AssertionError, match="x the gate"):
+        gates.check(gate, from_table_one.objective / own[1].largest(objective))
+
+
+def test_the_gate_of_the_finite_elements_has_teeth(own):
+    """Splines of fewer control points miss the least variation, of which little is left."""
+    values = [0.080774, 0.767438, 0.9, 0.00174162, 0.0771115]
+    problem = _task(own, VARIATION, 1.0).problem(np.array(values))
+    coarse = answers(problem, **gates.teeth("sizing_finite_elements"))
+    with pytest.raises(AssertionError, match="x the gate"):
+        gates.check("sizing_finite_elements", _difference(problem, coarse))

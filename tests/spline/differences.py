@@ -1,0 +1,94 @@
+"""Derivatives of a path by central differences, extrapolated: what the exact ones are held against."""
+
+from collections.abc import Mapping
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+
+from spline_model.pivot import cross_axis_pivot
+from spline_model.sensitivity.parameters import Section
+from spline_model.sensitivity.result import Sensitivities
+from spline_model.sensitivity.solve import sensitivities
+from spline_model.statics import solve_statics
+from tests.table_one import TABLE_ONE
+
+QUANTITIES = (
+    "torque",
+    "stiffness",
+    "centre",
+    "body_shift",
+    "centre_shift",
+    "bending_energy",
+    "axial_energy",
+    "fibre_stress",
+)
+STATIONS = np.linspace(0.0, 1.0, 9)
+#: First step of the differences over the parameter: a path hardly knows area and modulus beside the shape.
+STEPS = {"length": 0.03, "inclination": 0.03, "crossing_ratio": 0.03}
+SECTION_STEP = 0.2
+
+
+def random_design(rng: np.random.Generator) -> dict[str, Any]:
+    """A design within what a designer would try, of any size, material and orientation."""
+    length = 10.0 ** rng.uniform(-3, 0)
+    thickness = length / rng.uniform(8.0, 60.0)
+    width = thickness * rng.uniform(0.5, 10.0)
+    return TABLE_ONE | {
+        "length": length,
+        "inclination": np.radians(rng.uniform(25.0, 65.0)),
+        "crossing_ratio": rng.uniform(0.1, 0.9),
+        "area": thickness * width,
+        "second_moment_of_area": thickness**3 * width / 12.0,
+        "youngs_modulus": 10.0 ** rng.uniform(9, 11.5),
+        "centre_offset": tuple(length * rng.uniform(-0.5, 0.5, 2)),
+        "orientation": rng.uniform(-3.0, 3.0),
+    }
+
+
+def exact(
+    design: Mapping[str, Any], parameters: tuple[str, ...], rotation: float, grid: Mapping[str, Any]
+) -> Sensitivities:
+    """Exact derivatives along the path to a rotation [rad]."""
+    pivot = cross_axis_pivot(**design, **grid)
+    path = solve_statics(pivot, rotation=rotation, increments=6)
+    return sensitivities(pivot, path, parameters=parameters, stations=STATIONS)
+
+
+def changed(design: Mapping[str, Any], name: str, factor: float) -> dict[str, Any]:
+    """The design with one parameter, or one side of its section, times a factor."""
+    power = {"width": (1, 1), "thickness": (1, 3)}.get(name)
+    if power is None:
+        return {**design, name: design[name] * factor}
+    both = zip(("area", "second_moment_of_area"), power, strict=True)
+    return {**design, **{key: design[key] * factor**k for key, k in both}}
+
+
+def value_of(design: Mapping[str, Any], name: str) -> float:
+    """A design's parameter, or side of its section [m]."""
+    if name in design:
+        return float(design[name])
+    strip = cross_axis_pivot(**design).mechanism.design.strips[0]
+    return float(getattr(Section.of(strip), name))
+
+
+def by_differences(
+    design: Mapping[str, Any], name: str, rotation: float, grid: Mapping[str, Any], levels: int = 5
+) -> dict[str, np.ndarray]:
+    """p dq/dp of every quantity, central differences of halved steps extrapolated ``levels`` - 1 times."""
+    rows: dict[str, list[np.ndarray]] = {quantity: [] for quantity in QUANTITIES}
+    for level in range(levels):
+        step = STEPS.get(name, SECTION_STEP) / 2**level
+        up, down = (
+            exact(changed(design, name, 1.0 + sign * step), ("length",), rotation, grid) for sign in (1, -1)
+        )
+        for quantity in QUANTITIES:
+            change = getattr(up, quantity).value - getattr(down, quantity).value
+            rows[quantity].append(change / (2.0 * step))
+    return {quantity: _limit(row) for quantity, row in rows.items()}
+
+
+def _limit(row: list[np.ndarray]) -> np.ndarray:
+    for order in range(1, len(row)):
+        row = [(4**order * fine - coarse) / (4**order - 1) for coarse, fine in pairwise(row)]
+    return row[0]

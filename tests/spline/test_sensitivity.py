@@ -1,0 +1,240 @@
+"""Exact sensitivities of the static path: against differences, dimensional analysis and closed forms."""
+
+import math
+import re
+
+import numpy as np
+import pytest
+
+from spline_model.errors import InvalidParameter
+from spline_model.pivot import cross_axis_pivot
+from spline_model.sensitivity.parameters import KEYWORDS, PARAMETERS
+from spline_model.sensitivity.solve import sensitivities
+from spline_model.statics import solve_statics
+from tests import gates
+from tests.spline.differences import (
+    QUANTITIES,
+    by_differences,
+    exact,
+    random_design,
+    value_of,
+)
+from tests.table_one import TABLE_ONE
+
+#: Quantities of shape alone, and what does not move with a parameter.
+SHAPES = ("centre", "body_shift", "centre_shift")
+UNMOVED = {"youngs_modulus": SHAPES, "width": (*SHAPES, "fibre_stress")}
+FORMS = (
+    {},
+    {"control_points": 8},
+    {"stretch": "consistent"},
+    {"basis": "bspline", "control_points": 7},
+    {"control_points": 5, "axial_modes": 3},
+)
+
+
+def _error(design, parameter, rotation, grid, quantities=QUANTITIES, **keywords):
+    """Largest error of p dq/dp over quantities and path, relative to the largest one along it."""
+    found = exact(design, (parameter,), rotation, grid)
+    expected = by_differences(design, parameter, rotation, grid, **keywords)
+    size = value_of(design, parameter)
+    errors = [
+        np.abs(size * getattr(found, name).derivative[..., 0] - expected[name]).max()
+        / np.abs(expected[name]).max()
+        for name in quantities
+        if name not in UNMOVED.get(parameter, ())
+    ]
+    return max(errors)
+
+
+def _worst(seed, grid):
+    rng = np.random.default_rng(seed)
+    design, rotation = random_design(rng), math.radians(rng.uniform(15.0, 90.0)) * rng.choice((-1, 1))
+    return max(_error(design, parameter, rotation, grid) for parameter in PARAMETERS)
+
+
+@pytest.mark.parametrize("seed", range(2))
+def test_agrees_with_extrapolated_differences(seed):
+    """Every quantity by every parameter agrees with differences on random designs."""
+    gates.check("sensitivities", _worst(seed, FORMS[0]))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", range(2, 22))
+def test_agrees_with_extrapolated_differences_on_many_designs(seed):
+    """The same on more designs, in all forms of strip in turn."""
+    gates.check("sensitivities", _worst(seed, FORMS[seed % len(FORMS)]))
+
+
+def test_the_gate_of_sensitivities_has_teeth():
+    """Differences that are not extrapolated fail the same check."""
+    rng = np.random.default_rng(0)
+    error = _error(random_design(rng), "inclination", 1.2, {}, **gates.teeth("sensitivities"))
+    with pytest.raises(AssertionError, match="x the gate"):
+        gates.check("sensitivities", error)
+
+
+def test_inextensible_strips_do_not_know_their_area():
+    """Of inextensible strips the area moves the stress alone; the other derivatives hold as they do else."""
+    grid, design = {"stretch": "inextensible"}, random_design(np.random.default_rng(5))
+    found = exact(design, ("area",), 0.8, grid)
+    assert not found.states.any()
+    assert found.fibre_stress.derivative.any()
+    stressed = [name for name in QUANTITIES if name != "axial_energy"]
+    for parameter in ("length", "inclination", "crossing_ratio", "thickness"):
+        names = stressed if parameter != "thickness" else ("torque", "stiffness", "fibre_stress")
+        gates.check("sensitivities", _error(design, parameter, 0.8, grid, names))
+
+
+@pytest.mark.parametrize("rotation", [0.3, -1.5])
+def test_dimensional_analysis(rotation):
+    """L d/dL + 2 A d/dA + 4 I d/dI counts the metres of a quantity, and E d/dE its newtons."""
+    design = random_design(np.random.default_rng(11)) | {"centre_offset": (0.0, 0.0)}
+    found = exact(design, KEYWORDS, rotation, {})
+    size = np.array([design[name] for name in KEYWORDS])
+    metres = {"centre": 1, "body_shift": 1, "centre_shift": 1, "fibre_stress": 0}
+    worst = 0.0
+    for name in QUANTITIES:
+        quantity = getattr(found, name)
+        by = quantity.derivative * size
+        scaled = by[..., 0] + 2.0 * by[..., 3] + 4.0 * by[..., 4] - metres.get(name, 3) * quantity.value
+        stiffer = by[..., 5] - (name not in SHAPES) * quantity.value
+        largest = np.abs(quantity.value).max()
+        worst = max(worst, np.abs(scaled).max() / largest, np.abs(stiffer).max() / largest)
+    gates.check("sensitivities_scaling", worst)
+
+
+def test_the_gate_of_dimensional_analysis_has_teeth():
+    """A cube of thickness counted as a square fails the same check."""
+    found = exact(TABLE_ONE, KEYWORDS, 0.3, {})
+    by = found.torque.derivative * np.array([TABLE_ONE[name] for name in KEYWORDS])
+    power = gates.teeth("sensitivities_scaling")["second_moment_metres"]
+    off = by[:, 0] + 2.0 * by[:, 3] + power * by[:, 4] - 3.0 * found.torque.value
+    with pytest.raises(AssertionError, match="x the gate"):
+        gates.check("sensitivities_scaling", np.abs(off).max() / np.abs(found.torque.value).max())
+
+
+def test_small_rotation_closed_forms():
+    """At rest K = 8 EI/L (1 - 3 r + 3 r^2), and its derivatives, for strips that hardly stretch."""
+    r, design = 0.3, TABLE_ONE | {"crossing_ratio": 0.3, "second_moment_of_area": 1e-15}
+    pivot = cross_axis_pivot(**design)
+    found = sensitivities(pivot, solve_statics(pivot, rotation=1e-3, increments=1), parameters=KEYWORDS)
+    ei_l = design["youngs_modulus"] * design["second_moment_of_area"] / design["length"]
+    expected = {
+        "length": -8.0 * ei_l / design["length"] * (1 - 3 * r + 3 * r**2),
+        "crossing_ratio": 8.0 * ei_l * (6 * r - 3),
+        "second_moment_of_area": 8.0 * ei_l / design["second_moment_of_area"] * (1 - 3 * r + 3 * r**2),
+    }
+    errors = [
+        found.stiffness.derivative[0, KEYWORDS.index(name)] / value - 1.0 for name, value in expected.items()
+    ]
+    gates.check("sensitivities_at_rest", np.abs(errors).max())
+
+
+def test_the_gate_of_closed_forms_has_teeth():
+    """Table 1's thick strips, which stretch, miss the closed form."""
+    design = TABLE_ONE | {"crossing_ratio": 0.3} | gates.teeth("sensitivities_at_rest")
+    pivot = cross_axis_pivot(**design)
+    found = sensitivities(pivot, solve_statics(pivot, rotation=1e-3, increments=1), parameters=("length",))
+    ei_l2 = design["youngs_modulus"] * design["second_moment_of_area"] / design["length"] ** 2
+    with pytest.raises(AssertionError, match="x the gate"):
+        gates.check(
+            "sensitivities_at_rest", abs(found.stiffness.derivative[0, 0] / (-8.0 * ei_l2 * 0.37) - 1.0)
+        )
+
+
+def test_values_are_those_of_the_path():
+    """Stiffness, stress and centre shift are the path's own, and either method of solving gives the same."""
+    pivot = cross_axis_pivot(**TABLE_ONE | {"crossing_ratio": 0.4})
+    path = solve_statics(pivot, rotation=1.2, increments=8)
+    found = sensitivities(pivot, path, parameters=PARAMETERS)
+    np.testing.assert_allclose(found.stiffness.value, path.stiffness, rtol=1e-9)
+    depth = math.sqrt(12.0 * TABLE_ONE["second_moment_of_area"] / TABLE_ONE["area"])
+    bending = path.bending_moment * depth / (2.0 * TABLE_ONE["second_moment_of_area"])
+    stress = np.abs(path.axial_force) / TABLE_ONE["area"] + np.abs(bending)
+    np.testing.assert_allclose(np.abs(found.fibre_stress.value).max(axis=-1), stress, rtol=1e-9, atol=1.0)
+    np.testing.assert_allclose(found.largest_stress().value, stress.max(axis=(1, 2)), rtol=1e-9, atol=1.0)
+    bordered = solve_statics(pivot, rotation=1.2, increments=8, method="multipliers")
+    other = sensitivities(pivot, bordered, parameters=PARAMETERS)
+    scale = np.abs(found.torque.derivative).max(axis=0)
+    assert (np.abs(found.torque.derivative - other.torque.derivative) / scale).max() < 1e-7
+
+
+def test_what_does_not_move():
+    """Neither modulus nor width moves the shape, nor the width the stress: both scale the forces alone."""
+    design = random_design(np.random.default_rng(4))
+    found = exact(design, tuple(UNMOVED), 1.0, {})
+    for i, (parameter, names) in enumerate(UNMOVED.items()):
+        for name in names:
+            quantity = getattr(found, name)
+            moved = np.abs(quantity.derivative[..., i]).max() * value_of(design, parameter)
+            assert moved < 1e-9 * np.abs(quantity.value).max()
+
+
+def test_largest_stress_has_the_derivative_of_its_point():
+    """The derivative of the largest stress is that of the station where it is, by differences."""
+    name, design = "thickness", random_design(np.random.default_rng(4))
+    found = exact(design, (name,), 1.0, {})
+    by = by_differences(design, name, 1.0, {})["fibre_stress"][-1].ravel()
+    stress = found.fibre_stress.value[-1].ravel()
+    most = int(np.abs(stress).argmax())
+    largest = found.largest_stress()
+    assert largest.value[-1] == abs(stress[most])
+    error = largest.derivative[-1, 0] * value_of(design, name) / (math.copysign(1.0, stress[most]) * by[most])
+    gates.check("sensitivities", abs(error - 1.0))
+
+
+def test_mirrored_rotation():
+    """A path to the other side has equal shifts and derivatives of stiffness, and those of torque negated."""
+    design = TABLE_ONE | {"crossing_ratio": 0.4}  # at 0.5 nothing depends on it, to first order
+    right, left = (exact(design, PARAMETERS, sign * 1.1, {}) for sign in (1.0, -1.0))
+    scale = np.abs(right.stiffness.derivative).max(axis=0)
+    assert (np.abs(right.stiffness.derivative - left.stiffness.derivative) / scale).max() < 1e-7
+    scale = np.abs(right.torque.derivative).max(axis=0)
+    assert (np.abs(right.torque.derivative + left.torque.derivative) / scale).max() < 1e-7
+    one, other = (np.hypot(*found.centre_shift.value.T) for found in (right, left))
+    np.testing.assert_allclose(one, other, rtol=1e-9, atol=1e-14)
+
+
+def test_one_factorisation_a_state_and_one_back_substitution_a_parameter():
+    """Work is counted: a factorisation a state, a back-substitution a parameter and one for the rate."""
+    pivot = cross_axis_pivot(**TABLE_ONE)
+    path = solve_statics(pivot, rotation=1.2, increments=8)
+    assert sensitivities(pivot, path).counters == {"factorisations": 9, "back_substitutions": 9 * 7}
+    more = sensitivities(pivot, path, parameters=PARAMETERS)
+    assert more.counters == {"factorisations": 9, "back_substitutions": 9 * 9}
+
+
+@pytest.mark.parametrize(
+    ("keywords", "parameters", "message"),
+    [
+        ({}, ("depth",), "parameters: got 'depth', expected one of length, "),
+        (
+            {},
+            ("length", "length"),
+            "parameters: got ['length', 'length'], expected at least one name, each once",
+        ),
+        ({}, (), "parameters: got [], expected at least one name, each once"),
+        ({"measure": "spatial"}, KEYWORDS, "measure: got 'spatial', expected material"),
+        (
+            {"effects": ("bending", "stretching", "gravity")},
+            KEYWORDS,
+            "effects: got 'gravity', expected only bending, ",
+        ),
+    ],
+)
+def test_refuses_what_it_does_not_know(keywords, parameters, message):
+    """Unknown parameters, measures and effects are refused in one line."""
+    pivot = cross_axis_pivot(**TABLE_ONE, **keywords)
+    path = solve_statics(pivot, rotation=0.3, increments=2)
+    with pytest.raises(InvalidParameter, match=re.escape(message)):
+        sensitivities(pivot, path, parameters=parameters)
+
+
+def test_refuses_the_path_of_another_pivot():
+    """States of another design, or of another discretisation, are refused."""
+    path = solve_statics(cross_axis_pivot(**TABLE_ONE), rotation=0.3, increments=2)
+    with pytest.raises(InvalidParameter, match="solution: got 'state 0 with residual"):
+        sensitivities(cross_axis_pivot(**TABLE_ONE | {"length": 0.09}), path)
+    with pytest.raises(InvalidParameter, match="unknowns', expected a solution of this pivot with"):
+        sensitivities(cross_axis_pivot(**TABLE_ONE, control_points=7), path)
