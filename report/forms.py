@@ -88,7 +88,7 @@ def seconds(value: Any) -> str:
 
 def degrees(value: Any) -> str:
     """Return an angle given in radians in degrees."""
-    return f"{significant(math.degrees(float(value)), 3)}°"
+    return f"{math.degrees(float(value)):.4g}°"
 
 
 def text(value: Any) -> str:

@@ -46,6 +46,19 @@ def _observed(what: str, formulation: str, form: Form) -> Fact:
     return fact(SWING, "findings", at("value", claim=what, formulation=formulation), form)
 
 
+def _worst_slide(results: Results) -> float:
+    """Return the error with the default slide stiffness where that is farthest from the best."""
+    found = results.table(SLIDE, "findings").sort_values("value").iloc[-1]
+    count = int(str(found["formulation"]).removeprefix("n = "))
+    table, column = (
+        ("motion", "error_rotation_rad") if "motion" in found["claim"] else ("statics", "error_torque")
+    )
+    default = at("slide_stiffness", problem=table, control_points=count)(results.table(SLIDE, "defaults"))
+    rows = where(results.table(SLIDE, table), control_points=count)
+    nearest = (rows["slide_stiffness"] - default).abs().idxmin()
+    return float(rows.loc[nearest, column])
+
+
 def _floor(results: Results, column: str) -> float:
     """Return the least error of the spatial measure, whatever the control points."""
     rows = where(results.table(POINTS, "map"), basis="bezier", measure="spatial", stretch="mixed")
@@ -122,6 +135,7 @@ FACTS: dict[str, Fact | Derived] = {
         "Both models swing alike at every amplitude from 2 to 90 degrees", "n = 6", percent
     ),
     "slide.worst": fact(SLIDE, "findings", lambda t: t["value"].max(), times),
+    "slide.worst.error": Derived(made=_worst_slide, form=power),
     "slide.failed": fact(SLIDE, "findings", lambda t: int((t["holds"] == "no").sum()), count),
     "slide.tried": fact(SLIDE, "findings", len, count),
     "estimate.statics": fact(
