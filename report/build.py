@@ -12,8 +12,9 @@ import datetime
 import json
 import sys
 import warnings
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 import typst
 
@@ -30,14 +31,15 @@ OUTPUT = ROOT / "report" / "validation.pdf"
 FAILED = 2
 
 
-def compiled(results: Results) -> bytes:
+def typeset(content: Mapping[str, Any]) -> bytes:
     """Return the report as PDF.
 
+    Args:
+        content: what may be quoted, from `gathered`.
+
     Raises:
-        ReportError: a result is missing or stale, the text asks for what there is not, or a sentence is no
-            longer supported; one line.
+        ReportError: the text asks for what there is not, or a sentence is no longer supported; one line.
     """
-    content = gathered(results)
     made = datetime.datetime.fromisoformat(f"{content['date']}T00:00:00+00:00")
     try:
         with warnings.catch_warnings():
@@ -76,7 +78,7 @@ def main(words: Sequence[str] | None = None) -> int:
     arguments = parser.parse_args(words)
     try:
         require_writable_file(arguments.output)
-        pdf = compiled(Results(Store(), allow_stale=arguments.allow_stale))
+        pdf = typeset(gathered(Results(Store(), allow_stale=arguments.allow_stale)))
         write_whole(arguments.output, pdf)
     except BadInput as error:
         print(f"report: {error}", file=sys.stderr)

@@ -12,8 +12,6 @@ SWING, SLIDE = "convergence/frequency", "convergence/slide_stiffness"
 ESTIMATE = "convergence/error_estimate"
 #: The formulation that the suite takes by default, but for its control points.
 DEFAULT = {"basis": "bezier", "measure": "material", "stretch": "mixed"}
-#: The paper's, integrated exactly.
-PAPER = {"basis": "bezier", "measure": "spatial", "stretch": "consistent"}
 
 
 def default_rows(table: pd.DataFrame) -> pd.DataFrame:
@@ -66,12 +64,9 @@ def _floor(results: Results, column: str) -> float:
 
 
 FACTS: dict[str, Fact | Derived] = {
-    "map.cases": fact(POINTS, "map", len, count),
-    "map.paper.torque": fact(POINTS, "map", at("error_torque", control_points=4, **PAPER), percent),
     "map.free.torque": _default(4, "error_torque", percent),
     "map.six.torque": _default(6, "error_torque", power),
     "map.eight.torque": _default(8, "error_torque", power),
-    "map.eight.trajectory": _default(8, "error_trajectory", power),
     "map.twelve.torque": _default(12, "error_torque", power),
     "map.needed": fact(POINTS, "map", _needed, count),
     "map.needed.consistent": fact(

@@ -5,23 +5,25 @@ from typing import Any
 import pandas as pd
 
 from report.facts import Cell, Derived, Fact, Holds, Listing, fact
-from report.forms import count, decade, percent, seconds, significant, times
+from report.forms import count, decade, percent, seconds, significant, times, unit
 from report.pick import absent, at, where
 from report.results import Results
 from studies.commands.digits import DYNAMICS, STATICS
 
+#: Error of the rotation that the text compares costs at [rad].
+SWING_ERROR = 0.01
 STATIC, MOVING = "work_precision/statics", "work_precision/dynamics"
 
 
 def _digits(
-    results: Results, study: str, labels: dict[str, str], unit: str
+    results: Results, study: str, labels: dict[str, str], suffix: str
 ) -> tuple[list[str], list[list[Cell]]]:
     table = results.table(study, "digits_of_time")
     solved = [name for name in labels if name in set(table["series"])]
     rows: list[list[Cell]] = []
     for target in sorted(set(table["target"]), reverse=True):
         found = table[table["target"] == target].set_index("series")
-        cells: list[Cell] = [f"{decade(target) if not unit else significant(target, 2)}{unit}"]
+        cells: list[Cell] = [f"{decade(target) if not suffix else significant(target, 2)}{suffix}"]
         rows.append(cells + [_cost(found.loc[name], name == solved[0]) for name in solved])
     return ["error", *(labels[name] for name in solved)], rows
 
@@ -62,8 +64,9 @@ FACTS: dict[str, Fact | Derived] = {
     "cost.path.coarse": _cell(STATIC, 1e-3, "spline"),
     "cost.path.fine": _cell(STATIC, 1e-6, "spline"),
     "cost.path.fe": _ratio(STATIC, 1e-3, "finite elements"),
-    "cost.swing.spline": _cell(MOVING, 0.01, "spline"),
-    "cost.swing.fe": _ratio(MOVING, 0.01, "finite elements"),
+    "cost.swing.error": Derived(made=lambda _: SWING_ERROR, form=unit("rad")),
+    "cost.swing.spline": _cell(MOVING, SWING_ERROR, "spline"),
+    "cost.swing.fe": _ratio(MOVING, SWING_ERROR, "finite elements"),
     "cost.swing.real-time": fact(
         MOVING,
         "findings_of_time",

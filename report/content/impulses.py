@@ -1,7 +1,7 @@
 """Sequential impulses, the solver of the paper's section 4.1."""
 
 from report.facts import Cell, Derived, Fact, Holds, Listing, fact
-from report.forms import count, percent, power, seconds, significant, times
+from report.forms import percent, power, seconds, significant, times
 from report.pick import at, largest, where
 from report.results import Results
 
@@ -55,7 +55,6 @@ FACTS: dict[str, Fact | Derived] = {
     "impulses.drift.stable": fact(
         IMPULSES, "steps", largest("drift", form="stable", status="converged"), power
     ),
-    "impulses.gain": fact(IMPULSES, "steps", largest("energy_gain", form="stable"), lambda v: f"{v:.1g}"),
     "impulses.lost": fact(
         IMPULSES,
         "steps",
@@ -65,8 +64,6 @@ FACTS: dict[str, Fact | Derived] = {
     "impulses.picture": fact(
         IMPULSES, "timings_of_pictures", largest("cpu_95_ms"), lambda v: f"{significant(v)}\u00a0ms"
     ),
-    "impulses.solves": fact(IMPULSES, "pictures", largest("solves_most"), count),
-    "impulses.pictures": fact(IMPULSES, "pictures", largest("pictures"), count),
     "impulses.polymer.swing": fact(
         IMPULSES, "limits", at("measured_s", design="polymer", group="swing", sweeps=0), seconds
     ),

@@ -71,12 +71,8 @@ FACTS: dict[str, Fact | Derived] = {
     "peers.opensees.version": fact(CODES, "codes", at("version", code="openseespy"), str),
     "peers.path.least": Derived(made=lambda r: _lowest(r, "statics_ratios", "Exudyn"), form=times),
     "peers.path.most": fact(CODES, "statics_ratios", largest("ratio", group="Exudyn"), times),
-    "peers.path.opensees": Derived(made=lambda r: _lowest(r, "statics_ratios", "OpenSees"), form=times),
     "peers.swing.least": Derived(made=lambda r: _lowest(r, "swings_ratios", "Exudyn"), form=times),
     "peers.swing.most": fact(CODES, "swings_ratios", largest("ratio", group="Exudyn"), times),
-    "peers.wanted.held": fact(
-        CODES, "findings_of_time", lambda t: int((t["holds"] == "yes").sum()), lambda v: str(int(v))
-    ),
     "peers.wanted.tried": fact(CODES, "findings_of_time", len, lambda v: str(int(v))),
     "peers.wanted.path": fact(
         CODES, "findings_of_time", at("claim", formulation="static path, errors of 1e-06"), str
@@ -85,10 +81,6 @@ FACTS: dict[str, Fact | Derived] = {
         CODES, "findings_of_time", at("value", formulation="static path, errors of 1e-06"), times
     ),
     "surrogates.best.torque": fact(SURROGATES, "errors", largest("torque", model="four-bar"), percent),
-    "surrogates.best.stiffness": fact(SURROGATES, "errors", largest("stiffness", model="four-bar"), percent),
-    "surrogates.best.trajectory": fact(
-        SURROGATES, "errors", largest("trajectory", model="four-bar"), percent
-    ),
     "surrogates.free.torque": fact(
         SURROGATES, "errors", largest("torque", model="n = 4, locking-free"), percent
     ),

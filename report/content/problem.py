@@ -1,7 +1,5 @@
 """The pivot of Table 1 and the references that all errors are held against."""
 
-import math
-
 from report.facts import Cell, Derived, Fact, Listing, fact
 from report.forms import Form, count, degrees, power, significant, unit
 from report.pick import at
@@ -69,8 +67,6 @@ FACTS: dict[str, Fact | Derived] = {
     "pivot.slenderness": Derived(
         made=lambda _: pivot().length / pivot().depth, form=lambda value: significant(value, 2)
     ),
-    "pivot.rotation": Derived(made=lambda _: pivot().rotation, form=degrees),
-    "pivot.increments": Derived(made=lambda _: pivot().increments, form=count),
     "pivot.stiffness": Derived(made=lambda _: small_angle_stiffness(pivot()), form=unit("N m/rad", 4)),
     "pivot.depth": Derived(made=lambda _: pivot().depth, form=unit("mm", 2, 1e3)),
     "pivot.width": Derived(made=lambda _: pivot().area / pivot().depth, form=unit("mm", 2, 1e3)),
@@ -84,9 +80,6 @@ FACTS: dict[str, Fact | Derived] = {
     ),
     "theory.shear.torque": fact(
         "baselines/peers", "theories", at("torque", what="difference of the theories"), power
-    ),
-    "theory.shear.trajectory": fact(
-        "baselines/peers", "theories", at("trajectory", what="difference of the theories"), power
     ),
     "theory.shear.swing": fact(
         "baselines/peers",
@@ -116,6 +109,6 @@ FACTS: dict[str, Fact | Derived] = {
         ),
         form=power,
     ),
-    "pivot.quarter-turn": Derived(made=lambda _: math.pi / 2.0, form=degrees),
+    "pivot.quarter-turn": Derived(made=lambda _: pivot().rotation, form=degrees),
 }
 LISTINGS = {"given": Listing(made=_given)}
