@@ -1,5 +1,7 @@
 """Control points and elements: where it locks, how fast it converges, and what the swing shows of it."""
 
+from itertools import pairwise
+
 import pandas as pd
 
 from report.facts import Derived, Fact, Holds, fact
@@ -57,6 +59,13 @@ def _worst_slide(results: Results) -> float:
     return float(rows.loc[nearest, column])
 
 
+def _as_good_as_six(results: Results) -> int:
+    """Return the least number of elements tried whose torque is as good as that of six control points."""
+    six = at("error_torque", control_points=6)(default_rows(results.table(POINTS, "map")))
+    rows = where(results.table(MESHES, "meshes"), element="corotational")
+    return int(rows.loc[rows["error_torque"].abs() <= abs(six), "elements"].min())
+
+
 def _floor(results: Results, column: str) -> float:
     """Return the least error of the spatial measure, whatever the control points."""
     rows = where(results.table(POINTS, "map"), basis="bezier", measure="spatial", stretch="mixed")
@@ -103,6 +112,7 @@ FACTS: dict[str, Fact | Derived] = {
     "elements.twenty.torque": fact(
         MESHES, "meshes", at("error_torque", element="corotational", elements=20), power
     ),
+    "elements.as-six": Derived(made=_as_good_as_six, form=count),
     "elements.largest.torque": fact(
         MESHES, "meshes", at("error_torque", element="corotational", elements=320), power
     ),
@@ -156,6 +166,22 @@ HOLDS = {
         test=lambda r: (
             _needed(r.table(POINTS, "map"))
             < _needed(r.table(POINTS, "map"), basis="bezier", measure="material", stretch="consistent")
+        ),
+    ),
+    "map.falls": Holds(
+        words="from four to six, eight and twelve control points the torque's error falls tenfold each time",
+        test=lambda r: all(
+            abs(fine) < abs(coarse) / 10.0
+            for coarse, fine in pairwise(
+                at("error_torque", control_points=n)(default_rows(r.table(POINTS, "map")))
+                for n in (4, 6, 8, 12)
+            )
+        ),
+    ),
+    "map.bspline-slower": Holds(
+        words="with twelve control points the B-spline is a hundred times farther off than the Bézier curve",
+        test=lambda r: (
+            abs(FACTS["map.bspline.torque"].value(r)) > 100.0 * abs(FACTS["map.twelve.torque"].value(r))
         ),
     ),
     "map.one-more-worse": Holds(

@@ -11,7 +11,7 @@ from report.forms import count, percent, power, significant, text, unit
 from report.pick import at, largest, least, where
 from report.results import Results
 from studies.registry import STUDIES
-from studies.stability.columns import DEFAULT, FE, PAPER
+from studies.stability.columns import DEFAULT, FE, PAPER, TWELVE
 from studies.stability.maps import LOOKS
 from studies.stability.outcome import OUTCOMES
 from studies.stability.summary import GROUP
@@ -83,12 +83,16 @@ def _none_wrong(family: str) -> Holds:
     )
 
 
-def _all_right(family: str) -> Holds:
-    def test(results: Results) -> bool:
-        row = where(_counts(results, family), model=DEFAULT).iloc[0]
-        return bool(row["right"] == row["tried"])
+def _share_right(results: Results, family: str, model: str) -> float:
+    row = where(_counts(results, family), model=model).iloc[0]
+    return float(row["right"] / row["tried"])
 
-    return Holds(words=f"the default is right in every case of the family {family}", test=test)
+
+def _all_right(family: str) -> Holds:
+    return Holds(
+        words=f"the default is right in every case of the family {family}",
+        test=lambda r: _share_right(r, family, DEFAULT) == 1.0,
+    )
 
 
 def _total(results: Results, model: str, outcome: str) -> int:
@@ -111,6 +115,13 @@ def _first_refused(rows: pd.DataFrame) -> float:
 
 def _last_right(rows: pd.DataFrame) -> float:
     return float(rows.loc[(rows["outcome"] == "right") & (rows["x"] > 0.0), "x"].max())
+
+
+def _rotation_ends(results: Results) -> bool:
+    rows = where(results.table(GROUP + "rotation", "outcomes"), model=DEFAULT)
+    reasons = rows.loc[rows["outcome"] == "refused", "reason"]
+    for_want = reasons.str.contains("control points do not resolve").all()
+    return bool(for_want) and _first_refused(rows) > _last_right(rows)
 
 
 def _span(rows: pd.DataFrame) -> float:
@@ -208,11 +219,12 @@ HOLDS: dict[str, Holds] = {
         test=lambda r: _total(r, PAPER, "wrong") > _total(r, PAPER, "tried") / 2,
     ),
     "hard.rotation.ends": Holds(
-        words="the default is refused only beyond the last rotation at which it is right, counter-clockwise",
-        test=lambda r: (
-            _first_refused(where(r.table(GROUP + "rotation", "outcomes"), model=DEFAULT))
-            > _last_right(where(r.table(GROUP + "rotation", "outcomes"), model=DEFAULT))
-        ),
+        words="the default is refused only beyond its last right rotation, and for want of control points",
+        test=_rotation_ends,
+    ),
+    "hard.buckling.twelve": Holds(
+        words="twelve control points are right in every case of the family buckling",
+        test=lambda r: _share_right(r, "buckling", TWELVE) == 1.0,
     ),
     "hard.step_size.fe-wrong": Holds(
         words="twenty elements are wrong in some step size",

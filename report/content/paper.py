@@ -147,6 +147,12 @@ HOLDS = {
             for name in (PAPER, LOCKING_FREE, SIX)
         ),
     ),
+    "fig04.only-three": Holds(
+        words="three Gauss points alone are off by more than 1 % of the displacement",
+        test=lambda r: (
+            list(r.table(TRAJECTORY, "summary").query("error_largest > 0.01")["formulation"]) == [THREE]
+        ),
+    ),
     "fig05.locks": Holds(
         words="the locked spline's torque is off by more than its own size, the others' by under 3 %",
         test=lambda r: (
