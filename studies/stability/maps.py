@@ -93,7 +93,7 @@ def listed(outcomes: pd.DataFrame, cases: Sequence[str], *, title: str) -> Figur
     place = {name: len(cases) - 1 - i for i, name in enumerate(cases)}
     models = [model for model in ORDER if (outcomes["model"] == model).any()]
     across = {model: i for i, model in enumerate(models)}
-    figure = page(1.25 * len(models) + 3.6, 1.3 + 0.2 * len(cases))
+    figure = page(0.95 * len(models) + 3.2, 1.3 + 0.2 * len(cases))
     panel = figure.subplots()
     for outcome, (colour, marker) in LOOKS.items():
         some = outcomes[outcomes["outcome"] == outcome]
