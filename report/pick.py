@@ -46,19 +46,9 @@ def least(column: str, **equal: Any) -> Pick:
     return lambda table: _column(where(table, **equal), column).abs().min()
 
 
-def total(column: str, **equal: Any) -> Pick:
-    """Return a pick of the sum of `column` over the rows with the values `equal`."""
-    return lambda table: _column(where(table, **equal), column).sum()
-
-
 def distinct(column: str, **equal: Any) -> Pick:
     """Return a pick of how many different values `column` has among the rows with the values `equal`."""
     return lambda table: _column(where(table, **equal), column).nunique()
-
-
-def share(column: str, value: Any, **equal: Any) -> Pick:
-    """Return a pick of the share of the rows with the values `equal` where `column` is `value`."""
-    return lambda table: (_column(where(table, **equal), column) == value).mean()
 
 
 def _column(table: pd.DataFrame, name: str) -> "pd.Series[Any]":

@@ -4,14 +4,20 @@ from itertools import pairwise
 
 import pandas as pd
 
-from report.facts import Derived, Fact, Holds, fact
+from report.facts import Cell, Derived, Fact, Holds, Listing, fact
 from report.forms import Form, count, percent, power, signed_percent, significant, times, unit
 from report.pick import at, largest, least, where
 from report.results import Results
+from studies.record.style import COUNT_COLOURS, GREY, RED
 
 POINTS, MESHES = "convergence/control_points", "convergence/elements"
 SWING, SLIDE = "convergence/frequency", "convergence/slide_stiffness"
 ESTIMATE = "convergence/error_estimate"
+QUANTITIES = ("trajectory", "torque", "stiffness")
+#: Control points that the table shows.
+COUNTS = (4, 5, 6, 8, 10)
+#: The paper's formulation, integrated exactly.
+PAPER = {"basis": "bezier", "measure": "spatial", "stretch": "consistent"}
 #: The formulation that the suite takes by default, but for its control points.
 DEFAULT = {"basis": "bezier", "measure": "material", "stretch": "mixed"}
 
@@ -70,6 +76,24 @@ def _floor(results: Results, column: str) -> float:
     """Return the least error of the spatial measure, whatever the control points."""
     rows = where(results.table(POINTS, "map"), basis="bezier", measure="spatial", stretch="mixed")
     return float(rows[column].abs().min())
+
+
+def _agreement(results: Results) -> tuple[list[str], list[list[Cell]]]:
+    table = results.table(POINTS, "map")
+    locked = where(table, control_points=4, **PAPER)
+    rows = [_errors("spline n = 4, as the paper", RED, locked)]
+    for n in COUNTS:
+        rows.append(_errors(f"spline n = {n}, locking-free", COUNT_COLOURS[n], default_rows(table), n))
+    meshes = where(results.table(MESHES, "meshes"), element="corotational", elements=20)
+    rows.append(_errors("FE, 20 elements", GREY, meshes))
+    limits = results.table(POINTS, "reference").set_index("quantity")["uncertainty"]
+    rows.append(["uncertainty of the reference", *(power(limits[name]) for name in QUANTITIES)])
+    return ["largest error from rest to 90°", *QUANTITIES], rows
+
+
+def _errors(label: str, colour: str, rows: pd.DataFrame, n: int | None = None) -> list[Cell]:
+    row = (rows if n is None else where(rows, control_points=n)).iloc[0]
+    return [{"text": label, "colour": colour}, *(power(row[f"error_{name}"]) for name in QUANTITIES)]
 
 
 FACTS: dict[str, Fact | Derived] = {
@@ -218,3 +242,4 @@ HOLDS = {
         test=lambda r: (r.table(ESTIMATE, "findings")["holds"] == "yes").all(),
     ),
 }
+LISTINGS = {"agreement": Listing(made=_agreement)}

@@ -3,8 +3,8 @@
 import pandas as pd
 
 from report.facts import Cell, Derived, Fact, Holds, Listing, fact
-from report.forms import percent, power, significant, times
-from report.pick import at, largest, least, where
+from report.forms import count, percent, power, significant, times
+from report.pick import at, distinct, largest, least, where
 from report.results import Results
 
 WORTH = "effects/worth"
@@ -47,6 +47,7 @@ def _exponent_miss(results: Results) -> float:
 
 
 FACTS: dict[str, Fact | Derived] = {
+    "effects.designs": fact(WORTH, "worth", distinct("design"), count),
     "effects.tolerance": fact(WORTH, "cheapest", largest("tolerance"), percent),
     "effects.inextensible": _change("Table 1", "inextensible strips"),
     "effects.massless": _change("Table 1", "massless strips"),
