@@ -88,7 +88,7 @@ def seconds(value: Any) -> str:
 
 def degrees(value: Any) -> str:
     """Return an angle given in radians in degrees."""
-    return f"{math.degrees(float(value)):.4g}°"
+    return f"{math.degrees(float(value)):.3g}°"
 
 
 def text(value: Any) -> str:

@@ -1,6 +1,6 @@
 """The pivot of Table 1 and the references that all errors are held against."""
 
-from report.facts import Cell, Derived, Fact, Listing, fact
+from report.facts import Cell, Derived, Fact, Holds, Listing, fact
 from report.forms import Form, count, degrees, power, significant, unit
 from report.pick import at
 from report.results import Results
@@ -63,6 +63,17 @@ def _swing(quantity: str, form: Form) -> Fact:
     return fact("paper/fig06_release", "reference", at("uncertainty", quantity=quantity), form)
 
 
+def _theory_matters(results: Results) -> bool:
+    static = results.table("paper/fig05_stiffness", "summary")
+    moving = results.table("paper/fig06_release", "summary")
+    return all(
+        abs(at("error_torque_largest", formulation=name)(static))
+        < FACTS["theory.shear.torque"].value(results)
+        and at("error_rotation_rad", formulation=name)(moving) < FACTS["theory.shear.swing"].value(results)
+        for name in ("n = 6", "FE, 20 elements")
+    )
+
+
 FACTS: dict[str, Fact | Derived] = {
     "pivot.slenderness": Derived(
         made=lambda _: pivot().length / pivot().depth, form=lambda value: significant(value, 2)
@@ -110,5 +121,11 @@ FACTS: dict[str, Fact | Derived] = {
         form=power,
     ),
     "pivot.quarter-turn": Derived(made=lambda _: pivot().rotation, form=degrees),
+}
+HOLDS = {
+    "theory.matters": Holds(
+        words="shear changes torque and swing by more than six control points or twenty elements are off",
+        test=_theory_matters,
+    )
 }
 LISTINGS = {"given": Listing(made=_given)}
