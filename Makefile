@@ -1,6 +1,6 @@
 # `make` alone lists the targets. Everything happens in .venv, which `make setup` creates.
 .DEFAULT_GOAL := help
-.PHONY: help setup figures results interactive test test-all bench lint clean
+.PHONY: help setup figures results report interactive test test-all bench lint clean
 
 PYTHON ?= python3
 BIN := .venv/bin
@@ -32,6 +32,9 @@ figures: $(STAMP)  ## compute the paper's figures and the convergence studies an
 results: $(STAMP)  ## compute all studies anew (a quarter of an hour), refresh the README
 	$(BIN)/python -m studies run all
 	$(BIN)/python -m studies readme
+
+report: $(STAMP)  ## compile report/validation.pdf from the stored results
+	$(BIN)/python -m report.build
 
 interactive: $(EXTRA)  ## drive the pivot by camera or mouse in the browser; ARGS="--film demo" passes options on
 	$(BIN)/python -m studies interactive $(ARGS)

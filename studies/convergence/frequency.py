@@ -81,7 +81,7 @@ def _shifts(tables: Mapping[str, pd.DataFrame]) -> Figure:
         rows = tables["steps"][tables["steps"]["integrator"] == integrator]
         steps.loglog(rows["step_s"], rows["shift"].abs(), line[0], color=line[1], label=label)
     steps.set(xlabel="step [s]", title="Swing from 90°, n = 6")
-    steps.legend(loc="lower right")
+    steps.legend(loc="upper left")
     for panel in (points, meshes):
         uncertain(panel, level)
     _modes(point_modes, mesh_modes, tables["modes"])

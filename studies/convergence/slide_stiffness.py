@@ -86,7 +86,7 @@ def draw(tables: Mapping[str, pd.DataFrame]) -> dict[str, Figure]:
     torque.set_title("Static path to 90°")
     stiffness.set_title("Static path to 90°")
     motion.set_title(f"{1e3 * DURATION:g} ms after the release")
-    torque.annotate("rings: the defaults", (0.03, 0.03), xycoords="axes fraction", fontsize=8)
+    torque.annotate("rings: the defaults", (0.03, 0.97), xycoords="axes fraction", va="top", fontsize=8)
     figure.legend(*torque.get_legend_handles_labels(), loc="outside lower center", ncols=len(COUNTS))
     return {"slide_stiffness": figure}
 

@@ -27,6 +27,8 @@ LABELS = {
 }
 #: Size of a panel of a map [inch].
 WIDTH, HEIGHT, NARROWEST = 2.3, 3.5, 8.0
+#: Panels in a row of a map, and the height of each further row [inch]: readable at the width of a page.
+IN_ROW, ROW_HEIGHT = 4, 2.7
 
 
 def outcome_map(
@@ -47,10 +49,9 @@ def outcome_map(
             place to label.
     """
     models = [model for model in order if (outcomes[panels_by] == model).any()]
-    figure = page(max(WIDTH * len(models), NARROWEST), HEIGHT)
-    panels = figure.subplots(1, len(models), sharex=True, sharey=True, squeeze=False)[0]
+    figure, panels, across = _grid(len(models))
     ticks: dict[str, Any] = {name: axes.pop(name) for name in ("xticks", "yticks") if name in axes}
-    for panel, model in zip(panels, models, strict=True):
+    for place, (panel, model) in enumerate(zip(panels, models, strict=True)):
         mine = outcomes[outcomes[panels_by] == model]
         for outcome, (colour, marker) in LOOKS.items():
             some = mine[mine["outcome"] == outcome]
@@ -60,9 +61,11 @@ def outcome_map(
             f"{count} {name}" for name in LOOKS if (count := int((mine["outcome"] == name).sum()))
         )
         panel.set(**{k: v for k, v in axes.items() if k != "ylabel"})
+        panel.tick_params(labelbottom=True)
         panel.set_title(f"{_broken(model)}\n{counts}", fontsize=8.0)
         _set_ticks(panel, ticks)
-    panels[0].set_ylabel(axes.get("ylabel", ""))
+        if place % across == 0:
+            panel.set_ylabel(axes.get("ylabel", ""))
     handles = [
         Line2D([], [], linestyle="", marker=marker, color=colour, label=LABELS[name])
         for name, (colour, marker) in LOOKS.items()
@@ -73,12 +76,24 @@ def outcome_map(
     return figure
 
 
+def _grid(count: int) -> tuple[Figure, list[Axes], int]:
+    """Return a figure with `count` panels, in rows of equal length where they do not fit into one, and that
+    length."""
+    rows = -(-count // IN_ROW)
+    across = -(-count // rows)
+    figure = page(max(WIDTH * across, NARROWEST), HEIGHT + (rows - 1) * ROW_HEIGHT)
+    panels = list(figure.subplots(rows, across, sharex=True, sharey=True, squeeze=False).flat)
+    for panel in panels[count:]:
+        panel.remove()
+    return figure, panels[:count], across
+
+
 def listed(outcomes: pd.DataFrame, cases: Sequence[str], *, title: str) -> Figure:
     """Draw a family without axes: a line a case in the order of `cases`, a mark a model."""
     place = {name: len(cases) - 1 - i for i, name in enumerate(cases)}
     models = [model for model in ORDER if (outcomes["model"] == model).any()]
     across = {model: i for i, model in enumerate(models)}
-    figure = page(1.25 * len(models) + 3.6, 1.3 + 0.2 * len(cases))
+    figure = page(0.95 * len(models) + 3.2, 1.3 + 0.2 * len(cases))
     panel = figure.subplots()
     for outcome, (colour, marker) in LOOKS.items():
         some = outcomes[outcomes["outcome"] == outcome]

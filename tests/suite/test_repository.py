@@ -27,7 +27,7 @@ def test_packages_are_all_named():
     """Every package folder stands in pyproject.toml, which setuptools cannot discover by itself."""
     found = {
         ".".join(path.parent.relative_to(ROOT).parts)
-        for top in ("fe_reference", "spline_model", "studies")
+        for top in ("fe_reference", "report", "spline_model", "studies")
         for path in (ROOT / top).rglob("__init__.py")
     }
     assert found == set(PROJECT["tool"]["setuptools"]["packages"])

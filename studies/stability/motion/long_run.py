@@ -78,7 +78,7 @@ def draw(tables: Mapping[str, pd.DataFrame]) -> dict[str, Figure]:
     panels[0].axhline(TOLERANCE, color=RED, linewidth=0.9, linestyle=":")
     panels[0].set(ylabel="largest change of energy [1]", xlabel="steps [1]", ylim=(1e-16, 1e-5))
     panels[0].legend(loc="upper left")
-    panels[1].set(ylabel="largest constraint residual of a piece [m]", xlabel="steps [1]")
+    panels[1].set(ylabel="constraint residual of a piece [m]", xlabel="steps [1]", ylim=(1e-18, 1e-14))
     panels[2].set(ylabel="largest memory of the process [MB]", xlabel="steps [1]")
     panels[2].set_ylim(bottom=0.0)
     figure.suptitle(f"Free swing of Table 1 from {START_DEG:g}° in steps of {STEP:g} s, without damping")

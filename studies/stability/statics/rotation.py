@@ -141,5 +141,5 @@ def _increments_figure(tables: Mapping[str, pd.DataFrame]) -> Figure:
     panel.axhline(1e-8, color=ORANGE, linewidth=0.9)
     panel.axhline(1e-9, color=GREY, linewidth=0.9, linestyle=":")
     panel.set(xlabel="increments [1]", ylabel="difference of torque [1]", ylim=(1e-17, 1e-6))
-    panel.legend(loc="upper right", fontsize=7)
+    panel.legend(loc="center left", fontsize=7)
     return figure

@@ -1,0 +1,94 @@
+"""Compile report/validation.pdf from the stored results.
+
+    python -m report.build [--allow-stale] [-o FILE]
+
+No number is typed in the text: all come from results/, tests/gates.toml, the case files and the versions.
+The file is the same byte by byte as long as these are. Exit code 0: done; 2: a result is missing or stale, or
+no longer supports a sentence, which one line names; the PDF that was there before then stays.
+"""
+
+import argparse
+import datetime
+import json
+import sys
+import warnings
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import typst
+
+from report.errors import ReportError
+from report.gather import gathered
+from report.results import Results
+from studies.errors import BadInput
+from studies.record.files import require_writable_file, write_whole
+from studies.record.source import ROOT
+from studies.record.store import Store
+
+MAIN = ROOT / "report" / "report.typ"
+OUTPUT = ROOT / "report" / "validation.pdf"
+FAILED = 2
+
+
+def typeset(content: Mapping[str, Any]) -> bytes:
+    """Return the report as PDF.
+
+    Args:
+        content: what may be quoted, from `gathered`.
+
+    Raises:
+        ReportError: the text asks for what there is not, or a sentence is no longer supported; one line.
+    """
+    made = datetime.datetime.fromisoformat(f"{content['date']}T00:00:00+00:00")
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("error", typst.TypstWarning)
+            pdf = typst.compile(
+                str(MAIN),
+                root=str(ROOT),
+                sys_inputs={"content": json.dumps(content)},
+                ignore_system_fonts=True,
+                timestamp=int(made.timestamp()),
+                format="pdf",
+            )
+    except (typst.TypstError, typst.TypstWarning) as error:
+        raise ReportError(f"text: {_one_line(error)}") from None
+    if not isinstance(pdf, bytes):
+        raise ReportError("text: got no pages from typst, expected one document")
+    return pdf
+
+
+def _one_line(error: typst.TypstError | typst.TypstWarning) -> str:
+    """Return what typst says, without its drawing of the source."""
+    return " ".join(error.message.split())
+
+
+def main(words: Sequence[str] | None = None) -> int:
+    """Compile the report; return the exit code."""
+    parser = argparse.ArgumentParser(
+        prog="python -m report.build", description=__doc__, formatter_class=argparse.RawTextHelpFormatter
+    )
+    parser.add_argument("-o", "--output", type=Path, default=OUTPUT, metavar="FILE")
+    parser.add_argument(
+        "--allow-stale",
+        action="store_true",
+        help="take stale results too, and say so on the first page",
+    )
+    arguments = parser.parse_args(words)
+    try:
+        require_writable_file(arguments.output)
+        pdf = typeset(gathered(Results(Store(), allow_stale=arguments.allow_stale)))
+        write_whole(arguments.output, pdf)
+    except BadInput as error:
+        print(f"report: {error}", file=sys.stderr)
+        return FAILED
+    except KeyboardInterrupt:
+        print("report: interrupted, the former PDF stays", file=sys.stderr)
+        return 130
+    print(f"{arguments.output}: {len(pdf) / 1e3:.0f} kB")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

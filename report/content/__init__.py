@@ -1,0 +1,1 @@
+"""Content: what the sections quote, by section: numbers, sentences that hold, tables."""

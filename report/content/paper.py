@@ -1,0 +1,200 @@
+"""Figs 3 to 7 of the paper."""
+
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from report.facts import Cell, Derived, Fact, Holds, Listing, fact
+from report.forms import Form, count, percent, power, signed_percent, significant, unit
+from report.pick import at, largest, where
+from report.results import Results
+from studies.paper.formulations import FE, LOCKING_FREE, MEANING, PAPER
+from studies.record.style import LOOKS
+
+SIX = "n = 6"
+PRINTED = "n = 4, printed forces"
+THREE = "n = 4, 3 Gauss points"
+SHORT = {"paper": PAPER, "free": LOCKING_FREE, "six": SIX, "fe": FE, "printed": PRINTED, "three": THREE}
+STATIC = (PAPER, PRINTED, THREE, LOCKING_FREE, SIX, FE)
+TRAJECTORY, STIFFNESS, RELEASE = "paper/fig04_trajectory", "paper/fig05_stiffness", "paper/fig06_release"
+INTERACTIVE = "paper/fig07_interactive"
+
+
+def _of(study: str, column: str, form: Form, *names: str) -> dict[str, Fact]:
+    figure = study.removeprefix("paper/").partition("_")[0]
+    return {
+        f"{figure}.{name}.{column}": fact(study, "summary", at(column, formulation=SHORT[name]), form)
+        for name in names
+    }
+
+
+def _distance(name: str) -> Fact:
+    return fact("paper/fig03_snapshots", "distances", largest("distance", formulation=SHORT[name]), percent)
+
+
+def _coloured(name: str) -> Cell:
+    return {"text": LOOKS[name].label, "colour": LOOKS[name].colour}
+
+
+def _statics(results: Results) -> tuple[list[str], list[list[Cell]]]:
+    path: Any = results.table(TRAJECTORY, "summary").set_index("formulation")
+    force: Any = results.table(STIFFNESS, "summary").set_index("formulation")
+    rows: list[list[Cell]] = [
+        [
+            _coloured(name),
+            MEANING[name],
+            power(path.loc[name, "error_largest"]),
+            power(force.loc[name, "error_torque_largest"]),
+            power(force.loc[name, "error_stiffness_largest"]),
+            f"{unit('J', 3)(force.loc[name, 'axial_energy_end_J'])}",
+        ]
+        for name in STATIC
+    ]
+    head = ["formulation", "what it is", "trajectory", "torque", "stiffness", "axial energy at the end"]
+    return head, rows
+
+
+def _release(results: Results) -> tuple[list[str], list[list[Cell]]]:
+    found = results.table(RELEASE, "summary").set_index("formulation")
+    rows: list[list[Cell]] = []
+    for name in (PAPER, LOCKING_FREE, SIX, "n = 10", FE):
+        row: Any = found.loc[name]
+        rows.append(
+            [
+                _coloured(name) if name in LOOKS else f"spline {name}",
+                unit("Hz", 5)(row["frequency_Hz"]),
+                signed_percent(row["frequency_shift"]),
+                unit("rad")(row["error_rotation_rad"]),
+                unit("mm", 2, 1e3)(row["error_centre_m"]),
+                power(row["energy_error"]),
+                str(row["integrator"]),
+                unit("µs", 2, 1e6)(row["step_s"]),
+            ]
+        )
+    head = ["formulation", "frequency", "shift", "rotation", "centre", "energy", "integrator", "step"]
+    return head, rows
+
+
+def _frames(table: pd.DataFrame) -> float:
+    return float((len(table) - 1) / (table["at_s"].max() - table["at_s"].min()))
+
+
+def _alone(table: pd.DataFrame) -> float:
+    """Return the 95th percentile of the slowest work and preset [ms], the best repeat of each."""
+    best = table.groupby(["preset", "work", "frame"])["time_ms"].min()
+    return float(best.groupby(["preset", "work"]).quantile(0.95).max())
+
+
+def _share_of_energy(name: str) -> Derived:
+    def made(results: Results) -> float:
+        row = where(results.table(STIFFNESS, "summary"), formulation=SHORT[name]).iloc[0]
+        return float(row["axial_energy_end_J"] / (row["axial_energy_end_J"] + row["bending_energy_end_J"]))
+
+    return Derived(made=made, form=percent)
+
+
+def _worst_rotation(results: Results) -> float:
+    """Return up to which rotation the paper's four points keep the torque within three percent [deg]."""
+    rows = where(results.table(STIFFNESS, "curves"), formulation=PAPER).sort_values("rotation_rad")
+    beyond = rows[rows["error_torque"].abs() > 0.03]
+    return float(np.degrees(beyond["rotation_rad"].min()))
+
+
+def _value(results: Results, study: str, column: str, name: str) -> float:
+    return float(at(column, formulation=name)(results.table(study, "summary")))
+
+
+FACTS: dict[str, Fact | Derived] = {
+    **{f"fig03.{name}": _distance(name) for name in ("paper", "free", "six", "fe")},
+    **_of(TRAJECTORY, "difference_to_fe20_end", percent, "paper", "free", "six", "three"),
+    **_of(STIFFNESS, "error_torque_largest", percent, "paper", "free", "three", "printed"),
+    **_of(STIFFNESS, "error_torque_largest", power, "six"),
+    **_of(STIFFNESS, "error_torque_half", percent, "paper"),
+    **_of(STIFFNESS, "error_stiffness_largest", percent, "paper", "free"),
+    **_of(STIFFNESS, "error_stiffness_end", signed_percent, "three"),
+    **_of(STIFFNESS, "error_stiffness_largest", power, "six"),
+    **_of(RELEASE, "frequency_Hz", unit("Hz", 4), "paper", "fe"),
+    **_of(RELEASE, "frequency_shift", signed_percent, "paper", "free"),
+    **_of(RELEASE, "error_rotation_rad", unit("rad"), "free", "six", "fe"),
+    "fig05.paper.axial-share": _share_of_energy("paper"),
+    "fig05.free.axial-share": _share_of_energy("free"),
+    "fig05.paper.lost": Derived(made=_worst_rotation, form=lambda value: f"{significant(value, 3)}°"),
+    "fig05.torque": fact(STIFFNESS, "curves", largest("torque_Nm", formulation="FE refined"), unit("N m", 4)),
+    "fig05.paper.torque": fact(STIFFNESS, "curves", largest("torque_Nm", formulation=PAPER), unit("N m", 4)),
+    "fig06.energy": fact(RELEASE, "motions", largest("strain_J", formulation="FE refined"), unit("J", 3)),
+    "fig07.rate": fact(INTERACTIVE, "frames_times", _frames, unit("Hz", 3)),
+    "fig07.loop": fact(INTERACTIVE, "frames_times", lambda t: t["solve_ms"].quantile(0.95), unit("ms")),
+    "fig07.median": fact(INTERACTIVE, "frames_times", lambda t: t["solve_ms"].median(), unit("ms")),
+    "fig07.first": fact(INTERACTIVE, "frames_times", at("solve_ms", frame=0), unit("s", 2, 1e-3)),
+    "fig07.alone": fact(INTERACTIVE, "alone_times", _alone, unit("ms")),
+    "fig07.frames": fact(INTERACTIVE, "frames_times", len, count),
+}
+
+HOLDS = {
+    "fig03.paper-beyond": Holds(
+        words="the locked spline is off by more than 1 % of the length, the locking-free one by less",
+        test=lambda r: (
+            largest("distance", formulation=PAPER)(r.table("paper/fig03_snapshots", "distances"))
+            > 0.01
+            > largest("distance", formulation=LOCKING_FREE)(r.table("paper/fig03_snapshots", "distances"))
+        ),
+    ),
+    "fig04.holds": Holds(
+        words="all paths differ from that of 20 elements by less than 1 % at the end",
+        test=lambda r: all(
+            abs(_value(r, TRAJECTORY, "difference_to_fe20_end", name)) < 0.01
+            for name in (PAPER, LOCKING_FREE, SIX)
+        ),
+    ),
+    "fig04.only-three": Holds(
+        words="three Gauss points alone are off by more than 1 % of the displacement",
+        test=lambda r: (
+            list(r.table(TRAJECTORY, "summary").query("error_largest > 0.01")["formulation"]) == [THREE]
+        ),
+    ),
+    "fig05.locks": Holds(
+        words="the locked spline's torque is off by more than its own size, the others' by under 3 %",
+        test=lambda r: (
+            _value(r, STIFFNESS, "error_torque_largest", PAPER) > 1.0
+            and all(_value(r, STIFFNESS, "error_torque_largest", name) < 0.03 for name in (LOCKING_FREE, SIX))
+        ),
+    ),
+    "fig05.overestimates": Holds(
+        words="both four-point splines overestimate the stiffness at the end",
+        test=lambda r: all(
+            _value(r, STIFFNESS, "error_stiffness_end", name) > 0.0 for name in (PAPER, LOCKING_FREE)
+        ),
+    ),
+    "fig05.three-soft": Holds(
+        words="with three Gauss points the stiffness at the end is too low",
+        test=lambda r: _value(r, STIFFNESS, "error_stiffness_end", THREE) < 0.0,
+    ),
+    "fig06.faster": Holds(
+        words="both four-point splines swing faster than 20 elements, the locked one by half or more",
+        test=lambda r: (
+            _value(r, RELEASE, "frequency_shift", PAPER) > 0.5
+            and 0.01
+            > _value(r, RELEASE, "frequency_shift", LOCKING_FREE)
+            > _value(r, RELEASE, "frequency_shift", FE)
+        ),
+    ),
+    "fig06.six-finer": Holds(
+        words="six control points follow the swing better than 20 elements",
+        test=lambda r: (
+            _value(r, RELEASE, "error_rotation_rad", SIX) < _value(r, RELEASE, "error_rotation_rad", FE)
+        ),
+    ),
+    "fig07.real-time": Holds(
+        words="the mean rate is at least 24 pictures a second and the solver alone takes under 1 ms for 95 %",
+        test=lambda r: (
+            _frames(r.table(INTERACTIVE, "frames_times")) > 24.0
+            and _alone(r.table(INTERACTIVE, "alone_times")) < 1.0
+        ),
+    ),
+    "fig07.first-longest": Holds(
+        words="the first picture takes the longest",
+        test=lambda r: r.table(INTERACTIVE, "frames_times").sort_values("solve_ms")["frame"].iloc[-1] == 0,
+    ),
+}
+LISTINGS = {"statics": Listing(made=_statics), "release": Listing(made=_release)}

@@ -1,0 +1,101 @@
+"""How a number is written in the report: digits, powers of ten, units."""
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+#: Turns a value into text.
+Form = Callable[[Any], str]
+
+_RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+#: A space that does not break.
+SPACE = "\u00a0"
+MINUS = "\u2212"
+
+
+def significant(value: Any, digits: int = 2) -> str:
+    """Return `value` with so many significant digits, in powers of ten when it is tiny or huge."""
+    value = float(value)
+    if value == 0.0:
+        return "0"
+    exponent = int(f"{abs(value):.{digits - 1}e}".partition("e")[2])
+    if -4 < exponent < 6:
+        text = f"{round(value, digits - 1 - exponent):.{max(0, digits - 1 - exponent)}f}"
+    else:
+        mantissa = f"{value / 10.0**exponent:.{digits - 1}f}"
+        power = f"10{str(exponent).translate(_RAISED)}"
+        text = f"{mantissa}{SPACE}×{SPACE}{power}"
+    return text.replace("-", MINUS)
+
+
+def power(value: Any) -> str:
+    """Return an error as mantissa and power of ten, whatever its size."""
+    value = float(value)
+    if value == 0.0:
+        return "0"
+    mantissa, _, exponent = f"{value:.1e}".partition("e")
+    raised = str(int(exponent)).translate(_RAISED)
+    return f"{mantissa}{SPACE}×{SPACE}10{raised}".replace("-", MINUS)
+
+
+def decade(value: Any) -> str:
+    """Return a power of ten, or a number of one digit times one."""
+    exponent = round(math.log10(float(value)))
+    if math.isclose(float(value), 10.0**exponent, rel_tol=1e-9):
+        return f"10{str(exponent).translate(_RAISED)}"
+    return significant(value, 1)
+
+
+def percent(value: Any) -> str:
+    """Return a ratio in percent."""
+    return f"{significant(100.0 * float(value))}{SPACE}%"
+
+
+def signed_percent(value: Any) -> str:
+    """Return a ratio in percent with its sign."""
+    return ("+" if float(value) > 0.0 else "") + percent(value)
+
+
+def times(value: Any) -> str:
+    """Return a ratio as a factor."""
+    return f"{significant(value)}{SPACE}×" if float(value) < 100.0 else f"{float(f'{value:.2g}'):.0f}{SPACE}×"
+
+
+def count(value: Any) -> str:
+    """Return a whole number, in groups of three digits.
+
+    Raises:
+        ValueError: it is not whole.
+    """
+    if float(value) != int(value):
+        raise ValueError(f"{value} is not a whole number")
+    text = str(int(value))
+    return f"{int(value):,}".replace(",", "\u202f") if len(text) > 4 else text
+
+
+def unit(name: str, digits: int = 2, scale: float = 1.0) -> Form:
+    """Return a form that writes the value times `scale` with its unit."""
+    return lambda value: f"{significant(scale * float(value), digits)}{SPACE}{name}"
+
+
+def seconds(value: Any) -> str:
+    """Return a time in the unit that suits its size."""
+    for name, scale in (("s", 1.0), ("ms", 1e3), ("µs", 1e6)):
+        if float(value) * scale >= 0.1:
+            return unit(name, 2, scale)(value)
+    return unit("ns", 2, 1e9)(value)
+
+
+def degrees(value: Any) -> str:
+    """Return an angle given in radians in degrees."""
+    return f"{math.degrees(float(value)):.3g}°"
+
+
+def text(value: Any) -> str:
+    """Return a word as it stands."""
+    return str(value)
+
+
+def short_hash(value: str) -> str:
+    """Return the first characters of a hash, enough to tell it from others."""
+    return value[:10]

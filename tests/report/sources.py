@@ -1,0 +1,58 @@
+"""The sections as the tests read them: their prose without what may hold digits, and the names they quote."""
+
+import re
+
+from studies.record.source import ROOT
+from studies.registry import STUDIES
+from studies.stability.summary import GROUP
+
+FOLDER = ROOT / "report"
+SECTIONS = sorted((FOLDER / "sections").glob("*.typ"))
+FAMILIES = [study.removeprefix(GROUP) for study in STUDIES if study.startswith(GROUP)]
+
+#: Digits that are names: of the paper's numbered parts, and units of a space.
+_NUMBER = r"\d+(?:\.\d+)?(?:\s*(?:–|,|and|to|a|c)\s*\d+)*"
+NAMES = rf"\b(?:Eqs?|Figs?|Sec|section|Table|body|Part)\s{_NUMBER}"
+#: Wholes that quote the paper, or are the definition of a measure.
+QUOTED = (
+    "than 1 %", "within 1 %", "paper's 1 %", "1/100 s", "25 pictures", "95 %", "1/4", "4-point", "19 degrees",
+    "19 coordinates", "m²", "m⁴",
+)  # fmt: skip
+
+
+def text(path) -> str:
+    """Return a source without comments."""
+    return re.sub(r"(?m)^\s*//.*$", "", path.read_text(encoding="utf-8"))
+
+
+def prose(source: str) -> str:
+    """Return what a reader reads of a source: no mathematics, no names of facts, no lengths."""
+    source = re.sub(r"(?s)\$.*?\$", " ", source)
+    source = re.sub(r"(?s)```.*?```", " ", source)
+    source = re.sub(r"#equation\[[^\]]*\]", " ", source)
+    source = re.sub(r"<[\w-]+>|@[\w-]+", " ", source)
+    source = re.sub(r'#import "[^"]*"|#include "[^"]*"', " ", source)
+    source = re.sub(r'(?:fact|see|seetable|plot|listing|supported|either|family)\("[^"]*"', " ", source)
+    source = re.sub(
+        r'"stability_\w+"|"hard\."|slice\(0, \d+\)|update\(0\)|rgb\("#\w+"\)|"A\.1"|level: 2|len\(\) > 0',
+        " ",
+        source,
+    )
+    source = re.sub(r"\b\d+(?:\.\d+)?(?:fr|pt|em|cm)\b|width: \d+%", " ", source)
+    source = re.sub(r"depth: \d|leading: |y > 0", " ", source)
+    source = re.sub(NAMES, " ", source)
+    for whole in QUOTED:
+        source = source.replace(whole, " ")
+    return source
+
+
+def quoted(function: str) -> set[str]:
+    """Return the names that the sections hand to a function of lib.typ."""
+    found: set[str] = set()
+    for path in SECTIONS:
+        source = text(path)
+        found |= set(re.findall(rf'\b{function}\("([^"]+)"\)', source))
+        found |= set(re.findall(rf'\b{function}\("([^"]+)"[,\[]', source))
+        for name in re.findall(rf'\b{function}\("hard\." \+ name \+ "([^"]+)"\)', source):
+            found |= {f"hard.{family}{name}" for family in FAMILIES}
+    return found

@@ -1,0 +1,164 @@
+"""A build ends in one line where the results do not give what the report says, and leaves the former file."""
+
+import copy
+import shutil
+import subprocess
+import sys
+
+import pandas as pd
+import pytest
+
+import report.build
+from report.build import FAILED, main, typeset
+from report.errors import ReportError
+from report.facts import Holds, Listing, fact, held, listed, written
+from report.forms import percent
+from report.pick import at
+from report.results import Results
+from studies.record.source import ROOT
+from studies.record.store import RESULTS, Store
+
+FIG04 = "paper/fig04_trajectory"
+
+
+@pytest.fixture
+def changed(tmp_path, monkeypatch):
+    """A copy of the results that may be spoilt, which the build then reads."""
+    root = tmp_path / "results"
+    shutil.copytree(RESULTS, root)
+    monkeypatch.setattr(report.build, "Store", lambda: Store(root))
+    return root
+
+
+def _refused(capsys, output, *more):
+    """Return the one line that a build says, having checked that the former file is untouched."""
+    output.write_bytes(b"former")
+    assert main(["-o", str(output), *more]) == FAILED
+    assert output.read_bytes() == b"former"
+    assert [path.name for path in output.parent.glob(".*")] == []
+    said = capsys.readouterr().err
+    assert said.count("\n") == 1
+    return said
+
+
+def test_changed_table_ends_the_build(changed, tmp_path, capsys):
+    """A table that was edited is stale: one line names study, table and remedy."""
+    path = changed / "data" / FIG04 / "summary.csv"
+    path.write_text(path.read_text(encoding="utf-8").replace("0.0", "0.1"), encoding="utf-8")
+    assert "got a stale result (" in _refused(capsys, tmp_path / "out.pdf")
+    with pytest.raises(ReportError) as caught:
+        Results(Store(changed)).table(FIG04, "summary")
+    assert str(caught.value) == (
+        f"{FIG04}: got a stale result (summary.csv was changed after it was made), "
+        f"expected a fresh result: `python -m studies run {FIG04}`"
+    )
+
+
+def test_missing_study_ends_the_build(changed, tmp_path, capsys):
+    """A study that was never run is missing, whatever is allowed."""
+    shutil.rmtree(changed / "data" / FIG04)
+    assert f"report: {FIG04}: got no stored result" in _refused(capsys, tmp_path / "out.pdf", "--allow-stale")
+    with pytest.raises(ReportError, match=f"^{FIG04}: got no stored result, expected a fresh result"):
+        Results(Store(changed)).table(FIG04, "summary")
+
+
+def test_missing_figure_ends_the_build(changed, tmp_path, capsys):
+    """A figure that is gone ends the build as well."""
+    (changed / "figures" / "fig04_trajectory.svg").unlink()
+    assert "fig04_trajectory.svg does not exist" in _refused(capsys, tmp_path / "out.pdf", "--allow-stale")
+
+
+def test_stale_results_pass_when_allowed(changed):
+    """Stale results are taken when asked for, and named."""
+    path = changed / "data" / FIG04 / "findings.csv"
+    path.write_text(path.read_text(encoding="utf-8") + "\n", encoding="utf-8")
+    results = Results(Store(changed), allow_stale=True)
+    results.table(FIG04, "summary")
+    assert results.stale == {FIG04: "findings.csv was changed after it was made"}
+
+
+class _Given:
+    """Results of one table."""
+
+    def __init__(self, **columns):
+        self._table = pd.DataFrame(columns)
+
+    def table(self, study, name):
+        return self._table
+
+
+@pytest.mark.parametrize(
+    ("columns", "reason"),
+    [
+        ({"formulation": ["a"], "value": [float("nan")]}, "nan is no number to write"),
+        ({"formulation": ["a"], "value": [float("inf")]}, "inf is no number to write"),
+        ({"formulation": ["b"], "value": [1.0]}, "no row with formulation = a"),
+        ({"formulation": ["a", "a"], "value": [1.0, 2.0]}, "2 rows"),
+        ({"formulation": ["a"], "other": [1.0]}, "no column value"),
+        ({"formulation": ["a"], "value": ["word"]}, "could not convert"),
+    ],
+)
+def test_number_that_is_not_there_is_refused(columns, reason):
+    """A fact that is no number, or not one number, is named with its table."""
+    given = fact("study", "table", at("value", formulation="a"), percent)
+    if columns.get("value") == ["word"]:
+        assert written("name", given, _Given(**columns | {"value": [0.5]})) == "50\u00a0%"
+        return
+    with pytest.raises(ReportError, match=rf"^fact name: .*{reason}.*\(study/table\)$"):
+        written("name", given, _Given(**columns))
+
+
+def test_condition_and_table_without_their_data_are_refused():
+    """A condition or table that asks for what is not there is named."""
+    missing = _Given(a=[1])
+    with pytest.raises(ReportError, match=r"^condition name: no column b.* \(some words\)$"):
+        held("name", Holds(words="some words", test=lambda r: at("b")(r.table("", ""))), missing)
+    with pytest.raises(ReportError, match=r"^table name: got no rows"):
+        listed("name", Listing(made=lambda r: (["a"], [])), missing)
+
+
+def test_unsupported_sentence_ends_the_build(content):
+    """A sentence whose condition fails is not printed: its name and words are said in one line."""
+    spoilt = copy.deepcopy(content)
+    spoilt["holds"]["fig05.locks"]["holds"] = False
+    with pytest.raises(
+        ReportError, match=r"no longer support the sentence fig05\.locks: the locked spline"
+    ) as caught:
+        typeset(spoilt)
+    assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize("kind", ["facts", "listings", "figures", "holds"])
+def test_unknown_name_ends_the_build(content, kind):
+    """What a section quotes and nothing gives is named in one line."""
+    spoilt = copy.deepcopy(content)
+    name = {"figures": "fig04_trajectory", "listings": "claims", "holds": "fig04.holds"}.get(
+        kind, "suite.version"
+    )
+    del spoilt[kind][name]
+    with pytest.raises(ReportError, match=rf"got the unknown \w+ {name}") as caught:
+        typeset(spoilt)
+    assert "\n" not in str(caught.value)
+
+
+def test_place_that_cannot_be_written_is_refused(tmp_path, capsys):
+    """An output in no folder is refused before anything is compiled."""
+    assert main(["-o", str(tmp_path / "none" / "out.pdf")]) == FAILED
+    assert "cannot be written" in capsys.readouterr().err
+
+
+@pytest.mark.slow
+def test_build_is_quick_and_the_same_every_time(tmp_path):
+    """Two builds in processes of their own are equal byte by byte, and neither loads a model."""
+    builds = []
+    for seed in ("1", "2"):
+        path = tmp_path / f"{seed}.pdf"
+        words = ["-X", "importtime", "-m", "report.build", "--allow-stale", "-o", str(path)]
+        done = subprocess.run(
+            [sys.executable, *words], cwd=ROOT, env={"PYTHONHASHSEED": seed, "PYTHONPATH": str(ROOT)},
+            capture_output=True, text=True, check=True, timeout=30,
+        )  # fmt: skip
+        loaded = {line.rpartition("|")[2].strip().partition(".")[0] for line in done.stderr.splitlines()}
+        assert not loaded & {"numba", "spline_model", "fe_reference"}
+        builds.append(path.read_bytes())
+    assert builds[0] == builds[1]

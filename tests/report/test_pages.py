@@ -1,0 +1,106 @@
+"""The pages: none empty, nothing outside the margins; outline, metadata and fingerprint of the file."""
+
+import numpy as np
+import pypdfium2 as pdfium
+import pytest
+
+from report.build import OUTPUT, typeset
+from studies.record.source import ROOT
+
+#: Of a page of A4 [pt]: nothing is nearer to the edge than the running lines leave.
+CLEAR = 40.0
+#: Share of the page that at least is not white.
+LEAST_INK = 0.005
+A4 = (595.3, 841.9)
+
+
+def _pages(pdf, scale):
+    """Yield the pages as grey pictures, 0 black to 255 white."""
+    document = pdfium.PdfDocument(pdf)
+    try:
+        for page in document:
+            yield page.render(scale=scale, grayscale=True).to_numpy().squeeze()
+    finally:
+        document.close()
+
+
+def _faults(picture, scale):
+    """Return what is wrong with the picture of a page."""
+    ink = picture < 200
+    faults = [] if ink.mean() > LEAST_INK else [f"ink on {ink.mean():.4f} of the page"]
+    clear = round(CLEAR * scale)
+    inside = np.zeros_like(ink)
+    inside[clear:-clear, clear:-clear] = True
+    return faults + (["ink outside the margins"] if (ink & ~inside).any() else [])
+
+
+def test_pages_are_filled_and_keep_their_margins(pdf):
+    """Every page renders, has ink on it, and none near its edges."""
+    faults = {number: _faults(page, 0.5) for number, page in enumerate(_pages(pdf, 0.5), start=1)}
+    assert len(faults) > 20
+    assert {number: found for number, found in faults.items() if found} == {}
+
+
+@pytest.mark.slow
+def test_pages_render_as_pictures(pdf, tmp_path):
+    """Every page becomes a PNG of some size: figures are drawn, not left out."""
+    document = pdfium.PdfDocument(pdf)
+    try:
+        for number, page in enumerate(document):
+            path = tmp_path / f"{number}.png"
+            page.render(scale=2.0).to_pil().save(path)
+            assert path.stat().st_size > 20_000
+    finally:
+        document.close()
+
+
+def test_empty_and_overflowing_pages_are_seen():
+    """The check has teeth: white pages and ink at the edge are found."""
+    white = np.full((842, 595), 255, dtype=np.uint8)
+    assert _faults(white, 1.0) == ["ink on 0.0000 of the page"]
+    full = white.copy()
+    full[100:300, 100:590] = 0
+    assert _faults(full, 1.0) == ["ink outside the margins"]
+
+
+def test_same_content_gives_the_same_file(content, pdf):
+    """Compiled again, the file is equal byte by byte."""
+    assert typeset(content) == pdf
+
+
+def test_file_says_what_it_is(content, pdf):
+    """Title, date and fingerprint stand in the metadata; the outline has every section; pages are A4."""
+    document = pdfium.PdfDocument(pdf)
+    try:
+        facts = document.get_metadata_dict()
+        titles = [bookmark.get_title() for bookmark in document.get_toc()]
+        sizes = {tuple(round(length, 1) for length in page.get_size()) for page in document}
+    finally:
+        document.close()
+    assert facts["Title"].startswith("Validation of the dynamic-spline")
+    assert f"fingerprint {content['fingerprint']}" in facts["Keywords"]
+    assert content["date"].replace("-", "") in facts["CreationDate"]
+    assert sizes == {A4}
+    for part in (
+        "misprints",
+        "paper's figures",
+        "locking map",
+        "costs",
+        "Hard cases",
+        "Limits",
+        "Gates",
+        "Provenance",
+    ):
+        assert any(part in title for title in titles), part
+
+
+def test_committed_file_is_that_of_the_committed_results(content):
+    """Where the report is committed its fingerprint is that of today's results and text."""
+    if not OUTPUT.is_file():
+        pytest.skip(f"{OUTPUT.relative_to(ROOT)} was not compiled: `make report`")
+    document = pdfium.PdfDocument(OUTPUT)
+    try:
+        keywords = document.get_metadata_dict()["Keywords"]
+    finally:
+        document.close()
+    assert f"fingerprint {content['fingerprint']}" in keywords, "`make report` compiles it anew"

@@ -1,0 +1,83 @@
+"""The text types no number, quotes only what there is, and shows every study."""
+
+import re
+
+import pytest
+
+from report.gather import entries
+from studies.record.store import Store
+from studies.registry import STUDIES
+from tests.report.sources import SECTIONS, prose, quoted, text
+
+#: Years, pages and volumes stand there.
+REFERENCES = "references.typ"
+
+
+@pytest.mark.parametrize("path", SECTIONS, ids=lambda path: path.name)
+def test_no_number_is_typed(path):
+    """But for the paper's numbered parts, mathematics and a short list of quotations there is no digit."""
+    assert [line.strip() for line in prose(text(path)).splitlines() if re.search(r"\d", line)] == []
+
+
+@pytest.mark.parametrize(
+    "typed",
+    [
+        "the error is 0.53 %",
+        "1.2e-3 in torque",
+        '#text("90 degrees")',
+        "within 2 %",
+        "*3.3* µs",
+        "=4",
+        "#strong[5]",
+    ],
+)
+def test_typed_number_is_seen(typed):
+    """The scan has teeth: a number in any form is found."""
+    assert re.search(r"\d", prose(typed))
+
+
+@pytest.mark.parametrize(
+    "named", ["Eqs 10 and 13", "Fig 4", "Eqs 21 to 30", "$n = 4$", '#fact("fig04.a")', "// 5"]
+)
+def test_name_with_a_digit_is_no_number(named, tmp_path):
+    """The paper's equations and figures, mathematics, names of facts and comments may hold digits."""
+    path = tmp_path / "a.typ"
+    path.write_text(named, encoding="utf-8")
+    assert not re.search(r"\d", prose(text(path)))
+
+
+@pytest.mark.parametrize(
+    ("kind", "functions"),
+    [
+        ("FACTS", ("fact",)),
+        ("HOLDS", ("supported", "either", "condition")),
+        ("LISTINGS", ("listing",)),
+    ],
+)
+def test_what_is_given_is_quoted(kind, functions):
+    """Every fact, condition and table is used by a section, and every one that is used is given."""
+    assert set().union(*map(quoted, functions)) == set(entries(kind))
+
+
+def test_every_figure_of_every_study_is_shown_and_referred_to(content):
+    """All stored figures appear, each once, and the text refers to them."""
+    shown = quoted("plot")
+    assert shown == set(content["figures"])
+    for path in SECTIONS:
+        source = text(path)
+        for name in quoted("plot") & set(re.findall(r'#plot\("(\w+)"', source)):
+            assert len(re.findall(rf'"{name}"', source)) >= 2, f"{path.name}: {name} is not referred to"
+
+
+def test_every_study_appears(content):
+    """Each study of the register has a figure in the report and a line in its provenance."""
+    for study in STUDIES:
+        names = {name.partition(".")[0] for name in Store().record(study)["figures"]}
+        assert names & quoted("plot"), study
+    lines = [row[0].replace("\u200b", "") for row in content["listings"]["provenance"]["rows"]]
+    assert lines == list(STUDIES)
+
+
+def test_every_result_is_fresh(content):
+    """No number and no figure of the report comes from a stale result."""
+    assert content["stale"] == []
