@@ -1,9 +1,9 @@
 """The code blocks of the pages, and what each kind of block must do in a copy of the checkout.
 
-python   runs, all of a page in one namespace; `print(...)  # text` must print that text. With the name of a
-         file as its first line it is written there instead.
-toml     is a case that its reader accepts, a part of a case in addition to that of Table 1. With the name of a
-         file as its first line it is written there, or, "at its end", added to a file that is no case.
+python   runs, all of a page in one namespace; `print(...)  # text` must print that text. With the name of
+         a file as its first line it is written there instead.
+toml     is a case that its reader accepts, a part of a case in addition to that of Table 1. With the name of
+         a file as its first line it is written there, or, "at its end", added to a file that is no case.
 diff     a file's name, a line of that file, and lines with + that are put in after it.
 sh       each command succeeds; a text block that follows is the end of what it prints.
 """
@@ -129,8 +129,9 @@ class Runner:
 
     def _text(self, source: str, namespace: dict[str, object]) -> None:
         if self.printed is not None:
-            wanted = source.splitlines()
-            assert self.printed.splitlines()[-len(wanted) :] == wanted
+            wanted = [line.strip() for line in source.splitlines()]
+            printed = [line.strip() for line in self.printed.splitlines()]
+            assert printed[-len(wanted) :] == wanted
         self.printed = None
 
     def _written(self, source: str) -> Path | None:

@@ -52,7 +52,7 @@ def test_names_of_this_repository_are_links():
 
 
 def test_arrays_in_signatures_are_short():
-    """The class of an array with its two parameters becomes NDArray, a default that is no Python an ellipsis."""
+    """An array with its two parameters becomes NDArray, a default that is no code an ellipsis."""
     given = "(a: ~numpy.ndarray[tuple[~typing.Any, ...], ~numpy.dtype[~numpy.float64]] = <factory>)"
     made = PROSE.process_signature(None, "", "", None, None, given, None)
     assert made == ("(a: ~numpy.typing.NDArray[~numpy.float64] = ...)", None)
