@@ -50,9 +50,9 @@ nitpick_ignore = [
 highlight_language = "text"
 html_theme = "alabaster"
 html_theme_options = {
-    "page_width": "1200px",
+    "page_width": "1300px",
     "sidebar_width": "270px",
-    "body_max_width": "900px",
+    "body_max_width": "1000px",
     "code_font_size": "0.85em",
 }
 html_show_sourcelink = False

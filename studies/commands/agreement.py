@@ -38,6 +38,10 @@ def short(store: Store) -> Iterator[str]:
         errors = " | ".join(_percent(paths[SWINGS[name]][f"error_{each}"]) for each in QUANTITIES)
         shift = swings[name]["frequency_shift"]
         yield f"| {SWINGS[name]} | {errors} | {'+' if shift > 0.0 else ''}{_percent(shift)} |"
+    static = stored(store, "convergence/control_points", "reference").set_index("quantity")["uncertainty"]
+    moving = stored(store, "paper/fig06_release", "reference").set_index("quantity")["uncertainty"]
+    limits = [*(static[each] for each in QUANTITIES), moving["frequency"]]
+    yield "| *uncertainty of the reference* | " + " | ".join(f"{100 * each:.0e} %" for each in limits) + " |"
 
 
 def paths(store: Store) -> Iterator[str]:
