@@ -1,4 +1,4 @@
-"""Every module of a package with its annotations resolved, as Sphinx does not resolve them by itself."""
+"""Every module of a package as Sphinx can read it: annotations resolved, functions not hidden in objects."""
 
 import ast
 import importlib
@@ -6,6 +6,8 @@ import inspect
 import pkgutil
 import typing
 from types import ModuleType
+
+from skfem.assembly import Form
 
 
 def import_whole(package: str) -> None:
@@ -19,6 +21,7 @@ def import_whole(package: str) -> None:
                 exec(compile(ast.Module(node.body, []), module.__name__, "exec"), vars(module))
     for module in modules:
         _resolve_fields(module)
+        _unwrap_forms(module)
 
 
 def _resolve_fields(module: ModuleType) -> None:
@@ -26,3 +29,10 @@ def _resolve_fields(module: ModuleType) -> None:
     for value in vars(module).values():
         if isinstance(value, type) and issubclass(value, tuple) and hasattr(value, "_fields"):
             value.__annotations__ = value.__new__.__annotations__ = typing.get_type_hints(value)
+
+
+def _unwrap_forms(module: ModuleType) -> None:
+    """Put the functions that scikit-fem made forms of back in their places: a form has no docstring."""
+    for name, value in list(vars(module).items()):
+        if isinstance(value, Form):
+            setattr(module, name, value.form)
