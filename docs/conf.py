@@ -32,7 +32,10 @@ python_maximum_signature_line_length = 90
 
 nitpicky = True
 # Types of other packages: their inventories would have to be fetched, and a build needs no network.
-_OTHERS = "argparse|ast|collections|enum|matplotlib|numpy|np|pandas|pathlib|scipy|skfem|types"
+_OTHERS = (
+    "argparse|ast|collections|concurrent|contextlib|enum|matplotlib|meshio|numpy|np|pandas|pathlib|pyarrow|"
+    "scipy|skfem|subprocess|types"
+)
 nitpick_ignore_regex = [("py:(class|obj)", rf"({_OTHERS})\..*")]
 nitpick_ignore = [
     ("py:class", name)
