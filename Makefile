@@ -1,6 +1,6 @@
 # `make` alone lists the targets. Everything happens in .venv, which `make setup` creates.
 .DEFAULT_GOAL := help
-.PHONY: help setup figures results report interactive test test-all bench lint clean
+.PHONY: help setup figures results report interactive test test-all bench docs lint clean
 
 PYTHON ?= python3
 BIN := .venv/bin
@@ -56,11 +56,15 @@ bench: $(STAMP)  ## time the solvers; counters are stored beside the seconds
 	$(BIN)/python -m pytest -q tests/bench --benchmark-enable --benchmark-sort=name \
 		--benchmark-columns=min,median,iqr,ops,rounds --benchmark-json=.benchmarks/speed.json
 
+docs: $(STAMP)  ## build the API reference into docs/_build/html, from docstrings
+	$(BIN)/python -m sphinx -W --keep-going -n -q docs docs/_build/html
+	@echo "docs/_build/html/index.html"
+
 lint: $(STAMP)  ## check style and types
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 
 clean:  ## remove .venv and every cache, but no results
-	rm -rf .venv .mypy_cache .pytest_cache .ruff_cache .hypothesis .benchmarks build *.egg-info
+	rm -rf .venv .mypy_cache .pytest_cache .ruff_cache .hypothesis .benchmarks build docs/_build *.egg-info
 	find . -name __pycache__ -type d -prune -exec rm -rf {} +

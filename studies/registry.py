@@ -30,7 +30,10 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "draw": ("studies.commands.draw", "redraw studies from their stored tables"),
     "status": ("studies.commands.status", "say which stored results are fresh, stale or missing"),
     "compile": ("studies.commands.compile_kernels", "compile the kernels of both models, once"),
-    "readme": ("studies.commands.readme", "rewrite the figures of agreement in README.md from the results"),
+    "readme": (
+        "studies.commands.readme",
+        "rewrite the tables of README.md and docs/ from the results",
+    ),
 }
 
 #: Study -> (module with `CASES`, `compute(progress)` and `draw(tables)`, what it shows).

@@ -37,6 +37,7 @@ class Gravity(Effect):
         object.__setattr__(self, "acceleration", pair("acceleration", self.acceleration, "m/s^2"))
 
     def turned(self, turn: Array) -> Self:
+        """Return the same effect with its acceleration turned by the matrix `turn` (2, 2)."""
         return replace(self, acceleration=_turned(turn, self.acceleration))
 
 
@@ -85,6 +86,7 @@ class AppliedForce(Effect):
         object.__setattr__(self, "history", _history(self.history))
 
     def turned(self, turn: Array) -> Self:
+        """Return the same effect with its force turned by the matrix `turn` (2, 2)."""
         return replace(self, force=_turned(turn, self.force))
 
 
@@ -114,6 +116,7 @@ class TipForce(Effect):
         object.__setattr__(self, "history", _history(self.history))
 
     def turned(self, turn: Array) -> Self:
+        """Return the same effect with its force turned by the matrix `turn` (2, 2)."""
         return replace(self, force=_turned(turn, self.force))
 
 
@@ -127,6 +130,7 @@ class DrivenDisplacement(Effect):
         object.__setattr__(self, "displacement", pair("displacement", self.displacement, "m"))
 
     def turned(self, turn: Array) -> Self:
+        """Return the same effect with its displacement turned by the matrix `turn` (2, 2)."""
         return replace(self, displacement=_turned(turn, self.displacement))
 
 

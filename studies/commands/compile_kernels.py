@@ -37,7 +37,7 @@ def add_arguments(parser: Parser) -> None:
 
 def main(arguments: argparse.Namespace) -> int:
     """Enter every kernel, on two cores or more; return the exit code."""
-    print("studies: compiling the kernels, once (about a minute) ...", file=sys.stderr, flush=True)
+    print("studies: compiling the kernels, once (some minutes) ...", file=sys.stderr, flush=True)
     begin = time.perf_counter()
     forget()
     workers = min(len(CALLS), os.cpu_count() or 1)

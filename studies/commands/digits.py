@@ -1,4 +1,4 @@
-"""What a digit costs: the tables of README.md made from the work-precision studies."""
+"""What a digit costs: the tables of docs/findings.md made from the work-precision studies."""
 
 from collections.abc import Callable, Iterator, Mapping
 from typing import Any

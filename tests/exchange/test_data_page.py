@@ -79,7 +79,7 @@ def test_the_line_that_loads_a_table_works(monkeypatch):
 
 def test_the_export_of_the_page_runs(tmp_path, monkeypatch):
     """The command of the page writes what the page says, and its Parquet loads as it is written."""
-    (words,) = re.findall(r"```\npython -m studies (.*?)\n```", PAGE, flags=re.DOTALL)
+    (words,) = re.findall(r"```sh\npython -m studies (.*?)\n```", PAGE, flags=re.DOTALL)
     monkeypatch.chdir(tmp_path)
     assert main(words.replace("studies/cases", str(FOLDER)).split()) == 0
     (line,) = re.findall(r"`(pd\.read_parquet\(.*?\))`", PAGE)

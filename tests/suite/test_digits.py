@@ -1,4 +1,4 @@
-"""What a digit costs: the tables of README.md."""
+"""What a digit costs: the tables of docs/findings.md."""
 
 import math
 
@@ -8,7 +8,6 @@ import pytest
 from studies.commands import readme
 from studies.commands.digits import DYNAMICS, STATICS, digits
 from studies.errors import BadInput
-from studies.record.store import Store
 from studies.work_precision import moving_series, series
 
 
@@ -41,24 +40,17 @@ def test_tables_of_digits():
     ]
 
 
-def test_every_block_is_asked_for(monkeypatch):
-    """A README without the marks of a block is refused with what is expected."""
-    monkeypatch.setattr(readme, "_block", lambda store: ["agreement"])
-    monkeypatch.setattr(readme, "_table", lambda store, study, name: found([]))
-    first = f"head\n{readme.BEGIN}\nold\n{readme.END}\n"
-    with pytest.raises(BadInput, match="digits: written by"):
-        readme.rewritten(first, Store())
-    monkeypatch.setattr(readme, "digits", lambda statics, dynamics: ["digits"])
-    monkeypatch.setattr(readme, "lines", lambda store: ["hard"])
-    second = f"{readme.BEGIN_DIGITS}\nold\n{readme.END_DIGITS}\n"
-    with pytest.raises(BadInput, match="hard cases: written by"):
-        readme.rewritten(first + second, Store())
-    third = f"{readme.BEGIN_HARD}\nold\n{readme.END_HARD}\ntail"
-    text = readme.rewritten(first + second + third, Store())
-    assert "old" not in text
-    assert text.startswith("head\n") and text.endswith("tail")
-    places = [text.index(part) for part in ("agreement", readme.END, "\ndigits\n", "\nhard\n")]
-    assert places == sorted(places)
+def test_blocks_are_put_between_their_marks():
+    """Only what stands between the marks of a block is replaced; a page without them is refused."""
+    first, second = readme.marks("digits"), readme.marks("hard cases")
+    text = f"head\n{first[0]}\nold\n{first[1]}\nbody\n{second[0]}\nold\n{second[1]}\ntail"
+    for name, made in (("digits", ["new"]), ("hard cases", iter(["newer", "newest"]))):
+        text = readme.between(text, name, made, "PAGE.md")
+    assert text == (
+        f"head\n{first[0]}\n\nnew\n\n{first[1]}\nbody\n{second[0]}\n\nnewer\nnewest\n\n{second[1]}\ntail"
+    )
+    with pytest.raises(BadInput, match=r"PAGE\.md: got no marks, expected <!-- other: written by"):
+        readme.between(text, "other", [], "PAGE.md")
 
 
 def test_columns_are_series_of_the_studies():

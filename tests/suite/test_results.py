@@ -2,15 +2,12 @@
 
 import importlib.metadata
 import inspect
-import re
-import subprocess
-import sys
 
 import numpy as np
 import pandas as pd
 import pytest
 
-from studies.commands.readme import BEGIN, END, README, rewritten
+from studies.commands import readme
 from studies.errors import BadInput
 from studies.paper import formulations
 from studies.record import provenance, style
@@ -89,34 +86,28 @@ def test_findings_say_what_their_numbers_say():
             assert row["sentence"].endswith(verdict)
 
 
-def test_readme_agrees_with_the_results():
-    """The figures of agreement in README.md are those of the stored results."""
-    text = README.read_text(encoding="utf-8")
-    assert rewritten(text, Store()) == text
-    assert text.index(BEGIN) < text.index("| trajectory | torque | stiffness |") < text.index(END)
+@pytest.mark.parametrize("page", readme.BLOCKS, ids=lambda page: page.name)
+def test_pages_agree_with_the_results(page):
+    """The tables of README.md and of docs/findings.md are those of the stored results."""
+    text = page.read_text(encoding="utf-8")
+    assert readme.rewritten(page, Store()) == text
+    for name in readme.BLOCKS[page]:
+        begin, end = readme.marks(name)
+        assert text.index(begin) < text.index("|---|", text.index(begin)) < text.index(end)
 
 
-def test_readme_is_not_written_without_results_or_marks(tmp_path):
+def test_pages_are_not_written_without_results_or_marks(tmp_path, monkeypatch):
     """Without results, or without the marks, nothing is written and the reason is one line."""
+    page = readme.ROOT / "README.md"
     with pytest.raises(
         BadInput, match=r"control_points: got no stored tables, expected those of `make figures`"
     ):
-        rewritten(README.read_text(encoding="utf-8"), Store(tmp_path))
-    with pytest.raises(BadInput, match=r"README\.md: got no marks"):
-        rewritten("no marks", Store())
-
-
-def test_readme_example_runs():
-    """The Python example of README.md runs and prints what it says."""
-    example = re.search(r"```python\n(.*?)```", README.read_text(encoding="utf-8"), re.DOTALL)
-    assert example
-    done = subprocess.run(
-        [sys.executable, "-c", example[1]], cwd=ROOT, capture_output=True, text=True, check=True
-    )
-    promised = re.findall(r"\)  # (.*)", example[1])
-    assert promised
-    assert done.stdout.splitlines()[: len(promised)] == promised
-    assert len(done.stdout.splitlines()) == len(promised) + 3
+        readme.rewritten(page, Store(tmp_path))
+    bare = tmp_path / "BARE.md"
+    bare.write_text("no marks", encoding="utf-8")
+    monkeypatch.setitem(readme.BLOCKS, bare, readme.BLOCKS[page])
+    with pytest.raises(BadInput, match=r"BARE\.md: got no marks, expected <!-- agreement: written by"):
+        readme.rewritten(bare, Store())
 
 
 def test_stored_tables_are_tidy():

@@ -1,8 +1,6 @@
 """Scenes of effects and mechanisms: what a case file and `--effects` say is what is assembled."""
 
 import json
-import re
-import textwrap
 
 import numpy as np
 import pytest
@@ -12,7 +10,6 @@ from studies.cases.design import named_design
 from studies.cases.effects import DEFAULT, KEYS, MOTION_ONLY
 from studies.cases.mechanism import Mechanism
 from studies.cases.problem import FOLDER, Problem
-from studies.record.source import ROOT
 
 MECHANISMS = ("parallel_strip_guide", "cantilever_with_body", "four_bar_of_flexures")
 SCENES = ("cross_axis_pivot", *MECHANISMS)
@@ -154,26 +151,6 @@ def test_a_strip_may_have_a_section_of_its_own(tmp_path, command):
         ]
         ways.append(x[-1] - x[0])
     assert ways[0] / ways[1] == pytest.approx(4.5, rel=1e-3)
-
-
-def test_the_recipe_of_contributing_adds_an_effect(case, command, monkeypatch):
-    """The code that CONTRIBUTING.md shows works from a case file as it stands, with its registry line."""
-    text = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
-    recipe = re.search(r"```python\n(.*?)```", text, re.DOTALL)
-    assert recipe
-    written: dict[str, object] = {"__name__": "recipe"}
-    exec(textwrap.dedent("   " + recipe[1].lstrip()), written)
-    end = 'increments = 2\n[scene]\neffects = ["bending", "stretching", "body_inertia", "strip_inertia", '
-    end += '"ground_spring"]\n[effects.ground_spring]\nstiffness = 1e5'
-    path = case(("increments = 20", end))
-    words = ["solve", path, "--model", "spline", "--rotation-deg", 40]
-    assert "effects: got ground_spring, expected" in command(*words).err
-    monkeypatch.setitem(registry.REGISTRY, "ground_spring", written["ground_spring"])
-    sprung = answer(command, *words)
-    assert "ground_spring" in sprung["effects"]
-    assert (
-        sprung["torque_Nm"][-1] > 1.02 * answer(command, *words, "--effects=-ground_spring")["torque_Nm"][-1]
-    )
 
 
 def test_effects_of_case_files_are_those_of_the_splines():

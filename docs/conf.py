@@ -1,0 +1,69 @@
+"""How `make docs` builds the API reference and these pages, with Sphinx and without a network."""
+
+import os
+import sys
+import tomllib
+from pathlib import Path
+
+# Before any import: compiled functions hide their signatures and docstrings.
+os.environ["NUMBA_DISABLE_JIT"] = "1"
+os.environ.setdefault("MPLBACKEND", "Agg")
+HERE = Path(__file__).parent
+sys.path[:0] = [str(HERE), str(HERE.parent)]
+
+import prose  # noqa: E402
+from whole import import_whole  # noqa: E402
+
+PROJECT = tomllib.loads((HERE.parent / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+project = "Cross-axis pivot validation"
+copyright = "the authors; MIT licence"
+release = version = PROJECT["version"]
+
+extensions = ["myst_parser", "sphinx.ext.autodoc"]
+exclude_patterns = ["_build"]
+myst_heading_anchors = 3
+
+autodoc_default_options = {"members": True, "ignore-module-all": True, "member-order": "bysource"}
+autodoc_typehints_format = "short"
+add_module_names = False
+toc_object_entries = False
+autodoc_preserve_defaults = True
+python_maximum_signature_line_length = 90
+
+nitpicky = True
+# Types of other packages: their inventories would have to be fetched, and a build needs no network.
+_OTHERS = (
+    "argparse|ast|collections|concurrent|contextlib|enum|matplotlib|meshio|numpy|np|pandas|pathlib|pyarrow|"
+    "scipy|skfem|subprocess|types"
+)
+nitpick_ignore_regex = [("py:(class|obj)", rf"({_OTHERS})\..*")]
+nitpick_ignore = [
+    ("py:class", name)
+    for name in (
+        # aliases of numpy.typing.NDArray where annotations are postponed: names for a reader
+        *("NDArray", "Array", "Indices"),
+        # scipy's class, which says that it belongs to no module
+        "SuperLU",
+        # type variables
+        *("spline_model.accuracy.Found", "spline_model.scene.Kind"),
+        *("fe_reference.effects.named.T", "studies.record.timing.Result"),
+    )
+]
+
+highlight_language = "text"
+html_theme = "alabaster"
+html_theme_options = {
+    "page_width": "1300px",
+    "sidebar_width": "270px",
+    "body_max_width": "1000px",
+    "code_font_size": "0.85em",
+}
+html_show_sourcelink = False
+
+
+def setup(app):
+    """Import what the pages show; hand docstrings and signatures to `prose` before Sphinx reads them."""
+    for package in prose.PACKAGES[:2]:
+        import_whole(package)
+    app.connect("autodoc-process-docstring", prose.process_docstring)
+    app.connect("autodoc-process-signature", prose.process_signature)

@@ -1,0 +1,120 @@
+"""How the formulations agree with refined finite elements: the tables of README.md and docs/findings.md."""
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+import pandas as pd
+
+from studies.errors import BadInput
+from studies.record.store import Store
+
+QUANTITIES = ("trajectory", "torque", "stiffness")
+PAPER = "spline, {} control points, as the paper integrates it"
+LOCKING_FREE = "spline, {} control points, locking-free"
+ELEMENTS = "finite elements, {} a strip, as the paper"
+
+#: Control-point counts of the table of paths for the default formulation.
+COUNTS = (4, 6, 8, 12)
+#: Formulations of Fig 6 in the order of the table.
+SWINGS = {
+    "n = 4, as the paper": PAPER.format(4),
+    "n = 4, locking-free": LOCKING_FREE.format(4),
+    "n = 6": LOCKING_FREE.format(6),
+    "n = 10": LOCKING_FREE.format(10),
+    "FE, 20 elements": ELEMENTS.format(20),
+}
+#: Those of them that the first screen shows.
+SHORT = ("n = 4, as the paper", "n = 4, locking-free", "n = 6", "FE, 20 elements")
+CLAIMED = ("n = 4, as the paper", "n = 4, locking-free", "n = 6")
+
+
+def short(store: Store) -> Iterator[str]:
+    """Yield the one table of the first screen: a row a formulation, errors in percent."""
+    paths = _paths(store)
+    swings = _rows(stored(store, "paper/fig06_release", "summary"), "formulation")
+    yield "| largest error, against refined finite elements | path | torque | stiffness | swing frequency |"
+    yield "|---|---|---|---|---|"
+    for name in SHORT:
+        errors = " | ".join(_percent(paths[SWINGS[name]][f"error_{each}"]) for each in QUANTITIES)
+        shift = swings[name]["frequency_shift"]
+        yield f"| {SWINGS[name]} | {errors} | {'+' if shift > 0.0 else ''}{_percent(shift)} |"
+    static = stored(store, "convergence/control_points", "reference").set_index("quantity")["uncertainty"]
+    moving = stored(store, "paper/fig06_release", "reference").set_index("quantity")["uncertainty"]
+    limits = [*(static[each] for each in QUANTITIES), moving["frequency"]]
+    yield "| *uncertainty of the reference* | " + " | ".join(f"{100 * each:.0e} %" for each in limits) + " |"
+
+
+def paths(store: Store) -> Iterator[str]:
+    """Yield the table of the static path: a row a formulation, and the uncertainty of the reference."""
+    limits = stored(store, "convergence/control_points", "reference").set_index("quantity")["uncertainty"]
+    yield "| largest error over 0 to 90° | trajectory | torque | stiffness |"
+    yield "|---|---|---|---|"
+    for label, row in _paths(store).items():
+        yield f"| {label} | " + " | ".join(f"{row[f'error_{name}']:.1e}" for name in QUANTITIES) + " |"
+    yield (
+        "| *uncertainty of the reference* | "
+        + " | ".join(f"{limits[name]:.0e}" for name in QUANTITIES)
+        + " |"
+    )
+
+
+def swings(store: Store) -> Iterator[str]:
+    """Yield the table of the swing after the release: shift of the frequency and error of the rotation."""
+    rows = _rows(stored(store, "paper/fig06_release", "summary"), "formulation")
+    limits = stored(store, "paper/fig06_release", "reference").set_index("quantity")["uncertainty"]
+    yield "| swing of 0.05 s from 90° | frequency | rotation |"
+    yield "|---|---|---|"
+    for name, label in SWINGS.items():
+        row = rows[name]
+        yield f"| {label} | {row['frequency_shift']:+.1e} | {row['error_rotation_rad']:.1e} rad |"
+    uncertain = f"{limits['frequency']:.0e} | {limits['rotation_rad']:.0e} rad"
+    yield f"| *uncertainty of the reference* | {uncertain} |"
+
+
+def claims(store: Store) -> Iterator[str]:
+    """Yield the table of the paper's claims: one row a claim, one column a formulation."""
+    studies = ("paper/fig04_trajectory", "paper/fig05_stiffness", "paper/fig06_release")
+    found = pd.concat([stored(store, study, "findings") for study in studies])
+    yield "| claim of the paper | " + " | ".join(CLAIMED) + " |"
+    yield "|---|" + "---|" * len(CLAIMED)
+    for claim, rows in found.groupby("claim", sort=True):
+        verdicts = _rows(rows, "formulation")
+        cells = (f"{verdicts[name]['holds']} ({_percent(verdicts[name]['value'])})" for name in CLAIMED)
+        yield f"| {claim} | " + " | ".join(cells) + " |"
+
+
+def stored(store: Store, study: str, name: str) -> pd.DataFrame:
+    """Return one stored table of a study.
+
+    Raises:
+        BadInput: the study was never run.
+    """
+    try:
+        return store.load_tables(study)[name]
+    except FileNotFoundError:
+        raise BadInput(f"{study}: got no stored tables, expected those of `make figures`") from None
+
+
+def _paths(store: Store) -> dict[str, Any]:
+    """Return the rows of the errors along the static path, by the label of their formulation."""
+    splines = stored(store, "convergence/control_points", "map")
+    meshes = stored(store, "convergence/elements", "meshes")
+    bezier = splines[splines["basis"] == "bezier"]
+    paper = bezier[(bezier["measure"] == "spatial") & (bezier["stretch"] == "consistent")]
+    found = {PAPER.format(4): paper[paper["control_points"] == 4]}
+    default = bezier[(bezier["measure"] == "material") & (bezier["stretch"] == "mixed")]
+    default = default[default["axial_modes"] == default["control_points"] - 2]
+    for n in COUNTS:
+        found[LOCKING_FREE.format(n)] = default[default["control_points"] == n]
+    twenty = meshes[(meshes["element"] == "corotational") & (meshes["elements"] == 20)]
+    found[ELEMENTS.format(20)] = twenty
+    return {label: rows.iloc[0] for label, rows in found.items()}
+
+
+def _rows(table: pd.DataFrame, column: str) -> Mapping[str, Any]:
+    """Return the rows of a table by what stands in one column."""
+    return {row[column]: row for row in table.to_dict("records")}
+
+
+def _percent(value: float) -> str:
+    return f"{100.0 * value:.2g} %" if abs(value) < 1.0 else f"{100.0 * value:.0f} %"

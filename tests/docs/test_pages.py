@@ -1,0 +1,66 @@
+"""Every code block of README.md, CONTRIBUTING.md and docs/ works as it is written."""
+
+import ast
+import re
+import shlex
+import subprocess
+import tomllib
+
+import pytest
+
+from studies.record.source import ROOT
+from studies.registry import COMMANDS
+from tests.docs import blocks
+
+LINK = re.compile(r"\]\((?!https?:)([^)#\s]*)(?:#([\w-]+))?\)")
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("page", blocks.PAGES)
+def test_blocks_of_a_page_work_in_their_order(page, tmp_path):
+    """All blocks of a page do what `blocks` says of their kind, in order in one copy of the checkout."""
+    runner = blocks.Runner(blocks.checkout(tmp_path))
+    for example in blocks.examples(page):
+        try:
+            runner.run(example)
+        except Exception as error:
+            raise AssertionError(f"{page}:{example.line}: {error}") from error
+
+
+@pytest.mark.parametrize("page", blocks.PAGES)
+def test_blocks_can_be_read(page):
+    """Python compiles, TOML parses, and no fence is of a kind that nothing checks."""
+    for example in blocks.examples(page):
+        language, source = example.parsed
+        if language == "python":
+            ast.parse(source)
+        if language == "toml":
+            tomllib.loads(source)
+    text = (ROOT / page).read_text(encoding="utf-8")
+    kinds = [kind for kind in re.findall(r"^ *```(.*)$", text, re.MULTILINE)[::2] if kind != "{toctree}"]
+    assert kinds == [example.parsed[0] for example in blocks.examples(page)]
+
+
+@pytest.mark.parametrize("page", blocks.PAGES)
+def test_commands_that_are_shown_exist(page):
+    """`make` would run the targets, and every command of `python -m studies` is registered."""
+    for line in blocks.lines(page):
+        words = shlex.split(line)
+        if words[0] == "make":
+            subprocess.run(["make", "--dry-run", *words[1:]], cwd=ROOT, capture_output=True, check=True)
+        elif words[1:3] == ["-m", "studies"]:
+            assert words[3] in COMMANDS, line
+        elif words[0] not in ("cp", "source", "python3", ".venv/bin/python", "python"):
+            pytest.fail(f"{page}: {line}")
+
+
+@pytest.mark.parametrize("page", blocks.PAGES)
+def test_links_lead_somewhere(page):
+    """Files that a page links to or shows are there, and so are the headings."""
+    text = (ROOT / page).read_text(encoding="utf-8")
+    for name, heading in LINK.findall(text):
+        target = (ROOT / page).parent / name if name else ROOT / page
+        assert target.exists(), f"{page}: {name}"
+        if heading:
+            titles = re.findall(r"^#+ (.*)$", target.read_text(encoding="utf-8"), re.MULTILINE)
+            assert heading in [re.sub(r"[^\w -]", "", title).lower().replace(" ", "-") for title in titles]

@@ -1,0 +1,80 @@
+"""The API reference is complete, and is built from the docstrings without a warning."""
+
+import ast
+import re
+import subprocess
+import sys
+import zlib
+from collections.abc import Iterator
+
+import pytest
+
+from studies.record.source import ROOT
+
+MODELS = ("spline_model", "fe_reference")
+LISTED = re.compile(r"^\.\. automodule:: (\S+)$", re.MULTILINE)
+
+
+def modules(package):
+    """The public modules of a package by name, with their syntax trees."""
+    found = {}
+    for path in sorted((ROOT / package).rglob("*.py")):
+        parts = path.relative_to(ROOT).with_suffix("").parts
+        name = ".".join(parts[:-1] if parts[-1] == "__init__" else parts)
+        if not any(part.startswith("_") for part in name.split(".")):
+            found[name] = ast.parse(path.read_text(encoding="utf-8"))
+    return found
+
+
+def listed(package):
+    """The modules that the pages of a package show."""
+    pages = (ROOT / "docs" / "api" / package).glob("*.rst")
+    return [name for page in pages for name in LISTED.findall(page.read_text(encoding="utf-8"))]
+
+
+def public(node, prefix) -> Iterator[tuple[str, ast.AST]]:
+    """Public classes, functions and methods in a syntax tree, with their full names."""
+    for child in node.body:
+        if isinstance(child, ast.ClassDef | ast.FunctionDef) and not child.name.startswith("_"):
+            yield f"{prefix}.{child.name}", child
+            if isinstance(child, ast.ClassDef):
+                yield from public(child, f"{prefix}.{child.name}")
+
+
+@pytest.mark.parametrize("package", MODELS)
+def test_every_module_of_a_model_is_on_one_page(package):
+    """The pages show the public modules, each once, and none that is not there."""
+    names = listed(package)
+    assert len(set(names)) == len(names)
+    assert set(names) == set(modules(package))
+
+
+def test_modules_of_the_studies_on_pages_exist():
+    """What the pages of the studies show is there, once; which modules they show is a choice."""
+    names = listed("studies")
+    assert names
+    assert len(set(names)) == len(names)
+    assert set(names) <= set(modules("studies"))
+
+
+@pytest.mark.parametrize("package", MODELS)
+def test_everything_public_of_a_model_has_a_docstring(package):
+    """Every public module, class, function and method says what it is."""
+    named = list(modules(package).items())
+    named += [each for module, tree in modules(package).items() for each in public(tree, module)]
+    assert [name for name, node in named if not ast.get_docstring(node)] == []
+
+
+@pytest.mark.slow
+def test_reference_is_built_without_a_warning(tmp_path):
+    """`make docs` succeeds, warnings being errors, and shows everything public of the models."""
+    words = ["-m", "sphinx", "-W", "--keep-going", "-n", "-q", "docs", str(tmp_path / "html")]
+    done = subprocess.run([sys.executable, *words], cwd=ROOT, capture_output=True, text=True)
+    assert (done.returncode, done.stderr) == (0, "")
+    packed = (tmp_path / "html" / "objects.inv").read_bytes().split(b"\n", 4)[4]
+    shown = {
+        line.split(" py:")[0] for line in zlib.decompress(packed).decode().splitlines() if " py:" in line
+    }
+    for package in MODELS:
+        for module, tree in modules(package).items():
+            assert {name for name, _ in public(tree, module)} - shown == set()
