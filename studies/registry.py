@@ -15,6 +15,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "converge": ("studies.commands.converge", "refine both models on a design until an accuracy is reached"),
     "audit": ("studies.commands.audit", "say what each effect of a scene is worth, and which are enough"),
     "advise": ("studies.commands.advise", "say which setting of each model meets an error at the least cost"),
+    "sweep": ("studies.commands.sweep", "solve thousands of designs into one table, here or on a cluster"),
     "interactive": (
         "studies.commands.interactive",
         "drive a pivot by camera or mouse and let it go, in the browser",

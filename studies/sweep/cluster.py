@@ -1,0 +1,50 @@
+"""Workers of a Dask cluster, behind the same interface as those of this machine."""
+
+import logging
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+from studies.errors import BadInput
+from studies.sweep.pool import Pool
+
+#: Longest wait for the scheduler, and for its first worker [s].
+TIMEOUT, WORKERS_WITHIN = 5.0, 30.0
+
+
+@contextmanager
+def cluster(
+    address: str, *, timeout: float = TIMEOUT, workers_within: float = WORKERS_WITHIN
+) -> Iterator[Pool]:
+    """Yield the workers of the scheduler at `address` (tcp://HOST:PORT).
+
+    The suite, in the same version, must be installed on each. The chunks of a worker that is lost go to
+    others; rows come back to this process, which alone writes.
+
+    Raises:
+        BadInput: distributed is not installed, no scheduler answers, or it has no worker; one line.
+    """
+    try:
+        from distributed import Client
+    except ModuleNotFoundError:
+        raise BadInput(
+            '--scheduler: the package distributed is not installed, expected it: pip install ".[cluster]"'
+        ) from None
+    logging.getLogger("distributed").setLevel(logging.CRITICAL)  # what matters is said by what is raised
+    try:
+        client = Client(address, timeout=timeout, set_as_default=False)
+    except (OSError, ValueError, TypeError, RuntimeError) as error:
+        reason = type(error).__name__ if isinstance(error, TimeoutError) else str(error).splitlines()[0]
+        raise BadInput(
+            f"--scheduler: got {address}, where no scheduler answers within {timeout:g} s ({reason}), "
+            "expected an address as tcp://HOST:PORT"
+        ) from None
+    with client:
+        try:
+            client.wait_for_workers(1, timeout=workers_within)
+        except TimeoutError:
+            raise BadInput(
+                f"--scheduler: got {address}, which has no worker after {workers_within:g} s, "
+                f"expected one: dask worker {address}"
+            ) from None
+        workers = sum(client.nthreads().values())
+        yield Pool(executor=client.get_executor(pure=False), workers=workers)
