@@ -1,5 +1,6 @@
 """Workers of a Dask cluster, behind the same interface as those of this machine."""
 
+import asyncio
 import logging
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -29,16 +30,10 @@ def cluster(
         raise BadInput(
             '--scheduler: the package distributed is not installed, expected it: pip install ".[cluster]"'
         ) from None
-    logging.getLogger("distributed").setLevel(logging.CRITICAL)  # what matters is said by what is raised
-    try:
-        client = Client(address, timeout=timeout, set_as_default=False)
-    except (OSError, ValueError, TypeError, RuntimeError) as error:
-        reason = type(error).__name__ if isinstance(error, TimeoutError) else str(error).splitlines()[0]
-        raise BadInput(
-            f"--scheduler: got {address}, where no scheduler answers within {timeout:g} s ({reason}), "
-            "expected an address as tcp://HOST:PORT"
-        ) from None
-    with client:
+    for name in [name for name in logging.root.manager.loggerDict if name.startswith("distributed")]:
+        logging.getLogger(name).setLevel(logging.CRITICAL)  # what matters is said by what is raised
+    _require_scheduler(address, timeout)
+    with Client(address, timeout=timeout, set_as_default=False) as client:
         try:
             client.wait_for_workers(1, timeout=workers_within)
         except TimeoutError:
@@ -48,3 +43,26 @@ def cluster(
             ) from None
         workers = sum(client.nthreads().values())
         yield Pool(executor=client.get_executor(pure=False), workers=workers)
+
+
+def _require_scheduler(address: str, timeout: float) -> None:
+    """Raise BadInput unless a scheduler answers there; a client that waits in vain takes long to give up."""
+    from distributed.core import rpc
+
+    async def asked() -> str:
+        async with rpc(address, timeout=timeout) as scheduler:
+            return str((await scheduler.identity())["type"])
+
+    async def within() -> str:
+        return await asyncio.wait_for(asked(), timeout)
+
+    try:
+        found = asyncio.run(within())
+        reason = "" if found == "Scheduler" else f"there is a {found}"
+    except Exception as error:  # of the network, of names, of whatever else may listen there
+        reason = (str(error).splitlines() or [type(error).__name__])[0] or type(error).__name__
+    if reason:
+        raise BadInput(
+            f"--scheduler: got {address}, where no scheduler answers within {timeout:g} s ({reason}), "
+            "expected an address as tcp://HOST:PORT"
+        )

@@ -43,7 +43,11 @@ SOURCES = ("studies.sweep.points", "studies.sweep.batch", "studies.sweep.sample"
 
 
 class Folder:
-    """The folder of one sweep, opened by `opened`."""
+    """The folder of one sweep: made if it is not there, gone on with if it holds the same one.
+
+    Raises:
+        OutputError: it holds something else; nothing is written yet.
+    """
 
     def __init__(self, root: Path, plan: Plan) -> None:
         self.root = root
@@ -51,6 +55,30 @@ class Folder:
         self.csv = root / CSV
         self._plan = plan
         self._parts = root / PARTS
+        self._manifest = manifest_of(plan)
+        _require_usable(root, self._manifest)
+
+    @contextmanager
+    def held(self) -> Iterator[None]:
+        """Hold the folder for one run, within which it may be written to.
+
+        Raises:
+            OutputError: it cannot be written to, or another run is at work in it.
+        """
+        require_writable_folder(self.root)
+        handle = os.open(self.root, os.O_RDONLY)
+        try:
+            try:
+                fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            except OSError:
+                reason = "got a folder where another run is at work, expected it to end first"
+                raise OutputError(f"{self.root}: {reason}") from None
+            self._clean()
+            if _require_usable(self.root, self._manifest):
+                write_whole(self.root / MANIFEST, (json.dumps(self._manifest, indent=2) + "\n").encode())
+            yield
+        finally:
+            os.close(handle)
 
     def missing(self) -> list[int]:
         """Return the numbers of the chunks that are not there yet."""
@@ -81,7 +109,7 @@ class Folder:
         if self._parts.is_dir():
             self._parts.rmdir()
 
-    def clean(self) -> None:
+    def _clean(self) -> None:
         """Remove what a run that was killed has left half-written."""
         prefixes = tuple(temporary_prefix(self.root / name) for name in (MANIFEST, TABLE, CSV))
         for path in self.root.iterdir():
@@ -93,31 +121,6 @@ class Folder:
 
     def _part(self, number: int) -> Path:
         return self._parts / f"part-{number:08d}.parquet"
-
-
-@contextmanager
-def opened(root: Path, plan: Plan) -> Iterator[Folder]:
-    """Hold the folder for one sweep: made if it is not there, gone on with if it holds the same one.
-
-    Raises:
-        OutputError: it cannot be written to, holds something else, or another run is at work in it.
-    """
-    manifest = manifest_of(plan)
-    fresh = _require_usable(root, manifest)
-    require_writable_folder(root)
-    handle = os.open(root, os.O_RDONLY)
-    try:
-        try:
-            fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except OSError:
-            raise OutputError(f"{root}: another run is at work there, expected it to end first") from None
-        folder = Folder(root, plan)
-        folder.clean()
-        if fresh:
-            write_whole(root / MANIFEST, (json.dumps(manifest, indent=2) + "\n").encode())
-        yield folder
-    finally:
-        os.close(handle)
 
 
 def manifest_of(plan: Plan) -> dict[str, Any]:

@@ -3,14 +3,14 @@
 import os
 from collections.abc import Callable, Iterator
 from concurrent.futures import FIRST_COMPLETED, CancelledError, Future, wait
-from contextlib import AbstractContextManager
+from contextlib import AbstractContextManager, ExitStack
 from pathlib import Path
 
 import pyarrow as pa
 
 from studies.errors import BadInput
 from studies.record.progress import silent
-from studies.sweep.parts import Folder, opened
+from studies.sweep.parts import Folder
 from studies.sweep.plan import Plan
 from studies.sweep.points import solve_chunk
 from studies.sweep.pool import Pool, processes, threads
@@ -47,12 +47,16 @@ def sweep(
     Raises:
         OutputError: the folder cannot be used or written. SweepError: a chunk that no worker could solve.
     """
-    with opened(out, plan) as folder:
+    folder = Folder(out, plan)
+    solved = 0
+    with ExitStack() as stack:
+        workers = None
+        if folder.missing():  # asked before anything is written: a scheduler may be out of reach
+            workers = stack.enter_context(local_pool(plan) if pool is None else pool)
+        stack.enter_context(folder.held())
         missing = folder.missing()
-        solved = 0
-        if missing:
-            with local_pool(plan) if pool is None else pool as workers:
-                solved = _solve(plan, folder, missing, workers, progress)
+        if missing and workers is not None:
+            solved = _solve(plan, folder, missing, workers, progress)
         folder.finish(csv=csv)
     return solved
 
