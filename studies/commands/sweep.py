@@ -87,7 +87,7 @@ def main(arguments: argparse.Namespace) -> int:
             solved = sweep(plan, arguments.out, pool=pool, csv=arguments.csv, progress=bar)
     except KeyboardInterrupt:
         print(
-            "studies: interrupted: the same command goes on with the designs that are missing",
+            "studies: interrupted: the same command goes on with what is missing",
             file=sys.stderr,
         )
         return INTERRUPTED

@@ -20,9 +20,10 @@ _QUIET = ("--no-dashboard", "--protocol", "tcp", "--host", "127.0.0.1")
 
 @dataclass(frozen=True, kw_only=True)
 class Loopback:
-    """Address of the scheduler, tcp://127.0.0.1:PORT, and the processes of the workers."""
+    """Address of the scheduler, tcp://127.0.0.1:PORT, its process and those of the workers."""
 
     address: str
+    scheduler: "subprocess.Popen[bytes]"
     workers: tuple["subprocess.Popen[bytes]", ...]
 
 
@@ -42,7 +43,7 @@ def loopback(workers: int) -> Iterator[Loopback]:
             for number in range(workers):
                 options = ("--nthreads", "1", "--no-nanny", "--local-directory", f"{folder}/{number}")
                 running.append(_started("worker", address, *options))
-            yield Loopback(address=address, workers=tuple(running[1:]))
+            yield Loopback(address=address, scheduler=running[0], workers=tuple(running[1:]))
         finally:
             for process in running:  # they keep nothing, and take seconds to end when asked to
                 process.kill()

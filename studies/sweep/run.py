@@ -92,7 +92,8 @@ def _tables(plan: Plan, missing: list[int], pool: Pool) -> Iterator[tuple[int, p
                 pending[pool.executor.submit(solve_chunk, plan.task, start, rows)] = number
             if not pending:
                 return
-            for future in wait(pending, return_when=FIRST_COMPLETED).done:
+            done = wait(pending, return_when=FIRST_COMPLETED).done
+            for future in sorted(done, key=pending.__getitem__):
                 number = pending.pop(future)
                 yield number, _result(plan, number, future)
     finally:

@@ -16,7 +16,7 @@ def drawn(text, *cuts):
     sample = plan(text).sample
     drawer = Drawer(sample)
     pieces = [drawer.rows(a, b) for a, b in zip((0, *cuts), (*cuts, sample.points), strict=True)]
-    return {key: sum((piece[key] for piece in pieces), []) for key in pieces[0]}
+    return {key: [value for piece in pieces for value in piece[key]] for key in pieces[0]}
 
 
 def test_a_grid_holds_every_combination_once():
