@@ -143,6 +143,14 @@ STUDIES: dict[str, tuple[str, str]] = {
         "studies.work_precision.dynamics",
         "what accuracy costs in motion: error after the release against time and counted work",
     ),
+    "sweep/design_space": (
+        "studies.sweep.questions.design_space",
+        "thousands of pivots: stiffness, its variation, shift and stress over +-45 degrees, and the best",
+    ),
+    "sweep/throughput": (
+        "studies.sweep.questions.throughput",
+        "designs a second by threads, processes and Dask workers, and what a chunk costs",
+    ),
 }
 
 

@@ -14,15 +14,15 @@ TIMEOUT, WORKERS_WITHIN = 5.0, 30.0
 
 @contextmanager
 def cluster(
-    address: str, *, timeout: float = TIMEOUT, workers_within: float = WORKERS_WITHIN
+    address: str, *, workers: int = 1, timeout: float = TIMEOUT, workers_within: float = WORKERS_WITHIN
 ) -> Iterator[Pool]:
-    """Yield the workers of the scheduler at `address` (tcp://HOST:PORT).
+    """Yield the workers of the scheduler at `address` (tcp://HOST:PORT), once there are so many.
 
     The suite, in the same version, must be installed on each. The chunks of a worker that is lost go to
     others; rows come back to this process, which alone writes.
 
     Raises:
-        BadInput: distributed is not installed, no scheduler answers, or it has no worker; one line.
+        BadInput: distributed is not installed, no scheduler answers, or it lacks workers; one line.
     """
     try:
         from distributed import Client
@@ -35,14 +35,13 @@ def cluster(
     _require_scheduler(address, timeout)
     with Client(address, timeout=timeout, set_as_default=False) as client:
         try:
-            client.wait_for_workers(1, timeout=workers_within)
+            client.wait_for_workers(workers, timeout=workers_within)
         except TimeoutError:
             raise BadInput(
-                f"--scheduler: got {address}, which has no worker after {workers_within:g} s, "
+                f"--scheduler: got {address}, which lacks workers after {workers_within:g} s, "
                 f"expected one: dask worker {address}"
             ) from None
-        workers = sum(client.nthreads().values())
-        yield Pool(executor=client.get_executor(pure=False), workers=workers)
+        yield Pool(executor=client.get_executor(pure=False), workers=sum(client.nthreads().values()))
 
 
 def _require_scheduler(address: str, timeout: float) -> None:

@@ -58,7 +58,7 @@ def test_a_scheduler_without_workers_is_one_line():
     """Requirement: a cluster that nobody works in is refused, with how to start a worker."""
     with (
         loopback(0) as alone,
-        pytest.raises(BadInput, match="has no worker after 1 s"),
+        pytest.raises(BadInput, match="lacks workers after 1 s"),
         cluster(alone.address, workers_within=1.0),
     ):
         pass
