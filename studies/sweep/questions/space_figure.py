@@ -26,7 +26,7 @@ MAPS = {
         (0.03, 0.1, 0.2, 0.4, 0.7),
     ),
 }
-#: Eight colours for the crossing ratio, a tenth of the length each.
+#: Eight colours for the crossing ratio, a tenth each.
 COLOURS = colormaps["viridis"].resampled(8)
 STAR: dict[str, Any] = {
     "marker": "*",
@@ -39,7 +39,7 @@ STAR: dict[str, Any] = {
 
 def space(tables: Mapping[str, pd.DataFrame]) -> Figure:
     """Draw the designs by pairs of quantities (above) and the maps over the geometry (below)."""
-    figure = page(9.5, 8.2)
+    figure = page(9.0, 7.4)
     above, below = figure.subplots(2, 2)
     designs, checks = tables["designs"], tables["checks"]
     given = checks[checks["design"] == "Table 1"].iloc[0]
