@@ -25,7 +25,7 @@ left out:
     method = "sobol"                  # grid (default), list, latin-hypercube, sobol
     points = 4096                     # of the random methods; `seed`, 0 if not given
     # file = "designs.csv"            # a list instead of [vary]: a column a key
-    # chunk = 2048                    # designs that are solved and kept at a time
+    # chunk = 256                     # designs that are solved and kept at a time
 
     [vary]                            # SECTION.KEY as in the case, strips.NAME.KEY of a mechanism,
     strip.crossing_ratio = { from = 0.1, to = 0.9 }          # in a grid also `points`

@@ -4,8 +4,10 @@ import asyncio
 import logging
 from collections.abc import Iterator
 from contextlib import contextmanager
+from typing import Any
 
 from studies.errors import BadInput
+from studies.sweep.parts import suite
 from studies.sweep.pool import Pool
 
 #: Longest wait for the scheduler, and for its first worker [s].
@@ -22,7 +24,7 @@ def cluster(
     others; rows come back to this process, which alone writes.
 
     Raises:
-        BadInput: distributed is not installed, no scheduler answers, or it lacks workers; one line.
+        BadInput: distributed is not installed, no scheduler answers, lacks workers or the suite; one line.
     """
     try:
         from distributed import Client
@@ -41,7 +43,26 @@ def cluster(
                 f"--scheduler: got {address}, which lacks workers after {workers_within:g} s, "
                 f"expected one: dask worker {address}"
             ) from None
+        _require_suite(client, address)
         yield Pool(executor=client.get_executor(pure=False), workers=sum(client.nthreads().values()))
+
+
+def _require_suite(client: Any, address: str) -> None:
+    """Raise BadInput unless the workers have this suite in this version."""
+    try:
+        found = client.run(suite)
+    except Exception as error:  # whatever is wrong over there
+        reason = f"{type(error).__name__}: {(str(error).splitlines() or [''])[0]}"
+        raise BadInput(
+            f"--scheduler: got {address}, whose workers cannot use the suite ({reason}), "
+            "expected it to be installed there"
+        ) from None
+    for worker, other in found.items():
+        if other != suite():
+            raise BadInput(
+                f"--scheduler: got {address}, whose worker {worker} has another version of the suite, "
+                "expected the same everywhere"
+            )
 
 
 def _require_scheduler(address: str, timeout: float) -> None:

@@ -126,7 +126,6 @@ class Folder:
 def manifest_of(plan: Plan) -> dict[str, Any]:
     """Return what the table follows from, and what its columns are; without date or place."""
     content = json.loads(json.dumps(plan.content))
-    source = "".join(source_hash(module) for module in SOURCES)
     columns = {POINT: "number of the point, from 0"}
     columns |= {axis.key: "varied; unit as in the name of the key" for axis in plan.sample.axes}
     columns |= {STATUS: "converged, not_converged, refused or failed", REASON: "why, or a remark; else empty"}
@@ -134,10 +133,16 @@ def manifest_of(plan: Plan) -> dict[str, Any]:
     return {
         "inputs_sha256": _sha256(json.dumps(content, sort_keys=True)),
         "inputs": content,
-        "suite": {"version": version(SUITE), "source_sha256": _sha256(source)},
+        "suite": suite(),
         "versions": {name: version(name) for name in LIBRARIES},
         "columns": columns,
     }
+
+
+def suite() -> dict[str, str]:
+    """Return which version of the suite this is: its number, and a hash of what the numbers follow from."""
+    source = "".join(source_hash(module) for module in SOURCES)
+    return {"version": version(SUITE), "source_sha256": _sha256(source)}
 
 
 def _require_usable(root: Path, manifest: dict[str, Any]) -> bool:

@@ -17,8 +17,10 @@ from studies.sweep import axes, batch, keys, points
 from studies.sweep.plan import KINDS, Analysis, Plan, Sample, Task
 
 SECTIONS = ("settings", "set", "analysis", "sample", "vary", "store")
-#: Designs a chunk: of the batch kernel about a third of a second, of single solves a few seconds.
-CHUNK, CHUNK_OF_SINGLE = 2048, 16
+#: Designs a chunk, smallest and largest: of the batch kernel (a third of a second), of single solves.
+CHUNK, CHUNK_OF_SINGLE = (64, 2048), (1, 16)
+#: Chunks that a sweep has at least, where they are not too small: enough for a few workers.
+CHUNKS = 16
 MOST_MODES = Whole(expected="a whole number from 1 to 100", low=1, high=100)
 #: Options of an analysis: key -> (keyword, rule).
 OPTIONS: dict[str, dict[str, tuple[str, Any]]] = {
@@ -70,7 +72,8 @@ def plan_of(where: str, content: Mapping[str, Any], folder: Path) -> Plan:
         batch=False,
     )
     task = _checked(task, sample)
-    chunk = CHUNK if task.batch else CHUNK_OF_SINGLE
+    least, most = CHUNK if task.batch else CHUNK_OF_SINGLE
+    chunk = max(least, min(most, -(-sample.points // CHUNKS)))
     if "chunk" in tables["sample"]:
         chunk = axes.parsed(where, "sample.chunk", axes.POINTS, tables["sample"]["chunk"])
     return Plan(task=task, sample=sample, chunk=chunk, content=_content(content, task, sample, chunk))

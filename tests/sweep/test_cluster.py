@@ -65,6 +65,17 @@ def test_a_scheduler_without_workers_is_one_line():
 
 
 @pytest.mark.slow
+def test_workers_of_another_version_are_refused(monkeypatch):
+    """Requirement: workers that would solve by other code than this are refused before they start."""
+    with loopback(1) as other:
+        with cluster(other.address) as pool:
+            assert pool.workers == 1
+        monkeypatch.setattr("studies.sweep.parts.source_hash", lambda module: "other")
+        with pytest.raises(BadInput, match="another version of the suite"), cluster(other.address):
+            pass
+
+
+@pytest.mark.slow
 def test_cluster_gives_the_local_table_though_a_worker_is_killed(tmp_path):
     """Requirement: two workers, one killed in mid-run: every point arrives once, in the table that this
     machine alone gives, and no process is left."""
