@@ -92,16 +92,10 @@ def solve_many(
         raise InvalidParameter("discretisation", discretisation, "Bezier strips, material, mixed")
     frames = _frames(columns, first.mechanism)
     count = len(frames.length)
-    turns = {"rotation": np.atleast_1d(np.asarray(rotation, dtype=float))}
-    _refuse(turns, "rotation", np.isfinite(turns["rotation"]), "a finite number [rad]")
-    _require_length("rotation", turns["rotation"], count)
-    paths = np.linspace(0.0, turns["rotation"], increments + 1, axis=1)
+    paths = np.linspace(0.0, _one_each("rotation", rotation, count), increments + 1, axis=1)
     depth = np.zeros(0)
     if section_depth is not None:
-        depth = np.atleast_1d(np.asarray(section_depth, dtype=float))
-        _refuse({"section_depth": depth}, "section_depth", depth > 0, "a finite number > 0")
-        _require_length("section_depth", depth, count)
-        depth = np.broadcast_to(depth, (count,)).copy()
+        depth = np.broadcast_to(_one_each("section_depth", section_depth, count, above=0.0), (count,)).copy()
     batch = _empty(count, paths if np.ndim(rotation) else paths[0])
     workers = threads or os.cpu_count() or 1
     with ThreadPoolExecutor(workers) as pool:
@@ -174,9 +168,14 @@ def _refuse(columns: Mapping[str, Array], name: str, good: NDArray[np.bool_], ex
         raise InvalidParameter(f"design {bad[0]}: {name}", float(columns[name][bad[0]]), expected)
 
 
-def _require_length(name: str, values: Array, count: int) -> None:
+def _one_each(name: str, given: ArrayLike, count: int, above: float = -np.inf) -> Array:
+    """A number for all designs, (1,), or one for each, (D,)."""
+    values = np.atleast_1d(np.asarray(given, dtype=float))
     if values.shape not in ((1,), (count,)):
         raise InvalidParameter(name, values.shape, f"a number or an array of {count}, one a design")
+    bound = "" if above == -np.inf else f" > {above:g}"
+    _refuse({name: values}, name, values > above, f"a finite number{bound}")
+    return values
 
 
 def _empty(designs: int, rotations: Array) -> Batch:

@@ -76,9 +76,9 @@ def main(arguments: argparse.Namespace) -> int:
     if arguments.scheduler and arguments.workers:
         raise BadInput("--workers: got it with --scheduler, expected one of them: a cluster has its own")
     from studies.record.progress import Bar
-    from studies.sweep.cluster import cluster
-    from studies.sweep.read import read_plan
+    from studies.sweep.designs.read import read_plan
     from studies.sweep.run import local_pool, sweep
+    from studies.sweep.workers.cluster import cluster
 
     plan = read_plan(arguments.designs)
     pool = cluster(arguments.scheduler) if arguments.scheduler else local_pool(plan, arguments.workers)

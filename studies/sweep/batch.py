@@ -12,8 +12,9 @@ from studies.cases import keys as case_keys
 from studies.cases.effects import DEFAULT, MOTION_ONLY
 from studies.cases.problem import PIVOT_PARAMETERS, Problem
 from studies.cases.rules import Pair
-from studies.sweep import keys, points, quantities
-from studies.sweep.plan import Task
+from studies.sweep import points, quantities
+from studies.sweep.designs import keys
+from studies.sweep.designs.plan import Task
 from studies.sweep.quantities import Array, Paths
 from studies.sweep.static import CONVERGED
 

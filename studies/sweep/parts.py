@@ -31,7 +31,7 @@ from studies.record.files import (
     write_whole,
 )
 from studies.record.source import source_hash
-from studies.sweep.plan import Plan
+from studies.sweep.designs.plan import Plan
 from studies.sweep.points import POINT, REASON, STATUS, stored
 
 MANIFEST, PARTS, TABLE, CSV = "sweep.json", "parts", "designs.parquet", "designs.csv"
@@ -39,7 +39,7 @@ SUITE = "cross-axis-pivot-validation"
 #: Libraries whose version can change a number or a byte of the table.
 LIBRARIES = ("numpy", "scipy", "numba", "scikit-fem", "pyarrow")
 #: What the numbers follow from: the solution of a chunk, and the drawing of the sample.
-SOURCES = ("studies.sweep.points", "studies.sweep.sample")
+SOURCES = ("studies.sweep.points", "studies.sweep.designs.sample")
 
 
 class Folder:

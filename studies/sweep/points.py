@@ -13,8 +13,9 @@ from studies.cases.design import Design
 from studies.cases.mechanism import read_mechanism
 from studies.cases.problem import read_problem
 from studies.errors import BadInput
-from studies.sweep import keys, quantities
-from studies.sweep.plan import Task
+from studies.sweep import quantities
+from studies.sweep.designs import keys
+from studies.sweep.designs.plan import Task
 from studies.sweep.quantities import Answer, Quantity
 from studies.sweep.static import CONVERGED, NOT_CONVERGED, static_answer
 

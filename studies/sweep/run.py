@@ -10,11 +10,11 @@ import pyarrow as pa
 
 from studies.errors import BadInput
 from studies.record.progress import silent
+from studies.sweep.designs.plan import Plan
+from studies.sweep.designs.sample import Drawer
 from studies.sweep.parts import Folder
-from studies.sweep.plan import Plan
 from studies.sweep.points import solve_chunk
-from studies.sweep.pool import Pool, processes, threads
-from studies.sweep.sample import Drawer
+from studies.sweep.workers.pool import Pool, processes, threads
 
 Progress = Callable[[int, int], None]
 #: Chunks a worker that are under way or waiting, so that none idles and no result piles up.

@@ -192,3 +192,7 @@ def test_rotations_of_a_batch_may_differ():
     assert np.isnan(batch.strain).all()
     with pytest.raises(InvalidParameter, match="rotation"):
         solve_many(designs, rotation=[1.0, 0.5])
+    with pytest.raises(InvalidParameter, match=r"design 1: rotation: got nan"):
+        solve_many(designs, rotation=[1.0, math.nan, 0.5])
+    with pytest.raises(InvalidParameter, match=r"section_depth: got 0\.0, expected a finite number > 0"):
+        solve_many(designs, rotation=1.0, section_depth=0.0)

@@ -8,9 +8,9 @@ import pytest
 
 from studies.__main__ import main
 from studies.errors import BadInput
-from studies.sweep.cluster import cluster
-from studies.sweep.loopback import loopback
 from studies.sweep.run import sweep
+from studies.sweep.workers.cluster import cluster
+from studies.sweep.workers.loopback import loopback
 from tests.sweep.sweeps import RANDOM, plan
 
 MANY = RANDOM.replace("points = 200", "points = 4000").replace("chunk = 32", "chunk = 100")

@@ -18,10 +18,10 @@ from matplotlib.figure import Figure
 from studies.answers.metrics import Array
 from studies.cases.problem import named_case
 from studies.paper.findings import Finding, table
+from studies.sweep.designs.read import plan_of
 from studies.sweep.points import CONVERGED
 from studies.sweep.questions import space_figure
 from studies.sweep.questions.pareto import dominating, not_dominated
-from studies.sweep.read import plan_of
 from studies.sweep.run import sweep
 
 CASE = "cross_axis_pivot"
@@ -190,13 +190,11 @@ def _of_wittrick(ratios: pd.DataFrame, inclination: float) -> list[Finding]:
     rows = ratios[ratios["inclination_deg"] == inclination].sort_values("crossing_ratio")
     own, half = (int(np.argmin(np.abs(rows["crossing_ratio"] - ratio))) for ratio in (WITTRICK, 0.5))
 
-    def over_half(name: str) -> float:
-        values = rows[name].to_numpy()
-        return float(values[own] / values[half])
-
     least = float(rows["crossing_ratio"].to_numpy()[np.argmin(rows["centre_shift_max_m"])])
-    shift, stress = over_half("centre_shift_max_m"), over_half("stress_max_Pa")
-    stiffness = over_half("stiffness_rest_Nm_per_rad")
+    shift, stress, stiffness = (
+        float(rows[name].to_numpy()[own] / rows[name].to_numpy()[half])
+        for name in ("centre_shift_max_m", "stress_max_Pa", "stiffness_rest_Nm_per_rad")
+    )
     where = f"inclination {inclination:g} degrees, +-45 degrees"
     asked = [
         (

@@ -20,12 +20,12 @@ from matplotlib.figure import Figure
 
 from studies.paper.findings import Finding, table
 from studies.record.style import BLUE, GREEN, ORANGE, page
-from studies.sweep.cluster import cluster
-from studies.sweep.loopback import loopback
-from studies.sweep.pool import Pool, processes, threads
+from studies.sweep.designs.read import plan_of
 from studies.sweep.questions.design_space import SPACE
-from studies.sweep.read import plan_of
 from studies.sweep.run import sweep
+from studies.sweep.workers.cluster import cluster
+from studies.sweep.workers.loopback import loopback
+from studies.sweep.workers.pool import Pool, processes, threads
 
 CASES = ("cross_axis_pivot",)
 

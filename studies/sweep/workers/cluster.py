@@ -8,7 +8,7 @@ from typing import Any
 
 from studies.errors import BadInput
 from studies.sweep.parts import suite
-from studies.sweep.pool import Pool
+from studies.sweep.workers.pool import Pool
 
 #: Longest wait for the scheduler, and for its first worker [s].
 TIMEOUT, WORKERS_WITHIN = 5.0, 30.0

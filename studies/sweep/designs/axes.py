@@ -9,7 +9,7 @@ from studies.cases import document
 from studies.cases.document import CaseError
 from studies.cases.rules import Number, Whole, shown
 from studies.errors import BadInput
-from studies.sweep.plan import METHODS, Axis, Sample
+from studies.sweep.designs.plan import METHODS, Axis, Sample
 
 POINTS = Whole(expected="a whole number from 1 to 100000000", low=1, high=100_000_000)
 SEED = Whole(expected="a whole number from 0 to 4294967295", low=0, high=2**32 - 1)

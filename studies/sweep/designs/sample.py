@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.stats import qmc
 
-from studies.sweep.plan import Axis, Sample
+from studies.sweep.designs.plan import Axis, Sample
 
 Array = NDArray[np.float64]
 Columns = dict[str, list[Any]]

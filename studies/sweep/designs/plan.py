@@ -4,7 +4,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from studies.cases.rules import Rule
-from studies.sweep.keys import Names
+from studies.sweep.designs.keys import Names
 
 METHODS = ("grid", "list", "latin-hypercube", "sobol")
 KINDS = ("static", "modes", "release")

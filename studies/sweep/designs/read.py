@@ -13,8 +13,9 @@ from studies.cases.document import CaseError
 from studies.cases.keys import ROTATION
 from studies.cases.problem import FOLDER
 from studies.cases.rules import Whole, positive, shown
-from studies.sweep import axes, batch, keys, points
-from studies.sweep.plan import KINDS, Analysis, Plan, Sample, Task
+from studies.sweep import batch, points
+from studies.sweep.designs import axes, keys
+from studies.sweep.designs.plan import KINDS, Analysis, Plan, Sample, Task
 
 SECTIONS = ("settings", "set", "analysis", "sample", "vary", "store")
 #: Designs a chunk, smallest and largest: of the batch kernel (a third of a second), of single solves.
