@@ -1,5 +1,6 @@
 """Sweeps on a Dask cluster: scheduler and workers of their own on loopback, and what there is without."""
 
+import importlib.util
 import socket
 import sys
 
@@ -12,6 +13,8 @@ from studies.sweep.run import sweep
 from studies.sweep.workers.cluster import cluster
 from studies.sweep.workers.loopback import loopback
 from tests.sweep.sweeps import RANDOM, plan
+
+with_dask = pytest.mark.skipif(not importlib.util.find_spec("distributed"), reason="needs the extra cluster")
 
 MANY = RANDOM.replace("points = 200", "points = 4000").replace("chunk = 32", "chunk = 100")
 
@@ -34,6 +37,7 @@ def test_without_the_package_one_line_says_what_to_install(tmp_path, capsys, mon
     assert 'pip install ".[cluster]"' in refusal("tcp://127.0.0.1:1", tmp_path, capsys)
 
 
+@with_dask
 @pytest.mark.slow
 @pytest.mark.parametrize("address", ["nonsense", "http://127.0.0.1:80", "tcp://127.0.0.1:0"])
 def test_an_address_that_is_none_is_one_line(address, tmp_path, capsys):
@@ -41,6 +45,7 @@ def test_an_address_that_is_none_is_one_line(address, tmp_path, capsys):
     assert "where no scheduler answers within 5 s" in refusal(address, tmp_path, capsys)
 
 
+@with_dask
 @pytest.mark.slow
 def test_a_place_that_never_answers_is_given_up(capsys):
     """Requirement: something that listens and is silent is no scheduler, after a short wait."""
@@ -53,6 +58,7 @@ def test_a_place_that_never_answers_is_given_up(capsys):
             pass
 
 
+@with_dask
 @pytest.mark.slow
 def test_a_scheduler_without_workers_is_one_line():
     """Requirement: a cluster that nobody works in is refused, with how to start a worker."""
@@ -64,6 +70,7 @@ def test_a_scheduler_without_workers_is_one_line():
         pass
 
 
+@with_dask
 @pytest.mark.slow
 def test_workers_of_another_version_are_refused(monkeypatch):
     """Requirement: workers that would solve by other code than this are refused before they start."""
@@ -75,6 +82,7 @@ def test_workers_of_another_version_are_refused(monkeypatch):
             pass
 
 
+@with_dask
 @pytest.mark.slow
 def test_cluster_gives_the_local_table_though_a_worker_is_killed(tmp_path):
     """Requirement: two workers, one killed in mid-run: every point arrives once, in the table that this
@@ -100,6 +108,7 @@ def test_cluster_gives_the_local_table_though_a_worker_is_killed(tmp_path):
         assert local.read_bytes() == remote.read_bytes()
 
 
+@with_dask
 @pytest.mark.slow
 def test_cluster_that_is_lost_is_gone_on_without(tmp_path):
     """Requirement: when the scheduler dies the command ends with one line, and goes on elsewhere."""

@@ -126,7 +126,7 @@ def test_interrupted_command_says_how_to_go_on(kind, tmp_path):
     """Requirement: Ctrl-C ends the command and all its processes with one line and code 130; called again it
     gives the table that an uninterrupted run gives."""
     path, out = tmp_path / "designs.toml", tmp_path / "out"
-    path.write_text(RANDOM.replace("points = 200", "points = 8000") if kind == "threads" else RELEASES)
+    path.write_text(RANDOM.replace("points = 200", "points = 4000") if kind == "threads" else RELEASES)
     process = started(path, "--out", out)
     kept = parts_in(out, 2)
     os.killpg(process.pid, signal.SIGINT)
@@ -146,15 +146,15 @@ def test_interrupted_command_says_how_to_go_on(kind, tmp_path):
 def test_a_killed_command_goes_on(tmp_path):
     """Requirement: also a run that was killed outright is gone on with."""
     path, out = tmp_path / "designs.toml", tmp_path / "out"
-    path.write_text(RANDOM.replace("points = 200", "points = 20000"))
+    path.write_text(RANDOM.replace("points = 200", "points = 6000"))
     process = started(path, "--out", out)
     kept = parts_in(out, 5)
     process.kill()
     ended(process)
     again = subprocess.run(command(path, "--out", out), cwd=ROOT, capture_output=True, text=True, check=True)
     solved = int(again.stdout.split()[0])
-    assert solved <= 20000 - 32 * kept
-    assert list(pd.read_parquet(out / "designs.parquet")["point"]) == list(range(20000))
+    assert solved <= 6000 - 32 * kept
+    assert list(pd.read_parquet(out / "designs.parquet")["point"]) == list(range(6000))
 
 
 @pytest.mark.slow
