@@ -26,8 +26,10 @@ from spline_model.fast.solve import (
     is_fast,
     mode_count,
 )
+from spline_model.fast.strain import stations_of
 from spline_model.mechanism import Mechanism
 from spline_model.pivot import cross_axis_pivot
+from spline_model.statics import STATIONS
 
 Array = NDArray[np.float64]
 
@@ -39,10 +41,12 @@ POSITIVE = ("length", "area", "second_moment_of_area", "youngs_modulus")
 class Batch:
     """Answers of D designs at S states each, the unloaded one first; nan behind a path that stopped.
 
-    states (D,) converged states; rotation (S,) [rad]; centre (D, S, 2) [m]; torque (D, S)
-    [N m]; stiffness (D, S) [N m/rad]; energy (D, S) [J]; inertia (D, S) negative eigenvalues of
-    the reduced tangent, 0 for a stable state, -1 behind a path that stopped; moment_defect
-    (D, S) as in ``Path``; iterations (D,) of Newton.
+    states (D,) converged states; rotation (S,), or (D, S) where designs have their own [rad];
+    centre (D, S, 2) [m]; torque (D, S) [N m]; stiffness (D, S) [N m/rad]; energy (D, S) [J];
+    strain (D, S) the largest of the extreme fibres, |N / (EA)| + |M| d / (2 EI) over the
+    stations of both strips [1], nan without a section depth d; inertia (D, S) negative
+    eigenvalues of the reduced tangent, 0 for a stable state, -1 behind a path that stopped;
+    moment_defect (D, S) as in ``Path``; iterations (D,) of Newton.
     """
 
     states: NDArray[np.int64]
@@ -51,6 +55,7 @@ class Batch:
     torque: Array
     stiffness: Array
     energy: Array
+    strain: Array
     inertia: NDArray[np.int64]
     moment_defect: Array
     iterations: NDArray[np.int64]
@@ -58,23 +63,25 @@ class Batch:
     @property
     def converged(self) -> NDArray[np.bool_]:
         """Designs whose path reached its end, (D,)."""
-        return np.asarray(self.states == len(self.rotation))
+        return np.asarray(self.states == self.rotation.shape[-1])
 
 
 def solve_many(
     designs: Mapping[str, ArrayLike] | Sequence[Mapping[str, Any]],
     *,
-    rotation: float,
+    rotation: ArrayLike,
     increments: int = 20,
     threads: int | None = None,
+    section_depth: ArrayLike | None = None,
     **discretisation: Any,
 ) -> Batch:
-    """Static paths of many pivots to one rotation [rad].
+    """Static paths of many pivots to one rotation, or each to its own [rad], a number or (D,).
 
     designs: keywords of ``cross_axis_pivot`` as columns, each a number or an array (D,), or
-    one mapping a design; discretisation: the same for all. The compiled paths run without
-    the interpreter's lock on ``threads`` threads, default all cores; the answers do not
-    depend on their number. Raises InvalidParameter with the number of a bad design.
+    one mapping a design; section_depth: in the plane of bending [m], a number or (D,), by
+    which strains are asked for; discretisation: the same for all. The compiled paths run
+    without the interpreter's lock on ``threads`` threads, default all cores; the answers do
+    not depend on their number. Raises InvalidParameter with the number of a bad design.
     """
     require_count("increments", increments, 1)
     columns = _columns(designs)
@@ -84,11 +91,20 @@ def solve_many(
     if not is_fast(first.mechanism):
         raise InvalidParameter("discretisation", discretisation, "Bezier strips, material, mixed")
     frames = _frames(columns, first.mechanism)
-    rotations = np.linspace(0.0, rotation, increments + 1)
-    batch = _empty(len(frames.length), rotations)
+    count = len(frames.length)
+    paths = np.linspace(0.0, _one_each("rotation", rotation, count), increments + 1, axis=1)
+    depth = np.zeros(0)
+    if section_depth is not None:
+        depth = np.broadcast_to(_one_each("section_depth", section_depth, count, above=0.0), (count,)).copy()
+    batch = _empty(count, paths if np.ndim(rotation) else paths[0])
     workers = threads or os.cpu_count() or 1
     with ThreadPoolExecutor(workers) as pool:
-        list(pool.map(lambda w: _solve_share(w, workers, first.mechanism, frames, batch), range(workers)))
+        list(
+            pool.map(
+                lambda w: _solve_share(w, workers, first.mechanism, frames, paths, depth, batch),
+                range(workers),
+            )
+        )
     return batch
 
 
@@ -152,8 +168,18 @@ def _refuse(columns: Mapping[str, Array], name: str, good: NDArray[np.bool_], ex
         raise InvalidParameter(f"design {bad[0]}: {name}", float(columns[name][bad[0]]), expected)
 
 
+def _one_each(name: str, given: ArrayLike, count: int, above: float = -np.inf) -> Array:
+    """A number for all designs, (1,), or one for each, (D,)."""
+    values = np.atleast_1d(np.asarray(given, dtype=float))
+    if values.shape not in ((1,), (count,)):
+        raise InvalidParameter(name, values.shape, f"a number or an array of {count}, one a design")
+    bound = "" if above == -np.inf else f" > {above:g}"
+    _refuse({name: values}, name, values > above, f"a finite number{bound}")
+    return values
+
+
 def _empty(designs: int, rotations: Array) -> Batch:
-    shape = (designs, len(rotations))
+    shape = (designs, rotations.shape[-1])
     return Batch(
         states=np.zeros(designs, dtype=np.int64),
         rotation=rotations,
@@ -161,25 +187,30 @@ def _empty(designs: int, rotations: Array) -> Batch:
         torque=np.full(shape, np.nan),
         stiffness=np.full(shape, np.nan),
         energy=np.full(shape, np.nan),
+        strain=np.full(shape, np.nan),
         inertia=np.full(shape, -1, dtype=np.int64),
         moment_defect=np.full(shape, np.nan),
         iterations=np.zeros(designs, dtype=np.int64),
     )
 
 
-def _solve_share(worker: int, workers: int, first: Mechanism, frames: Frame, batch: Batch) -> None:
+def _solve_share(
+    worker: int, workers: int, first: Mechanism, frames: Frame, paths: Array, depth: Array, batch: Batch
+) -> None:
     """Solve the designs of one thread with one set of working arrays."""
     design = first.design
     n, modes = design.discretisation.control_points, mode_count(design)
     grid = grid_of(design)
     locals_, space = arrays(len(design.strips), grid)
-    answer = empty_answer(len(batch.rotation), len(space.y))
+    answer = empty_answer(paths.shape[1], len(space.y))
+    stations = stations_of(n, modes, STATIONS)
     results = (
         batch.states,
         batch.centre,
         batch.torque,
         batch.stiffness,
         batch.energy,
+        batch.strain,
         batch.inertia,
         batch.moment_defect,
         batch.iterations,
@@ -189,11 +220,13 @@ def _solve_share(worker: int, workers: int, first: Mechanism, frames: Frame, bat
         workers,
         frames,
         at_rest(frame_of(first), n, modes),
-        batch.rotation[1:],
+        np.ascontiguousarray(paths[:, 1:]),
         grid,
         locals_,
         space,
         TOLERANCE,
         answer,
+        depth,
+        stations,
         results,
     )

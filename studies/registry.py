@@ -20,6 +20,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "audit": ("studies.commands.audit", "say what each effect of a scene is worth, and which are enough"),
     "advise": ("studies.commands.advise", "say which setting of each model meets an error at the least cost"),
     "size": ("studies.commands.size", "size a pivot for a range, stiffness and stress by exact gradients"),
+    "sweep": ("studies.commands.sweep", "solve thousands of designs into one table, here or on a cluster"),
     "interactive": (
         "studies.commands.interactive",
         "drive a pivot by camera or mouse and let it go, in the browser",
@@ -153,6 +154,14 @@ STUDIES: dict[str, tuple[str, str]] = {
     "work_precision/dynamics": (
         "studies.work_precision.dynamics",
         "what accuracy costs in motion: error after the release against time and counted work",
+    ),
+    "sweep/design_space": (
+        "studies.sweep.questions.design_space",
+        "thousands of pivots: stiffness, its variation, shift and stress over +-45 degrees, and the best",
+    ),
+    "sweep/throughput": (
+        "studies.sweep.questions.throughput",
+        "designs a second by threads, processes and Dask workers, and what a chunk costs",
     ),
 }
 

@@ -6,6 +6,7 @@ import tempfile
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
+from typing import BinaryIO
 
 from studies.errors import BadInput
 
@@ -46,17 +47,33 @@ def write_whole(path: Path, content: bytes) -> None:
     Raises:
         OutputError: the place cannot be written; a file that was there before is untouched.
     """
+    with whole_file(path) as stream:
+        stream.write(content)
+
+
+@contextmanager
+def whole_file(path: Path) -> Iterator[BinaryIO]:
+    """Open a temporary neighbour of `path` that takes its place at the end of the context, unless that fails.
+
+    Raises:
+        OutputError: the place cannot be written; a file that was there before is untouched.
+    """
     with _clear_error(path):
-        handle, name = tempfile.mkstemp(prefix=f".{path.name}.", dir=path.parent)
+        handle, name = tempfile.mkstemp(prefix=temporary_prefix(path), dir=path.parent)
         temporary = Path(name)
         try:
             with os.fdopen(handle, "wb") as stream:
-                stream.write(content)
+                yield stream
             temporary.chmod(0o644)
             temporary.replace(path)
         except BaseException:
             temporary.unlink(missing_ok=True)
             raise
+
+
+def temporary_prefix(path: Path) -> str:
+    """Return how the names of the temporary neighbours of `path` begin."""
+    return f".{path.name}."
 
 
 def replace_folder(folder: Path, contents: Mapping[str, bytes]) -> None:

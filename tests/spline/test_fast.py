@@ -153,3 +153,46 @@ def test_columns_are_the_same_as_rows():
     columns = TABLE_ONE | {name: np.array([d[name] for d in designs]) for name in varied}
     rows = solve_many(designs, rotation=1.0, increments=5)
     assert np.array_equal(solve_many(columns, rotation=1.0, increments=5).torque, rows.torque)
+
+
+def strain_error(section_depth, depth):
+    """Largest strain of three designs in a batch, by a depth, against the section forces of single solves."""
+    designs = many(3)
+    batch = solve_many(designs, rotation=[0.9, -0.6, 1.2], increments=10, section_depth=section_depth)
+    errors = []
+    for design, rotation, found in zip(designs, batch.rotation, batch.strain, strict=True):
+        path = solve_statics(cross_axis_pivot(**design), rotation=rotation[-1], increments=10)
+        modulus, inertia = design["youngs_modulus"], design["second_moment_of_area"]
+        axial = np.abs(path.axial_force) / (modulus * design["area"])
+        bending = np.abs(path.bending_moment) * depth / (2.0 * modulus * inertia)
+        strain = (axial + bending).max(axis=(1, 2))
+        errors.append(np.abs(found - strain).max() / strain[-1])
+    return max(errors)
+
+
+def test_strain_of_a_batch_follows_from_the_section_forces():
+    """Requirement: a batch's largest strain, on paths of its designs' own, is that of single solves."""
+    gates.check("spline_batch_strain", strain_error(4e-3, 4e-3) + np.finfo(float).eps)
+
+
+def test_strain_gate_has_teeth():
+    """Requirement: the strain of another depth does not pass."""
+    with pytest.raises(AssertionError, match="x the gate"):
+        gates.check("spline_batch_strain", strain_error(gates.teeth("spline_batch_strain")["depth"], 4e-3))
+
+
+def test_rotations_of_a_batch_may_differ():
+    """Requirement: designs with rotations of their own get the paths that they have one by one."""
+    designs, turns = many(3), (1.0, -0.5, 0.7)
+    batch = solve_many(designs, rotation=turns, increments=5)
+    for i, turn in enumerate(turns):
+        assert np.array_equal(
+            batch.torque[i], solve_many([designs[i]], rotation=turn, increments=5).torque[0]
+        )
+    assert np.isnan(batch.strain).all()
+    with pytest.raises(InvalidParameter, match="rotation"):
+        solve_many(designs, rotation=[1.0, 0.5])
+    with pytest.raises(InvalidParameter, match=r"design 1: rotation: got nan"):
+        solve_many(designs, rotation=[1.0, math.nan, 0.5])
+    with pytest.raises(InvalidParameter, match=r"section_depth: got 0\.0, expected a finite number > 0"):
+        solve_many(designs, rotation=1.0, section_depth=0.0)

@@ -1,0 +1,97 @@
+"""Solve thousands of designs: a grid, a list or a random sample over any keys of a case, into one table.
+
+    python -m studies sweep studies/sweep/examples/design_space.toml --out designs
+    python -m studies sweep studies/sweep/examples/four_bar.toml --out bars --csv
+    python -m studies sweep DESIGNS.toml --out designs --scheduler tcp://HOST:8786
+
+DESIGNS.toml says which designs, what is asked of each, and what is kept. All but case and [vary] may be
+left out:
+
+    case = "cross_axis_pivot"         # comes with the suite, or a file beside this one: "my_pivot.toml"
+    model = "spline"                  # spline, fe, fe-shear
+
+    [settings]                        # of the model, as the options of `solve`
+    control_points = 6
+
+    [set]                             # keys of the case that all designs share
+    drive.rotation_deg = 45
+
+    [analysis]
+    kind = "static"                   # static (default), modes, release
+    both_sides = true                 # static: also to the opposite rotation; default false
+    # modes: rotation_deg, count, held; release: duration_s, step_s, integrator
+
+    [sample]
+    method = "sobol"                  # grid (default), list, latin-hypercube, sobol
+    points = 4096                     # of the random methods; `seed`, 0 if not given
+    # file = "designs.csv"            # a list instead of [vary]: a column a key
+    # chunk = 256                     # designs that are solved and kept at a time
+
+    [vary]                            # SECTION.KEY as in the case, strips.NAME.KEY of a mechanism,
+    strip.crossing_ratio = { from = 0.1, to = 0.9 }          # in a grid also `points`
+    strip.slenderness = { from = 20, to = 100, scale = "log" }   # length over depth, at the case's width
+    body.centre_offset_m.x = [0, 0.01]                       # a part of a pair; listed values
+    settings.control_points = [4, 6, 8]                      # a setting
+
+    [store]
+    quantities = ["stiffness_rest_Nm_per_rad", "stress_max_Pa"]
+
+Quantities that are usual: static: rotation, torque, stiffness at rest and at the end and its variation,
+largest stress, energy, moment defect, iterations, and the shift of a pivot's crossing point or the places of
+a mechanism's bodies; modes: frequencies; release: frequency, extremes, error of the energy. A wrong name
+lists the others. A row a design: point, varied keys, status, reason, quantities; a design without an answer
+keeps its row, with the reason.
+
+The folder gets sweep.json (inputs, versions, columns), designs.parquet and, with --csv, designs.csv. A run
+that was interrupted goes on when it is called again, and the table is the same, byte by byte; another
+DESIGNS.toml asks for another folder. --scheduler hands the designs to the workers of a Dask cluster, where
+the suite is installed as well (pip install ".[cluster]"). Exit code 0: done; 2: bad input, or a place that
+cannot be written to; 130: interrupted.
+"""
+
+import argparse
+import sys
+from pathlib import Path
+
+from studies.commands.parser import Parser, whole_number
+
+INTERRUPTED = 130
+
+
+def add_arguments(parser: Parser) -> None:
+    """Declare the arguments of the command."""
+    parser.add_argument("designs", metavar="DESIGNS.toml", help="which designs, and what is asked of them")
+    parser.add_argument("--out", type=Path, required=True, metavar="DIR", help="folder of the table")
+    parser.add_argument("--csv", action="store_true", help="write the table as CSV as well")
+    parser.add_argument(
+        "--workers", type=whole_number(1), metavar="N", help="threads or processes (default: all cores)"
+    )
+    parser.add_argument("--scheduler", metavar="ADDRESS", help="of a Dask cluster, as tcp://HOST:PORT")
+
+
+def main(arguments: argparse.Namespace) -> int:
+    """Run the sweep, or what is missing of it; return the exit code."""
+    from studies.errors import BadInput
+
+    if arguments.scheduler and arguments.workers:
+        raise BadInput("--workers: got it with --scheduler, expected one of them: a cluster has its own")
+    from studies.record.progress import Bar
+    from studies.sweep.designs.read import read_plan
+    from studies.sweep.run import local_pool, sweep
+    from studies.sweep.workers.cluster import cluster
+
+    plan = read_plan(arguments.designs)
+    pool = cluster(arguments.scheduler) if arguments.scheduler else local_pool(plan, arguments.workers)
+    try:
+        with Bar("sweep") as bar:
+            solved = sweep(plan, arguments.out, pool=pool, csv=arguments.csv, progress=bar)
+    except KeyboardInterrupt:
+        print(
+            "studies: interrupted: the same command goes on with what is missing",
+            file=sys.stderr,
+        )
+        return INTERRUPTED
+    kept = plan.sample.points - solved
+    told = f"{solved} designs solved" + (f", {kept} were there" if kept else "")
+    print(f"{told}: {arguments.out / 'designs.parquet'}")
+    return 0

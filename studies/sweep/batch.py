@@ -1,0 +1,167 @@
+"""Static paths of plain pivots by the compiled kernel of many at once; what it cannot do goes one by one."""
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from studies.answers.models import model_of
+from studies.answers.settings import SplineSettings
+from studies.cases import keys as case_keys
+from studies.cases.effects import DEFAULT, MOTION_ONLY
+from studies.cases.problem import PIVOT_PARAMETERS, Problem
+from studies.cases.rules import Pair
+from studies.sweep import points, quantities
+from studies.sweep.designs import keys
+from studies.sweep.designs.plan import Task
+from studies.sweep.quantities import Array, Paths
+from studies.sweep.static import CONVERGED
+
+#: I / (A L^2) below which a strip is for the multiplier path, a hundredth above the kernel's own limit.
+LEAST_COMPLIANCE = 1.01e-9
+PLAIN = {"bending", "stretching"}
+
+Columns = dict[str, Array]
+_KEYS = {f"{key.section}.{key.name}": key for key in case_keys.KEYS}
+_PARTS = {
+    f"{name}.{part}" for name, key in _KEYS.items() if isinstance(key.rule, Pair) for part in keys.PARTS
+}
+
+
+def takes(task: Task) -> bool:
+    """Whether the kernel may take the designs of a sweep: plain pivots on a static path, by splines.
+
+    What it refuses in the end (other curves, or strips too slender) goes one by one.
+    """
+    own = {*_KEYS, *_PARTS, keys.SLENDERNESS}
+    if task.model != "spline" or task.analysis.kind != "static" or isinstance(task.case.get("strips"), list):
+        return False
+    effects = set(task.case.get("scene", {}).get("effects", DEFAULT))
+    return PLAIN <= effects <= PLAIN | set(MOTION_ONLY) and all(
+        key in own or key.startswith(f"{keys.SETTINGS}.") for key in task.keys
+    )
+
+
+def solve_batch(
+    task: Task, columns: Mapping[str, list[Any]]
+) -> tuple[list[str], list[str], dict[str, Array]]:
+    """Return status, reason and quantities of the designs, as `points.solve_each` does.
+
+    A design whose compiled path stops, or passes a critical point, is solved by itself: that says why, and
+    which branch is right. Both sides of a plain pivot are mirror images (its strips are alike and only the
+    couple acts, wherever the body's centre lies), so that one is enough.
+    """
+    design = points.design_of(task, {})
+    assert isinstance(design, Problem)
+    count = len(next(iter(columns.values())))
+    given = _attributes(task, design, columns, count)
+    slender = given["second_moment_of_area"] < LEAST_COMPLIANCE * given["area"] * given["length"] ** 2
+    found = {name: np.full(count, np.nan) for name in task.quantities}
+    single = np.ones(count, dtype=bool)
+    for settings, increments, rows in _groups(task, design, columns, np.flatnonzero(~slender)):
+        sure, values = _paths(task, settings, increments, {name: v[rows] for name, v in given.items()})
+        single[rows[sure]] = False
+        for name, column in values.items():
+            found[name][rows] = column
+    status, reason = np.full(count, CONVERGED, dtype=object), np.full(count, "", dtype=object)
+    alone = np.flatnonzero(single)
+    if len(alone):
+        designs = [{key: column[i] for key, column in columns.items()} for i in alone]
+        status[alone], reason[alone], each = points.solve_each(task, designs)
+        for name, numbers in each.items():
+            found[name][alone] = numbers
+    return list(status), list(reason), found
+
+
+def _attributes(task: Task, design: Problem, columns: Mapping[str, list[Any]], count: int) -> Columns:
+    """Return what the kernel asks for as columns in SI, (count,) or (count, 2)."""
+    names = (*PIVOT_PARAMETERS, "rotation", "depth")
+    given = {name: np.array([getattr(design, name)] * count, dtype=float) for name in names}
+    depth = np.full(count, np.nan if design.section_depth is None else design.section_depth)
+    for name, column in columns.items():
+        if name in _KEYS:
+            key = _KEYS[name]
+            values = np.array([key.rule.parse(value) for value in column], dtype=float)
+            if key.attribute == "section_depth":
+                depth = values
+            elif key.attribute in given:
+                given[key.attribute] = values
+        elif name in _PARTS:
+            pair, _, part = name.rpartition(".")
+            given[_KEYS[pair].attribute][:, keys.PARTS[part]] = column
+    if keys.SLENDERNESS in columns:
+        section = design.area, design.second_moment_of_area
+        slenderness = np.array(columns[keys.SLENDERNESS], dtype=float)
+        given["area"], given["second_moment_of_area"] = keys.of_slenderness(
+            slenderness, given["length"], *section
+        )
+    rectangle = np.sqrt(12.0 * given["second_moment_of_area"] / given["area"])
+    given["depth"] = np.where(np.isnan(depth), rectangle, depth)
+    return given
+
+
+def _groups(
+    task: Task, design: Problem, columns: Mapping[str, list[Any]], rows: NDArray[np.int64]
+) -> Iterator[tuple[dict[str, Any], int, NDArray[np.int64]]]:
+    """Yield the rows that share settings and increments, with these."""
+    increments = columns.get("drive.increments", [design.increments] * (rows.max(initial=0) + 1))
+    varied = [key for key in task.keys if key.startswith(f"{keys.SETTINGS}.")]
+    alike: dict[tuple[Any, ...], list[int]] = {}
+    for row in rows:
+        alike.setdefault((increments[row], *(columns[key][row] for key in varied)), []).append(row)
+    for (count, *settings), members in alike.items():
+        own = points.varied_settings(task, dict(zip(varied, settings, strict=True)))
+        yield own, count, np.array(members)
+
+
+def _paths(
+    task: Task, settings: dict[str, Any], increments: int, given: Columns
+) -> tuple[NDArray[np.bool_], Columns]:
+    """Return which designs are sure, and the quantities of all; none where the kernel does not take them."""
+    from spline_model.batch import solve_many
+
+    turns, depth = given["rotation"], given["depth"]
+    designs = {name: given[name] for name in PIVOT_PARAMETERS}
+    model = model_of(SplineSettings())
+    try:
+        batch = solve_many(
+            designs,
+            rotation=turns,
+            increments=increments,
+            section_depth=depth,
+            threads=1,
+            **SplineSettings(**settings).keywords(),
+        )
+    except model.errors.InvalidParameter:
+        return np.zeros(len(turns), dtype=bool), {}
+    unstable = np.count_nonzero(batch.inertia, axis=1)
+    turning = (batch.stiffness[:, 1:] * batch.stiffness[:, :-1] < 0.0).any(axis=1)
+    sides = 1 + task.analysis.both_sides
+    paths = Paths(
+        rest=0,
+        rotation=batch.rotation,
+        torque=batch.torque,
+        stiffness=batch.stiffness,
+        stress=batch.strain * given["youngs_modulus"][:, None],
+        energy=batch.energy,
+        defect=batch.moment_defect,
+        unstable=unstable,
+        iterations=sides * batch.iterations,
+        shift=_shift(given, batch.rotation, batch.centre),
+        places={},
+    )
+    sure = batch.converged & (unstable == 0) & ~turning
+    return sure, quantities.values(points.stored(task), task.quantities, paths)
+
+
+def _shift(given: Columns, rotation: Array, centre: Array) -> Array:
+    """Return g + R (x_c - g_0) - x_c of the crossing point x_c, (D, S, 2), as `response.centre_shift`."""
+    reach = given["crossing_ratio"] * given["length"]
+    crossing = np.column_stack((reach * np.cos(given["inclination"]), reach * np.sin(given["inclination"])))[
+        :, None
+    ]
+    arm = crossing - centre[:, :1]
+    cos, sin = np.cos(rotation), np.sin(rotation)
+    turned = np.stack((cos * arm[..., 0] - sin * arm[..., 1], sin * arm[..., 0] + cos * arm[..., 1]), axis=-1)
+    return np.asarray(centre + turned - crossing)

@@ -1,0 +1,196 @@
+"""The folder of a sweep: what it was made from, a part for each chunk, and in the end one table.
+
+    sweep.json          inputs, versions, columns with units' names and meanings
+    parts/              one Parquet file a chunk, until all are there
+    designs.parquet     the table, a row group a chunk, in the order of the points
+    designs.csv         the same, where asked for
+
+Every file is written under another name and renamed when it is complete.
+"""
+
+import fcntl
+import hashlib
+import json
+import os
+import re
+from collections.abc import Iterator
+from contextlib import contextmanager
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+import pyarrow as pa
+import pyarrow.csv as pa_csv
+import pyarrow.parquet as pq
+
+from studies.record.files import (
+    OutputError,
+    require_writable_folder,
+    temporary_prefix,
+    whole_file,
+    write_whole,
+)
+from studies.record.source import source_hash
+from studies.sweep.designs.plan import Plan
+from studies.sweep.points import POINT, REASON, STATUS, stored
+
+MANIFEST, PARTS, TABLE, CSV = "sweep.json", "parts", "designs.parquet", "designs.csv"
+SUITE = "cross-axis-pivot-validation"
+#: Libraries whose version can change a number or a byte of the table.
+LIBRARIES = ("numpy", "scipy", "numba", "scikit-fem", "pyarrow")
+#: What the numbers follow from: the solution of a chunk, and the drawing of the sample.
+SOURCES = ("studies.sweep.points", "studies.sweep.designs.sample")
+
+
+class Folder:
+    """The folder of one sweep: made if it is not there, gone on with if it holds the same one.
+
+    Raises:
+        OutputError: it holds something else; nothing is written yet.
+    """
+
+    def __init__(self, root: Path, plan: Plan) -> None:
+        self.root = root
+        self.table = root / TABLE
+        self.csv = root / CSV
+        self._plan = plan
+        self._parts = root / PARTS
+        self._manifest = manifest_of(plan)
+        _require_usable(root, self._manifest)
+
+    @contextmanager
+    def held(self) -> Iterator[None]:
+        """Hold the folder for one run, within which it may be written to.
+
+        Raises:
+            OutputError: it cannot be written to, or another run is at work in it.
+        """
+        require_writable_folder(self.root)
+        handle = os.open(self.root, os.O_RDONLY)
+        try:
+            try:
+                fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            except OSError:
+                reason = "got a folder where another run is at work, expected it to end first"
+                raise OutputError(f"{self.root}: {reason}") from None
+            self._clean()
+            if _require_usable(self.root, self._manifest):
+                write_whole(self.root / MANIFEST, (json.dumps(self._manifest, indent=2) + "\n").encode())
+            yield
+        finally:
+            os.close(handle)
+
+    def missing(self) -> list[int]:
+        """Return the numbers of the chunks that are not there yet."""
+        if self.table.is_file():
+            return []
+        done = {int(path.stem.partition("-")[2]) for path in self._parts.glob("part-*.parquet")}
+        return [number for number in range(self._plan.chunks) if number not in done]
+
+    def write(self, number: int, table: pa.Table) -> None:
+        """Keep the rows of one chunk; OutputError where they cannot be written."""
+        self._parts.mkdir(exist_ok=True)
+        stream = pa.BufferOutputStream()
+        pq.write_table(table, stream)
+        write_whole(self._part(number), stream.getvalue().to_pybytes())
+
+    def finish(self, *, csv: bool) -> None:
+        """Make the table of the parts, one after the other, and remove them; OutputError if it cannot be."""
+        if not self.table.is_file():
+            with whole_file(self.table) as stream:
+                parts = (pq.read_table(self._part(number)) for number in range(self._plan.chunks))
+                _stream(parts, lambda schema: pq.ParquetWriter(stream, schema))
+        if csv and not self.csv.is_file():
+            with whole_file(self.csv) as stream, pq.ParquetFile(self.table) as source:
+                groups = (source.read_row_group(i) for i in range(source.num_row_groups))
+                _stream(groups, lambda schema: pa_csv.CSVWriter(stream, schema))
+        for number in range(self._plan.chunks):
+            self._part(number).unlink(missing_ok=True)
+        if self._parts.is_dir():
+            self._parts.rmdir()
+
+    def _clean(self) -> None:
+        """Remove what a run that was killed has left half-written."""
+        prefixes = tuple(temporary_prefix(self.root / name) for name in (MANIFEST, TABLE, CSV))
+        for path in self.root.iterdir():
+            if path.name.startswith(prefixes):
+                path.unlink()
+        if self._parts.is_dir():
+            for path in self._parts.glob(".part-*"):
+                path.unlink()
+
+    def _part(self, number: int) -> Path:
+        return self._parts / f"part-{number:08d}.parquet"
+
+
+def manifest_of(plan: Plan) -> dict[str, Any]:
+    """Return what the table follows from, and what its columns are; without date or place."""
+    content = json.loads(json.dumps(plan.content))
+    columns = {POINT: "number of the point, from 0"}
+    columns |= {axis.key: "varied; unit as in the name of the key" for axis in plan.sample.axes}
+    columns |= {STATUS: "converged, not_converged, refused or failed", REASON: "why, or a remark; else empty"}
+    columns |= {name: quantity.meaning for name, quantity in stored(plan.task).items()}
+    return {
+        "inputs_sha256": _sha256(json.dumps(content, sort_keys=True)),
+        "inputs": content,
+        "suite": suite(),
+        "versions": {name: version(name) for name in LIBRARIES},
+        "columns": columns,
+    }
+
+
+def suite() -> dict[str, str]:
+    """Return which version of the suite this is: its number, and a hash of what the numbers follow from."""
+    source = "".join(source_hash(module) for module in SOURCES)
+    return {"version": version(SUITE), "source_sha256": _sha256(source)}
+
+
+def _require_usable(root: Path, manifest: dict[str, Any]) -> bool:
+    """Return whether the folder is new; OutputError unless it is that, empty, or of the same sweep."""
+    if root.exists() and not root.is_dir():
+        raise OutputError(f"{root}: got a file, expected a folder")
+    if not root.exists() or all(_is_temporary(path) for path in root.iterdir()):
+        return True
+    path = root / MANIFEST
+    if not path.is_file():
+        raise OutputError(f"{root}: got a folder with other files, expected an empty one or that of a sweep")
+    try:
+        former = json.loads(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        raise OutputError(f"{path}: cannot be read, expected what a sweep has written there") from None
+    for part in ("inputs", "versions", "suite"):
+        if former.get(part) != manifest[part]:
+            changed = _difference(former.get(part) or {}, manifest[part])
+            what = f"another {changed}" if part == "inputs" else f"{part} that differ ({changed})"
+            raise OutputError(
+                f"{root}: got a sweep with {what}, expected the same as before, or another folder"
+            )
+    return False
+
+
+def _is_temporary(path: Path) -> bool:
+    return re.match(re.escape(temporary_prefix(Path(MANIFEST))), path.name) is not None
+
+
+def _difference(former: dict[str, Any], now: dict[str, Any]) -> str:
+    """Return the first key, with dots, under which two documents differ."""
+    for key in [*now, *former]:
+        one, other = former.get(key), now.get(key)
+        if one != other:
+            if isinstance(one, dict) and isinstance(other, dict):
+                return f"{key}.{_difference(one, other)}"
+            return key
+    return "order of keys"
+
+
+def _stream(tables: Iterator[pa.Table], writer_of: Any) -> None:
+    """Write tables one after the other by the writer that is made for their schema."""
+    first = next(tables)
+    with writer_of(first.schema) as writer:
+        writer.write_table(first)
+        for table in tables:
+            writer.write_table(table)
+
+
+def _sha256(text: str) -> str:
+    return hashlib.sha256(text.encode()).hexdigest()

@@ -1,0 +1,1 @@
+"""Questions that a sweep answers: the studies of the group."""

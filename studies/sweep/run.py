@@ -1,0 +1,114 @@
+"""Run a sweep: the chunks that are missing, on threads, processes or a cluster, then the table."""
+
+import os
+from collections.abc import Callable, Iterator
+from concurrent.futures import FIRST_COMPLETED, CancelledError, Future, wait
+from contextlib import AbstractContextManager, ExitStack
+from pathlib import Path
+
+import pyarrow as pa
+
+from studies.errors import BadInput
+from studies.record.progress import silent
+from studies.sweep.designs.plan import Plan
+from studies.sweep.designs.sample import Drawer
+from studies.sweep.parts import Folder
+from studies.sweep.points import solve_chunk
+from studies.sweep.workers.pool import Pool, processes, threads
+
+Progress = Callable[[int, int], None]
+#: Chunks a worker that are under way or waiting, so that none idles and no result piles up.
+AHEAD = 2
+
+
+class SweepError(BadInput):
+    """A chunk that no worker could solve."""
+
+
+def sweep(
+    plan: Plan,
+    out: Path,
+    *,
+    pool: AbstractContextManager[Pool] | None = None,
+    csv: bool = False,
+    progress: Progress = silent,
+) -> int:
+    """Solve what is missing of a sweep in the folder `out` and make its table; returns the points solved.
+
+    Whatever solves the chunks, in whichever order, the table is the same: also after any interruption, from
+    which the same call goes on.
+
+    Args:
+        plan: of the sweep. out: its folder.
+        pool: of workers; None for all cores of this machine.
+        csv: whether to write the table as CSV as well.
+        progress: called with points done and points in all.
+
+    Raises:
+        OutputError: the folder cannot be used or written. SweepError: a chunk that no worker could solve.
+    """
+    folder = Folder(out, plan)
+    solved = 0
+    with ExitStack() as stack:
+        workers = None
+        if folder.missing():  # asked before anything is written: a scheduler may be out of reach
+            workers = stack.enter_context(local_pool(plan) if pool is None else pool)
+        stack.enter_context(folder.held())
+        missing = folder.missing()
+        if missing and workers is not None:
+            solved = _solve(plan, folder, missing, workers, progress)
+        folder.finish(csv=csv)
+    return solved
+
+
+def local_pool(plan: Plan, workers: int | None = None) -> AbstractContextManager[Pool]:
+    """Return workers on this machine, all cores by default: threads for the batch kernel, else processes."""
+    count = workers or os.cpu_count() or 1
+    return threads(count) if plan.task.batch else processes(count)
+
+
+def _solve(plan: Plan, folder: Folder, missing: list[int], pool: Pool, progress: Progress) -> int:
+    """Solve and keep the missing chunks; returns the number of their points."""
+    sizes = {number: plan.span(number)[1] - plan.span(number)[0] for number in missing}
+    total = plan.sample.points
+    done = total - sum(sizes.values())
+    progress(done, total)
+    for number, table in _tables(plan, missing, pool):
+        folder.write(number, table)
+        done += sizes[number]
+        progress(done, total)
+    return sum(sizes.values())
+
+
+def _tables(plan: Plan, missing: list[int], pool: Pool) -> Iterator[tuple[int, pa.Table]]:
+    """Yield number and rows of the chunks as they are solved, a bounded number of them under way."""
+    drawer, waiting = Drawer(plan.sample), iter(missing)
+    pending: dict[Future[pa.Table], int] = {}
+    try:
+        while True:
+            while len(pending) < AHEAD * pool.workers and (number := next(waiting, None)) is not None:
+                start, stop = plan.span(number)
+                rows = drawer.rows(start, stop)
+                pending[pool.executor.submit(solve_chunk, plan.task, start, rows)] = number
+            if not pending:
+                return
+            done = wait(pending, return_when=FIRST_COMPLETED).done
+            for future in sorted(done, key=pending.__getitem__):
+                number = pending.pop(future)
+                yield number, _result(plan, number, future)
+    finally:
+        for future in pending:
+            future.cancel()
+
+
+def _result(plan: Plan, number: int, future: Future[pa.Table]) -> pa.Table:
+    """Return the rows of a chunk; SweepError if its workers failed."""
+    try:
+        return future.result()
+    except (Exception, CancelledError) as error:
+        first, last = plan.span(number)
+        reason = (str(error).splitlines() or [""])[0]
+        raise SweepError(
+            f"points {first} to {last - 1}: no worker could solve them ({type(error).__name__}: {reason}); "
+            "the same command goes on with what is missing"
+        ) from error

@@ -1,0 +1,1 @@
+"""Who solves the chunks: threads and processes of this machine, or a Dask cluster."""

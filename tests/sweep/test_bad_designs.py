@@ -1,0 +1,116 @@
+"""DESIGNS.toml that cannot be used: one line each that says what and where, and nothing is written."""
+
+import pytest
+
+from studies.__main__ import main
+
+GOOD = {
+    "case": 'case = "cross_axis_pivot"',
+    "model": 'model = "spline"',
+    "settings": "settings.control_points = 6",
+    "set": "set.drive.rotation_deg = 45",
+    "analysis": 'analysis.kind = "static"',
+    "sample": 'sample = { method = "sobol", points = 8 }',
+    "vary": "vary.strip.crossing_ratio = { from = 0.1, to = 0.9 }",
+    "store": 'store.quantities = ["torque_Nm"]',
+}
+LIST = 'sample.method = "list"'
+GRID = 'sample.method = "grid"'
+
+BAD = [
+    ({"case": ""}, "case: got None, expected the name of a case"),
+    ({"case": 'case = "cross_axis_pivvot"'}, "cross_axis_pivot (the nearest name)"),
+    ({"case": 'case = "none.toml"'}, "none.toml: cannot be read"),
+    ({"case": 'case = "cross_axis_pivot"\nmodell = "fe"'}, "modell: got an unknown name, expected model"),
+    ({"model": 'model = "splines"'}, 'model: got the text "splines", expected spline (the nearest name)'),
+    ({"settings": "settings.control_point = 6"}, "control_points (the nearest name)"),
+    ({"settings": "settings.control_points = 3"}, "settings.control_points: got 3, expected a whole number"),
+    ({"settings": 'settings.stretch = "mixd"'}, "stretch: got 'mixd'"),
+    ({"set": "set.drive.rotation_deg = 400"}, "set.drive.rotation_deg: got 400, expected a number from"),
+    ({"set": "set.drive.rotatoin_deg = 4"}, "expected drive.rotation_deg (the nearest name)"),
+    ({"set": "set.settings.control_points = 4"}, "got a setting, expected it in [settings]"),
+    ({"analysis": 'analysis.kind = "statics"'}, "expected static (the nearest name)"),
+    ({"analysis": "analysis.both_sides = 1"}, "analysis.both_sides: got 1, expected true or false"),
+    ({"analysis": 'analysis = { kind = "modes", count = 0 }'}, "analysis.count: got 0"),
+    ({"analysis": "analysis.duration_s = 1"}, "analysis.duration_s: got an unknown key"),
+    ({"sample": 'sample = { method = "sobl", points = 8 }'}, "expected sobol (the nearest name)"),
+    (
+        {"sample": 'sample = { method = "sobol", points = 0 }'},
+        "sample.points: got 0, expected a whole",
+    ),
+    ({"sample": 'sample = { method = "sobol" }'}, "sample.points: got no such key"),
+    ({"sample": 'sample = { method = "sobol", points = 8, seed = -1 }'}, "sample.seed: got -1"),
+    ({"sample": 'sample = { method = "grid", points = 8 }'}, "sample.points: got it for a grid"),
+    ({"sample": 'sample.file = "a.csv"'}, "sample.file: got it beside [vary]"),
+    ({"sample": 'sample.file = "a.csv"', "vary": ""}, "a.csv: cannot be read (No such file"),
+    ({"vary": ""}, "[vary]: got nothing to vary"),
+    ({"vary": "vary.strip.crosing_ratio = [0.5]"}, "expected strip.crossing_ratio (the nearest name)"),
+    ({"vary": "vary.strips.left.area_m2 = [1e-5]"}, "got no key of the case"),
+    ({"vary": "vary.strip.crossing_ratio = 0.5"}, "vary.strip.crossing_ratio: got 0.5, expected a list or"),
+    ({"vary": "vary.strip.crossing_ratio = { from = 0.5, to = 0.5 }"}, "got an empty range from 0.5 to 0.5"),
+    (
+        {"vary": "vary.strip.crossing_ratio = { from = 0.5, to = 1.5 }"},
+        "to: got 1.5, expected a number",
+    ),
+    ({"vary": "vary.strip.crossing_ratio = { from = 0.5, too = 0.9 }"}, "expected to (the nearest name)"),
+    ({"vary": "vary.strip.crossing_ratio = { from = 0.5 }"}, "to: got no such field"),
+    ({"vary": 'vary.strip.crossing_ratio = { from = 0.1, to = 0.5, scale = "lg" }'}, "expected log"),
+    ({"vary": 'vary.body.centre_offset_m.x = { from = 0, to = 1, scale = "log" }'}, "expected it above 0"),
+    ({"vary": "vary.strip.crossing_ratio = []"}, "got [], expected a list of values"),
+    ({"vary": "vary.strip.crossing_ratio = [0.5, 2]"}, "got 2, expected a number between 0 and 1"),
+    ({"vary": "vary.strip.crossing_ratio = { values = [0.5], to = 1 }"}, "got values beside to"),
+    ({"vary": "vary.drive.increments = { from = 5, to = 9 }"}, "got a range, expected values"),
+    ({"vary": "vary.strip.slenderness = [50]\nvary.strip.area_m2 = [1e-5]"}, "beside strip.area_m2"),
+    ({"sample": GRID, "vary": "vary.strip.crossing_ratio = { from = 0.1, to = 0.9 }"}, "points: got no such"),
+    (
+        {"sample": GRID, "vary": "vary.strip.crossing_ratio = { from = 0.1, to = 0.9, points = 0 }"},
+        "points: got 0, expected a whole number from 1",
+    ),
+    (
+        {
+            "sample": 'sample.method = "list"',
+            "vary": "vary.strip = { crossing_ratio = [0.5], length_m = [1, 2] }",
+        },
+        "got lists of different lengths (strip.crossing_ratio 1, strip.length_m 2)",
+    ),
+    ({"store": 'store.quantities = ["torque"]'}, "expected torque_Nm (the nearest name)"),
+    ({"store": "store.quantities = []"}, "store.quantities: got []"),
+    ({"set": "set = 3"}, "set: got int, expected a table [set]"),
+    ({"case": "case = "}, "got text that is not TOML"),
+]
+
+
+@pytest.mark.parametrize(("change", "words"), BAD, ids=[words[:40] for _, words in BAD])
+def test_bad_designs_are_one_line(change, words, tmp_path, capsys):
+    """Requirement: what is wrong with the file is one line with its key, and the folder is not made."""
+    path = tmp_path / "designs.toml"
+    path.write_text("\n".join((GOOD | change).values()))
+    out = tmp_path / "out"
+    assert main(["sweep", str(path), "--out", str(out)]) == 2
+    error = capsys.readouterr().err
+    assert error.count("\n") == 1
+    assert words in error
+    assert not out.exists()
+
+
+def test_the_good_file_is_good(tmp_path, capsys):
+    """The checks above refuse the change, not the file."""
+    path = tmp_path / "designs.toml"
+    path.write_text("\n".join(GOOD.values()))
+    assert main(["sweep", str(path), "--out", str(tmp_path / "out")]) == 0
+    assert "8 designs solved" in capsys.readouterr().out
+
+
+def test_a_file_without_rows_or_with_a_wrong_value_is_named(tmp_path, capsys):
+    """Requirement: faults of the CSV file name it, its column and the value."""
+    path, table = tmp_path / "designs.toml", tmp_path / "a.csv"
+    path.write_text('case = "cross_axis_pivot"\nsample.file = "a.csv"')
+    for text, words in (
+        ("strip.crossing_ratio\n", "got no design, expected at least one row"),
+        ("strip.crossing_ratio\n0.5\nx\n", 'strip.crossing_ratio: got the text "0.5"'),
+        ("strip.crossing_ratio\n0.5\n7\n", "strip.crossing_ratio: got 7.0, expected a number between"),
+        ("strip.crossingratio\n0.5\n", "expected strip.crossing_ratio (the nearest name)"),
+    ):
+        table.write_text(text)
+        assert main(["sweep", str(path), "--out", str(tmp_path / "out")]) == 2
+        assert words in capsys.readouterr().err

@@ -1,0 +1,127 @@
+"""Sweeps on a Dask cluster: scheduler and workers of their own on loopback, and what there is without."""
+
+import importlib.util
+import socket
+import sys
+
+import pandas as pd
+import pytest
+
+from studies.__main__ import main
+from studies.errors import BadInput
+from studies.sweep.run import sweep
+from studies.sweep.workers.cluster import cluster
+from studies.sweep.workers.loopback import loopback
+from tests.sweep.sweeps import RANDOM, plan
+
+with_dask = pytest.mark.skipif(not importlib.util.find_spec("distributed"), reason="needs the extra cluster")
+
+MANY = RANDOM.replace("points = 200", "points = 4000").replace("chunk = 32", "chunk = 100")
+
+
+def refusal(address, tmp_path, capsys):
+    """Return the one line of a sweep that asks for a scheduler there; it writes nothing."""
+    path = tmp_path / "designs.toml"
+    path.write_text(RANDOM)
+    out = tmp_path / "out"
+    assert main(["sweep", str(path), "--out", str(out), "--scheduler", address]) == 2
+    error = capsys.readouterr().err
+    assert error.count("\n") == 1
+    assert not out.exists()
+    return error
+
+
+def test_without_the_package_one_line_says_what_to_install(tmp_path, capsys, monkeypatch):
+    """Requirement: a suite without the extra says how to get it."""
+    monkeypatch.setitem(sys.modules, "distributed", None)
+    assert 'pip install ".[cluster]"' in refusal("tcp://127.0.0.1:1", tmp_path, capsys)
+
+
+@with_dask
+@pytest.mark.slow
+@pytest.mark.parametrize("address", ["nonsense", "http://127.0.0.1:80", "tcp://127.0.0.1:0"])
+def test_an_address_that_is_none_is_one_line(address, tmp_path, capsys):
+    """Requirement: an address where no scheduler can be is refused before anything is written."""
+    assert "where no scheduler answers within 5 s" in refusal(address, tmp_path, capsys)
+
+
+@with_dask
+@pytest.mark.slow
+def test_a_place_that_never_answers_is_given_up(capsys):
+    """Requirement: something that listens and is silent is no scheduler, after a short wait."""
+    with socket.create_server(("127.0.0.1", 0)) as silent:
+        address = f"tcp://127.0.0.1:{silent.getsockname()[1]}"
+        with (
+            pytest.raises(BadInput, match=r"within 0\.5 s"),
+            cluster(address, timeout=0.5),
+        ):
+            pass
+
+
+@with_dask
+@pytest.mark.slow
+def test_a_scheduler_without_workers_is_one_line():
+    """Requirement: a cluster that nobody works in is refused, with how to start a worker."""
+    with (
+        loopback(0) as alone,
+        pytest.raises(BadInput, match="lacks workers after 1 s"),
+        cluster(alone.address, workers_within=1.0),
+    ):
+        pass
+
+
+@with_dask
+@pytest.mark.slow
+def test_workers_of_another_version_are_refused(monkeypatch):
+    """Requirement: workers that would solve by other code than this are refused before they start."""
+    with loopback(1) as other:
+        with cluster(other.address) as pool:
+            assert pool.workers == 1
+        monkeypatch.setattr("studies.sweep.parts.source_hash", lambda module: "other")
+        with pytest.raises(BadInput, match="another version of the suite"), cluster(other.address):
+            pass
+
+
+@with_dask
+@pytest.mark.slow
+def test_cluster_gives_the_local_table_though_a_worker_is_killed(tmp_path):
+    """Requirement: two workers, one killed in mid-run: every point arrives once, in the table that this
+    machine alone gives, and no process is left."""
+    sweep(plan(MANY), tmp_path / "local")
+    with loopback(2) as both:
+        arrived = []
+
+        def kill_one(done, total):
+            arrived.append(done)
+            if done >= 1000:
+                both.workers[0].kill()
+
+        assert sweep(plan(MANY), tmp_path / "cluster", pool=cluster(both.address), progress=kill_one) == 4000
+        assert both.workers[0].wait(10) < 0
+        assert both.workers[1].poll() is None
+    assert both.workers[1].poll() is not None
+    assert arrived == list(range(0, 4001, 100))
+    table = pd.read_parquet(tmp_path / "cluster" / "designs.parquet")
+    assert list(table["point"]) == list(range(4000))
+    for name in ("designs.parquet", "sweep.json"):
+        local, remote = (tmp_path / place / name for place in ("local", "cluster"))
+        assert local.read_bytes() == remote.read_bytes()
+
+
+@with_dask
+@pytest.mark.slow
+def test_cluster_that_is_lost_is_gone_on_without(tmp_path):
+    """Requirement: when the scheduler dies the command ends with one line, and goes on elsewhere."""
+    out, state = tmp_path / "out", {}
+    with loopback(1) as lost:
+
+        def kill_all(done, total):
+            if done >= 500 and not state:
+                state["done"] = True
+                lost.scheduler.kill()
+
+        with pytest.raises(BadInput, match="no worker could solve them"):
+            sweep(plan(MANY), out, pool=cluster(lost.address), progress=kill_all)
+    kept = 100 * len(list((out / "parts").glob("part-*")))
+    assert 500 <= kept < 4000
+    assert sweep(plan(MANY), out) == 4000 - kept

@@ -1,0 +1,176 @@
+"""The command as a user calls it: processes of their own, interruptions, memory."""
+
+import contextlib
+import os
+import re
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pandas as pd
+import pytest
+
+from studies.__main__ import main
+from studies.record.source import ROOT
+from studies.sweep.designs.read import read_plan
+from tests.sweep.sweeps import RANDOM
+
+EXAMPLES = sorted((ROOT / "studies" / "sweep" / "examples").glob("*.toml"))
+
+RELEASES = """
+case = "cross_axis_pivot"
+analysis = { kind = "release", duration_s = 0.05 }
+sample.chunk = 2
+vary.body.mass_kg = { from = 0.1, to = 0.3, points = 24 }
+"""
+
+
+def command(*words):
+    """Return the words that run a sweep."""
+    return [sys.executable, "-m", "studies", "sweep", *map(str, words)]
+
+
+def started(*words):
+    """Start a sweep in a group of its own."""
+    return subprocess.Popen(
+        command(*words),
+        cwd=ROOT,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        start_new_session=True,
+    )
+
+
+def ended(process):
+    """Return exit code and last line of the errors, once a process has ended by itself."""
+    try:
+        _, errors = process.communicate(timeout=120)
+    finally:
+        process.kill()
+    return process.returncode, re.split(r"[\r\n]+", errors.strip())[-1].strip()
+
+
+def test_help_loads_nothing_heavy():
+    """Requirement: the command's help imports no numerical package, nor those of tables and clusters."""
+    heavy = ("numpy", "scipy", "numba", "pandas", "pyarrow", "distributed", "spline_model")
+    script = (
+        "import sys\nfrom studies.__main__ import main\n"
+        "try:\n    main(['sweep', '--help'])\nexcept SystemExit:\n    pass\n"
+        f"print('loaded', *[name for name in {heavy!r} if name in sys.modules])"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", script], cwd=ROOT, capture_output=True, text=True, check=True
+    )
+    assert done.stdout.splitlines()[-1] == "loaded"
+
+
+@pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
+def test_examples_are_sweeps(path):
+    """Requirement: the example files can be used as they stand."""
+    assert read_plan(path).sample.points > 1
+
+
+def test_the_help_shows_a_file_that_works(tmp_path, capsys):
+    """Requirement: the file in the command's help, as it stands there, is a sweep."""
+    from studies.commands import sweep
+
+    lines = [line[4:] for line in sweep.__doc__.splitlines() if line.startswith("    ") or not line]
+    text = "\n".join(line for line in lines if not line.startswith("python -m"))
+    path = tmp_path / "designs.toml"
+    path.write_text(text)
+    asked = read_plan(path)
+    assert asked.sample.points == 4096
+    assert len(asked.task.keys) == 4
+    assert asked.task.batch
+
+
+def test_scheduler_and_workers_exclude_each_other(tmp_path, capsys):
+    """Requirement: options that contradict each other are refused."""
+    words = ["sweep", str(EXAMPLES[0]), "--out", str(tmp_path / "out")]
+    assert main([*words, "--workers", "2", "--scheduler", "tcp://127.0.0.1:1"]) == 2
+    assert "--workers: got it with --scheduler" in capsys.readouterr().err
+
+
+def left_of(group: int, within: float = 5.0) -> list[str]:
+    """Return the processes of a group that are still at work after a while."""
+    end = time.monotonic() + within
+    while True:
+        found = []
+        for place in Path("/proc").glob("[0-9]*/stat"):
+            with contextlib.suppress(OSError):
+                state, _, number = place.read_text().rpartition(")")[2].split()[:3]
+                if int(number) == group and state != "Z":
+                    found.append(place.parent.name)
+        if not found or time.monotonic() > end:
+            return found
+        time.sleep(0.05)
+
+
+def parts_in(out: Path, least: int, within: float = 60.0) -> int:
+    """Return the number of parts once there are so many."""
+    end = time.monotonic() + within
+    while time.monotonic() < end:
+        found = len(list((out / "parts").glob("part-*"))) if out.exists() else 0
+        if found >= least:
+            return found
+        time.sleep(0.02)
+    raise AssertionError(f"{least} parts did not come within {within} s")
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("kind", ["threads", "processes"])
+def test_interrupted_command_says_how_to_go_on(kind, tmp_path):
+    """Requirement: Ctrl-C ends the command and all its processes with one line and code 130; called again it
+    gives the table that an uninterrupted run gives."""
+    path, out = tmp_path / "designs.toml", tmp_path / "out"
+    path.write_text(RANDOM.replace("points = 200", "points = 4000") if kind == "threads" else RELEASES)
+    process = started(path, "--out", out)
+    kept = parts_in(out, 2)
+    os.killpg(process.pid, signal.SIGINT)
+    code, line = ended(process)
+    assert code == 130
+    assert line == "studies: interrupted: the same command goes on with what is missing"
+    assert left_of(process.pid) == []
+    assert len(list((out / "parts").glob("part-*"))) >= kept
+    assert not (out / "designs.parquet").exists()
+    again = subprocess.run(command(path, "--out", out), cwd=ROOT, capture_output=True, text=True, check=True)
+    assert "were there" in again.stdout
+    subprocess.run(command(path, "--out", tmp_path / "one", "--workers", "1"), cwd=ROOT, check=True)
+    assert (out / "designs.parquet").read_bytes() == (tmp_path / "one" / "designs.parquet").read_bytes()
+
+
+@pytest.mark.slow
+def test_a_killed_command_goes_on(tmp_path):
+    """Requirement: also a run that was killed outright is gone on with."""
+    path, out = tmp_path / "designs.toml", tmp_path / "out"
+    path.write_text(RANDOM.replace("points = 200", "points = 6000"))
+    process = started(path, "--out", out)
+    kept = parts_in(out, 5)
+    process.kill()
+    ended(process)
+    again = subprocess.run(command(path, "--out", out), cwd=ROOT, capture_output=True, text=True, check=True)
+    solved = int(again.stdout.split()[0])
+    assert solved <= 6000 - 32 * kept
+    assert list(pd.read_parquet(out / "designs.parquet")["point"]) == list(range(6000))
+
+
+@pytest.mark.slow
+def test_memory_does_not_grow_with_the_points(tmp_path):
+    """Requirement: eight times the points take the same memory at the peak, to a twentieth."""
+    peaks = []
+    for points in (10_000, 80_000):
+        path = tmp_path / f"{points}.toml"
+        path.write_text(RANDOM.replace("points = 200", f"points = {points}").replace("chunk = 32", ""))
+        script = (
+            "import resource, sys\nfrom studies.__main__ import main\n"
+            f"assert main({['sweep', str(path), '--out', str(tmp_path / str(points)), '--csv']!r}) == 0\n"
+            "print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)"
+        )
+        done = subprocess.run(
+            [sys.executable, "-c", script], cwd=ROOT, capture_output=True, text=True, check=True
+        )
+        peaks.append(int(done.stdout.splitlines()[-1]))
+    assert peaks[1] < 1.05 * peaks[0]

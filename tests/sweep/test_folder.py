@@ -1,0 +1,201 @@
+"""The folder of a sweep: whole files only, one table whatever came in between, and nothing else's folder."""
+
+import errno
+import json
+import resource
+
+import pandas as pd
+import pyarrow.parquet as pq
+import pytest
+
+from studies.record.files import OutputError
+from studies.sweep import parts, run
+from studies.sweep.points import solve_chunk
+from studies.sweep.run import SweepError, local_pool, sweep
+from tests.sweep.sweeps import GRID, RANDOM, plan
+
+
+def listed(folder):
+    """Return the files of a folder and of those in it."""
+    return sorted(str(path.relative_to(folder)) for path in folder.rglob("*") if path.is_file())
+
+
+class Stopped(Exception):
+    """An interruption."""
+
+
+def stop_after(points):
+    """Return a progress callable that interrupts the sweep once so many points are done."""
+
+    def progress(done, total):
+        if done >= points:
+            raise Stopped
+
+    return progress
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory):
+    """The folder of the random pivots, solved without interruption, with CSV."""
+    folder = tmp_path_factory.mktemp("sweep") / "whole"
+    assert sweep(plan(RANDOM), folder, csv=True) == 200
+    return folder
+
+
+def test_table_has_a_row_a_point_in_order(whole):
+    """Requirement: in the end there is one table of all points, row group by row group, and what made it."""
+    assert listed(whole) == ["designs.csv", "designs.parquet", "sweep.json"]
+    table = pd.read_parquet(whole / "designs.parquet")
+    assert list(table["point"]) == list(range(200))
+    assert (table["status"] == "converged").all()
+    assert pq.ParquetFile(whole / "designs.parquet").num_row_groups == 7
+    manifest = json.loads((whole / "sweep.json").read_text())
+    assert list(manifest["columns"]) == list(table.columns)
+    assert manifest["inputs"]["sample"] == {"method": "sobol", "points": 200, "seed": 0, "chunk": 32}
+    csv = pd.read_csv(whole / "designs.csv")
+    assert csv["torque_Nm"].equals(table["torque_Nm"])
+
+
+@pytest.mark.parametrize("points", [0, 100, 200])
+def test_interrupted_sweep_goes_on_to_the_same_bytes(points, whole, tmp_path, monkeypatch):
+    """Requirement: after an interruption at any time only what is missing is solved, to the same table."""
+    out = tmp_path / "out"
+    with pytest.raises(Stopped):
+        sweep(plan(RANDOM), out, progress=stop_after(points), pool=local_pool(plan(RANDOM), 1))
+    kept = sum(pq.read_metadata(part).num_rows for part in (out / "parts").glob("part-*"))
+    assert kept >= points
+    solved = []
+
+    def counted(task, start, columns):
+        solved.append(start)
+        return solve_chunk(task, start, columns)
+
+    monkeypatch.setattr(run, "solve_chunk", counted)
+    assert sweep(plan(RANDOM), out, csv=True) == 200 - kept
+    assert len(solved) == len(set(solved)) == -(-(200 - kept) // 32)
+    for name in ("designs.parquet", "designs.csv", "sweep.json"):
+        assert (out / name).read_bytes() == (whole / name).read_bytes()
+
+
+def test_a_finished_sweep_is_not_solved_again(whole, monkeypatch):
+    """Requirement: the same call on a finished folder does nothing."""
+    monkeypatch.setattr(run, "solve_chunk", None)
+    before = (whole / "designs.parquet").stat().st_mtime_ns
+    assert sweep(plan(RANDOM), whole) == 0
+    assert (whole / "designs.parquet").stat().st_mtime_ns == before
+
+
+@pytest.mark.parametrize("workers", [1, 3])
+def test_table_does_not_depend_on_the_workers(workers, whole, tmp_path):
+    """Requirement: any number of workers gives the same bytes."""
+    sweep(plan(RANDOM), tmp_path / "out", pool=local_pool(plan(RANDOM), workers))
+    assert (tmp_path / "out" / "designs.parquet").read_bytes() == (whole / "designs.parquet").read_bytes()
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (("points = 200", "points = 201"), "another sample.points"),
+        (("rotation_deg = 45", "rotation_deg = 46"), "another case.drive.rotation_deg"),
+        (("0.9", "0.8"), "another vary.strip.crossing_ratio.to"),
+        (("[vary]", "[settings]\ncontrol_points = 8\n[vary]"), "another settings.control_points"),
+        (("[vary]", '[store]\nquantities = ["torque_Nm"]\n[vary]'), "another store"),
+    ],
+)
+def test_another_sweep_asks_for_another_folder(change, words, whole):
+    """Requirement: a used folder takes the same sweep only; what is different is named."""
+    before = listed(whole)
+    with pytest.raises(OutputError, match=words):
+        sweep(plan(RANDOM.replace(*change)), whole)
+    assert listed(whole) == before
+
+
+def test_other_code_or_libraries_ask_for_another_folder(whole, monkeypatch):
+    """Requirement: points of different versions never stand in one table."""
+    real = parts.version
+    monkeypatch.setattr(parts, "version", lambda name: "0.0" if name == "numba" else real(name))
+    with pytest.raises(OutputError, match=r"versions that differ \(numba\)"):
+        sweep(plan(RANDOM), whole)
+    monkeypatch.setattr(parts, "version", real)
+    monkeypatch.setattr(parts, "source_hash", lambda module: "other")
+    with pytest.raises(OutputError, match=r"suite that differ \(source_sha256\)"):
+        sweep(plan(RANDOM), whole)
+
+
+def test_a_folder_of_something_else_is_refused(tmp_path):
+    """Requirement: nothing is mixed into a folder that holds other files, or put in the place of a file."""
+    (tmp_path / "thesis.txt").write_text("years of work")
+    with pytest.raises(OutputError, match="got a folder with other files"):
+        sweep(plan(GRID), tmp_path)
+    with pytest.raises(OutputError, match="got a file, expected a folder"):
+        sweep(plan(GRID), tmp_path / "thesis.txt")
+    assert listed(tmp_path) == ["thesis.txt"]
+
+
+def test_two_runs_in_one_folder_are_refused(tmp_path):
+    """Requirement: a second run in a folder at work is one line, and the first goes on."""
+    seen = []
+
+    def second(done, total):
+        if not seen:
+            seen.append(done)
+            with pytest.raises(OutputError, match="another run is at work"):
+                sweep(plan(GRID), tmp_path / "out")
+
+    assert sweep(plan(GRID), tmp_path / "out", progress=second) == 12
+
+
+def test_what_a_killed_run_left_is_removed(whole, tmp_path):
+    """Requirement: half-written files of a run that was killed are not taken for results."""
+    out = tmp_path / "out"
+    with pytest.raises(Stopped):
+        sweep(plan(RANDOM), out, progress=stop_after(60))
+    (out / "parts" / ".part-00000006.parquet.x7").write_bytes(b"half")
+    (out / ".designs.parquet.q3").write_bytes(b"half")
+    sweep(plan(RANDOM), out)
+    assert listed(out) == ["designs.parquet", "sweep.json"]
+    assert (out / "designs.parquet").read_bytes() == (whole / "designs.parquet").read_bytes()
+
+
+@pytest.mark.parametrize("room", [1000, 5000, 20000])
+def test_a_full_disk_is_one_line_and_leaves_whole_files(room, whole, tmp_path):
+    """Requirement: where no more can be written the refusal says so, nothing is left half-written, and with
+    room the sweep goes on to the same table: full at the manifest, at a part, at the table."""
+    out = tmp_path / "out"
+    limits = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (room, limits[1]))
+    try:
+        with pytest.raises(OutputError, match="cannot be written") as full:
+            sweep(plan(RANDOM), out)
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, limits)
+    assert "\n" not in str(full.value)
+    assert full.value.__context__.errno == errno.EFBIG
+    for path in out.rglob("*.parquet"):
+        assert pq.read_table(path).num_rows in (32, 8)
+    assert [name for name in listed(out) if "/." in name or name.startswith(".")] == []
+    expected = {1000: 0, 5000: 0, 20000: 7}[room]
+    assert len(list(out.rglob("part-*.parquet"))) == expected
+    sweep(plan(RANDOM), out)
+    assert (out / "designs.parquet").read_bytes() == (whole / "designs.parquet").read_bytes()
+
+
+def test_a_place_that_cannot_be_written_to(tmp_path):
+    """Requirement: a folder that cannot be made is one line."""
+    (tmp_path / "file").write_text("")
+    with pytest.raises(OutputError, match="cannot be written"):
+        sweep(plan(GRID), tmp_path / "file" / "out")
+
+
+def test_chunks_that_no_worker_can_solve_are_named(tmp_path, monkeypatch):
+    """Requirement: a fault of the workers themselves names the points, and what was solved is kept."""
+
+    def faulty(task, start, columns):
+        if start == 64:
+            raise MemoryError("no room")
+        return solve_chunk(task, start, columns)
+
+    monkeypatch.setattr(run, "solve_chunk", faulty)
+    with pytest.raises(SweepError, match=r"points 64 to 95: .* \(MemoryError: no room"):
+        sweep(plan(RANDOM), tmp_path / "out", pool=local_pool(plan(RANDOM), 1))
+    assert len(list((tmp_path / "out" / "parts").iterdir())) >= 2

@@ -1,0 +1,241 @@
+"""Rows of a sweep: the numbers of the models' own answers, and one for every design, come what may."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from studies.answers.adapters import answer_mechanism, answer_modes, answer_release, answer_static
+from studies.answers.settings import FeSettings, SplineSettings
+from studies.cases.design import named_design
+from studies.cases.problem import named_case
+from studies.sweep import batch, points
+from studies.sweep.designs.plan import Plan
+from studies.sweep.designs.sample import Drawer
+from tests import gates
+from tests.sweep.sweeps import GRID, RANDOM, plan
+
+EPS = np.finfo(float).eps
+
+
+def rows(asked: Plan, start=0, stop=None):
+    """Return the rows of points of a sweep."""
+    stop = asked.sample.points if stop is None else stop
+    columns = Drawer(asked.sample).rows(start, stop)
+    return points.solve_chunk(asked.task, start, columns).to_pandas()
+
+
+def single(row, **settings):
+    """Return the answer that `solve` gives for a row of the random pivots."""
+    case = named_case("cross_axis_pivot")
+    depth = case.length / row["strip.slenderness"]
+    design = replace(
+        case,
+        crossing_ratio=row["strip.crossing_ratio"],
+        inclination=math.radians(row["strip.inclination_deg"]),
+        area=case.area / case.depth * depth,
+        second_moment_of_area=case.area / case.depth * depth**3 / 12.0,
+        rotation=math.pi / 4,
+    )
+    return answer_static(design, SplineSettings(**settings))
+
+
+def error_of_batch(**settings):
+    """Return the largest relative difference of the stored quantities to those of single answers."""
+    found = rows(plan(RANDOM.replace("points = 200", "points = 12")))
+    errors = []
+    for _, row in found.iterrows():
+        answer = single(row, **settings)
+        shift = np.linalg.norm(answer.centre_shift, axis=1)
+        expected = {
+            "torque_Nm": answer.torque[-1],
+            "stiffness_rest_Nm_per_rad": answer.stiffness[0],
+            "stiffness_end_Nm_per_rad": answer.stiffness[-1],
+            "stress_max_Pa": answer.max_stress.max(),
+            "energy_J": answer.strain_energy[-1],
+            "centre_shift_end_m": shift[-1],
+            "centre_shift_max_m": shift.max(),
+        }
+        errors += [abs(row[name] / value - 1.0) for name, value in expected.items()]
+        variation = np.ptp(answer.stiffness) / answer.stiffness[0]
+        errors.append(abs(row["stiffness_variation"] - variation))
+        assert row["iterations"] == answer.counters["newton_iterations"]
+    return max(errors)
+
+
+def test_batch_rows_are_those_of_single_answers():
+    """Requirement: quantities from the batch kernel are those of `solve` for the same designs."""
+    gates.check("sweep_batch", error_of_batch() + EPS)
+
+
+def test_batch_gate_has_teeth():
+    """Requirement: another number of control points does not pass."""
+    with pytest.raises(AssertionError, match="x the gate"):
+        gates.check("sweep_batch", error_of_batch(**gates.teeth("sweep_batch")))
+
+
+@pytest.mark.parametrize(
+    "more",
+    [
+        "",
+        "drive.rotation_deg = [-40, 20]",
+        "drive.increments = [3, 5]\nstrip.section_depth_m = [0.002, 0.005]",
+        "strip.slenderness = [15, 40]\nstrip.length_m = [0.05, 0.1]",
+        "material.youngs_modulus_Pa = [1e9, 2e11]\nstrip.area_m2 = [2e-5, 5e-5]",
+    ],
+)
+def test_the_kernel_and_single_solves_give_the_same_row(more):
+    """Requirement: whatever of a pivot and of the settings varies is taken alike on both ways."""
+    asked = plan(GRID + more)
+    assert asked.task.batch
+    by_batch = rows(asked)
+    alone = rows(Plan(**{**vars(asked), "task": replace(asked.task, batch=False)}))
+    assert set(by_batch["status"]) == set(alone["status"]) == {"converged"}
+    for name in asked.task.quantities:
+        scale = np.abs(alone[name]).max()
+        assert np.allclose(by_batch[name] / scale, alone[name] / scale, rtol=0.0, atol=1e-11), name
+
+
+def test_the_other_side_of_a_plain_pivot_is_its_mirror_image():
+    """Requirement: a path to both sides, solved as two, has the quantities that one side gives by symmetry,
+    also where the body's centre lies aside."""
+    text = GRID + "[analysis]\nboth_sides = true"
+    one, both = plan(GRID), plan(text)
+    mirrored = rows(both)
+    solved = rows(Plan(**{**vars(both), "task": replace(both.task, batch=False)}))
+    for name in one.task.quantities:
+        scale = np.abs(solved[name]).max()
+        assert np.allclose(mirrored[name] / scale, solved[name] / scale, rtol=0.0, atol=1e-9), name
+
+
+WEIGHT = """
+case = "cross_axis_pivot"
+[set]
+drive.rotation_deg = 30
+drive.increments = 4
+scene.effects = "bending,stretching,strip_inertia,body_inertia,gravity"
+effects.gravity.acceleration_m_per_s2 = [2000.0, 0.0]
+[analysis]
+both_sides = true
+[vary]
+body.mass_kg = [0.2, 1.0]
+[store]
+quantities = ["stiffness_variation", "stiffness_end_Nm_per_rad", "torque_Nm"]
+"""
+
+
+def test_a_design_that_breaks_the_symmetry_is_solved_to_both_sides():
+    """Requirement: with weight from the side the two sides differ, and the variation is over both."""
+    asked = plan(WEIGHT)
+    assert not asked.task.batch
+    found, one = rows(asked), rows(plan(WEIGHT.replace("true", "false")))
+    other = rows(plan(WEIGHT.replace("true", "false").replace("30", "-30")))
+    assert (found["torque_Nm"] == one["torque_Nm"]).all()
+    assert not np.allclose(one["torque_Nm"], -other["torque_Nm"], rtol=1e-3)
+    largest = np.maximum(one["stiffness_variation"], other["stiffness_variation"])
+    assert (found["stiffness_variation"] >= largest).all()
+    assert (found["stiffness_variation"] > one["stiffness_variation"] * 1.01).any()
+
+
+def test_elements_modes_and_releases_are_the_models_own():
+    """Requirement: any model and analysis: rows hold what `solve`, `modes` and `release` answer."""
+    head = 'case = "cross_axis_pivot"\nmodel = "{}"\n{}\nvary.body.mass_kg = [0.1, 0.3]\n'
+    case = named_case("cross_axis_pivot")
+    heavy = replace(case, body_mass=0.3)
+    elements = "settings.elements = 4\nset.drive = { rotation_deg = 20, increments = 2 }"
+    found = rows(plan(head.format("fe", elements)))
+    driven = replace(heavy, rotation=math.radians(20), increments=2)
+    answer = answer_static(driven, FeSettings(elements=4))
+    assert found["torque_Nm"][1] == answer.torque[-1]
+    assert found["stress_max_Pa"][1] == answer.max_stress.max()
+    assert np.isnan(found["moment_defect"]).all()
+    found = rows(plan(head.format("spline", 'analysis = { kind = "modes", count = 2, rotation_deg = 10 }')))
+    modes = answer_modes(heavy, SplineSettings(), rotation=math.radians(10), count=2)
+    assert found["frequency_2_Hz"][1] == modes.frequency[1]
+    short = 'analysis = { kind = "release", duration_s = 0.02 }\nset.drive.rotation_deg = 10'
+    found = rows(plan(head.format("spline", short)))
+    motion = answer_release(replace(heavy, rotation=math.radians(10)), SplineSettings(), duration=0.02)
+    assert found["frequency_Hz"][1] == motion.frequency
+    assert found["rotation_min_rad"][1] == motion.rotation.min()
+
+
+def test_a_mechanism_is_swept_by_its_parts():
+    """Requirement: keys of one strip and one body of a mechanism vary, and its bodies' places are stored."""
+    asked = plan("""
+        case = "four_bar_of_flexures"
+        set.drive = { rotation_deg = 5, increments = 2 }
+        vary.strips.crank_coupler.second_moment_m4 = [2.25e-14, 4e-14]
+        vary.bodies.coupler.centre_m.y = [0.1, 0.12]
+    """)
+    found = rows(asked)
+    design = named_design("four_bar_of_flexures")
+    strips = tuple(
+        replace(strip, second_moment_of_area=4e-14) if strip.name == "crank_coupler" else strip
+        for strip in design.strips
+    )
+    turned = replace(design, strips=strips, rotation=math.radians(5), increments=2)
+    answer = answer_mechanism(turned, SplineSettings())
+    assert found["torque_Nm"][2] == answer.torque[-1]
+    assert found["rocker_rotation_rad"][2] == answer.bodies["rocker"][-1, 2]
+    assert found["coupler_y_m"][3] - found["coupler_y_m"][2] == pytest.approx(0.02, rel=0.2)
+    assert (found["stress_max_Pa"] > 0).all()
+
+
+def test_designs_without_an_answer_are_rows_with_their_reason():
+    """Requirement: what stops, and what a model refuses, keeps its row, without numbers and with why."""
+    found = rows(
+        plan("""
+            case = "cross_axis_pivot"
+            set.drive = { rotation_deg = 350, increments = 2 }
+            settings.control_points = 4
+            vary.strip.crossing_ratio = [0.05, 0.5]
+        """)
+    )
+    assert len(found) == 2
+    stopped = found["status"] == "not_converged"
+    assert stopped.any()
+    assert (found["reason"][stopped].str.len() > 10).all()
+    assert found["torque_Nm"][stopped].isna().all()
+    refused = rows(plan('case = "cross_axis_pivot"\nvary.scene.effects = ["bending,stretching", "gravity"]'))
+    assert refused["status"][0] == "converged"
+    assert refused["status"][1] != "converged"
+    assert refused["reason"][1]
+
+
+def test_a_fault_at_one_design_is_told_in_its_row(monkeypatch):
+    """Requirement: an error that nobody foresaw costs its own design only."""
+    asked = plan(GRID)
+    task = replace(asked.task, batch=False)
+    real = points.static_answer
+
+    def faulty(design, settings, **keywords):
+        if design.crossing_ratio == 0.5:
+            raise ZeroDivisionError("seen by nobody")
+        return real(design, settings, **keywords)
+
+    monkeypatch.setattr(points, "static_answer", faulty)
+    found = rows(Plan(**{**vars(asked), "task": task}))
+    assert list(found["status"]).count("failed") == 4
+    assert set(found["reason"]) == {"", "ZeroDivisionError: seen by nobody"}
+
+
+def test_what_the_kernel_does_not_take_goes_one_by_one():
+    """Requirement: inextensible strips, and those too slender for the kernel, get another path's."""
+    for text in (
+        GRID.replace("[set]", '[settings]\nstretch = "inextensible"\n[set]'),
+        GRID + "strip.slenderness = [50, 20000]",
+    ):
+        found = rows(plan(text.replace("[4, 6]", "[6]").replace("points = 3", "points = 2")))
+        assert set(found["status"]) == {"converged"}
+        assert found["torque_Nm"].notna().all()
+
+
+def test_a_path_with_a_critical_point_is_solved_by_itself(monkeypatch):
+    """Requirement: where the kernel's path is in doubt, the row is the one of a single solve."""
+    asked = plan(GRID)
+    monkeypatch.setattr(
+        batch, "_paths", lambda task, settings, increments, given: (np.zeros(len(given["length"]), bool), {})
+    )
+    alone = rows(Plan(**{**vars(asked), "task": replace(asked.task, batch=False)}))
+    assert rows(asked).equals(alone)

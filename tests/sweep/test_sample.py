@@ -1,0 +1,82 @@
+"""Samples: the right points, the same for the same file, whatever part of them is asked for."""
+
+import math
+import tracemalloc
+
+import numpy as np
+import pytest
+from scipy.stats import qmc
+
+from studies.sweep.designs.sample import Drawer
+from tests.sweep.sweeps import GRID, RANDOM, plan
+
+
+def drawn(text, *cuts):
+    """Return the sample in pieces between the cuts, joined."""
+    sample = plan(text).sample
+    drawer = Drawer(sample)
+    pieces = [drawer.rows(a, b) for a, b in zip((0, *cuts), (*cuts, sample.points), strict=True)]
+    return {key: [value for piece in pieces for value in piece[key]] for key in pieces[0]}
+
+
+def test_a_grid_holds_every_combination_once():
+    """Requirement: a grid is the product of its axes, the last fastest, with the ends as they are written."""
+    columns = drawn(GRID)
+    rows = list(zip(*columns.values(), strict=True))
+    assert len(rows) == len(set(rows)) == 12
+    assert rows[:4] == [(0.3, 4, 0.0), (0.3, 4, 0.01), (0.3, 6, 0.0), (0.3, 6, 0.01)]
+    assert columns["strip.crossing_ratio"][-1] == 0.7
+
+
+def test_a_list_runs_along_all_columns_at_once(tmp_path):
+    """Requirement: a list takes the first of every key, then the second; a CSV file is the same."""
+    listed = """
+        case = "cross_axis_pivot"
+        sample.method = "list"
+        vary.strip.crossing_ratio = [0.2, 0.4]
+        vary.strip.inclination_deg = [30, 50]
+    """
+    (tmp_path / "two.csv").write_text("strip.crossing_ratio,strip.inclination_deg\n0.2,30\n0.4,50\n")
+    from_file = plan('case = "cross_axis_pivot"\nsample.file = "two.csv"', tmp_path)
+    rows = {"strip.crossing_ratio": [0.2, 0.4], "strip.inclination_deg": [30.0, 50.0]}
+    assert drawn(listed) == rows
+    assert Drawer(from_file.sample).rows(0, 2) == rows
+
+
+@pytest.mark.parametrize("method", ["grid", "sobol", "latin-hypercube"])
+def test_a_sample_does_not_depend_on_its_pieces(method):
+    """Requirement: the points are the same in one piece, in several, and from the middle on."""
+    text = GRID if method == "grid" else RANDOM.replace("sobol", method)
+    whole = drawn(text)
+    assert drawn(text, 1, 5, 7) == whole
+    sample = plan(text).sample
+    late = Drawer(sample).rows(7, sample.points)
+    assert late == {key: column[7:] for key, column in whole.items()}
+
+
+@pytest.mark.parametrize("method", ["sobol", "latin-hypercube"])
+def test_random_points_are_those_of_scipy(method):
+    """Requirement: the methods are scipy's, spread over the ranges; a logarithmic one in its logarithm."""
+    columns = drawn(RANDOM.replace("sobol", method).replace("200\nchunk", "256\nchunk"))
+    engine = qmc.Sobol if method == "sobol" else qmc.LatinHypercube
+    unit = engine(d=3, seed=0).random(256)
+    assert np.allclose(columns["strip.crossing_ratio"], 0.1 + 0.8 * unit[:, 0], rtol=1e-14)
+    logarithm = np.log(columns["strip.slenderness"])
+    assert np.allclose(logarithm, math.log(20) + math.log(10) * unit[:, 2], rtol=1e-14)
+
+
+def test_another_seed_is_another_sample():
+    """Requirement: the seed counts."""
+    assert drawn(RANDOM) != drawn(RANDOM.replace("chunk", "seed = 1\nchunk"))
+
+
+def test_a_large_sample_is_not_kept():
+    """Requirement: a Sobol sample of a million points takes the memory of the piece that is drawn."""
+    sample = plan(RANDOM.replace("points = 200", "points = 1000000")).sample
+    drawer = Drawer(sample)
+    drawer.rows(0, 1000)
+    tracemalloc.start()
+    drawer.rows(500_000, 501_000)
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert peak < 1_000_000  # bytes; the whole sample would take 24 million
