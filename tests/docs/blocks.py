@@ -2,7 +2,7 @@
 
 python   runs, all of a page in one namespace; `print(...)  # text` must print that text. With the name of
          a file as its first line it is written there instead.
-toml     is a case that its reader accepts, a part of a case in addition to that of Table 1. With the name of
+toml     is a case or a sweep that its reader accepts, a part of a case behind that of Table 1. With the name of
          a file as its first line it is written there, or, "at its end", added to a file that is no case.
 diff     a file's name, a line of that file, and lines with + that are put in after it.
 sh       each command succeeds; a text block that follows is the end of what it prints.
@@ -34,6 +34,8 @@ NOT_RUN = {
     "make ": "the target must exist; continuous integration runs setup, test-all, lint and docs",
     "python3 -m venv": "as above: setup",
     ".venv/bin/python -m pip": "as above: setup",
+    "dask ": "runs until it is ended; tests/sweep runs a scheduler and workers",
+    "python -m studies sweep designs.toml --out designs --scheduler": "as above",
     "source ": "the commands run with the environment of the tests",
 }
 
@@ -89,14 +91,15 @@ class Runner:
         self._promised(_PROMISE.findall(source), heard.getvalue().splitlines())
 
     def _toml(self, source: str, namespace: dict[str, object]) -> None:
-        whole = re.search(r"^\[(strip|strips|\[strips\])\]", source, re.MULTILINE)
+        whole = re.search(r"^(\[strip\]|\[\[strips\]\]|case = )", source, re.MULTILINE)
         table_1 = (ROOT / "studies" / "cases" / "cross_axis_pivot.toml").read_text(encoding="utf-8")
         path = self._written(source) or self.copy / "block.toml"
         if "(at its end)" in source:
             return
         path.write_text(source if whole else f"{table_1}\n{source}", encoding="utf-8")
-        reader = "import sys; from studies.cases.design import read_design; read_design(sys.argv[1])"
-        self._command(f"python -c '{reader}' {path.name}")
+        reader = "sweep.read import read_plan" if "[vary]" in source else "cases.design import read_design"
+        read = f"from studies.{reader} as read; read({path.name!r})"
+        self._command(f'python -c "{read}"')
 
     def _diff(self, source: str, namespace: dict[str, object]) -> None:
         name = _NAME.match(source)

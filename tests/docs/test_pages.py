@@ -50,7 +50,7 @@ def test_commands_that_are_shown_exist(page):
             subprocess.run(["make", "--dry-run", *words[1:]], cwd=ROOT, capture_output=True, check=True)
         elif words[1:3] == ["-m", "studies"]:
             assert words[3] in COMMANDS, line
-        elif words[0] not in ("cp", "source", "python3", ".venv/bin/python", "python"):
+        elif words[0] not in ("cp", "dask", "source", "python3", ".venv/bin/python", "python"):
             pytest.fail(f"{page}: {line}")
 
 
