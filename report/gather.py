@@ -22,6 +22,8 @@ CONTENT = (
     "hard_cases",
     "effects",
     "impulses",
+    "design_space",
+    "sizing",
     "limits",
     "appendix",
 )
