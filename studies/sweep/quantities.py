@@ -10,7 +10,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from studies.answers.motion import Motion, Spectrum
+from studies.answers.motion import Motion
+from studies.answers.spectrum import Spectrum
 
 Array = NDArray[np.float64]
 

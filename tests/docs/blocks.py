@@ -2,8 +2,8 @@
 
 python   runs, all of a page in one namespace; `print(...)  # text` must print that text. With the name of
          a file as its first line it is written there instead.
-toml     is a case or a sweep that its reader accepts, a part of a case behind that of Table 1. With the name of
-         a file as its first line it is written there, or, "at its end", added to a file that is no case.
+toml     is a case or a sweep that its reader accepts, a part of a case behind that of Table 1. With the name
+         of a file as its first line it is written there, or, "at its end", added to a file that is no case.
 diff     a file's name, a line of that file, and lines with + that are put in after it.
 sh       each command succeeds; a text block that follows is the end of what it prints.
 """
