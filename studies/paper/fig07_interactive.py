@@ -211,7 +211,15 @@ def _times(panel: Axes, frames: pd.DataFrame, alone: pd.DataFrame) -> None:
     panel.axvline(1e3 / PAPER_RATE, color=style.BLACK, linewidth=0.8, linestyle="--")
     panel.set(xscale="log", xlabel="time a frame [ms]", ylabel="share of frames [1]", xlim=(0.03, 300.0))
     panel.set_title("(e) solve time; lines at 1 ms and 40 ms")
-    panel.legend(loc="lower right", fontsize=6.5, title="95 % of the frames in", title_fontsize=6.5)
+    panel.legend(
+        loc="lower right",
+        fontsize=6.5,
+        title="95 % of the frames in",
+        title_fontsize=6.5,
+        frameon=True,  # the line at 40 ms passes behind
+        framealpha=1.0,
+        edgecolor="none",
+    )
 
 
 def _share(panel: Axes, times: pd.Series, label: str, colour: str, line: str) -> None:
