@@ -15,8 +15,7 @@ GAIN = "Two workers solve at least"
 
 def _checked(results: Results) -> float:
     """Return the largest relative difference of splines and elements over all chosen designs."""
-    rows = results.table(SPACE, "checks")
-    return float(rows[[name for name in rows if str(name).endswith("_difference")]].abs().max().max())
+    return float(results.table(SPACE, "comparison")["error"].abs().max())
 
 
 def _chosen(results: Results) -> tuple[list[str], list[list[Cell]]]:

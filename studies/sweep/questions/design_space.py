@@ -78,7 +78,8 @@ def compute(progress: Callable[[int, int], None]) -> dict[str, pd.DataFrame]:
     maps = _rows(_grid(MAP_RATIOS, MAP_INCLINATIONS))
     ratios = pd.concat([_rows(_line(angle)) for angle in INCLINATIONS], ignore_index=True)
     progress(2, 4)
-    tables = {"designs": designs, "map": maps, "ratios": ratios, "checks": _checks(designs, costs)}
+    checks, comparison = _checks(designs, costs)
+    tables = {"designs": designs, "map": maps, "ratios": ratios, "checks": checks, "comparison": comparison}
     progress(4, 4)
     return {name: rounded(rows) for name, rows in tables.items()} | {"findings": table(_findings(tables))}
 
@@ -131,7 +132,7 @@ def _costs(designs: pd.DataFrame) -> Array:
     return np.column_stack([sign * designs[name] for name, sign in QUANTITIES.items()])
 
 
-def _checks(designs: pd.DataFrame, costs: Array) -> pd.DataFrame:
+def _checks(designs: pd.DataFrame, costs: Array) -> tuple[pd.DataFrame, pd.DataFrame]:
     """Return the best design of the front in each quantity, the balanced one and Table 1 by both models."""
     chosen = {f"best {name}": int(np.argmin(costs[:, i])) for i, name in enumerate(space_figure.SHORT)}
     ranks = np.argsort(np.argsort(costs, axis=0), axis=0)
@@ -148,14 +149,20 @@ def _checks(designs: pd.DataFrame, costs: Array) -> pd.DataFrame:
     listed = SPACE | {"sample": {"method": "list"}, "vary": {"strip": axes}}
     splines = _rows(listed)
     elements = _rows(listed | {"model": "fe", "settings": {"elements": ELEMENTS}})
-    found = splines.copy()
-    found.insert(0, "design", [*chosen, "Table 1"])
+    checks = splines.assign(design=[*chosen, "Table 1"])
+    return checks[["design", *splines.columns]], _compared(checks, elements)
+
+
+def _compared(checks: pd.DataFrame, elements: pd.DataFrame) -> pd.DataFrame:
+    """Return a row for each design and quantity: by the spline, by the elements, and how far apart."""
+    parts = []
     for name in QUANTITIES:
-        found[f"{name}_fe"] = elements[name]
+        spline, fe = checks[name], elements[name]
         # the variation is itself relative to the stiffness at rest
-        scale = 1.0 if name == "stiffness_variation" else elements[name]
-        found[f"{name}_difference"] = (splines[name] - elements[name]) / scale
-    return found
+        scale = 1.0 if name == "stiffness_variation" else fe
+        row = {"design": checks["design"], "quantity": name, "value": spline, "reference": fe}
+        parts.append(pd.DataFrame(row | {"error": (spline - fe) / scale}))
+    return pd.concat(parts, ignore_index=True)
 
 
 def _findings(tables: Mapping[str, pd.DataFrame]) -> list[Finding]:
@@ -163,7 +170,7 @@ def _findings(tables: Mapping[str, pd.DataFrame]) -> list[Finding]:
     checks = tables["checks"].set_index("design")
     costs = _costs(tables["designs"])
     better = dominating(costs, _costs(checks.loc[["Table 1"]])[0])
-    apart = checks[[f"{name}_difference" for name in QUANTITIES]].abs().to_numpy().max()
+    apart = tables["comparison"]["error"].abs().max()
     found = [
         Finding(
             claim="Table 1 is not bettered in stiffness, its variation, shift and stress at once",
