@@ -30,6 +30,7 @@ SECTION = ("thickness", "width")
 """Sides of a rectangular section h x b, A = b h and I = b h^3 / 12, in place of A and I."""
 
 PARAMETERS = (*KEYWORDS, *SECTION)
+"""All that derivatives are taken by."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
