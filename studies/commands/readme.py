@@ -1,9 +1,9 @@
-"""Rewrite the tables of README.md and docs/findings.md from the stored results.
+"""Rewrite the tables of the README and of the page of findings from the stored results.
 
     python -m studies readme
 
-Only what stands between marks is written; everything there comes from results/data. Exit code 0:
-done; 2: a study it needs was never run, or a file has no marks.
+In README.md and docs/findings.md only what stands between marks is written, all of it from results/data. Exit
+code 0: done; 2: a study it needs was never run, or a file has no marks.
 """
 
 import argparse

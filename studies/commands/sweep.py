@@ -66,7 +66,11 @@ def add_arguments(parser: Parser) -> None:
     parser.add_argument(
         "--workers", type=whole_number(1), metavar="N", help="threads or processes (default: all cores)"
     )
-    parser.add_argument("--scheduler", metavar="ADDRESS", help="of a Dask cluster, as tcp://HOST:PORT")
+    parser.add_argument(
+        "--scheduler",
+        metavar="ADDRESS",
+        help="of a Dask cluster, tcp://HOST:PORT (default: none, this machine alone)",
+    )
 
 
 def main(arguments: argparse.Namespace) -> int:
