@@ -13,6 +13,7 @@ from importlib import import_module  # noqa: E402
 
 from studies.commands.parser import Parser  # noqa: E402
 from studies.errors import BadInput  # noqa: E402
+from studies.record.kernels import forget_stale  # noqa: E402
 from studies.registry import COMMANDS  # noqa: E402
 
 BAD_INPUT = 2
@@ -49,6 +50,8 @@ def _dispatch(words: list[str]) -> int:
         parser.print_help()
         return 0
     name = parser.parse_args(words[:1]).command
+    if forget_stale():
+        print("studies: the kernels' source has changed: they are compiled anew", file=sys.stderr)
     module = import_module(COMMANDS[name][0])
     command = Parser(prog=f"python -m studies {name}", description=module.__doc__)
     module.add_arguments(command)

@@ -2,10 +2,9 @@
 
     python -m studies compile
 
-`make setup` does this. The kernels are kept beside their sources. A kernel is compiled anew when its own file
-changes, but not when one changes that it calls: after such a change, run this command, which compiles all
-afresh. Nothing else depends on it: what is not compiled is compiled when it is first called.
-Exit code 0.
+`make setup` does this. The kernels are kept beside their sources. Nothing depends on it: what is not compiled
+is compiled when it is first called, and commands and tests drop what was compiled from a source that has
+changed since. Exit code 0.
 """
 
 import argparse
@@ -18,7 +17,7 @@ from multiprocessing import get_context
 
 from studies.answers.settings import FeSettings, Settings, SplineSettings
 from studies.commands.parser import Parser
-from studies.record.source import ROOT
+from studies.record.kernels import forget, forget_stale
 
 MIXED, CONSISTENT = SplineSettings(control_points=4), SplineSettings(control_points=4, stretch="consistent")
 #: Small calls that between them enter every kernel, the longest first: settings and what is solved with them.
@@ -40,18 +39,12 @@ def main(arguments: argparse.Namespace) -> int:
     print("studies: compiling the kernels, once (some minutes) ...", file=sys.stderr, flush=True)
     begin = time.perf_counter()
     forget()
+    forget_stale()  # nothing is left, but the source is marked
     workers = min(len(CALLS), os.cpu_count() or 1)
     with ProcessPoolExecutor(workers, mp_context=get_context("spawn")) as pool:
         list(pool.map(call, *zip(*CALLS, strict=True)))
     print(f"studies: ready after {time.perf_counter() - begin:.0f} s", file=sys.stderr)
     return 0
-
-
-def forget() -> None:
-    """Remove the kernels that were compiled before."""
-    for package in ("spline_model", "fe_reference"):
-        for kept in (ROOT / package).rglob("*.nb[ci]"):
-            kept.unlink()
 
 
 def call(settings: Settings, tasks: tuple[str, ...]) -> None:

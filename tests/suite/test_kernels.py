@@ -1,0 +1,71 @@
+"""Compiled kernels on the disk are dropped when their code has changed, and only then."""
+
+import pytest
+
+from studies.record.kernels import forget_stale
+
+SOURCES = {
+    "spline_model/__init__.py": "",
+    "spline_model/numbers.py": '"""Numbers."""\n\nHALF = 0.5\n',
+    "spline_model/kernel.py": "from numba import njit\nfrom spline_model.numbers import HALF\n\n\n"
+    "@njit(cache=True)\ndef halved(x):\n    return HALF * x\n",
+    "spline_model/plain.py": "THIRD = 1.0 / 3.0\n",
+    "fe_reference/__init__.py": "",
+}
+
+
+@pytest.fixture
+def root(tmp_path):
+    """A checkout of five files whose kernel was compiled, and marked."""
+    for name, text in SOURCES.items():
+        path = tmp_path / name
+        path.parent.mkdir(exist_ok=True)
+        path.write_text(text)
+    forget_stale(tmp_path)
+    compiled(tmp_path).write_bytes(b"machine code")
+    return tmp_path
+
+
+def compiled(root):
+    """Return what stands for the compiled kernel."""
+    return root / "spline_model" / "__pycache__" / "kernel.halved-6.py311.1.nbc"
+
+
+def test_kernels_of_the_present_source_stay(root):
+    """Requirement: nothing is dropped while nothing has changed."""
+    assert not forget_stale(root)
+    assert compiled(root).exists()
+
+
+@pytest.mark.parametrize(
+    ("name", "old", "new"),
+    [("numbers.py", "0.5", "0.25"), ("kernel.py", "HALF * x", "HALF * x * x")],
+    ids=["a constant of another module", "the kernel"],
+)
+def test_kernels_of_another_code_are_dropped_once(root, name, old, new):
+    """Requirement: a change of the kernel's code, or of what it imports, drops it; the next look does not."""
+    path = root / "spline_model" / name
+    path.write_text(path.read_text().replace(old, new))
+    assert forget_stale(root)
+    assert not compiled(root).exists()
+    assert not forget_stale(root)
+
+
+@pytest.mark.parametrize(
+    ("name", "old", "new"),
+    [("numbers.py", "Numbers.", "A number."), ("plain.py", "3.0", "4.0")],
+    ids=["a docstring", "a module that no kernel imports"],
+)
+def test_what_changes_no_kernel_drops_none(root, name, old, new):
+    """Requirement: words, and code that no kernel sees, cost no compilation."""
+    path = root / "spline_model" / name
+    path.write_text(path.read_text().replace(old, new))
+    assert not forget_stale(root)
+    assert compiled(root).exists()
+
+
+def test_kernels_of_an_unknown_source_are_dropped(root):
+    """Requirement: without a mark nobody knows what they were compiled from."""
+    (root / "spline_model" / "__pycache__" / "kernels.txt").unlink()
+    assert forget_stale(root)
+    assert not compiled(root).exists()
