@@ -23,7 +23,7 @@ MIXED, CONSISTENT = SplineSettings(control_points=4), SplineSettings(control_poi
 #: Small calls that between them enter every kernel, the longest first: settings and what is solved with them.
 CALLS: tuple[tuple[Settings, tuple[str, ...]], ...] = (
     (MIXED, ("sequential impulses",)),
-    (MIXED, ("accuracy", "modes", "energy", "leapfrog", "generalised-alpha", "explicit")),
+    (MIXED, ("accuracy", "many", "modes", "energy", "leapfrog", "generalised-alpha", "explicit")),
     (FeSettings(elements=4), ("static", "modes", "central-difference")),
     (FeSettings(elements=4, element="reissner"), ("static", "modes", "central-difference")),
     (CONSISTENT, ("static", "modes", "energy", "generalised-alpha", "explicit")),
@@ -49,6 +49,7 @@ def main(arguments: argparse.Namespace) -> int:
 
 def call(settings: Settings, tasks: tuple[str, ...]) -> None:
     """Solve something small by a model: statics, modes, and releases by integrators."""
+    from spline_model.batch import solve_many
     from spline_model.sequential_impulse import solve_impulses
     from studies.answers.adapters import answer_modes, answer_release, answer_static
     from studies.answers.models import built, model_of
@@ -58,6 +59,8 @@ def call(settings: Settings, tasks: tuple[str, ...]) -> None:
     for task in tasks:
         if task in ("static", "accuracy"):
             answer_static(problem, settings, accuracy=1.0 if task == "accuracy" else None)
+        elif task == "many":
+            solve_many(problem.pivot_parameters(), rotation=0.1, increments=1, section_depth=problem.depth)
         elif task == "modes":
             answer_modes(problem, settings)
         elif task == "sequential impulses":

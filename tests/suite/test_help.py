@@ -21,6 +21,7 @@ QUICK = ("solve", "modes", "export", "markers", "list")
 PARSED = {
     "run paper": "takes minutes, and `make results` runs it",
     "interactive": "serves until it is stopped; tests/interactive runs it",
+    "sweep DESIGNS.toml --out designs --scheduler": "needs a cluster; tests/sweep/test_cluster.py has one",
     "compile": "removes the kernels that other tests run at the same time; `make setup` runs it",
     "readme": "rewrites README.md; tests/suite/test_digits.py and others call it on a copy",
 }

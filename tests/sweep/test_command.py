@@ -33,7 +33,10 @@ def command(*words):
 
 
 def started(*words):
-    """Start a sweep in a group of its own."""
+    """Start a sweep in a group of its own, where Ctrl-C does what it does in a terminal.
+
+    What runs in the background of a script has it ignored, and hands that on.
+    """
     return subprocess.Popen(
         command(*words),
         cwd=ROOT,
@@ -41,6 +44,7 @@ def started(*words):
         stderr=subprocess.PIPE,
         text=True,
         start_new_session=True,
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
     )
 
 
