@@ -1,5 +1,6 @@
-"""How the formulations agree with refined finite elements: the tables of README.md and docs/findings.md."""
+"""How formulations agree with finite elements, and sized designs: for README.md and docs/findings.md."""
 
+import math
 from collections.abc import Iterator, Mapping
 from typing import Any
 
@@ -42,6 +43,31 @@ def short(store: Store) -> Iterator[str]:
     moving = stored(store, "paper/fig06_release", "reference").set_index("quantity")["uncertainty"]
     limits = [*(static[each] for each in QUANTITIES), moving["frequency"]]
     yield "| *uncertainty of the reference* | " + " | ".join(f"{100 * each:.0e} %" for each in limits) + " |"
+
+
+def sized(store: Store) -> Iterator[str]:
+    """Yield the table of the designs that gradients found, a row a design, beside what each began from."""
+    head = (
+        "design",
+        "length, depth, width [mm]",
+        "inclination",
+        "crossing",
+        "shift [mm]",
+        "stiffness varies by",
+    )
+    yield f"| {' | '.join(head)} |"
+    yield "|---|---|---|---|---|---|"
+    table = stored(store, "design/sizing", "designs")
+    for row in table.sort_values(["baseline", "factor_centre_shift"]).to_dict("records"):
+        size = ", ".join(f"{1e3 * row[f'{key}_m']:.3g}" for key in ("length", "thickness", "width"))
+        place = f"{math.degrees(row['inclination_rad']):.3g}° | {row['crossing_ratio']:.3g}"
+        shift = f"{1e3 * row['centre_shift_m']:.2g}{_less(row['factor_centre_shift'])}"
+        varies = f"{100 * row['variation']:.2g} %{_less(row['factor_stiffness_variation'])}"
+        yield f"| {row['design']} | {size} | {place} | {shift} | {varies} |"
+
+
+def _less(factor: float) -> str:
+    return "" if factor == 1.0 else f" (× 1/{factor:.3g})"
 
 
 def paths(store: Store) -> Iterator[str]:

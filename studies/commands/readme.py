@@ -34,6 +34,7 @@ BLOCKS: dict[Path, Mapping[str, Callable[[Store], Iterable[str]]]] = {
         "claims": agreement.claims,
         "digits": _digits,
         "hard cases": lines,
+        "sized": agreement.sized,
     },
 }
 
