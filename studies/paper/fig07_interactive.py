@@ -58,11 +58,13 @@ def _absent(name: str) -> bool:
 def compute(progress: Callable[[int, int], None]) -> dict[str, pd.DataFrame]:
     """Return snapshots, frames as they were shown, and times of the solvers alone."""
     from studies.interactive.film.demo import demo_film
+    from studies.interactive.warm_up import warm_up
     from studies.interactive.web.browser import Browser
     from studies.interactive.web.hosting import Hosted
     from studies.interactive.web.server import Settings
     from studies.interactive.web.sources import FilmSource
 
+    warm_up()  # no picture waits for a compiler
     source = FilmSource(demo_film())
     shots = source.shots()
     for k in range(WATCHED):  # draw the film before it is timed
