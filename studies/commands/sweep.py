@@ -45,8 +45,8 @@ keeps its row, with the reason.
 The folder gets sweep.json (inputs, versions, columns), designs.parquet and, with --csv, designs.csv. A run
 that was interrupted goes on when it is called again, and the table is the same, byte by byte; another
 DESIGNS.toml asks for another folder. --scheduler hands the designs to the workers of a Dask cluster, where
-the suite is installed as well (pip install ".[cluster]"). Exit code 0: done; 2: bad input, or a place that
-cannot be written to; 130: interrupted.
+the suite is installed as well (pip install ".[cluster]"); other processors may differ in round-off. Exit
+code 0: done; 2: bad input, or a place that cannot be written to; 130: interrupted.
 """
 
 import argparse
