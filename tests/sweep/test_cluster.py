@@ -88,8 +88,8 @@ def test_workers_of_another_version_are_refused(monkeypatch):
 @with_dask
 @pytest.mark.slow
 def test_cluster_gives_the_local_table_though_a_worker_is_killed(tmp_path):
-    """Requirement: two workers, one killed in mid-run: every point arrives once, in the table that the command
-    gives on this machine alone, and no process is left.
+    """Requirement: two workers, one killed in mid-run: every point arrives once, in the table that the
+    command gives on this machine alone, and no process is left.
 
     The command has a process of its own: kernels share functions with those that were loaded before them, by
     other tests for instance, and these may differ in round-off.
