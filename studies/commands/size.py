@@ -46,6 +46,13 @@ SHOWN = {
     "stiffness": ("stiffness [N m / rad]", 1.0),
     "stress": ("stress [MPa]", 1e-6),
 }
+#: What the JSON calls them.
+KEYS = {
+    "centre-shift": "largest_centre_shift_m",
+    "stiffness-variation": "stiffness_variation",
+    "stiffness": "stiffness_Nm_per_rad",
+    "stress": "largest_stress_Pa",
+}
 DIMENSIONS = ("length_m", "inclination_deg", "crossing_ratio", "thickness_m", "width_m")
 
 
@@ -110,8 +117,8 @@ def as_document(
             **_dimensions(found.problem),
             "area_m2": found.problem.area,
             "second_moment_m4": found.problem.second_moment_of_area,
-            "spline": of_spline(found.answers).quantities(),
-            "finite_elements": checked.quantities(),
+            "spline": _named(of_spline(found.answers)),
+            "finite_elements": _named(checked),
             "active": [{"constraint": each.name, "price": each.price} for each in found.active],
         }
     return {
@@ -119,7 +126,7 @@ def as_document(
         "stiffness_Nm_per_rad": task.stiffness,
         "allowable_stress_Pa": task.allowable_stress,
         "bounds": {name: list(task.bounds[name]) for name in VARIABLES},
-        "case": of_spline(answers(task.start)).quantities(),
+        "case": _named(of_spline(answers(task.start))),
         "optimum": optimum,
         "starts": [
             {
@@ -181,6 +188,10 @@ def _failure(outcomes: list[Outcome]) -> str:
         return "the path of no start reaches the end of the range"
     nearest = min(outcomes, key=lambda each: each.violation)
     return f"no optimum from {len(outcomes)} starts: {nearest.message}"
+
+
+def _named(measured: Measured) -> dict[str, float]:
+    return {KEYS[name]: value for name, value in measured.quantities().items()}
 
 
 def _dimensions(problem: Problem) -> dict[str, float]:

@@ -6,6 +6,7 @@ import pytest
 
 from studies.__main__ import main
 from studies.cases.problem import FOLDER
+from tests.exchange.test_data_page import described
 
 CASE = str(FOLDER / "cross_axis_pivot.toml")
 QUICK = ("--objective", "centre-shift", "--rotation-deg", "45", "--aspect", "0.5", "--starts", "1")
@@ -27,10 +28,15 @@ def test_json(tmp_path):
     assert main(["size", CASE, *QUICK, "--json", str(path)]) == 0
     found = json.loads(path.read_text())
     optimum, case = found["optimum"], found["case"]
-    assert optimum["spline"]["centre-shift"] < 0.5 * case["centre-shift"]
-    assert optimum["spline"]["stiffness"] == pytest.approx(case["stiffness"], rel=1e-6)
-    assert optimum["finite_elements"]["stress"] <= 1.01 * found["allowable_stress_Pa"]
+    assert optimum["spline"]["largest_centre_shift_m"] < 0.5 * case["largest_centre_shift_m"]
+    stiffness = optimum["spline"]["stiffness_Nm_per_rad"]
+    assert stiffness == pytest.approx(case["stiffness_Nm_per_rad"], rel=1e-6)
+    assert optimum["finite_elements"]["largest_stress_Pa"] <= 1.01 * found["allowable_stress_Pa"]
     assert len(found["starts"]) == 1 and found["starts"][0]["optimum"] == 1
+    active = [key for each in optimum["active"] for key in each]
+    assert set(described("## JSON of `size`")) == {
+        *found, *case, *optimum, *found["starts"][0], *active, *optimum["spline"], *optimum["finite_elements"]
+    }  # fmt: skip
 
 
 @pytest.mark.slow
