@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import math
 
-from spline_model.fast.compiled import part
+from spline_model.strip.compiled import part
 from spline_model.fast.strip_force import strip_energy, strip_force
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from spline_model.fast.compiled import part
+from spline_model.strip.compiled import part
 
 
 @part()

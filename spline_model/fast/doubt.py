@@ -6,7 +6,7 @@ import math
 
 from spline_model.continuation.balance import ROUND_OFF, WORK_MISMATCH
 from spline_model.continuation.resolution import SMALLEST_MOMENT
-from spline_model.fast.compiled import part
+from spline_model.strip.compiled import part
 
 
 @part()

@@ -11,7 +11,7 @@ Comm 10 (1996) 217; Hairer, McLachlan and Skeel, ESAIM: M2AN 43 (2009) 631.
 from __future__ import annotations
 
 from spline_model.fast.acceleration import accelerate, stored_energy
-from spline_model.fast.compiled import copy, kernel
+from spline_model.strip.compiled import copy, kernel
 
 
 @kernel()

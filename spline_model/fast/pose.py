@@ -16,7 +16,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from spline_model.checks import SLOWEST_SPEED
-from spline_model.fast.compiled import FAST
+from spline_model.strip.compiled import FAST
 from spline_model.fast.condense import condense, recover, recover_rate
 from spline_model.fast.path import EVALUATIONS, HALVED, ITERATIONS
 from spline_model.fast.strip import evaluate

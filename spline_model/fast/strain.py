@@ -11,7 +11,7 @@ from numpy.polynomial import legendre
 from numpy.typing import NDArray
 
 from spline_model.basis import bezier
-from spline_model.fast.compiled import kernel
+from spline_model.strip.compiled import kernel
 from spline_model.fast.strip import place_points
 
 

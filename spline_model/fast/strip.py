@@ -19,7 +19,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from spline_model.fast.compiled import part
+from spline_model.strip.compiled import part
 
 
 class Grid(NamedTuple):

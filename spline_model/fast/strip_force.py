@@ -13,7 +13,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from spline_model.fast.compiled import part
+from spline_model.strip.compiled import part
 from spline_model.fast.strip import Grid
 
 Array = NDArray[np.float64]

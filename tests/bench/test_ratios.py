@@ -76,7 +76,7 @@ def test_memory_does_not_grow_with_the_increments():
         tracemalloc.stop()
         return peak - sum(part.nbytes for part in answer) - 8 * increments
 
-    # less than a byte an increment; compiled code cannot allocate at all, see `spline_model.fast.compiled`
+    # less than a byte an increment; compiled code cannot allocate at all, see `spline_model.strip.compiled`
     assert abs(beyond_the_answer(2000) - beyond_the_answer(20)) < 2000 - 20
 
 

@@ -1,4 +1,4 @@
-"""How the fast kernels are compiled: without reference counts, so without any allocation.
+"""How kernels are compiled: without reference counts, so without any allocation.
 
 Numba counts references of every array and of every slice, atomically; in kernels of a few
 hundred nanoseconds that takes half of the time. Without its runtime (``_nrt``) there is

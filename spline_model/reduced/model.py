@@ -1,0 +1,305 @@
+"""From a compiled scene to the reduced mechanism, and between the unknowns of both."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.interpolate import BSpline
+
+from spline_model.basis import SlideModes, SplineBasis
+from spline_model.compile import System
+from spline_model.effects import Bending, Clamp, DrivenRotation, MixedStretching, Stretching, StripGravity
+from spline_model.effects.base import Constraint
+from spline_model.effects.elastic import MEASURES
+from spline_model.reduced.assembly import Bodies
+from spline_model.scene import Scene
+from spline_model.strip.element import GROUNDED, Local, Shape, Strips, local_arrays
+
+Array = NDArray[np.float64]
+
+LEAST_COMPLIANCE = 1e-9
+"""Axial compliance in L^2/EI below which an axial force stays beside w: 1 over it would drown in round-off."""
+GAIN = 1e5
+"""Stiffness by which such a force is condensed all the same, exactly; large against the strips' bending."""
+MOST_CONTROL_POINTS = 24
+"""Longer B-splines are narrow bands, which the element's dense tangent does not use."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Reduced:
+    """A scene in reduced coordinates y: the bodies' poses, free strip ends among them, then w and a a strip.
+
+    frame (S, 6): of each strip root and tip, direction of each at rest, as in ``Strips``;
+    to_modes (S, K, K): the scene's axial forces from the element's.
+    """
+
+    system: System
+    bodies: Bodies
+    strips: Strips
+    shape: Shape
+    to_modes: Array
+    length: float
+    energy: float
+
+    @property
+    def size(self) -> int:
+        """Number of unknowns."""
+        own = 2 * len(self.shape.order) - 6
+        return len(self.bodies.rest) + len(self.strips.roots) * (own + self.strips.compliance.shape[1])
+
+    def local(self) -> Local:
+        """Working arrays of the strips."""
+        s, g, k = self.strips.modes.shape
+        return local_arrays(s, len(self.shape.order), k, g, self.strips.coupled)
+
+
+def reduced(system: System) -> Reduced | None:
+    """The reduced mechanism of a scene, or None where the element does not know one of its parts.
+
+    Strips of one basis and quadrature, clamped or free at their ends, with bending in the material
+    or the spatial measure.
+    """
+    scene = system.scene
+    if not _known(scene, system):
+        return None
+    bending = {e.strip: e for e in scene.of(Bending)}
+    basis, points = scene.strips[0].basis, next(iter(bending.values())).gauss_points
+    length, energy = system.scales.length, system.scales.energy
+    shape = _shape(basis, points)
+    ends = _ends(system)
+    strips, to_modes = _strips(system, shape, basis, points, ends)
+    bodies = _bodies(system, ends, strips.outer * len(scene.strips))
+    if bodies is None:
+        return None
+    return Reduced(
+        system=system, bodies=bodies, strips=strips, shape=shape, to_modes=to_modes, length=length, energy=energy
+    )
+
+
+def _known(scene: Scene, system: System) -> bool:
+    bending = scene.of(Bending)
+    grids = {(e.gauss_points, e.measure) for e in (*bending, *scene.of(MixedStretching), *scene.of(Stretching))}
+    bases = {strip.basis for strip in scene.strips}
+    return (
+        not system.open_potentials
+        and len(bases) == 1
+        and len(grids) == 1
+        and "printed" not in {measure for _, measure in grids}
+        and sorted(e.strip for e in bending) == sorted(strip.name for strip in scene.strips)
+        and all(e.flexural_rigidity > 0.0 for e in bending)
+        and 4 <= next(iter(bases)).control_points <= MOST_CONTROL_POINTS
+    )
+
+
+def _shape(basis: SplineBasis, points: int) -> Shape:
+    n = basis.control_points
+    order = np.array([*range(2, n - 2), 1, n - 2, n - 1, 0], dtype=np.int64)
+    u, weight = basis.gauss_rule(points)
+    whole = BSpline(basis.knots, np.eye(n), basis.degree).antiderivative()
+    values = [basis.evaluate(u, k) for k in range(3)] + [whole(1.0) - whole(u)]
+    d0, d1, d2, beyond = (np.ascontiguousarray(v[:, order]) for v in values)
+    return Shape(order=order, d0=d0, d1=d1, d2=d2, beyond=beyond, u=u, weight=weight)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _End:
+    """An end of a strip: body or GROUNDED, point in its frame [m], direction at rest, row of its clamp or -1."""
+
+    body: int
+    point: Array
+    direction: float
+    row: int
+
+
+def _ends(system: System) -> dict[tuple[str, str], _End]:
+    """Both ends of all strips by (strip, end); a free end is a body of its own, behind the scene's."""
+    scene, ends, free = system.scene, {}, len(system.scene.bodies)
+    places = {body.name: i for i, body in enumerate(scene.bodies)}
+    rows = {(c.strip, c.end): system.layout.rows(i).start for i, c in enumerate(scene.of(Constraint)) if isinstance(c, Clamp)}
+    for strip in scene.strips:
+        for end, (at, inner, sign) in {"start": (0, 1, 1.0), "end": (-1, -2, -1.0)}.items():
+            point = strip.control_points[at]
+            along = sign * (strip.control_points[inner] - point)
+            direction = float(np.arctan2(along[1], along[0]))
+            clamp = scene.clamp_of(strip.name, end)
+            if clamp is None:
+                ends[strip.name, end] = _End(body=free, point=np.zeros(2), direction=direction, row=-1)
+                free += 1
+            elif clamp.to in places:
+                centre = scene.body(clamp.to).centre
+                ends[strip.name, end] = _End(body=places[clamp.to], point=point - centre, direction=direction, row=rows[strip.name, end])
+            else:
+                ends[strip.name, end] = _End(body=GROUNDED, point=point, direction=direction, row=rows[strip.name, end])
+    return ends
+
+
+def _bodies(system: System, ends: dict[tuple[str, str], _End], outer: int) -> Bodies | None:
+    """The bodies and what acts on them; None where a load acts on a clamped end."""
+    scene, layout, tables = system.scene, system.layout, system.tables
+    length, force = system.scales.length, system.scales.energy / system.scales.length
+    rest = [v for body in scene.bodies for v in (*(body.centre / length), 0.0)]
+    places = {layout.bodies[body.name] + k: 3 * i + k for i, body in enumerate(scene.bodies) for k in range(3)}
+    for strip in scene.strips:
+        start, count = layout.strips[strip.name]
+        for end, at in (("start", start), ("end", start + 2 * count - 2)):
+            if ends[strip.name, end].row < 0:
+                for k in range(2):
+                    places[at + k] = len(rest) + k
+                point = strip.control_points[0 if end == "start" else -1]
+                rest += [*(point / length), 0.0]
+    load, weight = np.zeros(len(rest)), np.zeros(len(rest))
+    unit = np.tile([force, force, force * length], len(rest) // 3)
+    for coordinate, value in zip(tables.loads.coordinate, tables.loads.value, strict=True):
+        if int(coordinate) not in places:
+            return None
+        load[places[int(coordinate)]] += value
+    if tables.weight.size:
+        for body in scene.bodies:
+            at = layout.body(body.name)
+            weight[3 * scene.bodies.index(body) : 3 * scene.bodies.index(body) + 3] += tables.weight[at]
+    held = np.array([places[int(c)] for c in tables.drives.coordinate], dtype=np.int64)
+    if len(set(held.tolist())) != len(held):
+        return None
+    turns = np.flatnonzero(tables.drives.turns)
+    return Bodies(
+        rest=np.array(rest),
+        load=np.concatenate((load / unit, np.zeros(outer))),
+        weight=np.concatenate((weight / unit, np.zeros(outer))),
+        free=np.array([i for i in range(len(rest) + outer) if i not in set(held.tolist())], dtype=np.int64),
+        held=held,
+        driven=int(turns[0]) if len(turns) == 1 else -1,
+    )
+
+
+def _strips(
+    system: System, shape: Shape, basis: SplineBasis, points: int, ends: dict[tuple[str, str], _End]
+) -> tuple[Strips, Array]:
+    scene, tables = system.scene, system.tables
+    length, energy = system.scales.length, system.scales.energy
+    count, gauss, n = len(scene.strips), len(shape.weight), basis.control_points
+    order = {e.strip: i for i, e in enumerate(scene.of(Bending))}
+    rows = [slice(order[s.name] * gauss, (order[s.name] + 1) * gauss) for s in scene.strips]
+    speed = np.array([tables.bending.speed[r] for r in rows]) / length
+    mixed = [[e for e in scene.of(MixedStretching) if e.strip == s.name] for s in scene.strips]
+    consistent = {e.strip: e for e in scene.of(Stretching)}
+    split = len_modes(mixed[0], slide=False)
+    modes, compliance, to_modes = [], [], []
+    for parts, v in zip(mixed, speed, strict=True):
+        values, c, back = _orthonormal(parts, shape.u, shape.weight * v)
+        modes.append(values)
+        compliance.append(np.array(c) * energy / length)
+        to_modes.append(back)
+    measure = MEASURES.index(scene.of(Bending)[0].measure)
+    c = np.array(compliance).reshape(count, -1)
+    small = c < LEAST_COMPLIANCE
+    outer = int(small[:, :split].any())
+    coupled = c.shape[1] if measure else outer * split
+    dead, per_u = _dead(system, shape)
+    return Strips(
+        speed=speed,
+        curvature=np.array([tables.bending.curvature[r] for r in rows]) * length,
+        rigidity=np.array([tables.bending.rigidity[r] for r in rows]) / (energy * length),
+        stretching=np.array([consistent[s.name].axial_rigidity if s.name in consistent else 0.0 for s in scene.strips])
+        / (energy / length),
+        strain=np.array(
+            [_natural_strain(parts, consistent.get(s.name)) for s, parts in zip(scene.strips, mixed, strict=True)]
+        ),
+        modes=np.ascontiguousarray(np.array(modes).reshape(count, gauss, -1)),
+        split=split,
+        compliance=c,
+        gain=np.where(small, GAIN, 1.0 / np.where(small, 1.0, c)),
+        coupled=coupled,
+        outer=outer,
+        roots=np.array([ends[s.name, "start"].body for s in scene.strips], dtype=np.int64),
+        tips=np.array([ends[s.name, "end"].body for s in scene.strips], dtype=np.int64),
+        root=_frames([ends[s.name, "start"] for s in scene.strips], length),
+        tip=_frames([ends[s.name, "end"] for s in scene.strips], length),
+        reach=np.array(
+            [
+                [np.hypot(*(s.control_points[a] - s.control_points[b])) / length for a, b in ((1, 0), (-1, -2))]
+                for s in scene.strips
+            ]
+        ),
+        dead=dead,
+        weight=per_u,
+        measure=measure,
+    ), np.array(to_modes).reshape(count, c.shape[1], c.shape[1])
+
+
+def len_modes(parts: list[MixedStretching], *, slide: bool) -> int:
+    """Number of axial forces of a strip that belong to the stretching, or to the sliding."""
+    return sum(e.modes.count for e in parts if isinstance(e.modes, SlideModes) == slide)
+
+
+def _orthonormal(parts: list[MixedStretching], u: Array, weight: Array) -> tuple[Array, list[float], Array]:
+    """Modes (G, K) orthonormal in the weight, each with its compliance, and the scene's modes from them."""
+    values, compliances, back = np.zeros((len(u), 0)), [], np.zeros((0, 0))
+    for part in parts:
+        first, shown = part.modes.evaluate(u)
+        full = np.zeros((len(u), part.modes.count))
+        np.put_along_axis(full, first[:, None] + np.arange(shown.shape[1]), shown, axis=1)
+        if not isinstance(part.modes, SlideModes):  # the mean first
+            mean = np.eye(part.modes.count)
+            mean[:, 0] = np.linalg.lstsq(full, np.ones(len(u)), rcond=None)[0]
+            full, to_part = full @ mean, mean
+        else:
+            to_part = np.eye(part.modes.count)
+        factor = np.linalg.cholesky(full.T @ (weight[:, None] * full))
+        values = np.column_stack((values, np.linalg.solve(factor, full.T).T))
+        compliances += [part.axial_compliance] * part.modes.count
+        k, m = len(back), part.modes.count
+        back = np.block([[back, np.zeros((k, m))], [np.zeros((m, k)), to_part @ np.linalg.inv(factor).T]])
+    return values, compliances, back
+
+
+def _natural_strain(parts: list[MixedStretching], consistent: Stretching | None) -> float:
+    if consistent is not None:
+        return consistent.natural_strain
+    return parts[0].natural_strain if parts else 0.0
+
+
+def _frames(ends: list[_End], length: float) -> Array:
+    return np.array([[*(e.point / length), e.direction] for e in ends])
+
+
+def _dead(system: System, shape: Shape) -> tuple[Array, Array]:
+    """Dead load on the control points (S, 2 n), in the order of elimination, and per du (S, 2)."""
+    scene, weight = system.scene, system.tables.weight
+    force = system.scales.energy / system.scales.length
+    dead, per_u = np.zeros((len(scene.strips), 2 * len(shape.order))), np.zeros((len(scene.strips), 2))
+    for s, strip in enumerate(scene.strips):
+        if weight.size:
+            dead[s] = weight[system.layout.strip(strip.name)].reshape(-1, 2)[shape.order].ravel() / force
+        for effect in scene.of(StripGravity):
+            if effect.strip == strip.name:
+                mass = effect.linear_density * float(strip.share_of_length().sum())
+                per_u[s] += mass * np.asarray(effect.acceleration) / force
+    return dead, per_u
+
+
+def at_rest(model: Reduced) -> Array:
+    """The state y at rest."""
+    return from_unknowns(model, model.system.rest)
+
+
+def from_unknowns(model: Reduced, z: Array) -> Array:
+    """The state y of unknowns z (N,) of the scene, whose clamps hold."""
+    scene, layout, strips, n = model.system.scene, model.system.layout, model.strips, len(model.shape.order)
+    y = [model.bodies.rest.copy()]
+    pose = y[0]
+    for i, body in enumerate(scene.bodies):
+        pose[3 * i : 3 * i + 3] = z[layout.body(body.name)] / [model.length, model.length, 1.0]
+    for s, strip in enumerate(scene.strips):
+        points = z[layout.strip(strip.name)].reshape(n, 2) / model.length
+        chords = (points[1] - points[0], points[-1] - points[-2])
+        for bodies, frames, at, chord in ((strips.roots, strips.root, 0, chords[0]), (strips.tips, strips.tip, -1, chords[1])):
+            if bodies[s] >= len(scene.bodies):  # a free end is its own body
+                turn = np.arctan2(chord[1], chord[0]) - frames[s, 2]
+                pose[3 * bodies[s] : 3 * bodies[s] + 3] = (*points[at], np.arctan2(np.sin(turn), np.cos(turn)))
+        reach = [np.hypot(*chord) / k for chord, k in zip(chords, strips.reach[s], strict=True)]
+        effects = [i for i, e in enumerate(scene.of(MixedStretching)) if e.strip == strip.name]
+        forces = np.concatenate([z[layout.axial_modes(i)] for i in effects] or [np.zeros(0)])
+        y += [points[2:-2].ravel(), reach, np.linalg.solve(model.to_modes[s], forces) * model.length / model.energy]
+    return np.concatenate(y)

@@ -1,0 +1,357 @@
+"""An equilibrium path of any mechanism, compiled: predict, correct, check, halve.
+
+The path goes through given values of the held coordinates and of the load factor, linear between
+them in a parameter t. Nothing is said here of why it stops: the bordered path does that.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from spline_model.checks import LARGEST_CORRECTION, SLOWEST_SPEED, SMALLEST_CORRECTION
+from spline_model.continuation.balance import ROUND_OFF, WORK_MISMATCH
+from spline_model.continuation.resolution import LARGEST_DEFECT, SMALLEST_MOMENT
+from spline_model.reduced.assembly import (
+    AXIAL,
+    BENDING,
+    DEAD,
+    NEGATIVE,
+    SLOWEST,
+    assemble,
+    factorise,
+    moment_defect,
+    move_strips,
+    root_of,
+    solve_free,
+)
+from spline_model.strip.compiled import copy, kernel, part
+from spline_model.strip.condense import SINGULAR
+
+Array = NDArray[np.float64]
+
+ITERATIONS, EVALUATIONS, HALVED = range(3)
+KNOWN = 3
+MOST_ITERATIONS = 15
+SMALLEST_STEP = 2.0**-10
+
+
+class Route(NamedTuple):
+    """Where a path goes: t (S,), held coordinates (S, D) and load factors (S,); the first row is its start."""
+
+    at: Array
+    held: Array
+    load: Array
+
+
+class Answer(NamedTuple):
+    """S states: y (S, Y); reaction and its rate in t (S, D); stiffness (S,) of the driven rotation at fixed
+    loads; rate (S, 3 B) of the bodies in t; energies (S, 3) bending, axial, dead; inertia, defect (S,);
+    counters (3,)."""
+
+    y: Array
+    reaction: Array
+    reaction_rate: Array
+    stiffness: Array
+    rate: Array
+    energies: Array
+    inertia: NDArray[np.int64]
+    defect: Array
+    counters: NDArray[np.int64]
+
+
+def empty_answer(states: int, size: int, bodies: int, held: int) -> Answer:
+    """Arrays for that many states."""
+    return Answer(
+        y=np.zeros((states, size)),
+        reaction=np.zeros((states, held)),
+        reaction_rate=np.zeros((states, held)),
+        stiffness=np.full(states, np.nan),
+        rate=np.zeros((states, bodies)),
+        energies=np.zeros((states, 3)),
+        inertia=np.zeros(states, dtype=np.int64),
+        defect=np.zeros(states),
+        counters=np.zeros(3, dtype=np.int64),
+    )
+
+
+@part()
+def newton(y, load, bodies, strips, shape, local, space, tolerance, counters):
+    """Solve in place at the held coordinates in y; the negative eigenvalues, or -1 where it fails."""
+    before = np.inf
+    free, raw, poses = bodies.free, space.raw, bodies.rest.size
+    for trial in range(MOST_ITERATIONS + 1):
+        norm = assemble(y, load, bodies, strips, shape, local, space)
+        counters[EVALUATIONS] += 1
+        for i in range(free.size):
+            norm = max(norm, abs(raw[free[i]]))
+        if not norm < 1e12:
+            return -1
+        negative = factorise(bodies.free, space.tangent, space.factors, bodies.load.size - poses)
+        if negative == SINGULAR:
+            return -1
+        if norm <= tolerance or (norm <= 1e3 * tolerance and norm > 0.5 * before):
+            return max(0, negative + int(space.out[NEGATIVE]))
+        if trial == MOST_ITERATIONS:
+            return -1
+        before = norm
+        space.move[:] = 0.0
+        for i in range(free.size):
+            space.change[i] = -space.force[free[i]]
+        solve_free(space.factors, space.change)
+        for i in range(free.size):
+            space.move[free[i]] = space.change[i]
+            if free[i] < poses:
+                y[free[i]] += space.change[i]
+        move_strips(1.0, bodies, strips, shape, local, space, space.rate)
+        for i in range(bodies.rest.size, y.size):
+            y[i] += space.rate[i]
+        counters[ITERATIONS] += 1
+    return -1
+
+
+@kernel()
+def entry(matrix, i, j):
+    """Entry of a symmetric matrix of which the upper triangle is filled."""
+    return matrix[i, j] if i <= j else matrix[j, i]
+
+
+@part()
+def tangent(held_rate, load_rate, bodies, strips, shape, local, space):
+    """Rates in t at a state that was just solved, in ``space.rate``; reactions and their rates in ``space``.
+
+    The residual that is left is carried to equilibrium by the tangent.
+    """
+    free, held, matrix, x = bodies.free, bodies.held, space.tangent, space.change
+    for i in range(free.size):
+        x[i] = -space.force[free[i]]
+    solve_free(space.factors, space.change)
+    for d in range(held.size):
+        total = space.force[held[d]]
+        for i in range(free.size):
+            total += entry(matrix, held[d], free[i]) * x[i]
+        space.reaction[d] = total
+    for i in range(free.size):
+        total = load_rate * bodies.load[free[i]]
+        for d in range(held.size):
+            total -= entry(matrix, free[i], held[d]) * held_rate[d]
+        x[i] = total
+    solve_free(space.factors, space.change)
+    for i in range(free.size):
+        space.move[free[i]] = x[i]
+    for d in range(held.size):
+        space.move[held[d]] = held_rate[d]
+    for d in range(held.size):
+        total = -load_rate * bodies.load[held[d]]
+        for i in range(space.move.size):
+            total += entry(matrix, held[d], i) * space.move[i]
+        space.reaction_rate[d] = total
+    for i in range(bodies.rest.size):
+        space.rate[i] = space.move[i]
+    move_strips(0.0, bodies, strips, shape, local, space, space.rate)
+
+
+@part()
+def stiffness_of(bodies, space):
+    """Derivative of the driven rotation's torque in it, all else held or in equilibrium at fixed loads."""
+    free, x = bodies.free, space.change
+    row = bodies.held[bodies.driven]
+    for i in range(free.size):
+        x[i] = -entry(space.tangent, free[i], row)
+    solve_free(space.factors, space.change)
+    total = space.tangent[row, row]
+    for i in range(free.size):
+        total += entry(space.tangent, row, free[i]) * x[i]
+    return total
+
+
+@kernel()
+def predict(t, known, at, known_y, known_rate, predicted):
+    """Hermite's polynomial through the last ``known`` states and rates, at t, into predicted."""
+    for k in range(predicted.size):
+        predicted[k] = 0.0
+    for i in range(known):
+        lagrange, slope = 1.0, 0.0
+        for j in range(known):
+            if j != i:
+                lagrange *= (t - at[j]) / (at[i] - at[j])
+                slope += 1.0 / (at[i] - at[j])
+        square = lagrange * lagrange
+        by_value, by_rate = (1.0 - 2.0 * (t - at[i]) * slope) * square, (t - at[i]) * square
+        for k in range(predicted.size):
+            predicted[k] += by_value * known_y[i, k] + by_rate * known_rate[i, k]
+
+
+@part()
+def accepted(y, known, bodies, strips, shape, space):
+    """Whether a solved state is the continuation of the last one, with end tangents forward and no fold."""
+    if not space.out[SLOWEST] > SLOWEST_SPEED:
+        return False
+    own, modes = 2 * shape.order.size - 6, strips.compliance.shape[1]
+    last, predicted = space.known_y[known - 1], space.predicted
+    step = correction = 0.0
+    for k in range(bodies.rest.size):
+        step += (predicted[k] - last[k]) ** 2
+        correction += (y[k] - predicted[k]) ** 2
+    for s in range(strips.roots.size):
+        at = bodies.rest.size + s * (own + modes)
+        if not (y[at + own - 2] > 0.0 and y[at + own - 1] > 0.0):
+            return False
+        for k in range(at, at + own):
+            step += (predicted[k] - last[k]) ** 2
+            correction += (y[k] - predicted[k]) ** 2
+    return correction <= max(LARGEST_CORRECTION**2 * step, SMALLEST_CORRECTION**2)
+
+
+@part()
+def conjugate(held_rate, load_rate, bodies, y, reaction, rate):
+    """Derivative of the potential in t and, with rates, that one's: reactions on drives less moved loads."""
+    total = change = 0.0
+    for d in range(bodies.held.size):
+        total += reaction[d] * held_rate[d]
+    if load_rate != 0.0:
+        for i in range(bodies.rest.size):
+            total -= load_rate * bodies.load[i] * (y[i] - bodies.rest[i])
+            change -= load_rate * bodies.load[i] * rate[i]
+    return total, change
+
+
+@kernel()
+def remember(t, y, rate, known, at, known_y, known_rate):
+    """Append a state and its rate to the known ones, dropping the oldest; returns their number."""
+    if known > 0 and t == at[known - 1]:
+        known -= 1
+    if known == KNOWN:
+        for i in range(KNOWN - 1):
+            at[i] = at[i + 1]
+            copy(known_y[i + 1], known_y[i])
+            copy(known_rate[i + 1], known_rate[i])
+        known -= 1
+    at[known] = t
+    copy(y, known_y[known])
+    copy(rate, known_rate[known])
+    return known + 1
+
+
+@kernel()
+def keep_last(known, at, known_y, known_rate):
+    """Forget all known states but the last."""
+    at[0] = at[known - 1]
+    copy(known_y[known - 1], known_y[0])
+    copy(known_rate[known - 1], known_rate[0])
+
+
+@kernel()
+def follow(start, route, judged, bodies, strips, shape, local, space, tolerance, answer):
+    """Follow a path from ``start`` (Y,) through the route; returns the number of states that converged.
+
+    judged: whether the moment defect refuses. A state with other negative eigenvalues than the first, or
+    with a stiffness of another sign, ends the path: what happens between is not for here.
+    """
+    y, out, counters = space.y, space.out, answer.counters
+    held = bodies.held
+    copy(start, y)
+    known, number = 0, 0
+    t = route.at[0]
+    energy = done_from = slope_from = defect = stiffness = 0.0
+    for row in range(route.at.size):
+        previous = max(row - 1, 0)
+        ahead = max(row, 1)
+        if route.at.size == 1:
+            ahead = 0
+        span = route.at[ahead] - route.at[ahead - 1] if ahead > 0 else 1.0
+        load_rate = (route.load[ahead] - route.load[ahead - 1]) / span if ahead > 0 else 0.0
+        held_rate = space.held_rate
+        for d in range(held.size):
+            held_rate[d] = (route.held[ahead, d] - route.held[ahead - 1, d]) / span if ahead > 0 else 0.0
+        begin, step = t, route.at[row] - t
+        whole = step
+        while True:
+            last, here = True, route.at[row]
+            sound = True
+            if row > 0:
+                last = abs(here - t) <= abs(step) * (1 + 1e-9)
+                if not last:
+                    here = t + step
+                if known > 1 and abs(here - t) > 2 * abs(t - space.known_at[known - 2]):
+                    keep_last(known, space.known_at, space.known_y, space.known_rate)
+                    known = 1
+                predict(here, known, space.known_at, space.known_y, space.known_rate, space.predicted)
+                copy(space.predicted, y)
+            share = (here - route.at[previous]) / span if row > 0 else 0.0
+            for d in range(held.size):
+                a, b = route.held[previous, d], route.held[row, d]
+                y[held[d]] = b if last else a + share * (b - a)
+                space.predicted[held[d]] = y[held[d]]
+            a, b = route.load[previous], route.load[row]
+            load = b if last else a + share * (b - a)
+            negative = newton(y, load, bodies, strips, shape, local, space, tolerance, counters)
+            sound = negative >= 0 and (row == 0 or accepted(y, known, bodies, strips, shape, space))
+            if sound:
+                tangent(held_rate, load_rate, bodies, strips, shape, local, space)
+                done, slope = conjugate(held_rate, load_rate, bodies, y, space.reaction, space.rate)
+                for d in range(held.size):
+                    slope += space.reaction_rate[d] * held_rate[d]
+                wrong, stored = moment_defect(y, strips, shape, local)
+                defect = root_of(wrong, stored, SMALLEST_MOMENT)
+                total = out[BENDING] + out[AXIAL] + out[DEAD]
+                for i in range(bodies.rest.size):
+                    total -= load * bodies.load[i] * (y[i] - bodies.rest[i])
+                sound = not (judged and defect > LARGEST_DEFECT)
+                if sound and row > 0:
+                    width = here - t
+                    work = 0.5 * width * (done_from + done) + width * width / 12.0 * (slope_from - slope)
+                    gained = total - energy
+                    scale = max(abs(gained), 0.5 * abs(width) * (abs(done_from) + abs(done)))
+                    floor = ROUND_OFF * (1.0 + abs(out[BENDING]) + abs(out[AXIAL]))
+                    sound = abs(gained - work) <= WORK_MISMATCH * scale + floor
+                if sound:
+                    energy, done_from, slope_from = total, done, slope
+            if not sound:
+                counters[HALVED] += 1
+                step *= 0.5
+                if row == 0 or abs(step) < SMALLEST_STEP * abs(whole):
+                    return row
+                continue
+            t = here
+            if row == 0:
+                number = negative
+            elif negative != number:
+                return row
+            known = remember(t, y, space.rate, known, space.known_at, space.known_y, space.known_rate)
+            if last:
+                break
+            done_steps = abs(t - begin) / abs(step)
+            if abs(step) < abs(whole) and round(done_steps) % 2 == 0:
+                step *= 2.0
+        if bodies.driven >= 0:
+            before = stiffness
+            stiffness = stiffness_of(bodies, space)
+            if row > 0 and before * stiffness < 0.0:
+                return row
+            answer.stiffness[row] = stiffness
+        copy(y, answer.y[row])
+        copy(space.reaction, answer.reaction[row])
+        copy(space.reaction_rate, answer.reaction_rate[row])
+        for i in range(bodies.rest.size):
+            answer.rate[row, i] = space.rate[i]
+        answer.energies[row, 0], answer.energies[row, 1] = out[BENDING], out[AXIAL]
+        answer.energies[row, 2] = out[DEAD]
+        answer.inertia[row], answer.defect[row] = negative, defect
+    return route.at.size
+
+
+@part()
+def turned(row, route):
+    """Whether the route changes its direction at the state before ``row``."""
+    before, after = route.at[row - 1] - route.at[row - 2], route.at[row] - route.at[row - 1]
+    size = abs(route.load[row - 1] - route.load[row - 2]) / before
+    change = abs((route.load[row] - route.load[row - 1]) / after - (route.load[row - 1] - route.load[row - 2]) / before)
+    for d in range(route.held.shape[1]):
+        old = (route.held[row - 1, d] - route.held[row - 2, d]) / before
+        new = (route.held[row, d] - route.held[row - 1, d]) / after
+        size = max(size, abs(old))
+        change = max(change, abs(new - old))
+    return change > 1e-9 * size

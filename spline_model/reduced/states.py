@@ -1,0 +1,75 @@
+"""From the states of a reduced path to the unknowns of the scene, multipliers included."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from spline_model.effects import MixedStretching
+from spline_model.effects.base import Constraint
+from spline_model.effects import Clamp
+from spline_model.reduced.model import Reduced
+from spline_model.reduced.path import Answer
+from spline_model.strip.compiled import kernel
+from spline_model.strip.element import evaluate_points, place_points
+
+Array = NDArray[np.float64]
+
+
+@kernel()
+def place_all(y, poses, shape, strips, local, out, points, forces):
+    """Control points (S, G, 2 n) and, from the gradient, what the clamps do to the strips (S, G, 2, 3).
+
+    A clamp's force is what its two control points ask for, its moment what the inner one asks for
+    across its direction.
+    """
+    n, modes = shape.order.size, strips.compliance.shape[1]
+    own = 2 * n - 6
+    for row in range(y.shape[0]):
+        for s in range(strips.roots.size):
+            at = poses + s * (own + modes)
+            state = y[row]
+            place_points(s, state[at : at + own], state, strips, local)
+            evaluate_points(s, state[at + own : at + own + modes], n, shape, strips, local, out)
+            p, g = local.points[s], local.gradient[s]
+            for i in range(2 * n):
+                points[row, s, i] = p[i]
+            for end in range(2):
+                inner = 2 * n - 8 + 2 * end
+                outer = 2 * n - 2 - 2 * end
+                forces[row, s, end, 0] = g[inner] + g[outer]
+                forces[row, s, end, 1] = g[inner + 1] + g[outer + 1]
+                forces[row, s, end, 2] = (p[inner] - p[outer]) * g[inner + 1] - (p[inner + 1] - p[outer + 1]) * g[inner]
+
+
+def unknowns_of(model: Reduced, answer: Answer, count: int) -> Array:
+    """Unknowns z (S, N) of the first ``count`` states."""
+    system, strips, shape = model.system, model.strips, model.shape
+    scene, layout, n = system.scene, system.layout, len(shape.order)
+    own, modes, poses = 2 * n - 6, strips.compliance.shape[1], len(model.bodies.rest)
+    y = answer.y[:count]
+    points = np.zeros((count, len(scene.strips), 2 * n))
+    forces = np.zeros((count, len(scene.strips), 2, 3))
+    place_all(y, poses, shape, strips, model.local(), np.zeros(5), points, forces)
+    z = np.zeros((count, layout.size))
+    for i, body in enumerate(scene.bodies):
+        z[:, layout.body(body.name)] = y[:, 3 * i : 3 * i + 3] * [model.length, model.length, 1.0]
+    unit = model.energy / model.length * np.array([1.0, 1.0, model.length])
+    rows = {(c.strip, c.end): layout.rows(i) for i, c in enumerate(scene.of(Constraint)) if isinstance(c, Clamp)}
+    for s, strip in enumerate(scene.strips):
+        in_order = np.empty((count, n, 2))
+        in_order[:, shape.order] = points[:, s].reshape(count, n, 2)
+        z[:, layout.strip(strip.name)] = in_order.reshape(count, 2 * n) * model.length
+        at = poses + s * (own + modes) + own
+        force = y[:, at : at + modes] @ model.to_modes[s].T * (model.energy / model.length)
+        done = 0
+        for i, effect in enumerate(scene.of(MixedStretching)):
+            if effect.strip == strip.name:
+                z[:, layout.axial_modes(i)] = force[:, done : done + effect.modes.count]
+                done += effect.modes.count
+        for end, place in (("start", 0), ("end", 1)):
+            if (strip.name, end) in rows:
+                z[:, rows[strip.name, end]] = forces[:, s, place] * unit
+    drives = system.tables.drives
+    z[:, drives.row] = answer.reaction[:count] * unit[2 * drives.turns]
+    return z
