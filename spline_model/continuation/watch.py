@@ -22,6 +22,9 @@ from spline_model.solution import CriticalPoint, Path, Status
 Array = NDArray[np.float64]
 
 
+NO_CROSSING = "the stability changes without a critical point between: the state lies on another branch"
+
+
 class Watch:
     """The checks of one path, and the critical points that were met on it.
 
@@ -48,6 +51,8 @@ class Watch:
         if reason:
             return here, reason
         found = between(self.work, here, point, step)
+        if found is None:
+            return here, NO_CROSSING
         if found and self.resolution.judged and not self._confirmed(here, point, step):
             return here, UNCONFIRMED.format(kind=found[0].kind)
         crossing = next((c for c in found if c.kind == BIFURCATION), None) if self.leaves else None
@@ -93,6 +98,7 @@ class Watch:
             load_factor=np.array([p.load_factor for p in points]),
             states=np.array([p.z for p in points]),
             rates=rates / slopes[:, None],
+            stiffness=np.array([p.stiffness for p in points]),
             energies=np.array([p.energies for p in points]),
             work=work,
             inertia=np.array([p.inertia for p in points]),

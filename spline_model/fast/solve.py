@@ -228,6 +228,7 @@ def path_of(mechanism: Mechanism, system: System, rotations: Sequence[float], an
         load_factor=factors,
         states=states,
         rates=rates,
+        stiffness=answer.stiffness,
         energies=answer.energies,
         work=external_work(system, factors, states, rates),
         inertia=answer.inertia,
