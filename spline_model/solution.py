@@ -123,7 +123,8 @@ class MotionEstimate:
 class StaticSolution:
     """Answer of a pivot under a driven rotation; S states, G strips, P stations.
 
-    rotation (S,) [rad]; centre (S, 2) [m], origin at A1; torque (S,) lambda_13 [N m];
+    rotation (S,) [rad]; load_factor (S,) share of the loads that acts; centre (S, 2) [m], origin at
+    A1; torque (S,) lambda_13 [N m];
     stiffness (S,) d(torque)/d(rotation) [N m/rad] (Eq 20) at fixed loads and driven displacements,
     from the tangent;
     bending_energy, axial_energy, shear_energy (S,) [J], the last zero: no shear here;
@@ -139,6 +140,7 @@ class StaticSolution:
     status: Status
     message: str
     rotation: Array
+    load_factor: Array
     centre: Array
     torque: Array
     stiffness: Array

@@ -46,6 +46,7 @@ def pivot_answer(system: System, path: Path, laps: Laps) -> StaticSolution:
     reactions = [[clamp_reactions(system, states, name, end) for end in ("start", "end")] for name in STRIPS]
     return StaticSolution(
         rotation=path.load_factor * drive.angle,
+        load_factor=np.abs(path.load_factor),
         centre=states[:, layout.body(BODY)][:, :2],
         torque=states[:, row],
         stiffness=path.stiffness,

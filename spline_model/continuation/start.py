@@ -47,6 +47,7 @@ def first_point(
 
 
 def last_state(start: Path | StaticSolution | MechanismSolution, angle: float = 1.0) -> tuple[float, Array]:
-    """Load factor and unknowns where a result ended; a pivot's load factor is rotation / ``angle``."""
-    at = start.rotation / angle if isinstance(start, StaticSolution) else start.load_factor
+    """Load factor and unknowns where a result ended; a pivot's load factor is rotation / ``angle``, if any."""
+    turned = isinstance(start, StaticSolution) and angle != 0.0
+    at = start.rotation / angle if turned else start.load_factor
     return float(at[-1]), start.states[-1]

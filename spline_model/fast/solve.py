@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from functools import lru_cache
 from typing import Any
 
@@ -174,7 +175,7 @@ def _critical_points(
         if not points or not Finer(system).confirms(work, before, after, steps[row]):
             return None
         found += points
-    return tuple(found)
+    return tuple(replace(point, load_factor=abs(point.load_factor)) for point in found)
 
 
 def empty_answer(states: int, size: int) -> Answer:
