@@ -175,8 +175,8 @@ class MechanismSolution:
     """Answer of any mechanism; S states, G strips, P stations.
 
     load_factor (S,); bodies: x, y, theta (S, 3) by name [m, m, rad]; torque, stiffness (S,)
-    of the driven rotation [N m, N m/rad], as of ``StaticSolution``, nan without one; bending_energy, axial_energy,
-    gravity_energy, work (S,) [J]; stations (P,); shape (S, G, P, 2) [m]; axial_force,
+    of the driven rotation [N m, N m/rad], as of ``StaticSolution``, nan without one; bending_energy,
+    axial_energy, gravity_energy, work (S,) [J]; stations (P,); shape (S, G, P, 2) [m]; axial_force,
     bending_moment, shear_force (S, G, P); effects: names of what was assembled;
     inertia, moment_defect, critical_points and states as in ``Path``; seconds: by
     part, see ``spline_model.laps``.

@@ -103,9 +103,7 @@ def _is_loaded(pivot: Pivot) -> bool:
     return not set(pivot.mechanism.effects) <= UNLOADED
 
 
-def _rotations(
-    rotation: float | Sequence[float], increments: int, origin: float, *, loaded: bool
-) -> Array:
+def _rotations(rotation: float | Sequence[float], increments: int, origin: float, *, loaded: bool) -> Array:
     """The rotations of a path from ``origin`` [rad] on, each leg in ``increments``."""
     targets = [rotation] if isinstance(rotation, int | float) else list(rotation)
     for angle in targets:
@@ -139,9 +137,7 @@ def _along(
         laps.lap("compile")
         begin = None if start is None else last_state(start, largest)
         factors = factors_of(rotations, largest)
-        system, path = follow_rotations(
-            pivot.driven, largest, factors, progress, start=begin, branch=branch
-        )
+        system, path = follow_rotations(pivot.driven, largest, factors, progress, start=begin, branch=branch)
         laps.lap("solve")
     return pivot_answer(system, path, laps)
 

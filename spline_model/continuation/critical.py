@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from spline_model.compile import System
 from spline_model.continuation.corrector import correct
-from spline_model.continuation.point import NOT_TRACKED, Point, directed, driven_row, stand
+from spline_model.continuation.point import NOT_TRACKED, Point, directed, stand
 from spline_model.continuation.reduced import reduced_tangent
 from spline_model.effects import DrivenRotation
 from spline_model.effects.base import Constraint

@@ -16,7 +16,7 @@ from spline_model.compile import System
 from spline_model.continuation.critical import between
 from spline_model.continuation.integration import Finer
 from spline_model.continuation.point import stand
-from spline_model.continuation.remark import remark
+from spline_model.continuation.remark import place_of, remark
 from spline_model.design import Design
 from spline_model.effects.constraints import GROUND
 from spline_model.effects.registry import MOTION_ONLY
@@ -172,7 +172,7 @@ def _critical_points(
             stand(work, states[i], factors[i], work.evaluate(states[i], factors[i])) for i in (row, row + 1)
         )
         points = between(work, before, after, steps[row])
-        if not points or not Finer(system).confirms(work, before, after, steps[row]):
+        if not points or not Finer(work).confirms(work, before, after, steps[row]):
             return None
         found += points
     return tuple(replace(point, load_factor=abs(point.load_factor)) for point in found)
@@ -225,7 +225,7 @@ def path_of(mechanism: Mechanism, system: System, rotations: Sequence[float], an
         return None
     return Path(
         status=Status.CONVERGED,
-        message=remark(critical),
+        message=remark(system, place_of(system), critical, int(answer.inertia[-1])),
         load_factor=factors,
         states=states,
         rates=rates,
