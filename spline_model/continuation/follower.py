@@ -15,7 +15,7 @@ from spline_model.newton import Newton, solve
 
 Array = NDArray[np.float64]
 
-SMALLEST_STEP = 2.0**-12
+SMALLEST_STEP = 2.0**-14
 """Least fraction of an increment before the path is given up."""
 
 

@@ -13,8 +13,7 @@ from spline_model.continuation.balance import jumped
 from spline_model.continuation.branch import leave
 from spline_model.continuation.critical import BIFURCATION, between
 from spline_model.continuation.integration import UNCONFIRMED, Finer
-from spline_model.continuation.point import NOT_TRACKED, Point, directed
-from spline_model.continuation.reduced import reduced_tangent
+from spline_model.continuation.point import Point, directed
 from spline_model.continuation.remark import Place, left, place_of, remark
 from spline_model.continuation.resolution import Resolution
 from spline_model.newton import Workspace
@@ -24,8 +23,8 @@ Array = NDArray[np.float64]
 
 
 NO_CROSSING = "the stability changes in a jump, the state lies on another branch"
-SOFT = 0.1
-"""Part of the lowest eigenvalue at the beginning of a path below which its end counts as a limit point."""
+STEEP = 5.0
+"""Rate of a path over its mean rate so far from which on it ends at a limit point, where it is infinite."""
 
 
 class Watch:
@@ -94,17 +93,13 @@ class Watch:
 
     def stopped(self, first: Point, here: Point, aim: float, reason: str) -> str:
         """That a path from ``first`` goes no further than ``here`` on its way to a load factor, and why."""
-        if here.inertia != NOT_TRACKED:
-            lowest = [self._lowest(point) for point in (first, here)]
-            if abs(lowest[1]) < SOFT * abs(lowest[0]):
-                reason = f"it buckles, the stiffness vanishes there (limit point); {reason}"
+        count, unit = self.work.system.layout.coordinate_count, self.work.system.scales.unit
+        went, goes = (np.linalg.norm((change / unit)[:count]) for change in (here.z - first.z, here.rate))
+        sound = self._finer is None or self._finer.agrees(here)
+        if sound and goes * abs(here.load_factor - first.load_factor) > STEEP * went:
+            reason = f"it buckles, a limit point: the stiffness vanishes there ({reason})"
         last, next_ = (self.place(factor, np.nan) for factor in (here.load_factor, aim))
         return f"stopped between {last} and {next_}: {reason}"
-
-    def _lowest(self, point: Point) -> float:
-        """The lowest positive eigenvalue of the reduced tangent at a point [EI/L]."""
-        self.work.evaluate(point.z, point.load_factor)
-        return reduced_tangent(self.work).eigenpair(point.inertia)[0]
 
     def remark(self, inertia: int = 0) -> str:
         """What is said of a path that reached its end, at a state of an inertia."""
