@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from spline_model.compile import System
 from spline_model.continuation.follower import Follower
 from spline_model.continuation.point import stand
+from spline_model.continuation.remark import Place
 from spline_model.continuation.watch import Watch
 from spline_model.errors import InvalidParameter
 from spline_model.kernels.assemble import Tables
@@ -72,7 +73,7 @@ def settle(watch: Watch) -> Newton:
 def _grown(watch: Watch) -> Array:
     """The unknowns (N,) under full weight and pre-strain; what was met on the way is told to ``watch``."""
     growing = Growing(**vars(watch.work))
-    own = Watch(growing, leaves=watch.leaves, by_load=True, place=_place)
+    own = Watch(growing, leaves=watch.leaves, by_load=True, place=Place(system=None))
     newton = solve(growing, watch.work.system.rest, 0.0)
     try:
         begin = stand(growing, newton.z, 0.0, newton.energies)
@@ -84,10 +85,6 @@ def _grown(watch: Watch) -> Array:
         raise InvalidParameter("scene", message, "an equilibrium under all of its weight and pre-strain")
     watch.leaves, watch.before = own.leaves, own.remark()
     return follower.here.z
-
-
-def _place(share: float, rotation: float = np.nan) -> str:
-    return f"{100 * share:.6g} % of weight and pre-strain"
 
 
 def _is_preloaded(system: System) -> bool:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -52,15 +53,16 @@ def follow_rotations(
     """The scene driven to ``largest`` [rad], and its path through signed load factors.
 
     driven: the scene that is driven to a rotation. Where the factor is below zero the body turns
-    the other way and the loads still grow with its size: that part is the path of the scene
-    driven to -``largest``, which begins where the other one has come back to rest. start: signed
+    the other way and the loads still grow with its size: under loads that part is the path of the
+    scene driven to -``largest``, which begins where the other one has come back to rest. start: signed
     factor and unknowns (N,). The path's load factors are signed, those of critical points are not.
     """
     path, done, back = None, 0, False
-    for side in _sides(factors, 0.0 if start is None else start[0]):
-        system = compile_scene(driven(side.sign * largest))
-        aims = [abs(factor) for factor in side.factors] + [0.0] * side.returns
-        begin = None if start is None else (abs(start[0]), start[1])
+    whole = compile_scene(driven(largest))
+    for side in _sides(whole, factors, 0.0 if start is None else start[0]):
+        system = whole if side.sign > 0.0 else compile_scene(driven(-largest))
+        aims = [side.sign * factor for factor in side.factors] + [0.0] * side.returns
+        begin = None if start is None else (side.sign * start[0], start[1])
         told = None if progress is None else _later(progress, done, len(factors))
         part = follow(system, aims, told, start=begin, branch=branch)
         if part.critical_points:
@@ -71,11 +73,14 @@ def follow_rotations(
             break
         start, done, back = (0.0, path.states[-1]), done + len(side.factors), side.returns
     assert path is not None, "a path has at least one rotation"
-    return compile_scene(driven(largest)), path
+    points = tuple(replace(point, load_factor=abs(point.load_factor)) for point in path.critical_points)
+    return whole, replace(path, critical_points=points)
 
 
-def _sides(factors: Array, begin: float) -> list[Side]:
-    """The factors by their side of rest, which is that of the start where they are zero."""
+def _sides(system: System, factors: Array, begin: float) -> list[Side]:
+    """The factors by their side of rest, which is that of the start where they are zero; one without loads."""
+    if not system.tables.loads.value.any() and np.count_nonzero(system.tables.drives.target) < 2:
+        return [Side(sign=1.0, factors=tuple(factors), returns=False)]
     signs = np.sign(np.append(begin, factors))
     for i in range(1, len(signs)):
         signs[i] = signs[i] or signs[i - 1]
@@ -100,7 +105,7 @@ def _later(progress: Progress, done: int, total: int) -> Progress:
 def _joined(before: Path, after: Path, back: bool) -> Path:
     """Two parts of a path, the second begun where the first ends; back: at a rest that nobody asked for."""
     kept = len(before.work) - back
-    parts = {
+    parts: dict[str, Any] = {
         name: np.concatenate((getattr(before, name)[:kept], getattr(after, name)[1:])) for name in BY_STATE
     }
     parts["work"][kept:] += before.work[-1]

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
+from dataclasses import dataclass
 
 from spline_model.compile import System
 from spline_model.continuation.critical import BIFURCATION, LIMIT
@@ -12,19 +13,33 @@ from spline_model.effects import AppliedForce, AppliedMoment, DrivenDisplacement
 from spline_model.effects.base import Constraint, Load
 from spline_model.solution import CriticalPoint
 
-Place = Callable[[float, float], str]
-"""What a load factor and a driven rotation [rad], nan without one, are called."""
 
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Place:
+    """What the load factors of a path are called, with rotation [deg], ways [mm], forces [N], moments [N m].
 
-def place_of(system: System) -> Place:
-    """The load factors of a system in words: rotation [deg], forces [N], moments [N m] and ways [mm]."""
+    system: None where they are shares of weight and pre-strain.
+    """
 
-    def place(load_factor: float, rotation: float = math.nan) -> str:
-        parts = _drives(system, load_factor, rotation) + _loads(system, load_factor)
-        words = f"load factor {load_factor:.6g}"
-        return f"{words} ({', '.join(parts)})" if parts else words
+    system: System | None
 
-    return place
+    def at(self, load_factor: float, rotation: float = math.nan) -> str:
+        """One place; rotation [rad] of the driven body, if it is known better than by the load factor."""
+        if self.system is None:
+            return f"{100 * load_factor:.6g} % of weight and pre-strain"
+        return f"load factor {abs(load_factor):.6g}{self._acting(load_factor, rotation)}"
+
+    def between(self, last: float, following: float) -> str:
+        """Two neighbouring places."""
+        if self.system is None:
+            return f"{100 * last:.6g} and {self.at(following)}"
+        acting = self._acting(following, math.nan)
+        return f"load factor {abs(last):.6g} and {abs(following):.6g}{acting}"
+
+    def _acting(self, load_factor: float, rotation: float) -> str:
+        assert self.system is not None
+        parts = _drives(self.system, load_factor, rotation) + _loads(self.system, load_factor)
+        return f" ({', '.join(parts)})" if parts else ""
 
 
 def _drives(system: System, load_factor: float, rotation: float) -> list[str]:
@@ -55,7 +70,7 @@ def remark(system: System, place: Place, critical: Sequence[CriticalPoint], iner
     """
     said = []
     for kind in dict.fromkeys(c.kind for c in critical):
-        places = ", ".join(place(c.load_factor, c.rotation) for c in critical if c.kind == kind)
+        places = ", ".join(place.at(c.load_factor, c.rotation) for c in critical if c.kind == kind)
         said.append(f"{kind} at {places}: {_meaning(system, kind)}")
     if inertia > 0:
         said.append("the last state is unstable: it buckles unless it is held")
@@ -75,5 +90,5 @@ def _meaning(system: System, kind: str) -> str:
 
 def left(place: Place, crossing: CriticalPoint) -> str:
     """That the path is another one from a bifurcation on."""
-    where = place(crossing.load_factor, crossing.rotation)
+    where = place.at(crossing.load_factor, crossing.rotation)
     return f"{BIFURCATION} at {where}: it buckles, the path goes on along the branch that crosses there"

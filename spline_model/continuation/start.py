@@ -48,6 +48,7 @@ def first_point(watch: Watch, start: tuple[float, Array] | None) -> tuple[Point,
 
 def last_state(start: Path | StaticSolution | MechanismSolution, angle: float = 1.0) -> tuple[float, Array]:
     """Load factor and unknowns where a result ended; of a pivot turned by ``angle`` at most, signed."""
-    turned = isinstance(start, StaticSolution) and angle != 0.0
-    at = start.rotation / angle if turned else start.load_factor
+    if isinstance(start, StaticSolution) and angle != 0.0:
+        return float(start.rotation[-1]) / angle, start.states[-1]
+    at = start.load_factor
     return float(at[-1]), start.states[-1]

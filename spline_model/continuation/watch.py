@@ -14,7 +14,7 @@ from spline_model.continuation.branch import leave
 from spline_model.continuation.critical import BIFURCATION, between
 from spline_model.continuation.integration import UNCONFIRMED, Finer
 from spline_model.continuation.point import Point, directed
-from spline_model.continuation.remark import Place, left, place_of, remark
+from spline_model.continuation.remark import Place, left, remark
 from spline_model.continuation.resolution import Resolution
 from spline_model.newton import Workspace
 from spline_model.solution import CriticalPoint, Path, Status
@@ -37,7 +37,7 @@ class Watch:
 
     def __init__(self, work: Workspace, *, leaves: bool, by_load: bool, place: Place | None = None) -> None:
         self.work, self.leaves, self.by_load = work, leaves, by_load
-        self.place, self.before = place or place_of(work.system), ""
+        self.place, self.before = place or Place(system=work.system), ""
         self.resolution = Resolution(work.system)
         self.critical: list[CriticalPoint] = []
         self.note = ""
@@ -98,8 +98,7 @@ class Watch:
         sound = self._finer is None or self._finer.agrees(here)
         if sound and goes * abs(here.load_factor - first.load_factor) > STEEP * went:
             reason = f"it buckles, a limit point: the stiffness vanishes there ({reason})"
-        last, next_ = (self.place(factor, np.nan) for factor in (here.load_factor, aim))
-        return f"stopped between {last} and {next_}: {reason}"
+        return f"stopped between {self.place.between(here.load_factor, aim)}: {reason}"
 
     def remark(self, inertia: int = 0) -> str:
         """What is said of a path that reached its end, at a state of an inertia."""

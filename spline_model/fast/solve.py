@@ -16,7 +16,7 @@ from spline_model.compile import System
 from spline_model.continuation.critical import between
 from spline_model.continuation.integration import Finer
 from spline_model.continuation.point import stand
-from spline_model.continuation.remark import place_of, remark
+from spline_model.continuation.remark import Place, remark
 from spline_model.design import Design
 from spline_model.effects.constraints import GROUND
 from spline_model.effects.registry import MOTION_ONLY
@@ -225,7 +225,7 @@ def path_of(mechanism: Mechanism, system: System, rotations: Sequence[float], an
         return None
     return Path(
         status=Status.CONVERGED,
-        message=remark(system, place_of(system), critical, int(answer.inertia[-1])),
+        message=remark(system, Place(system=system), critical, int(answer.inertia[-1])),
         load_factor=factors,
         states=states,
         rates=rates,

@@ -229,7 +229,7 @@ def test_an_imperfect_column_reports_no_bifurcation(increments):
 
 
 def test_a_buckled_column_is_told_in_newtons():
-    """Requirement: a path that passed a bifurcation says the load there, and that its last state is unstable."""
+    """Requirement: a path that passed a bifurcation says the load there, and that its end is unstable."""
     answer = solve_mechanism(column(load=4.0, control_points=8), increments=5)
     assert "bifurcation at load factor 0.61" in answer.message  # pi^2 / 16
     assert "(force 2.46" in answer.message

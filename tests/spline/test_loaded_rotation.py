@@ -31,7 +31,9 @@ DEGREES = (-30.0, -1.0, 1.0, 30.0)
 def loaded(parameters, **settings):
     """The pivot of Table 1 under loads, by the names and parameters of their effects."""
     effects = ("bending", "stretching", *parameters)
-    return cross_axis_pivot(**(TABLE_ONE | {"control_points": 8} | settings), effects=effects, parameters=parameters)
+    return cross_axis_pivot(
+        **(TABLE_ONE | {"control_points": 8} | settings), effects=effects, parameters=parameters
+    )
 
 
 def turned(parameters, degrees, **how):
@@ -41,7 +43,7 @@ def turned(parameters, degrees, **how):
 
 @pytest.mark.parametrize("degrees", DEGREES)
 def test_a_dead_moment_shifts_the_torque_and_has_no_stiffness(degrees):
-    """Requirement: under a dead moment the torque is the unloaded one less the moment, the stiffness the same."""
+    """Requirement: a dead moment is subtracted from the torque and leaves the stiffness as it is."""
     bare, under = turned({}, degrees), turned(LOADS["moment"], degrees)
     share = np.linspace(0.0, 1.0, 6)
     scale = np.abs(bare.torque).max() + MOMENT
@@ -51,7 +53,7 @@ def test_a_dead_moment_shifts_the_torque_and_has_no_stiffness(degrees):
 
 
 def test_stiffness_of_table_1_under_a_dead_moment():
-    """Requirement: Table 1 under 100 N m has 505.5 N m/rad at rest and 569.5 at 30 deg, pivot and mechanism."""
+    """Requirement: Table 1 under 100 N m has 505.5 N m/rad at rest and 569.5 at 30 deg."""
     made = loaded(LOADS["moment"])
     pivot = solve_statics(made, rotation=math.radians(30))
     body = solve_mechanism(made.mechanism, rotation=math.radians(30))
@@ -62,9 +64,9 @@ def test_stiffness_of_table_1_under_a_dead_moment():
 
 @pytest.mark.parametrize("name", ["force", "led"])
 def test_a_load_in_the_mirror(name):
-    """Requirement: the mirror image of rotation and load has the mirror image of the torque, the same stiffness."""
-    (effect, given), = LOADS[name].items()
-    (key, (x, y)), = given.items()
+    """Requirement: in the mirror, rotation and load have the mirrored torque and the same stiffness."""
+    ((effect, given),) = LOADS[name].items()
+    ((key, (x, y)),) = given.items()
     one, other = turned(LOADS[name], 20.0), turned({effect: {key: (-x, y)}}, -20.0)
     scale = np.abs(one.torque).max()
     assert np.abs(one.torque + other.torque).max() < 1e-9 * scale
@@ -108,7 +110,7 @@ def test_loaded_stiffness_gate_has_teeth():
 
 @pytest.mark.parametrize("name", ["moment", "force"])
 def test_a_path_through_both_sides_carries_the_load_with_its_sign(name):
-    """Requirement: there, through rest and back, loads go with |rotation| over the largest one; work is energy."""
+    """Requirement: through rest and back, loads go with |rotation| over the largest; work is energy."""
     legs = [math.radians(d) for d in (20.0, -30.0, 10.0)]
     path = solve_statics(loaded(LOADS[name]), rotation=legs, increments=3)
     assert np.allclose(path.load_factor, np.abs(path.rotation) / math.radians(30))
@@ -130,7 +132,7 @@ def test_a_loaded_path_goes_on_from_a_solution():
 
 
 def test_accuracy_and_guesses_have_the_sign_of_the_load():
-    """Requirement: a wanted accuracy and a guess lead to the same torque as the path, at a negative rotation."""
+    """Requirement: at a negative rotation a wanted accuracy and a guess lead to the torque of the path."""
     right = turned(LOADS["force"], -30.0, increments=20)
     made, rotation = loaded(LOADS["force"]), math.radians(-30)
     accurate = solve_statics(made, rotation=rotation, accuracy=1e-3)
@@ -143,7 +145,7 @@ def test_accuracy_and_guesses_have_the_sign_of_the_load():
 
 
 def test_a_held_pivot_is_loaded():
-    """Requirement: with rotation 0 the body is held and the loads grow; its torque and stiffness are known."""
+    """Requirement: with rotation 0 the body is held and the loads grow; torque and stiffness are known."""
     made = loaded(LOADS["moment"])
     answers = (
         solve_statics(made, rotation=0.0, increments=4),
@@ -164,7 +166,7 @@ def test_a_held_pivot_without_a_load_is_refused():
 
 
 def test_a_held_pivot_tips_where_its_own_stiffness_vanishes():
-    """Requirement: a limit of the torque under growing loads is where the stiffness vanishes, told in newtons."""
+    """Requirement: under growing loads a limit of the torque is where the stiffness vanishes, in newtons."""
     made = loaded({"applied_force": {"force": (0.0, -5e4)}})
     answers = [solve_statics(made, rotation=0.0, increments=count) for count in (3, 10)]
     answers.append(solve_statics(made, rotation=math.radians(0.01), increments=10))
@@ -181,7 +183,7 @@ def test_a_held_pivot_tips_where_its_own_stiffness_vanishes():
 
 
 def test_a_ramp_of_load_makes_no_limit_of_the_torque():
-    """Requirement: where the torque turns because a moment grows beside the rotation, there is no limit point."""
+    """Requirement: where the torque turns because a moment grows beside it, there is no limit point."""
     answer = turned({"applied_moment": {"moment": 270.0}}, 30.0, increments=20)
     assert (np.diff(answer.torque) < 0).any()
     assert (np.diff(answer.torque) > 0).any()
@@ -190,7 +192,7 @@ def test_a_ramp_of_load_makes_no_limit_of_the_torque():
 
 
 def test_a_loaded_path_that_stops_says_where():
-    """Requirement: a path that stops says so in degrees and newtons, with the share of the path it reached."""
+    """Requirement: a path that stops says so in degrees and newtons, with the share that it reached."""
     made = loaded({"applied_force": {"force": (0.0, -3e6)}})
     with pytest.raises(ConvergenceError, match=r"stopped between .*rotation -.* deg, force .* N") as caught:
         solve_statics(made, rotation=math.radians(-5), increments=5)
