@@ -63,7 +63,7 @@ def settle(watch: Watch) -> Newton:
     Raises InvalidParameter where they cannot grow to their full size.
     """
     work = watch.work
-    z = _grown(watch) if _is_preloaded(work.system) else work.system.rest
+    z = _grown(watch) if is_preloaded(work.system) else work.system.rest
     newton = solve(work, z, 0.0)
     if newton.reason:
         raise InvalidParameter("scene", newton.reason, "an equilibrium at load factor 0, near rest")
@@ -87,7 +87,7 @@ def _grown(watch: Watch) -> Array:
     return follower.here.z
 
 
-def _is_preloaded(system: System) -> bool:
+def is_preloaded(system: System) -> bool:
     """Whether weight or pre-strain act."""
     tables = system.tables
     strains = (tables.stretching.strain, tables.axial_force.strain, tables.weight)

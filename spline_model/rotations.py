@@ -49,6 +49,7 @@ def follow_rotations(
     *,
     start: tuple[float, Array] | None = None,
     branch: str = "primary",
+    method: str = "condensed",
 ) -> tuple[System, Path]:
     """The scene driven to ``largest`` [rad], and its path through signed load factors.
 
@@ -64,7 +65,7 @@ def follow_rotations(
         aims = [side.sign * factor for factor in side.factors] + [0.0] * side.returns
         begin = None if start is None else (side.sign * start[0], start[1])
         told = None if progress is None else _later(progress, done, len(factors))
-        part = follow(system, aims, told, start=begin, branch=branch)
+        part = follow(system, aims, told, start=begin, branch=branch, method=method)
         if part.critical_points:
             branch = "primary"  # the branch was left, or there was none to follow
         part = replace(part, load_factor=side.sign * part.load_factor, rates=side.sign * part.rates)

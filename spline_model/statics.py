@@ -137,7 +137,9 @@ def _along(
         laps.lap("compile")
         begin = None if start is None else last_state(start, largest)
         factors = factors_of(rotations, largest)
-        system, path = follow_rotations(pivot.driven, largest, factors, progress, start=begin, branch=branch)
+        system, path = follow_rotations(
+            pivot.driven, largest, factors, progress, start=begin, branch=branch, method=method
+        )
         laps.lap("solve")
     return pivot_answer(system, path, laps)
 

@@ -54,7 +54,6 @@ class Space(NamedTuple):
     out: Array
     reaction: Array
     reaction_rate: Array
-    held_rate: Array
 
 
 def working_space(bodies: Bodies, size: int) -> Space:
@@ -77,7 +76,6 @@ def working_space(bodies: Bodies, size: int) -> Space:
         out=np.zeros(5),
         reaction=np.zeros(d),
         reaction_rate=np.zeros(d),
-        held_rate=np.zeros(d),
     )
 
 

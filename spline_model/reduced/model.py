@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -93,6 +94,7 @@ def _known(scene: Scene, system: System) -> bool:
     )
 
 
+@lru_cache(maxsize=64)
 def _shape(basis: SplineBasis, points: int) -> Shape:
     n = basis.control_points
     order = np.array([*range(2, n - 2), 1, n - 2, n - 1, 0], dtype=np.int64)

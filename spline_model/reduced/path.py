@@ -1,7 +1,7 @@
 """An equilibrium path of any mechanism, compiled: predict, correct, check, halve.
 
-The path goes through given values of the held coordinates and of the load factor, linear between
-them in a parameter t. Nothing is said here of why it stops: the bordered path does that.
+Held coordinates and loads are linear in one factor. Stable states only: where the path becomes
+unstable, or stops, the bordered path finds out why.
 """
 
 from __future__ import annotations
@@ -39,17 +39,21 @@ SMALLEST_STEP = 2.0**-10
 
 
 class Route(NamedTuple):
-    """Where a path goes: t (S,), held coordinates (S, D) and load factors (S,); the first row is its start."""
+    """Where a path goes: factors (S,), the first one its start; held coordinates are origin + factor
+    x target (D,), the load factor is load + factor x growth."""
 
-    at: Array
-    held: Array
-    load: Array
+    factor: Array
+    origin: Array
+    target: Array
+    load: float
+    growth: float
 
 
 class Answer(NamedTuple):
-    """S states: y (S, Y); reaction and its rate in t (S, D); stiffness (S,) of the driven rotation at fixed
-    loads; rate (S, 3 B) of the bodies in t; energies (S, 3) bending, axial, dead; inertia, defect (S,);
-    counters (3,)."""
+    """S states: y (S, Y); reaction and its rate in the factor (S, D); stiffness (S,) of the driven rotation at
+    fixed loads; rate (S, 3 B) of the bodies; energies (S, 2) bending, axial; done (S,) the potential's
+    derivative integrated over the factor; inertia, defect (S,); counters (3,).
+    """
 
     y: Array
     reaction: Array
@@ -57,6 +61,7 @@ class Answer(NamedTuple):
     stiffness: Array
     rate: Array
     energies: Array
+    done: Array
     inertia: NDArray[np.int64]
     defect: Array
     counters: NDArray[np.int64]
@@ -70,7 +75,8 @@ def empty_answer(states: int, size: int, bodies: int, held: int) -> Answer:
         reaction_rate=np.zeros((states, held)),
         stiffness=np.full(states, np.nan),
         rate=np.zeros((states, bodies)),
-        energies=np.zeros((states, 3)),
+        energies=np.zeros((states, 2)),
+        done=np.zeros(states),
         inertia=np.zeros(states, dtype=np.int64),
         defect=np.zeros(states),
         counters=np.zeros(3, dtype=np.int64),
@@ -120,7 +126,7 @@ def entry(matrix, i, j):
 
 @part()
 def tangent(held_rate, load_rate, bodies, strips, shape, local, space):
-    """Rates in t at a state that was just solved, in ``space.rate``; reactions and their rates in ``space``.
+    """Rates in the factor at a state that was just solved, in ``space.rate``; reactions and their rates in ``space``.
 
     The residual that is left is carried to equilibrium by the tangent.
     """
@@ -169,7 +175,7 @@ def stiffness_of(bodies, space):
 
 @kernel()
 def predict(t, known, at, known_y, known_rate, predicted):
-    """Hermite's polynomial through the last ``known`` states and rates, at t, into predicted."""
+    """Hermite's polynomial through the last ``known`` states and rates at a factor t, into predicted."""
     for k in range(predicted.size):
         predicted[k] = 0.0
     for i in range(known):
@@ -206,16 +212,17 @@ def accepted(y, known, bodies, strips, shape, space):
 
 
 @part()
-def conjugate(held_rate, load_rate, bodies, y, reaction, rate):
-    """Derivative of the potential in t and, with rates, that one's: reactions on drives less moved loads."""
-    total = change = 0.0
+def conjugate(held_rate, load_rate, bodies, y, space):
+    """First and second derivative of the potential in the factor: of reactions on drives, less moved loads."""
+    slope = bend = 0.0
     for d in range(bodies.held.size):
-        total += reaction[d] * held_rate[d]
+        slope += space.reaction[d] * held_rate[d]
+        bend += space.reaction_rate[d] * held_rate[d]
     if load_rate != 0.0:
         for i in range(bodies.rest.size):
-            total -= load_rate * bodies.load[i] * (y[i] - bodies.rest[i])
-            change -= load_rate * bodies.load[i] * rate[i]
-    return total, change
+            slope -= load_rate * bodies.load[i] * (y[i] - bodies.rest[i])
+            bend -= load_rate * bodies.load[i] * space.rate[i]
+    return slope, bend
 
 
 @kernel()
@@ -247,53 +254,39 @@ def keep_last(known, at, known_y, known_rate):
 def follow(start, route, judged, bodies, strips, shape, local, space, tolerance, answer):
     """Follow a path from ``start`` (Y,) through the route; returns the number of states that converged.
 
-    judged: whether the moment defect refuses. A state with other negative eigenvalues than the first, or
-    with a stiffness of another sign, ends the path: what happens between is not for here.
+    judged: whether the moment defect refuses. A state with negative eigenvalues, or with a stiffness of
+    another sign than the one before, ends the path: what happens between is not for here.
     """
-    y, out, counters = space.y, space.out, answer.counters
-    held = bodies.held
+    y, out, counters, factors = space.y, space.out, answer.counters, route.factor
+    held, targets = bodies.held, route.target
     copy(start, y)
-    known, number = 0, 0
-    t = route.at[0]
-    energy = done_from = slope_from = defect = stiffness = 0.0
-    for row in range(route.at.size):
-        previous = max(row - 1, 0)
-        ahead = max(row, 1)
-        if route.at.size == 1:
-            ahead = 0
-        span = route.at[ahead] - route.at[ahead - 1] if ahead > 0 else 1.0
-        load_rate = (route.load[ahead] - route.load[ahead - 1]) / span if ahead > 0 else 0.0
-        held_rate = space.held_rate
-        for d in range(held.size):
-            held_rate[d] = (route.held[ahead, d] - route.held[ahead - 1, d]) / span if ahead > 0 else 0.0
-        begin, step = t, route.at[row] - t
+    known, at = 0, factors[0]
+    energy = gradient = curvature = done = defect = stiffness = 0.0
+    for row in range(factors.size):
+        begin, step = at, factors[row] - at
+        if known > 1 and step * (at - space.known_at[known - 2]) < 0.0:  # the path turns back
+            keep_last(known, space.known_at, space.known_y, space.known_rate)
+            known = 1
         whole = step
         while True:
-            last, here = True, route.at[row]
-            sound = True
+            last, here = True, factors[row]
             if row > 0:
-                last = abs(here - t) <= abs(step) * (1 + 1e-9)
+                last = abs(here - at) <= abs(step) * (1 + 1e-9)
                 if not last:
-                    here = t + step
-                if known > 1 and abs(here - t) > 2 * abs(t - space.known_at[known - 2]):
+                    here = at + step
+                if known > 1 and abs(here - at) > 2 * abs(at - space.known_at[known - 2]):
                     keep_last(known, space.known_at, space.known_y, space.known_rate)
                     known = 1
                 predict(here, known, space.known_at, space.known_y, space.known_rate, space.predicted)
                 copy(space.predicted, y)
-            share = (here - route.at[previous]) / span if row > 0 else 0.0
             for d in range(held.size):
-                a, b = route.held[previous, d], route.held[row, d]
-                y[held[d]] = b if last else a + share * (b - a)
-                space.predicted[held[d]] = y[held[d]]
-            a, b = route.load[previous], route.load[row]
-            load = b if last else a + share * (b - a)
+                y[held[d]] = space.predicted[held[d]] = route.origin[d] + here * targets[d]
+            load = route.load + here * route.growth
             negative = newton(y, load, bodies, strips, shape, local, space, tolerance, counters)
-            sound = negative >= 0 and (row == 0 or accepted(y, known, bodies, strips, shape, space))
+            sound = negative == 0 and (row == 0 or accepted(y, known, bodies, strips, shape, space))
             if sound:
-                tangent(held_rate, load_rate, bodies, strips, shape, local, space)
-                done, slope = conjugate(held_rate, load_rate, bodies, y, space.reaction, space.rate)
-                for d in range(held.size):
-                    slope += space.reaction_rate[d] * held_rate[d]
+                tangent(targets, route.growth, bodies, strips, shape, local, space)
+                slope, bend = conjugate(targets, route.growth, bodies, y, space)
                 wrong, stored = moment_defect(y, strips, shape, local)
                 defect = root_of(wrong, stored, SMALLEST_MOMENT)
                 total = out[BENDING] + out[AXIAL] + out[DEAD]
@@ -301,30 +294,26 @@ def follow(start, route, judged, bodies, strips, shape, local, space, tolerance,
                     total -= load * bodies.load[i] * (y[i] - bodies.rest[i])
                 sound = not (judged and defect > LARGEST_DEFECT)
                 if sound and row > 0:
-                    width = here - t
-                    work = 0.5 * width * (done_from + done) + width * width / 12.0 * (slope_from - slope)
-                    gained = total - energy
-                    scale = max(abs(gained), 0.5 * abs(width) * (abs(done_from) + abs(done)))
+                    width, gained = here - at, total - energy
+                    work = 0.5 * width * (gradient + slope) + width * width / 12.0 * (curvature - bend)
+                    scale = max(abs(gained), 0.5 * abs(width) * (abs(gradient) + abs(slope)))
                     floor = ROUND_OFF * (1.0 + abs(out[BENDING]) + abs(out[AXIAL]))
                     sound = abs(gained - work) <= WORK_MISMATCH * scale + floor
+                    done += work if sound else 0.0
                 if sound:
-                    energy, done_from, slope_from = total, done, slope
+                    energy, gradient, curvature = total, slope, bend
             if not sound:
                 counters[HALVED] += 1
                 step *= 0.5
                 if row == 0 or abs(step) < SMALLEST_STEP * abs(whole):
                     return row
                 continue
-            t = here
-            if row == 0:
-                number = negative
-            elif negative != number:
-                return row
-            known = remember(t, y, space.rate, known, space.known_at, space.known_y, space.known_rate)
+            at = here
+            known = remember(at, y, space.rate, known, space.known_at, space.known_y, space.known_rate)
             if last:
                 break
-            done_steps = abs(t - begin) / abs(step)
-            if abs(step) < abs(whole) and round(done_steps) % 2 == 0:
+            steps = abs(at - begin) / abs(step)
+            if abs(step) < abs(whole) and round(steps) % 2 == 0:
                 step *= 2.0
         if bodies.driven >= 0:
             before = stiffness
@@ -338,20 +327,5 @@ def follow(start, route, judged, bodies, strips, shape, local, space, tolerance,
         for i in range(bodies.rest.size):
             answer.rate[row, i] = space.rate[i]
         answer.energies[row, 0], answer.energies[row, 1] = out[BENDING], out[AXIAL]
-        answer.energies[row, 2] = out[DEAD]
-        answer.inertia[row], answer.defect[row] = negative, defect
-    return route.at.size
-
-
-@part()
-def turned(row, route):
-    """Whether the route changes its direction at the state before ``row``."""
-    before, after = route.at[row - 1] - route.at[row - 2], route.at[row] - route.at[row - 1]
-    size = abs(route.load[row - 1] - route.load[row - 2]) / before
-    change = abs((route.load[row] - route.load[row - 1]) / after - (route.load[row - 1] - route.load[row - 2]) / before)
-    for d in range(route.held.shape[1]):
-        old = (route.held[row - 1, d] - route.held[row - 2, d]) / before
-        new = (route.held[row, d] - route.held[row - 1, d]) / after
-        size = max(size, abs(old))
-        change = max(change, abs(new - old))
-    return change > 1e-9 * size
+        answer.inertia[row], answer.defect[row], answer.done[row] = negative, defect, done
+    return factors.size
