@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
 
+from spline_model.basis import AxialModes, SplineBasis
 from spline_model.layout import Layout
 from spline_model.scene import Strip
 
@@ -57,23 +59,49 @@ def strip_points(strips: Sequence[tuple[Strip, int]], layout: Layout) -> Points:
     )
 
 
-def _points_of(source: int, strip: Strip, count: int, layout: Layout, widest: int) -> dict[str, NDArray]:
-    basis = strip.basis
+@lru_cache(maxsize=256)
+def _tables(basis: SplineBasis, count: int) -> tuple[Array, Array, NDArray[np.int64], Array, Array, Array, Array]:
+    """u, weight, first of the support (P,), its d1, d2 (P, degree + 1), and of all functions (P, n); kept."""
     u, weight = basis.gauss_rule(count)
     support = basis.first_of_support(u)
     columns = support[:, None] + np.arange(basis.degree + 1)
-    padding = ((0, 0), (0, widest - basis.degree - 1))
     first, second = basis.evaluate(u, 1), basis.evaluate(u, 2)
+    narrow = (np.take_along_axis(values, columns, axis=1) for values in (first, second))
+    kept = (u, weight, support, *narrow, first, second)
+    for array in kept:
+        array.setflags(write=False)
+    return kept
+
+
+@lru_cache(maxsize=256)
+def modes_at(modes: AxialModes, basis: SplineBasis, count: int) -> tuple[NDArray[np.int64], Array]:
+    """First mode of the support and the values at the Gauss points, as ``modes.evaluate``; kept."""
+    kept = modes.evaluate(basis.gauss_rule(count)[0])
+    for array in kept:
+        array.setflags(write=False)
+    return kept
+
+
+def _points_of(source: int, strip: Strip, count: int, layout: Layout, widest: int) -> dict[str, NDArray]:
+    basis = strip.basis
+    u, weight, support, d1, d2, first, second = _tables(basis, count)
     tangent, bend = first @ strip.control_points, second @ strip.control_points
-    speed = np.hypot(*tangent.T)
+    speed = np.hypot(tangent[:, 0], tangent[:, 1])
     return {
         "source": np.full(len(u), source, dtype=np.int64),
         "u": u,
         "weight": weight,
         "first": layout.strips[strip.name][0] + 2 * support,
         "width": np.full(len(u), basis.degree + 1, dtype=np.int64),
-        "d1": np.pad(np.take_along_axis(first, columns, axis=1), padding),
-        "d2": np.pad(np.take_along_axis(second, columns, axis=1), padding),
+        "d1": _widened(d1, widest),
+        "d2": _widened(d2, widest),
         "speed": speed,
         "curvature": (tangent[:, 0] * bend[:, 1] - tangent[:, 1] * bend[:, 0]) / speed**3,
     }
+
+
+def _widened(values: Array, width: int) -> Array:
+    """Rows with zeros behind, as wide as the widest support of the scene."""
+    if values.shape[1] == width:
+        return values
+    return np.pad(values, ((0, 0), (0, width - values.shape[1])))

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
 
+from spline_model.basis import AxialModes, SplineBasis
 from spline_model.compile import System
 from spline_model.effects import Clamp, MixedStretching, Stretching, StripGravity
 from spline_model.effects.base import Constraint
@@ -36,9 +38,10 @@ def sections(system: System, states: Array, strip_name: str, stations: Array) ->
     strip = scene.strip(strip_name)
     basis = strip.basis
     points = states[:, layout.strip(strip_name)].reshape(len(states), -1, 2)
-    shape, tangent, bend = (basis.evaluate(stations, order) @ points for order in range(3))
-    speed = np.linalg.norm(tangent, axis=-1)
-    at_rest = [basis.evaluate(stations, order) @ strip.control_points for order in (1, 2)]
+    values = _basis_at(basis, tuple(stations))
+    shape, tangent, bend = (each @ points for each in values)
+    speed = np.hypot(tangent[..., 0], tangent[..., 1])
+    at_rest = [each @ strip.control_points for each in values[1:]]
     rest_speed = np.hypot(*at_rest[0].T)
     rest_curvature = _cross(at_rest[0], at_rest[1]) / rest_speed**3
 
@@ -55,7 +58,7 @@ def sections(system: System, states: Array, strip_name: str, stations: Array) ->
             force += consistent.axial_rigidity * (speed / rest_speed - 1.0 - consistent.natural_strain)
     for i, mixed in enumerate(scene.of(MixedStretching)):
         if mixed.strip == strip_name:
-            first, modes = mixed.modes.evaluate(stations)
+            first, modes = _modes_at(mixed.modes, tuple(stations))
             columns = first[:, None] + np.arange(modes.shape[1])
             force += np.einsum("pk,spk->sp", modes, states[:, layout.axial_modes(i)][:, columns])
 
@@ -71,6 +74,19 @@ def sections(system: System, states: Array, strip_name: str, stations: Array) ->
         bending_moment=moment,
         shear_force=np.einsum("spi,spi->sp", np.broadcast_to(pull, normal.shape), normal),
     )
+
+
+@lru_cache(maxsize=64)
+def _basis_at(basis: SplineBasis, stations: tuple[float, ...]) -> tuple[Array, Array, Array]:
+    """The basis and its first two derivatives at stations; kept."""
+    u = np.array(stations)
+    return basis.evaluate(u), basis.evaluate(u, 1), basis.evaluate(u, 2)
+
+
+@lru_cache(maxsize=64)
+def _modes_at(modes: AxialModes, stations: tuple[float, ...]) -> tuple[NDArray[np.int64], Array]:
+    """Axial modes at stations; kept."""
+    return modes.evaluate(np.array(stations))
 
 
 def clamp_reactions(system: System, states: Array, strip: str, end: str) -> Array:

@@ -31,7 +31,7 @@ from spline_model.kernels.clamps import ClampTable
 from spline_model.kernels.drives import DriveTable, LoadTable
 from spline_model.kernels.stretching import StretchingTable
 from spline_model.layout import Layout
-from spline_model.quadrature import Points, strip_points
+from spline_model.quadrature import Points, modes_at, strip_points
 from spline_model.scene import Scene
 
 Array = NDArray[np.float64]
@@ -78,7 +78,7 @@ def axial_force_table(
     width = np.zeros(len(points.u), dtype=np.int64)
     for i, (effect, place) in enumerate(zip(effects, places, strict=True)):
         mine = points.source == i
-        support, modes = effect.modes.evaluate(points.u[mine])
+        support, modes = modes_at(effect.modes, scene.strip(effect.strip).basis, effect.gauss_points)
         values[mine, : effect.modes.width] = modes
         first[mine] = layout.modes[place][0] + support
         width[mine] = effect.modes.width
