@@ -17,7 +17,8 @@ ARRAYS = {
     "strain_energy_J",
     "max_stress_Pa",
 }
-KEYS = ARRAYS | {"status", "message", "resolution", "model", "settings", "effects", "counters", "wall_s"}
+KEYS = ARRAYS | {"status", "message", "critical_points", "resolution", "model", "settings", "effects"}
+KEYS |= {"counters", "wall_s"}
 
 
 @pytest.mark.parametrize("model", ["spline", "fe", "fe-shear"])
@@ -61,12 +62,12 @@ def test_settings_of_the_answer_are_those_asked_for(case, command):
 
 
 def test_file_holds_what_the_stream_would(case, command, tmp_path):
-    """`--json FILE` writes the same object as `--json -`, time aside, and leaves no other file."""
+    """`--json FILE` writes the same object as `--json -`, time aside, says so and leaves no other file."""
     words = ["solve", case(), "--model", "fe", "--rotation-deg", 5, "--increments", 1, "--json"]
     streamed = json.loads(command(*words, "-").out)
     outcome = command(*words, tmp_path / "answer.json")
     written = json.loads((tmp_path / "answer.json").read_text(encoding="utf-8"))
-    assert (outcome.code, outcome.out) == (0, "")
+    assert (outcome.code, outcome.out) == (0, f"written: {tmp_path / 'answer.json'}\n")
     assert streamed.keys() == written.keys()
     assert {**streamed, "wall_s": None} == {**written, "wall_s": None}
     assert sorted(path.name for path in tmp_path.iterdir()) == ["answer.json", "case.toml"]
@@ -77,8 +78,9 @@ def test_table_is_short_and_readable(case, command):
     outcome = command("solve", case(), "--model", "fe", "--rotation-deg", 45, "--increments", 3)
     lines = outcome.out.splitlines()
     assert outcome.code == 0
-    assert len(lines) == 3 + 4 + 1
-    assert "N m/rad" in lines[2]
+    assert len(lines) == 4 + 4 + 1
+    assert lines[1] == "effects: bending, stretching"
+    assert "N m/rad" in lines[3]
     assert lines[-2].split()[0] == "45.000"
     assert max(map(len, lines[:-1])) <= 90
 
@@ -100,14 +102,15 @@ def test_repeat_takes_the_median_after_a_warm_up(case, command, monkeypatch):
 
 
 def test_not_converged_keeps_the_path_so_far(case, command):
-    """A path that stops is exit code 3 with its converged part and where and why it stopped."""
+    """A path that stops is exit code 3 with its converged part, how far it came in degrees, and why."""
     words = ["--model", "fe", "--elements", 1, "--rotation-deg", 360, "--increments", 3, "--json", "-"]
     outcome = command("solve", case(("length_m = 0.08", "length_m = 8.08")), *words)
     answer = json.loads(outcome.out)
     assert outcome.code == 3
     assert answer["status"] == "not_converged"
     assert answer["message"]
-    assert outcome.err == f"studies: not converged: {answer['message']}\n"
+    reached = f"reached {math.degrees(answer['rotation_rad'][-1]):.3f} of 360.000 deg"
+    assert outcome.err == f"studies: not converged: {reached}: {answer['message']}\n"
     assert 1 <= len(answer["rotation_rad"]) < 4
     assert {len(answer[name]) for name in ARRAYS} == {len(answer["rotation_rad"])}
 
