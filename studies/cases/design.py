@@ -27,7 +27,7 @@ def read_design(path: str | Path, *, changes: str | None = None) -> Design:
 
 
 def flexural_scale(design: Design) -> float:
-    """Return the largest EI/L of the strips [N m]: what torques and energies of the design are compared with."""
+    """Return the largest EI/L of the strips [N m], which torques and energies are compared with."""
     if isinstance(design, Problem):
         return design.youngs_modulus * design.second_moment_of_area / design.length
     return max(

@@ -150,13 +150,13 @@ def _readable(design: Design, answer: Motion) -> Iterator[str]:
     yield described(answer.model, answer.settings, answer.effects)
     last = len(answer.time) - 1
     shown = sorted({round(last * part / LINES) for part in range(LINES + 1)} if last >= 0 else ())
-    energies = {"kinetic": answer.kinetic_energy[shown], "strain": answer.strain_energy[shown]}
+    kinetic, strain = answer.kinetic_energy[shown], answer.strain_energy[shown]
     yield from table(
         [
             *quantity("s", highest=-3, digits=6, time=answer.time[shown]),
             angle(answer.rotation[shown]),
             *quantity("m", highest=-3, x=answer.centre[shown, 0], y=answer.centre[shown, 1]),
-            *quantity("J", floor=ENERGY_FLOOR * flexural_scale(design), **energies),
+            *quantity("J", floor=ENERGY_FLOOR * flexural_scale(design), kinetic=kinetic, strain=strain),
             plain("clamp gap", (f"{gap:.1e}" for gap in answer.constraint_residual[shown]), "m"),
         ]
     )

@@ -103,7 +103,7 @@ BAD_SCENES = {
     "some signs": (
         'effects = ["bending"',
         'effects = ["+bending"',
-        'scene.effects: got the text "+bending,stretching,strip_inertia,body_inertia,gravity", expected +NAME',
+        'strip_inertia,body_inertia,gravity", expected +NAME and -NAME, or names alone',
     ),
     "a load that is not named": (
         "[drive]",

@@ -39,7 +39,7 @@ def test_small_designs_print_digits(name, case, command):
 
 
 def test_units_say_what_is_printed():
-    """The heading's unit times the number is the quantity, with one prefix for columns that belong together."""
+    """The number in the heading's unit is the quantity; columns that belong together share a prefix."""
     torque, energy = quantity("N m", torque=[0.0, -1.5e-5, 2.5e-3], energy=[1e-3, 2e-3, 3e-3])
     assert (torque.unit, energy.unit) == ("mN m", "mN m")
     assert torque.cells == ("0.000000", "-0.015000", "2.500000")
