@@ -102,6 +102,27 @@ def test_a_table_in_parquet_is_no_text(tmp_path):
     assert _text(table) == ""
 
 
+#: Tests that read a clock, and why; those of the browser (tests/interactive) live in its time.
+CLOCKS = {
+    "tests/bench/test_ratios.py": "`make bench` alone runs them",
+    "tests/sweep/test_command.py": "they wait for another process, with an end that no machine reaches",
+}
+
+
+def test_no_test_judges_seconds():
+    """Tests count work: what else the machine does must not make them red, so that none reads a clock."""
+    clock = re.compile(r"\b(perf_counter|monotonic|process_time|time\.time|timeit)\b(?! *\")")
+    found = [
+        str(path.relative_to(ROOT))
+        for path in sorted((ROOT / "tests").rglob("*.py"))
+        if path.parent.name != "interactive" and clock.search(path.read_text(encoding="utf-8"))
+    ]
+    own = [
+        str(path) for path in (Path("tests/bench/test_counted.py"), Path("tests/suite/test_repository.py"))
+    ]
+    assert sorted({*found} - {*own}) == sorted(CLOCKS)
+
+
 def test_figures_stay_small():
     """No committed figure is larger than 200 kB."""
     figures = [name for name in _committed() if name.startswith("results/figures/")]
