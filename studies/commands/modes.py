@@ -56,7 +56,7 @@ def main(arguments: argparse.Namespace) -> int:
         raise BadInput(f"--rotation-deg: {error}") from None
     require_target(arguments)
     answer = answer_modes(design, settings, rotation=rotation, count=arguments.count, held=arguments.held)
-    failure = None if answer.converged else answer.message
+    failure = None if answer.converged else f"at {arguments.rotation_deg:g} deg: {answer.message}"
     return deliver(arguments, as_document(answer), _readable(answer), failure=failure)
 
 

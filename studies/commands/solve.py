@@ -84,7 +84,7 @@ def main(arguments: argparse.Namespace) -> int:
             how = {"repeat": arguments.repeat, "accuracy": arguments.accuracy}
             pivot = answer_static(design, settings, progress=bar, **how)
             document, lines = as_document(pivot), _readable(design, pivot)
-            failure = None if pivot.converged else f"{_reached(design, pivot)}: {pivot.message}"
+            failure = None if pivot.converged else _stopped(design, pivot)
         else:
             answer = answer_mechanism(design, settings, repeat=arguments.repeat, progress=bar)
             document, lines = mechanism_document(answer), _mechanism_table(design, answer)
@@ -137,10 +137,11 @@ def mechanism_document(answer: MechanismResponse) -> dict[str, Any]:
     }
 
 
-def _reached(problem: Problem, answer: Response) -> str:
-    """Return how far a path came."""
+def _stopped(problem: Problem, answer: Response) -> str:
+    """Return how far a path came, why it stopped, and what mends a discretisation that is too coarse."""
     last = math.degrees(answer.rotation[-1]) if len(answer.rotation) else 0.0
-    return f"reached {last:.3f} of {math.degrees(problem.rotation):.3f} deg"
+    mend = "; --accuracy 1e-3 chooses the control points" if answer.resolution and not answer.estimate else ""
+    return f"reached {last:.3f} of {math.degrees(problem.rotation):.3f} deg: {answer.message}{mend}"
 
 
 def _require_accurate(design: Design, settings: Settings) -> None:

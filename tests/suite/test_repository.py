@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 
 from studies.record.source import ROOT
+from tests.bench import conftest as bench
 
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
 
@@ -121,6 +122,13 @@ def test_no_test_judges_seconds():
         str(path) for path in (Path("tests/bench/test_counted.py"), Path("tests/suite/test_repository.py"))
     ]
     assert sorted({*found} - {*own}) == sorted(CLOCKS)
+
+
+def test_what_compares_times_is_left_out_of_the_tests(pytestconfig):
+    """Ratios of times are collected where benchmarks are asked for, which the tests' options never do."""
+    assert "--benchmark-disable" in PROJECT["tool"]["pytest"]["ini_options"]["addopts"]
+    assert bench.pytest_ignore_collect(ROOT / "tests" / "bench" / bench.TIMED, pytestconfig)
+    assert bench.pytest_ignore_collect(ROOT / "tests" / "bench" / "test_speed.py", pytestconfig) is None
 
 
 def test_figures_stay_small():

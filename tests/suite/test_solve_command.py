@@ -3,6 +3,7 @@
 import dataclasses
 import json
 import math
+import re
 
 import pytest
 
@@ -116,6 +117,25 @@ def test_not_converged_keeps_the_path_so_far(case, command):
     assert outcome.err == f"studies: not converged: {reached}: {answer['message']}\n"
     assert 1 <= len(answer["rotation_rad"]) < 4
     assert {len(answer[name]) for name in ARRAYS} == {len(answer["rotation_rad"])}
+
+
+def test_too_few_control_points_say_so_in_degrees(case, command):
+    """Six points that do not reach 180 degrees of a pivot say how far they came and what reaches it."""
+    skewed = (("crossing_ratio = 0.5", "crossing_ratio = 0.13"), ("= 1.041e-10", "= 1e-12"))
+    path = case(*skewed, ("rotation_deg = 90", "rotation_deg = 180"))
+    outcome = command("solve", path, "--model", "spline")
+    assert outcome.code == 3
+    reached = re.match(r"studies: not converged: reached (\d+\.\d{3}) of 180\.000 deg: ", outcome.err)
+    assert 90.0 < float(reached[1]) < 180.0
+    assert outcome.err.endswith("; --accuracy 1e-3 chooses the control points\n")
+    assert command("solve", path, "--model", "spline", "--accuracy", 1e-3).code == 0
+
+
+def test_modes_beyond_reach_say_where(case, command):
+    """The modes of a state that statics does not reach name its rotation in degrees."""
+    outcome = command("modes", case(), "--model", "spline", "--rotation-deg", 300)
+    assert outcome.code == 3
+    assert outcome.err.startswith("studies: not converged: at 300 deg: statics does not reach the state")
 
 
 def test_accuracy_raises_the_control_points_and_is_reported(case, command):
