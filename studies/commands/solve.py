@@ -7,7 +7,8 @@
 Of a pivot coordinates have their origin at A1, the ground clamp of strip 1; rotation is counter-clockwise.
 With --accuracy control points are added until the estimated error is below it; --control-points are the first
 that are tried. The arrays of the JSON run over the increments, the state of load factor 0 first, and effects
-are those that were assembled. A mechanism without a rotation follows the loads of its scene. Exit code 0:
+are those that were assembled. Critical points that were passed, and what the model remarks on the path, stand
+below the table. A mechanism without a rotation follows the loads of its scene. Exit code 0:
 converged; 2: bad input; 3: not converged, and then the converged part of the path is reported with where and
 why it stopped.
 """
