@@ -14,7 +14,13 @@ from spline_model.accurate_path import solve_accurately
 from spline_model.compile import compile_scene
 from spline_model.continuation.recover import recover
 from spline_model.continuation.start import last_state
-from spline_model.errors import ConvergenceError, InvalidParameter, require_choice, require_count
+from spline_model.errors import (
+    ConvergenceError,
+    InvalidParameter,
+    finite_numbers,
+    require_choice,
+    require_count,
+)
 from spline_model.fast.path import Answer
 from spline_model.fast.solve import follow_fast, is_fast, path_of
 from spline_model.laps import Laps
@@ -92,10 +98,7 @@ def solve_statics(
 
 def _rotations(rotation: float | Sequence[float], increments: int, origin: float) -> Array:
     """The rotations of a path from ``origin`` [rad] on, each leg in ``increments``."""
-    targets = [rotation] if isinstance(rotation, int | float) else list(rotation)
-    for angle in targets:
-        if not math.isfinite(angle):
-            raise InvalidParameter("rotation", angle, "a finite number [rad]")
+    targets = finite_numbers("rotation", rotation, "rad")
     stops = [origin, *targets]
     largest, turns = max(abs(angle) for angle in stops), np.abs(np.diff(stops))
     if largest < LEAST_ROTATION or ((turns > 0.0) & (turns < LEAST_ROTATION)).any():

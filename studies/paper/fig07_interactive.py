@@ -7,7 +7,6 @@ does; the snapshots are the page's own canvas.
 """
 
 import base64
-import importlib.util
 import io
 import time
 from collections.abc import Callable, Hashable, Iterator
@@ -23,6 +22,7 @@ from studies.interactive.film.demo import rotation
 from studies.interactive.pivot.presets import PRESETS, STEPS_A_FRAME
 from studies.interactive.session.session import Session
 from studies.record import style
+from studies.record.extras import absent, lacking
 
 CASES = ("polymer_pivot", "cross_axis_pivot")
 
@@ -43,16 +43,12 @@ REPEATS = 3
 
 def missing() -> str:
     """Return what this machine lacks to compute the study, or nothing."""
-    packages = [name for name in ("cv2", "starlette", "uvicorn", "websockets") if _absent(name)]
+    packages = lacking("interactive", absent(("cv2", "starlette", "uvicorn", "websockets")))
     if packages:
-        return f"it needs the extra `interactive` ({', '.join(packages)} not installed)"
+        return packages
     from studies.interactive.web.browser import NAMES, executable
 
     return "" if executable() else f"it needs a browser (no {NAMES[0]} on the PATH)"
-
-
-def _absent(name: str) -> bool:
-    return importlib.util.find_spec(name) is None
 
 
 def compute(progress: Callable[[int, int], None]) -> dict[str, pd.DataFrame]:

@@ -52,8 +52,8 @@ def test_figure_is_left_as_it_is_without_the_extra(tmp_path):
     done = run("run", "fig07_interactive", "--results", str(tmp_path), code=WITHOUT)
     assert done.returncode == 0
     assert re.fullmatch(
-        r"paper/fig07_interactive: left as it is: it needs the extra `interactive` "
-        r"\(cv2[\w, ]* not installed\)\n",
+        r"paper/fig07_interactive: left as it is: it needs cv2[\w, ]*: "
+        r"python -m pip install '\.\[interactive\]'\n",
         done.stderr,
     )
     assert list(tmp_path.iterdir()) == []
