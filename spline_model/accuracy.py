@@ -31,6 +31,8 @@ MOST = {"bezier": 20, "bspline": 67}
 """Control points at which the search ends: round-off of a Bezier strip, 64 spans of a B-spline."""
 FIRST_GAIN = 6.0
 """By how much a control point is expected to lower the error before it was measured."""
+NOTHING = 1e-9
+"""Displacement in lengths, and torque in stiffness times 1 rad, below which there is none but round-off."""
 GAINS = (2.0, 12.0)
 """Limits of what is believed of a measured gain: the error does not fall evenly."""
 
@@ -142,11 +144,15 @@ def distances(path: Along, exact: Along, length: float) -> Errors:
     """Largest errors of trajectory, torque and stiffness of a path against a better one [1].
 
     The trajectory's over the largest displacement, or over ``length`` [m] for a centre that
-    stays where it is; the others over their largest magnitudes.
+    stays where it is; the others over their largest magnitudes, the torque's over the stiffness
+    times 1 rad where there is none.
     """
-    travel = float(np.linalg.norm(exact.centre - exact.centre[0], axis=1).max()) or length
+    travel = float(np.linalg.norm(exact.centre - exact.centre[0], axis=1).max())
+    torque, stiffness = (float(np.abs(values).max()) for values in (exact.torque, exact.stiffness))
     return (
-        float(np.linalg.norm(path.centre - exact.centre, axis=1).max()) / travel,
-        float(np.abs(path.torque - exact.torque).max() / np.abs(exact.torque).max()),
-        float(np.abs(path.stiffness - exact.stiffness).max() / np.abs(exact.stiffness).max()),
+        float(np.linalg.norm(path.centre - exact.centre, axis=1).max())
+        / (travel if travel > NOTHING * length else length),
+        float(np.abs(path.torque - exact.torque).max())
+        / (torque if torque > NOTHING * stiffness else stiffness),
+        float(np.abs(path.stiffness - exact.stiffness).max()) / stiffness,
     )

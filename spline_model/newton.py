@@ -94,18 +94,46 @@ class Workspace:
         return float(np.abs(self.gradient * scales.unit).max() / scales.energy)
 
     def solve(self, right_side: Array) -> Array:
-        """Solve hessian x = right_side in dimensionless unknowns; raises LinAlgError if singular."""
+        """Solve hessian x = right_side (N,) or (N, K), dimensionless inside; LinAlgError if singular."""
         unit, energy = self.system.scales.unit, self.system.scales.energy
+        own = unit if right_side.ndim == 1 else unit[:, None]
         self.counters.factorisations += 1
         if self.pattern is not None:
-            return np.asarray(unit * self.pattern.factorise(self.hessian).solve(right_side * unit / energy))
+            return np.asarray(own * self.pattern.factorise(self.hessian).solve(right_side * own / energy))
         matrix = self.hessian * (unit[:, None] * unit / energy)
         if not np.isfinite(matrix).all():
             raise np.linalg.LinAlgError("the tangent is not finite")
         factors, pivots, failed = getrf(matrix)
         if failed:
             raise np.linalg.LinAlgError("the tangent is singular")
-        return np.asarray(unit * getrs(factors, pivots, right_side * unit / energy)[0])
+        return np.asarray(own * getrs(factors, pivots, right_side * own / energy)[0])
+
+    def push(self, z: Array) -> Array:
+        """Minus the derivative of the gradient in the load factor at z, shape (N,)."""
+        drives, loads = self.system.tables.drives, self.system.tables.loads
+        force = np.zeros(self.system.layout.size)
+        force[drives.row] = -drives.target
+        np.add.at(force, loads.coordinate, loads.value)
+        return force
+
+    def potential(self, z: Array, load_factor: float, energies: tuple[float, float]) -> float:
+        """Energy of strips, dead weight, potentials in Python and loads [J]."""
+        loads, weight, system = self.system.tables.loads, self.system.tables.weight, self.system
+        moved, count = z - system.rest, system.layout.coordinate_count
+        dead = float(moved[: weight.size] @ weight)
+        by_loads = load_factor * float(moved[loads.coordinate] @ loads.value)
+        open_ = sum(p.derivatives(z[:count], system.layout)[0] for p in system.open_potentials)
+        return sum(energies) - dead - by_loads + open_
+
+    def conjugate(self, z: Array, load_factor: float) -> tuple[float, float]:
+        """First and second derivative of the potential in the load factor, drives released [J]."""
+        drives, loads = self.system.tables.drives, self.system.tables.loads
+        moved = z[loads.coordinate] - self.system.rest[loads.coordinate]
+        return float(z[drives.row] @ drives.target - moved @ loads.value), 0.0
+
+    def preload(self, load_factor: float) -> float:
+        """Share of weight and pre-strain that acts at a load factor."""
+        return 1.0
 
 
 def solve(work: Workspace, start: Array, load_factor: float) -> Newton:

@@ -43,8 +43,12 @@ def solve_path(
     system = compile_scene(mechanism.driven(rotation, body))
     laps, begin = Laps(), None
     if start is not None:  # its load factors are those of another rotation
+        if rotation == 0.0:
+            raise InvalidParameter("rotation", rotation, "an angle other than zero [rad] to go on to")
         turn = system.layout.body(mechanism.design.body_named(body)).stop - 1
         begin = (float(start.states[-1, turn]) / rotation, start.states[-1])
+        if begin[0] < 0.0 and system.tables.loads.value.any():
+            raise InvalidParameter("start", "a body turned the other way", "rotation's side, under loads")
     factors = np.linspace(0.0 if begin is None else begin[0], 1.0, increments + 1)[1:]
     path = follow(system, list(factors), start=begin, branch=branch)
     laps.lap("solve")

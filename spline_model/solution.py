@@ -34,11 +34,12 @@ class Status(Enum):
 class CriticalPoint:
     """Where a path loses or regains stability, or where its load or torque is stationary.
 
-    kind: "limit point" of the load factor, or of a driven rotation's torque; "turning point"
-    of a drive, where the driven coordinate itself goes back; "bifurcation" otherwise.
+    kind: "limit point" of the load factor, or of a driven rotation's torque, where its stiffness
+    at fixed loads vanishes; "turning point" of a drive, where the driven coordinate itself goes
+    back; "bifurcation" otherwise.
     load_factor; rotation of the driven body [rad], nan without one; z (N,) unknowns; mode (Q,)
     change of the coordinates, its largest entry one strip length or 1 rad (for a limit of the
-    torque the rate of the path); inertia: that of the tangent after it.
+    torque the turn at fixed loads); inertia: that of the tangent after it.
     """
 
     kind: str
@@ -54,7 +55,8 @@ class Path:
     """An equilibrium path, S converged states, the unloaded one first.
 
     load_factor (S,); states (S, N) unknowns z; rates (S, N) dz/d(load factor), from the
-    tangent; energies (S, 2) bending and axial [J]; work (S,) of loads and drives since the
+    tangent; stiffness (S,) d(torque)/d(rotation) of a driven rotation at fixed loads, nan without
+    one [N m/rad]; energies (S, 2) bending and axial [J]; work (S,) of loads and drives since the
     first state [J]; history: residual norms by increment.
     inertia (S,): negative eigenvalues of the reduced tangent with the drives held, 0 for a
     stable state, -1 where the printed forces have no potential; moment_defect (S,): what the
@@ -67,6 +69,7 @@ class Path:
     load_factor: Array
     states: Array
     rates: Array
+    stiffness: Array
     energies: Array
     work: Array
     inertia: NDArray[np.int64]
@@ -120,8 +123,10 @@ class MotionEstimate:
 class StaticSolution:
     """Answer of a pivot under a driven rotation; S states, G strips, P stations.
 
-    rotation (S,) [rad]; centre (S, 2) [m], origin at A1; torque (S,) lambda_13 [N m];
-    stiffness (S,) d(torque)/d(rotation) [N m/rad] (Eq 20) from the tangent;
+    rotation (S,) [rad]; load_factor (S,) share of the loads that acts; centre (S, 2) [m], origin at
+    A1; torque (S,) lambda_13 [N m];
+    stiffness (S,) d(torque)/d(rotation) [N m/rad] (Eq 20) at fixed loads and driven displacements,
+    from the tangent;
     bending_energy, axial_energy, shear_energy (S,) [J], the last zero: no shear here;
     gravity_energy (S,) [J] against rest, work (S,) of drive and loads since the first state;
     clamp_reactions (S, G, 2, 3): force [N] and moment [N m] of the clamp at the ground
@@ -135,6 +140,7 @@ class StaticSolution:
     status: Status
     message: str
     rotation: Array
+    load_factor: Array
     centre: Array
     torque: Array
     stiffness: Array
@@ -169,8 +175,8 @@ class MechanismSolution:
     """Answer of any mechanism; S states, G strips, P stations.
 
     load_factor (S,); bodies: x, y, theta (S, 3) by name [m, m, rad]; torque, stiffness (S,)
-    of the driven rotation [N m, N m/rad], nan without one; bending_energy, axial_energy,
-    gravity_energy, work (S,) [J]; stations (P,); shape (S, G, P, 2) [m]; axial_force,
+    of the driven rotation [N m, N m/rad], as of ``StaticSolution``, nan without one; bending_energy,
+    axial_energy, gravity_energy, work (S,) [J]; stations (P,); shape (S, G, P, 2) [m]; axial_force,
     bending_moment, shear_force (S, G, P); effects: names of what was assembled;
     inertia, moment_defect, critical_points and states as in ``Path``; seconds: by
     part, see ``spline_model.laps``.

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from spline_model.compile import System
+from spline_model.continuation.point import driven_row
 from spline_model.effects import DrivenRotation
 from spline_model.effects.base import Constraint
 from spline_model.effects.registry import MOTION_ONLY
@@ -24,16 +25,12 @@ STATIONS = np.linspace(0.0, 1.0, 61)
 def mechanism_answer(system: System, path: Path, mechanism: Mechanism, laps: Laps) -> MechanismSolution:
     """The answer of a mechanism from the states of its path."""
     states, layout = path.states, system.layout
-    torque = stiffness = np.full(len(states), np.nan)
-    for i, drive in enumerate(system.scene.of(Constraint)):
-        if isinstance(drive, DrivenRotation):
-            row = layout.rows(i).start
-            torque, stiffness = states[:, row], path.rates[:, row] / drive.angle
+    row = driven_row(system)
     return MechanismSolution(
         load_factor=path.load_factor,
         bodies={body.name: states[:, layout.body(body.name)] for body in system.scene.bodies},
-        torque=torque,
-        stiffness=stiffness,
+        torque=np.full(len(states), np.nan) if row is None else states[:, row],
+        stiffness=path.stiffness,
         effects=tuple(name for name in mechanism.effects if name not in MOTION_ONLY),
         **_of_any_path(system, path),
         seconds=laps.lap("recover"),
@@ -49,9 +46,10 @@ def pivot_answer(system: System, path: Path, laps: Laps) -> StaticSolution:
     reactions = [[clamp_reactions(system, states, name, end) for end in ("start", "end")] for name in STRIPS]
     return StaticSolution(
         rotation=path.load_factor * drive.angle,
+        load_factor=np.abs(path.load_factor),
         centre=states[:, layout.body(BODY)][:, :2],
         torque=states[:, row],
-        stiffness=path.rates[:, row] / drive.angle,
+        stiffness=path.stiffness,
         shear_energy=np.zeros(len(states)),
         clamp_reactions=np.moveaxis(np.array(reactions), 2, 0),
         **_of_any_path(system, path),

@@ -14,6 +14,7 @@ from spline_model.accurate_path import solve_accurately
 from spline_model.compile import compile_scene
 from spline_model.continuation.recover import recover
 from spline_model.continuation.start import last_state
+from spline_model.effects.registry import MOTION_ONLY
 from spline_model.errors import (
     ConvergenceError,
     InvalidParameter,
@@ -24,9 +25,10 @@ from spline_model.errors import (
 from spline_model.fast.path import Answer
 from spline_model.fast.solve import follow_fast, is_fast, path_of
 from spline_model.laps import Laps
-from spline_model.path import Progress, follow
+from spline_model.path import Progress
 from spline_model.pivot import Pivot
 from spline_model.proportional import CONTROLS, solve_loads, solve_mechanism, solve_path
+from spline_model.rotations import factors_of, follow_rotations, largest_of
 from spline_model.solution import StaticSolution, Status
 from spline_model.static_answers import STATIONS, pivot_answer
 
@@ -46,6 +48,9 @@ Array = NDArray[np.float64]
 LEAST_ROTATION = 1e-12
 """Largest rotation of a path that is none [rad]: states are solved to 1e-11."""
 
+UNLOADED = {"bending", "stretching", "inextensible", *MOTION_ONLY}
+"""Effects under which nothing happens unless the body is turned."""
+
 METHODS = ("condensed", "multipliers")
 
 
@@ -64,7 +69,9 @@ def solve_statics(
     """Drive the pivot's body from 0 to ``rotation`` [rad] in equal increments.
 
     A sequence of rotations is a path from one to the next (there and back), each leg in
-    ``increments``. method: "condensed" runs compiled with the clamps solved and the strips
+    ``increments``. Loads and driven displacements grow with |rotation| over the largest one
+    of the path, its start's included; with rotation 0 the body is held and they grow from 0 to 1.
+    method: "condensed" runs compiled with the clamps solved and the strips
     condensed, where the scene allows it; "multipliers" is the paper's bordered system. Both
     agree to 1e-10. accuracy: wanted error of trajectory and torque over the whole path,
     relative [1]; the control points are raised from the pivot's until the estimated one is
@@ -76,7 +83,8 @@ def solve_statics(
     """
     require_count("increments", increments, 1)
     require_choice("method", method, METHODS)
-    rotations = _rotations(rotation, increments, 0.0 if start is None else float(start.rotation[-1]))
+    origin = 0.0 if start is None else float(start.rotation[-1])
+    rotations = _rotations(rotation, increments, origin, loaded=_is_loaded(pivot))
     if accuracy is None:
         solution = _along(pivot, rotations, method, progress, start=start, branch=branch)
     else:
@@ -90,19 +98,25 @@ def solve_statics(
         raise ConvergenceError(
             solution.message,
             solution=solution,
-            load_factor=abs(solution.rotation[-1] / rotations[-1]) if rotations[-1] else 0.0,
+            load_factor=float(solution.load_factor[-1]),
             history=solution.history,
         )
     return solution
 
 
-def _rotations(rotation: float | Sequence[float], increments: int, origin: float) -> Array:
+def _is_loaded(pivot: Pivot) -> bool:
+    """Whether anything but a driven rotation moves the pivot."""
+    return not set(pivot.mechanism.effects) <= UNLOADED
+
+
+def _rotations(rotation: float | Sequence[float], increments: int, origin: float, *, loaded: bool) -> Array:
     """The rotations of a path from ``origin`` [rad] on, each leg in ``increments``."""
     targets = finite_numbers("rotation", rotation, "rad")
     stops = [origin, *targets]
     largest, turns = max(abs(angle) for angle in stops), np.abs(np.diff(stops))
-    if largest < LEAST_ROTATION or ((turns > 0.0) & (turns < LEAST_ROTATION)).any():
-        raise InvalidParameter("rotation", rotation, "an angle other than zero [rad]")
+    still = largest == 0.0 and loaded
+    if (largest < LEAST_ROTATION and not still) or ((turns > 0.0) & (turns < LEAST_ROTATION)).any():
+        raise InvalidParameter("rotation", rotation, "an angle other than zero [rad], or a load")
     return np.concatenate([np.linspace(a, b, increments + 1)[1:] for a, b in pairwise(stops)])
 
 
@@ -117,15 +131,16 @@ def _along(
 ) -> StaticSolution:
     """The solution through the rotations [rad]."""
     laps = Laps()
-    largest = max(float(np.abs(rotations).max()), 0.0 if start is None else abs(float(start.rotation[-1])))
-    system = compile_scene(pivot.driven(largest))
+    largest = largest_of(rotations, 0.0 if start is None else float(start.rotation[-1]))
     path = None
     if method == "condensed" and branch == "primary" and start is None and is_fast(pivot.mechanism):
+        system = compile_scene(pivot.driven(largest))
         path = follow_fast(pivot.mechanism, system, list(rotations), laps, progress)
     if path is None:  # also where the fast path stops: this one says why
         laps.lap("compile")
         begin = None if start is None else last_state(start, largest)
-        path = follow(system, list(rotations / largest), progress, start=begin, branch=branch)
+        factors = factors_of(rotations, largest)
+        system, path = follow_rotations(pivot.driven, largest, factors, progress, start=begin, branch=branch)
         laps.lap("solve")
     return pivot_answer(system, path, laps)
 
@@ -137,7 +152,7 @@ def _accurate(pivot: Pivot, rotations: Array, method: str, accuracy: float) -> S
 
     def recovered(chosen: Pivot, answer: Answer) -> StaticSolution:
         laps.lap("solve")  # all trials
-        system = compile_scene(chosen.driven(float(np.abs(rotations).max())))
+        system = compile_scene(chosen.driven(largest_of(rotations)))
         laps.lap("compile")
         path = path_of(chosen.mechanism, system, list(rotations), answer)
         return _along(chosen, rotations, method) if path is None else pivot_answer(system, path, laps)
@@ -160,8 +175,8 @@ def solve_from(
     A guess that leads elsewhere is never believed: see ``continuation.recover``.
     """
     require_count("increments", increments, 1)
-    if not math.isfinite(rotation) or rotation == 0.0:
-        raise InvalidParameter("rotation", rotation, "an angle other than zero [rad]")
+    if not math.isfinite(rotation) or (rotation == 0.0 and not _is_loaded(pivot)):
+        raise InvalidParameter("rotation", rotation, "an angle other than zero [rad], or a load")
     laps = Laps()
     system = compile_scene(pivot.driven(rotation))
     laps.lap("compile")

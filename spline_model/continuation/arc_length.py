@@ -72,7 +72,7 @@ class _ArcFollower:
     ) -> None:
         self.work, self.end = work, end
         self.watch = Watch(work, leaves=branch == "follow", by_load=False)
-        point, norms = first_point(work, self.watch.resolution, start)
+        point, norms = first_point(self.watch, start)
         onward = math.copysign(1.0, end - point.load_factor)
         self.here = directed(work.system, point, onward * point.rate / work.system.scales.unit, onward)
         self.step = self.first = min(
@@ -112,7 +112,7 @@ class _ArcFollower:
             z, load_factor = self._predict_end(z, load_factor)
             normal, along = np.zeros_like(z), 1.0
         found = correct(work, z, load_factor, normal, along)
-        reason = found.reason or self.watch.refuse(here, z, found.z)
+        reason = found.reason or self.watch.refuse(here, z, found.z, found.load_factor)
         if reason:
             return found, reason
         try:
@@ -140,7 +140,7 @@ class _ArcFollower:
         self.here = point
         self.known.append((self.at, point))
         self.points.append(point)
-        self.done.append(done)
+        self.done.append(self.done[-1] + done)
 
     def _across(self) -> tuple[Array, float]:
         """The tangent here, in dimensionless coordinates, and its load-factor part."""
@@ -178,8 +178,4 @@ class _ArcFollower:
 
     def path(self, message: str) -> Path:
         """What was followed, as a result; ``message`` says why it ended early, if it did."""
-        loads, rest = self.work.system.tables.loads, self.work.system.rest
-        places = np.array([p.z[loads.coordinate] for p in self.points]) - rest[loads.coordinate]
-        by_loads = np.array([p.load_factor for p in self.points]) * (places @ loads.value)
-        work = by_loads - by_loads[0] + np.cumsum(self.done[: len(self.points)])
-        return self.watch.path(self.points, work, message, self.history)
+        return self.watch.path(self.points, self.done[: len(self.points)], message, self.history)

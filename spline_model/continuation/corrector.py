@@ -7,7 +7,6 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from spline_model.continuation.point import load_rate
 from spline_model.newton import FLOOR, MOST_ITERATIONS, TOLERANCE, Workspace, getrf, getrs
 
 Array = NDArray[np.float64]
@@ -34,7 +33,6 @@ def correct(work: Workspace, z: Array, load_factor: float, normal: Array, along:
     size = len(z)
     matrix = np.zeros((size + 1, size + 1))
     matrix[size, :size], matrix[size, size] = normal, along
-    matrix[:size, size] = -load_rate(work.system) * unit / energy
     right, norms = np.zeros(size + 1), []
     energies, reason = (np.nan, np.nan), ""
     for iteration in range(MOST_ITERATIONS + 1):
@@ -46,6 +44,7 @@ def correct(work: Workspace, z: Array, load_factor: float, normal: Array, along:
         if not np.isfinite(norms[-1]) or iteration == MOST_ITERATIONS:
             reason = f"no convergence in {iteration} iterations (residual {norms[-1]:.1e})"
             break
+        matrix[:size, size] = -work.push(z) * unit / energy
         matrix[:size, :size] = work.hessian * (unit[:, None] * unit / energy)
         right[:size] = -work.gradient * unit / energy
         work.counters.factorisations += 1

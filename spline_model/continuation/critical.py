@@ -23,6 +23,9 @@ LIMIT, TURN, BIFURCATION = "limit point", "turning point", "bifurcation"
 FINE = 1e-6
 """A critical point is known to this part of the step between the two states, or of the value
 there: closer to it the tangent is singular to no purpose."""
+JUMP = 1e-3
+"""Part of the value at the ends of a step that is no zero: a sign that changes in a jump, from one
+path to another one."""
 MOST_TRIALS = 60
 
 
@@ -63,11 +66,14 @@ def corrected(work: Workspace, z: Array, load_factor: float, normal: Array, alon
     return directed(work.system, point, normal, along)
 
 
-def between(work: Workspace, before: Point, after: Point, step: float) -> tuple[CriticalPoint, ...]:
+def between(work: Workspace, before: Point, after: Point, step: float) -> tuple[CriticalPoint, ...] | None:
     """All critical points between two neighbouring states; step: their distance in the path's parameter.
 
     Eigenvalues are continuous along the path when they are numbered by size: the one whose
-    number is the smaller of the two inertias changes its sign, and so on.
+    number is the smaller of the two inertias changes its sign, and so on. A torque has its limit
+    where the stiffness at fixed loads vanishes, wherever the torque turns as loads grow beside it.
+    None where an eigenvalue changes its sign without going through zero: the states are not on
+    one path, or too far apart to tell.
     """
     if NOT_TRACKED in (before.inertia, after.inertia):
         return ()
@@ -75,18 +81,13 @@ def between(work: Workspace, before: Point, after: Point, step: float) -> tuple[
     found = []
     for number in range(*sorted((before.inertia, after.inertia))):
         found.append(_of_tangent(bracket, number))
-    row = torque_row(work.system)
-    if row is not None and before.rate[row] * after.rate[row] < 0.0 and before.slope * after.slope > 0.0:
-        found.append(_of_torque(bracket, row))
+    if before.stiffness * after.stiffness < 0.0 and before.slope * after.slope > 0.0:
+        limit = _of_torque(bracket)
+        if limit is not None or before.inertia == after.inertia:
+            found.append(limit)  # where the inertia changes, the stiffness may go through infinity
+    if None in found:
+        return None
     return tuple(sorted((c for c in found if c), key=lambda c: abs(c.load_factor - before.load_factor)))
-
-
-def torque_row(system: System) -> int | None:
-    """Index in z of the driven rotation's torque, if there is one that moves."""
-    for i, drive in enumerate(system.scene.of(Constraint)):
-        if isinstance(drive, DrivenRotation) and drive.angle != 0.0:
-            return int(system.layout.rows(i).start)
-    return None
 
 
 def _of_tangent(bracket: Bracket, number: int) -> CriticalPoint | None:
@@ -108,24 +109,28 @@ def _of_tangent(bracket: Bracket, number: int) -> CriticalPoint | None:
     if bracket.before.slope * bracket.after.slope > 0.0:
         kind = BIFURCATION
     else:
-        kind = LIMIT if torque_row(work.system) is None else TURN
+        kind = TURN if _drive_moves(work.system) else LIMIT
     return _point(work.system, kind, point, modes[t], bracket.after.inertia)
 
 
-def _of_torque(bracket: Bracket, row: int) -> CriticalPoint | None:
-    """The state at which the torque of the driven rotation is stationary."""
+def _drive_moves(system: System) -> bool:
+    return any(d.angle != 0.0 for d in system.scene.of(Constraint) if isinstance(d, DrivenRotation))
+
+
+def _of_torque(bracket: Bracket) -> CriticalPoint | None:
+    """The state at which the stiffness of the driven rotation vanishes, at fixed loads."""
 
     def value(t: float) -> float:
         point = bracket.at(t)
-        return np.nan if point is None else float(point.rate[row])
+        return np.nan if point is None else point.stiffness
 
     t = _zero(value)
     point = None if t is None else bracket.at(t)
-    if point is None:
+    if point is None or point.turn is None:
         return None
     system = bracket.work.system
     count = system.layout.coordinate_count
-    mode = point.rate[:count] / system.scales.unit[:count]
+    mode = point.turn[:count] / system.scales.unit[:count]
     return _point(system, LIMIT, point, mode, bracket.after.inertia)
 
 
@@ -145,12 +150,15 @@ def _point(system: System, kind: str, at: Point, mode: Array, inertia: int) -> C
 
 
 def _zero(value: Callable[[float], float]) -> float | None:
-    """Where a function on [0, 1] changes sign, by bisection and Illinois' rule; None if it is not found."""
+    """Where a function on [0, 1] goes through zero, by bisection and Illinois' rule.
+
+    None where it is not found, or where the sign changes in a jump: then there is no zero.
+    """
     a, b, fa, fb = 0.0, 1.0, value(0.0), value(1.0)
     if not fa * fb < 0.0:
         return None
-    small = FINE * min(abs(fa), abs(fb))
-    kept = 0
+    small, nothing = (part * min(abs(fa), abs(fb)) for part in (FINE, JUMP))
+    kept, least = 0, np.inf
     for trial in range(MOST_TRIALS):
         t = 0.5 * (a + b) if trial % 3 == 2 else (a * fb - b * fa) / (fb - fa)
         ft = value(t)
@@ -158,16 +166,18 @@ def _zero(value: Callable[[float], float]) -> float | None:
             t = 0.5 * (a + b)
             ft = value(t)
         if not np.isfinite(ft):
-            return a if abs(fa) < abs(fb) else b
+            t, least = (a, abs(fa)) if abs(fa) < abs(fb) else (b, abs(fb))
+            break
         if abs(ft) <= small or b - a < FINE:
-            return t
+            least = abs(ft)
+            break
         if ft * fa > 0.0:
             a, fa = t, ft
             fb, kept = (0.5 * fb if kept == 1 else fb), 1
         else:
             b, fb = t, ft
             fa, kept = (0.5 * fa if kept == 2 else fa), 2
-    return None
+    return t if least <= nothing else None
 
 
 def _hermite(

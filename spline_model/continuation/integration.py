@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from spline_model.compile import System, compile_scene
+from spline_model.compile import compile_scene
 from spline_model.continuation.critical import Bracket, between, corrected
 from spline_model.continuation.point import Point
 from spline_model.effects import Bending, MixedStretching, Stretching
@@ -22,15 +22,15 @@ class Finer:
     while all else still looks sound, and ends in a critical point that the strips do not have.
     """
 
-    def __init__(self, system: System) -> None:
-        scene = system.scene
+    def __init__(self, work: Workspace) -> None:
+        scene = work.system.scene
         effects = tuple(
             replace(e, gauss_points=2 * e.gauss_points)
             if isinstance(e, Bending | MixedStretching | Stretching)
             else e
             for e in scene.effects
         )
-        self.work = Workspace.of(compile_scene(replace(scene, effects=effects)))
+        self.work = type(work).of(compile_scene(replace(scene, effects=effects)))
 
     def confirms(self, work: Workspace, before: Point, after: Point, step: float) -> bool:
         """Whether a critical point lies between two states here as well."""

@@ -9,6 +9,8 @@ from numpy.typing import NDArray
 from scipy.linalg import get_lapack_funcs
 
 from spline_model.compile import System
+from spline_model.effects import DrivenRotation
+from spline_model.effects.base import Constraint
 from spline_model.effects.elastic import MEASURES
 from spline_model.newton import Workspace
 
@@ -28,6 +30,8 @@ class Point:
 
     z (N,); rate (N,) dz/ds and slope d(load factor)/ds: s is the load factor itself (slope 1)
     or the arc length; inertia: negative eigenvalues of the reduced tangent, drives held;
+    turn (N,) dz/d(rotation) of the driven rotation at fixed load factor, None without one, and
+    stiffness [N m/rad] d(torque)/d(rotation) of it, nan without one;
     energies (bending, axial) [J]; potential P [J], of which dP/d(load factor) = conjugate
     along any path of equilibria, and conjugate_rate = d(conjugate)/ds.
     """
@@ -36,6 +40,8 @@ class Point:
     z: Array
     rate: Array
     slope: float
+    turn: Array | None
+    stiffness: float
     inertia: int
     energies: tuple[float, float]
     potential: float
@@ -43,13 +49,12 @@ class Point:
     conjugate_rate: float
 
 
-def load_rate(system: System) -> Array:
-    """Minus the derivative of the residual in the load factor, shape (N,)."""
-    force = np.zeros(system.layout.size)
-    drives, loads = system.tables.drives, system.tables.loads
-    force[drives.row] = -drives.target
-    np.add.at(force, loads.coordinate, loads.value)
-    return force
+def driven_row(system: System) -> int | None:
+    """Index in z of the driven rotation's torque, if there is one."""
+    for i, drive in enumerate(system.scene.of(Constraint)):
+        if isinstance(drive, DrivenRotation):
+            return int(system.layout.rows(i).start)
+    return None
 
 
 def has_potential(system: System) -> bool:
@@ -62,27 +67,31 @@ def has_potential(system: System) -> bool:
 def stand(work: Workspace, z: Array, load_factor: float, energies: tuple[float, float]) -> Point:
     """The point of a state that ``work`` was just evaluated at, s being the load factor.
 
-    One symmetric factorisation gives both the rate and, by Sylvester's law, the inertia: of
+    One symmetric factorisation gives the rate, the turn and, by Sylvester's law, the inertia: of
     the negative eigenvalues of the bordered matrix one belongs to each axial force and to each
     constraint, the rest to the reduced tangent. Raises LinAlgError if it is singular.
     """
-    system = work.system
-    force = load_rate(system)
-    rate, inertia = _symmetric(work, force) if has_potential(system) else (work.solve(force), NOT_TRACKED)
-    drives, loads = system.tables.drives, system.tables.loads
-    moved = z[loads.coordinate] - system.rest[loads.coordinate]
-    conjugate = z[drives.row] @ drives.target - moved @ loads.value
-    conjugate_rate = rate[drives.row] @ drives.target - rate[loads.coordinate] @ loads.value
+    system, row = work.system, driven_row(work.system)
+    push = work.push(z)
+    right = np.zeros((len(z), 1 if row is None else 2))
+    right[:, 0] = push
+    if row is not None:
+        right[row, 1] = -1.0  # the drive's row is -(theta - angle)
+    found, inertia = _symmetric(work, right) if has_potential(system) else (work.solve(right), NOT_TRACKED)
+    rate = found[:, 0].copy()
+    conjugate, curvature = work.conjugate(z, load_factor)
     return Point(
         load_factor=load_factor,
         z=z,
         rate=rate,
         slope=1.0,
+        turn=None if row is None else found[:, 1].copy(),
+        stiffness=np.nan if row is None else float(found[row, 1]),
         inertia=inertia,
         energies=energies,
-        potential=sum(energies) + _dead_energy(system, z) - load_factor * float(moved @ loads.value),
-        conjugate=float(conjugate),
-        conjugate_rate=float(conjugate_rate),
+        potential=work.potential(z, load_factor, energies),
+        conjugate=conjugate,
+        conjugate_rate=curvature - float(push @ rate),
     )
 
 
@@ -107,14 +116,14 @@ def directed(system: System, point: Point, direction: Array, along: float) -> Po
     )
 
 
-def _symmetric(work: Workspace, force: Array) -> tuple[Array, int]:
-    """Solve hessian x = force, and count the negative eigenvalues of the reduced tangent."""
-    layout, unit, energy = work.system.layout, work.system.scales.unit, work.system.scales.energy
+def _symmetric(work: Workspace, right: Array) -> tuple[Array, int]:
+    """Solve hessian x = right (N, K), and count the negative eigenvalues of the reduced tangent."""
+    layout, unit, energy = work.system.layout, work.system.scales.unit[:, None], work.system.scales.energy
     not_free = layout.size - layout.coordinate_count
     if work.pattern is not None:
-        return work.solve(force), work.pattern.negative(work.hessian) - not_free
+        return work.solve(right), work.pattern.negative(work.hessian) - not_free
     work.counters.factorisations += 1
-    matrix = work.hessian * (unit[:, None] * unit / energy)
+    matrix = work.hessian * (unit * unit.T / energy)
     # the transpose is as LAPACK stores it; without room for blocks a long B-spline takes three times as long
     factors, pivots, failed = sytrf(matrix.T, lower=1, lwork=BLOCK * len(matrix), overwrite_a=1)
     if failed or not np.isfinite(factors).all():
@@ -122,12 +131,5 @@ def _symmetric(work: Workspace, force: Array) -> tuple[Array, int]:
     single = pivots > 0
     # a block of two is indefinite: one negative eigenvalue each (Bunch and Kaufman 1977)
     negative = int((np.diag(factors)[single] < 0.0).sum() + (~single).sum() // 2)
-    rate = unit * sytrs(factors, pivots, force * unit / energy, lower=1)[0].ravel()
-    return np.asarray(rate), negative - not_free
-
-
-def _dead_energy(system: System, z: Array) -> float:
-    """Energy of dead weight and of potentials in Python [J]."""
-    weight, count = system.tables.weight, system.layout.coordinate_count
-    energy = -float((z[: weight.size] - system.rest[: weight.size]) @ weight)
-    return energy + sum(p.derivatives(z[:count], system.layout)[0] for p in system.open_potentials)
+    found = unit * sytrs(factors, pivots, right * unit / energy, lower=1)[0]
+    return np.asarray(found), negative - not_free

@@ -1,29 +1,94 @@
-"""What is said of the critical points of a path that reached its end."""
+"""What is said of a path: its critical points and an unstable end, in loads and degrees."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
 
-from spline_model.continuation.critical import BIFURCATION
+from spline_model.compile import System
+from spline_model.continuation.critical import BIFURCATION, LIMIT
+from spline_model.continuation.point import driven_row
+from spline_model.effects import AppliedForce, AppliedMoment, DrivenDisplacement, DrivenRotation, TipForce
+from spline_model.effects.base import Constraint, Load
 from spline_model.solution import CriticalPoint
 
 
-def remark(critical: Sequence[CriticalPoint]) -> str:
-    """Where the path crossed other branches and stayed on its own; empty without a bifurcation."""
-    crossings = [c for c in critical if c.kind == BIFURCATION]
-    if not crossings:
-        return ""
-    places = ", ".join(_place(c) for c in crossings)
-    return f"{BIFURCATION} at {places}: the path stays on the primary branch (branch='follow' leaves it)"
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Place:
+    """What the load factors of a path are called, with rotation [deg], ways [mm], forces [N], moments [N m].
+
+    system: None where they are shares of weight and pre-strain.
+    """
+
+    system: System | None
+
+    def at(self, load_factor: float, rotation: float = math.nan) -> str:
+        """One place; rotation [rad] of the driven body, if it is known better than by the load factor."""
+        if self.system is None:
+            return f"{100 * load_factor:.6g} % of weight and pre-strain"
+        return f"load factor {abs(load_factor):.6g}{self._acting(load_factor, rotation)}"
+
+    def between(self, last: float, following: float) -> str:
+        """Two neighbouring places."""
+        if self.system is None:
+            return f"{100 * last:.6g} and {self.at(following)}"
+        acting = self._acting(following, math.nan)
+        return f"load factor {abs(last):.6g} and {abs(following):.6g}{acting}"
+
+    def _acting(self, load_factor: float, rotation: float) -> str:
+        assert self.system is not None
+        parts = _drives(self.system, load_factor, rotation) + _loads(self.system, load_factor)
+        return f" ({', '.join(parts)})" if parts else ""
 
 
-def left(crossing: CriticalPoint) -> str:
+def _drives(system: System, load_factor: float, rotation: float) -> list[str]:
+    parts = []
+    for drive in system.scene.of(Constraint):
+        if isinstance(drive, DrivenRotation) and drive.angle != 0.0:
+            angle = load_factor * drive.angle if math.isnan(rotation) else rotation
+            parts.append(f"rotation {math.degrees(angle):.5g} deg")
+        elif isinstance(drive, DrivenDisplacement) and any(drive.displacement):
+            parts.append(f"displacement {1e3 * abs(load_factor) * math.hypot(*drive.displacement):.4g} mm")
+    return parts
+
+
+def _loads(system: System, load_factor: float) -> list[str]:
+    parts = []
+    for load in system.scene.of(Load):
+        if isinstance(load, AppliedMoment) and load.moment:
+            parts.append(f"moment {load_factor * load.moment:.4g} N m")
+        elif isinstance(load, AppliedForce | TipForce) and any(load.force):
+            parts.append(f"force {abs(load_factor) * math.hypot(*load.force):.4g} N")
+    return parts
+
+
+def remark(system: System, place: Place, critical: Sequence[CriticalPoint], inertia: int) -> str:
+    """Where the path passed critical points, and whether its last state is unstable; empty if neither.
+
+    inertia: that of the last state.
+    """
+    said = []
+    for kind in dict.fromkeys(c.kind for c in critical):
+        places = ", ".join(place.at(c.load_factor, c.rotation) for c in critical if c.kind == kind)
+        said.append(f"{kind} at {places}: {_meaning(system, kind)}")
+    if inertia > 0:
+        said.append("the last state is unstable: it buckles unless it is held")
+    return "; ".join(said)
+
+
+def _meaning(system: System, kind: str) -> str:
+    """What a critical point is to the design."""
+    if kind == BIFURCATION:
+        return "it buckles there, the path stays on the primary branch (branch='follow' leaves it)"
+    if kind != LIMIT:
+        return "the drive turns back there"
+    if driven_row(system) is None:
+        return "the load is the largest or least around, under a dead load it snaps through"
+    return "the driven body's own stiffness vanishes, let go it tips over"
+
+
+def left(place: Place, crossing: CriticalPoint) -> str:
     """That the path is another one from a bifurcation on."""
-    return f"{BIFURCATION} at {_place(crossing)}: the path goes on along the branch that crosses there"
-
-
-def _place(point: CriticalPoint) -> str:
-    if math.isnan(point.rotation):
-        return f"load factor {point.load_factor:.6g}"
-    return f"rotation [rad] {point.rotation:.6g}"
+    where = place.at(crossing.load_factor, crossing.rotation)
+    return f"{BIFURCATION} at {where}: it buckles, the path goes on along the branch that crosses there"

@@ -61,12 +61,14 @@ class Resolution:
         self.length = table.weight * table.speed
         self.spans = tuple(_spans(system))
 
-    def refuse(self, z: Array) -> str:
+    def refuse(self, z: Array, share: float = 1.0) -> str:
         """Why the discretisation no longer describes the strips; empty if it does.
+
+        share: of weight and pre-strain.
 
         Stretching by quadrature, the paper's form, is not judged: it is there to show what it does.
         """
-        defect = self.defect(z) if self.judged else 0.0
+        defect = self.defect(z, share) if self.judged else 0.0
         if defect > LARGEST_DEFECT:
             return (
                 "the control points do not resolve the strips any more: their moments differ from balance"
@@ -74,29 +76,31 @@ class Resolution:
             )
         return ""
 
-    def defect(self, z: Array) -> float:
+    def defect(self, z: Array, share: float = 1.0) -> float:
         """Root of the energy of the moment defect over the bending energy."""
+        rest = self.system.rest_curvature
         table = self.system.tables.bending
         x1, y1, x2, y2 = (
             np.einsum("pa,pa->p", d, z[self.columns + i]) for d in (table.d1, table.d2) for i in range(2)
         )
         square = x1**2 + y1**2
         speed = np.where(table.measure == 0, table.speed, np.sqrt(square))
-        moment = table.rigidity * ((x1 * y2 - y1 * x2) / square / speed - table.curvature)
+        stress_free = rest + share * (table.curvature - rest)
+        moment = table.rigidity * ((x1 * y2 - y1 * x2) / square / speed - stress_free)
         wrong, stored = 0.0, SMALLEST_MOMENT**2 * self.system.scales.energy
         for span in self.spans:
             ds = self.length[span.rows] / table.rigidity[span.rows]
             mine = moment[span.rows]
-            wrong += float(ds @ (mine - self._balance(span, z)) ** 2)
+            wrong += float(ds @ (mine - self._balance(span, z, share)) ** 2)
             stored += float(ds @ mine**2)
         return math.sqrt(wrong / stored)
 
-    def _balance(self, span: _Span, z: Array) -> Array:
+    def _balance(self, span: _Span, z: Array, share: float) -> Array:
         points, reaction = z[span.points].reshape(-1, 2), z[span.clamp]
         here = span.values @ points
         arm, weighed = here - points[0], span.u[:, None] * here - span.areas @ points
         by_weight = weighed[:, 0] * span.load[1] - weighed[:, 1] * span.load[0]
-        return np.asarray(arm[:, 0] * reaction[1] - arm[:, 1] * reaction[0] - reaction[2] + by_weight)
+        return np.asarray(arm[:, 0] * reaction[1] - arm[:, 1] * reaction[0] - reaction[2] + share * by_weight)
 
 
 def _spans(system: System) -> list[_Span]:

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from spline_model.checks import refuse
 from spline_model.continuation.point import Point, stand
 from spline_model.continuation.resolution import Resolution
+from spline_model.continuation.watch import Watch
 from spline_model.errors import InvalidParameter
 from spline_model.newton import Newton, Workspace, solve
 from spline_model.preload import settle
@@ -31,14 +32,13 @@ def equilibrium(work: Workspace, resolution: Resolution, load_factor: float, z: 
     return newton
 
 
-def first_point(
-    work: Workspace, resolution: Resolution, start: tuple[float, Array] | None
-) -> tuple[Point, tuple[float, ...]]:
+def first_point(watch: Watch, start: tuple[float, Array] | None) -> tuple[Point, tuple[float, ...]]:
     """The point where a path begins, and the residual norms: rest, or load factor and unknowns given.
 
     Raises InvalidParameter where there is none, or where nothing holds the scene.
     """
-    newton = settle(work) if start is None else equilibrium(work, resolution, *start)
+    work = watch.work
+    newton = settle(watch) if start is None else equilibrium(work, watch.resolution, *start)
     try:
         point = stand(work, newton.z, 0.0 if start is None else start[0], newton.energies)
     except np.linalg.LinAlgError as error:
@@ -47,6 +47,8 @@ def first_point(
 
 
 def last_state(start: Path | StaticSolution | MechanismSolution, angle: float = 1.0) -> tuple[float, Array]:
-    """Load factor and unknowns where a result ended; a pivot's load factor is rotation / ``angle``."""
-    at = start.rotation / angle if isinstance(start, StaticSolution) else start.load_factor
+    """Load factor and unknowns where a result ended; of a pivot turned by ``angle`` at most, signed."""
+    if isinstance(start, StaticSolution) and angle != 0.0:
+        return float(start.rotation[-1]) / angle, start.states[-1]
+    at = start.load_factor
     return float(at[-1]), start.states[-1]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from functools import lru_cache
 from typing import Any
 
@@ -15,7 +16,7 @@ from spline_model.compile import System
 from spline_model.continuation.critical import between
 from spline_model.continuation.integration import Finer
 from spline_model.continuation.point import stand
-from spline_model.continuation.remark import remark
+from spline_model.continuation.remark import Place, remark
 from spline_model.design import Design
 from spline_model.effects.constraints import GROUND
 from spline_model.effects.registry import MOTION_ONLY
@@ -171,10 +172,10 @@ def _critical_points(
             stand(work, states[i], factors[i], work.evaluate(states[i], factors[i])) for i in (row, row + 1)
         )
         points = between(work, before, after, steps[row])
-        if not points or not Finer(system).confirms(work, before, after, steps[row]):
+        if not points or not Finer(work).confirms(work, before, after, steps[row]):
             return None
         found += points
-    return tuple(found)
+    return tuple(replace(point, load_factor=abs(point.load_factor)) for point in found)
 
 
 def empty_answer(states: int, size: int) -> Answer:
@@ -224,10 +225,11 @@ def path_of(mechanism: Mechanism, system: System, rotations: Sequence[float], an
         return None
     return Path(
         status=Status.CONVERGED,
-        message=remark(critical),
+        message=remark(system, Place(system=system), critical, int(answer.inertia[-1])),
         load_factor=factors,
         states=states,
         rates=rates,
+        stiffness=answer.stiffness,
         energies=answer.energies,
         work=external_work(system, factors, states, rates),
         inertia=answer.inertia,

@@ -1,0 +1,119 @@
+"""A path through rotations of a driven body: loads in proportion to their size, whatever their sign."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from spline_model.compile import System, compile_scene
+from spline_model.path import Progress, follow
+from spline_model.scene import Scene
+from spline_model.solution import Path, Status
+
+Array = NDArray[np.float64]
+
+BY_STATE = ("load_factor", "states", "rates", "stiffness", "energies", "work", "inertia", "moment_defect")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Side:
+    """A part of a path on one side of rest: factors of one sign, and whether it must come back to rest."""
+
+    sign: float
+    factors: tuple[float, ...]
+    returns: bool
+
+
+def largest_of(rotations: Array, origin: float = 0.0) -> float:
+    """The rotation of largest size [rad], with its sign: there the loads act in full."""
+    every = np.append(rotations, origin)
+    return float(every[np.abs(every).argmax()])
+
+
+def factors_of(rotations: Array, largest: float) -> Array:
+    """Signed load factors of rotations [rad]: over the largest, or 0 to 1 where the body is held at zero."""
+    if largest == 0.0:
+        return np.linspace(0.0, 1.0, len(rotations) + 1)[1:]
+    return rotations / largest
+
+
+def follow_rotations(
+    driven: Callable[[float], Scene],
+    largest: float,
+    factors: Array,
+    progress: Progress | None = None,
+    *,
+    start: tuple[float, Array] | None = None,
+    branch: str = "primary",
+) -> tuple[System, Path]:
+    """The scene driven to ``largest`` [rad], and its path through signed load factors.
+
+    driven: the scene that is driven to a rotation. Where the factor is below zero the body turns
+    the other way and the loads still grow with its size: under loads that part is the path of the
+    scene driven to -``largest``, which begins where the other one has come back to rest. start: signed
+    factor and unknowns (N,). The path's load factors are signed, those of critical points are not.
+    """
+    path, done, back = None, 0, False
+    whole = compile_scene(driven(largest))
+    for side in _sides(whole, factors, 0.0 if start is None else start[0]):
+        system = whole if side.sign > 0.0 else compile_scene(driven(-largest))
+        aims = [side.sign * factor for factor in side.factors] + [0.0] * side.returns
+        begin = None if start is None else (side.sign * start[0], start[1])
+        told = None if progress is None else _later(progress, done, len(factors))
+        part = follow(system, aims, told, start=begin, branch=branch)
+        if part.critical_points:
+            branch = "primary"  # the branch was left, or there was none to follow
+        part = replace(part, load_factor=side.sign * part.load_factor, rates=side.sign * part.rates)
+        path = part if path is None else _joined(path, part, back)
+        if path.status is not Status.CONVERGED:
+            break
+        start, done, back = (0.0, path.states[-1]), done + len(side.factors), side.returns
+    assert path is not None, "a path has at least one rotation"
+    points = tuple(replace(point, load_factor=abs(point.load_factor)) for point in path.critical_points)
+    return whole, replace(path, critical_points=points)
+
+
+def _sides(system: System, factors: Array, begin: float) -> list[Side]:
+    """The factors by their side of rest, that of the start where they are zero; all at once without loads."""
+    if not system.tables.loads.value.any() and np.count_nonzero(system.tables.drives.target) < 2:
+        return [Side(sign=1.0, factors=tuple(factors), returns=False)]
+    signs = np.sign(np.append(begin, factors))
+    for i in range(1, len(signs)):
+        signs[i] = signs[i] or signs[i - 1]
+    first = signs[signs != 0.0][:1]
+    signs[signs == 0.0] = first[0] if first.size else 1.0
+    cuts = np.flatnonzero(np.diff(signs[1:])) + 1
+    parts = np.split(factors, cuts)
+    sides = [
+        Side(sign=float(signs[1 + at]), factors=tuple(part), returns=bool(i < len(cuts) and part[-1] != 0.0))
+        for i, (at, part) in enumerate(zip(np.append(0, cuts), parts, strict=True))
+    ]
+    if signs[0] != signs[1]:  # begun on the other side
+        sides.insert(0, Side(sign=float(signs[0]), factors=(), returns=True))
+    return sides
+
+
+def _later(progress: Progress, done: int, total: int) -> Progress:
+    """The progress of a part, counted with what was done before it."""
+    return lambda increments, _: progress(min(done + increments, total), total)
+
+
+def _joined(before: Path, after: Path, back: bool) -> Path:
+    """Two parts of a path, the second begun where the first ends; back: at a rest that nobody asked for."""
+    kept = len(before.work) - back
+    parts: dict[str, Any] = {
+        name: np.concatenate((getattr(before, name)[:kept], getattr(after, name)[1:])) for name in BY_STATE
+    }
+    parts["work"][kept:] += before.work[-1]
+    return replace(
+        after,
+        message="; ".join(dict.fromkeys(m for m in (before.message, after.message) if m)),
+        critical_points=before.critical_points + after.critical_points,
+        counters={name: count + after.counters[name] for name, count in before.counters.items()},
+        history=before.history + after.history,
+        **parts,
+    )

@@ -1,0 +1,199 @@
+"""Loads beside a driven rotation: their sign, and the stiffness of the loaded pivot."""
+
+import math
+
+import numpy as np
+import pytest
+
+from spline_model.errors import ConvergenceError, InvalidParameter
+from spline_model.pivot import cross_axis_pivot
+from spline_model.statics import solve_from, solve_mechanism, solve_path, solve_statics
+from tests import gates
+from tests.table_one import TABLE_ONE
+
+MOMENT = 100.0  # N m
+FORCE = {"force": (3000.0, 5000.0)}
+LED = {"displacement": (5e-4, -5e-4)}
+LOADS = {
+    "moment": {"applied_moment": {"moment": MOMENT}},
+    "force": {"applied_force": FORCE},
+    "led": {"driven_displacement": LED},
+    "all": {
+        "applied_moment": {"moment": -60.0},
+        "applied_force": FORCE,
+        "gravity": {"acceleration": (300.0, -500.0)},
+        "pre_strain": {"curvature": 1.0, "strain": 1e-4},
+    },
+}
+DEGREES = (-30.0, -1.0, 1.0, 30.0)
+
+
+def loaded(parameters, **settings):
+    """The pivot of Table 1 under loads, by the names and parameters of their effects."""
+    effects = ("bending", "stretching", *parameters)
+    return cross_axis_pivot(
+        **(TABLE_ONE | {"control_points": 8} | settings), effects=effects, parameters=parameters
+    )
+
+
+def turned(parameters, degrees, **how):
+    """The loaded pivot's path to a rotation [deg]."""
+    return solve_statics(loaded(parameters), rotation=math.radians(degrees), **({"increments": 5} | how))
+
+
+@pytest.mark.parametrize("degrees", DEGREES)
+def test_a_dead_moment_shifts_the_torque_and_has_no_stiffness(degrees):
+    """Requirement: a dead moment is subtracted from the torque and leaves the stiffness as it is."""
+    bare, under = turned({}, degrees), turned(LOADS["moment"], degrees)
+    share = np.linspace(0.0, 1.0, 6)
+    scale = np.abs(bare.torque).max() + MOMENT
+    assert np.allclose(under.load_factor, share)
+    assert np.abs(under.torque - (bare.torque - share * MOMENT)).max() < 1e-9 * scale
+    assert np.abs(under.stiffness / bare.stiffness - 1).max() < 1e-9
+
+
+def test_stiffness_of_table_1_under_a_dead_moment():
+    """Requirement: Table 1 under 100 N m has 505.5 N m/rad at rest and 569.5 at 30 deg."""
+    made = loaded(LOADS["moment"])
+    pivot = solve_statics(made, rotation=math.radians(30))
+    body = solve_mechanism(made.mechanism, rotation=math.radians(30))
+    for answer in (pivot, body):
+        assert abs(answer.stiffness[0] - 505.45) < 0.05
+        assert abs(answer.stiffness[-1] - 569.51) < 0.05
+
+
+@pytest.mark.parametrize("name", ["force", "led"])
+def test_a_load_in_the_mirror(name):
+    """Requirement: in the mirror, rotation and load have the mirrored torque and the same stiffness."""
+    ((effect, given),) = LOADS[name].items()
+    ((key, (x, y)),) = given.items()
+    one, other = turned(LOADS[name], 20.0), turned({effect: {key: (-x, y)}}, -20.0)
+    scale = np.abs(one.torque).max()
+    assert np.abs(one.torque + other.torque).max() < 1e-9 * scale
+    assert np.abs(one.stiffness - other.stiffness).max() < 1e-9 * one.stiffness.max()
+    assert np.array_equal(one.load_factor, other.load_factor)
+
+
+@pytest.mark.parametrize("degrees", [20.0, -20.0])
+def test_a_led_body_goes_where_it_is_led(degrees):
+    """Requirement: a driven displacement is reached with its own sign, whatever that of the rotation."""
+    answer = turned(LOADS["led"], degrees)
+    assert np.allclose(answer.centre[-1] - answer.centre[0], LED["displacement"], atol=1e-12)
+
+
+def quotient_error(name, degrees, step=1e-4):
+    """Stiffness against the difference of the torques of two runs with the full load each, relative."""
+    angle = math.radians(degrees)
+    made = loaded(LOADS[name])
+    here, less, more = (
+        solve_statics(made, rotation=angle + shift, increments=3) for shift in (0.0, -step, step)
+    )
+    quotient = (more.torque[-1] - less.torque[-1]) / (2 * step)
+    other = solve_mechanism(made.mechanism, rotation=angle, increments=3)
+    assert abs(other.stiffness[-1] / here.stiffness[-1] - 1) < 1e-9
+    return abs(here.stiffness[-1] / quotient - 1)
+
+
+@pytest.mark.parametrize("name", LOADS)
+def test_stiffness_under_loads_is_the_difference_of_loaded_runs(name):
+    """Requirement: stiffness is the torque's derivative by the rotation at full loads, at rest too."""
+    gates.check("spline_loaded_stiffness", max(quotient_error(name, at) for at in (-25.0, 0.0, 10.0)))
+
+
+def test_loaded_stiffness_gate_has_teeth():
+    """Requirement: the check notices a coarse difference."""
+    with pytest.raises(AssertionError, match="x the gate"):
+        gates.check(
+            "spline_loaded_stiffness", quotient_error("all", 10.0, **gates.teeth("spline_loaded_stiffness"))
+        )
+
+
+@pytest.mark.parametrize("name", ["moment", "force"])
+def test_a_path_through_both_sides_carries_the_load_with_its_sign(name):
+    """Requirement: through rest and back, loads go with |rotation| over the largest; work is energy."""
+    legs = [math.radians(d) for d in (20.0, -30.0, 10.0)]
+    path = solve_statics(loaded(LOADS[name]), rotation=legs, increments=3)
+    assert np.allclose(path.load_factor, np.abs(path.rotation) / math.radians(30))
+    direct = turned(LOADS[name], -30.0)
+    row = int(np.argmin(path.rotation))
+    assert abs(path.torque[row] / direct.torque[-1] - 1) < 1e-9
+    energy = path.bending_energy + path.axial_energy
+    assert np.abs(path.work - energy).max() < 1e-3 * energy.max()
+
+
+def test_a_loaded_path_goes_on_from_a_solution():
+    """Requirement: a path that goes on from a solution is the path in one go, on either side."""
+    for degrees in (30.0, -30.0):
+        first = turned(LOADS["force"], degrees * 2 / 3)
+        onward = turned(LOADS["force"], degrees, start=first)
+        whole = turned(LOADS["force"], degrees)
+        assert abs(onward.torque[-1] / whole.torque[-1] - 1) < 1e-9
+        assert abs(onward.load_factor[-1] - 1) < 1e-12
+
+
+def test_accuracy_and_guesses_have_the_sign_of_the_load():
+    """Requirement: at a negative rotation a wanted accuracy and a guess lead to the torque of the path."""
+    right = turned(LOADS["force"], -30.0, increments=20)
+    made, rotation = loaded(LOADS["force"]), math.radians(-30)
+    accurate = solve_statics(made, rotation=rotation, accuracy=1e-3)
+    guessed = solve_from(made, rotation=rotation, guess=right.states[-1])
+    path = solve_path(made.mechanism, rotation, 5)
+    assert abs(accurate.torque[-1] / right.torque[-1] - 1) < 1e-2
+    assert abs(guessed.torque[-1] / right.torque[-1] - 1) < 1e-9
+    assert np.abs(path.states[-1] - right.states[-1]).max() < 1e-9 * np.abs(right.states[-1]).max()
+    assert "found from the given state" in guessed.message
+
+
+def test_a_held_pivot_is_loaded():
+    """Requirement: with rotation 0 the body is held and the loads grow; torque and stiffness are known."""
+    made = loaded(LOADS["moment"])
+    answers = (
+        solve_statics(made, rotation=0.0, increments=4),
+        solve_mechanism(made.mechanism, rotation=0.0, increments=4),
+    )
+    for answer in answers:
+        assert np.allclose(answer.load_factor, [0.0, 0.25, 0.5, 0.75, 1.0])
+        assert np.abs(answer.torque + answer.load_factor * MOMENT).max() < 1e-9 * MOMENT
+        assert np.abs(answer.stiffness - 505.45).max() < 0.05
+    estimate = solve_statics(made, rotation=0.0, accuracy=1e-3, increments=2).estimate
+    assert estimate.largest <= 1e-3
+
+
+def test_a_held_pivot_without_a_load_is_refused():
+    """Requirement: with rotation 0 and nothing that acts there is no path, and one line says so."""
+    with pytest.raises(InvalidParameter, match="an angle other than zero"):
+        solve_statics(loaded({}), rotation=0.0)
+
+
+def test_a_held_pivot_tips_where_its_own_stiffness_vanishes():
+    """Requirement: under growing loads a limit of the torque is where the stiffness vanishes, in newtons."""
+    made = loaded({"applied_force": {"force": (0.0, -5e4)}})
+    answers = [solve_statics(made, rotation=0.0, increments=count) for count in (3, 10)]
+    answers.append(solve_statics(made, rotation=math.radians(0.01), increments=10))
+    factors = []
+    for answer in answers:
+        (point,) = answer.critical_points
+        assert point.kind == "limit point"
+        assert "stiffness vanishes" in answer.message
+        assert f"force {5e4 * point.load_factor:.4g} N" in answer.message
+        factors.append(point.load_factor)
+    assert max(factors) - min(factors) < 1e-4
+    free = solve_mechanism(made.mechanism, increments=10, raise_on_failure=False)
+    assert abs(free.critical_points[0].load_factor - factors[0]) < 1e-4
+
+
+def test_a_ramp_of_load_makes_no_limit_of_the_torque():
+    """Requirement: where the torque turns because a moment grows beside it, there is no limit point."""
+    answer = turned({"applied_moment": {"moment": 270.0}}, 30.0, increments=20)
+    assert (np.diff(answer.torque) < 0).any()
+    assert (np.diff(answer.torque) > 0).any()
+    assert answer.critical_points == ()
+    assert answer.message == ""
+
+
+def test_a_loaded_path_that_stops_says_where():
+    """Requirement: a path that stops says so in degrees and newtons, with the share that it reached."""
+    made = loaded({"applied_force": {"force": (0.0, -3e6)}})
+    with pytest.raises(ConvergenceError, match=r"stopped between .*rotation -.* deg, force .* N") as caught:
+        solve_statics(made, rotation=math.radians(-5), increments=5)
+    assert 0 < caught.value.load_factor < 1
