@@ -1,6 +1,7 @@
 """Refusals of this package: bad parameters, and a solve that stopped, with what it found until then."""
 
 import math
+from numbers import Integral
 from typing import Any
 
 
@@ -32,9 +33,21 @@ class ConvergenceError(RuntimeError):
 
 def finite(name: str, value: Any, unit: str) -> float:
     """Return `value` as a float, or refuse it if it is not a finite real number."""
-    if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
-        raise InvalidParameter(name, value, f"a finite number [{unit}]")
-    return float(value)
+    plain = float_or_same(value)
+    try:
+        if isinstance(plain, bool) or not isinstance(plain, int | float) or not math.isfinite(plain):
+            raise InvalidParameter(name, value, f"a finite number [{unit}]")
+    except OverflowError:  # a whole number that no float holds
+        raise InvalidParameter(name, value, f"a finite number [{unit}]") from None
+    return float(plain)
+
+
+def several(name: str, value: Any, unit: str) -> list[float]:
+    """Return a number, or a sequence of such, as a list of floats; refuse anything else, and none at all."""
+    parts = list(value) if isinstance(value, list | tuple) or getattr(value, "ndim", 0) == 1 else [value]
+    if not parts:
+        raise InvalidParameter(name, value, f"at least one finite number [{unit}]")
+    return [finite(name, part, unit) for part in parts]
 
 
 def positive(name: str, value: Any, unit: str) -> float:
@@ -60,7 +73,7 @@ def within(name: str, value: Any, low: float, high: float, unit: str) -> float:
 
 def count(name: str, value: Any, minimum: int = 1) -> int:
     """Return `value` if it is an integer of at least `minimum`."""
-    if isinstance(value, bool) or not hasattr(value, "__index__") or value < minimum:
+    if isinstance(value, bool) or not isinstance(value, Integral) or value < minimum:
         raise InvalidParameter(name, value, f"an integer of at least {minimum} [1]")
     return int(value)
 
@@ -82,4 +95,4 @@ def pair(name: str, value: Any, unit: str) -> tuple[float, float]:
 
 def float_or_same(value: Any) -> Any:
     """Return a numpy number as a plain one; anything else as it is."""
-    return value.item() if hasattr(value, "item") else value
+    return value.item() if getattr(value, "ndim", 1) == 0 else value

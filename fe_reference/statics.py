@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from .effects.loads import DeadLoad, at_body, together
 from .effects.named import DrivenDisplacement
-from .errors import InvalidParameter, count, finite, pair
+from .errors import InvalidParameter, count, finite, pair, several
 from .follow import COUNTERS, Progress, checked, follow, full_load, load_factors, spans
 from .model import Model
 from .path import Path
@@ -46,10 +46,8 @@ def solve_statics(
         ConvergenceError: the path ended early; carries the converged part.
     """
     watch = Stopwatch()
-    ends = [finite("rotation", end, "rad") for end in np.ravel(rotation).tolist()]
+    ends = several("rotation", rotation, "rad")
     steps = count("increments", increments)
-    if not ends:
-        raise InvalidParameter("rotation", rotation, "at least one angle [rad]")
     structure, body = pivot.structure, pivot.body_index(None)
     controls = spans(
         structure,

@@ -12,7 +12,7 @@ from spline_model.accurate_motion import Task, solve_accurately
 from spline_model.compile import System, compile_scene
 from spline_model.content import unresolved
 from spline_model.effects import DrivenRotation
-from spline_model.errors import InvalidParameter, require_choice, require_positive
+from spline_model.errors import InvalidParameter, require_choice, require_finite, require_positive
 from spline_model.fast.release import is_swing
 from spline_model.integrators import explicit, leapfrog
 from spline_model.integrators.dispatch import INTEGRATORS, integrate, require_options
@@ -181,8 +181,7 @@ def _check(
 ) -> None:
     require_choice("integrator", integrator, tuple(INTEGRATORS))
     require_positive("duration", duration, "s")
-    if not math.isfinite(start):
-        raise InvalidParameter("start", start, "a finite angle [rad]")
+    require_finite("start", start, "rad")
     for name, value in (("step", step), ("accuracy", accuracy)):
         if value is not None:
             require_positive(name, value, "s" if name == "step" else "rad")

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
+from numbers import Real
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -41,15 +43,39 @@ class ConvergenceError(RuntimeError):
         self.history = history
 
 
+def is_finite(value: Any) -> bool:
+    """Whether this is one finite number, which a truth value is not."""
+    if isinstance(value, bool) or not isinstance(value, Real):
+        return False
+    try:
+        return math.isfinite(value)
+    except OverflowError:  # a whole number beyond the range of floats
+        return False
+
+
+def require_finite(name: str, value: Any, unit: str) -> None:
+    """Refuse anything but a finite number."""
+    if not is_finite(value):
+        raise InvalidParameter(name, value, f"a finite number [{unit}]")
+
+
+def finite_numbers(name: str, value: Any, unit: str) -> list[float]:
+    """The finite number, or the sequence of such, as a list; refuses anything else, and an empty one."""
+    numbers = list(value) if isinstance(value, Iterable) else [value]
+    if not numbers or not all(map(is_finite, numbers)):
+        raise InvalidParameter(name, value, f"a finite number or several [{unit}]")
+    return [float(number) for number in numbers]
+
+
 def require_positive(name: str, value: float, unit: str) -> None:
     """Refuse anything but a finite number above zero."""
-    if not (isinstance(value, int | float) and math.isfinite(value) and value > 0):
+    if not (is_finite(value) and value > 0):
         raise InvalidParameter(name, value, f"a finite number > 0 [{unit}]")
 
 
 def require_not_negative(name: str, value: float, unit: str) -> None:
     """Refuse anything but a finite number of at least zero."""
-    if not (isinstance(value, int | float) and math.isfinite(value) and value >= 0):
+    if not (is_finite(value) and value >= 0):
         raise InvalidParameter(name, value, f"a finite number >= 0 [{unit}]")
 
 

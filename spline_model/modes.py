@@ -11,7 +11,7 @@ from scipy.linalg import eigh, null_space
 from spline_model.basis import SlideModes
 from spline_model.compile import System, compile_scene
 from spline_model.effects import MixedStretching
-from spline_model.errors import InvalidParameter, require_count
+from spline_model.errors import InvalidParameter, require_count, require_finite
 from spline_model.mass import mass_matrix
 from spline_model.mechanism import Mechanism
 from spline_model.operator import evaluate
@@ -67,6 +67,7 @@ def natural_frequencies(
     (``held=True``). Raises ConvergenceError if statics does not reach the state.
     """
     require_count("count", count, 1)
+    require_finite("rotation", rotation, "rad")
     mechanism = mechanism_in_motion(pivot)
     body = mechanism.design.body_named(body) if mechanism.design.bodies else None
     released = mechanism.released()

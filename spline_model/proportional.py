@@ -9,7 +9,13 @@ import numpy as np
 from spline_model.compile import System, compile_scene
 from spline_model.continuation.arc_length import follow_arc
 from spline_model.continuation.start import last_state
-from spline_model.errors import ConvergenceError, InvalidParameter, require_choice, require_count
+from spline_model.errors import (
+    ConvergenceError,
+    InvalidParameter,
+    require_choice,
+    require_count,
+    require_finite,
+)
 from spline_model.laps import Laps
 from spline_model.mechanism import Mechanism
 from spline_model.path import Progress, follow
@@ -103,6 +109,8 @@ def solve_mechanism(
     rotation [rad] drives the named body, or the only one; None leaves all bodies to the loads.
     control, branch, start and end as in ``solve_loads``.
     """
+    if rotation is not None:
+        require_finite("rotation", rotation, "rad")
     laps = Laps()
     scene = mechanism.scene if rotation is None else mechanism.driven(rotation, body)
     system, path = solve_loads(

@@ -79,7 +79,7 @@ def follow_rotations(
 
 
 def _sides(system: System, factors: Array, begin: float) -> list[Side]:
-    """The factors by their side of rest, which is that of the start where they are zero; one without loads."""
+    """The factors by their side of rest, that of the start where they are zero; all at once without loads."""
     if not system.tables.loads.value.any() and np.count_nonzero(system.tables.drives.target) < 2:
         return [Side(sign=1.0, factors=tuple(factors), returns=False)]
     signs = np.sign(np.append(begin, factors))

@@ -15,7 +15,13 @@ from spline_model.compile import compile_scene
 from spline_model.continuation.recover import recover
 from spline_model.continuation.start import last_state
 from spline_model.effects.registry import MOTION_ONLY
-from spline_model.errors import ConvergenceError, InvalidParameter, require_choice, require_count
+from spline_model.errors import (
+    ConvergenceError,
+    InvalidParameter,
+    finite_numbers,
+    require_choice,
+    require_count,
+)
 from spline_model.fast.path import Answer
 from spline_model.fast.solve import follow_fast, is_fast, path_of
 from spline_model.laps import Laps
@@ -105,10 +111,7 @@ def _is_loaded(pivot: Pivot) -> bool:
 
 def _rotations(rotation: float | Sequence[float], increments: int, origin: float, *, loaded: bool) -> Array:
     """The rotations of a path from ``origin`` [rad] on, each leg in ``increments``."""
-    targets = [rotation] if isinstance(rotation, int | float) else list(rotation)
-    for angle in targets:
-        if not math.isfinite(angle):
-            raise InvalidParameter("rotation", angle, "a finite number [rad]")
+    targets = finite_numbers("rotation", rotation, "rad")
     stops = [origin, *targets]
     largest, turns = max(abs(angle) for angle in stops), np.abs(np.diff(stops))
     still = largest == 0.0 and loaded

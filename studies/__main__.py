@@ -18,14 +18,29 @@ from studies.registry import COMMANDS  # noqa: E402
 
 BAD_INPUT = 2
 INTERRUPTED = 130
+#: What a shell reports of a command whose reader is gone: 128 and SIGPIPE.
+BROKEN_PIPE = 141
 #: What the overview shows: an example of one command.
 EXAMPLE = "solve studies/cases/cross_axis_pivot.toml --model spline --control-points 8"
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run one command; return its exit code, or 2 after one line on the error stream for bad input
-    or a missing package."""
-    words = list(sys.argv[1:] if arguments is None else arguments)
+    or a missing package. Where the output's reader has enough, as `head` has, the rest goes nowhere."""
+    try:
+        try:
+            return _told(list(sys.argv[1:] if arguments is None else arguments))
+        finally:
+            sys.stdout.flush()  # what is still to be written is written where its failure can be met
+    except BrokenPipeError:
+        nowhere = os.open(os.devnull, os.O_WRONLY)
+        for stream in (sys.stdout, sys.stderr):
+            os.dup2(nowhere, stream.fileno())
+        return BROKEN_PIPE
+
+
+def _told(words: list[str]) -> int:
+    """Run one command and tell its failure in a line; return the exit code."""
     try:
         return _dispatch(words)
     except BadInput as error:

@@ -1,6 +1,6 @@
 """The hard cases, family by family."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import partial
 from typing import Any
 
@@ -16,6 +16,9 @@ from studies.stability.maps import LOOKS
 from studies.stability.outcome import OUTCOMES
 from studies.stability.summary import GROUP
 
+#: Kinds of random designs in their table.
+STATIC, MOTION = "path", "motion"
+
 #: Families in the order of the register.
 FAMILIES = tuple(study.removeprefix(GROUP) for study in STUDIES if study.startswith(GROUP))
 #: Columns of the table of all families; what else a family tried stands in its figure.
@@ -23,6 +26,10 @@ COLUMNS = (DEFAULT, "spline n = 4, locking-free", PAPER, "spline n = 4, printed 
 
 #: Families that the text says the default is right in throughout.
 ALL_RIGHT = ("slenderness", "bad_starts", "environment")
+#: Families in which the column of the default has control points, modes and Gauss points that vary.
+VARIED = ("axial_modes", "fuzz")
+#: What a model says that stopped before the end.
+STOPPED = r"\bstopped (?:at|between)\b"
 
 
 def _counts(results: Results, family: str) -> pd.DataFrame:
@@ -95,12 +102,29 @@ def _all_right(family: str) -> Holds:
     )
 
 
-def _total(results: Results, model: str, outcome: str) -> int:
+def _total(results: Results, model: str, outcome: str, families: Sequence[str] = FAMILIES) -> int:
     return sum(
         int(rows[outcome].sum())
-        for family in FAMILIES
+        for family in families
         for rows in [_counts(results, family).query("model == @model", local_dict={"model": model})]
     )
+
+
+def _itself(results: Results, outcome: str) -> int:
+    """Return how many cases ended so with the default's own settings."""
+    return _total(results, DEFAULT, outcome, [family for family in FAMILIES if family not in VARIED])
+
+
+def _refusals(results: Results, *, stopped: bool) -> pd.DataFrame:
+    """Return the refusals of the default that stopped, or those that answered with a warning."""
+    tables = [results.table(GROUP + family, "outcomes") for family in FAMILIES]
+    refused = pd.concat([table.query("model == @DEFAULT and outcome == 'refused'") for table in tables])
+    return refused[refused["reason"].str.contains(STOPPED) == stopped]
+
+
+def _right_kind(kind: str) -> Fact:
+    """Return how many random designs of this kind count as right."""
+    return _outcomes("fuzz", lambda t: int((where(t, kind=kind)["outcome"] == "right").sum()), count)
 
 
 def _outcomes(family: str, pick: Callable[[pd.DataFrame], Any], form: Callable[[Any], str]) -> Fact:
@@ -162,6 +186,17 @@ FACTS |= {
     for outcome in outcomes
 }
 FACTS |= {
+    f"hard.itself.{outcome}": Derived(made=partial(_itself, outcome=outcome), form=count)
+    for outcome in ("tried", "right", "refused")
+}
+FACTS |= {
+    "hard.total.default.stopped": Derived(made=lambda r: len(_refusals(r, stopped=True)), form=count),
+    "hard.total.default.warned": Derived(made=lambda r: len(_refusals(r, stopped=False)), form=count),
+    "hard.total.default.warned.error": Derived(
+        made=lambda r: _refusals(r, stopped=False)["error"].max(), form=percent
+    ),
+    "hard.fuzz.paths": _right_kind(STATIC),
+    "hard.fuzz.motions": _right_kind(MOTION),
     "hard.rotation.right-to": _outcomes("rotation", _last_right, lambda v: f"{significant(v, 3)}°"),
     "hard.rotation.refused-from": _outcomes("rotation", _first_refused, lambda v: f"{significant(v, 3)}°"),
     "hard.rotation.hysteresis": fact(GROUP + "rotation", "increments", largest("hysteresis"), power),

@@ -1,11 +1,15 @@
 """Other models and other codes."""
 
+import math
+from collections.abc import Callable
+from functools import partial
 from typing import Any
 
+import numpy as np
 import pandas as pd
 
 from report.facts import Cell, Derived, Fact, Holds, Listing, fact
-from report.forms import decade, percent, seconds, significant, times, unit
+from report.forms import count, decade, percent, seconds, significant, times, unit
 from report.pick import absent, at, largest, where
 from report.results import Results
 
@@ -17,6 +21,8 @@ SIMPLE = {
     "pin joint": "pin joint with a spring",
     "four-bar": "four-bar with springs",
 }
+#: Splines of four control points that the path of the four-bar is compared with.
+FOUR_POINTS = {"paper": "n = 4, as the paper", "free": "n = 4, locking-free"}
 
 
 def _ratios(results: Results) -> tuple[list[str], list[list[Cell]]]:
@@ -61,9 +67,37 @@ def _models(results: Results) -> tuple[list[str], list[list[Cell]]]:
     return head, rows
 
 
+def _nearer(results: Results, model: str) -> list[float]:
+    """Return the rotations [deg] at which the four-bar's path is nearer to the truth than that of `model`."""
+    errors = _path_errors(results)
+    return [math.degrees(angle) for angle in errors.index[errors[model] > errors["four-bar"]]]
+
+
+def _path_errors(results: Results) -> pd.DataFrame:
+    """Return the errors of the path by rotation, but for rest, and model."""
+    table = results.table(SURROGATES, "errors")
+    errors = table.pivot(index="rotation_rad", columns="model", values="trajectory").abs()
+    return errors[errors.index > 0.0]
+
+
+def _one_range(results: Results, model: str) -> bool:
+    """Return whether the rotations of `_nearer` follow one another, and do not reach the end of the path."""
+    angles = np.degrees(_path_errors(results).index)
+    nearer = np.isin(angles.round(6), np.round(_nearer(results, model), 6))
+    return bool(np.abs(np.diff(nearer.astype(int))).sum() == 2 and not nearer[-1])
+
+
 def _lowest(results: Results, table: str, group: str) -> float:
     found = where(results.table(CODES, table), group=group)["ratio"].dropna()
     return float(found.min())
+
+
+def _picked(pick: Callable[[list[float]], Any], model: str, results: Results) -> Any:
+    return pick(_nearer(results, model))
+
+
+def _degrees(value: float) -> str:
+    return f"{significant(value, 2)}°"
 
 
 FACTS: dict[str, Fact | Derived] = {
@@ -84,6 +118,12 @@ FACTS: dict[str, Fact | Derived] = {
     "surrogates.free.torque": fact(
         SURROGATES, "errors", largest("torque", model="n = 4, locking-free"), percent
     ),
+    "surrogates.states": Derived(made=lambda r: len(_path_errors(r)), form=count),
+    **{
+        f"surrogates.path.{name}.{what}": Derived(made=partial(_picked, pick, model), form=form)
+        for name, model in FOUR_POINTS.items()
+        for what, pick, form in (("nearer", len, count), ("from", min, _degrees), ("to", max, _degrees))
+    },
     "surrogates.over": fact(
         SURROGATES,
         "findings",
@@ -119,6 +159,14 @@ HOLDS = {
     "peers.wanted-missed": Holds(
         words="none of the factors that were wished for against Exudyn is reached",
         test=lambda r: (r.table(CODES, "findings_of_time")["holds"] == "no").all(),
+    ),
+    "surrogates.not-everywhere": Holds(
+        words="the four-bar's path is nearer than that of either four-point spline over one range that ends",
+        test=lambda r: all(_one_range(r, model) for model in FOUR_POINTS.values()),
+    ),
+    "surrogates.six-nearer": Holds(
+        words="the path of six control points is nearer than the four-bar's at every rotation",
+        test=lambda r: not _nearer(r, "n = 6"),
     ),
     "surrogates.paper-worse": Holds(
         words="the locked spline alone is worse than the best surrogate in something",

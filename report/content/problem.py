@@ -4,6 +4,7 @@ from report.facts import Cell, Derived, Fact, Holds, Listing, fact
 from report.forms import Form, count, degrees, power, significant, unit
 from report.pick import at
 from report.results import Results
+from studies.answers.swing import MESHES
 from studies.cases.problem import Problem, named_case
 
 CASE = "cross_axis_pivot"
@@ -86,6 +87,7 @@ FACTS: dict[str, Fact | Derived] = {
     "reference.stiffness": _static("stiffness"),
     "reference.frequency": _swing("frequency", power),
     "reference.rotation": _swing("rotation_rad", unit("rad")),
+    "reference.meshes": Derived(made=lambda _: len(MESHES), form=count),
     "reference.fine.rotation": fact(
         "work_precision/dynamics", "reference", at("uncertainty", quantity="rotation_rad"), unit("rad")
     ),

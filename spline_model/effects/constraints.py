@@ -8,7 +8,7 @@ from typing import ClassVar, Literal
 
 from spline_model.effects.base import Constraint
 from spline_model.effects.history import STEADY, History
-from spline_model.errors import InvalidParameter
+from spline_model.errors import InvalidParameter, require_finite
 
 GROUND = "ground"
 ALWAYS = (0.0, math.inf)
@@ -49,8 +49,7 @@ class DrivenRotation(Constraint):
     held: tuple[float, float] = ALWAYS
 
     def __post_init__(self) -> None:
-        if not math.isfinite(self.angle):
-            raise InvalidParameter("angle", self.angle, "a finite number [rad]")
+        require_finite("angle", self.angle, "rad")
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -7,7 +7,7 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from studies.answers.response import StaticResult, assembled
+from studies.answers.response import Critical, StaticResult, assembled, critical_of
 
 Array = NDArray[np.float64]
 
@@ -28,7 +28,8 @@ class MechanismResponse:
     """Static answer of a mechanism over S converged states, that of load factor 0 first.
 
     Attributes:
-        model, settings, status, message, resolution, counters, wall_s, solve_s: as in `Response`.
+        model, settings, status, message, resolution, critical_points, counters, wall_s, solve_s: as in
+            `Response`.
         effects: names of what was assembled.
         load_factor: (S,) [1].
         bodies: (S, 3) by name: centre of mass x, y [m], rotation, counter-clockwise [rad].
@@ -44,6 +45,7 @@ class MechanismResponse:
     status: str
     message: str
     resolution: str
+    critical_points: tuple[Critical, ...]
     load_factor: Array
     bodies: dict[str, Array]
     torque: Array
@@ -93,6 +95,7 @@ def mechanism_response(
         status=str(result.status.value),
         message=result.message,
         resolution=getattr(result, "resolution", ""),
+        critical_points=critical_of(result),
         bodies={name: np.asarray(place, dtype=float) for name, place in result.bodies.items()},
         shear_energy=np.asarray(shear, dtype=float),
         counters=dict(result.counters),

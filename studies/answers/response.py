@@ -59,13 +59,25 @@ class StaticResult(Result, Protocol):
 
 
 @dataclass(frozen=True, kw_only=True)
+class Critical:
+    """Where a path loses or regains stability: "limit point", "turning point" or "bifurcation", at a load
+    factor [1] and a rotation of the driven body [rad], NaN without one."""
+
+    kind: str
+    load_factor: float
+    rotation: float
+
+
+@dataclass(frozen=True, kw_only=True)
 class Response:
     """Static answer over S converged states (the unloaded one first), G = 2 strips, P stations a strip.
 
     Attributes:
         model: "spline", "fe" or "fe-shear".
         settings: discretisation keywords.
-        status: "converged" or "not_converged"; `message` says why and where it stopped.
+        status: "converged" or "not_converged"; `message` says why and where it stopped, or what a path that
+            reached its end has passed.
+        critical_points: in the order of the path.
         resolution: how uncertain too coarse a discretisation makes the answer; empty where it is resolved,
             and of a model that cannot tell.
         rotation: (S,) of the body, counter-clockwise [rad].
@@ -114,6 +126,7 @@ class Response:
     wall_s: float
     solve_s: float
     estimate: dict[str, Any] | None = None
+    critical_points: tuple[Critical, ...] = ()
 
     @property
     def converged(self) -> bool:
@@ -160,7 +173,16 @@ def response(
         wall_s=wall_s,
         solve_s=solve_s,
         estimate=estimate,
+        critical_points=critical_of(result),
         **arrays,
+    )
+
+
+def critical_of(result: Any) -> tuple[Critical, ...]:
+    """Return the critical points of a model's path; none of a model that does not look for them."""
+    return tuple(
+        Critical(kind=point.kind, load_factor=float(point.load_factor), rotation=float(point.rotation))
+        for point in getattr(result, "critical_points", ())
     )
 
 

@@ -5,6 +5,7 @@ from importlib import import_module
 from typing import Any
 
 from studies.errors import BadInput
+from studies.record.extras import lacking
 
 #: Name -> module.
 MODELS: dict[str, str] = {
@@ -22,6 +23,13 @@ PEERS = ("exudyn ancf", "exudyn exact", "openseespy frame")
 
 #: What to do about a peer that is not there.
 HINT = "not installed: python -m pip install '.[peers]'"
+
+
+def missing() -> str:
+    """Return what this machine lacks of a study that holds the suite against all other codes; or nothing."""
+    packages = {MODELS[name]: name.split()[0] for name in PEERS}
+    gone = [package for path, package in packages.items() if not import_module(path).installed()]
+    return lacking("peers", list(dict.fromkeys(gone)))
 
 
 def module_of(name: str) -> Any:

@@ -1,5 +1,6 @@
 """Designs: what a case file may hold, a cross-axis pivot or any mechanism of strips and bodies."""
 
+import math
 from pathlib import Path
 
 from studies.cases.document import parsed
@@ -9,16 +10,30 @@ from studies.cases.problem import FOLDER, Problem, read_problem
 Design = Problem | Mechanism
 
 
-def read_design(path: str | Path) -> Design:
+def read_design(path: str | Path, *, changes: str | None = None) -> Design:
     """Return the design in the case file at `path`, a mechanism if it has [[strips]].
+
+    Args:
+        path: of the file.
+        changes: of its effects, "+gravity,-strip_inertia" or the whole list; None for what the file says.
 
     Raises:
         CaseError: the file cannot be used; one line.
     """
     content = parsed(path)
     if isinstance(content.get("strips"), list):
-        return read_mechanism(str(path), content)
-    return read_problem(str(path), content)
+        return read_mechanism(str(path), content, changes)
+    return read_problem(str(path), content, changes)
+
+
+def flexural_scale(design: Design) -> float:
+    """Return the largest EI/L of the strips [N m], which torques and energies are compared with."""
+    if isinstance(design, Problem):
+        return design.youngs_modulus * design.second_moment_of_area / design.length
+    return max(
+        strip.youngs_modulus * strip.second_moment_of_area / math.dist(strip.start, strip.end)
+        for strip in design.strips
+    )
 
 
 def named_design(name: str) -> Design:

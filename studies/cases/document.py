@@ -26,6 +26,10 @@ def parsed(path: str | Path) -> dict[str, Any]:
         return tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
         raise CaseError(f"{path}: got text that is not TOML ({error}), expected a TOML case file") from None
+    except ValueError:
+        raise CaseError(f"{path}: got a whole number that fills pages, expected a TOML case file") from None
+    except RecursionError:
+        raise CaseError(f"{path}: got lists or tables nested too deep, expected a TOML case file") from None
 
 
 def values(where: str, keys: Iterable[Key], content: Mapping[str, Any], label: str) -> dict[str, Any]:

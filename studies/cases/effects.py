@@ -1,7 +1,7 @@
 """The effects of a scene as case files and the command line name them, with the units of their parameters.
 
-A table `[effects.NAME]` gives the parameters of an effect whether or not the scene names it, so that
-`--effects=+NAME` finds them.
+A table `[effects.NAME]` gives the parameters of an effect that the scene names, in the case file or by
+`--effects=+NAME`; parameters of what nothing names are refused, so that no load is forgotten in silence.
 """
 
 import difflib
@@ -12,7 +12,7 @@ from typing import Any
 
 from studies.cases import document
 from studies.cases.document import CaseError
-from studies.cases.rules import History, Key, Rule, Text, finite, finite_pair, not_negative
+from studies.cases.rules import History, Key, Rule, Text, finite, finite_pair, not_negative, shown
 from studies.errors import BadInput
 
 DEFAULT = ("bending", "stretching", "strip_inertia", "body_inertia")
@@ -73,6 +73,9 @@ KEYS: dict[str, tuple[Key, ...]] = {
     for effect, rows in _KEYS.items()
 }
 
+#: How a scene is named.
+WORDS = "+NAME and -NAME, or names alone"
+
 #: Parameters that an effect has where nothing is said.
 STANDARD: dict[str, dict[str, Any]] = {"gravity": {"acceleration": (0.0, -9.81)}}
 
@@ -106,46 +109,71 @@ class Effects:
                 an effect without a parameter that it needs.
         """
         words = [word.strip() for word in text.split(",") if word.strip()]
-        signed = [word for word in words if word[0] in "+-"]
-        if not words or (signed and len(signed) < len(words)):
-            raise BadInput(f"--effects: got {text!r}, expected +NAME and -NAME, or names alone, with commas")
-        names = list(self.names) if signed else []
-        for word in words:
-            name = word[1:] if signed else word
-            require_known("--effects", name)
-            if word[0] == "-":
-                if name not in names:
-                    raise BadInput(
-                        f"--effects: got {word}, expected one of {', '.join(names)}, which are there"
-                    )
-                names.remove(name)
-            elif name in names:
-                raise BadInput(f"--effects: got {word}, expected an effect beside {', '.join(names)}")
-            else:
-                names.append(name)
-        scene = self.renamed(names)
+        if not words:
+            raise BadInput(f"--effects: got {text!r}, expected {WORDS}, with commas")
+        scene = self.renamed(names_after("--effects", words, self.names))
         require_parameters("--effects", scene)
         return scene
 
 
-def read_effects(path: str, content: Mapping[str, Any]) -> Effects:
-    """Return what a case file says in [scene] and [effects.NAME]; CaseError in one line for faults."""
+def names_after(where: str, words: Sequence[str], present: Sequence[str]) -> tuple[str, ...]:
+    """Return the effects that `words` stand for: names alone are all, +NAME and -NAME change `present`.
+
+    Raises:
+        BadInput: an unknown effect, one that is there already or not there, or signs on some names only.
+    """
+    signed = [word for word in words if word.startswith(("+", "-"))]
+    if signed and len(signed) < len(words):
+        raise BadInput(f"{where}: got {shown(','.join(words))}, expected {WORDS}")
+    names = list(present) if signed else []
+    for word in words:
+        name = word[1:] if signed else word
+        require_known(where, name)
+        if word.startswith("-"):
+            if name not in names:
+                raise BadInput(f"{where}: got {word}, expected one of {', '.join(names)}, which are there")
+            names.remove(name)
+        elif name in names:
+            raise BadInput(f"{where}: got {word}, expected an effect beside {', '.join(names)}")
+        else:
+            names.append(name)
+    return tuple(names)
+
+
+def read_effects(path: str, content: Mapping[str, Any], changes: str | None = None) -> Effects:
+    """Return what a case file says in [scene] and [effects.NAME], after the `changes` of the command line.
+
+    Raises:
+        CaseError: a fault, or parameters of an effect that neither the file nor `changes` name; one line.
+    """
     scene = document.table(path, content, "scene")
     document.refuse_unknown(path, "scene", scene, ["effects"])
-    names = scene.get("effects", list(DEFAULT))
-    if not isinstance(names, list) or not all(isinstance(name, str) for name in names):
-        raise CaseError(f"{path}: scene.effects: got {names}, expected a list of names")
+    words = scene.get("effects", list(DEFAULT))
+    if not isinstance(words, list) or not all(isinstance(word, str) for word in words):
+        raise CaseError(f"{path}: scene.effects: got {shown(words)}, expected a list of names")
+    effects = Effects(
+        names=names_after(f"{path}: scene.effects", words, DEFAULT), tables=_read_tables(path, content)
+    )
+    require_parameters(path, effects)
+    changed = effects if changes is None else effects.changed(changes)
+    for name in effects.tables:
+        if name not in (*effects.names, *changed.names):
+            mend = f'"{name}" in scene.effects' if scene else f'[scene] with effects = ["+{name}"]'
+            raise CaseError(
+                f"{path}: effects.{name}: got it, but the scene does not name {name}, expected {mend} as well"
+            )
+    return changed
+
+
+def _read_tables(path: str, content: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
+    """Return the parameters of every table [effects.NAME]."""
     tables = {}
     for name, given in document.table(path, content, "effects").items():
         require_known(f"{path}: effects", name)
         if not isinstance(given, dict):
-            raise CaseError(f"{path}: effects.{name}: got {given}, expected a table [effects.{name}]")
+            raise CaseError(f"{path}: effects.{name}: got {shown(given)}, expected a table [effects.{name}]")
         tables[name] = _parameters(path, name, given)
-    for name in names:
-        require_known(f"{path}: scene.effects", name)
-    effects = Effects(names=tuple(names), tables=tables)
-    require_parameters(path, effects)
-    return effects
+    return tables
 
 
 def require_known(where: str, name: str) -> None:

@@ -10,7 +10,7 @@ from studies.cases import document
 from studies.cases.document import CaseError
 from studies.cases.effects import Effects, read_effects
 from studies.cases.keys import INCREMENTS, POISSON, ROTATION
-from studies.cases.rules import Key, Text, finite, finite_pair, not_negative, positive
+from studies.cases.rules import Key, Text, finite, finite_pair, not_negative, positive, shown
 
 GROUND, FREE = "ground", "free"
 
@@ -120,8 +120,8 @@ class Mechanism:
         return hashlib.sha256(json.dumps(asdict(self), sort_keys=True).encode()).hexdigest()
 
 
-def read_mechanism(path: str, content: Mapping[str, Any]) -> Mechanism:
-    """Return the mechanism of a parsed case file.
+def read_mechanism(path: str, content: Mapping[str, Any], changes: str | None = None) -> Mechanism:
+    """Return the mechanism of a parsed case file, its effects changed as `read_design` says.
 
     Raises:
         CaseError: a section or key is missing, unknown or misspelt, a value is out of range, a name comes
@@ -157,7 +157,7 @@ def read_mechanism(path: str, content: Mapping[str, Any]) -> Mechanism:
         body=_driven(path, drive.get("body"), names),
         rotation=drive.get("rotation"),
         increments=drive["increments"],
-        effects=read_effects(path, content),
+        effects=read_effects(path, content, changes),
     )
 
 
@@ -177,7 +177,7 @@ def _each(path: str, content: Mapping[str, Any], section: str) -> list[tuple[str
     tables = content.get(section, [])
     needed = section == "strips" and not tables
     if needed or not isinstance(tables, list) or not all(isinstance(each, dict) for each in tables):
-        raise CaseError(f"{path}: {section}: got {tables}, expected tables [[{section}]]")
+        raise CaseError(f"{path}: {section}: got {shown(tables)}, expected tables [[{section}]]")
     found = []
     for place, each in enumerate(tables, start=1):
         name = each.get("name")

@@ -121,8 +121,8 @@ def read_case(path: str | Path) -> Problem:
     return read_problem(str(path), parsed(path))
 
 
-def read_problem(path: str, content: Mapping[str, Any]) -> Problem:
-    """Return the pivot of a parsed case file; errors as of `read_case`."""
+def read_problem(path: str, content: Mapping[str, Any], changes: str | None = None) -> Problem:
+    """Return the pivot of a parsed case file with its effects changed; errors as of `read_case`."""
     if isinstance(content.get("strips"), list):
         raise CaseError(f"{path}: [[strips]]: got a mechanism, expected a cross-axis pivot, with [strip]")
     sections = list(dict.fromkeys(key.section for key in KEYS))
@@ -141,7 +141,7 @@ def read_problem(path: str, content: Mapping[str, Any]) -> Problem:
             values[key.attribute] = value(path, key, given[key.name], key.section)
         elif not key.optional:
             raise missing(path, key, key.section)
-    return Problem(**values, effects=read_effects(path, content))
+    return Problem(**values, effects=read_effects(path, content, changes))
 
 
 def _names(section: str) -> str:

@@ -6,6 +6,9 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any
 
+#: Bits of the longest whole number that an error shows in full.
+LONGEST = 64
+
 
 def _same(value: float) -> float:
     return float(value)
@@ -27,7 +30,7 @@ class Number:
         """Return `value` (in the file's unit) in SI; ValueError says what was got and expected."""
         if isinstance(value, bool) or not isinstance(value, int | float):
             raise ValueError(f"got {shown(value)}, expected {self.expected}")
-        number = float(value)
+        number = as_float(value)
         above = number >= self.low if self.closed_low else number > self.low
         below = number <= self.high if self.closed_high else number < self.high
         if not (math.isfinite(number) and above and below):
@@ -38,7 +41,7 @@ class Number:
         """Raise ValueError unless `value` (SI) is admissible."""
         if isinstance(value, bool) or not isinstance(value, int | float):
             raise ValueError(f"got {shown(value)}, expected {self.expected}")
-        self.parse(self.from_si(float(value)))
+        self.parse(self.from_si(as_float(value)))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -71,7 +74,11 @@ class Pair:
         if not isinstance(value, list | tuple) or len(value) != 2:
             raise ValueError(f"got {shown(value)}, expected {self.expected}")
         for part in value:
-            if isinstance(part, bool) or not isinstance(part, int | float) or not math.isfinite(part):
+            if (
+                isinstance(part, bool)
+                or not isinstance(part, int | float)
+                or not math.isfinite(as_float(part))
+            ):
                 raise ValueError(f"got {shown(value)}, expected {self.expected}")
         return float(value[0]), float(value[1])
 
@@ -131,13 +138,32 @@ class Key:
     optional: bool = False
 
 
+def as_float(value: float) -> float:
+    """Return a number as a float: infinite where a whole number is beyond the range of floats."""
+    try:
+        return float(value)
+    except OverflowError:
+        return math.inf if value > 0 else -math.inf
+
+
 def shown(value: Any) -> str:
-    """Return `value` as it stands in a TOML file, with its type where that is the likely mistake."""
+    """Return `value` as it stands in a TOML file, with its type where that is the likely mistake.
+
+    A whole number that fills lines, which Python does not even write, is told by its size.
+    """
     if isinstance(value, str):
         return f'the text "{value}"'
     if isinstance(value, bool):
         return f"the truth value {str(value).lower()}"
+    if isinstance(value, int) and value.bit_length() > LONGEST:
+        return f"a whole number of about {round(value.bit_length() * math.log10(2.0))} digits"
+    if isinstance(value, list | tuple):
+        return f"[{', '.join(map(_part, value))}]"
     return str(value)
+
+
+def _part(value: Any) -> str:
+    return repr(value) if isinstance(value, str) else shown(value)
 
 
 def positive(unit: str) -> Number:

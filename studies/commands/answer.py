@@ -4,10 +4,12 @@ import argparse
 import json
 import math
 import sys
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
+from studies.answers.assembly import MechanismResponse
+from studies.answers.response import Critical, Response
 from studies.commands.parser import Parser
 from studies.record.files import require_writable_file, write_whole
 
@@ -48,16 +50,39 @@ def deliver(
             sys.stdout.write(text)
         else:
             write_whole(Path(arguments.json), text.encode())
+            print(f"written: {arguments.json}")
     if failure is None:
         return 0
     print(f"studies: not converged: {failure}", file=sys.stderr)
     return NOT_CONVERGED
 
 
-def described(model: str, settings: Mapping[str, Any]) -> str:
-    """Return the model and its settings in a line."""
+def described(model: str, settings: Mapping[str, Any], effects: Iterable[str]) -> str:
+    """Return the model with its settings, and the effects that it was assembled of, in two lines."""
     given = (f"{name} {_short(value)}" for name, value in settings.items() if value is not None)
-    return f"{model}: {', '.join(given)}"
+    return f"{model}: {', '.join(given)}\neffects: {', '.join(effects)}"
+
+
+def remarks(answer: Response | MechanismResponse) -> Iterator[str]:
+    """Yield what is to be said of a path beside its numbers: what it passed, how uncertain it is.
+
+    Why a path stopped early is told on the error stream, see `deliver`.
+    """
+    if answer.converged and answer.message:
+        yield answer.message
+    for point in answer.critical_points:
+        turn = f", {math.degrees(point.rotation):.6g} deg" if math.isfinite(point.rotation) else ""
+        yield f"{point.kind}: load factor {point.load_factor:.6g}{turn}"
+    if answer.resolution:
+        yield answer.resolution
+
+
+def passed(points: Iterable[Critical]) -> list[dict[str, Any]]:
+    """Return critical points as JSON has them."""
+    return [
+        {"kind": point.kind, "load_factor": point.load_factor, "rotation_rad": number(point.rotation)}
+        for point in points
+    ]
 
 
 def ending(status: str, counters: Mapping[str, int], wall_s: float) -> str:

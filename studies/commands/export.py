@@ -101,7 +101,7 @@ def main(arguments: argparse.Namespace) -> int:
         return NOT_CONVERGED
     files = contents(fields, arguments.formats, _drawn(fields, arguments.draw_deg))
     write(arguments.out, files, {"case": Path(arguments.case).name, **summary(fields)})
-    print(described(fields.model, fields.settings))
+    print(described(fields.model, fields.settings, fields.effects))
     print(f"{arguments.out}: {len(fields.values)} states of {fields.analysis} in {len(files)} files")
     if fields.converged:
         return 0

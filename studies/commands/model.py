@@ -1,7 +1,6 @@
 """The arguments that choose a design, its effects, a model and its discretisation, shared by all commands."""
 
 import argparse
-import dataclasses
 
 from studies.answers.settings import FeSettings, Settings, SplineSettings
 from studies.cases.design import Design, read_design
@@ -79,10 +78,7 @@ def add_effects_argument(parser: Parser) -> None:
 
 def chosen_design(arguments: argparse.Namespace) -> Design:
     """Return the design of the case with the effects that are asked for."""
-    design = read_design(arguments.case)
-    if arguments.effects is None:
-        return design
-    return dataclasses.replace(design, effects=design.effects.changed(arguments.effects))
+    return read_design(arguments.case, changes=arguments.effects)
 
 
 def chosen_settings(arguments: argparse.Namespace) -> Settings:

@@ -14,13 +14,19 @@ import argparse
 from collections.abc import Iterator
 from typing import Any
 
+import numpy as np
+
 from studies.answers.adapters import answer_modes
-from studies.answers.spectrum import Spectrum
+from studies.answers.spectrum import Array, Spectrum
 from studies.cases.keys import ROTATION
 from studies.commands.answer import add_json_argument, deliver, described, ending, require_target
+from studies.commands.columns import plain, significant, table
 from studies.commands.model import add_model_arguments, chosen_design, chosen_settings
 from studies.commands.parser import Parser, degrees, whole_number
 from studies.errors import BadInput
+
+#: Of displacement and rotation at unit modal mass; and what is round-off of the largest of all modes.
+SHAPE_UNITS, NOISE = ("kg^-0.5", "kg^-0.5", "kg^-0.5/m"), 1e-7
 
 
 def add_arguments(parser: Parser) -> None:
@@ -50,7 +56,7 @@ def main(arguments: argparse.Namespace) -> int:
         raise BadInput(f"--rotation-deg: {error}") from None
     require_target(arguments)
     answer = answer_modes(design, settings, rotation=rotation, count=arguments.count, held=arguments.held)
-    failure = None if answer.converged else answer.message
+    failure = None if answer.converged else f"at {arguments.rotation_deg:g} deg: {answer.message}"
     return deliver(arguments, as_document(answer), _readable(answer), failure=failure)
 
 
@@ -73,11 +79,23 @@ def as_document(answer: Spectrum) -> dict[str, Any]:
 
 def _readable(answer: Spectrum) -> Iterator[str]:
     """Yield the lines of a short table."""
-    yield described(answer.model, answer.settings)
-    yield f"{'mode':>5} {'frequency':>13}   displacement of the body at unit modal mass"
-    yield f"{'':>5} {'Hz':>13} {'x':>12} {'y':>12} {'rotation':>12}"
-    for mode, (frequency, (x, y, turn)) in enumerate(
-        zip(answer.frequency, answer.body_shapes, strict=True), 1
-    ):
-        yield f"{mode:5d} {frequency:13.4f} {x:12.4e} {y:12.4e} {turn:12.4e}"
+    yield described(answer.model, answer.settings, answer.effects)
+    yield "displacement of the body at unit modal mass"
+    yield from table(
+        [
+            plain("mode", (str(mode) for mode in range(1, len(answer.frequency) + 1))),
+            plain("frequency", map(significant, answer.frequency), "Hz"),
+            *(
+                plain(name, map(significant, _above_noise(shape)), unit)
+                for name, unit, shape in zip(
+                    ("x", "y", "rotation"), SHAPE_UNITS, answer.body_shapes.T, strict=True
+                )
+            ),
+        ]
+    )
     yield ending(answer.status, {}, answer.wall_s)
+
+
+def _above_noise(shape: Array) -> Array:
+    """Return one component of all modes, zero where it is round-off."""
+    return np.where(np.abs(shape) < NOISE * np.abs(shape).max(initial=0.0), 0.0, shape)

@@ -19,7 +19,7 @@ from typing import Any
 
 from studies.answers.adapters import answer_release
 from studies.answers.motion import Motion
-from studies.cases.design import Design
+from studies.cases.design import Design, flexural_scale
 from studies.cases.effects import DEFAULT
 from studies.cases.keys import ROTATION
 from studies.cases.problem import Problem
@@ -32,6 +32,7 @@ from studies.commands.answer import (
     places,
     require_target,
 )
+from studies.commands.columns import ENERGY_FLOOR, angle, plain, quantity, table
 from studies.commands.model import add_model_arguments, chosen_design, chosen_settings, refuse
 from studies.commands.parser import Parser, degrees, whole_number
 from studies.errors import BadInput
@@ -95,7 +96,7 @@ def main(arguments: argparse.Namespace) -> int:
         design, settings, start=start, duration=arguments.duration, repeat=arguments.repeat, **options
     )
     failure = None if answer.converged else answer.message
-    return deliver(arguments, as_document(design, answer), _readable(answer), failure=failure)
+    return deliver(arguments, as_document(design, answer), _readable(design, answer), failure=failure)
 
 
 def as_document(design: Design, answer: Motion) -> dict[str, Any]:
@@ -144,18 +145,21 @@ def _estimate(answer: Motion) -> dict[str, Any]:
     return {"estimate": angles | {name: answer.estimate[name] for name in ("control_points", "runs")}}
 
 
-def _readable(answer: Motion) -> Iterator[str]:
+def _readable(design: Design, answer: Motion) -> Iterator[str]:
     """Yield the lines of a short table: a few of the instants, of the body that was let go."""
-    yield described(answer.model, answer.settings)
-    yield f"{'time':>9} {'rotation':>9} {'x':>11} {'y':>11} {'kinetic':>11} {'strain':>11} {'clamp gap':>10}"
-    yield f"{'ms':>9} {'deg':>9} {'mm':>11} {'mm':>11} {'J':>11} {'J':>11} {'m':>10}"
+    yield described(answer.model, answer.settings, answer.effects)
     last = len(answer.time) - 1
-    for record in sorted({round(last * part / LINES) for part in range(LINES + 1)} if last >= 0 else ()):
-        x, y = 1e3 * answer.centre[record]
-        instant, rotation = 1e3 * answer.time[record], math.degrees(answer.rotation[record])
-        place = f"{instant:9.3f} {rotation:9.3f} {x:11.5f} {y:11.5f}"
-        energy = f"{answer.kinetic_energy[record]:11.4f} {answer.strain_energy[record]:11.4f}"
-        yield f"{place} {energy} {answer.constraint_residual[record]:10.1e}"
+    shown = sorted({round(last * part / LINES) for part in range(LINES + 1)} if last >= 0 else ())
+    kinetic, strain = answer.kinetic_energy[shown], answer.strain_energy[shown]
+    yield from table(
+        [
+            *quantity("s", highest=-3, digits=6, time=answer.time[shown]),
+            angle(answer.rotation[shown]),
+            *quantity("m", highest=-3, x=answer.centre[shown, 0], y=answer.centre[shown, 1]),
+            *quantity("J", floor=ENERGY_FLOOR * flexural_scale(design), kinetic=kinetic, strain=strain),
+            plain("clamp gap", (f"{gap:.1e}" for gap in answer.constraint_residual[shown]), "m"),
+        ]
+    )
     if math.isfinite(answer.frequency):
         yield f"frequency {answer.frequency:.4f} Hz; energy balanced to {answer.energy_error:.1e}"
     if answer.estimate is not None:

@@ -4,8 +4,9 @@
     python -m studies run paper convergence
 
 A name is a study, its last part, a group of studies or "all". Tables and their provenance go to results/data,
-figures to results/figures. A study that this machine cannot compute, for want of a browser, says so and
-keeps its stored result. Exit code 0: done; 2: bad input, for example a folder that cannot be written to.
+figures to results/figures. A study that this machine cannot compute, for want of a browser, a cluster or the
+other codes that it is about (pip install ".[peers]"), says so and keeps its stored result. Exit code 0: done;
+2: bad input, for example a folder that cannot be written to.
 """
 
 import argparse
@@ -45,7 +46,7 @@ def main(arguments: argparse.Namespace) -> int:
             print(f"{name}: left as it is: {reason}", file=sys.stderr)
             continue
         seconds = _run(name, store)
-        print(f"{name}: {seconds:.1f} s", file=sys.stderr)
+        print(f"{name}: {seconds:.1f} s: {store.data(name)}, figures in {store.figures}", file=sys.stderr)
     return 0
 
 

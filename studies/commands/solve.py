@@ -7,7 +7,8 @@
 Of a pivot coordinates have their origin at A1, the ground clamp of strip 1; rotation is counter-clockwise.
 With --accuracy control points are added until the estimated error is below it; --control-points are the first
 that are tried. The arrays of the JSON run over the increments, the state of load factor 0 first, and effects
-are those that were assembled. A mechanism without a rotation follows the loads of its scene. Exit code 0:
+are those that were assembled. Critical points that were passed, and what the model remarks on the path, stand
+below the table. A mechanism without a rotation follows the loads of its scene. Exit code 0:
 converged; 2: bad input; 3: not converged, and then the converged part of the path is reported with where and
 why it stopped.
 """
@@ -18,12 +19,15 @@ import math
 from collections.abc import Iterator
 from typing import Any
 
+import numpy as np
+
 from studies.answers.adapters import answer_mechanism, answer_static
 from studies.answers.assembly import MechanismResponse
 from studies.answers.response import Response
 from studies.answers.settings import Settings
-from studies.cases.design import Design
+from studies.cases.design import Design, flexural_scale
 from studies.cases.keys import INCREMENTS, ROTATION
+from studies.cases.mechanism import Mechanism
 from studies.cases.problem import Problem
 from studies.commands.answer import (
     add_json_argument,
@@ -31,9 +35,12 @@ from studies.commands.answer import (
     described,
     ending,
     number,
+    passed,
     places,
+    remarks,
     require_target,
 )
+from studies.commands.columns import ENERGY_FLOOR, FORCE_FLOOR, STRAIN_FLOOR, angle, plain, quantity, table
 from studies.commands.model import add_model_arguments, chosen_design, chosen_settings
 from studies.commands.parser import Parser, degrees, positive, whole_number
 from studies.errors import BadInput
@@ -77,13 +84,13 @@ def main(arguments: argparse.Namespace) -> int:
         if isinstance(design, Problem):
             how = {"repeat": arguments.repeat, "accuracy": arguments.accuracy}
             pivot = answer_static(design, settings, progress=bar, **how)
-            document, table = as_document(pivot), _readable(pivot)
-            failure = None if pivot.converged else pivot.message
+            document, lines = as_document(pivot), _readable(design, pivot)
+            failure = None if pivot.converged else _stopped(design, pivot)
         else:
             answer = answer_mechanism(design, settings, repeat=arguments.repeat, progress=bar)
-            document, table = mechanism_document(answer), _mechanism_table(answer)
+            document, lines = mechanism_document(answer), _mechanism_table(design, answer)
             failure = None if answer.converged else answer.message
-    return deliver(arguments, document, table, failure=failure)
+    return deliver(arguments, document, lines, failure=failure)
 
 
 def as_document(answer: Response) -> dict[str, Any]:
@@ -91,6 +98,7 @@ def as_document(answer: Response) -> dict[str, Any]:
     return {
         "status": answer.status,
         "message": answer.message,
+        "critical_points": passed(answer.critical_points),
         "resolution": answer.resolution,
         "model": answer.model,
         "settings": answer.settings,
@@ -113,6 +121,7 @@ def mechanism_document(answer: MechanismResponse) -> dict[str, Any]:
     return {
         "status": answer.status,
         "message": answer.message,
+        "critical_points": passed(answer.critical_points),
         "resolution": answer.resolution,
         "model": answer.model,
         "settings": answer.settings,
@@ -127,6 +136,13 @@ def mechanism_document(answer: MechanismResponse) -> dict[str, Any]:
         "counters": answer.counters,
         "wall_s": answer.wall_s,
     }
+
+
+def _stopped(problem: Problem, answer: Response) -> str:
+    """Return how far a path came, why it stopped, and what mends a discretisation that is too coarse."""
+    last = math.degrees(answer.rotation[-1]) if len(answer.rotation) else 0.0
+    mend = "; --accuracy 1e-3 chooses the control points" if answer.resolution and not answer.estimate else ""
+    return f"reached {last:.3f} of {math.degrees(problem.rotation):.3f} deg: {answer.message}{mend}"
 
 
 def _require_accurate(design: Design, settings: Settings) -> None:
@@ -153,45 +169,45 @@ def _driven(design: Design, arguments: argparse.Namespace) -> Design:
     return dataclasses.replace(design, **changes)
 
 
-def _readable(answer: Response) -> Iterator[str]:
+def _readable(problem: Problem, answer: Response) -> Iterator[str]:
     """Yield the lines of a short table."""
-    yield described(answer.model, answer.settings)
-    yield f"{'rotation':>9} {'x':>11} {'y':>11} {'torque':>12} {'stiffness':>12} {'energy':>11} {'stress':>9}"
-    yield f"{'deg':>9} {'mm':>11} {'mm':>11} {'N m':>12} {'N m/rad':>12} {'J':>11} {'MPa':>9}"
-    rows = zip(
-        answer.rotation,
-        answer.centre * 1e3,
-        answer.torque,
-        answer.stiffness,
-        answer.strain_energy,
-        answer.max_stress / 1e6,
-        strict=True,
+    yield described(answer.model, answer.settings, answer.effects)
+    scale = flexural_scale(problem)
+    yield from table(
+        [
+            angle(answer.rotation),
+            *quantity("m", highest=-3, x=answer.centre[:, 0], y=answer.centre[:, 1]),
+            *quantity("N m", floor=FORCE_FLOOR * scale, torque=answer.torque),
+            *quantity("N m/rad", floor=FORCE_FLOOR * scale, stiffness=answer.stiffness),
+            *quantity("J", floor=ENERGY_FLOOR * scale, energy=answer.strain_energy),
+            *quantity(
+                "Pa",
+                floor=STRAIN_FLOOR * problem.youngs_modulus,
+                highest=6,
+                digits=6,
+                stress=answer.max_stress,
+            ),
+        ]
     )
-    for rotation, (x, y), torque, stiffness, energy, stress in rows:
-        place = f"{math.degrees(rotation):9.3f} {x:11.5f} {y:11.5f}"
-        yield f"{place} {torque:12.4f} {stiffness:12.4f} {energy:11.4f} {stress:9.1f}"
     if answer.estimate is not None:
         errors = (f"{name} {answer.estimate[name]:.1e}" for name in ("trajectory", "torque", "stiffness"))
         tried = ", ".join(map(str, answer.estimate["trials"]))
         yield f"estimated error: {', '.join(errors)}; control points tried: {tried}"
-    if answer.resolution:
-        yield answer.resolution
+    yield from remarks(answer)
     yield ending(answer.status, answer.counters, answer.wall_s)
 
 
-def _mechanism_table(answer: MechanismResponse) -> Iterator[str]:
+def _mechanism_table(mechanism: Mechanism, answer: MechanismResponse) -> Iterator[str]:
     """Yield the lines of a short table: torque and energy, and the place of every body."""
-    yield described(answer.model, answer.settings)
-    yield f"{'':>6} {'':>12} {'':>11}" + "".join(f" |{name:>29}" for name in answer.bodies)
-    head = f" |{'x':>9} {'y':>9} {'rotation':>9}" * len(answer.bodies)
-    yield f"{'load':>6} {'torque':>12} {'energy':>11}{head}"
-    yield f"{'':>6} {'N m':>12} {'J':>11}" + f" |{'mm':>9} {'mm':>9} {'deg':>9}" * len(answer.bodies)
-    for state, factor in enumerate(answer.load_factor):
-        torque = f"{answer.torque[state]:12.5g}" if math.isfinite(answer.torque[state]) else f"{'-':>12}"
-        line = f"{factor:6.3f} {torque} {answer.strain_energy[state]:11.5g}"
-        for x, y, turn in (place[state] for place in answer.bodies.values()):
-            line += f" |{1e3 * x:9.4f} {1e3 * y:9.4f} {math.degrees(turn):9.4f}"
-        yield line
-    if answer.resolution:
-        yield answer.resolution
+    yield described(answer.model, answer.settings, answer.effects)
+    scale = flexural_scale(mechanism)
+    columns = [plain("load", (f"{factor:.3f}" for factor in answer.load_factor))]
+    if np.isfinite(answer.torque).any():
+        columns += quantity("N m", floor=FORCE_FLOOR * scale, torque=answer.torque)
+    columns += quantity("J", floor=ENERGY_FLOOR * scale, energy=answer.strain_energy)
+    for name, place in answer.bodies.items():
+        columns += quantity("m", highest=-3, group=name, x=place[:, 0], y=place[:, 1])
+        columns.append(angle(place[:, 2], group=name))
+    yield from table(columns)
+    yield from remarks(answer)
     yield ending(answer.status, answer.counters, answer.wall_s)

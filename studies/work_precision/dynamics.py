@@ -15,6 +15,7 @@ from matplotlib.figure import Figure
 
 from studies.answers.metrics import Array, swing_frequency
 from studies.answers.settings import SplineSettings
+from studies.baselines.registry import missing
 from studies.cases.problem import Problem, named_case
 from studies.paper.findings import Finding, table
 from studies.work_precision import figures
@@ -22,6 +23,8 @@ from studies.work_precision.equal_error import cheapest
 from studies.work_precision.motions import MovingMember, SolvedMotion, at, motion_errors, moving
 from studies.work_precision.moving_series import SPLINE, MovingSeries, other_series, own_series
 from studies.work_precision.static_findings import Ratio
+
+__all__ = ["CASES", "compute", "draw", "equal_error", "missing"]
 
 CASE = "cross_axis_pivot"
 CASES = (CASE,)

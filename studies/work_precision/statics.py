@@ -14,6 +14,7 @@ from typing import Any
 import pandas as pd
 from matplotlib.figure import Figure
 
+from studies.baselines.registry import missing
 from studies.cases.problem import Problem, named_case
 from studies.paper.findings import table
 from studies.work_precision import figures, language, scaling, static_findings
@@ -21,6 +22,8 @@ from studies.work_precision.equal_error import cheapest
 from studies.work_precision.limits import THEORIES, Limit, limit_of_theory
 from studies.work_precision.paths import QUANTITIES, Member, SolvedPath, path_errors
 from studies.work_precision.series import SPLINE, Series, all_series
+
+__all__ = ["CASES", "compute", "draw", "equal_error", "missing"]
 
 CASE = "cross_axis_pivot"
 CASES = (CASE,)

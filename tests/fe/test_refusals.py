@@ -52,7 +52,7 @@ def test_bad_parameter_is_one_clear_line(name: str, value: Any, message: str) ->
     ("arguments", "message"),
     [
         ({"rotation": math.nan}, "rotation: got nan, expected a finite number [rad]"),
-        ({"rotation": ()}, "rotation: got (), expected at least one angle [rad]"),
+        ({"rotation": ()}, "rotation: got (), expected at least one finite number [rad]"),
         ({"rotation": 1.0, "increments": 0}, "increments: got 0, expected an integer of at least 1 [1]"),
     ],
 )

@@ -30,6 +30,13 @@ def load(browser, server):
     return time.monotonic() - begin
 
 
+#: Counts the sockets that a page opens.
+COUNT_SOCKETS = """
+window.sockets = 0;
+window.WebSocket = class extends WebSocket {
+  constructor(...words) { super(...words); window.sockets += 1; }
+};
+"""
 #: Where the body is on the page [px].
 BODY = """
 (() => { const s = studio.state, box = studio.view.canvas.getBoundingClientRect();

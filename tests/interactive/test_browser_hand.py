@@ -1,6 +1,7 @@
 """The page in a real browser without a window and without a camera: mouse, touch, keys and files."""
 
 import json
+import re
 import time
 
 import pytest
@@ -12,7 +13,7 @@ from studies.interactive.pivot.presets import PRESETS
 from studies.interactive.web.browser import Browser, executable
 from studies.interactive.web.hosting import Hosted
 from studies.interactive.web.server import Settings
-from tests.interactive.pages import ANGLE, BODY, CONTRAST, load
+from tests.interactive.pages import ANGLE, BODY, CONTRAST, COUNT_SOCKETS, load
 
 pytestmark = [
     pytest.mark.slow,
@@ -183,3 +184,44 @@ def test_shared_link_opens_the_design(hand):
     hand.call("Page.reload")
     time.sleep(0.5)
     hand.wait("window.studio?.state?.preset === 'table-1' && window.studio.state.values.width === 0.02")
+
+
+def test_whole_pose_begins_where_the_body_is(page):
+    """Requirement: M leaves a turned body where it is; sliders of the shift work with the whole pose."""
+    page.key("ArrowUp")
+    for _ in range(8):
+        page.key("ArrowUp")
+    page.wait("Math.abs(studio.state.pose[2] - Math.PI / 4) < 1e-9")
+    before = page.ask("studio.state.pose")
+    slider = "document.querySelector(\"input[aria-label='shift x, slider']\").disabled"
+    assert page.ask(slider)
+    page.key("ArrowRight", shift=True)
+    page.wait("document.getElementById('note').textContent.includes('rotation alone')")
+    page.key("m")
+    page.wait("studio.state.drive === 'pose'")
+    assert page.ask("studio.state.pose") == pytest.approx(before, abs=1e-12)
+    page.wait(f"!{slider}")
+    page.key("ArrowRight", shift=True)
+    page.wait(f"Math.abs(studio.state.pose[0] - {before[0]} - 1e-4) < 1e-9")
+
+
+def test_numbers_at_rest_are_nought(page):
+    """Requirement: the first screen has no round-off, no nought with a sign, and axes that are not of it."""
+    text = page.ask("document.getElementById('numbers').textContent + studio.state.status")
+    assert re.search(r"e[-+]\d|-0\.0", text) is None
+    assert "0.00, 0.00 mm" in text
+    assert page.ask("document.getElementById('status').textContent") == (
+        "Held at 0.0°: moment 0 N m, stress 0 % of yield."
+    )
+
+
+def test_design_that_is_refused_ends_the_calls(hand):
+    """Requirement: a link whose design the server refuses does not make the page call again and again."""
+    design = {"preset": "polymer", "values": {"width": "x" * 6000}}
+    hand.ask(f"location.hash = 'design=' + encodeURIComponent(btoa({json.dumps(json.dumps(design))}))")
+    counted = hand.call("Page.addScriptToEvaluateOnNewDocument", source=COUNT_SOCKETS)
+    hand.call("Page.reload")
+    time.sleep(5.0)
+    assert 1 <= hand.ask("window.sockets") <= 3
+    hand.call("Page.removeScriptToEvaluateOnNewDocument", **counted)
+    hand.wait("document.getElementById('source').textContent === 'no camera'")

@@ -52,8 +52,8 @@ def test_figure_is_left_as_it_is_without_the_extra(tmp_path):
     done = run("run", "fig07_interactive", "--results", str(tmp_path), code=WITHOUT)
     assert done.returncode == 0
     assert re.fullmatch(
-        r"paper/fig07_interactive: left as it is: it needs the extra `interactive` "
-        r"\(cv2[\w, ]* not installed\)\n",
+        r"paper/fig07_interactive: left as it is: it needs cv2[\w, ]*: "
+        r"python -m pip install '\.\[interactive\]'\n",
         done.stderr,
     )
     assert list(tmp_path.iterdir()) == []
@@ -81,6 +81,8 @@ def test_interrupt_ends_the_server():
         (["--camera", "front"], "--camera: got front, expected browser, none or a number"),
         (["--preset", "rubber"], "preset: got 'rubber', expected one of polymer, table-1"),
         (["--port", "-1"], "got -1, expected a whole number of at least 0"),
+        (["--port", "99999"], "--port: got 99999, expected 0 (any) to 65535"),
+        (["--camera", "77"], "--camera: got no picture from camera 77 of this machine, expected one that is"),
         (["--replay", "none.jsonl"], "--replay: got none.jsonl, expected a session file"),
         (
             ["--record", "no/such/folder/x"],

@@ -118,3 +118,11 @@ def test_policy_is_strict():
     assert "frame-ancestors 'none'" in policy
     assert "unsafe" not in policy
     assert "*" not in policy
+
+
+def test_poses_leave_room_for_keys():
+    """Requirement: poses as fast as they may come never use up what a key or a button needs."""
+    meter = protocol.Meter()
+    for k in range(2000):
+        meter.passes(k / 240.0, protocol.KEPT)
+    assert all(meter.passes(2000 / 240.0) for _ in range(int(protocol.KEPT)))

@@ -117,9 +117,20 @@ def test_sockets_are_few(server):
         for _ in range(security.MOST_SOCKETS):
             stack.enter_context(opened(server))
         with opened(server, hello=False) as socket:
+            say(socket, do="hello", version=1, token=server.token)
             assert closing(socket)[0] == 4429
     time.sleep(0.3)
     with opened(server):
         pass
     time.sleep(0.2)
     assert server.open == 0
+
+
+def test_sockets_without_the_token_take_no_place(server):
+    """Requirement: sockets that have not shown the token keep nobody out."""
+    with contextlib.ExitStack() as stack:
+        for _ in range(2 * security.MOST_SOCKETS):
+            stack.enter_context(opened(server, hello=False))
+        with opened(server) as socket:
+            say(socket, do="pose", pose=[0, 0, 0.1])
+            assert answer(socket)["pose"][2] == pytest.approx(0.1)

@@ -1,6 +1,7 @@
 """The server on a real port, without a browser."""
 
 import math
+import time
 from itertools import pairwise
 
 import pytest
@@ -168,3 +169,35 @@ def test_taken_port_is_one_line(server):
     """Requirement: a port that is taken is refused in one line."""
     with pytest.raises(BadInput, match=rf"--port: got {server.port}, expected a free one"):
         Server(Settings(port=server.port)).bind()
+
+
+@pytest.mark.slow
+def test_poses_of_a_fast_screen_keep_their_session(server):
+    """Requirement: poses that come faster than the rate are dropped, the newest is answered, a key that is
+    pressed meanwhile is taken; the socket stays open."""
+    with opened(server) as socket:
+        say(socket, do="drive", by="rotation")
+        rate, count = 2.0 * protocol.RATE, round(3 * protocol.BURST)
+        begin = time.monotonic()
+        for k in range(count):
+            say(socket, do="pose", pose=[0, 0, 0.5 * k / count], seq=k)
+            time.sleep(max(0.0, begin + k / rate - time.monotonic()))
+        say(socket, do="pose", pose=[0, 0, 0.5], seq=count)
+        say(socket, do="undo")
+        while (state := answer(socket))["seq"] != count:
+            pass
+        assert state["pose"][2] == pytest.approx(0.5)
+        assert [w["code"] for w in answer(socket)["warnings"]] == ["empty"]
+
+
+def test_flood_of_poses_is_thinned(server):
+    """Requirement: of poses at once only as many as the rate allows are solved, and the last of them is."""
+    with opened(server) as socket:
+        say(socket, do="drive", by="rotation")
+        for k in range(400):
+            say(socket, do="pose", pose=[0, 0, 1e-3 * k], seq=k)
+        solved = 0
+        while (state := answer(socket))["seq"] != 399:
+            solved += 1
+        assert state["pose"][2] == pytest.approx(0.399)
+        assert solved < 250

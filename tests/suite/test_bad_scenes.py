@@ -98,7 +98,18 @@ BAD_SCENES = {
     "effects no list": (
         'effects = ["bending"',
         'effects = "bending" #',
-        "scene.effects: got bending, expected a list",
+        'scene.effects: got the text "bending", expected a list',
+    ),
+    "some signs": (
+        'effects = ["bending"',
+        'effects = ["+bending"',
+        'strip_inertia,body_inertia,gravity", expected +NAME and -NAME, or names alone',
+    ),
+    "a load that is not named": (
+        "[drive]",
+        "[effects.applied_force]\nforce_N = [0, -1]\n[drive]",
+        "effects.applied_force: got it, but the scene does not name applied_force, "
+        'expected "applied_force" in scene.effects as well',
     ),
     "unknown table": ("[drive]", "[effects.gravty]\n[drive]", "effects: got gravty, expected gravity"),
     "unknown parameter": (

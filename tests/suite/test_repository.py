@@ -5,10 +5,12 @@ import platform
 import re
 import subprocess
 import tomllib
+from pathlib import Path
 
 import pytest
 
 from studies.record.source import ROOT
+from tests.bench import conftest as bench
 
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
 
@@ -21,6 +23,14 @@ def _committed() -> list[str]:
     except (OSError, subprocess.CalledProcessError):
         pytest.skip("not a git working tree")
     return [name for name in done.stdout.splitlines() if (ROOT / name).is_file()]
+
+
+def _text(path: Path) -> str:
+    """Return what a file says; nothing where it is no text, as a picture or a table in Parquet."""
+    try:
+        return path.read_bytes().decode("utf-8")
+    except UnicodeDecodeError:
+        return ""
 
 
 def test_packages_are_all_named():
@@ -52,14 +62,73 @@ def test_no_machine_is_named():
     host = platform.node()
     faults = []
     for name in _committed():
-        if name.endswith((".png", ".pdf")):
-            continue
-        text = (ROOT / name).read_text(encoding="utf-8")
+        text = _text(ROOT / name)
         faults += [f"{name}: {match[0]}" for match in pattern.finditer(text)]
         faults += [
             f"{name}: {word}" for word in (str(ROOT), f"@{host}", f"{getpass.getuser()}@") if word in text
         ]
     assert faults == []
+
+
+#: What the commands and snippets of the pages leave in the folder that they are called in.
+WRITTEN = [
+    "my_pivot.toml",
+    "my_pivot.json",
+    "my_pivot.png",
+    "designs.toml",
+    "designs/designs.parquet",
+    "designs/sweep.json",
+    "exported/static.pvd",
+    "exported/static.svg",
+    "markers.pdf",
+    "answer.json",
+    "modes.json",
+    "swing.json",
+]
+
+
+def test_what_the_pages_write_stays_out():
+    """Who follows README.md and the first hour in the repository has nothing to commit afterwards."""
+    words = ["git", "check-ignore", "--no-index", *WRITTEN]
+    done = subprocess.run(words, cwd=ROOT, capture_output=True, text=True, check=False)
+    if done.returncode == 128:
+        pytest.skip("not a git working tree")
+    assert done.stdout.split() == WRITTEN
+
+
+def test_a_table_in_parquet_is_no_text(tmp_path):
+    """What is no text, as somebody's table in Parquet or a picture, is left alone instead of failing."""
+    table = tmp_path / "designs.parquet"
+    table.write_bytes(b"PAR1\x15\x04\x80\xff")
+    assert _text(table) == ""
+
+
+#: Tests that read a clock, and why; those of the browser (tests/interactive) live in its time.
+CLOCKS = {
+    "tests/bench/test_ratios.py": "`make bench` alone runs them",
+    "tests/sweep/test_command.py": "they wait for another process, with an end that no machine reaches",
+}
+
+
+def test_no_test_judges_seconds():
+    """Tests count work: what else the machine does must not make them red, so that none reads a clock."""
+    clock = re.compile(r"\b(perf_counter|monotonic|process_time|time\.time|timeit)\b(?! *\")")
+    found = [
+        str(path.relative_to(ROOT))
+        for path in sorted((ROOT / "tests").rglob("*.py"))
+        if path.parent.name != "interactive" and clock.search(path.read_text(encoding="utf-8"))
+    ]
+    own = [
+        str(path) for path in (Path("tests/bench/test_counted.py"), Path("tests/suite/test_repository.py"))
+    ]
+    assert sorted({*found} - {*own}) == sorted(CLOCKS)
+
+
+def test_what_compares_times_is_left_out_of_the_tests(pytestconfig):
+    """Ratios of times are collected where benchmarks are asked for, which the tests' options never do."""
+    assert "--benchmark-disable" in PROJECT["tool"]["pytest"]["ini_options"]["addopts"]
+    assert bench.pytest_ignore_collect(ROOT / "tests" / "bench" / bench.TIMED, pytestconfig)
+    assert bench.pytest_ignore_collect(ROOT / "tests" / "bench" / "test_speed.py", pytestconfig) is None
 
 
 def test_figures_stay_small():

@@ -80,8 +80,8 @@ def test_both_models_have_the_modes_of_every_scene(name, command):
 def test_mechanisms_have_tables_to_read(command):
     """Without --json every body has its columns; the pivot keeps its own table."""
     lines = command("solve", FOLDER / "four_bar_of_flexures.toml", "--model", "spline").out.splitlines()
-    assert lines[1].replace("|", " ").split() == ["crank", "coupler", "rocker"]
-    assert len(lines) == 4 + 21 + 1
+    assert lines[2].replace("|", " ").split() == ["crank", "coupler", "rocker"]
+    assert len(lines) == 5 + 21 + 1
     released = command(
         "release", FOLDER / "four_bar_of_flexures.toml", "--model", "spline", "--duration", 1e-3
     )
@@ -111,16 +111,23 @@ def test_effects_are_changed_on_the_command_line(change, names, case, command):
 
 @pytest.mark.parametrize("model", ["spline", "fe"])
 def test_tables_of_effects_are_there_for_the_command_line(model, case, command):
-    """A table gives the parameters of an effect that --effects adds; without it weight is the earth's."""
+    """A table gives the parameters of an effect that --effects adds; without it weight is the earth's. A
+    table that nothing names is refused, and one that --effects takes out stays behind."""
     end = ("increments = 20", "increments = 2\n[effects.gravity]\nacceleration_m_per_s2 = [0, -9810]")
+    words = ["--model", model, *COARSE[model], "--rotation-deg", 1, "--increments", 2]
+    bare = answer(command, "solve", case(), *words)
+    assert bare["effects"] == ["bending", "stretching"]
     shifts = []
     for changes in ((), (end,)):
-        path = case(*changes)
-        words = ["--model", model, *COARSE[model], "--rotation-deg", 1, "--increments", 2]
-        bare = answer(command, "solve", path, *words)
-        loaded = answer(command, "solve", path, *words, "--effects=+gravity")
-        assert bare["effects"] == ["bending", "stretching"]
+        loaded = answer(command, "solve", case(*changes), *words, "--effects=+gravity")
         shifts.append(loaded["com_y_m"][0] - bare["com_y_m"][0])
+    outcome = command("solve", case(end), *words)
+    assert (outcome.code, outcome.out) == (2, "")
+    assert outcome.err.endswith('expected [scene] with effects = ["+gravity"] as well\n')
+    named = case((end[0], end[1].replace("[eff", '[scene]\neffects = ["+gravity"]\n[eff')))
+    heavy = answer(command, "solve", named, *words)
+    assert heavy["com_y_m"] == loaded["com_y_m"]
+    assert answer(command, "solve", named, *words, "--effects=-gravity")["com_y_m"] == bare["com_y_m"]
     assert shifts[0] < 0.0
     assert shifts[1] == pytest.approx(1000.0 * shifts[0], rel=0.05)  # nearly linear
 

@@ -1,12 +1,16 @@
 """`python -m studies solve`: its JSON, table and exit codes are an interface that others call."""
 
+import dataclasses
 import json
 import math
+import re
 
 import pytest
 
 from studies.answers import adapters
+from studies.answers.response import Critical
 from studies.cases.problem import FOLDER
+from studies.commands import solve
 
 ARRAYS = {
     "rotation_rad",
@@ -17,7 +21,8 @@ ARRAYS = {
     "strain_energy_J",
     "max_stress_Pa",
 }
-KEYS = ARRAYS | {"status", "message", "resolution", "model", "settings", "effects", "counters", "wall_s"}
+KEYS = ARRAYS | {"status", "message", "critical_points", "resolution", "model", "settings", "effects"}
+KEYS |= {"counters", "wall_s"}
 
 
 @pytest.mark.parametrize("model", ["spline", "fe", "fe-shear"])
@@ -61,12 +66,12 @@ def test_settings_of_the_answer_are_those_asked_for(case, command):
 
 
 def test_file_holds_what_the_stream_would(case, command, tmp_path):
-    """`--json FILE` writes the same object as `--json -`, time aside, and leaves no other file."""
+    """`--json FILE` writes the same object as `--json -`, time aside, says so and leaves no other file."""
     words = ["solve", case(), "--model", "fe", "--rotation-deg", 5, "--increments", 1, "--json"]
     streamed = json.loads(command(*words, "-").out)
     outcome = command(*words, tmp_path / "answer.json")
     written = json.loads((tmp_path / "answer.json").read_text(encoding="utf-8"))
-    assert (outcome.code, outcome.out) == (0, "")
+    assert (outcome.code, outcome.out) == (0, f"written: {tmp_path / 'answer.json'}\n")
     assert streamed.keys() == written.keys()
     assert {**streamed, "wall_s": None} == {**written, "wall_s": None}
     assert sorted(path.name for path in tmp_path.iterdir()) == ["answer.json", "case.toml"]
@@ -77,8 +82,9 @@ def test_table_is_short_and_readable(case, command):
     outcome = command("solve", case(), "--model", "fe", "--rotation-deg", 45, "--increments", 3)
     lines = outcome.out.splitlines()
     assert outcome.code == 0
-    assert len(lines) == 3 + 4 + 1
-    assert "N m/rad" in lines[2]
+    assert len(lines) == 4 + 4 + 1
+    assert lines[1] == "effects: bending, stretching"
+    assert "N m/rad" in lines[3]
     assert lines[-2].split()[0] == "45.000"
     assert max(map(len, lines[:-1])) <= 90
 
@@ -100,16 +106,36 @@ def test_repeat_takes_the_median_after_a_warm_up(case, command, monkeypatch):
 
 
 def test_not_converged_keeps_the_path_so_far(case, command):
-    """A path that stops is exit code 3 with its converged part and where and why it stopped."""
+    """A path that stops is exit code 3 with its converged part, how far it came in degrees, and why."""
     words = ["--model", "fe", "--elements", 1, "--rotation-deg", 360, "--increments", 3, "--json", "-"]
     outcome = command("solve", case(("length_m = 0.08", "length_m = 8.08")), *words)
     answer = json.loads(outcome.out)
     assert outcome.code == 3
     assert answer["status"] == "not_converged"
     assert answer["message"]
-    assert outcome.err == f"studies: not converged: {answer['message']}\n"
+    reached = f"reached {math.degrees(answer['rotation_rad'][-1]):.3f} of 360.000 deg"
+    assert outcome.err == f"studies: not converged: {reached}: {answer['message']}\n"
     assert 1 <= len(answer["rotation_rad"]) < 4
     assert {len(answer[name]) for name in ARRAYS} == {len(answer["rotation_rad"])}
+
+
+def test_too_few_control_points_say_so_in_degrees(case, command):
+    """Six points that do not reach 180 degrees of a pivot say how far they came and what reaches it."""
+    skewed = (("crossing_ratio = 0.5", "crossing_ratio = 0.13"), ("= 1.041e-10", "= 1e-12"))
+    path = case(*skewed, ("rotation_deg = 90", "rotation_deg = 180"))
+    outcome = command("solve", path, "--model", "spline")
+    assert outcome.code == 3
+    reached = re.match(r"studies: not converged: reached (\d+\.\d{3}) of 180\.000 deg: ", outcome.err)
+    assert 90.0 < float(reached[1]) < 180.0
+    assert outcome.err.endswith("; --accuracy 1e-3 chooses the control points\n")
+    assert command("solve", path, "--model", "spline", "--accuracy", 1e-3).code == 0
+
+
+def test_modes_beyond_reach_say_where(case, command):
+    """The modes of a state that statics does not reach name its rotation in degrees."""
+    outcome = command("modes", case(), "--model", "spline", "--rotation-deg", 300)
+    assert outcome.code == 3
+    assert outcome.err.startswith("studies: not converged: at 300 deg: statics does not reach the state")
 
 
 def test_accuracy_raises_the_control_points_and_is_reported(case, command):
@@ -165,3 +191,75 @@ def test_accuracy_of_a_mechanism_is_refused(command):
     assert (
         outcome.err == "studies: --accuracy: got it for a mechanism, expected a pivot, or --control-points\n"
     )
+
+
+#: A strip of steel, its foot built in and its head pushed down: it buckles at (pi/2)^2 EI / L^2 = 5.08 N.
+COLUMN = """
+[section]
+area_m2 = 5e-6
+second_moment_m4 = 1e-13
+[material]
+youngs_modulus_Pa = 206e9
+poisson_ratio = 0.29
+density_kg_m3 = 7800
+[[strips]]
+name = "left"
+start_m = [0, 0]
+end_m = [0, 0.1]
+root = "ground"
+tip = "head"
+[[bodies]]
+name = "head"
+centre_m = [0, 0.1]
+mass_kg = 0.1
+moment_of_inertia_kg_m2 = 1e-5
+[drive]
+increments = 10
+[scene]
+effects = ["+applied_force"]
+[effects.applied_force]
+force_N = [0, -8]
+"""
+
+
+def test_what_a_converged_path_passed_is_told(command, tmp_path):
+    """A path that reached its end says what it passed, in the table and in JSON, with the load factor."""
+    path = tmp_path / "column.toml"
+    path.write_text(COLUMN, encoding="utf-8")
+    words = ["solve", path, "--model", "spline"]
+    answer = json.loads(command(*words, "--json", "-").out)
+    outcome = command(*words)
+    assert (outcome.code, outcome.err, answer["status"]) == (0, "", "converged")
+    assert answer["message"]
+    assert answer["message"] in outcome.out
+    (point,) = answer["critical_points"]
+    euler = (math.pi / 2) ** 2 * 206e9 * 1e-13 / 0.1**2  # one end free
+    assert point["kind"] == "bifurcation"
+    assert point["rotation_rad"] is None
+    assert point["load_factor"] == pytest.approx(euler / 8.0, rel=1e-3)
+    assert f"bifurcation: load factor {point['load_factor']:.6g}" in outcome.out
+
+
+@pytest.mark.parametrize("model", ["spline", "fe"])
+def test_heading_names_the_effects(model, command, tmp_path):
+    """The table's heading has the effects that were assembled: a load that is not there is not named."""
+    path = tmp_path / "column.toml"
+    path.write_text(COLUMN.replace("[0, -8]", "[0, -1]"), encoding="utf-8")
+    lines = command("solve", path, "--model", model).out.splitlines()
+    assert lines[1] == "effects: bending, stretching, applied_force"
+    lines = command("solve", path, "--model", model, "--effects=-applied_force").out.splitlines()
+    assert lines[1] == "effects: bending, stretching"
+
+
+def test_critical_points_of_a_pivot_have_their_angle(case, command, monkeypatch):
+    """Of a pivot the line of a critical point has degrees, and the message stands beside it."""
+    genuine = solve.answer_static
+
+    def passing(*arguments, **keywords):
+        point = Critical(kind="limit point", load_factor=0.5, rotation=math.radians(15))
+        answer = genuine(*arguments, **keywords)
+        return dataclasses.replace(answer, message="the torque has a limit", critical_points=(point,))
+
+    monkeypatch.setattr(solve, "answer_static", passing)
+    out = command("solve", case(), "--model", "fe", "--rotation-deg", 30, "--increments", 1).out
+    assert out.splitlines()[-3:-1] == ["the torque has a limit", "limit point: load factor 0.5, 15 deg"]

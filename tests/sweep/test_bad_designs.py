@@ -3,6 +3,9 @@
 import pytest
 
 from studies.__main__ import main
+from studies.cases.document import CaseError
+from studies.sweep.points import design_of, solve_each
+from tests.sweep.sweeps import plan
 
 GOOD = {
     "case": 'case = "cross_axis_pivot"',
@@ -114,3 +117,35 @@ def test_a_file_without_rows_or_with_a_wrong_value_is_named(tmp_path, capsys):
         table.write_text(text)
         assert main(["sweep", str(path), "--out", str(tmp_path / "out")]) == 2
         assert words in capsys.readouterr().err
+
+
+#: A grid over a load, with or without its name in the scene.
+LOADED = """
+case = "cross_axis_pivot"
+[set]
+drive.rotation_deg = 5
+drive.increments = 1
+{scene}
+[vary]
+effects.applied_moment.moment_Nm = [1.0, 2.0]
+"""
+
+
+def test_a_load_that_the_scene_does_not_name_is_no_axis():
+    """Requirement: a sweep over a load is refused where no scene names it, and solved where one does."""
+    with pytest.raises(CaseError, match=r"effects\.applied_moment: got it, but the scene does not name"):
+        plan(LOADED.format(scene=""))
+    named = 'scene.effects = "bending,stretching,strip_inertia,body_inertia,applied_moment"'
+    asked = plan(LOADED.format(scene=named)).task
+    status, _, _ = solve_each(asked, [{"effects.applied_moment.moment_Nm": 1.0}])
+    assert status == ["converged"]
+
+
+def test_a_scene_without_a_load_leaves_its_parameters_aside():
+    """Requirement: a list of effects that is varied takes the case's parameters of what it drops with it."""
+    guide = 'case = "parallel_strip_guide"\n[vary]\nscene.effects = [{lists}]\n'
+    lists = ["bending,stretching,strip_inertia,body_inertia", "bending,stretching,applied_force"]
+    asked = plan(guide.format(lists=", ".join(f'"{names}"' for names in lists))).task
+    bare, loaded = (design_of(asked, {"scene.effects": names}) for names in lists)
+    assert set(bare.effects.tables) == set()
+    assert set(loaded.effects.tables) == {"applied_force"}

@@ -98,7 +98,7 @@ def test_scheduler_and_workers_exclude_each_other(tmp_path, capsys):
     assert "--workers: got it with --scheduler" in capsys.readouterr().err
 
 
-def left_of(group: int, within: float = 5.0) -> list[str]:
+def left_of(group: int, within: float = 60.0) -> list[str]:
     """Return the processes of a group that are still at work after a while."""
     end = time.monotonic() + within
     while True:
@@ -113,7 +113,7 @@ def left_of(group: int, within: float = 5.0) -> list[str]:
         time.sleep(0.05)
 
 
-def parts_in(out: Path, least: int, within: float = 60.0) -> int:
+def parts_in(out: Path, least: int, within: float = 300.0) -> int:
     """Return the number of parts once there are so many."""
     end = time.monotonic() + within
     while time.monotonic() < end:

@@ -6,6 +6,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from studies.record import extras
 from studies.record.source import ROOT
 from studies.sweep.questions import throughput
 from studies.sweep.questions.design_space import SPACE, WITTRICK, rounded
@@ -54,7 +55,7 @@ def test_cost_of_a_chunk_is_the_slope():
 
 def test_throughput_is_left_out_without_the_cluster(monkeypatch):
     """Requirement: without Dask the study says what is missing instead of failing."""
-    monkeypatch.setattr(throughput.importlib.util, "find_spec", lambda name: name)
+    monkeypatch.setattr(extras.importlib.util, "find_spec", lambda name: name)
     assert throughput.missing() == ""
-    monkeypatch.setattr(throughput.importlib.util, "find_spec", lambda name: None)
-    assert throughput.missing() == "the package distributed is not installed"
+    monkeypatch.setattr(extras.importlib.util, "find_spec", lambda name: None)
+    assert throughput.missing() == "it needs distributed: python -m pip install '.[cluster]'"

@@ -16,9 +16,11 @@ from studies.baselines.comparison import peer_figures, peer_statics, peer_swings
 from studies.baselines.comparison.ratios import kept, ratios
 from studies.baselines.comparison.variants import EXUDYN, PASSES, release_variants, static_variants
 from studies.baselines.peers import exudyn_ancf, openseespy_frame
-from studies.baselines.registry import HINT
+from studies.baselines.registry import HINT, missing
 from studies.cases.problem import named_case
 from studies.paper.findings import Finding, table
+
+__all__ = ["CASES", "compute", "draw", "missing"]
 
 CASE = "cross_axis_pivot"
 CASES = (CASE,)

@@ -66,7 +66,8 @@ function welcome(message) {
   at("camera-box").hidden = message.camera === "none";
   if (message.camera === "browser") camera.start(noCamera);
   if (message.camera === "none") noCamera("");
-  const design = files.designOf(location.hash) ?? (studio.state && { preset: studio.state.preset, values: studio.state.values });
+  // the link's design is for a page that begins: one that comes back goes on with what it had
+  const design = studio.state ? { preset: studio.state.preset, values: studio.state.values } : files.designOf(location.hash);
   if (design) send({ do: "preset", name: design.preset, values: design.values });
 }
 
@@ -111,7 +112,7 @@ const actions = {
   forth: () => scrub(ring.place + 5),
   drive: () => send({ do: "drive", by: studio.state?.drive === "pose" ? "rotation" : "pose" }),
   turn: (angle) => pointer.nudge([0, 0, angle]),
-  move: (x, y) => pointer.nudge([x, y, 0]),
+  move: (x, y) => (studio.state?.drive === "rotation" ? say("The hand holds the rotation alone: M lets it hold the whole pose.") : pointer.nudge([x, y, 0])),
 };
 
 function scrub(place) {

@@ -56,7 +56,8 @@ export class Controls {
     for (const { h, range, number } of this.hand) {
       const value = state.displacement[h.place] * h.per;
       if (document.activeElement !== range) range.value = value;
-      if (document.activeElement !== number) number.value = value.toFixed(2);
+      if (document.activeElement !== number) number.value = (Math.round(100 * value) / 100 + 0).toFixed(2);
+      range.disabled = number.disabled = h.place < 2 && state.drive === "rotation";
     }
     at("drive").value = state.drive;
     at("solver").value = state.solver;

@@ -14,6 +14,7 @@ const COLUMNS = [
   ["force_x_N", (s) => s.force[0]], ["force_y_N", (s) => s.force[1]], ["moment_Nm", (s) => s.force[2]],
   ["stiffness_Nm_per_rad", (s) => s.stiffness], ["stress_max_Pa", (s) => s.stress.max],
   ["strain_energy_J", (s) => s.energy.strain], ["kinetic_energy_J", (s) => s.energy.kinetic], ["dissipated_J", (s) => s.energy.dissipated],
+  ["lost_to_steps_J", (s) => s.energy.lost],
   ["centre_x_m", (s) => s.centre?.[0]], ["centre_y_m", (s) => s.centre?.[1]],
   ["sd_x_m", (s) => s.sd?.[0]], ["sd_y_m", (s) => s.sd?.[1]], ["sd_rotation_rad", (s) => s.sd?.[2]], ["solve_ms", (s) => s.solve_ms],
 ];

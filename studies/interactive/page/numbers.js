@@ -3,35 +3,29 @@ import { plot } from "./plots.js";
 
 const at = (id) => document.getElementById(id);
 const deg = (rad) => rad * 180 / Math.PI;
-const PREFIXES = [[1e9, "G"], [1e6, "M"], [1e3, "k"], [1, ""], [1e-3, "m"], [1e-6, "µ"], [1e-9, "n"]];
-const short = (value, digits = 3) => (value === null || value === undefined ? "–" : Math.abs(value) < 1e-12 ? "0" : Number(value.toPrecision(digits)).toString());
-// A value with its unit's prefix; a spread behind it takes the same.
-function withUnit(value, unit, spread = null) {
-  if (value === null || value === undefined) return "–";
-  const size = Math.max(Math.abs(value), spread ?? 0);
-  if (size < 1e-8) return `0 ${unit}`;
-  const [scale, prefix] = PREFIXES.find(([s]) => size >= s) ?? PREFIXES[PREFIXES.length - 1];
-  return `${short(value / scale)}${spread === null ? "" : ` ± ${short(spread / scale, 2)}`} ${prefix}${unit}`;
-}
+// Times and counts of the machine; what the pivot does comes as text from the server, whose formatter is the only one.
+const short = (value, digits = 3) => (value === null || value === undefined ? "–" : Number(value.toPrecision(digits)).toString());
+// Parts of a design's own scales that the axes of the plots span at least.
+const LEAST = 1e-3;
 
 export class Numbers {
   constructor() { this.times = []; this.spoken = -1000; this.last = ""; }
 
   show(state, ring) {
     this.count(state);
-    const sd = state.sd, [dx, dy, t] = state.displacement;
-    const held = state.mode === "held", spread = state.force_sd ?? [null, null, null];
+    const held = state.mode === "held", texts = state.texts;
     const rows = [
-      ["rotation", `${deg(t).toFixed(2)}${sd ? ` ± ${deg(sd[2]).toFixed(2)}` : ""} °`],
-      ["shift x, y", `${(dx * 1e3).toFixed(2)}, ${(dy * 1e3).toFixed(2)}${sd ? ` ± ${(Math.max(sd[0], sd[1]) * 1e3).toFixed(2)}` : ""} mm`],
-      ["moment", held ? withUnit(state.force[2], "N m", spread[2]) : "released"],
-      ["force x", held ? withUnit(state.force[0], "N", spread[0]) : "released"],
-      ["force y", held ? withUnit(state.force[1], "N", spread[1]) : "released"],
-      ["stiffness, centre free", withUnit(state.stiffness, "N m/rad")],
-      ["strain energy", withUnit(state.energy.strain, "J")],
-      ["kinetic energy", withUnit(state.energy.kinetic, "J")],
-      ["dissipated", withUnit(state.energy.dissipated, "J")],
-      ["simulated", `${withUnit(state.simulated, "s")}, ${state.steps} steps`],
+      ["rotation", texts.rotation],
+      ["shift x, y", texts.shift],
+      ["moment", held ? texts.moment : "released"],
+      ["force x", held ? texts.force_x : "released"],
+      ["force y", held ? texts.force_y : "released"],
+      ["stiffness, centre free", texts.stiffness],
+      ["strain energy", texts.strain],
+      ["kinetic energy", texts.kinetic],
+      ["taken by the strips", texts.dissipated],
+      ["lost by the steps", texts.lost],
+      ["simulated", texts.simulated],
       ["time scale", state.values.time_scale >= 1 ? "real time" : `1 : ${short(1 / state.values.time_scale)}`],
       ["solver", `${short(state.solve_ms, 2)} ms, ${state.iterations} iterations`],
     ];
@@ -61,7 +55,7 @@ export class Numbers {
     at("gauge").style.width = `${Math.min(100, 100 * share)}%`;
     at("gauge").classList.toggle("over", share > 1);
     const where = state.stress.place === 0 ? "at the ground clamp" : state.stress.place === state.shape[0].length - 1 ? "at the body's clamp" : "in the span";
-    at("gauge-text").textContent = share < 1e-9 ? "no stress" : `largest stress ${withUnit(state.stress.max, "Pa")}, ${short(100 * share)} % of yield, strip ${state.stress.strip + 1} ${where}`;
+    at("gauge-text").textContent = share < 1e-6 ? "no stress" : `largest stress ${state.texts.stress}, ${state.texts.of_yield} of yield, strip ${state.stress.strip + 1} ${where}`;
   }
 
   sentences(state) {
@@ -87,7 +81,8 @@ export class Numbers {
   plots(ring) {
     const states = ring.states.slice(0, ring.place + 1), end = ring.current?.at ?? 0;
     const recent = states.filter((s) => end - s.at <= 10);
-    const top = Math.max(1e-12, ...recent.map((s) => s.energy.strain + s.energy.kinetic));
+    const scale = ring.current?.scale ?? { energy: 1, moment: 1 };
+    const top = Math.max(LEAST * scale.energy, ...recent.map((s) => s.energy.strain + s.energy.kinetic));
     const [unit, per] = top < 1e-4 ? ["µJ", 1e6] : top < 0.1 ? ["mJ", 1e3] : ["J", 1];
     at("energy-unit").textContent = unit;
     const line = (value) => recent.map((s) => [s.at - end, per * value(s.energy)]);
@@ -95,8 +90,8 @@ export class Numbers {
       { points: line((e) => e.strain + e.kinetic), colour: "#ffffff" },
       { points: line((e) => e.kinetic), colour: "#e69f00" },
       { points: line((e) => e.strain), colour: "#56b4e9" },
-    ], { x: [-10, 0], fromZero: true, unitX: "s" });
+    ], { x: [-10, 0], fromZero: true, unitX: "s", least: LEAST * scale.energy * per });
     const held = states.filter((s) => s.mode === "held").slice(-600);
-    plot(at("moment"), [{ points: held.map((s) => [deg(s.pose[2]), s.force[2]]), colour: "#56b4e9", dots: true }], { unitX: "°" });
+    plot(at("moment"), [{ points: held.map((s) => [deg(s.pose[2]), s.force[2]]), colour: "#56b4e9", dots: true }], { unitX: "°", least: LEAST * scale.moment });
   }
 }

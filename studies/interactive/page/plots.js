@@ -2,7 +2,7 @@
 const round = (span) => { const p = 10 ** Math.floor(Math.log10(span)), r = span / p; return p * (r < 1.5 ? 0.5 : r < 3.5 ? 1 : r < 7.5 ? 2 : 5); };
 const tidy = (value, step) => Number(value.toFixed(Math.max(0, -Math.floor(Math.log10(step)) + 1))).toString();
 
-export function plot(canvas, series, { x = null, fromZero = false, unitX = "" } = {}) {
+export function plot(canvas, series, { x = null, fromZero = false, unitX = "", least = 1e-3 } = {}) {
   const ratio = window.devicePixelRatio || 1, width = canvas.clientWidth, height = canvas.clientHeight;
   if (!width) return;
   if (canvas.width !== Math.round(width * ratio)) { canvas.width = Math.round(width * ratio); canvas.height = Math.round(height * ratio); }
@@ -10,9 +10,14 @@ export function plot(canvas, series, { x = null, fromZero = false, unitX = "" } 
   c.setTransform(ratio, 0, 0, ratio, 0, 0);
   c.clearRect(0, 0, width, height);
   if (!all.length) return;
-  const range = (values, low, high) => { for (const v of values) { low = Math.min(low, v); high = Math.max(high, v); } return high - low < 1e-12 ? [low - 0.5e-3, high + 0.5e-3] : [low, high]; };
-  const [x0, x1] = x ?? range(all.map((p) => p[0]), Infinity, -Infinity);
-  let [y0, y1] = range(all.map((p) => p[1]), fromZero ? 0 : Infinity, -Infinity);
+  // What spans less than `span` is drawn in the middle of it, or from nought up.
+  const range = (values, low, high, span) => {
+    for (const v of values) { low = Math.min(low, v); high = Math.max(high, v); }
+    const more = Math.max(0, span - (high - low));
+    return low >= 0 && fromZero ? [low, high + more] : [low - more / 2, high + more / 2];
+  };
+  const [x0, x1] = x ?? range(all.map((p) => p[0]), Infinity, -Infinity, 1);
+  let [y0, y1] = range(all.map((p) => p[1]), fromZero ? 0 : Infinity, -Infinity, least);
   y1 += 0.06 * (y1 - y0); if (!fromZero) y0 -= 0.06 * (y1 - y0);
   const left = 52, bottom = 20, right = 10, top = 6;
   const px = (v) => left + (v - x0) / (x1 - x0) * (width - left - right), py = (v) => height - bottom - (v - y0) / (y1 - y0) * (height - top - bottom);

@@ -1,5 +1,7 @@
 // The web socket: hello with the token, events up, states and pictures down; it comes back by itself.
 const WAITS = [500, 1000, 2000, 5000];
+// Refusals of what the page sends, in this time [ms], after which it does not come back.
+const MOST_REFUSED = 3, WITHIN = 30000;
 
 function token() {
   const found = /(?:^#|&)token=([\w-]+)/.exec(location.hash);
@@ -16,6 +18,7 @@ export class Socket {
     this.received = received;
     this.lost = lost;
     this.tries = 0;
+    this.refused = [];
     this.token = token();
   }
 
@@ -45,6 +48,8 @@ export class Socket {
   closed(event) {
     if (event.code === 4403) return this.lost("The token does not fit: open the address that the command printed.");
     if (event.code === 4429) return this.lost("Too many pages are open: close one and load this one again.");
+    if (event.code === 4400) this.refused = [...this.refused.filter((time) => performance.now() - time < WITHIN), performance.now()];
+    if (this.refused.length >= MOST_REFUSED) return this.lost(`The server refuses what this page sends (${event.reason}): open the address that the command printed.`);
     const why = event.code === 4400 ? ` (${event.reason})` : "";
     this.lost(`The server does not answer${why}: the last state is kept, trying again.`);
     setTimeout(() => this.open(), WAITS[Math.min(this.tries++, WAITS.length - 1)]);

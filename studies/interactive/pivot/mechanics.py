@@ -1,5 +1,6 @@
 """One design at work: held statically by its body's pose, released, stepped and caught."""
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
@@ -7,7 +8,9 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from spline_model.content import STEPS_PER_PERIOD
 from spline_model.held import HeldPivot, HeldState
+from spline_model.modes import natural_frequencies
 from studies.interactive.pivot.design import Reader, Reading, build, free_stiffness, free_turn, pole
 from studies.interactive.pivot.motion import MOTIONS, Motion, released
 from studies.interactive.pivot.presets import STEP
@@ -33,7 +36,8 @@ class Snapshot:
         force: what holds the body (3,) [N, N, N m], zero when released; tangent (3, 3) its derivative or
             None.
         stiffness: rotational, with the body's centre free [N m/rad], None when released.
-        strain, kinetic, dissipated: energies [J].
+        strain, kinetic, dissipated, lost: energies [J], dissipated by the strips' damping, lost to the
+            steps' own.
         centre: the instantaneous centre of rotation, None where the body does not turn.
         iterations: of Newton's method.
     """
@@ -47,6 +51,7 @@ class Snapshot:
     strain: float
     kinetic: float
     dissipated: float
+    lost: float
     centre: tuple[float, float] | None
     iterations: int
 
@@ -67,6 +72,12 @@ class Mechanics:
         self._reader = Reader.of(values)
         self._motion: Motion | None = None
         self.snapshot = self._static(self._held.reset())
+
+    @cached_property
+    def longest_step(self) -> float:
+        """Longest step [s] that resolves a swing about rest in phase and amplitude."""
+        lowest = natural_frequencies(self.pivot).frequency[0]
+        return 1.0 / (STEPS_PER_PERIOD * float(lowest)) if lowest > 0.0 else math.inf
 
     @property
     def moving(self) -> bool:
@@ -175,6 +186,7 @@ class Mechanics:
             strain=state.bending_energy + state.axial_energy,
             kinetic=0.0,
             dissipated=0.0,
+            lost=0.0,
             centre=pole(state.pose, way, 0.0),
             iterations=state.iterations if iterations is None else iterations,
         )
@@ -192,6 +204,7 @@ class Mechanics:
             strain=state.strain,
             kinetic=state.kinetic,
             dissipated=state.dissipated,
+            lost=state.lost,
             centre=pole(state.pose, state.velocity, LEAST_TURN / self.step),
             iterations=state.iterations,
         )

@@ -27,9 +27,8 @@ SMALLEST_PART = 2.0**-6
 class Moving:
     """A state of the released pivot.
 
-    pose, velocity (3,) of the body [m, m, rad and a second]; points (2, n, 2) [m]; kinetic, strain,
-    dissipated
-    energies [J]; iterations of the last steps.
+    pose, velocity (3,) of the body [m, m, rad and a second]; points (2, n, 2) [m]; energies [J]: kinetic,
+    strain, dissipated by the strips' damping, lost to that of the steps; iterations of the last steps.
     """
 
     pose: Array
@@ -38,6 +37,7 @@ class Moving:
     kinetic: float
     strain: float
     dissipated: float
+    lost: float
     iterations: int
 
 
@@ -63,6 +63,7 @@ class EnergyMotion:
         self._counters, self._totals = np.zeros(WHOLE + 1, dtype=np.int64), np.zeros(2)
         self._active = drives_at(self._motion, 0.0)
         self._iterations = 0
+        self._start = sum(self._energies()[:2])
 
     def advance(self, steps: int, step: float) -> bool:
         """Take steps, halved at need down to SMALLEST_PART."""
@@ -89,10 +90,15 @@ class EnergyMotion:
 
     def state(self) -> Moving:
         """Return the present state."""
+        kinetic, strain, dissipated = self._energies()
+        energies = kinetic, strain, dissipated, self._start - kinetic - strain - dissipated
+        return moving(self.system, self._z, self._v, energies, self._iterations)
+
+    def _energies(self) -> tuple[float, float, float]:
+        """Kinetic and strain energy, and what the strips' damping took [J]."""
         row = np.zeros(7)
         record(self._z, self._v, self._motion, np.empty(len(self._motion.rigidity)), self._totals, row)
-        energies = float(row[KINETIC]), float(row[STRAIN]), float(row[DISSIPATED])
-        return moving(self.system, self._z, self._v, energies, self._iterations)
+        return float(row[KINETIC]), float(row[STRAIN]), float(row[DISSIPATED])
 
 
 class ImpulseMotion:
@@ -103,24 +109,31 @@ class ImpulseMotion:
         self._start = self._out = Run(self._solver, self._solver.start_at(z, velocity)).outcome(
             0, 0, 0.0, False
         )
+        self._dissipated = 0.0
 
     def advance(self, steps: int, step: float) -> bool:
         """Take steps; where one must be cut below its least part, none counts."""
-        out = self._solver.step(self._out.state, step, steps)
+        solver, begin = self._solver, self._out.state
+        run = Run(solver, begin)
+        free = np.zeros(len(solver.motion.tables.drives.row), dtype=np.int64)
+        taken = run.go(0, steps, step, begin.time, steps, free, solver.motion)
+        out = run.outcome(taken, steps, begin.time + taken * step, False)
         if not out.complete:
             return False
         self._out = out
+        self._dissipated += float(run.moving.totals[1])
         return True
 
     def state(self) -> Moving:
-        """Return the present state; what the steps' own damping took counts as dissipated."""
+        """Return the present state; what the strips' damping did not take is lost to that of the steps."""
         out, start = self._out, self._start
         lost = start.kinetic_energy + start.strain_energy - out.kinetic_energy - out.strain_energy
+        lost -= self._dissipated
         return moving(
             self._solver.system,
             out.state.z,
             out.state.v,
-            (out.kinetic_energy, out.strain_energy, lost),
+            (out.kinetic_energy, out.strain_energy, self._dissipated, lost),
             out.counters["solves"],
         )
 
@@ -131,7 +144,7 @@ def released(pivot: Pivot) -> System:
 
 
 def moving(
-    system: System, z: Array, v: Array, energies: tuple[float, float, float], iterations: int
+    system: System, z: Array, v: Array, energies: tuple[float, float, float, float], iterations: int
 ) -> Moving:
     """Return the state from the unknowns, the velocities and the energies [J] as in `Moving`."""
     body = system.layout.body(BODY)
@@ -142,6 +155,7 @@ def moving(
         kinetic=energies[0],
         strain=energies[1],
         dissipated=energies[2],
+        lost=energies[3],
         iterations=iterations,
     )
 

@@ -18,7 +18,8 @@ from studies.interactive.pivot.design import wrapped
 from studies.interactive.pivot.mechanics import Mechanics
 from studies.interactive.pivot.motion import MOTIONS
 from studies.interactive.pivot.placing import Placing
-from studies.interactive.pivot.presets import STEP, STEPS_A_FRAME
+from studies.interactive.pivot.presets import STEP
+from studies.interactive.session.clock import Clock
 from studies.interactive.session.fields import choice, mapping, number, three, words
 from studies.interactive.session.hand import Hand
 from studies.interactive.session.view import Warnings, shown
@@ -27,8 +28,6 @@ Array = NDArray[np.float64]
 
 #: Farthest a pose may lie from rest: shift over the strips' length, and turn [rad].
 FARTHEST_SHIFT, FARTHEST_TURN = 2.0, 3.5
-#: Longest that simulated time is caught up in one frame, in steps.
-MOST_STEPS = 20
 #: Distance of the body from where the pivot turns by itself, over the strips' length, that is named: few
 #: hands pull so hard, but 1.5 % of a wrong printed size do it.
 OFF_PATH = 0.02
@@ -49,18 +48,15 @@ class Session:
 
     def _begin(self, preset: str, values: Mapping[str, object], lock_step: bool) -> None:
         """Everything as at the start, with these settings."""
-        self.bench, self.lock_step = Bench(preset, values), lock_step
+        self.bench, self.clock = Bench(preset, values), Clock(lock_step=lock_step)
         self.warnings = Warnings()
         self.drive, self.solver = DRIVES[0], next(iter(MOTIONS))
-        self.paused = False
-        self.steps, self.lag, self.time = 0, 0.0, 0.0
+        self.paused, self.time = False, 0.0
         self.sight: dict[str, Any] = {"state": "none"}
         self.spread: Array | None = None
-        self.start_energy = 0.0
-        self.wanted = np.zeros(3)
+        self.start_energy, self.wanted = 0.0, np.zeros(3)
         self._marker: Array | None = None
         self._hand = Hand()
-        self._last_frame: float | None = None
 
     @property
     def mechanics(self) -> Mechanics:
@@ -86,6 +82,8 @@ class Session:
         self.warnings.begin()
         action(self, event, time)
         self.time = time
+        if self.mechanics.moving and self.mechanics.step > self.mechanics.longest_step:
+            self.warnings.say("under-resolved", f"{self.mechanics.longest_step / STEP:.1g} resolves it")
         return shown(self)
 
     def setup(self) -> dict[str, Any]:
@@ -97,7 +95,7 @@ class Session:
             "values": dict(self.mechanics.values),
             "drive": self.drive,
             "solver": self.solver,
-            "lock_step": self.lock_step,
+            "lock_step": self.clock.lock_step,
             "rest": self.placing.rest.tolist(),
         }
 
@@ -151,19 +149,11 @@ class Session:
 
     def _frame(self, time: float) -> bool:
         """Advance the released body by a frame; False while it is held."""
-        if not self.mechanics.moving:
-            self._last_frame = time
-            return False
-        before, self._last_frame = self._last_frame, time
-        if self.paused:
-            return True
-        steps = STEPS_A_FRAME
-        if not self.lock_step and before is not None:
-            due = self.lag + (time - before) / STEP
-            steps = max(0, min(MOST_STEPS, round(due)))
-            self.lag = max(0.0, due - steps)
-        self._advance(steps)
-        return True
+        if not self.mechanics.moving or self.paused:
+            self.clock.wait(time)
+        else:
+            self._advance(self.clock.due(time))
+        return self.mechanics.moving
 
     def _to(self, pose: Array, time: float) -> None:
         """Drive the body to `pose` (3,), displacement from rest and turn."""
@@ -173,9 +163,9 @@ class Session:
         if not (far <= FARTHEST_SHIFT and abs(pose[2]) <= FARTHEST_TURN):
             self.warnings.say("absurd", f"shift {far:.2g} strip lengths, turn {math.degrees(pose[2]):.0f}°")
             return
-        self._hand.add(time, pose)
         self.wanted = pose
         self._hold()
+        self._hand.add(time, self.wanted)
 
     def _hold(self) -> None:
         """Static solve at the wanted pose; on failure the last good state stays."""
@@ -184,10 +174,17 @@ class Session:
         reached = self.mechanics.hold(target) if by_pose else self.mechanics.turn(float(target[2]))
         if reached < 1.0:
             self.warnings.say("no-equilibrium", f"{100 * reached:.0f} % of the way")
+        elif not by_pose:
+            self._hand_is_here(turn=self.wanted[2])
         elif by_pose and self.sight["state"] != "none":
             gap = self.mechanics.off_path(target)
             if gap > OFF_PATH * self.mechanics.values["length"]:
                 self.warnings.say("off-path", f"{1e3 * gap:.1f} mm")
+
+    def _hand_is_here(self, turn: float) -> None:
+        """Without a camera the hand is where the body is: a shift that it does not hold is not wanted."""
+        if self.sight["state"] == "none":
+            self.wanted = np.array([*(self.mechanics.snapshot.pose[:2] - self.placing.centre), turn])
 
     # -- release and catch ---------------------------------------------------------------------------------
 
@@ -197,8 +194,8 @@ class Session:
         velocity = self._hand.velocity if event.get("speed") == "hand" else np.zeros(3)
         self.mechanics.release(velocity / self.mechanics.values["time_scale"], self.solver)
         now = self.mechanics.snapshot
-        self.steps, self.lag, self.start_energy = 0, 0.0, now.strain + now.kinetic
-        self._last_frame = time
+        self.start_energy = now.strain + now.kinetic
+        self.clock.begin(time)
 
     def _catch(self, event: Mapping[str, Any], time: float) -> None:
         if not self.mechanics.moving:
@@ -207,12 +204,9 @@ class Session:
             self.warnings.say("no-catch")
             return
         self._hand.forget()
-        if self.sight["state"] == "none":  # without a camera the hand is where the body is
-            pose = self.mechanics.snapshot.pose
-            self.wanted = np.array([*(pose[:2] - self.placing.centre), pose[2]])
-        self.wanted[2] = self.mechanics.snapshot.pose[2] + wrapped(
-            self.wanted[2] - self.mechanics.snapshot.pose[2]
-        )
+        turn = float(self.mechanics.snapshot.pose[2])
+        self._hand_is_here(turn)
+        self.wanted[2] = turn + wrapped(self.wanted[2] - turn)
         self._hold()
 
     def _advance(self, steps: int) -> None:
@@ -220,13 +214,14 @@ class Session:
             self.warnings.say("stopped")
             self.paused = True
             return
-        self.steps += steps
+        self.clock.count(steps, self.mechanics.step)
 
     def _pause(self, event: Mapping[str, Any], time: float) -> None:
         self.paused = True
 
     def _resume(self, event: Mapping[str, Any], time: float) -> None:
-        self.paused, self._last_frame = False, time
+        self.paused = False
+        self.clock.wait(time)
 
     def _step(self, event: Mapping[str, Any], time: float) -> None:
         """One step of a released body that is paused."""
@@ -236,7 +231,8 @@ class Session:
 
     def _reset(self, event: Mapping[str, Any], time: float) -> None:
         self.mechanics.reset()
-        self.wanted, self.paused, self.steps, self.lag = np.zeros(3), False, 0, 0.0
+        self.wanted, self.paused = np.zeros(3), False
+        self.clock.begin(None)
         self._hand.forget()
 
     # -- settings ------------------------------------------------------------------------------------------
@@ -244,22 +240,28 @@ class Session:
     def _parameter(self, event: Mapping[str, Any], time: float) -> None:
         preset, values = self.bench.design
         self.bench.change(preset, {**values, str(event.get("name")): event.get("value")})
-        self._hold()
+        self._rebuilt()
 
     def _preset(self, event: Mapping[str, Any], time: float) -> None:
         values = presets.preset(event.get("name")).values() | dict(mapping(event, "values"))
         self.bench.change(str(event["name"]), values)
-        self._hold()
+        self._rebuilt()
 
     def _undo(self, event: Mapping[str, Any], time: float) -> None:
-        self._hold() if self.bench.undo() else self.warnings.say("empty", "to undo")
+        self._rebuilt() if self.bench.undo() else self.warnings.say("empty", "to undo")
 
     def _redo(self, event: Mapping[str, Any], time: float) -> None:
-        self._hold() if self.bench.redo() else self.warnings.say("empty", "to redo")
+        self._rebuilt() if self.bench.redo() else self.warnings.say("empty", "to redo")
+
+    def _rebuilt(self) -> None:
+        """Another design is held where the former was, and its time begins."""
+        self.clock.begin(None)
+        self._hold()
 
     def _set_drive(self, event: Mapping[str, Any], time: float) -> None:
         self.drive = choice(event, "by", DRIVES)
         if not self.mechanics.moving:
+            self._hand_is_here(float(self.mechanics.snapshot.pose[2]))
             self._hold()
 
     def _set_solver(self, event: Mapping[str, Any], time: float) -> None:

@@ -1,10 +1,12 @@
 """What a session shows: numbers and sentences of one instant, ready for JSON, in SI units."""
 
-import math
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
+
+from studies.interactive.pivot.design import free_stiffness, free_turn
+from studies.interactive.session.readout import readout, scales, sentence
 
 if TYPE_CHECKING:
     from studies.interactive.session.session import Session
@@ -27,6 +29,7 @@ SENTENCES = {
     "the ruler, or take the pose of the unloaded pivot as rest.",
     "no-catch": "The moving body could not be held here: try again.",
     "stopped": "The solver stopped: the last good state is kept and time is paused.",
+    "under-resolved": "The step is too long for this swing, which it damps: take a slower time scale.",
     "no-rest": "Both markers must be seen to take their pose as rest.",
     "empty": "There is nothing.",
     "not-flat": "The markers do not lie in one plane, or the lens bends the picture.",
@@ -58,6 +61,7 @@ def shown(session: "Session") -> dict[str, Any]:
     """Return the state of a session: equal sessions give equal states, digit by digit."""
     mechanics, now = session.mechanics, session.mechanics.snapshot
     reading, values = now.reading, session.mechanics.values
+    sd, force_sd = _spreads(session)
     strip, place = np.unravel_index(int(np.argmax(reading.stress)), reading.stress.shape)
     state: dict[str, Any] = {
         "t": session.time,
@@ -68,9 +72,9 @@ def shown(session: "Session") -> dict[str, Any]:
         "drive": session.drive,
         "solver": session.solver,
         "step": mechanics.step,
-        "steps": session.steps,
-        "simulated": session.steps * mechanics.step,
-        "lag": session.lag,
+        "steps": session.clock.steps,
+        "simulated": session.clock.simulated,
+        "lag": session.clock.lag,
         "pose": plain(now.pose),
         "displacement": [*plain(now.pose[:2] - session.placing.centre), float(now.pose[2])],
         "wanted": plain(session.wanted),
@@ -89,13 +93,15 @@ def shown(session: "Session") -> dict[str, Any]:
             "strain": now.strain,
             "kinetic": now.kinetic,
             "dissipated": now.dissipated,
+            "lost": now.lost,
             "start": session.start_energy if mechanics.moving else None,
         },
         "centre": None if now.centre is None else list(now.centre),
         "iterations": now.iterations,
         "sight": session.sight,
-        "sd": None if session.spread is None or mechanics.moving else plain(session.spread),
-        "force_sd": _force_spread(session),
+        "sd": sd,
+        "force_sd": force_sd,
+        "scale": scales(values),
         "placing": {
             "ground": plain(session.placing.ground),
             "marker": plain(session.placing.marker(now.pose)),
@@ -104,7 +110,8 @@ def shown(session: "Session") -> dict[str, Any]:
         },
         "warnings": [{"code": code, "text": text} for code, text in session.warnings.said.items()],
     }
-    state["status"] = _sentence(state)
+    state["texts"] = readout(state)
+    state["status"] = sentence(state, state["texts"])
     return state
 
 
@@ -113,22 +120,15 @@ def plain(array: NDArray[np.float64]) -> Any:
     return np.asarray(array, dtype=float).tolist()
 
 
-def _force_spread(session: "Session") -> list[float] | None:
-    """Standard deviations of force and moment that those of the pose stand for, to first order."""
-    tangent = session.mechanics.snapshot.tangent
-    if session.spread is None or tangent is None:
-        return None
-    return plain(np.sqrt((tangent**2) @ (session.spread**2)))  # type: ignore[no-any-return]
+def _spreads(session: "Session") -> tuple[list[float] | None, list[float | None] | None]:
+    """Standard deviations of the pose that is shown and of what holds it, to first order.
 
-
-def _sentence(state: dict[str, Any]) -> str:
-    """What the picture shows, in a sentence for the status line and screen readers."""
-    angle = math.degrees(state["pose"][2])
-    stress = 100.0 * state["stress"]["of_yield"]
-    pause = ", paused" if state["paused"] else ""
-    if state["mode"] == "released":
-        return (
-            f"Released{pause}: {angle:.1f}° after {state['simulated']:.3g} s, stress {stress:.0f} % of yield."
-        )
-    moment = state["force"][2]
-    return f"Held at {angle:.1f}°{pause}: moment {moment:.3g} N m, stress {stress:.0f} % of yield."
+    A hand that holds the rotation alone has that of the rotation alone: the body goes where no force is
+    needed, forces are nought by construction, and the moment follows with the stiffness of a free centre.
+    """
+    tangent, sd = session.mechanics.snapshot.tangent, session.spread
+    if sd is None or tangent is None:
+        return None, None
+    if session.drive == "rotation":
+        return plain(np.abs(free_turn(tangent)) * sd[2]), [None, None, abs(free_stiffness(tangent)) * sd[2]]
+    return plain(sd), plain(np.sqrt((tangent**2) @ (sd**2)))

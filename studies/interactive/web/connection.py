@@ -58,6 +58,7 @@ class Connection:
         self._begin = time.monotonic()
         self._lock = asyncio.Lock()
         self._pending: protocol.Sent | None = None
+        self._late: dict[str, Any] | None = None
         self._wake = asyncio.Event()
         self._last_picture = -1e9
         self._offset: float | None = None
@@ -110,13 +111,28 @@ class Connection:
             message = await self._socket.receive()
             if message["type"] == "websocket.disconnect":
                 return
-            if not meter.passes(time.monotonic()):
+            data = message.get("bytes")
+            event = protocol.event(message.get("text") or "") if data is None else {}
+            if event.get("do") == "pose" and not meter.passes(time.monotonic(), protocol.KEPT):
+                self._late = event
+                continue
+            if event.get("do") != "pose" and not meter.passes(time.monotonic()):
                 raise BadInput(f"messages: got too many, expected at most {protocol.RATE:.0f} a second")
-            if message.get("bytes") is not None:
-                self._pending = protocol.sent_picture(message["bytes"])
+            if data is not None:
+                self._pending = protocol.sent_picture(data)
                 self._wake.set()
+            elif event["do"] == "pose":
+                self._late = None
+                await self._text(event)
             else:
-                await self._text(protocol.event(message.get("text") or ""))
+                await self._catch_up()
+                await self._text(event)
+
+    async def _catch_up(self) -> None:
+        """Take the newest pose of those that came too fast, if no later one was taken."""
+        late, self._late = self._late, None
+        if late is not None:
+            await self._text(late)
 
     async def _text(self, event: dict[str, Any]) -> None:
         seq = event.pop("seq", None)
@@ -188,6 +204,7 @@ class Connection:
         """Drive a released body on where no pictures do."""
         while True:
             await asyncio.sleep(TICK)
+            await self._catch_up()
             still = time.monotonic() - self._last_picture > STILL
             if still and self.session.mechanics.moving and not self.session.paused:
                 await self._feed({"do": "tick"}, None)

@@ -20,8 +20,9 @@ HEADER = struct.Struct("<BBBBIHHd")
 PICTURE = 1
 GREY, JPEG = 0, 1
 
-#: Messages a second that a connection may send, and how many at once.
-RATE, BURST = 120.0, 120.0
+#: Messages a second that a connection may send, and how many at once; so many of them are kept from poses,
+#: of which only the newest counts: they never use up what a key or a button needs.
+RATE, BURST, KEPT = 120.0, 120.0, 20.0
 
 #: Event -> the fields it may have besides "do", "t" and "seq".
 FIELDS: dict[str, frozenset[str]] = {
@@ -147,9 +148,11 @@ class Meter:
     def __init__(self) -> None:
         self._left, self._last = BURST, 0.0
 
-    def passes(self, now: float) -> bool:
-        """Return whether one more message at time `now` [s] is within the rate."""
+    def passes(self, now: float, kept: float = 0.0) -> bool:
+        """Return whether one more message at time `now` [s] is within the rate, `kept` being left of it."""
         self._left = min(BURST, self._left + (now - self._last) * RATE)
         self._last = now
+        if self._left < 1.0 + kept:
+            return False
         self._left -= 1.0
-        return self._left >= 0.0
+        return True

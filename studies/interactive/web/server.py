@@ -28,6 +28,7 @@ LOG = logging.getLogger(__name__)
 KINDS = {".html": "text/html; charset=utf-8", ".js": "text/javascript; charset=utf-8", ".css": "text/css"}
 #: Closing codes: bad message, no right, too many.
 BAD, FORBIDDEN, FULL = 4400, 4403, 4429
+LAST_PORT = 65535
 #: How long a socket may take to say hello [s].
 PATIENCE = 5.0
 
@@ -117,6 +118,8 @@ class Server:
 
     def bind(self) -> None:
         """Take the port, on the loopback only; BadInput if it is taken."""
+        if not 0 <= self.settings.port <= LAST_PORT:
+            raise BadInput(f"--port: got {self.settings.port}, expected 0 (any) to {LAST_PORT}")
         listener = sockets.socket(sockets.AF_INET, sockets.SOCK_STREAM)
         listener.setsockopt(sockets.SOL_SOCKET, sockets.SO_REUSEADDR, 1)
         try:
@@ -169,14 +172,15 @@ class Server:
     async def _socket(self, socket: WebSocket) -> None:
         """One socket: hello with the token, then its connection; any fault closes this socket only."""
         await socket.accept()
-        if self.open >= security.MOST_SOCKETS:
-            await socket.close(FULL, "too many pages are open")
-            return
-        self.open += 1
-        begin = time.monotonic()
+        begin, counted = time.monotonic(), False
         try:
             if not await self._hello(socket):
                 return
+            if self.open >= security.MOST_SOCKETS:  # who has no token takes no page's place
+                await _close(socket, FULL, "too many pages are open")
+                return
+            counted = True
+            self.open += 1
             source = self.settings.source() if self.settings.source else None
             await Connection(
                 socket,
@@ -193,7 +197,7 @@ class Server:
         except RuntimeError as error:
             LOG.debug("socket closed while it was written to: %s", error)
         finally:
-            self.open -= 1
+            self.open -= counted
             LOG.info("a page was open for %.0f s", time.monotonic() - begin)
 
     async def _hello(self, socket: WebSocket) -> bool:

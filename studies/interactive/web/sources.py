@@ -72,8 +72,12 @@ class VideoSource:
         rate = video.get(cv2.CAP_PROP_FPS)
         video.release()
         if not good or picture is None:
-            expected = "a film that OpenCV reads" if self.lock_step else "the number of a camera"
-            raise BadInput(f"{'--film' if self.lock_step else '--camera'}: got {place}, expected {expected}")
+            if self.lock_step:
+                raise BadInput(f"--film: got {place}, expected a film that OpenCV reads")
+            raise BadInput(
+                f"--camera: got no picture from camera {place} of this machine, expected one that is "
+                "connected and that no other program uses"
+            )
         self.rate = rate if 1.0 <= rate <= 120.0 else RATE
 
     def shots(self) -> Iterator[Shot]:

@@ -122,7 +122,9 @@ def _range(where: str, key: str, given: Mapping[str, Any], rule: Any, *, grid: b
     for name, value in (("from", low), ("to", high)):
         parsed(where, f"{label}.{name}", rule, value)
     if not low < high:
-        raise CaseError(f"{where}: {label}: got an empty range from {low} to {high}, expected from < to")
+        raise CaseError(
+            f"{where}: {label}: got an empty range from {shown(low)} to {shown(high)}, expected from < to"
+        )
     scale = given.get("scale", "linear")
     if scale not in SCALES:
         expected = document.nearest(str(scale), list(SCALES))

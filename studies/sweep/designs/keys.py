@@ -81,9 +81,14 @@ def _of_mechanism(document: Mapping[str, Any]) -> dict[str, Rule]:
 
 
 def put(document: dict[str, Any], key: str, value: Any) -> None:
-    """Set one key of a case's document in place; `value` in the file's unit."""
+    """Set one key of a case's document in place; `value` in the file's unit.
+
+    Of effects that a list of effects leaves out the parameters go with them.
+    """
     if key == EFFECTS:
         value = Names().parse(value)
+        tables = document.get("effects", {})
+        document["effects"] = {name: table for name, table in tables.items() if name in value}
     *way, last = key.split(".")
     if last in PARTS and len(way) > 1:
         *way, pair = way
@@ -108,8 +113,9 @@ def _at(document: dict[str, Any], way: list[str]) -> dict[str, Any]:
 
 
 def put_all(document: dict[str, Any], values: Mapping[str, Any]) -> None:
-    """Set the keys of one design in place, a slenderness last; settings are not of the document."""
-    for key, value in values.items():
+    """Set the keys of one design in place, its list of effects first, a slenderness last; settings are not of
+    the document."""
+    for key, value in sorted(values.items(), key=lambda item: item[0] != EFFECTS):
         if key != SLENDERNESS and not key.startswith(f"{SETTINGS}."):
             put(document, key, value)
     if SLENDERNESS in values:

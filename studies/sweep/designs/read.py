@@ -57,7 +57,7 @@ def plan_of(where: str, content: Mapping[str, Any], folder: Path) -> Plan:
             raise CaseError(f"{where}: set.{key}: got a setting, expected it in [settings]")
         axes.require_known(where, "set", key, known)
         axes.parsed(where, f"set.{key}", known[key], value)
-        keys.put_all(case, {key: value})
+    keys.put_all(case, dict(axes.leaves(tables["set"])))
     settings = _settings(where, tables["settings"], known)
     sample = axes.sample_of(where, tables["sample"], tables["vary"], known, folder)
     _refuse_overlaps(where, [axis.key for axis in sample.axes], case)
@@ -161,7 +161,7 @@ def _quantities(
     found = points.known(case, analysis.kind, analysis.options.get("count", 0))
     names = given.get("quantities", [name for name, quantity in found.items() if quantity.usual])
     if not isinstance(names, list) or not names or len(set(map(str, names))) < len(names):
-        raise CaseError(f"{where}: store.quantities: got {names}, expected different names in a list")
+        raise CaseError(f"{where}: store.quantities: got {shown(names)}, expected different names in a list")
     for name in names:
         _one_of(where, "store.quantities", name, tuple(found))
     return tuple(names)

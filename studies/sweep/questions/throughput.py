@@ -4,7 +4,6 @@ Measured on the machine of the provenance; beyond its cores more workers cannot 
 larger machines.
 """
 
-import importlib.util
 import os
 import tempfile
 import time
@@ -19,6 +18,7 @@ import pyarrow.parquet as pq
 from matplotlib.figure import Figure
 
 from studies.paper.findings import Finding, table
+from studies.record.extras import absent, lacking
 from studies.record.style import BLUE, GREEN, ORANGE, page
 from studies.sweep.designs.read import plan_of
 from studies.sweep.questions.design_space import SPACE
@@ -45,7 +45,7 @@ CHUNK_COST = 0.01
 
 def missing() -> str:
     """Return what this machine lacks."""
-    return "" if importlib.util.find_spec("distributed") else "the package distributed is not installed"
+    return lacking("cluster", absent(["distributed"]))
 
 
 def compute(progress: Callable[[int, int], None]) -> dict[str, pd.DataFrame]:

@@ -1,0 +1,146 @@
+"""Tables to read: columns of numbers with the digits that a design of any size needs, units in the heading.
+
+A column has one SI prefix and as many decimals as its largest value needs for its significant digits; what is
+below the last decimal, or below what the solvers resolve, is printed as zero, without a sign.
+"""
+
+import math
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+#: Power of ten -> prefix.
+PREFIXES = {6: "M", 3: "k", 0: "", -3: "m", -6: "u", -9: "n", -12: "p", -15: "f", -18: "a"}
+#: Digits of the largest value of a column.
+DIGITS = 7
+#: Decimals of angles at least, which have no prefix, and what no solver resolves [rad].
+ANGLE_DECIMALS, ANGLE_FLOOR = 3, 1e-10
+#: What solvers do not resolve: forces and energies in EI/L of the strips, stress in E.
+FORCE_FLOOR, ENERGY_FLOOR, STRAIN_FLOOR = 1e-9, 1e-20, 1e-12
+NOTHING = "-"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Column:
+    """One column of a table.
+
+    Attributes:
+        name: heading. unit: printed below, prefix included. cells: one a row, as printed.
+        group: heading over neighbouring columns.
+    """
+
+    name: str
+    unit: str
+    cells: tuple[str, ...]
+    group: str = ""
+
+    @property
+    def width(self) -> int:
+        """Characters that the column needs."""
+        return max(map(len, (self.name, self.unit, *self.cells)))
+
+
+def quantity(
+    unit: str,
+    *,
+    floor: float = 0.0,
+    highest: int = 0,
+    digits: int = DIGITS,
+    group: str = "",
+    **values: ArrayLike,
+) -> tuple[Column, ...]:
+    """Return columns of one quantity, with one prefix and the same decimals.
+
+    Args:
+        unit: SI, as "N m". floor: what is below it in magnitude is zero, in that unit.
+        highest: power of ten of the largest prefix; 0 for none above one.
+        digits: significant, of the largest value.
+        group: heading over the columns.
+        **values: of each column by its heading; NaN where there is none.
+    """
+    given = {name: _above(floor, value) for name, value in values.items()}
+    largest = max((float(np.nanmax(np.abs(each), initial=0.0)) for each in given.values()), default=0.0)
+    power = _power(largest, highest)
+    decimals = _decimals(largest / 10.0**power, digits)
+    return tuple(
+        Column(
+            name=name,
+            unit=PREFIXES[power] + unit,
+            cells=tuple(fixed(value / 10.0**power, decimals) for value in each),
+            group=group,
+        )
+        for name, each in given.items()
+    )
+
+
+def angle(radians: ArrayLike, *, group: str = "", name: str = "rotation") -> Column:
+    """Return a column of angles in degrees."""
+    degrees = np.degrees(_above(ANGLE_FLOOR, radians))
+    largest = float(np.nanmax(np.abs(degrees), initial=0.0))
+    decimals = max(ANGLE_DECIMALS, _decimals(largest, ANGLE_DECIMALS + 2))
+    return Column(name=name, unit="deg", cells=tuple(fixed(each, decimals) for each in degrees), group=group)
+
+
+def plain(name: str, cells: Iterable[str], unit: str = "") -> Column:
+    """Return a column of texts."""
+    return Column(name=name, unit=unit, cells=tuple(cells))
+
+
+def fixed(value: float, decimals: int) -> str:
+    """Return a number with so many decimals, zero without a sign, and a dash for NaN."""
+    return f"{round(value, decimals) + 0.0:.{decimals}f}" if math.isfinite(value) else NOTHING
+
+
+def significant(value: float) -> str:
+    """Return a number with its significant digits, for columns over many powers of ten; a dash for NaN."""
+    return f"{value + 0.0:.{DIGITS}g}" if math.isfinite(value) else NOTHING
+
+
+def table(columns: Sequence[Column]) -> Iterator[str]:
+    """Yield the lines of a table: groups where there are any, headings, units, rows; all flush right."""
+    heads = [[column.name for column in columns], [column.unit for column in columns]]
+    rows = zip(*(column.cells for column in columns), strict=True)
+    if any(column.group for column in columns):
+        yield from _groups(columns)
+    for cells in (*heads, *rows):
+        yield "".join(_cell(columns, place, text) for place, text in enumerate(cells))
+
+
+def _groups(columns: Sequence[Column]) -> Iterator[str]:
+    """Yield the line of the groups, each flush right over its columns."""
+    line, span = "", 0
+    for place, column in enumerate(columns):
+        line += _cell(columns, place, "")
+        span = span + 2 + column.width if place and columns[place - 1].group == column.group else column.width
+        last = place + 1 == len(columns) or columns[place + 1].group != column.group
+        if last:
+            line = f"{line[:-span]}{column.group[:span]:>{span}}"
+    yield line
+
+
+def _cell(columns: Sequence[Column], place: int, text: str) -> str:
+    """Return a cell with the space before it; a group begins with a line."""
+    column = columns[place]
+    first = place > 0 and column.group != columns[place - 1].group
+    gap = " | " if first else ("  " if place else "")
+    return f"{gap}{text:>{column.width}}"
+
+
+def _above(floor: float, values: ArrayLike) -> np.ndarray:
+    """Return the values as floats, zero where they are below the floor."""
+    found = np.atleast_1d(np.asarray(values, dtype=float))
+    return np.where(np.abs(found) < floor, 0.0, found)
+
+
+def _power(largest: float, highest: int) -> int:
+    """Return the power of ten of the prefix that leaves at most three digits before the point."""
+    if largest == 0.0:
+        return min(highest, 0)
+    return max(min(PREFIXES), min(highest, 3 * math.floor(math.log10(largest) / 3.0)))
+
+
+def _decimals(largest: float, digits: int) -> int:
+    """Return the decimals of so many significant digits of the largest value; of zero alone one."""
+    return 1 if largest == 0.0 else max(0, digits - 1 - math.floor(math.log10(largest)))

@@ -1,0 +1,69 @@
+"""What a solve costs beside its iterations, counted: compiled kernels, parts of its time, memory."""
+
+import itertools
+import math
+import os
+import subprocess
+import sys
+import tracemalloc
+
+import numpy as np
+import pytest
+
+from spline_model import laps
+from spline_model.fast.solve import fast_path
+from spline_model.laps import Laps
+from spline_model.pivot import cross_axis_pivot
+from spline_model.statics import solve_statics
+from studies.record.source import ROOT
+from tests.table_one import TABLE_ONE
+
+FIRST_SOLVE = """
+from spline_model.pivot import cross_axis_pivot
+from spline_model.statics import solve_statics
+from tests.table_one import TABLE_ONE
+solve_statics(cross_axis_pivot(**TABLE_ONE), rotation=1.5)
+"""
+
+
+def of_the_cache(script):
+    """What numba says of its cache while a script runs in a fresh interpreter."""
+    environment = os.environ | {"PYTHONPATH": str(ROOT), "NUMBA_DEBUG_CACHE": "1"}
+    words = [sys.executable, "-c", script]
+    return subprocess.run(words, cwd=ROOT, env=environment, check=True, capture_output=True, text=True).stdout
+
+
+def test_the_first_solve_compiles_nothing():
+    """Requirement: once kernels are kept, import and first solve load them all and compile none."""
+    of_the_cache(FIRST_SOLVE)
+    said = of_the_cache(FIRST_SOLVE)
+    assert said.count("data loaded from") > 0
+    assert said.count("data saved to") == 0
+
+
+def test_parts_are_all_of_a_solve(monkeypatch):
+    """Requirement: tables, path and recovery are booked without a gap: by a clock that counts its readings,
+    their sum is all that passed between the first and the last."""
+    readings = itertools.count()
+    monkeypatch.setattr(laps, "perf_counter", lambda: float(next(readings)))
+    seconds = solve_statics(cross_axis_pivot(**TABLE_ONE), rotation=math.pi / 2).seconds
+    assert set(seconds) == {"compile", "solve", "recover"}
+    assert all(part >= 1.0 for part in seconds.values())
+    assert sum(seconds.values()) == pytest.approx(next(readings) - 1.0, abs=1e-9)
+
+
+def test_memory_does_not_grow_with_the_increments():
+    """Requirement: apart from its answer a path of 2000 increments needs what one of 20 does."""
+    mechanism = cross_axis_pivot(**TABLE_ONE).mechanism
+
+    def beyond_the_answer(increments):
+        rotations = list(np.linspace(0.0, math.pi / 2, increments + 1)[1:])
+        fast_path(mechanism, rotations, Laps())
+        tracemalloc.start()
+        _, answer = fast_path(mechanism, rotations, Laps())
+        peak = tracemalloc.get_traced_memory()[1]
+        tracemalloc.stop()
+        return peak - sum(part.nbytes for part in answer) - 8 * increments
+
+    # less than a byte an increment; compiled code cannot allocate at all, see `spline_model.strip.compiled`
+    assert abs(beyond_the_answer(2000) - beyond_the_answer(20)) < 2000 - 20

@@ -1,0 +1,151 @@
+"""What the report says of the paper, of times, of surrogates and of the default is what the tables hold."""
+
+import re
+from math import degrees
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from report.gather import entries
+from studies.record.source import ROOT
+from studies.record.store import Store
+from studies.stability.columns import COLUMNS, DEFAULT
+from studies.stability.statics.axial_modes import settings
+from studies.stability.whole.fuzz import drawn
+from tests.report.sources import SECTIONS, text
+
+
+class _One:
+    """Results in which every table is the same one."""
+
+    def __init__(self, **columns):
+        self._table = pd.DataFrame(columns)
+
+    def table(self, study, name):
+        return self._table
+
+
+def _stored(study, name):
+    return Store().load_tables(study)[name]
+
+
+def _words(path):
+    return " ".join(text(path).split())
+
+
+def _number(written):
+    return float(written.partition("\u00a0")[0].rstrip("°"))
+
+
+@pytest.mark.parametrize("section", ["front", "paper", "limits"])
+def test_figures_that_were_not_at_hand_are_not_judged(section):
+    """Requirement: abstract, comparison and limits say that the paper's figures were not seen."""
+    found = {path.stem: _words(path) for path in SECTIONS}
+    assert "Only the paper's text was at hand, not its figures" in found[section]
+    assert "axes that could be read off" not in " ".join(found.values())
+
+
+def test_time_of_a_picture_holds_the_search_for_the_markers(content):
+    """Requirement: the time in the loop is given for tracking, solving and both, picture by picture."""
+    table = _stored("paper/fig07_interactive", "frames_times")
+    both = table["track_ms"] + table["solve_ms"]
+    for part, times in (("track", table["track_ms"]), ("solve", table["solve_ms"]), ("both", both)):
+        for name, share in (("median", 50), ("most", 95)):
+            assert _number(content["facts"][f"fig07.{part}.{name}"]) == pytest.approx(
+                np.percentile(times, share), rel=0.05
+            )
+    assert _number(content["facts"]["fig07.both.longest"]) == pytest.approx(both.max(), rel=0.05)
+
+
+@pytest.mark.parametrize(
+    ("name", "model"), [("paper", "n = 4, as the paper"), ("free", "n = 4, locking-free")]
+)
+def test_rotations_where_a_surrogate_is_nearer_are_counted(content, name, model):
+    """Requirement: how often and between which rotations the four-bar is nearer than four points is said."""
+    rows = _stored("baselines/surrogates", "errors").set_index(["model", "rotation_rad"])["trajectory"].abs()
+    nearer = [degrees(a) for a in rows[model].index if a > 0.0 and rows["four-bar", a] < rows[model, a]]
+    facts = content["facts"]
+    assert _number(facts[f"surrogates.path.{name}.nearer"]) == len(nearer)
+    assert _number(facts[f"surrogates.path.{name}.from"]) == pytest.approx(min(nearer))
+    assert _number(facts[f"surrogates.path.{name}.to"]) == pytest.approx(max(nearer))
+
+
+def test_surrogate_that_is_nearer_to_the_end_takes_the_sentence_with_it():
+    """Requirement: the sentence on where the splines are nearer falls when the four-bar wins at the end."""
+    condition = entries("HOLDS")["surrogates.not-everywhere"]
+    models = ("four-bar", "n = 4, as the paper", "n = 4, locking-free")
+
+    def given(*spline):
+        errors = np.concatenate([np.full(5, 0.5), spline, spline])
+        return _One(model=np.repeat(models, 5), rotation_rad=np.tile(np.arange(5.0), 3), trajectory=errors)
+
+    assert condition.test(given(0.0, 0.1, 0.9, 0.9, 0.1))
+    assert not condition.test(given(0.0, 0.1, 0.9, 0.9, 0.9))
+    assert not condition.test(given(0.0, 0.9, 0.1, 0.9, 0.1))
+
+
+def test_what_was_fitted_is_not_called_published():
+    """Requirement: that the four-bar's coefficients were not found is said, with the source of its idea."""
+    peers = _words(ROOT / "report" / "sections" / "peers.typ")
+    assert "coefficients published for the four-bar were not found" in peers
+    assert "@jensen" in peers
+    assert not re.search("another loading|surrogates that the paper names", peers)
+
+
+def test_default_is_counted_by_itself(content):
+    """Requirement: cases of the default are those with its settings; families that vary them do not count."""
+    facts = content["facts"]
+    varied = {"axial_modes", "fuzz"}
+    for outcome in ("tried", "right", "refused"):
+        each = {
+            name.split(".")[1]: int(written)
+            for name, written in facts.items()
+            if re.fullmatch(rf"hard\.\w+\.default\.{outcome}", name) and not name.startswith("hard.total")
+        }
+        own = sum(count for family, count in each.items() if family not in varied)
+        assert int(facts[f"hard.itself.{outcome}"]) == own
+        assert int(facts[f"hard.total.default.{outcome}"]) == own + sum(each[family] for family in varied)
+    generator = np.random.default_rng(1)
+    assert len({drawn(generator).control_points for _ in range(20)}) > 1
+    tried = [each.settings for each in settings() if each.model == DEFAULT]
+    assert sum(each != COLUMNS[DEFAULT] for each in tried) > len(tried) / 2
+    assert "its default gave no wrong answer" not in _words(ROOT / "report" / "sections" / "front.typ")
+
+
+def test_refusals_are_told_apart(content):
+    """Requirement: refusals that stopped and answers that are off with a warning are counted apart."""
+    facts = content["facts"]
+    stopped, warned = (int(facts[f"hard.total.default.{name}"]) for name in ("stopped", "warned"))
+    assert stopped + warned == int(facts["hard.total.default.refused"])
+    step = _stored("stability/step_size", "outcomes").query("model == @DEFAULT and outcome == 'refused'")
+    off = step[~step["reason"].str.contains("stopped at|stopped between")]
+    assert len(off) <= warned
+    assert _number(facts["hard.total.default.warned.error"]) >= 100 * off["error"].max() * 0.95
+
+
+def test_floor_is_what_a_formulation_ends_on():
+    """Requirement: a floor is the error at the most control points, not the least of any setting."""
+    given = _One(
+        basis="bezier", measure="spatial", stretch="mixed", control_points=[6, 6, 12, 12],
+        error_trajectory=[0.0005, 0.0008, 0.00075, 0.00075],
+    )  # fmt: skip
+    assert entries("FACTS")["map.spatial.trajectory"].value(given) == 0.00075
+
+
+def test_energy_at_the_start_is_that_of_the_start():
+    """Requirement: the energy that a swing begins with is taken at its first instant."""
+    given = _One(formulation="FE refined", time_s=[0.0, 0.01], strain_J=[726.19, 728.45])
+    assert entries("FACTS")["fig06.energy"].value(given) == 726.19
+
+
+def test_elements_and_errors_are_called_what_they_are():
+    """Requirement: the reference is a limit of corotational elements; errors of torque are state by state."""
+    front, readme, findings = (
+        " ".join((ROOT / place).read_text(encoding="utf-8").split())
+        for place in ("report/sections/front.typ", "README.md", "docs/findings.md")
+    )
+    assert "corotational finite elements" in front
+    assert "corotational finite elements" in readme
+    assert "geometrically exact finite elements" not in front + readme
+    assert "relative state by state" in findings

@@ -1,0 +1,56 @@
+"""What `make results` needs beyond the suite: without it stored results stay as they are."""
+
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from studies.commands import run
+from studies.record.source import ROOT
+from studies.record.store import RESULTS
+from studies.registry import module_of
+
+#: Studies that hold the suite against the other codes.
+BESIDE_PEERS = ("baselines/peers", "work_precision/statics", "work_precision/dynamics")
+
+#: Runs a command where the other codes cannot be imported.
+HIDDEN = (
+    "import sys; sys.modules.update(exudyn=None, openseespy=None); "
+    "from studies.__main__ import main; sys.exit(main(sys.argv[1:]))"
+)
+
+
+def files_in(folder: Path) -> dict[str, bytes]:
+    """Return the content of all files below a folder."""
+    return {str(path.relative_to(folder)): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
+
+
+def test_results_stay_without_the_other_codes(tmp_path):
+    """Where Exudyn and OpenSees are not there, the studies beside them keep every byte, so that pages and
+    report stay true, and each says in a line what to install."""
+    for study in BESIDE_PEERS:
+        shutil.copytree(RESULTS / "data" / study, tmp_path / "data" / study)
+    before = files_in(tmp_path)
+    words = [sys.executable, "-c", HIDDEN, "run", *BESIDE_PEERS, "--results", str(tmp_path)]
+    done = subprocess.run(words, cwd=ROOT, capture_output=True, text=True, check=False, timeout=300)
+    assert done.returncode == 0
+    assert done.stderr.splitlines() == [
+        f"{study}: left as it is: it needs exudyn, openseespy: python -m pip install '.[peers]'"
+        for study in BESIDE_PEERS
+    ]
+    assert files_in(tmp_path) == before
+
+
+@pytest.mark.parametrize("study", BESIDE_PEERS)
+def test_one_code_is_not_enough(study, monkeypatch):
+    """With one of the codes alone the tables would lose the other: it is named, and nothing is computed."""
+    from studies.baselines.peers import exudyn_ancf, exudyn_exact, openseespy_frame
+
+    for module in (exudyn_ancf, exudyn_exact):
+        monkeypatch.setattr(module, "installed", lambda: True)
+    monkeypatch.setattr(openseespy_frame, "installed", lambda: False)
+    assert run.missing(module_of(study)) == "it needs openseespy: python -m pip install '.[peers]'"
+    monkeypatch.setattr(openseespy_frame, "installed", lambda: True)
+    assert run.missing(module_of(study)) == ""

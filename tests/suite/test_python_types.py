@@ -1,0 +1,87 @@
+"""Wrong types at the public functions of both models are one line, as wrong values of a design are."""
+
+import math
+
+import numpy as np
+import pytest
+
+import fe_reference.dynamics
+import fe_reference.errors
+import fe_reference.modes
+import fe_reference.pivot
+import fe_reference.statics
+import spline_model.dynamics
+import spline_model.errors
+import spline_model.modes
+import spline_model.pivot
+import spline_model.statics
+from tests.table_one import TABLE_ONE
+
+REFUSALS = (spline_model.errors.InvalidParameter, fe_reference.errors.InvalidParameter)
+SPLINE = spline_model.pivot.cross_axis_pivot(**TABLE_ONE, control_points=4)
+ELEMENTS = fe_reference.pivot.cross_axis_pivot(**TABLE_ONE, elements=2)
+
+#: Function, what it is asked of, and keywords that it takes as they are.
+CALLS = {
+    "spline statics": (spline_model.statics.solve_statics, SPLINE, {"rotation": 0.1, "increments": 1}),
+    "spline mechanism": (
+        spline_model.statics.solve_mechanism,
+        SPLINE.mechanism,
+        {"rotation": 0.1, "increments": 1},
+    ),
+    "spline release": (
+        spline_model.dynamics.solve_release,
+        SPLINE,
+        {"start": 0.1, "duration": 1e-4, "step": 1e-4},
+    ),
+    "spline modes": (spline_model.modes.natural_frequencies, SPLINE, {"rotation": 0.1, "count": 1}),
+    "fe statics": (fe_reference.statics.solve_statics, ELEMENTS, {"rotation": 0.1, "increments": 1}),
+    "fe mechanism": (fe_reference.statics.solve_mechanism, ELEMENTS, {"rotation": 0.1, "increments": 1}),
+    "fe release": (fe_reference.dynamics.solve_release, ELEMENTS, {"start": 0.1, "duration": 1e-4}),
+    "fe modes": (fe_reference.modes.natural_frequencies, ELEMENTS, {"rotation": 0.1, "count": 1}),
+}
+WRONG = {
+    "text": "10",
+    "texts": ["0.1"],
+    "lists": [[0.1], [0.2, 0.3]],
+    "nothing in it": [None],
+    "empty": [],
+    "truth": True,
+    "complex": 1j,
+    "table": {},
+    "nan": math.nan,
+    "too long": 10**400,
+}
+
+
+@pytest.mark.parametrize("wrong", WRONG)
+@pytest.mark.parametrize("name", CALLS)
+def test_wrong_types_are_one_line(name, wrong):
+    """Whatever stands in place of a number is refused in one line that names the parameter."""
+    solve, design, keywords = CALLS[name]
+    for parameter in keywords.keys() - ({"increments", "count"} if wrong == "too long" else set()):
+        with pytest.raises(REFUSALS) as refused:
+            solve(design, **(keywords | {parameter: WRONG[wrong]}))
+        line = str(refused.value)
+        assert "\n" not in line
+        assert line.startswith(f"{parameter}: got ")
+
+
+@pytest.mark.parametrize("name", ["spline statics", "spline release", "spline modes", "fe release"])
+def test_no_angle_is_one_line(name):
+    """None is no angle where one is needed."""
+    solve, design, keywords = CALLS[name]
+    angle = "start" if "start" in keywords else "rotation"
+    with pytest.raises(REFUSALS, match=rf"^{angle}: got None, expected a finite number"):
+        solve(design, **(keywords | {angle: None}))
+
+
+@pytest.mark.parametrize("name", ["spline statics", "fe statics"])
+@pytest.mark.parametrize(
+    "legs", [[0.1, 0.05], (0.1,), np.array([0.1, 0.05]), np.float64(0.1), np.float32(0.1), 1]
+)
+def test_numbers_of_all_kinds_are_angles(name, legs):
+    """A sequence or array of angles is a path of several legs, and numpy's numbers are numbers."""
+    solve, design, keywords = CALLS[name]
+    answer = solve(design, **(keywords | {"rotation": legs, "increments": 6}))
+    assert answer.rotation[-1] == pytest.approx(float(np.ravel(legs)[-1]), rel=1e-12)
