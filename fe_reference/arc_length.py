@@ -83,10 +83,7 @@ class Walk:
     counters: Counter[str] = field(default_factory=Counter)
 
     def __post_init__(self) -> None:
-        structure = self.control.structure
-        length = max(strip.length for strip in structure.model.strips)
-        self.weight = np.full(structure.size, 1.0 / length)
-        self.weight[2::3] = 1.0
+        self.weight = self.control.structure.measure
 
     def product(self, a: tuple[Array, float], b: tuple[Array, float]) -> float:
         """Return the inner product of two changes of (y, p)."""

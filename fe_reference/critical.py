@@ -106,7 +106,6 @@ def bodies_stand(control: Control, mode: Array) -> bool:
     structure = control.structure
     full = np.zeros(structure.size)
     full[control.free] = mode
-    length = max(strip.length for strip in structure.model.strips)
-    full[2::3] *= length
+    full *= structure.measure
     bodies = np.abs(full[structure.first_body :]).max(initial=0.0)
     return bool(bodies <= STANDS * np.abs(full).max())

@@ -155,9 +155,7 @@ class Path:
 
     def _size(self, change: Array) -> float:
         """Return the largest component of a change of the coordinates, in strip lengths and rad."""
-        size = np.abs(change) / max(strip.length for strip in self.control.structure.model.strips)
-        size[2::3] = np.abs(change[2::3])
-        return float(size.max(initial=0.0))
+        return float(np.abs(self.control.structure.measure * change).max(initial=0.0))
 
     def _stopped(self, failure: str, begin: float, target: float, depth: int, outcome: Outcome) -> str:
         return (

@@ -98,6 +98,13 @@ class Structure:
         """Whether gravity or natural strains act, so that the shape at rest is not in equilibrium."""
         return self.weight is not None or self.natural is not None
 
+    @cached_property
+    def measure(self) -> Array:
+        """What changes of the coordinates are multiplied with to count in strip lengths and rad, (size,)."""
+        weight: Array = np.full(self.size, 1.0 / max(strip.length for strip in self.model.strips))
+        weight[2::3] = 1.0
+        return weight
+
     @property
     def constant_words(self) -> str:
         """What of weight and natural strains acts, in words."""
