@@ -26,13 +26,16 @@ from .solution import CriticalPoint
 Array = NDArray[np.float64]
 
 #: An increment is halved at least so often before it is given up, and until it is so small a part of the path.
-HALVINGS, SMALLEST = 6, 2.0**-16
+HALVINGS, SMALLEST = 6, 2.0**-20
 #: Largest distance of two states that are taken for one, in strip lengths and rad. Another branch is farther
 #: away; closer, the round-off of residuals over a stiffness that vanishes at a critical point would be seen.
 APART = 1e-4
 #: Distance of a state from where the mean of the rates at both ends of the increment leads, over what the
 #: increment moved, above which it has jumped. Increments of 45 deg of a pivot stay below 0.04, jumps are at 1.
-OFF_THE_PATH = 0.25
+OFF_THE_PATH = 0.1
+#: Change of the rates over an increment, over their chord, above which it is too long to tell. Increments of 45 deg
+#: of a pivot stay below 0.6, a parabola from a state at rest has 2.
+SHARPEST = 1.0
 #: Relative mismatch between the total potential gained in an increment and the integral of its rate above
 #: which the increment has jumped to another branch; on one branch the two-point Hermite rule below errs by
 #: less than 1 % in any sane increment. Energies are told apart down to the round-off of EI/L and of the
@@ -143,11 +146,14 @@ class Path:
         States that are taken for one are on one branch, whatever the rates at the point between them are.
         """
         step, moved = after.parameter - before.parameter, after.y - before.y
-        near, crossed = self._size(moved) <= APART, before.response.inertia != after.response.inertia
-        if crossed and not (near and abs(step) <= SMALLEST):
+        crossed = before.response.inertia != after.response.inertia
+        if crossed and abs(step) > SMALLEST:
             return "the stability changes"
-        mean = 0.5 * (before.response.rate + after.response.rate)
-        if not near and self._size(moved - step * mean) > OFF_THE_PATH * self._size(moved):
+        first, last = step * before.response.rate, step * after.response.rate
+        size = self._size(moved)
+        off = self._size(moved - 0.5 * (first + last)) > OFF_THE_PATH * size
+        one = abs(step) <= SMALLEST and size <= APART
+        if not one and (off or self._size(last - first) > SHARPEST * size):
             return "the state lies on another branch (it is not where the path leads)"
         if crossed:
             self.critical.append(critical_point(self.control, before, after))
