@@ -108,7 +108,9 @@ def free_block(control: Control, tangent: csc_matrix) -> csc_matrix:
     many = len(free)
     if many == tangent.shape[0]:
         return tangent.tocsc()
-    leading = many > 0 and free[-1] == many - 1  # as where the last body is driven: slices take a third of the time
+    leading = (
+        many > 0 and free[-1] == many - 1
+    )  # as where the last body is driven: slices take a third of the time
     block = tangent[:many, :many] if leading else tangent[:, free][free]
     return block.tocsc()
 
@@ -172,7 +174,9 @@ def respond(control: Control, y: Array, parameter: float, counters: Counter[str]
         k = int(np.flatnonzero(held == control.watched)[0])
         torque, turning = float(drive[k]), float(stiffness[k, k])
         if control.slope[k] != 0.0:
-            torque_rate = float(pushed[control.watched] + (0.0 if change is None else change[control.watched]))
+            torque_rate = float(
+                pushed[control.watched] + (0.0 if change is None else change[control.watched])
+            )
     else:
         unit = (free == control.watched).astype(float)
         torque = float(control.structure.internal_force(y)[control.watched])

@@ -50,7 +50,9 @@ def extremes(control: Control, before: "State", after: "State") -> list[Critical
     step = after.parameter - before.parameter
     gained = (after.response.torque - before.response.torque) / step
     cubic = [3.0 * (sum(rates) - 2.0 * gained), 2.0 * (3.0 * gained - 2.0 * rates[0] - rates[1]), rates[0]]
-    part = next(float(root.real) for root in np.roots(cubic) if abs(root.imag) == 0.0 and 0.0 <= root.real <= 1.0)
+    part = next(
+        float(root.real) for root in np.roots(cubic) if abs(root.imag) == 0.0 and 0.0 <= root.real <= 1.0
+    )
     y, parameter = _between(before, after, part)
     return [point(control, "limit point", y, parameter, after.response.inertia, "")]
 

@@ -57,7 +57,9 @@ def answer_release(
     """
     body = _reported(design)
     if body is None:
-        expected = "a body whose swing is followed; `export --analysis release` has the motion of strips alone"
+        expected = (
+            "a body whose swing is followed; `export --analysis release` has the motion of strips alone"
+        )
         raise BadInput(f"bodies: got none, expected {expected}")
     model = model_of(settings)
     asked, keywords = built(model, design, settings, moving=True)

@@ -71,7 +71,9 @@ def tilted_state(frame: Frame, settings: FeSettings, tilt: float) -> Arc:
         parameter=np.array([control.span[1]]),
         y=y,
         torque=np.array([np.nan]),
-        negative=np.array([negative_eigenvalues(free_block(control, control.tangent(outcome.y, control.span[1])))]),
+        negative=np.array(
+            [negative_eigenvalues(free_block(control, control.tangent(outcome.y, control.span[1])))]
+        ),
         critical=(),
     )
     return _arc(model, frame, path, message or outcome.failure)
