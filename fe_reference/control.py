@@ -104,15 +104,13 @@ class Control:
 
 def free_block(control: Control, tangent: csc_matrix) -> csc_matrix:
     """Return the block of the free coordinates."""
-    free = control.free
-    many = len(free)
+    free, many = control.free, len(control.free)
     if many == tangent.shape[0]:
-        return tangent.tocsc()
-    leading = (
-        many > 0 and free[-1] == many - 1
-    )  # as where the last body is driven: slices take a third of the time
-    block = tangent[:many, :many] if leading else tangent[:, free][free]
-    return block.tocsc()
+        return tangent
+    # as where the last body is driven: slices take a third of the time
+    leading = many > 0 and free[-1] == many - 1
+    block: csc_matrix = (tangent[:many, :many] if leading else tangent[:, free][free]).tocsc()
+    return block
 
 
 def factorise(block: csc_matrix, counters: Counter[str]) -> SuperLU:

@@ -1,10 +1,9 @@
-"""Where a path in the load factor ends for want of an equilibrium: the limit point just beyond its last state."""
+"""Where a path in the load factor ends for want of an equilibrium: the limit point beyond its last state."""
 
 import numpy as np
 from numpy.typing import NDArray
 
 from .arc_length import Place, Walk, bisect
-from .control import Control
 from .critical import bodies_stand, point
 from .path import Path
 from .solution import CriticalPoint
@@ -18,12 +17,12 @@ NEAR = 1e-2
 
 
 def limit_point(path: Path, toward: float) -> CriticalPoint | None:
-    """Return the limit point that a path ran into on its way to a parameter, or None if it was something else.
+    """Return the limit point that a path ran into on its way to a parameter, or None if there is none.
 
     The path is followed in its arc length from the last good state until the parameter turns back.
     """
-    last, control = path.last, path.control
-    walk = Walk(control=control, counters=path.counters)
+    last = path.last
+    walk = Walk(control=path.control, counters=path.counters)
     along = (np.zeros_like(last.y), toward - last.parameter)
     try:
         here = walk.place(last.y, last.parameter, along)
@@ -36,7 +35,7 @@ def limit_point(path: Path, toward: float) -> CriticalPoint | None:
             length /= 2.0
             continue
         if there.slope * here.slope < 0.0:
-            return _turned(control, bisect(walk, here, length, bend, lambda at: at.slope * here.slope > 0.0))
+            return _turned(walk, here, length, bend)
         if abs(there.parameter - last.parameter) > NEAR:
             return None
         bend, here = (there.rate - here.rate) / length, there
@@ -44,8 +43,9 @@ def limit_point(path: Path, toward: float) -> CriticalPoint | None:
     return None
 
 
-def _turned(control: Control, at: Place) -> CriticalPoint:
-    """Return the limit point at a place: the path goes on there along its tangent, at no load."""
+def _turned(walk: Walk, here: Place, length: float, bend: Array) -> CriticalPoint:
+    """Return the limit point within a step; the path goes on there along its tangent, at the same load."""
+    at, control = bisect(walk, here, length, bend, lambda place: place.slope * here.slope > 0.0), walk.control
     driven = control.watched is not None and control.watched in control.held
     kind = "turning point" if driven else "limit point"
     strips = bodies_stand(control, at.rate[control.free])

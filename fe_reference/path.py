@@ -1,8 +1,8 @@
 """Following an equilibrium path: predictor, Newton, a check of every state, halved increments on failure.
 
-An increment at which the number of negative eigenvalues changes is halved like one that fails, until the change
-goes away (it was another branch, or a sharp bend of this one) or until it is within so small a part of the path
-that the two states beside it are one: a critical point.
+An increment at which the number of negative eigenvalues changes is halved like one that fails, until the
+change goes away (it was another branch, or a sharp bend of this one) or until it is within so small a part of
+the path that the two states beside it are one: a critical point.
 
 The predictor is the tangent of the path, with the curvature of the path seen over the increment before:
 
@@ -25,16 +25,17 @@ from .solution import CriticalPoint
 
 Array = NDArray[np.float64]
 
-#: An increment is halved at least so often before it is given up, and until it is so small a part of the path.
+#: An increment is halved at least so often before it is given up, and until it is this part of the path.
 HALVINGS, SMALLEST = 6, 2.0**-20
 #: Largest distance of two states that are taken for one, in strip lengths and rad. Another branch is farther
 #: away; closer, the round-off of residuals over a stiffness that vanishes at a critical point would be seen.
 APART = 1e-4
 #: Distance of a state from where the mean of the rates at both ends of the increment leads, over what the
-#: increment moved, above which it has jumped. Increments of 45 deg of a pivot stay below 0.04, jumps are at 1.
+#: increment moved, above which it has jumped. Increments of 45 deg of a pivot stay below 0.04, most jumps are
+#: at 1.
 OFF_THE_PATH = 0.1
-#: Change of the rates over an increment, over their chord, above which it is too long to tell. Increments of 45 deg
-#: of a pivot stay below 0.6, a parabola from a state at rest has 2.
+#: Change of the rates over an increment, over its chord, above which it is too long to tell. Increments of
+#: 45 deg of a pivot stay below 0.6; a parabola that begins without a slope has 2.
 SHARPEST = 1.0
 #: Relative mismatch between the total potential gained in an increment and the integral of its rate above
 #: which the increment has jumped to another branch; on one branch the two-point Hermite rule below errs by
@@ -72,7 +73,10 @@ class State:
 
 @dataclass(kw_only=True, eq=False)
 class Path:
-    """The states of one path, and how hard they were to reach; `last`: the last good one of a path that stopped."""
+    """The states of one path, and how hard they were to reach.
+
+    last: the last good state of a path that stopped. critical: the critical points that were passed.
+    """
 
     control: Control
     states: list[State] = field(default_factory=list)
@@ -141,7 +145,7 @@ class Path:
         return None if middle is None else self._reach(middle, target, depth + 1)
 
     def _judged(self, before: State, after: State) -> str:
-        """Return why a state is not on the branch of the one before, or ""; keep a critical point between them.
+        """Return why a state is not on the branch of the one before, or ""; keep a critical point of them.
 
         States that are taken for one are on one branch, whatever the rates at the point between them are.
         """

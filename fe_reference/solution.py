@@ -31,9 +31,10 @@ class Status(StrEnum):
 class CriticalPoint:
     """Where a path loses or regains stability, or where its torque is stationary.
 
-    kind: "limit point" of the load factor, or of a driven rotation's torque; "turning point" of a drive, where
-    the driven coordinate itself goes back; "bifurcation" otherwise. load_factor [1]; rotation of the driven
-    body [rad], nan without one; inertia: negative eigenvalues after it; text: what happens at which load.
+    kind: "limit point" of the load factor, or of a driven rotation's torque; "turning point" of a drive,
+    where the driven coordinate itself goes back; "bifurcation" otherwise. load_factor [1]; rotation of the
+    driven body [rad], nan without one; inertia: negative eigenvalues after it; text: what happens at which
+    load, "" for a stationary torque, which is not unstable.
     """
 
     kind: str

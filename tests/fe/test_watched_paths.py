@@ -1,4 +1,4 @@
-"""Static paths are watched: one state for any increments, told where it is unstable, and where it became so."""
+"""Static paths are watched: one state for any increments, and told where it is or became unstable."""
 
 import re
 from typing import Any
@@ -68,7 +68,7 @@ def stretched(load: float, elements: int = 10, element: str = "corotational") ->
 
 
 def pressed(force: float = 20e3, elements: int = 20) -> Model:
-    """Return a pivot of steel strips, 300 mm x 50 mm x 3 mm at 60 deg, crossing in the middle, pressed down."""
+    """Return a pivot of steel strips, 300 x 50 x 3 mm at 60 deg, crossing in the middle, pressed down."""
     area, moment = 50e-3 * 3e-3, 50e-3 * 3e-3**3 / 12.0
     return cross_axis_pivot(
         length=0.3,
@@ -173,8 +173,8 @@ def test_a_column_bends_under_its_weight() -> None:
 
 
 def test_a_hanging_column_does_not_gain_whole_turns() -> None:
-    """At twelve times Euler's load the body hangs in one place for 10 and 40 increments, turned by under pi."""
-    places = [solve_mechanism(column(30.0), increments=k).bodies["tip"][-1] for k in (10, 40)]
+    """At twelve times Euler's load the body hangs in one place for any increments, turned by under pi."""
+    places = [solve_mechanism(column(30.0), increments=k).bodies["tip"][-1] for k in (3, 10)]
     assert np.allclose(*places, rtol=1e-8, atol=1e-12)
     assert -np.pi < places[0][2] < -0.9 * np.pi
 
@@ -215,7 +215,7 @@ def test_strips_of_a_pressed_pivot_buckle_where_euler_says() -> None:
 
 
 def test_a_pressed_pivot_says_what_buckles() -> None:
-    """A free pivot tips first and its strips buckle later; every state has the inertia its eigenvalues have."""
+    """A free pivot tips first and its strips buckle later; every inertia is that of the eigenvalues."""
     model = pressed(elements=8)
     answer = solve_mechanism(model, increments=4)
     tips, strips = answer.critical_points
@@ -262,7 +262,7 @@ def test_loads_grow_at_rotation_zero() -> None:
 
 
 def test_a_torque_that_is_stationary_is_a_limit_point() -> None:
-    """Where pushing turns into pulling the torque of a drive is stationary: a point, but nothing to warn of."""
+    """Where pushing turns into pulling the torque of a drive is stationary: nothing to warn of."""
     answer = solve_statics(pressed(force=8e3, elements=8), rotation=np.radians(1.0), increments=20)
     (point,) = answer.critical_points
     assert (point.kind, point.inertia, answer.message) == ("limit point", 0, "")

@@ -48,7 +48,7 @@ def test_modes_of_strips_alone(model, strip, command):
 
 @pytest.mark.parametrize("model", ["fe", "fe-shear", "spline"])
 def test_release_of_strips_alone_is_refused(model, strip, command):
-    """A release reports the swing of a body: without one it is refused in one line that names what can be done."""
+    """A release reports the swing of a body: without one it is refused in one line that says what can be."""
     ended = command("release", strip, "--model", model)
     assert (ended.code, ended.out) == (2, "")
     assert ended.err.startswith("studies: bodies: got none, expected a body whose swing is followed; `export")
