@@ -19,7 +19,7 @@ from tests.agreement.loaded import LOADS, ROTATION
 DURATION, RECORDS = 0.01, 200
 INSTANTS = np.linspace(0.0, DURATION, 21)
 #: Step of the spline [s], of second order, and control points; elements take their explicit step.
-STEP, SPLINE, ELEMENTS = 5e-5, SplineSettings(control_points=8), FeSettings(elements=10)
+STEP, SPLINE, ELEMENTS = 5e-5, SplineSettings(control_points=8), FeSettings(elements=8)
 MODELS = pytest.mark.parametrize("settings", [SPLINE, ELEMENTS], ids=lambda s: s.model)
 LED, UNSTEADY = "driven_displacement", ("applied_force", "applied_moment", "tip_force")
 #: Histories of a load, with its value at the start.
