@@ -3,7 +3,8 @@
 import pytest
 
 from tests import gates
-from tests.agreement.random_scenes import KINDS, described, judged
+from tests.agreement.random_scenes import KINDS, described
+from tests.agreement.verdicts import judged
 
 #: A fixed list, in chunks that are spread over processes.
 SEEDS, CHUNK = tuple(range(300)), 10
