@@ -19,7 +19,7 @@ from tests.agreement.loaded import LOADS, ROTATION
 DURATION, RECORDS = 0.01, 200
 INSTANTS = np.linspace(0.0, DURATION, 21)
 #: Step of the spline [s], of second order, and control points; elements take their explicit step.
-STEP, SPLINE, ELEMENTS = 5e-5, SplineSettings(control_points=8), FeSettings(elements=8)
+STEP, SPLINE, ELEMENTS = 2.5e-5, SplineSettings(control_points=8), FeSettings(elements=8)
 MODELS = pytest.mark.parametrize("settings", [SPLINE, ELEMENTS], ids=lambda s: s.model)
 LED, UNSTEADY = "driven_displacement", ("applied_force", "applied_moment", "tip_force")
 #: Histories of a load, with its value at the start.
@@ -154,7 +154,7 @@ def test_motions_under_all_histories_agree(effect, history, rotation):
     design = asked(effect, history, rotation)
     if history == "constant" and rotation is None:
         pytest.skip("stands still: see the test of that")
-    gates.check("loads_release_wide", apart(design, step=2.5e-5, meshes=(10, 20)))
+    gates.check("loads_release_wide", apart(design, meshes=(10, 20)))
 
 
 @pytest.mark.slow
