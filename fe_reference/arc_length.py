@@ -14,11 +14,10 @@ from numpy.typing import NDArray
 from scipy.interpolate import CubicHermiteSpline
 from scipy.sparse import csc_matrix
 
-from .control import Control, factorise, respond
+from .control import Control, factorise, free_block, respond
 from .errors import ConvergenceError, InvalidParameter, count
 from .newton import ITERATIONS, TOLERANCE, equilibrate, round_off
-from .path import ROUND_OFF, WORK_MISMATCH
-from .stability import negative_eigenvalues
+from .path import ROUND_OFF
 
 Array = NDArray[np.float64]
 
@@ -26,6 +25,8 @@ Array = NDArray[np.float64]
 LONGEST, SHORTEST, MOST = 0.5, 2.0**-14, 2000
 #: Least cosine between the tangents at both ends of a step, and longest correction over the step.
 SHARPEST, FARTHEST = 0.5, 0.5
+#: As in `path`; steps of the arc length are longer where the parameter hardly moves.
+WORK_MISMATCH = 0.05
 #: Iterations up to which the next step is longer.
 EASY = 4
 #: Halvings of a step in which a critical point lies.
@@ -75,17 +76,14 @@ class ArcPath:
 
 
 @dataclass(kw_only=True, eq=False)
-class _Walk:
+class Walk:
     """A path while it is followed."""
 
     control: Control
     counters: Counter[str] = field(default_factory=Counter)
 
     def __post_init__(self) -> None:
-        structure = self.control.structure
-        length = max(strip.length for strip in structure.model.strips)
-        self.weight = np.full(structure.size, 1.0 / length)
-        self.weight[2::3] = 1.0
+        self.weight = self.control.structure.measure
 
     def product(self, a: tuple[Array, float], b: tuple[Array, float]) -> float:
         """Return the inner product of two changes of (y, p)."""
@@ -111,7 +109,7 @@ class _Walk:
             parameter=parameter,
             rate=scale * rate,
             slope=scale * slope,
-            negative=negative_eigenvalues(self.control, y, parameter),
+            negative=response.inertia,
             torque=response.torque,
             steepness=response.stiffness,
             potential=self.control.potential(y, parameter),
@@ -134,7 +132,7 @@ class _Walk:
                 return None, iteration
             tangent = control.tangent(y, parameter)
             try:
-                lu = factorise(control, tangent, self.counters)
+                lu = factorise(free_block(control, tangent), self.counters)
             except RuntimeError:
                 return None, iteration
             a, b = np.zeros_like(y), np.zeros_like(y)
@@ -179,7 +177,7 @@ def follow_arc(control: Control, *, increments: int = 20) -> ArcPath:
     Raises:
         ConvergenceError: the end was not reached; InvalidParameter: fewer than one increment.
     """
-    walk, end = _Walk(control=control), control.span[1]
+    walk, end = Walk(control=control), control.span[1]
     first = equilibrate(control, np.zeros(control.structure.size), control.span[0], walk.counters)
     if first.failure:
         raise InvalidParameter("control", first.failure, "a scene at rest at its beginning [1]")
@@ -209,22 +207,22 @@ def follow_arc(control: Control, *, increments: int = 20) -> ArcPath:
     )
 
 
-def _critical(walk: _Walk, here: Place, there: Place, length: float, bend: Array | float) -> list[Critical]:
+def _critical(walk: Walk, here: Place, there: Place, length: float, bend: Array | float) -> list[Critical]:
     """Return the critical points of a step, by bisection of its length."""
     found = []
     if here.negative != there.negative:
         turned = here.slope * there.slope < 0.0
         turn = "limit point" if walk.control.watched is None else "turning point"
-        at = _bisect(walk, here, length, bend, lambda place: place.negative == here.negative)
+        at = bisect(walk, here, length, bend, lambda place: place.negative == here.negative)
         found.append(Critical(kind=turn if turned else "bifurcation", parameter=at.parameter, y=at.y))
     if here.steepness * there.steepness < 0.0 and here.slope * there.slope > 0.0:
-        at = _bisect(walk, here, length, bend, lambda place: place.steepness * here.steepness > 0.0)
+        at = bisect(walk, here, length, bend, lambda place: place.steepness * here.steepness > 0.0)
         found.append(Critical(kind="limit point", parameter=at.parameter, y=at.y))
     return found
 
 
-def _bisect(
-    walk: _Walk, here: Place, length: float, bend: Array | float, before: Callable[[Place], bool]
+def bisect(
+    walk: Walk, here: Place, length: float, bend: Array | float, before: Callable[[Place], bool]
 ) -> Place:
     """Return the last state of a step for which `before` holds."""
     low, high, best = 0.0, length, here
@@ -240,7 +238,7 @@ def _bisect(
     return best
 
 
-def _last(walk: _Walk, here: Place, there: Place) -> Place:
+def _last(walk: Walk, here: Place, there: Place) -> Place:
     """Return the state at the end of the span, between two others."""
     end = walk.control.span[1]
     share = (end - here.parameter) / (there.parameter - here.parameter)

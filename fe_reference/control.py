@@ -16,6 +16,7 @@ from scipy.sparse import csc_matrix
 from scipy.sparse.linalg import SuperLU, splu
 
 from .effects.loads import DeadLoad
+from .stability import negative_eigenvalues
 from .structure import Structure
 
 Array = NDArray[np.float64]
@@ -95,18 +96,27 @@ class Control:
     def describe(self, parameter: float) -> str:
         """Return what the parameter stands for, with its value."""
         if self.settling:
-            return f"share of gravity and natural strains {parameter:.6g}"
-        if self.watched is not None and self.held.tolist() == [self.watched]:
-            return f"rotation [rad] {self.prescribed(parameter)[0]:.6g}"
+            return f"{100.0 * parameter:.6g} % of {self.structure.constant_words}"
+        if self.watched is not None and self.held.tolist() == [self.watched] and self.load is None:
+            return f"rotation {np.degrees(self.prescribed(parameter)[0]):.6g} deg"
         return f"load factor {parameter:.6g}"
 
 
-def factorise(control: Control, tangent: csc_matrix, counters: Counter[str]) -> SuperLU:
+def free_block(control: Control, tangent: csc_matrix) -> csc_matrix:
+    """Return the block of the free coordinates."""
+    free, many = control.free, len(control.free)
+    if many == tangent.shape[0]:
+        return tangent
+    # as where the last body is driven: slices take a third of the time
+    leading = many > 0 and free[-1] == many - 1
+    block: csc_matrix = (tangent[:many, :many] if leading else tangent[:, free][free]).tocsc()
+    return block
+
+
+def factorise(block: csc_matrix, counters: Counter[str]) -> SuperLU:
     """Factorise the block of the free coordinates; raises RuntimeError if it is singular."""
     counters["factorisations"] += 1
-    free = control.free
-    block = tangent if len(free) == tangent.shape[0] else tangent[:, free][free]
-    return splu(block.tocsc(), permc_spec="MMD_AT_PLUS_A", options={"SymmetricMode": True})
+    return splu(block, permc_spec="MMD_AT_PLUS_A", options={"SymmetricMode": True})
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -118,6 +128,8 @@ class Response:
         conjugate, slope: first and second derivative of the total potential along the path [J].
         torque, stiffness: generalised force on the watched turn [N m] and its derivative [N m/rad], all that
             is not held being free; nan if no turn is watched.
+        torque_rate: derivative of the torque in p [N m]; zero unless a watched turn is driven.
+        inertia: number of negative eigenvalues of the tangent on the free coordinates; 0: stable.
     """
 
     rate: Array
@@ -125,10 +137,14 @@ class Response:
     slope: float
     torque: float
     stiffness: float
+    torque_rate: float
+    inertia: int
 
 
 def respond(control: Control, y: Array, parameter: float, counters: Counter[str]) -> Response:
     """Return the response at an equilibrium: one factorisation, one solve for each drive and for the load.
+
+    The signs of the eigenvalues take another elimination, without pivots off the diagonal.
 
     What is left of the residual is carried to the drives by the same solve: to first order what they exert
     is that of exact equilibrium, free of the round-off in the last elements' forces.
@@ -136,7 +152,8 @@ def respond(control: Control, y: Array, parameter: float, counters: Counter[str]
     residual, tangent = control.residual(y, parameter), control.tangent(y, parameter)
     counters["residual_evaluations"] += 1
     counters["tangent_evaluations"] += 1
-    lu, free, held = factorise(control, tangent, counters), control.free, control.held
+    block, free, held = free_block(control, tangent), control.free, control.held
+    lu = factorise(block, counters)
     moves = np.zeros((control.structure.size, len(held)))
     moves[held] = np.eye(len(held))
     if len(held):
@@ -148,11 +165,16 @@ def respond(control: Control, y: Array, parameter: float, counters: Counter[str]
     if change is not None:
         rate[free] -= lu.solve(change[free])
         second += 2.0 * float(change @ rate)
+    pushed, torque_rate = tangent @ rate, 0.0
     if control.watched is None:
         torque, turning = np.nan, np.nan
     elif control.watched in control.held:
         k = int(np.flatnonzero(held == control.watched)[0])
         torque, turning = float(drive[k]), float(stiffness[k, k])
+        if control.slope[k] != 0.0:
+            torque_rate = float(
+                pushed[control.watched] + (0.0 if change is None else change[control.watched])
+            )
     else:
         unit = (free == control.watched).astype(float)
         torque = float(control.structure.internal_force(y)[control.watched])
@@ -160,7 +182,9 @@ def respond(control: Control, y: Array, parameter: float, counters: Counter[str]
     return Response(
         rate=rate,
         conjugate=first + float(drive @ control.slope),
-        slope=second + float(rate @ (tangent @ rate)),
+        slope=second + float(rate @ pushed),
         torque=torque,
         stiffness=turning,
+        torque_rate=torque_rate,
+        inertia=negative_eigenvalues(block),
     )

@@ -137,6 +137,11 @@ class Corotational:
         return bending, 0.5 * e.axial_rigidity * e.length * strain**2, np.zeros_like(strain)
 
     def distortion(self, displacement: Array) -> float:
-        """Return the largest local turn of an element end [rad]; the element means little if it is large."""
+        """Return the largest local turn of an element end [rad]; the element means little if it is large.
+
+        Local turns are taken less whole turns. Half the turn of one end from the other is never more than
+        the larger of them, unless a node has gained a whole turn.
+        """
         _, _, _, first, second = self._frame(displacement)
-        return float(max(np.abs(first).max(), np.abs(second).max()))
+        apart = 0.5 * np.abs(displacement[5] - displacement[2])
+        return float(max(np.abs(first).max(), np.abs(second).max(), apart.max()))

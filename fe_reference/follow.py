@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from .control import Control
 from .effects.loads import DeadLoad, applied, together
 from .errors import ConvergenceError
+from .limit import limit_point
 from .path import Path
 from .solution import Status
 from .structure import Structure
@@ -71,11 +72,20 @@ def follow(controls: Sequence[Control], increments: int, progress: Progress | No
         if leg:
             path.turn_to(control)
         for k in range(1, increments + 1):
-            if not path.advance((leg * increments + k) / total):
+            if not advanced(path, (leg * increments + k) / total):
                 break
             if progress is not None:
                 progress(leg * increments + k, total)
     return path
+
+
+def advanced(path: Path, target: float) -> bool:
+    """Go on to a target; if it is not reached, keep the limit point that is in the way."""
+    if path.advance(target):
+        return True
+    limit = limit_point(path, target)
+    path.critical += [] if limit is None else [limit]
+    return False
 
 
 def _settled(control: Control, increments: int) -> Path:
@@ -91,11 +101,11 @@ def _settled(control: Control, increments: int) -> Path:
     settling = Control(structure=control.structure, held=control.held, values=values, settling=True)
     before = Path(control=settling)
     before.begin()
-    reached = all(before.advance(k / increments) for k in range(1, increments + 1))
+    reached = all(advanced(before, k / increments) for k in range(1, increments + 1))
     path.counters = before.counters
     path.counters["settling_increments"] = path.counters.pop("increments", 0)
     path.begin(before.states[-1].y if reached else None)
-    path.message, path.failures = before.message, before.failures
+    path.message, path.failures, path.critical = before.message, before.failures, before.critical
     return path
 
 
@@ -113,7 +123,7 @@ def checked(solution: Any, path: Path, raise_on_failure: bool) -> Any:
     """Return the solution, or raise if its path ended early."""
     if solution.status is not Status.CONVERGED and raise_on_failure:
         raise ConvergenceError(
-            f"{path.message}; {solution.status.text}",
+            f"{solution.message}; {solution.status.text}",
             solution=solution,
             load_factor=float(solution.load_factor[-1]),
             history=tuple(path.failures),

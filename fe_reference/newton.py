@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from .control import Control, factorise
+from .control import Control, factorise, free_block
 from .structure import Structure
 
 Array = NDArray[np.float64]
@@ -61,7 +61,7 @@ def equilibrate(control: Control, start: Array, parameter: float, counters: Coun
         counters["newton_iterations"] += 1
         counters["tangent_evaluations"] += 1
         try:
-            y[free] -= factorise(control, control.tangent(y, parameter), counters).solve(residual)
+            y[free] -= factorise(free_block(control, control.tangent(y, parameter)), counters).solve(residual)
         except RuntimeError:
             return Outcome(y=y, norms=tuple(norms), failure="the tangent is singular")
     return Outcome(y=y, norms=tuple(norms), failure=f"no equilibrium in {ITERATIONS} iterations")

@@ -1,5 +1,9 @@
 """Following an equilibrium path: predictor, Newton, a check of every state, halved increments on failure.
 
+An increment at which the number of negative eigenvalues changes is halved like one that fails, until the
+change goes away (it was another branch, or a sharp bend of this one) or until it is within so small a part of
+the path that the two states beside it are one: a critical point.
+
 The predictor is the tangent of the path, with the curvature of the path seen over the increment before:
 
     y(p + h) = y + h y' + h^2/2 (y' - y'_before) / (p - p_before)
@@ -14,18 +18,30 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .control import Control, Response, respond
+from .critical import critical_point, extremes
 from .errors import InvalidParameter
 from .newton import Outcome, equilibrate
+from .solution import CriticalPoint
 
 Array = NDArray[np.float64]
 
-#: An increment is halved at most so often: 20 increments of 90 deg go down to 0.07 deg.
-HALVINGS = 6
+#: An increment is halved at least so often before it is given up, and until it is this part of the path.
+HALVINGS, SMALLEST = 6, 2.0**-20
+#: Largest distance of two states that are taken for one, in strip lengths and rad. Another branch is farther
+#: away; closer, the round-off of residuals over a stiffness that vanishes at a critical point would be seen.
+APART = 1e-4
+#: Distance of a state from where the mean of the rates at both ends of the increment leads, over what the
+#: increment moved, above which it has jumped. Increments of 45 deg of a pivot stay below 0.04, most jumps are
+#: at 1.
+OFF_THE_PATH = 0.1
+#: Change of the rates over an increment, over its chord, above which it is too long to tell. Increments of
+#: 45 deg of a pivot stay below 0.6; a parabola that begins without a slope has 2.
+SHARPEST = 1.0
 #: Relative mismatch between the total potential gained in an increment and the integral of its rate above
 #: which the increment has jumped to another branch; on one branch the two-point Hermite rule below errs by
 #: less than 1 % in any sane increment. Energies are told apart down to the round-off of EI/L and of the
 #: energy of natural strains, which may cancel along the whole path.
-WORK_MISMATCH = 0.05
+WORK_MISMATCH = 0.01
 ROUND_OFF = 1e-10
 #: Largest turn of an element's end from its chord [rad]: beyond a quarter turn the element is folded, not
 #: bent.
@@ -57,13 +73,18 @@ class State:
 
 @dataclass(kw_only=True, eq=False)
 class Path:
-    """The states of one path, and how hard they were to reach."""
+    """The states of one path, and how hard they were to reach.
+
+    last: the last good state of a path that stopped. critical: the critical points that were passed.
+    """
 
     control: Control
     states: list[State] = field(default_factory=list)
     counters: Counter[str] = field(default_factory=Counter)
     failures: list[tuple[float, ...]] = field(default_factory=list)
+    critical: list[CriticalPoint] = field(default_factory=list)
     message: str = ""
+    last: State = field(init=False)
 
     def begin(self, y: Array | None = None) -> None:
         """Put down the first state: rest, or coordinates in equilibrium (size,)."""
@@ -91,6 +112,14 @@ class Path:
         self.counters["increments"] += 1
         return True
 
+    def remark(self) -> str:
+        """Return what is to be said of the path: its critical points, why it ended early; else ""."""
+        told = [point.text for point in self.critical if point.text]
+        told += [self.message] if self.message else []
+        if self.states[-1].response.inertia:
+            told.append("the last state is unstable")
+        return "; ".join(told)
+
     def _reach(self, state: State, target: float, depth: int) -> State | None:
         step = target - state.parameter
         guess = state.y + step * state.response.rate + 0.5 * step**2 * state.bend
@@ -102,21 +131,46 @@ class Path:
             except RuntimeError:
                 failure = "the tangent is singular"
             else:
-                failure = self._doubt(state, reached)
+                failure = self._doubt(state, reached) or self._judged(state, reached)
                 if not failure:
+                    self.critical += extremes(self.control, state, reached)
                     return reached
         self.failures.append(outcome.norms)
-        if depth == HALVINGS:
-            self.message = self._stopped(failure, state.parameter, target, outcome)
+        if depth >= HALVINGS and abs(step) <= SMALLEST:
+            self.last = state
+            self.message = self._stopped(failure, state.parameter, target, depth, outcome)
             return None
         self.counters["halvings"] += 1
         middle = self._reach(state, 0.5 * (state.parameter + target), depth + 1)
         return None if middle is None else self._reach(middle, target, depth + 1)
 
-    def _stopped(self, failure: str, begin: float, target: float, outcome: Outcome) -> str:
+    def _judged(self, before: State, after: State) -> str:
+        """Return why a state is not on the branch of the one before, or ""; keep a critical point of them.
+
+        States that are taken for one are on one branch, whatever the rates at the point between them are.
+        """
+        step, moved = after.parameter - before.parameter, after.y - before.y
+        crossed = before.response.inertia != after.response.inertia
+        if crossed and abs(step) > SMALLEST:
+            return "the stability changes"
+        first, last = step * before.response.rate, step * after.response.rate
+        size = self._size(moved)
+        off = self._size(moved - 0.5 * (first + last)) > OFF_THE_PATH * size
+        one = abs(step) <= SMALLEST and size <= APART
+        if not one and (off or self._size(last - first) > SHARPEST * size):
+            return "the state lies on another branch (it is not where the path leads)"
+        if crossed:
+            self.critical.append(critical_point(self.control, before, after))
+        return ""
+
+    def _size(self, change: Array) -> float:
+        """Return the largest component of a change of the coordinates, in strip lengths and rad."""
+        return float(np.abs(self.control.structure.measure * change).max(initial=0.0))
+
+    def _stopped(self, failure: str, begin: float, target: float, depth: int, outcome: Outcome) -> str:
         return (
             f"{failure} between {self.control.describe(begin)} and {self.control.describe(target)}"
-            f" after {HALVINGS} halvings of the increment; last residual {outcome.norms[-1]:.3g}"
+            f" after {depth} halvings of the increment; last residual {outcome.norms[-1]:.3g}"
         )
 
     def _state(self, y: Array, parameter: float, norms: tuple[float, ...], before: State | None) -> State:

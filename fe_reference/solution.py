@@ -27,12 +27,32 @@ class Status(StrEnum):
         }[self]
 
 
+@dataclass(frozen=True, kw_only=True)
+class CriticalPoint:
+    """Where a path loses or regains stability, or where its torque is stationary.
+
+    kind: "limit point" of the load factor, or of a driven rotation's torque; "turning point" of a drive,
+    where the driven coordinate itself goes back; "bifurcation" otherwise. load_factor [1]; rotation of the
+    driven body [rad], nan without one; inertia: negative eigenvalues after it; text: what happens at which
+    load, "" for a stationary torque, which is not unstable.
+    """
+
+    kind: str
+    load_factor: float
+    rotation: float
+    inertia: int
+    text: str
+
+
 @dataclass(frozen=True, kw_only=True, eq=False)
 class StaticSolution:
     """Converged states of a static path, the unloaded one first: S states, G strips, P nodes a strip.
 
     Attributes:
-        status, message: how the solve ended; why and where it stopped ("" if it did not).
+        status, message: how the solve ended; why and where it stopped, what was critical on the way ("" if
+            nothing was).
+        inertia (S,): negative eigenvalues of the tangent with the drives held, 0 for a stable state.
+        critical_points: in the order of the path.
         load_factor (S,): fraction of the path, or of the load in load control [1].
         rotation (S,): turn of the body [rad].
         centre (S, 2): centre of mass of the body, origin at the ground end of the first strip [m].
@@ -60,6 +80,8 @@ class StaticSolution:
 
     status: Status
     message: str
+    inertia: NDArray[np.int64]
+    critical_points: tuple[CriticalPoint, ...]
     load_factor: Array
     rotation: Array
     centre: Array
@@ -92,7 +114,7 @@ class MechanismSolution:
     """Converged states of a mechanism: S states from load factor 0 on, G strips, P nodes a strip.
 
     Attributes:
-        status, message, history: as in `StaticSolution`.
+        status, message, inertia, critical_points, history: as in `StaticSolution`.
         load_factor (S,): [1].
         bodies: by name, place of the centre [m] and turn [rad], (S, 3) x, y, theta.
         torque, stiffness (S,): of the driven rotation [N m], [N m/rad]; nan if no rotation is driven.
@@ -109,6 +131,8 @@ class MechanismSolution:
 
     status: Status
     message: str
+    inertia: NDArray[np.int64]
+    critical_points: tuple[CriticalPoint, ...]
     load_factor: Array
     bodies: Mapping[str, Array]
     torque: Array

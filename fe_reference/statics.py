@@ -1,6 +1,7 @@
 """Static solution of a model: a body driven along a path, or dead loads raised in steps."""
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -190,8 +191,8 @@ def _status(path: Path, total: int) -> Status:
     return Status.CONVERGED if len(path.states) == total + 1 else Status.NOT_CONVERGED
 
 
-def _energies(path: Path) -> dict[str, Array]:
-    """Return energies and work of the states, arrays (S,) by name [J]."""
+def _energies(path: Path) -> dict[str, Any]:
+    """Return energies and work [J], torque, stiffness and inertia of the states, arrays (S,) by name."""
     structure, states = path.control.structure, path.states
     energies = np.array([structure.energies(state.y) for state in states])
     return {
@@ -202,6 +203,7 @@ def _energies(path: Path) -> dict[str, Array]:
         "work": np.array([state.work for state in states]),
         "torque": np.array([state.response.torque for state in states]),
         "stiffness": np.array([state.response.stiffness for state in states]),
+        "inertia": np.array([state.response.inertia for state in states]),
     }
 
 
@@ -214,7 +216,8 @@ def _pack(path: Path, total: int, watch: Stopwatch) -> StaticSolution:
     names = ("axial_force", "bending_moment", "shear_force", "clamp_reactions")
     return StaticSolution(
         status=_status(path, total),
-        message=path.message,
+        message=path.remark(),
+        critical_points=tuple(path.critical),
         load_factor=load_factors(path, total),
         rotation=y[:, -1],
         centre=body_motion(structure, y, 0)[:, :2] - origin,
@@ -237,7 +240,8 @@ def _pack_mechanism(path: Path, total: int, watch: Stopwatch) -> MechanismSoluti
     names = structure.model.body_names
     return MechanismSolution(
         status=_status(path, total),
-        message=path.message,
+        message=path.remark(),
+        critical_points=tuple(path.critical),
         load_factor=load_factors(path, total),
         bodies={name: body_motion(structure, y, k) for k, name in enumerate(names)},
         shape=np.array([each.shape for each in fields]),

@@ -98,6 +98,19 @@ class Structure:
         """Whether gravity or natural strains act, so that the shape at rest is not in equilibrium."""
         return self.weight is not None or self.natural is not None
 
+    @cached_property
+    def measure(self) -> Array:
+        """What changes of the coordinates are multiplied with to count in strip lengths and rad, (size,)."""
+        weight: Array = np.full(self.size, 1.0 / max(strip.length for strip in self.model.strips))
+        weight[2::3] = 1.0
+        return weight
+
+    @property
+    def constant_words(self) -> str:
+        """What of weight and natural strains acts, in words."""
+        acting = {"the weight": self.weight, "the natural strains": self.natural}
+        return " and ".join(word for word, effect in acting.items() if effect is not None)
+
     def body_slice(self, body: int) -> slice:
         """Return where the coordinates of a body lie."""
         return slice(self.first_body + 3 * body, self.first_body + 3 * body + 3)

@@ -15,6 +15,7 @@ from studies.cases.design import Design
 from studies.cases.effects import LOADS
 from studies.cases.mechanism import Mechanism
 from studies.cases.problem import Problem
+from studies.errors import BadInput
 from studies.record.timing import measure
 
 #: Rotation of the first solve, which only compiles [rad]: small enough for any design and discretisation.
@@ -52,8 +53,14 @@ def answer_release(
             its own choice.
 
     Raises:
-        BadInput: a setting or option that the model refuses; one line.
+        BadInput: a setting or option that the model refuses, a design without bodies; one line.
     """
+    body = _reported(design)
+    if body is None:
+        expected = (
+            "a body whose swing is followed; `export --analysis release` has the motion of strips alone"
+        )
+        raise BadInput(f"bodies: got none, expected {expected}")
     model = model_of(settings)
     asked, keywords = built(model, design, settings, moving=True)
     given = {name: value for name, value in options.items() if value is not None} | model.release_options
@@ -61,7 +68,6 @@ def answer_release(
         given[model.records] = records
     run = _release_of(model, design, asked)
     angle = design.rotation if start is None else start
-    body = _reported(design) or ""
 
     def release(**changes: Any) -> Any:
         return run(**({"start": angle, "duration": duration} | given | changes))

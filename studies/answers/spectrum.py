@@ -78,6 +78,8 @@ def spectrum(
     `place` is that of the body among those whose shapes the result holds side by side.
     """
     shapes = np.asarray(result.body_shapes, dtype=float)
+    if body is None:  # strips alone: there is nothing to move
+        shapes = np.zeros((len(result.frequency), 3))
     return Spectrum(
         model=model,
         settings=settings,

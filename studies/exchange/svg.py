@@ -137,5 +137,7 @@ def _named(fields: Fields, state: int) -> str:
     value = fields.values[state]
     if fields.series == "load_factor" and fields.torque is None:
         return f"load factor {value:.3g}"
+    if not fields.blocks:
+        return f"{1e3 * value:.4g} ms"
     turn = f"{math.degrees(fields.bodies[state, fields.driven, 2]):.4g}°"
     return turn if fields.series == "load_factor" else f"{1e3 * value:.4g} ms, {turn}"

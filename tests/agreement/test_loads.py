@@ -1,61 +1,164 @@
-"""Both models on loaded pivots: torque and stiffness, with loads and rotations of either sign."""
+"""Every load at rotations of either sign, at none and without a drive: statics of both models agree."""
 
-import itertools
-import math
-from functools import cache
+from itertools import combinations
 
 import numpy as np
 import pytest
 
-import fe_reference.pivot
-import fe_reference.statics
-import spline_model.pivot
-import spline_model.statics
+from studies.answers.settings import FeSettings, SplineSettings
 from tests import gates
-from tests.table_one import TABLE_ONE
+from tests.agreement import loaded
+from tests.agreement.loaded import LOADS, ROTATION, differences, elements, extrapolated, spline
 
-DEGREES = (-30.0, -10.0, 10.0, 30.0)
-
-
-def random_loads(seed):
-    """A force [N], a moment [N m] and a weight of the order that turns Table 1 by a radian."""
-    rng = np.random.default_rng(seed)
-    return {
-        "applied_force": {"force": tuple(rng.uniform(-5e3, 5e3, 2).tolist())},
-        "applied_moment": {"moment": float(rng.uniform(-300.0, 300.0))},
-        "gravity": {"acceleration": tuple(rng.uniform(-1e3, 1e3, 2).tolist())},
-    }
-
-
-@cache
-def path(model, seed, degrees, **discretisation):
-    """Solution of a model under random loads, driven to a rotation [deg]."""
-    loads = random_loads(seed)
-    pivot = model.pivot.cross_axis_pivot(
-        **TABLE_ONE, effects=("bending", "stretching", *loads), parameters=loads, **discretisation
-    )
-    return model.statics.solve_statics(pivot, rotation=math.radians(degrees), increments=3)
+HELD = (ROTATION, -ROTATION, 0.0)
+EFFECTS = pytest.mark.parametrize("effect", LOADS)
+MODELS = pytest.mark.parametrize(
+    "settings", [SplineSettings(control_points=10), FeSettings(elements=10)], ids=lambda s: s.model
+)
+#: The loads whose errors a gate is about: a body that is led is stiff, and its errors are larger.
+STIFF = "driven_displacement"
+QUANTITIES = ("torque", "stiffness", "path", "moments", "axial", "energy")
+#: One load and rotation for each gate, with which its teeth are shown.
+SHOWN = ("applied_force", ROTATION)
 
 
-def differences(quantity, control_points=8):
-    """Largest difference of a quantity on random paths, over its largest value on the path."""
-    worst = 0.0
-    for seed, degrees in itertools.product((1, 2), DEGREES):
-        spline = getattr(path(spline_model, seed, degrees, control_points=control_points), quantity)
-        elements = getattr(path(fe_reference, seed, degrees, elements=40), quantity)
-        worst = max(worst, float(np.abs(spline - elements).max() / np.abs(elements).max()))
-    return worst
+def angle(rotation):
+    """Name of a rotation among the tests."""
+    return "free" if rotation is None else f"{np.degrees(rotation):+.0f}deg"
 
 
-@pytest.mark.parametrize("quantity", ["torque", "stiffness"])
-def test_models_agree_under_random_loads(quantity):
-    """Requirement: torque and stiffness of loaded pivots agree, whatever the signs of loads and rotation."""
-    gates.check(f"agreement_loaded_{quantity}", differences(quantity))
+def apart(effect, rotation, control_points=10):
+    """Differences of the spline from the limit of the elements, by quantity; NaN where nothing is driven."""
+    limit = extrapolated(elements(effect, rotation, 10), elements(effect, rotation, 20))
+    return differences(spline(effect, rotation, control_points), limit)
 
 
-@pytest.mark.parametrize("quantity", ["torque", "stiffness"])
-def test_loaded_agreement_gates_have_teeth(quantity):
-    """Requirement: the checks notice fewer control points."""
-    gate = f"agreement_loaded_{quantity}"
+@EFFECTS
+@pytest.mark.parametrize("rotation", [*HELD, None], ids=angle)
+def test_loaded_statics_agree(effect, rotation):
+    """Requirement: torque, stiffness, path, clamp moments, axial forces and energy agree under every load."""
+    found = apart(effect, rotation)
+    for name in QUANTITIES:
+        if rotation is None and name in ("torque", "stiffness"):
+            assert np.isnan(found[name])
+        elif rotation != 0.0 or name != "path":  # at rotation 0 some bodies do not move at all
+            gates.check("loads_led" if effect == STIFF else f"loads_{name}", max(found[name], 1e-16))
+
+
+@pytest.mark.parametrize("name", QUANTITIES)
+def test_load_gates_have_teeth(name):
+    """Requirement: fewer control points do not pass."""
+    gate = f"loads_{name}"
     with pytest.raises(AssertionError, match="x the gate"):
-        gates.check(gate, differences(quantity, **gates.teeth(gate)))
+        gates.check(gate, apart(*SHOWN, **gates.teeth(gate))[name])
+
+
+def test_gate_of_a_led_body_has_teeth():
+    """Requirement: fewer control points do not pass for a body that is led."""
+    with pytest.raises(AssertionError, match="x the gate"):
+        gates.check("loads_led", max(apart(STIFF, ROTATION, **gates.teeth("loads_led")).values()))
+
+
+@EFFECTS
+def test_loads_matter(effect, rotation=-ROTATION):
+    """Requirement: each load of these tests changes what the elements say of torque or stiffness by 5 %."""
+    kind = loaded.whiskered if effect == "tip_force" else loaded.pivot
+    bare = loaded.state(kind(loaded.scene(), rotation), FeSettings(elements=10))
+    with_load = elements(effect, rotation, 10)
+    change = differences(with_load, bare)
+    assert max(change["torque"], change["stiffness"]) > 0.05
+
+
+def quotient(effect, rotation, settings, by=3e-4):
+    """Difference of the stiffness from that of torques of two paths of their own, over EI/L."""
+    asked = loaded.design(effect, rotation)
+    torques = [loaded.state(loaded.turned(asked, turn), settings).torque for turn in (by, -by)]
+    slope = (torques[0] - torques[1]) / (2.0 * by)
+    return abs(loaded.state(asked, settings).stiffness - slope) / loaded.MOMENT_UNIT
+
+
+@MODELS
+@EFFECTS
+@pytest.mark.parametrize("rotation", [pytest.param(ROTATION, marks=pytest.mark.slow), -ROTATION], ids=angle)
+def test_stiffness_is_the_slope_of_the_torque_at_fixed_loads(effect, rotation, settings):
+    """Requirement: stiffness is the difference quotient of the torques of paths with the same full load."""
+    gate = "loads_quotient_led" if effect == STIFF else "loads_quotient"
+    gates.check(gate, quotient(effect, rotation, settings))
+
+
+@pytest.mark.parametrize("gate, effect", [("loads_quotient", "applied_force"), ("loads_quotient_led", STIFF)])
+def test_quotient_gates_have_teeth(gate, effect):
+    """Requirement: a coarse quotient does not pass."""
+    with pytest.raises(AssertionError, match="x the gate"):
+        gates.check(gate, quotient(effect, ROTATION, FeSettings(elements=10), **gates.teeth(gate)))
+
+
+@MODELS
+@EFFECTS
+@pytest.mark.parametrize("rotation", [*HELD, None], ids=angle)
+def test_work_of_loads_and_drives_is_the_energy_gained(effect, rotation, settings):
+    """Requirement: work since the first state is the gain of strain energy and weight's energy."""
+    if settings.model == "spline":
+        books = spline(effect, rotation).books
+    else:
+        books = elements(effect, rotation, 10).books
+    if books != 0.0:
+        gates.check("loads_books", abs(books) / loaded.MOMENT_UNIT)
+
+
+def test_gate_of_the_books_has_teeth():
+    """Requirement: work over a single increment does not pass."""
+    asked = loaded.with_increments(loaded.design(STIFF), **gates.teeth("loads_books"))
+    books = loaded.state(asked, FeSettings(elements=10)).books
+    with pytest.raises(AssertionError, match="x the gate"):
+        gates.check("loads_books", abs(books) / loaded.MOMENT_UNIT)
+
+
+@MODELS
+@pytest.mark.parametrize("rotation", HELD, ids=angle)
+def test_a_led_body_goes_where_it_is_led_whatever_the_sign_of_the_rotation(rotation, settings):
+    """Requirement: a driven displacement grows from 0 to its own value, with its own sign."""
+    path = loaded.state(loaded.design(STIFF, rotation), settings).path
+    share = np.linspace(0.0, 1.0, loaded.INCREMENTS + 1)[:, None]
+    assert path[:, :2] - path[0, :2] == pytest.approx(share * LOADS[STIFF]["displacement"], abs=1e-12)
+    assert path[:, 2] == pytest.approx(share[:, 0] * rotation, abs=1e-12)
+
+
+def pair_apart(kind, pair, rotation, control_points=12):
+    """Largest difference of both models under two loads."""
+    asked = kind(loaded.scene(*pair), rotation, 10)
+    coarse, fine = (loaded.state(asked, FeSettings(elements=count)) for count in (20, 40))
+    found = loaded.state(asked, SplineSettings(control_points=control_points))
+    return max(differences(found, extrapolated(coarse, fine)).values())
+
+
+PAIRS = [pair for pair in combinations(LOADS, 2) if STIFF not in pair]
+LED = [(name, STIFF) for name in LOADS if name not in ("tip_force", STIFF)]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("pair", PAIRS, ids="+".join)
+@pytest.mark.parametrize("degrees", [60, -60, 25, -25])
+def test_pairs_of_loads_agree(pair, degrees):
+    """Requirement: two loads together, to 60 deg either way, agree in pivot and mechanism."""
+    kinds = [loaded.whiskered] if "tip_force" in pair else [loaded.pivot, loaded.whiskered]
+    for kind in kinds:
+        gates.check("loads_pairs", pair_apart(kind, pair, np.radians(degrees)))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("pair", LED, ids="+".join)
+@pytest.mark.parametrize("degrees", [12, -12, 5, -5])
+def test_led_bodies_under_loads_agree(pair, degrees):
+    """Requirement: a body that is led and loaded, to 12 deg either way, agrees in all quantities."""
+    gates.check("loads_pairs_led", pair_apart(loaded.pivot, pair, np.radians(degrees)))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    "gate, pair, degrees", [("loads_pairs", PAIRS[-1], 60), ("loads_pairs_led", LED[0], 12)]
+)
+def test_gates_of_pairs_have_teeth(gate, pair, degrees):
+    """Requirement: fewer control points do not pass."""
+    with pytest.raises(AssertionError, match="x the gate"):
+        gates.check(gate, pair_apart(loaded.pivot, pair, np.radians(degrees), **gates.teeth(gate)))

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from fe_reference.arc_length import ArcPath, follow_arc
-from fe_reference.control import Control
+from fe_reference.control import Control, free_block
 from fe_reference.effects.named import DrivenDisplacement
 from fe_reference.errors import ConvergenceError
 from fe_reference.follow import follow, full_load
@@ -71,7 +71,9 @@ def tilted_state(frame: Frame, settings: FeSettings, tilt: float) -> Arc:
         parameter=np.array([control.span[1]]),
         y=y,
         torque=np.array([np.nan]),
-        negative=np.array([negative_eigenvalues(control, outcome.y, control.span[1])]),
+        negative=np.array(
+            [negative_eigenvalues(free_block(control, control.tangent(outcome.y, control.span[1])))]
+        ),
         critical=(),
     )
     return _arc(model, frame, path, message or outcome.failure)

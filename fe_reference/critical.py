@@ -1,0 +1,113 @@
+"""Critical points between two neighbouring states of a path, and what is said of them in words of design."""
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .control import Control, free_block
+from .solution import CriticalPoint
+from .stability import critical_mode
+
+if TYPE_CHECKING:
+    from .path import State
+
+Array = NDArray[np.float64]
+
+#: Largest motion of a body over that of the nodes in a mode of the strips alone.
+STANDS = 0.25
+#: Rates of the torque over p below which they are round-off, in EI/L.
+ROUND_OFF = 1e-9
+PREFIXES = {9: "G", 6: "M", 3: "k", 0: "", -3: "m", -6: "u", -9: "n"}
+
+
+def critical_point(control: Control, before: "State", after: "State") -> CriticalPoint:
+    """Return the bifurcation between two states beside it.
+
+    It is where the line through the eigenvalues nearest to zero has its zero.
+    """
+    (first, _), (last, mode) = (
+        critical_mode(free_block(control, control.tangent(state.y, state.parameter)))
+        for state in (before, after)
+    )
+    part = first / (first - last) if first * last < 0.0 else 0.5
+    inertia = after.response.inertia
+    moves = "the strips buckle" if bodies_stand(control, mode) else "the strips give way with the body"
+    what = moves if inertia > before.response.inertia else "the strips are stable again"
+    y, parameter = _between(before, after, part)
+    return point(control, "bifurcation", y, parameter, inertia, f"bifurcation: {what}")
+
+
+def extremes(control: Control, before: "State", after: "State") -> list[CriticalPoint]:
+    """Return where the torque of a driven rotation is stationary between two states; that is not unstable.
+
+    The torque is taken as the cubic of its values and its rates at both ends: error of fourth order.
+    """
+    rates = before.response.torque_rate, after.response.torque_rate
+    if rates[0] * rates[1] >= 0.0 or min(map(abs, rates)) <= ROUND_OFF * control.structure.moment_unit:
+        return []
+    step = after.parameter - before.parameter
+    gained = (after.response.torque - before.response.torque) / step
+    cubic = [3.0 * (sum(rates) - 2.0 * gained), 2.0 * (3.0 * gained - 2.0 * rates[0] - rates[1]), rates[0]]
+    part = next(
+        float(root.real) for root in np.roots(cubic) if abs(root.imag) == 0.0 and 0.0 <= root.real <= 1.0
+    )
+    y, parameter = _between(before, after, part)
+    return [point(control, "limit point", y, parameter, after.response.inertia, "")]
+
+
+def _between(before: "State", after: "State", part: float) -> tuple[Array, float]:
+    """Return coordinates and parameter at a part of the way between two states."""
+    step = after.parameter - before.parameter
+    return before.y + part * (after.y - before.y), before.parameter + part * step
+
+
+def point(control: Control, kind: str, y: Array, parameter: float, inertia: int, what: str) -> CriticalPoint:
+    """Return the critical point at a state; its text tells what happens there, if that is to be told."""
+    return CriticalPoint(
+        kind=kind,
+        load_factor=0.0 if control.settling else parameter,
+        rotation=rotation(control, y),
+        inertia=inertia,
+        text=f"{what} at {', '.join(places(control, y, parameter))}" if what else "",
+    )
+
+
+def rotation(control: Control, y: Array) -> float:
+    """Return the turn of the watched body, or of the only one [rad]; nan if there is no such."""
+    turns = control.structure.turns
+    if control.watched is not None:
+        return float(y[control.watched])
+    return float(y[turns[0]]) if len(turns) == 1 else np.nan
+
+
+def places(control: Control, y: Array, parameter: float) -> Iterator[str]:
+    """Yield what acts there: loads, driven rotation, share of the weight, load factor."""
+    if control.settling:
+        yield f"{100.0 * parameter:.4g} % of {control.structure.constant_words}"
+        yield "load factor 0"
+        return
+    if control.load is not None:
+        vector = parameter * control.load.vector
+        force, moment = np.hypot(vector[0::3].sum(), vector[1::3].sum()), abs(vector[2::3].sum())
+        yield from (quantity(size, unit) for size, unit in ((force, "N"), (moment, "N m")) if size > 0.0)
+    if control.watched is not None and control.watched in control.held[control.slope != 0.0]:
+        yield f"rotation {np.degrees(y[control.watched]):.4g} deg"
+    yield f"load factor {parameter:.4g}"
+
+
+def quantity(size: float, unit: str) -> str:
+    """Return a positive size in its unit with the prefix that leaves one to three digits before the point."""
+    power = int(np.clip(3 * np.floor(np.log10(size) / 3.0), min(PREFIXES), max(PREFIXES)))
+    return f"{size / 10.0**power:.4g} {PREFIXES[power]}{unit}"
+
+
+def bodies_stand(control: Control, mode: Array) -> bool:
+    """Return whether only the strips move in a mode of the free coordinates."""
+    structure = control.structure
+    full = np.zeros(structure.size)
+    full[control.free] = mode
+    full *= structure.measure
+    bodies = np.abs(full[structure.first_body :]).max(initial=0.0)
+    return bool(bodies <= STANDS * np.abs(full).max())

@@ -1,0 +1,114 @@
+"""Natural modes about loaded states, at rotations of either sign, at none and without a drive."""
+
+from functools import cache
+from itertools import combinations
+
+import numpy as np
+import pytest
+
+from studies.answers.adapters import answer_modes
+from studies.answers.settings import FeSettings, Settings, SplineSettings
+from studies.cases.design import Design
+from tests import gates
+from tests.agreement import loaded
+from tests.agreement.loaded import LOADS, ROTATION
+
+LED = "driven_displacement"
+
+
+def angle(rotation):
+    """Name of a rotation among the tests."""
+    return "free" if rotation is None else f"{np.degrees(rotation):+.0f}deg"
+
+
+def frequencies(asked: Design, settings: Settings, count: int = 3) -> np.ndarray:
+    """Lowest frequencies about the state that the design is driven to, which is then let go [Hz]."""
+    answer = answer_modes(asked, settings, rotation=asked.rotation or 0.0, count=count)
+    assert answer.converged, answer.message
+    return answer.frequency
+
+
+def apart(asked: Design, control_points: int = 8, meshes: tuple[int, int] = (5, 10)) -> float:
+    """Largest relative difference of the lowest frequencies from the limit of two meshes."""
+    coarse, fine = (frequencies(asked, FeSettings(elements=count)) for count in meshes)
+    limit = (4.0 * fine - coarse) / 3.0
+    return float(
+        np.abs(frequencies(asked, SplineSettings(control_points=control_points)) / limit - 1.0).max()
+    )
+
+
+#: What the quick set asks; the slow one asks all.
+QUICK = {-ROTATION: tuple(LOADS), 0.0: ("gravity", "pre_strain"), None: ("applied_force",)}
+
+
+@pytest.mark.parametrize(
+    "effect, rotation",
+    [
+        pytest.param(
+            effect,
+            rotation,
+            id=f"{effect} {angle(rotation)}",
+            marks=[] if effect in QUICK.get(rotation, ()) else pytest.mark.slow,
+        )
+        for effect in LOADS
+        for rotation in (ROTATION, -ROTATION, 0.0, None)
+    ],
+)
+def test_modes_about_loaded_states_agree(effect, rotation):
+    """Requirement: the first three modes of what a release lets go of agree under every load."""
+    asked = loaded.design(effect, rotation)
+    if effect == LED:
+        gates.check("loads_modes_led", apart(asked, meshes=(10, 20)))
+    else:
+        gates.check("loads_modes", apart(asked))
+
+
+@cache
+def bare(rotation):
+    """Frequencies of the pivot without loads, by the elements."""
+    return frequencies(loaded.pivot(loaded.scene(), rotation), FeSettings(elements=10))
+
+
+@pytest.mark.parametrize("settings", [SplineSettings(control_points=8), FeSettings(elements=10)], ids=str)
+def test_a_dead_moment_changes_no_frequency(settings):
+    """Requirement: a constant moment is taken by the drive and leaves the modes as they are."""
+    loads = frequencies(loaded.design("applied_moment", -ROTATION), settings)
+    none = frequencies(loaded.pivot(loaded.scene(), -ROTATION), settings)
+    assert loads[0] == pytest.approx(none[0], rel=1e-6)
+
+
+@pytest.mark.parametrize("effect", ["applied_force", LED])
+def test_modes_are_those_about_the_loaded_state(effect):
+    """Requirement: a force and a led body change the first frequency of the spline, by 1 % and more."""
+    found = frequencies(loaded.design(effect, ROTATION), SplineSettings(control_points=8))
+    unled = loaded.pivot(loaded.scene(effect, **{effect: {"displacement": (0.0, 0.0)}}), ROTATION)
+    none = bare(ROTATION) if effect != LED else frequencies(unled, FeSettings(elements=10))
+    assert abs(found[0] / none[0] - 1.0) > 0.01
+
+
+@pytest.mark.parametrize(
+    "gate, effect, meshes", [("loads_modes", "applied_force", (5, 10)), ("loads_modes_led", LED, (10, 20))]
+)
+def test_mode_gates_have_teeth(gate, effect, meshes):
+    """Requirement: fewer control points do not pass."""
+    with pytest.raises(AssertionError, match="x the gate"):
+        gates.check(gate, apart(loaded.design(effect), meshes=meshes, **gates.teeth(gate)))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("pair", [pair for pair in combinations(LOADS, 2) if LED not in pair], ids="+".join)
+@pytest.mark.parametrize("degrees", [45, -45])
+def test_modes_under_pairs_of_loads_agree(pair, degrees):
+    """Requirement: the first three modes agree under two loads together, at 45 deg either way."""
+    kind = loaded.whiskered if "tip_force" in pair else loaded.pivot
+    asked = kind(loaded.scene(*pair), float(np.radians(degrees)))
+    gates.check("loads_modes_pairs", apart(asked, control_points=10, meshes=(10, 20)))
+
+
+@pytest.mark.slow
+def test_gate_of_modes_under_pairs_has_teeth():
+    """Requirement: fewer control points do not pass."""
+    asked = loaded.pivot(loaded.scene("applied_force", "gravity"), float(np.radians(45)))
+    with pytest.raises(AssertionError, match="x the gate"):
+        settings = gates.teeth("loads_modes_pairs")
+        gates.check("loads_modes_pairs", apart(asked, meshes=(10, 20), **settings))

@@ -1,0 +1,179 @@
+"""Releases under every load, from rotations of either sign and from rest: what starts, holds and lets go."""
+
+from dataclasses import replace
+from functools import cache
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy.interpolate import CubicSpline
+
+from studies.answers.adapters import answer_release
+from studies.answers.motion import Motion
+from studies.answers.settings import FeSettings, Settings, SplineSettings
+from studies.cases.design import Design
+from tests import gates
+from tests.agreement import loaded
+from tests.agreement.loaded import LOADS, ROTATION
+
+DURATION, RECORDS = 0.01, 200
+INSTANTS = np.linspace(0.0, DURATION, 21)
+#: Step of the spline [s], of second order, and control points; elements take their explicit step.
+STEP, SPLINE, ELEMENTS = 2.5e-5, SplineSettings(control_points=8), FeSettings(elements=8)
+MODELS = pytest.mark.parametrize("settings", [SPLINE, ELEMENTS], ids=lambda s: s.model)
+LED, UNSTEADY = "driven_displacement", ("applied_force", "applied_moment", "tip_force")
+#: Histories of a load, with its value at the start.
+HISTORIES: dict[str, tuple[tuple[tuple[float, float], ...] | None, float]] = {
+    "constant": (None, 1.0),
+    "raised": (((0.0, 0.0), (0.004, 1.0)), 0.0),
+    "begins late": (((0.002, 0.5), (0.006, 1.0)), 0.5),
+    "dropped": (((0.0, 1.0), (0.003, -0.5)), 1.0),
+}
+CASES = [
+    (effect, history) for effect in LOADS for history in (HISTORIES if effect in UNSTEADY else ["constant"])
+]
+#: One history of every load for the quick set, on either side by turns.
+QUICK = [
+    ("applied_force", "raised", -ROTATION),
+    ("applied_moment", "begins late", ROTATION),
+    ("tip_force", "raised", ROTATION),
+    ("tip_force", "dropped", None),
+    ("gravity", "constant", -ROTATION),
+    (LED, "constant", -ROTATION),
+]
+
+
+def angle(rotation):
+    """Name of a rotation among the tests."""
+    return "free" if rotation is None else f"{np.degrees(rotation):+.0f}deg"
+
+
+def asked(effect: str, history: str, rotation: float | None) -> Design:
+    """Return the design whose load has a history."""
+    points = HISTORIES[history][0]
+    return loaded.design(effect, rotation, **({} if points is None else {"history": points}))
+
+
+def at_start(effect: str, history: str, rotation: float | None) -> Design:
+    """Return the design with the load that acts at the first instant, as a static one."""
+    share = HISTORIES[history][1]
+    scaled = {
+        name: value if isinstance(value, str) else tuple(share * np.atleast_1d(value))
+        for name, value in LOADS[effect].items()
+    }
+    if "moment" in scaled:
+        scaled["moment"] = scaled["moment"][0]
+    return loaded.design(effect, rotation, **(scaled if effect in UNSTEADY else {}))
+
+
+@cache
+def released(design: Design, settings: Settings, **options: Any) -> Motion:
+    """Return the motion after the release, with RECORDS records."""
+    if isinstance(settings, SplineSettings):
+        options = {"step": STEP} | options
+    answer = answer_release(design, settings, duration=DURATION, records=RECORDS, **options)
+    assert answer.converged, answer.message
+    return answer
+
+
+def largest(one: np.ndarray, other: np.ndarray) -> float:
+    """Return the largest difference of places, over the strips' length and in rad."""
+    return float(np.abs((one - other) / [loaded.LENGTH, loaded.LENGTH, 1.0]).max())
+
+
+def places(motion: Motion) -> np.ndarray:
+    """Return the body's places at INSTANTS, (T, 3) [m, m, rad], by cubic interpolation."""
+    return np.asarray(CubicSpline(motion.time, motion.bodies["body"])(INSTANTS))
+
+
+def apart(design: Design, step: float = STEP, meshes: tuple[int, int] = (8, 12)) -> float:
+    """Return the largest difference of the body's place over the motion, in both models."""
+    coarse, fine = (released(design, FeSettings(elements=count)) for count in meshes)
+    found = released(design, SPLINE, step=step)
+    weight = (meshes[1] / meshes[0]) ** 2
+    return largest(places(found), (weight * places(fine) - places(coarse)) / (weight - 1.0))
+
+
+@pytest.mark.parametrize("effect, history, rotation", QUICK)
+def test_motions_under_loads_agree(effect, history, rotation):
+    """Requirement: both models start alike and move alike for 10 ms under every load."""
+    gates.check("loads_release", apart(asked(effect, history, rotation)))
+
+
+def test_gate_of_releases_has_teeth():
+    """Requirement: longer steps do not pass."""
+    with pytest.raises(AssertionError, match="x the gate"):
+        gates.check(
+            "loads_release", apart(asked("gravity", "constant", -ROTATION), **gates.teeth("loads_release"))
+        )
+
+
+@MODELS
+@pytest.mark.parametrize("effect, history, rotation", QUICK)
+def test_a_release_starts_in_equilibrium_with_the_loads_of_its_first_instant(
+    effect, history, rotation, settings
+):
+    """Requirement: the first record is the static state under each load times its history at t = 0."""
+    motion = released(asked(effect, history, rotation), settings)
+    static = loaded.state(at_start(effect, history, rotation), settings)
+    assert largest(motion.bodies["body"][0], static.place) < 1e-6
+    assert motion.kinetic_energy[0] < 1e-12 * loaded.MOMENT_UNIT
+
+
+@MODELS
+@pytest.mark.parametrize("effect", UNSTEADY)
+def test_what_is_not_driven_stands_still_under_a_constant_load(effect, settings):
+    """Requirement: without a driven rotation a motion starts in equilibrium with constant loads and stays."""
+    found = released(loaded.design(effect, None), settings).bodies["body"]
+    assert largest(found, found[:1]) < 1e-6
+
+
+@MODELS
+def test_a_led_body_is_let_go(settings):
+    """Requirement: a displacement without a history ends at the release: the centre moves."""
+    centre = released(loaded.design(LED, ROTATION), settings).bodies["body"][:, :2]
+    assert np.hypot(*(centre - centre[0]).T).max() > 1e-3 * loaded.LENGTH
+
+
+@MODELS
+def test_a_load_is_constant_before_and_after_its_history(settings):
+    """Requirement: a history is constant before its first and after its last instant."""
+    force = loaded.design("applied_force", ROTATION)
+    same = loaded.design("applied_force", ROTATION, history=((0.004, 1.0), (0.005, 1.0)))
+    one, other = (released(each, settings).bodies["body"] for each in (force, same))
+    assert largest(one, other) < 1e-9
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("effect, history", CASES)
+@pytest.mark.parametrize("rotation", [2 * ROTATION, -2 * ROTATION, None], ids=angle)
+def test_motions_under_all_histories_agree(effect, history, rotation):
+    """Requirement: both models move alike under every load and history, from rotations twice as large."""
+    if effect == LED and rotation is not None:
+        rotation = 0.5 * rotation
+    design = asked(effect, history, rotation)
+    if history == "constant" and rotation is None:
+        pytest.skip("stands still: see the test of that")
+    gates.check("loads_release_wide", apart(design, meshes=(10, 20)))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("settings", [SPLINE, ELEMENTS], ids=lambda s: s.model)
+@pytest.mark.parametrize("effect, history", CASES)
+def test_motions_under_loads_keep_their_energy_books(effect, history, settings):
+    """Requirement: strain, kinetic and gravity energy gained are the work of the loads."""
+    motion = released(replace(asked(effect, history, -ROTATION), increments=10), settings)
+    gates.check("loads_motion_books", max(motion.energy_error, 1e-16))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("gate", ["loads_release_wide", "loads_motion_books"])
+def test_gates_of_the_wide_set_have_teeth(gate):
+    """Requirement: longer steps do not pass, of the elements those of the implicit integrator."""
+    design, coarse = asked("gravity", "constant", -ROTATION), gates.teeth(gate)
+    with pytest.raises(AssertionError, match="x the gate"):
+        if gate == "loads_release_wide":
+            gates.check(gate, apart(design, **coarse))
+        else:
+            motion = released(design, ELEMENTS, integrator="generalised-alpha", **coarse)
+            gates.check(gate, motion.energy_error)

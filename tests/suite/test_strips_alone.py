@@ -1,0 +1,64 @@
+"""Strips without a body: every command answers or refuses them in one line."""
+
+import pytest
+
+TEXT = """
+[[strips]]
+name = "strip"
+start_m = [0, 0]
+end_m = [0.1, 0]
+tip = "free"
+
+[section]
+area_m2 = 5e-6
+second_moment_m4 = 1.0416667e-13
+
+[material]
+youngs_modulus_Pa = 206e9
+poisson_ratio = 0.29
+density_kg_m3 = 7800
+
+[drive]
+increments = 2
+
+[scene]
+effects = ["bending", "stretching", "strip_inertia", "tip_force"]
+
+[effects.tip_force]
+strip = "strip"
+force_N = [0, -0.5]
+"""
+
+
+@pytest.fixture
+def strip(tmp_path):
+    """Path of a case of one strip with a force at its free tip."""
+    path = tmp_path / "strip.toml"
+    path.write_text(TEXT, encoding="utf-8")
+    return path
+
+
+@pytest.mark.parametrize("model", ["fe", "fe-shear"])
+def test_modes_of_strips_alone(model, strip, command):
+    """The table has the frequencies of a strip; no body moves in its modes."""
+    ended = command("modes", strip, "--model", model, "--elements", 4, "--count", 2)
+    assert ended.code == 0
+    assert ended.out.splitlines()[3].split()[2:] == ["0.0000e+00"] * 3
+
+
+@pytest.mark.parametrize("model", ["fe", "fe-shear", "spline"])
+def test_release_of_strips_alone_is_refused(model, strip, command):
+    """A release reports the swing of a body: without one it is refused in one line that says what can be."""
+    ended = command("release", strip, "--model", model)
+    assert (ended.code, ended.out) == (2, "")
+    assert ended.err.startswith("studies: bodies: got none, expected a body whose swing is followed; `export")
+    assert len(ended.err.splitlines()) == 1
+
+
+@pytest.mark.parametrize("model", ["fe", "fe-shear"])
+def test_motion_of_strips_alone_is_exported(model, strip, command, tmp_path):
+    """The motion of strips alone is written with its drawing, whose states are named by their time."""
+    words = ("--model", model, "--elements", 4, "--analysis", "release", "--duration", 1e-5, "--records", 2)
+    ended = command("export", strip, *words, "--formats", "svg", "--out", tmp_path / "out")
+    assert ended.code == 0
+    assert list((tmp_path / "out").glob("*.svg"))
