@@ -22,8 +22,9 @@ Array = NDArray[np.float64]
 
 LEAST_COMPLIANCE = 1e-9
 """Axial compliance in L^2/EI below which an axial force stays beside w: 1 over it would drown in round-off."""
-GAIN = 1e5
-"""Stiffness by which such a force is condensed all the same, exactly; large against the strips' bending."""
+GAIN = 100.0
+"""Stiffness by which such a force is condensed all the same, exactly: of the order of the bending's, so that no
+digit is lost."""
 MOST_CONTROL_POINTS = 24
 """Longer B-splines are narrow bands, which the element's dense tangent does not use."""
 
