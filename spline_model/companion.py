@@ -90,8 +90,8 @@ def _remark(mechanism: Mechanism, motion: Trajectory, time: Array, apart: Array,
     if not much.size:
         return ""
     return (
-        f"with {points} control points the rotation differs by up to {np.degrees(apart.max()):.3g} deg, by more "
-        f"than {UNRESOLVED:.0%} of the swing from {time[much[0]]:.3g} s on: the motion is not resolved; take "
+        f"with {points} control points the rotation differs by up to {np.degrees(apart.max()):.3g} deg, by "
+        f"more than {UNRESOLVED:.0%} of the swing from {time[much[0]]:.3g} s on: the motion is not resolved; take "
         "more control points or ask for an accuracy"
     )
 

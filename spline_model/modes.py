@@ -40,8 +40,9 @@ class Modes:
     frequency (F,) [Hz], negative where the state is unstable (growth rate over 2 pi);
     shapes (F, G, P, 2) and body_shapes (F, 3): displacement of the strips' stations and of
     the body (x, y, theta; zero without one) at unit modal mass; bodies: those of every body by
-    name; slide_frequency: those left out as slide modes [Hz]; rotation of the static state [rad], nan
-    where none was driven; held: whether the body's rotation was held; state: unknowns of the static state (N,).
+    name; slide_frequency: those left out as slide modes [Hz]; rotation of the static state [rad],
+    nan where none was driven; held: whether the body's rotation was held; state: unknowns of the
+    static state (N,).
     """
 
     frequency: Array
@@ -120,7 +121,9 @@ def static_state(
     else:
         z = follow(compile_scene(driven), []).states[0]
     rows = [
-        np.zeros(0) if isinstance(constraint, DrivenDisplacement) and constraint.lets_go else z[at : at + count]
+        np.zeros(0)
+        if isinstance(constraint, DrivenDisplacement) and constraint.lets_go
+        else z[at : at + count]
         for constraint, (at, count) in zip(
             driven.of(Constraint), make_layout(driven).multipliers, strict=True
         )

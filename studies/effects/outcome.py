@@ -9,7 +9,6 @@ from numpy.typing import NDArray
 
 from studies.answers.adapters import answer_mechanism, answer_modes, answer_release, answer_static
 from studies.answers.assembly import MechanismResponse
-from studies.answers.metrics import whole_swing_frequency
 from studies.answers.motion import Motion
 from studies.answers.response import Response
 from studies.answers.settings import SplineSettings
@@ -138,7 +137,7 @@ def answered(design: Design, run: Run, full: Answer | None = None) -> Answer:
     driven = bool(design.rotation)
     return replace(
         answer,
-        swing=whole_swing_frequency(motion.time, motion.rotation) if driven else math.nan,
+        swing=motion.frequency if driven else math.nan,
         loss=_loss(motion),
         wall_s=static.wall_s + motion.wall_s,
     )
