@@ -91,8 +91,8 @@ def _remark(mechanism: Mechanism, motion: Trajectory, time: Array, apart: Array,
         return ""
     return (
         f"with {points} control points the rotation differs by up to {np.degrees(apart.max()):.3g} deg, by "
-        f"more than {UNRESOLVED:.0%} of the swing from {time[much[0]]:.3g} s on: the motion is not resolved; take "
-        "more control points or ask for an accuracy"
+        f"more than {UNRESOLVED:.0%} of the swing from {time[much[0]]:.3g} s on: the motion is not resolved; "
+        "take more control points or ask for an accuracy"
     )
 
 

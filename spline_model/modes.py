@@ -120,15 +120,10 @@ def static_state(
         z = solve_mechanism(mechanism, increments=increments).states[-1]
     else:
         z = follow(compile_scene(driven), []).states[0]
-    rows = [
-        np.zeros(0)
-        if isinstance(constraint, DrivenDisplacement) and constraint.lets_go
-        else z[at : at + count]
-        for constraint, (at, count) in zip(
-            driven.of(Constraint), make_layout(driven).multipliers, strict=True
-        )
-    ]
-    return np.concatenate((z[: make_layout(driven).multiplier_start], *rows))
+    layout = make_layout(driven)
+    constraints = enumerate(driven.of(Constraint))
+    kept = [i for i, each in constraints if not (isinstance(each, DrivenDisplacement) and each.lets_go)]
+    return np.concatenate((z[: layout.multiplier_start], *(z[layout.rows(i)] for i in kept)))
 
 
 def linear_modes(system: System, z: Array, mass: Array) -> tuple[Array, Array, Array]:

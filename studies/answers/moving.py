@@ -37,8 +37,8 @@ def answer_release(
 ) -> Motion:
     """Let a design go at rest from a static state and follow the motion.
 
-    The start is in equilibrium with the body driven to a rotation, weight, pre-strain and driven displacements
-    in full, and every load at its value times its history at t = 0. Then the rotation is let go, and driven
+    The start is in equilibrium with the body driven to a rotation, weight, pre-strain and driven
+    displacements in full, and every load at its value times its history at t = 0. Then the rotation is let go, and driven
     displacements without a history; loads follow their histories.
 
     `wall_s` of the motion is the median time of `repeat` releases, less that of releases that are over after
@@ -113,8 +113,8 @@ def answer_modes(
 ) -> Spectrum:
     """Return the lowest natural modes about a static state, by the settings' model.
 
-    They are of what a release from that state lets go of: the driven rotation, unless it is `held`, and driven
-    displacements without a history. In the state weight, pre-strain, driven displacements and loads are in
+    They are of what a release from that state lets go of: the driven rotation, unless it is `held`, and
+    driven displacements without a history. In the state weight, pre-strain, driven displacements and loads are in
     full.
 
     Args:
@@ -163,10 +163,10 @@ def _energy(design: Design) -> float:
     """Return EI/L of the stiffest strip [J]."""
     if isinstance(design, Problem):
         return design.youngs_modulus * design.second_moment_of_area / design.length
-    rigidities = (
-        (s.youngs_modulus * s.second_moment_of_area, math.dist(s.start, s.end)) for s in design.strips
+    return max(
+        strip.youngs_modulus * strip.second_moment_of_area / math.dist(strip.start, strip.end)
+        for strip in design.strips
     )
-    return max(rigidity / length for rigidity, length in rigidities)
 
 
 def spline_mechanism(design: Design, settings: SplineSettings) -> Any:

@@ -72,8 +72,8 @@ class Outcome:
     """A scene held against the full one.
 
     Attributes:
-        variant: the scene. status: "converged", "refused" or "not_converged"; reason: in a line, also why
-            there was no motion.
+        variant: the scene. status: "converged", "refused", "not_converged" or "unstable"; reason: in a line,
+            also why there was no motion.
         trajectory: largest distance of a body's centre along the static path over the largest travel [1].
         torque: largest change along the path over the largest torque [1]; NaN where nothing is driven.
         swing, mode: change of the frequencies [1]; loss: change of the energy lost [1].
