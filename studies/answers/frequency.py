@@ -49,7 +49,7 @@ def swing_frequency(time: Array, value: Array) -> Frequency:
     if len(instants) < 3:
         count = f"{len(instants)} passage{'s' if len(instants) != 1 else ''}"
         lasted = f"{float(time[-1] - time[0]):.3g} s"
-        return Frequency(value=math.nan, reason=f"{count} through the rest in {lasted} are not a whole swing")
+        return Frequency(value=math.nan, reason=f"{count} through the rest in {lasted}: not a whole swing")
     last = len(instants) - 1
     whole = [(first, first + (last - first) // 2 * 2) for first in (0, 1) if last - first >= 2]
     count = sum(b - a for a, b in whole) // 2

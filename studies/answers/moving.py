@@ -38,8 +38,8 @@ def answer_release(
     """Let a design go at rest from a static state and follow the motion.
 
     The start is in equilibrium with the body driven to a rotation, weight, pre-strain and driven
-    displacements in full, and every load at its value times its history at t = 0. Then the rotation is let go, and driven
-    displacements without a history; loads follow their histories.
+    displacements in full, and every load at its value times its history at t = 0. Then the rotation is let
+    go, and driven displacements without a history; loads follow their histories.
 
     `wall_s` of the motion is the median time of `repeat` releases, less that of releases that are over after
     their first record: so the static path to the start, and what is set up, are left out. A short release
@@ -114,8 +114,8 @@ def answer_modes(
     """Return the lowest natural modes about a static state, by the settings' model.
 
     They are of what a release from that state lets go of: the driven rotation, unless it is `held`, and
-    driven displacements without a history. In the state weight, pre-strain, driven displacements and loads are in
-    full.
+    driven displacements without a history. In the state weight, pre-strain, driven displacements and loads
+    are in full.
 
     Args:
         design: the pivot or mechanism.

@@ -103,8 +103,7 @@ def _upsetting(design: Design, settings: SplineSettings) -> list[Outcome]:
             run_of(replace(design, effects=variant.effects), settings)
         except Unanswered as error:
             run_of(design, settings)  # refused for its own sake, if it is
-            reason = f"unstable with {name.replace('_', ' ')}: {error}"
-            rows.append(Outcome(variant=variant, status="unstable", reason=reason))
+            rows.append(Outcome(variant=variant, status="unstable", reason=str(error)))
     return rows
 
 
