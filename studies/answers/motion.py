@@ -143,11 +143,12 @@ def motion(
     body: str,
     wall_s: float,
     solve_s: float,
-    energy: float,
+    energy: float = 0.0,
 ) -> Motion:
     """Return the neutral form of a model's trajectory; only some say how well they resolve the swing.
 
-    `energy` is a scale of the design's [J]: a motion without a part of it stands still, and says so.
+    `energy` is a scale of the design's [J]: a motion without a part of it stands still, and says so. With
+    none that is not asked.
     """
     exact = np.zeros(len(result.time))
     arrays = {name: getattr(result, name) for name in SHARED_ARRAYS}
@@ -173,7 +174,7 @@ def motion(
 def _still(result: ReleaseResult, energy: float) -> bool:
     """Whether nothing moves: the start is in equilibrium, and what acts does not change."""
     kinetic = np.asarray(result.kinetic_energy)
-    return bool(kinetic.max(initial=0.0) <= STILL * energy)
+    return len(kinetic) > 0 and 0.0 < energy and float(kinetic.max()) <= STILL * energy
 
 
 def no_motion(

@@ -1,17 +1,25 @@
 """Both models let go from the same start and move alike, whatever acts there."""
 
 import math
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
 import pytest
 
 import fe_reference.dynamics
+import fe_reference.mechanism
 import fe_reference.modes
 import fe_reference.pivot
 import spline_model.dynamics
+import spline_model.mechanism
 import spline_model.modes
 import spline_model.pivot
+from studies.answers.adapters import answer_release
+from studies.answers.settings import FeSettings, SplineSettings
+from studies.cases.design import named_design
+from studies.cases.effects import Effects
+from studies.cases.problem import named_case
 from tests import gates
 from tests.table_one import TABLE_ONE
 
@@ -78,9 +86,7 @@ def released(scene, start, elements):
 
 QUICK = ("growing force", "moment", "led", "all")
 ALL = [
-    pytest.param(
-        scene, start, marks=() if scene in QUICK and start in ("none", "-20") else pytest.mark.slow
-    )
+    pytest.param(scene, start, marks=() if scene in QUICK and start in ("none", "-20") else pytest.mark.slow)
     for scene in SCENES
     for start in STARTS
 ]
@@ -106,7 +112,7 @@ def test_release_gates_have_teeth(gate):
 
 
 def test_constant_loads_keep_a_pivot_still_that_no_rotation_held():
-    """Requirement: without a driven rotation the start is in equilibrium with the loads, and nothing moves."""
+    """Requirement: without a driven rotation the start is in equilibrium with its loads: nothing moves."""
     for run in released("moment", "none", 12):
         assert abs(run.rotation[0]) > 0.05
         assert np.abs(run.rotation - run.rotation[0]).max() < 1e-10
@@ -134,3 +140,76 @@ def test_led_mode_gate_has_teeth():
     """Requirement: six control points do not pass."""
     with pytest.raises(AssertionError, match="x the gate"):
         gates.check("agreement_led_mode", led_mode_difference(**gates.teeth("agreement_led_mode")))
+
+
+def loaded(design, name, **parameters):
+    """A design with one effect more."""
+    names = [*(each for each in design.effects.names if each != name), name]
+    return replace(design, effects=Effects(names=tuple(names), tables={name: parameters}))
+
+
+def motions(design, **run):
+    """The design let go by both models, 8 control points and 16 elements."""
+    settings = SplineSettings(control_points=8), FeSettings(elements=16)
+    return [answer_release(design, each, **run, records=20) for each in settings]
+
+
+@pytest.mark.parametrize("degrees", [60.0, -60.0])
+def test_load_that_begins_from_nothing_changes_nothing_at_the_start(degrees):
+    """Requirement: a polymer pivot starts with 0.05 N of history 0 where it starts without, in both."""
+    bare = named_case("polymer_pivot")
+    growing = loaded(bare, "applied_force", force=(0.05, 0.02), history=((0.0, 0.0), (0.1, 1.0)))
+    run = {"start": math.radians(degrees), "duration": 5e-5}
+    for one, other in zip(motions(bare, **run), motions(growing, **run), strict=True):
+        assert np.abs(one.centre[0] - other.centre[0]).max() < 1e-12
+
+
+def test_guide_under_a_constant_load_stands_still():
+    """Requirement: not driven and loaded from the start, a guide begins in equilibrium in both models."""
+    guide = named_design("parallel_strip_guide")
+    one, other = motions(loaded(guide, "applied_force", force=(5.0, 0.0)), duration=5e-4)
+    assert one.centre[0, 0] - guide.bodies[0].centre[0] > 5e-3
+    gates.check("agreement_release_start", np.abs(one.centre[0] - other.centre[0]).max() / 0.1)
+    for motion in (one, other):
+        assert motion.message.startswith("nothing moves")
+
+
+FREE_TIP = {
+    "strips": (
+        {"name": "foot", "start": (0.0, 0.0), "end": (0.1, 0.0), "tip": "body"},
+        {"name": "arm", "start": (0.12, 0.0), "end": (0.12, 0.1), "root": "body", "tip": None},
+    ),
+    "section": {
+        "area": 5e-6,
+        "second_moment_of_area": 1.0416667e-13,
+        "youngs_modulus": 206e9,
+        "poisson_ratio": 0.29,
+        "density": 7800.0,
+    },
+    "body": {"name": "body", "centre": (0.11, 0.0), "mass": 0.05, "moment_of_inertia": 5e-6},
+}
+
+
+@pytest.mark.parametrize("start", [None, -0.3])
+@pytest.mark.parametrize("history", [None, GROWING, HALF])
+def test_force_at_a_free_tip_acts_at_the_start_as_its_history_says(start, history):
+    """Requirement: so does a force at a free tip: both models start and move alike."""
+    effects = (*BASE, "tip_force")
+    force = {"strip": "arm", "force": (0.3, 0.1)} | ({} if history is None else {"history": history})
+    ends = []
+    for package, more in ((spline_model, {"control_points": 8}), (fe_reference, {"elements": 16})):
+        design = package.mechanism.mechanism(
+            strips=[
+                package.mechanism.StripDesign(**strip, **FREE_TIP["section"]) for strip in FREE_TIP["strips"]
+            ],
+            bodies=[package.mechanism.BodyDesign(**FREE_TIP["body"])],
+            effects=effects,
+            parameters={"tip_force": force},
+            **more,
+        )
+        run = package.dynamics.solve_motion(design, start=start, duration=1e-3, check=False)
+        ends.append(run.bodies["body"][[0, -1]])
+    pose = np.abs(ends[0] - ends[1]).max(axis=1)
+    if pose[0] > EXACT:
+        gates.check("agreement_release_start", pose[0])
+    gates.check("agreement_release_motion", pose[1])

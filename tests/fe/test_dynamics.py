@@ -41,7 +41,13 @@ def test_explicit_and_implicit_agree_over_the_paper_s_duration() -> None:
     def error(step: float = 1e-6) -> float:
         explicit = solve_release(pivot(), start=QUARTER, duration=0.05, step=1e-7, samples=500)
         implicit = solve_release(
-            pivot(), start=QUARTER, duration=0.05, step=step, integrator="generalised-alpha", samples=500, check=False
+            pivot(),
+            start=QUARTER,
+            duration=0.05,
+            step=step,
+            integrator="generalised-alpha",
+            samples=500,
+            check=False,
         )
         return float(np.abs(implicit.rotation - explicit.rotation).max())
 

@@ -21,7 +21,7 @@ from tests.table_one import TABLE_ONE
 
 @pytest.mark.slow
 def test_motion_that_tumbles_says_that_it_is_not_resolved():
-    """A short polymer pivot with a light body moves otherwise with more control points, and the answer says so."""
+    """A short polymer pivot with a light body moves otherwise with more control points, and says so."""
     given = {"length": 0.05, "inclination": math.radians(35.0), "crossing_ratio": 0.7}
     light = {"body_mass": 0.02, "body_moment_of_inertia": 1e-5}
     pivot = dataclasses.replace(named_case("polymer_pivot"), **given, **light)
@@ -41,7 +41,7 @@ def test_swing_of_a_light_body_says_that_it_is_not_resolved():
 
 
 def test_coarse_motion_says_so_by_default():
-    """Four control points are told in the answer, with the difference and the instant; nothing was asked for."""
+    """Four control points are told in the answer, with the difference; nothing was asked for."""
     motion = solve_release(cross_axis_pivot(**TABLE_ONE, control_points=4))
     assert "with 6 control points the rotation differs by up to" in motion.resolution
     assert motion.rotation_error > 0.05 * math.pi / 2.0
@@ -93,7 +93,11 @@ def test_elements_estimate_their_error_by_a_coarser_mesh():
     """The estimate of ten elements is their difference to five over three, near that to a finer mesh."""
     ten, forty = (
         release_elements(
-            elements_pivot(**TABLE_ONE, elements=count), start=1.0, duration=0.01, samples=50, check=count == 10
+            elements_pivot(**TABLE_ONE, elements=count),
+            start=1.0,
+            duration=0.01,
+            samples=50,
+            check=count == 10,
         )
         for count in (10, 40)
     )
