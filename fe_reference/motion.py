@@ -47,8 +47,8 @@ class Samples:
         time [s], y (size,), v (size,), energy: instants, coordinates, velocities, energies.
         unstable: whether the motion was stopped because its energy blew up.
         message: why and when the motion stopped early ("" if it did not).
-        floor: energy that is at stake in any motion [J]; gains of a rest that loads only begin to stir are held
-            against it.
+        floor: energy that is at stake in any motion [J]: what loads put into a rest at first is held against
+            it.
     """
 
     time: list[float] = field(default_factory=list)

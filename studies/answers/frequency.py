@@ -13,6 +13,9 @@ Array = NDArray[np.float64]
 BAND = 0.4
 #: Half swings to both sides that last alike within this are those of a symmetric swing.
 ALIKE = 2e-3
+#: Turning points to both sides that are as far from zero within this part of their distance are those of a
+#: symmetric swing, where a half swing is all there is.
+AS_FAR = 2e-2
 #: Rounds in which the rest is looked for, and the change of it, over the amplitude, that ends them.
 ROUNDS, SETTLED = 30, 1e-9
 #: Largest amplitude that is none [rad or m]: motions are solved to 1e-11.
@@ -37,12 +40,13 @@ def swing_frequency(time: Array, value: Array) -> Frequency:
     which ripples cross the rest several times is at the mean of their instants. Interpolation between records
     is linear, exact to third order in their distance.
 
-    NaN, with the reason, with fewer than three passages: not a whole swing.
+    NaN, with the reason, with fewer than three passages, which are not a whole swing; two are enough for a
+    swing that turns as far to both sides of zero.
     """
     if not len(time) or float(np.ptp(value)) <= STILL:
         return Frequency(value=math.nan, reason="nothing swings")
     instants = passages(time, value, 0.0)
-    if len(instants) >= 3 and _alike(instants):
+    if len(instants) >= 2 and _symmetric(value, instants):
         return Frequency(value=(len(instants) - 1) / (2.0 * float(instants[-1] - instants[0])), rest=0.0)
     rest = _rest(time, value)
     instants = passages(time, value, rest)
@@ -69,8 +73,10 @@ def passages(time: Array, value: Array, rest: float) -> Array:
     return np.array([exact[a:b].mean() for a, b in zip(begin, end, strict=True)])
 
 
-def _alike(instants: Array) -> bool:
-    """Whether half swings to one side last as long as those to the other."""
+def _symmetric(value: Array, instants: Array) -> bool:
+    """Whether half swings to one side of zero last as long as those to the other, or reach as far."""
+    if len(instants) == 2:
+        return bool(abs(value.max() + value.min()) <= AS_FAR * np.ptp(value))
     halves = np.diff(instants)
     return bool(abs(halves[::2].mean() - halves[1::2].mean()) <= ALIKE * halves.mean())
 

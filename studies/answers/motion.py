@@ -174,7 +174,7 @@ def motion(
 def _still(result: ReleaseResult, energy: float) -> bool:
     """Whether nothing moves: the start is in equilibrium, and what acts does not change."""
     kinetic = np.asarray(result.kinetic_energy)
-    return len(kinetic) > 0 and 0.0 < energy and float(kinetic.max()) <= STILL * energy
+    return len(kinetic) > 0 and energy > 0.0 and float(kinetic.max()) <= STILL * energy
 
 
 def no_motion(

@@ -25,9 +25,15 @@ def test_frequency_of_a_known_swing():
     """Passages of a cosine are found between records, its frequency from them; less than a swing has none."""
     assert passages(TIME, swing(), 0.0)[:2] == pytest.approx([1.0 / 168.0, 3.0 / 168.0], rel=1e-4)
     assert swing_frequency(TIME, swing()).value == pytest.approx(42.0, rel=1e-6)
-    short = swing_frequency(TIME[:900], swing()[:900])
+    short = swing_frequency(TIME[:600], swing()[:600])
     assert math.isnan(short.value)
     assert "not a whole swing" in short.reason
+
+
+def test_half_a_swing_is_enough_where_it_turns_as_far_to_both_sides():
+    """One swing from its turning point has two passages; a swing cut short has them too, but no frequency."""
+    assert swing_frequency(TIME[:953], swing()[:953]).value == pytest.approx(42.0, rel=1e-4)
+    assert math.isnan(swing_frequency(TIME[:800], 0.2 + swing()[:800]).value)
 
 
 @pytest.mark.parametrize("rest", [0.3, -2.0])
