@@ -52,8 +52,8 @@ def with_companion(model: Model, motion: Any, body: str | None, run: Callable[..
     try:
         other = run(coarse, duration=samples * spacing, step=step, samples=samples)
         failed = other.message
-    except (ConvergenceError, InvalidParameter) as error:
-        failed = str(error)
+    except (ConvergenceError, InvalidParameter) as refusal:
+        failed = str(refusal)
     if failed or len(other.time) != samples + 1:
         return replace(motion, resolution=f"not checked with 1/{every} of the elements: {failed}")
     fine = _rotation(motion, model, body)[: samples + 1]

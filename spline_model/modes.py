@@ -116,7 +116,7 @@ def static_state(
     driven = mechanism.scene if rotation is None else mechanism.driven(rotation, body)
     if rotation is not None:
         z = solve_path(mechanism, rotation, increments, body).states[-1]
-    elif driven.of(Load) or driven.of(DrivenDisplacement):
+    elif any(isinstance(effect, Load | DrivenDisplacement) for effect in driven.effects):
         z = solve_mechanism(mechanism, increments=increments).states[-1]
     else:
         z = follow(compile_scene(driven), []).states[0]

@@ -56,8 +56,8 @@ def swing_frequency(time: Array, value: Array) -> Frequency:
         return Frequency(value=math.nan, reason=f"{count} through the rest in {lasted}: not a whole swing")
     last = len(instants) - 1
     whole = [(first, first + (last - first) // 2 * 2) for first in (0, 1) if last - first >= 2]
-    count = sum(b - a for a, b in whole) // 2
-    return Frequency(value=count / sum(float(instants[b] - instants[a]) for a, b in whole), rest=rest)
+    swings = sum(b - a for a, b in whole) // 2
+    return Frequency(value=swings / sum(float(instants[b] - instants[a]) for a, b in whole), rest=rest)
 
 
 def passages(time: Array, value: Array, rest: float) -> Array:

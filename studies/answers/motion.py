@@ -200,5 +200,6 @@ def no_motion(
         wall_s=0.0,
         solve_s=0.0,
         estimate=None,
+        rotation_error=math.nan,
         **{name: np.zeros(0) for name in (*SHARED_ARRAYS, *RESIDUALS)},
     )
