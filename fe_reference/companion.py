@@ -18,6 +18,8 @@ Array = NDArray[np.float64]
 
 #: Estimated error of the rotation over the swing that is not remarked on.
 UNRESOLVED = 0.05
+#: Error of a motion that hardly is one [rad]: its start alone has it.
+STILL = 1e-6
 #: Part of the companion's critical step that it takes.
 SAFETY = 0.8
 #: Most elements that one of the companion's stands for.
@@ -89,7 +91,7 @@ def _remark(model: Model, motion: Any, body: str | None, error: Array) -> str:
     length = max(strip.length for strip in model.strips)
     travel = float(np.ptp(motion.shape, axis=0).max()) / length
     swing = 0.5 * max(float(np.ptp(_rotation(motion, model, body))), travel)
-    much = np.flatnonzero(error > UNRESOLVED * swing)
+    much = np.flatnonzero(error > max(UNRESOLVED * swing, STILL))
     if not much.size:
         return ""
     return (

@@ -31,6 +31,8 @@ PARTS = {"leapfrog": 0.9, "explicit": 0.5}
 """Explicit step of the companion over the critical one."""
 MOST_SHORTER = 20.0
 """Leapfrog steps that cost about as much as one step of the default integrator."""
+STILL = 1e-6
+"""Difference of a motion that hardly is one [rad]: its start differs by that alone."""
 INSTANTS = 1000
 """Instants at which the two are compared, about: at least so many where the motion has as many records."""
 
@@ -86,7 +88,7 @@ def _remark(mechanism: Mechanism, motion: Trajectory, time: Array, apart: Array,
     """
     length = max(strip.length for strip in mechanism.design.strips)
     swing = 0.5 * max(float(np.ptp(motion.rotation)), float(np.ptp(motion.centre, axis=0).max()) / length)
-    much = np.flatnonzero(apart > UNRESOLVED * swing)
+    much = np.flatnonzero(apart > max(UNRESOLVED * swing, STILL))
     if not much.size:
         return ""
     return (

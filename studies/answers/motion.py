@@ -150,15 +150,15 @@ def motion(
     `energy` is a scale of the design's [J]: a motion without a part of it stands still, and says so. With
     none that is not asked.
     """
-    exact = np.zeros(len(result.time))
+    exact, still = np.zeros(len(result.time)), _still(result, energy)
     arrays = {name: getattr(result, name) for name in SHARED_ARRAYS}
     arrays |= {name: getattr(result, name, exact) for name in RESIDUALS}
     return Motion(
         model=model,
         settings=settings | dict(result.settings),
         status=str(result.status.value),
-        message=result.message or (NOTHING_MOVES if _still(result, energy) else ""),
-        resolution=getattr(result, "resolution", ""),
+        message=result.message or (NOTHING_MOVES if still else ""),
+        resolution="" if still else getattr(result, "resolution", ""),
         effects=effects,
         bodies={name: np.asarray(place, dtype=float) for name, place in bodies.items()},
         body=body,

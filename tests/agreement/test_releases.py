@@ -172,6 +172,7 @@ def test_guide_under_a_constant_load_stands_still():
     gates.check("agreement_release_start", np.abs(one.centre[0] - other.centre[0]).max() / 0.1)
     for motion in (one, other):
         assert motion.message.startswith("nothing moves")
+        assert motion.resolution == ""
 
 
 FREE_TIP = {
