@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from .companion import with_companion
 from .effects.actions import start_load
 from .effects.named import DEFAULT_EFFECTS, needs_inertia, read_effects
 from .errors import ConvergenceError, InvalidParameter, choice, count, finite, positive, within
@@ -27,8 +28,9 @@ INTEGRATORS = ("central-difference", "generalised-alpha")
 #: Default of the implicit step: so many in the first period of small motion. The strips swing fifty times as
 #: fast as the body and act back on it, so that the period of the body alone says little.
 STEPS_PER_PERIOD = 6000
-#: Most steps of one run and most numbers kept of it (8 bytes each): beyond, the request is a slip.
-MOST_STEPS = 1_000_000_000
+#: Most steps of one run unless more are allowed, some 25 s with 20 elements, and most numbers kept of it
+#: (8 bytes each): beyond, the request is a slip.
+MOST_STEPS = 20_000_000
 MOST_NUMBERS = 200_000_000
 
 
@@ -42,6 +44,7 @@ class Run:
     safety: float
     spectral_radius: float
     samples: int
+    most_steps: int
     progress: Progress | None
 
     def __post_init__(self) -> None:
@@ -50,6 +53,7 @@ class Run:
         if self.step is not None:
             positive("step", self.step, "s")
         count("samples", self.samples)
+        count("most_steps", self.most_steps)
         positive("safety", self.safety, "1")
         within("spectral_radius", self.spectral_radius, 0.0, 1.0 + 1e-12, "1")
 
@@ -57,7 +61,7 @@ class Run:
 def solve_release(
     pivot: Model,
     *,
-    start: float,
+    start: float | None,
     duration: float,
     step: float | None = None,
     integrator: str = INTEGRATORS[0],
@@ -65,24 +69,34 @@ def solve_release(
     spectral_radius: float = 0.9,
     samples: int = 1000,
     increments: int = 20,
+    most_steps: int = MOST_STEPS,
+    check: bool = True,
     raise_on_failure: bool = True,
     progress: Progress | None = None,
 ) -> Trajectory:
-    """Hold the pivot at a rotation in equilibrium, let go at rest, and follow its motion.
+    """Let the pivot go at rest from the static state at a rotation, and follow its motion.
+
+    The start is in static equilibrium: with the rotation driven to `start`, gravity, natural strains and the
+    driven displacement in full, and every load at its value times its history at t = 0 (without a history: in
+    full). Then both drives let go; loads go on as value times history(t), constant before its first and after
+    its last time.
 
     Args:
         pivot: the model; both elements and both integrators go together. Masses are lumped.
-        start: rotation at the start [rad], not zero. duration: [s].
+        start: rotation at the start [rad]; None: no rotation is driven, and under loads without a history the
+            pivot stands still. duration: [s].
         step: time step [s]. Default: for "central-difference" the smaller critical step of the start and of
             rest, times `safety`; for "generalised-alpha" a 6000th of the first period of small motion. The
             default is shortened so that whole steps fill the duration.
         integrator: "central-difference" (explicit) or "generalised-alpha" (implicit, with `spectral_radius`).
         samples: states kept beside the start, at most.
         increments: of the static path to the start.
+        most_steps: beyond which a run is refused before it begins.
+        check: whether a motion with fewer elements says how far the rotation is uncertain: `rotation_error`,
+            and in `resolution` where that is much. It costs an eighth of the motion, half an implicit one.
         progress: called as progress(done, total) after every sample.
 
-    The start is in equilibrium under gravity, natural strains and the loads at the instant 0. Drives end
-    there; loads go on with their histories. Unless the scene names the rotary inertia of the sections, the
+    Unless the scene names the rotary inertia of the sections, the
     corotational element has none but a numerical one (see `mass`).
 
     Raises:
@@ -91,8 +105,8 @@ def solve_release(
         ConvergenceError: statics does not reach the start; or (unless `raise_on_failure` is False) the motion
             blew up or a step had no solution: carries the trajectory until then.
     """
-    if finite("start", start, "rad") == 0.0:
-        raise InvalidParameter("start", start, "a rotation that is not zero [rad]")
+    if start is not None:
+        finite("start", start, "rad")
     run = Run(
         duration=duration,
         step=step,
@@ -100,6 +114,7 @@ def solve_release(
         safety=safety,
         spectral_radius=spectral_radius,
         samples=samples,
+        most_steps=most_steps,
         progress=progress,
     )
     pivot.body_index(None)
@@ -107,9 +122,10 @@ def solve_release(
     y = _start(pivot, start, None, increments)
     watch.stop("start")
     structure, motion, settings = _integrate(pivot, y, run, watch)
-    trajectory = pivot_trajectory(structure, motion, {"start_rad": start, **settings}, watch)
+    begin: dict[str, float | str] = {} if start is None else {"start_rad": start}
+    trajectory = pivot_trajectory(structure, motion, begin | settings, watch)
     _raise_if_stopped(trajectory, motion, run, raise_on_failure)
-    return trajectory
+    return checked(pivot, trajectory, start=start) if check else trajectory
 
 
 def solve_motion(
@@ -125,21 +141,24 @@ def solve_motion(
     spectral_radius: float = 0.9,
     samples: int = 1000,
     increments: int = 20,
+    most_steps: int = MOST_STEPS,
+    check: bool = True,
     raise_on_failure: bool = True,
     progress: Progress | None = None,
 ) -> MechanismTrajectory:
     """Let a mechanism go at rest and follow the motion of all its bodies.
 
+    What holds at the start, what lets go and which loads act is as in `solve_release`.
+
     Args:
         mechanism: strips, bodies and effects.
-        start: rotation at which a body is held until the start [rad]; None: no body is held.
+        start: rotation at which a body is held until the start [rad]; None: none is held, and under loads
+            without a history the mechanism stands still.
         body: name of the held body; None: the only one.
-        settled: whether the start is in equilibrium under gravity, natural strains and the loads at the
-            instant 0; if not it is the shape at rest, and all of these act at once.
+        settled: whether the start is in equilibrium; if not it is the shape at rest, where gravity, natural
+            strains and loads act at once.
         others: as in `solve_release`. The default of the implicit step is a 6000th of the first period about
             the shape at rest, without gravity and loads.
-
-    Drives end at the start; loads go on with their histories.
 
     Raises:
         InvalidParameter, ConvergenceError: as in `solve_release`; a start that is held but not settled.
@@ -151,6 +170,7 @@ def solve_motion(
         safety=safety,
         spectral_radius=spectral_radius,
         samples=samples,
+        most_steps=most_steps,
         progress=progress,
     )
     if start is not None and not settled:
@@ -162,7 +182,25 @@ def solve_motion(
     begin: dict[str, float | str] = {} if start is None else {"start_rad": start}
     trajectory = mechanism_trajectory(structure, motion, begin | settings, watch)
     _raise_if_stopped(trajectory, motion, run, raise_on_failure)
-    return trajectory
+    return checked(mechanism, trajectory, start=start, body=body) if check and settled else trajectory
+
+
+def checked(model: Model, trajectory: Any, *, start: float | None, body: str | None = None) -> Any:
+    """Return a trajectory with its `rotation_error` and `resolution`, by a companion of fewer elements.
+
+    Args:
+        model, start, body: as of the motion, which began in equilibrium.
+        trajectory: of either kind.
+    """
+    names = ("integrator", "spectral_radius")
+    settings = {name: trajectory.settings[name] for name in names if name in trajectory.settings}
+    if not model.bodies or (body is None and len(model.bodies) > 1):
+        return trajectory
+
+    def run(chosen: Model, **more: Any) -> Any:
+        return solve_motion(chosen, start=start, body=body, check=False, **settings, **more)
+
+    return with_companion(model, trajectory, body, run)
 
 
 def _start(model: Model, rotation: float | None, body: str | None, increments: int) -> Array:
@@ -189,7 +227,7 @@ def _integrate(
         choices["spectral_radius"] = run.spectral_radius
         longest = run.duration if run.step is not None else 1.0 / (STEPS_PER_PERIOD * _first_frequency(model))
     h, steps = _steps(run.duration, longest if run.step is None else run.step, run.step is None)
-    _affordable(run.duration, h, steps, min(run.samples, steps), y.size)
+    _affordable(model, run, h, steps, y.size)
     watch.stop("compile")
     motion = scheme.run(y, np.zeros_like(y), h, sampling(steps, run.samples), run.progress)
     watch.stop("solve")
@@ -218,20 +256,31 @@ def _raise_if_stopped(trajectory: Any, motion: Samples, run: Run, raise_on_failu
         )
 
 
+def _cheaper(model: Model, run: Run) -> str:
+    """Return what to do about a run of too many steps."""
+    allow = "allow more by --most-steps (most_steps)"
+    if run.integrator == "generalised-alpha":
+        return f"take longer steps, or {allow}"
+    steps = run.duration * STEPS_PER_PERIOD * _first_frequency(model)
+    return f"--integrator generalised-alpha takes about {max(steps, 1.0):.2g}; or {allow}"
+
+
 def _steps(duration: float, longest: float, fill: bool) -> tuple[float, int]:
     """Return step [s] and number of steps; with `fill` the step is shortened to fill the duration."""
     steps = max(1, ceil(duration / longest * (1.0 - 1e-12)))
     return (duration / steps if fill else longest), steps
 
 
-def _affordable(duration: float, step: float, steps: int, samples: int, size: int) -> None:
+def _affordable(model: Model, run: Run, step: float, steps: int, size: int) -> None:
     """Refuse a run of too many steps, or of too many numbers to keep."""
-    if steps > MOST_STEPS:
+    if steps > run.most_steps:
         raise InvalidParameter(
             "duration",
-            duration,
-            f"at most {MOST_STEPS:.0e} steps of {step:.3g} s, this is {steps:.3g} of them [s]",
+            run.duration,
+            f"at most {run.most_steps:.3g} steps of {step:.3g} s, this is {steps:.3g} of them: "
+            f"{_cheaper(model, run)} [s]",
         )
+    samples = min(run.samples, steps)
     if 2 * samples * size > MOST_NUMBERS:
         most = MOST_NUMBERS // (2 * size)
         raise InvalidParameter("samples", samples, f"at most {most} samples of {size} coordinates [1]")

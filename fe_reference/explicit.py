@@ -24,7 +24,7 @@ from .effects.kernels import advance_scene
 from .errors import InvalidParameter
 from .kernels import advance
 from .mass import RigidBodies, lumped_diagonal, lumped_elements
-from .motion import Energy, Progress, Samples
+from .motion import FLOOR, Energy, Progress, Samples
 from .structure import Structure
 
 Array = NDArray[np.float64]
@@ -79,7 +79,7 @@ class Explicit:
 
     def run(self, y: Array, v: Array, step: float, chunks: list[int], progress: Progress | None) -> Samples:
         """Integrate from coordinates y and velocities v over chunks of steps; keep a sample after each."""
-        s, samples, done = self.structure, Samples(), 0
+        s, samples, done = self.structure, Samples(floor=FLOOR * self.structure.moment_unit), 0
         force, strain, first = self._act(y, v, 0.0)
         self.totals[:] = 0.0
         samples.keep(0.0, y, v, self._energy(y, v, strain, step, first, first))

@@ -24,7 +24,7 @@ from scipy.sparse.linalg import SuperLU, splu
 from .compiled import CompiledForces
 from .effects.actions import Actions, Resistance
 from .mass import RigidBodies, lumped_diagonal
-from .motion import Energy, Progress, Samples
+from .motion import FLOOR, Energy, Progress, Samples
 from .newton import round_off
 from .structure import Structure
 
@@ -148,7 +148,7 @@ class Implicit:
 
     def run(self, y: Array, v: Array, step: float, chunks: list[int], progress: Progress | None) -> Samples:
         """Integrate from coordinates y and velocities v over chunks of steps; keep a sample after each."""
-        samples, now, done = Samples(), self.start(y, v), 0
+        samples, now, done = Samples(floor=FLOOR * self.structure.moment_unit), self.start(y, v), 0
         self._keep(samples, now, 0.0)
         for number, steps in enumerate(chunks, start=1):
             for _ in range(steps):

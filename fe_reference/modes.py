@@ -52,11 +52,15 @@ def natural_frequencies(
     increments: int = 20,
     body: str | None = None,
 ) -> Modes:
-    """Return the lowest natural frequencies and shapes about the state at a driven rotation.
+    """Return the modes about a static state: free vibrations of what a release from it lets go of.
+
+    The state is in equilibrium with the rotation driven, and with the driven displacement, gravity, natural
+    strains and all loads in full. Free are then the rotation, unless it is held, and the driven displacement:
+    what drove them acts on as it is.
 
     Args:
-        pivot: the model; its loads and its driven displacement are in full, gravity and natural strains act.
-        rotation: of the static state [rad]; None: nothing is driven. count: number of modes.
+        pivot: the model.
+        rotation: of the static state [rad]; None: no rotation is driven. count: number of modes.
         held: whether the rotation of the body stays held; if not the torque of the drive stays on unchanged.
         mass: "consistent" (default) or "lumped", the one of the explicit integrator.
         increments: of the static path to the state.

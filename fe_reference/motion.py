@@ -11,6 +11,8 @@ Array = NDArray[np.float64]
 Progress = Callable[[int, int], None]
 #: Relative gain of energy above which a motion is called unstable: a sound one keeps within a thousandth.
 BLOW_UP = 0.1
+#: Part of EI/L that is at stake in any motion.
+FLOOR = 1e-12
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -45,6 +47,8 @@ class Samples:
         time [s], y (size,), v (size,), energy: instants, coordinates, velocities, energies.
         unstable: whether the motion was stopped because its energy blew up.
         message: why and when the motion stopped early ("" if it did not).
+        floor: energy that is at stake in any motion [J]: what loads put into a rest at first is held against
+            it.
     """
 
     time: list[float] = field(default_factory=list)
@@ -55,6 +59,7 @@ class Samples:
     history: list[tuple[float, ...]] = field(default_factory=list)
     unstable: bool = False
     message: str = ""
+    floor: float = 0.0
     _stake: float = 0.0
 
     def keep(self, time: float, y: Array, v: Array, energy: Energy) -> bool:
@@ -64,7 +69,7 @@ class Samples:
         """
         start = self.energy[0] if self.time else energy
         self._stake = max(self._stake, (self.energy[-1] if self.time else energy).scale)
-        at_stake = max(self._stake, abs(energy.work), abs(energy.gravity))
+        at_stake = max(self._stake, abs(energy.work), abs(energy.gravity), self.floor)
         if not np.isfinite(energy.balance) or energy.balance - start.balance > BLOW_UP * at_stake:
             self.unstable = True
             self.message = (

@@ -1,5 +1,6 @@
 """Motions as they are reported: of the one body of a pivot, and of all bodies of a mechanism."""
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
@@ -36,6 +37,8 @@ class Trajectory:
         counters: steps, force_evaluations; implicit also iterations, factorisations, halvings.
         settings: integrator, step_s, critical_step_s (explicit), start_rad and what else defines the run.
         seconds: by part (`fe_reference.stopwatch`), "start" the static state that is let go.
+        resolution: empty, or what the elements leave unresolved; rotation_error: estimated error of the
+            rotation by a companion with fewer elements [rad], nan without one.
     """
 
     status: Status
@@ -56,6 +59,8 @@ class Trajectory:
     counters: Mapping[str, int]
     settings: Mapping[str, float | str]
     seconds: Mapping[str, float]
+    resolution: str = ""
+    rotation_error: float = math.nan
 
     @property
     def energy_error(self) -> float:
@@ -94,6 +99,8 @@ class MechanismTrajectory:
     counters: Mapping[str, int]
     settings: Mapping[str, float | str]
     seconds: Mapping[str, float]
+    resolution: str = ""
+    rotation_error: float = math.nan
 
     @property
     def energy_error(self) -> float:

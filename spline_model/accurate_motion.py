@@ -12,7 +12,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import cache
+from functools import cache, partial
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -122,7 +122,7 @@ def solve_accurately(mechanism: Mechanism, accuracy: float, task: Task, records:
         early = rung.integrator == "energy" and runs.critical(n) > 0.0
         stuck = by_steps.error > SHARE * accuracy and not early
         if estimate.rotation <= accuracy or stuck or n + MORE > MOST:
-            return _answer(by_steps.fine, estimate, runs.slide_stiffness(n), every)
+            return _answer(by_steps.fine, estimate, slide_stiffness(mechanism, n), every)
         n += MORE
 
 
@@ -172,7 +172,7 @@ class _Runs:
         self.mechanism, self.task, self.instants = mechanism, task, instants
         self.spacing = task.duration / instants
         self.count = 0
-        self.with_points = cache(self._with_points)
+        self.with_points = cache(partial(with_points, mechanism))
         self.critical = cache(self._critical)
         self.run = cache(self._run)
 
@@ -273,13 +273,15 @@ class _Runs:
         except InvalidParameter:
             return 0.0
 
-    def _with_points(self, n: int) -> Mechanism:
-        if n == self.mechanism.design.discretisation.control_points:
-            return self.mechanism
-        return self.mechanism.with_discretisation(control_points=n, slide_stiffness=self.slide_stiffness(n))
 
-    def slide_stiffness(self, n: int) -> float:
-        """That of the mechanism, in the proportion that goes with n control points [EI/L^2]."""
-        grid = self.mechanism.design.discretisation
-        own = swinging_slide_stiffness(grid.control_points)
-        return grid.slide * swinging_slide_stiffness(n) / own
+def with_points(mechanism: Mechanism, n: int) -> Mechanism:
+    """The mechanism with n control points, and a slide stiffness in the proportion that goes with them."""
+    if n == mechanism.design.discretisation.control_points:
+        return mechanism
+    return mechanism.with_discretisation(control_points=n, slide_stiffness=slide_stiffness(mechanism, n))
+
+
+def slide_stiffness(mechanism: Mechanism, n: int) -> float:
+    """That of the mechanism, in the proportion that goes with n control points [EI/L^2]."""
+    grid = mechanism.design.discretisation
+    return grid.slide * swinging_slide_stiffness(n) / swinging_slide_stiffness(grid.control_points)

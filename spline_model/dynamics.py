@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.accurate_motion import Task, solve_accurately
+from spline_model.companion import with_companion
 from spline_model.compile import System, compile_scene
 from spline_model.content import unresolved
 from spline_model.effects import DrivenRotation
@@ -29,14 +30,16 @@ from spline_model.kernels.motion import Motion
 from spline_model.laps import Laps
 from spline_model.mechanism import Mechanism
 from spline_model.modes import linear_modes, static_state
-from spline_model.pivot import Pivot
+from spline_model.pivot import Pivot, mechanism_in_motion
 from spline_model.restart import counted_on, last_state, later
+from spline_model.solution import Status
 
 __all__ = [
     "EXPLICIT_STEPS",
     "INTEGRATORS",
     "STEP",
     "Trajectory",
+    "checked",
     "highest_frequency",
     "solve_motion",
     "solve_release",
@@ -45,15 +48,15 @@ __all__ = [
 Array = NDArray[np.float64]
 
 
-def solve_release(pivot: Pivot, *, start: float = math.pi / 2, **settings: Any) -> Trajectory:
-    """Release the pivot at rest from the static state at rotation ``start`` [rad]; see ``solve_motion``."""
+def solve_release(pivot: Pivot, *, start: float | None = math.pi / 2, **settings: Any) -> Trajectory:
+    """Let the pivot go at rest from the static state at rotation ``start`` [rad]; see ``solve_motion``."""
     return solve_motion(pivot.mechanism, start=start, **settings)
 
 
 def solve_motion(
     mechanism: Mechanism,
     *,
-    start: float = 0.0,
+    start: float | None = None,
     body: str | None = None,
     drive: DrivenRotation | None = None,
     duration: float = 0.05,
@@ -62,9 +65,17 @@ def solve_motion(
     accuracy: float | None = None,
     records: int | None = None,
     after: Trajectory | None = None,
+    check: bool = True,
     **options: float,
 ) -> Trajectory:
-    """Motion of a mechanism from the static state at the rotation ``start`` [rad] of a body, at rest.
+    """Motion of a mechanism that is let go at rest.
+
+    The start is in static equilibrium: with the rotation ``start`` [rad] of a body driven, weight and
+    pre-strain in full, every load at its value times its history at t = 0 (without a history: in full),
+    and driven displacements likewise. Then the driven rotation lets go, and so does a driven
+    displacement without a history; one with a history goes on holding. Loads go on as value times
+    history(t), constant before its first and after its last time. start None: no rotation is driven;
+    under loads without a history such a mechanism stands still.
 
     Parameters
     ----------
@@ -78,6 +89,9 @@ def solve_motion(
     accuracy : wanted error of the rotation over the run [rad] instead of a step: steps and control
         points are chosen, and the trajectory has its ``estimate``.
     records : largest number of records; default every step, or with an accuracy 128 a swing or more.
+    check : whether a motion with two control points more says how far the rotation is uncertain:
+        ``rotation_error``, and in ``resolution`` where that is much. It costs about another motion, or
+        less; none is made with an accuracy, which has its own estimate, or with ``after``.
     after : a motion of this mechanism to go on with from its last record, instead of ``start``;
         time, work, losses and the clock of loads and drives run on.
     options : of the integrator: ``spectral_radius`` of "generalised-alpha", 0 to 1 (default 0.8).
@@ -95,7 +109,7 @@ def solve_motion(
         task = _task(mechanism, start, body, drive, duration)
         return solve_accurately(mechanism, accuracy, task, records)
     scene = mechanism.released()
-    system = compile_scene(scene if drive is None else mechanism.with_effects(drive))
+    system = compile_scene(scene if drive is None else scene.with_effects(drive))
     motion, layout = set_in_motion(system), system.layout
     laps.lap("compile")
     z, v, motion = _begin(mechanism, system, motion, start, body, after)
@@ -120,18 +134,48 @@ def solve_motion(
         resolution=unresolved(scene, z, v, step),
         laps=laps,
     )
-    return trajectory if after is None else counted_on(trajectory, after)
+    if after is not None:
+        return counted_on(trajectory, after)
+    if not check:
+        return trajectory
+    return checked(mechanism, trajectory, start=start, body=body, drive=drive)
+
+
+def checked(
+    mechanism: Mechanism | Pivot,
+    trajectory: Trajectory,
+    *,
+    start: float | None,
+    body: str | None = None,
+    drive: DrivenRotation | None = None,
+) -> Trajectory:
+    """A motion with what two control points more make of it: ``rotation_error`` and ``resolution``.
+
+    Arguments as of the motion. A motion that stopped or has an estimate is returned as it is.
+    """
+    mechanism = mechanism_in_motion(mechanism)
+    if trajectory.status is not Status.CONVERGED or trajectory.estimate is not None:
+        return trajectory
+    body = mechanism.design.body_named(body)
+    return with_companion(
+        mechanism, trajectory, _task(mechanism, start, body, drive, float(trajectory.time[-1]))
+    )
 
 
 def _begin(
-    mechanism: Mechanism, system: System, motion: Motion, start: float, body: str, after: Trajectory | None
+    mechanism: Mechanism,
+    system: System,
+    motion: Motion,
+    start: float | None,
+    body: str,
+    after: Trajectory | None,
 ) -> tuple[Array, Array, Motion]:
     """Unknowns (N,) and velocities (Q,) that a motion begins with, and the motion with its clock set."""
     layout = system.layout
     if after is not None:
         z, v = last_state(after, system)
         return z, v, later(motion, float(after.time[-1]))
-    held = static_state(mechanism, start, body=body)
+    held = static_state(mechanism.at_start(), start, body=body)
     z, v = np.zeros(layout.size), np.zeros(layout.coordinate_count)
     known = min(len(held), layout.size)
     z[:known] = held[:known]
@@ -139,7 +183,7 @@ def _begin(
 
 
 def _task(
-    mechanism: Mechanism, start: float, body: str, drive: DrivenRotation | None, duration: float
+    mechanism: Mechanism, start: float | None, body: str, drive: DrivenRotation | None, duration: float
 ) -> Task:
     """The motion as a task of accuracy on request."""
     system = compile_scene(mechanism.released())
@@ -157,18 +201,19 @@ def _task(
             step=step,
             integrator=integrator,
             records=records,
+            check=False,
         )
 
     def critical(chosen: Mechanism) -> float:
         scene = compile_scene(chosen.released())
         motion = set_in_motion(scene)
         explicit.require_explicit(scene, motion)
-        held = static_state(chosen, start, body=body)[: scene.layout.size]
+        held = static_state(chosen.at_start(), start, body=body)[: scene.layout.size]
         return limit / highest_frequency(scene, motion, held)
 
     return Task(
         duration=duration,
-        amplitude=abs(start),
+        amplitude=abs(start or 0.0),
         frequency=math.sqrt(max(float(squares[0]), 0.0)),
         run=run,
         explicit=scheme,
@@ -177,11 +222,12 @@ def _task(
 
 
 def _check(
-    integrator: str, duration: float, start: float, step: float | None, accuracy: float | None
+    integrator: str, duration: float, start: float | None, step: float | None, accuracy: float | None
 ) -> None:
     require_choice("integrator", integrator, tuple(INTEGRATORS))
     require_positive("duration", duration, "s")
-    require_finite("start", start, "rad")
+    if start is not None:
+        require_finite("start", start, "rad")
     for name, value in (("step", step), ("accuracy", accuracy)):
         if value is not None:
             require_positive(name, value, "s" if name == "step" else "rad")

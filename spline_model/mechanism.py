@@ -9,7 +9,14 @@ from typing import Any
 import numpy as np
 
 from spline_model.design import BodyDesign, Design, Discretisation, StripDesign, swinging_slide_stiffness
-from spline_model.effects import Clamp, DrivenRotation
+from spline_model.effects import (
+    AppliedForce,
+    AppliedMoment,
+    Clamp,
+    DrivenDisplacement,
+    DrivenRotation,
+    TipForce,
+)
 from spline_model.effects.base import Inertia
 from spline_model.effects.registry import DEFAULT_EFFECTS, INERTIA, build, check_names
 from spline_model.errors import InvalidParameter
@@ -55,13 +62,24 @@ class Mechanism:
 
     def with_effects(self, *more: Effect) -> Scene:
         """The scene with some effects more."""
-        return replace(self.scene, effects=(*self.scene.effects, *more))
+        return self.scene.with_effects(*more)
 
     def released(self) -> Scene:
-        """The scene in motion (``in_motion``); refused if none of its effects has inertia."""
+        """The scene in motion (``in_motion``), without the driven displacements that let go.
+
+        Refused if none of its effects has inertia.
+        """
         if not self.scene.of(Inertia):
             raise InvalidParameter("effects", list(self.effects), f"one of {', '.join(INERTIA)} for a motion")
-        return self.in_motion().scene
+        scene = self.in_motion().scene
+        kept = (e for e in scene.effects if not (isinstance(e, DrivenDisplacement) and e.lets_go))
+        return replace(scene, effects=tuple(kept))
+
+    def at_start(self) -> Mechanism:
+        """The mechanism with loads and driven displacements as they are at the start of a motion."""
+        timed = AppliedForce | AppliedMoment | TipForce | DrivenDisplacement
+        effects = (e.at(0.0) if isinstance(e, timed) else e for e in self.scene.effects)
+        return replace(self, scene=replace(self.scene, effects=tuple(effects)))
 
 
 def mechanism(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,15 +10,16 @@ from numpy.typing import NDArray
 from scipy.linalg import eigh, null_space
 
 from spline_model.basis import SlideModes
-from spline_model.compile import System, compile_scene
-from spline_model.effects import MixedStretching
+from spline_model.compile import System, compile_scene, make_layout
+from spline_model.effects import DrivenDisplacement, DrivenRotation, MixedStretching
+from spline_model.effects.base import Constraint, Load
 from spline_model.errors import InvalidParameter, require_count, require_finite
 from spline_model.mass import mass_matrix
 from spline_model.mechanism import Mechanism
 from spline_model.operator import evaluate
 from spline_model.path import follow
 from spline_model.pivot import Pivot, mechanism_in_motion
-from spline_model.proportional import solve_path
+from spline_model.proportional import solve_mechanism, solve_path
 from spline_model.static_answers import STATIONS
 
 Array = NDArray[np.float64]
@@ -38,8 +40,9 @@ class Modes:
     frequency (F,) [Hz], negative where the state is unstable (growth rate over 2 pi);
     shapes (F, G, P, 2) and body_shapes (F, 3): displacement of the strips' stations and of
     the body (x, y, theta; zero without one) at unit modal mass; bodies: those of every body by
-    name; slide_frequency: those left out as slide modes [Hz]; held: whether the body's
-    rotation was held; state: unknowns of the static state (N,).
+    name; slide_frequency: those left out as slide modes [Hz]; rotation of the static state [rad],
+    nan where none was driven; held: whether the body's rotation was held; state: unknowns of the
+    static state (N,).
     """
 
     frequency: Array
@@ -55,23 +58,31 @@ class Modes:
 def natural_frequencies(
     pivot: Pivot | Mechanism,
     *,
-    rotation: float = 0.0,
+    rotation: float | None = None,
     body: str | None = None,
     count: int = 10,
     held: bool = False,
     increments: int = 20,
 ) -> Modes:
-    """Modes about the static state at the rotation [rad] of a body, the only one by default.
+    """Modes about a static state: free vibrations of what a release from it lets go of.
 
-    The drive's torque acts on as a dead moment (``held=False``) or the rotation is fixed
-    (``held=True``). Raises ConvergenceError if statics does not reach the state.
+    The state is in equilibrium with the rotation [rad] of a body, the only one by default, driven there;
+    with driven displacements, weight, pre-strain and all loads in full. rotation None: 0 of a pivot; of a
+    mechanism nothing is driven, its loads settle it. Free are then the driven rotation, whose torque acts
+    on as a dead moment (``held=True`` fixes it), and the driven displacements without a history, whose
+    forces act on. Raises ConvergenceError if statics does not reach the state.
     """
     require_count("count", count, 1)
-    require_finite("rotation", rotation, "rad")
+    if rotation is not None:
+        require_finite("rotation", rotation, "rad")
     mechanism = mechanism_in_motion(pivot)
+    if rotation is None and (held or isinstance(pivot, Pivot)):
+        rotation = 0.0
     body = mechanism.design.body_named(body) if mechanism.design.bodies else None
     released = mechanism.released()
-    scene = mechanism.driven(rotation, body) if held else released
+    scene = released
+    if held:
+        scene = released.with_effects(DrivenRotation(body=mechanism.design.body_named(body), angle=0.0))
     system = compile_scene(scene)
     layout = system.layout
     z = static_state(mechanism, rotation, increments, body)[: layout.size]
@@ -90,22 +101,31 @@ def natural_frequencies(
         body_shapes=np.zeros((len(kept), 3)) if body is None else vectors[layout.body(body)][:, kept].T,
         bodies={each.name: vectors[layout.body(each.name)][:, kept].T for each in system.scene.bodies},
         slide_frequency=frequency[slide],
-        rotation=rotation,
+        rotation=math.nan if rotation is None else rotation,
         held=held,
         state=z,
     )
 
 
 def static_state(
-    mechanism: Mechanism, rotation: float, increments: int = 20, body: str | None = None
+    mechanism: Mechanism, rotation: float | None = None, increments: int = 20, body: str | None = None
 ) -> Array:
-    """The unknowns z of the static state at a body's rotation, the drive's multiplier last.
+    """The unknowns z of the released scene in equilibrium, and last the torque of a drive.
 
-    At rotation 0 the body is free and loads are absent: rest, but for gravity and pre-strain.
+    The rotation [rad] of a body is driven; None drives none. Loads, driven displacements, weight and
+    pre-strain act in full; the multipliers of displacements that let go are left out.
     """
-    if rotation == 0.0:
-        return np.asarray(follow(compile_scene(mechanism.scene), []).states[0])
-    return np.asarray(solve_path(mechanism, rotation, increments, body).states[-1])
+    driven = mechanism.scene if rotation is None else mechanism.driven(rotation, body)
+    if rotation is not None:
+        z = solve_path(mechanism, rotation, increments, body).states[-1]
+    elif any(isinstance(effect, Load | DrivenDisplacement) for effect in driven.effects):
+        z = solve_mechanism(mechanism, increments=increments).states[-1]
+    else:
+        z = follow(compile_scene(driven), []).states[0]
+    layout = make_layout(driven)
+    constraints = enumerate(driven.of(Constraint))
+    kept = [i for i, each in constraints if not (isinstance(each, DrivenDisplacement) and each.lets_go)]
+    return np.concatenate((z[: layout.multiplier_start], *(z[layout.rows(i)] for i in kept)))
 
 
 def linear_modes(system: System, z: Array, mass: Array) -> tuple[Array, Array, Array]:

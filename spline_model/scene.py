@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TypeVar
 
 import numpy as np
@@ -72,6 +72,10 @@ class Scene:
                 raise InvalidParameter("strip", strip, f"one of {[s.name for s in self.strips]}")
             if body is not None and body not in {b.name for b in self.bodies}:
                 raise InvalidParameter("body", body, f"one of {[b.name for b in self.bodies]}")
+
+    def with_effects(self, *more: Effect) -> Scene:
+        """The scene with some effects more."""
+        return replace(self, effects=(*self.effects, *more))
 
     def strip(self, name: str) -> Strip:
         """The strip of that name."""

@@ -84,8 +84,8 @@ def impulse_solver(
     )
 
 
-def stability_limit(pivot: Pivot | Mechanism, rotation: float = 0.0) -> float:
-    """2 / omega [s] of the highest frequency about the static state at a rotation [rad].
+def stability_limit(pivot: Pivot | Mechanism, rotation: float | None = None) -> float:
+    """2 / omega [s] of the highest frequency about the static state at a rotation [rad], or undriven.
 
     The step of the printed form must stay below it.
     """
@@ -99,7 +99,7 @@ def stability_limit(pivot: Pivot | Mechanism, rotation: float = 0.0) -> float:
 def solve_impulses(
     pivot: Pivot | Mechanism,
     *,
-    start: float = 0.0,
+    start: float | None = None,
     body: str | None = None,
     drive: DrivenRotation | None = None,
     duration: float = 0.05,
@@ -123,11 +123,11 @@ def solve_impulses(
     mechanism = mechanism_in_motion(pivot)
     for name, value in (("duration", duration), ("step", step)):
         require_positive(name, value, "s")
-    if not math.isfinite(start):
+    if start is not None and not math.isfinite(start):
         raise InvalidParameter("start", start, "a finite angle [rad]")
     laps, body = Laps(), mechanism.design.body_named(body)
     released = mechanism.released()
-    system = compile_scene(released if drive is None else mechanism.with_effects(drive))
+    system = compile_scene(released if drive is None else released.with_effects(drive))
     solver = ImpulseSolver(
         mechanism, system, form=form, impulses=impulses, sweeps=sweeps, tolerance=tolerance
     )

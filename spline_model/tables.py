@@ -24,7 +24,7 @@ from spline_model.effects import (
     TipForce,
 )
 from spline_model.effects.base import Constraint, Load
-from spline_model.effects.history import History
+from spline_model.effects.history import STEADY, History
 from spline_model.kernels.axial_force import AxialForceTable
 from spline_model.kernels.bending import BendingTable
 from spline_model.kernels.clamps import ClampTable
@@ -152,7 +152,7 @@ def drive_table(scene: Scene, layout: Layout) -> DriveTable:
         for k, (offset, origin, target) in enumerate(parts):
             place = layout.bodies[drive.body] + offset
             rows.append((place, origin, target, layout.multipliers[i][0] + k, int(offset == 2), *drive.held))
-            histories.append(drive.history)
+            histories.append(drive.history or STEADY)
     coordinate, origin_, target_, row, turns, begin, until = zip(*rows, strict=True) if rows else ((),) * 7
     return DriveTable(
         coordinate=np.array(coordinate, dtype=np.int64),

@@ -141,9 +141,9 @@ def tip_force(design: Design, strip: str, force: Vector, history: History = STEA
 
 
 def driven_displacement(
-    design: Design, displacement: Vector, body: str | None = None, history: History = STEADY
+    design: Design, displacement: Vector, body: str | None = None, history: History | None = None
 ) -> Iterator[Effect]:
-    """Displacement [m] of a body's centre prescribed beside its rotation."""
+    """Displacement [m] of a body's centre prescribed beside its rotation; in a motion only with a history."""
     yield DrivenDisplacement(body=design.body_named(body), displacement=displacement, history=history)
 
 

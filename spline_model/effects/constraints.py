@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import ClassVar, Literal
 
 from spline_model.effects.base import Constraint
-from spline_model.effects.history import STEADY, History
+from spline_model.effects.history import STEADY, History, factor_of
 from spline_model.errors import InvalidParameter, require_finite
 
 GROUND = "ground"
@@ -56,16 +56,27 @@ class DrivenRotation(Constraint):
 class DrivenDisplacement(Constraint):
     """The displacement of a body's centre prescribed as (dx, dy) x load factor, two rows in m.
 
-    The paper's "two other driving constraints" (section 4). In a motion as for
-    ``DrivenRotation``. The multipliers are the applied force [N].
+    The paper's "two other driving constraints" (section 4). Without a history it holds the start of
+    a motion and lets go; with one it goes on holding through the motion, as ``DrivenRotation``. The
+    multipliers are the applied force [N].
     """
 
     rows: ClassVar[int] = 2
     body: str
     displacement: tuple[float, float]
-    history: History = STEADY
+    history: History | None = None
     held: tuple[float, float] = ALWAYS
 
     def __post_init__(self) -> None:
         if not all(math.isfinite(part) for part in self.displacement):
             raise InvalidParameter("displacement", self.displacement, "two finite numbers [m]")
+
+    @property
+    def lets_go(self) -> bool:
+        """Whether it holds the start of a motion alone."""
+        return self.history is None and self.held == ALWAYS
+
+    def at(self, time: float) -> DrivenDisplacement:
+        """The drive with the displacement that it has at an instant [s] of a motion."""
+        part = 1.0 if self.history is None else factor_of(self.history, time)
+        return replace(self, displacement=(part * self.displacement[0], part * self.displacement[1]))

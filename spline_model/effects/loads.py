@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 from spline_model.effects.base import Load, Potential
-from spline_model.effects.history import STEADY, History, checked
+from spline_model.effects.history import STEADY, History, checked, factor_of
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -20,6 +20,11 @@ class AppliedForce(Load):
     def __post_init__(self) -> None:
         checked(self.history)
 
+    def at(self, time: float) -> AppliedForce:
+        """The force as it is at an instant [s] of a motion."""
+        part = factor_of(self.history, time)
+        return replace(self, force=(part * self.force[0], part * self.force[1]))
+
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class AppliedMoment(Load):
@@ -31,6 +36,10 @@ class AppliedMoment(Load):
 
     def __post_init__(self) -> None:
         checked(self.history)
+
+    def at(self, time: float) -> AppliedMoment:
+        """The moment as it is at an instant [s] of a motion."""
+        return replace(self, moment=factor_of(self.history, time) * self.moment)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -44,6 +53,11 @@ class TipForce(Load):
 
     def __post_init__(self) -> None:
         checked(self.history)
+
+    def at(self, time: float) -> TipForce:
+        """The force as it is at an instant [s] of a motion."""
+        part = factor_of(self.history, time)
+        return replace(self, force=(part * self.force[0], part * self.force[1]))
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

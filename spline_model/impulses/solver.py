@@ -58,14 +58,14 @@ class ImpulseSolver:
         self.space = make_space(system, self.blocks)
         self.options = Options(sweeps, ITERATIONS, float(tolerance), LEAST_FRACTION)
 
-    def start(self, rotation: float = 0.0, body: str | None = None) -> State:
-        """The static state at the rotation [rad] of a body, at rest: where the paper's releases start.
+    def start(self, rotation: float | None = None, body: str | None = None) -> State:
+        """The static state at the rotation [rad] of a body, or undriven: where the paper's releases start.
 
         Raises ConvergenceError if statics does not reach it.
         """
-        if not math.isfinite(rotation):
+        if rotation is not None and not math.isfinite(rotation):
             raise InvalidParameter("rotation", rotation, "a finite angle [rad]")
-        return self.start_at(static_state(self.mechanism, rotation, body=body))
+        return self.start_at(static_state(self.mechanism.at_start(), rotation, body=body))
 
     def start_at(self, z: Array, v: Array | None = None) -> State:
         """A state at the unknowns z (N or more,), at rest or with velocity v (Q,).

@@ -28,6 +28,8 @@ INTEGRATORS: dict[str, Callable[..., Records]] = {
     "explicit": explicit.integrate,
     "leapfrog": leapfrog.integrate,
 }
+QUASI_STATIC = "quasi-static strips"
+"""What the energy integrator is called where only the bodies are dynamic."""
 OPTIONS = {"generalised-alpha": ("spectral_radius",)}
 """Options of the integrators that have any."""
 
@@ -63,7 +65,7 @@ def integrate(
     z, v, acceleration = start
     if integrator == "energy" and massless(system, motion):
         run = quasi_static.integrate(system, motion, z, v, step=step, steps=steps, every=every)
-        return "quasi-static strips", run
+        return QUASI_STATIC, run
     more = {"mechanism": mechanism} if integrator == "leapfrog" else options
     run = INTEGRATORS[integrator](
         system, motion, z, v, acceleration, step=step, steps=steps, every=every, **more

@@ -13,6 +13,7 @@ from spline_model.effects import Bending, MixedStretching, Stretching, StripDamp
 from spline_model.effects.base import Inertia
 from spline_model.errors import InvalidParameter
 from spline_model.kernels.assemble import assemble
+from spline_model.kernels.drives import factor_at
 from spline_model.kernels.motion import Motion
 from spline_model.mass import drag_matrix, mass_matrix
 from spline_model.operator import evaluate
@@ -104,8 +105,9 @@ def initial_acceleration(system: System, motion: Motion, z: Array, v: Array) -> 
 
     M a + dV/dq = Psi_q^T lambda with the constraints (and the inextensible strips' strains)
     differentiated twice: Psi_q a = -(Psi_q v)_q v, the right side by a central difference of
-    Psi_q along v, exact at rest.
+    Psi_q along v, exact at rest. Loads are those of the motion's instant 0.
     """
+    system = _with_first_loads(system, motion)
     layout = system.layout
     q, rest = slice(0, layout.coordinate_count), slice(layout.coordinate_count, layout.size)
     size, unit = layout.size, system.scales.unit
@@ -142,6 +144,15 @@ def initial_acceleration(system: System, motion: Motion, z: Array, v: Array) -> 
     solved = scale * np.linalg.lstsq(scaled, right, rcond=1e-14)[0]
     free[rows] = solved[len(motion.mass) :]
     return solved[: len(motion.mass)], free
+
+
+def _with_first_loads(system: System, motion: Motion) -> System:
+    """The system with the loads that act at the instant 0 of the motion's clock, at load factor 1."""
+    loads = motion.tables.loads
+    given = zip(loads.first, loads.pairs, strict=True)
+    parts = np.array([factor_at(0.0, first, pairs, loads.times, loads.factors) for first, pairs in given])
+    now = loads._replace(value=parts * loads.value) if parts.size else loads
+    return replace(system, tables=system.tables._replace(loads=now))
 
 
 def require_compiled(system: System, name: str) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Any
 
@@ -25,10 +26,12 @@ class Trajectory:
     (T,) and centre (T, 2) are of; kinetic_energy, strain_energy (T,) [J]; gravity_energy
     against rest, work of loads and drives so far, dissipated so far (T,) [J];
     constraint_residual (T,) [m]; velocity_residual (T,) its rate [m/s]; states (T, N) and
-    velocities (T, Q) of the system in motion; resolution: empty, or how far the step
-    under-resolves the swing; effects: names of the scene's effects; counters: steps,
+    velocities (T, Q) of the system in motion; resolution: empty, or what step and control points
+    leave unresolved; effects: names of the scene's effects; counters: steps,
     halved_steps, newton_iterations, ...; seconds: by part (``spline_model.laps``), "start" the
-    static state that is let go; estimate: of the error, where an accuracy was asked for.
+    static state that is let go; estimate: of the error, where an accuracy was asked for;
+    rotation_error: largest difference of the rotation to a companion's with two control points more
+    [rad], nan without one.
     """
 
     status: Status
@@ -51,6 +54,7 @@ class Trajectory:
     settings: dict[str, Any]
     seconds: dict[str, float]
     estimate: MotionEstimate | None = None
+    rotation_error: float = math.nan
 
     @property
     def rotation(self) -> Array:

@@ -109,49 +109,6 @@ def _limit(levels: Sequence[Array], order: float, ratio: float) -> Array:
     return richardson(before, once, order=2.0 * order, ratio=ratio)
 
 
-def zero_crossings(time: Array, value: Array) -> Array:
-    """Return the instants at which `value` changes its sign, by linear interpolation between records.
-
-    Exact to third order in the records' distance for a swing, whose curvature vanishes where it crosses zero.
-
-    Args:
-        time: (T,) [s], increasing.
-        value: (T,) of any unit.
-    """
-    before = np.flatnonzero(np.signbit(value[:-1]) != np.signbit(value[1:]))
-    rise = value[before + 1] - value[before]
-    return np.asarray(time[before] - value[before] * (time[before + 1] - time[before]) / rise)
-
-
-def swing_frequency(time: Array, rotation: Array) -> float:
-    """Return the mean frequency of a swing between its first and its last passage through zero [Hz].
-
-    f = (N - 1) / (2 (t_N - t_1)) with N crossings, half a period apart. Leaves out what comes before the
-    first and after the last; a swing whose rest is not at zero needs an odd number of crossings, a whole
-    number of periods. NaN with fewer than two.
-
-    Args:
-        time: (T,) [s], increasing; several records a period.
-        rotation: (T,) [rad].
-    """
-    instants = zero_crossings(time, rotation)
-    if len(instants) < 2:
-        return math.nan
-    return (len(instants) - 1) / (2.0 * float(instants[-1] - instants[0]))
-
-
-def whole_swing_frequency(time: Array, rotation: Array) -> float:
-    """Return the mean frequency of the whole swings between passages through zero in one direction [Hz].
-
-    As `swing_frequency`, but also right where the rest of the swing is not at zero: as weight makes it. NaN
-    without a whole swing.
-    """
-    instants = zero_crossings(time, rotation)[::2]
-    if len(instants) < 2:
-        return math.nan
-    return (len(instants) - 1) / float(instants[-1] - instants[0])
-
-
 def quasi_static_frequency(
     rotation: Array, centre: Array, strain_energy: Array, *, mass: float, moment_of_inertia: float
 ) -> float:

@@ -20,7 +20,6 @@ class Model:
         records: keyword for the largest number of records of a motion.
         release_options: keywords that every release takes.
         moving: discretisation keywords of a pivot in motion, from its settings, where they say nothing.
-        at_rest: the rotation at which no body is held.
         all_shapes: whether modes hold the shapes of all bodies side by side, or of one.
         static_fields, moving_fields: fields along the strips from the design in the model and its states.
     """
@@ -34,7 +33,6 @@ class Model:
     records: str
     release_options: dict[str, Any]
     moving: Callable[[Settings], dict[str, Any]]
-    at_rest: float | None
     all_shapes: bool
     static_fields: Callable[[Any, Any], Any]
     moving_fields: Callable[[Any, Any], Any]
@@ -61,7 +59,6 @@ def model_of(settings: Settings) -> Model:
             records="samples",
             release_options={"raise_on_failure": False},
             moving=lambda settings: {},
-            at_rest=None,
             all_shapes=True,
             static_fields=fe_reference.section_forces.strip_fields,
             moving_fields=fe_reference.section_forces.strip_fields,
@@ -84,7 +81,6 @@ def model_of(settings: Settings) -> Model:
         records="records",
         release_options={},
         moving=_swinging_spline,
-        at_rest=0.0,
         all_shapes=False,
         static_fields=spline_model.section_forces.static_fields,
         moving_fields=spline_model.section_forces.moving_fields,

@@ -1,5 +1,6 @@
 """The neutral answer to a release: arrays that do not tell which model they are of."""
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Protocol
@@ -7,7 +8,7 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from studies.answers.metrics import swing_frequency
+from studies.answers.frequency import Frequency, swing_frequency
 from studies.answers.response import Result, estimate_of
 
 Array = NDArray[np.float64]
@@ -24,6 +25,13 @@ SHARED_ARRAYS = (
 #: Those that a model may lack which keeps its constraints exactly, and everywhere.
 RESIDUALS = ("constraint_residual", "velocity_residual")
 
+#: Kinetic energy over EI/L of the stiffest strip that is none: a turn of some 1e-8 rad.
+STILL = 1e-16
+NOTHING_MOVES = (
+    "nothing moves: the start is in equilibrium with all that acts; turn a body before it is let go, or give "
+    "a load a history"
+)
+
 
 class ReleaseResult(Result, Protocol):
     """What the trajectory of either model offers; see `Motion` for the arrays."""
@@ -36,6 +44,10 @@ class ReleaseResult(Result, Protocol):
     def settings(self) -> Mapping[str, Any]:
         """Integrator and step of the run."""
 
+    @property
+    def kinetic_energy(self) -> Array:
+        """Of strips and bodies together [J]."""
+
 
 @dataclass(frozen=True, kw_only=True)
 class Motion:
@@ -45,7 +57,8 @@ class Motion:
         model: "spline", "fe" or "fe-shear".
         settings: discretisation keywords, integrator and step.
         status: "converged", "not_converged" or "unstable"; `message` says when and why it stopped.
-        resolution: how far the step under-resolves the swing; empty when it resolves it.
+        resolution: what step and discretisation leave unresolved; empty when they resolve the swing.
+        rotation_error: estimated error of the rotation, by a companion motion [rad]; NaN without one.
         time: (T,) [s]; empty when statics does not reach the start.
         effects: names of what was assembled.
         bodies: (T, 3) by name: centre of mass x, y [m], rotation, counter-clockwise [rad]; a pivot's origin
@@ -80,6 +93,7 @@ class Motion:
     wall_s: float
     solve_s: float
     estimate: dict[str, Any] | None = None
+    rotation_error: float = math.nan
 
     @property
     def converged(self) -> bool:
@@ -109,9 +123,14 @@ class Motion:
         return float(np.abs(balance - balance[0]).max()) / scale if scale > 0.0 else 0.0
 
     @property
-    def frequency(self) -> float:
-        """Frequency of the swing from the zero crossings of the rotation [Hz]; NaN with fewer than two."""
+    def swing(self) -> Frequency:
+        """Frequency of the rotation's swing about its rest, or why there is none."""
         return swing_frequency(self.time, self.rotation)
+
+    @property
+    def frequency(self) -> float:
+        """Frequency of the rotation's swing about its rest [Hz]; NaN without a whole swing."""
+        return self.swing.value
 
 
 def motion(
@@ -124,17 +143,22 @@ def motion(
     body: str,
     wall_s: float,
     solve_s: float,
+    energy: float = 0.0,
 ) -> Motion:
-    """Return the neutral form of a model's trajectory; only some say how well they resolve the swing."""
-    exact = np.zeros(len(result.time))
+    """Return the neutral form of a model's trajectory; only some say how well they resolve the swing.
+
+    `energy` is a scale of the design's [J]: a motion without a part of it stands still, and says so. With
+    none that is not asked.
+    """
+    exact, still = np.zeros(len(result.time)), _still(result, energy)
     arrays = {name: getattr(result, name) for name in SHARED_ARRAYS}
     arrays |= {name: getattr(result, name, exact) for name in RESIDUALS}
     return Motion(
         model=model,
         settings=settings | dict(result.settings),
         status=str(result.status.value),
-        message=result.message,
-        resolution=getattr(result, "resolution", ""),
+        message=result.message or (NOTHING_MOVES if still else ""),
+        resolution="" if still else getattr(result, "resolution", ""),
         effects=effects,
         bodies={name: np.asarray(place, dtype=float) for name, place in bodies.items()},
         body=body,
@@ -142,8 +166,15 @@ def motion(
         wall_s=wall_s,
         solve_s=solve_s,
         estimate=estimate_of(result),
+        rotation_error=getattr(result, "rotation_error", math.nan),
         **{name: np.asarray(array, dtype=float) for name, array in arrays.items()},
     )
+
+
+def _still(result: ReleaseResult, energy: float) -> bool:
+    """Whether nothing moves: the start is in equilibrium, and what acts does not change."""
+    kinetic = np.asarray(result.kinetic_energy)
+    return len(kinetic) > 0 and energy > 0.0 and float(kinetic.max()) <= STILL * energy
 
 
 def no_motion(
@@ -169,5 +200,6 @@ def no_motion(
         wall_s=0.0,
         solve_s=0.0,
         estimate=None,
+        rotation_error=math.nan,
         **{name: np.zeros(0) for name in (*SHARED_ARRAYS, *RESIDUALS)},
     )

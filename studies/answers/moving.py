@@ -1,8 +1,8 @@
 """Put a design in motion to either model: its release and its natural modes."""
 
+import math
 from collections.abc import Callable, Mapping
 from contextlib import suppress
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -12,7 +12,6 @@ from studies.answers.motion import Motion, motion, no_motion
 from studies.answers.settings import Settings, SplineSettings
 from studies.answers.spectrum import Spectrum, no_spectrum, spectrum
 from studies.cases.design import Design
-from studies.cases.effects import LOADS
 from studies.cases.mechanism import Mechanism
 from studies.cases.problem import Problem
 from studies.errors import BadInput
@@ -34,19 +33,26 @@ def answer_release(
     start: float | None = None,
     records: int | None = None,
     repeat: int = 1,
+    check: bool = False,
     **options: Any,
 ) -> Motion:
-    """Drive a body to a rotation, let it go at rest and follow the motion.
+    """Let a design go at rest from a static state and follow the motion.
+
+    The start is in equilibrium with the body driven to a rotation, weight, pre-strain and driven
+    displacements in full, and every load at its value times its history at t = 0. Then the rotation is let
+    go, and driven displacements without a history; loads follow their histories.
 
     `wall_s` of the motion is the median time of `repeat` releases, less that of releases that are over after
     their first record: so the static path to the start, and what is set up, are left out. A short release
     comes before, and when `repeat` is above 1 a whole one.
 
     Args:
-        design: the pivot or mechanism; one without a rotation begins where its weight settles it.
+        design: the pivot or mechanism; of one without a rotation none is driven: it begins where all that
+            acts at t = 0 settles it.
         settings: names the model and its discretisation.
         duration: of the motion [s].
         start: rotation at the start [rad]; None for the end of the design's path.
+        check: whether a companion motion says how far the model's control points, or elements, resolve it.
         records: largest number of records; None for what the model keeps.
         repeat: timed releases [1].
         options: `step` [s], `integrator` and `accuracy` [rad], as the model names and checks them; None for
@@ -70,7 +76,7 @@ def answer_release(
     angle = design.rotation if start is None else start
 
     def release(**changes: Any) -> Any:
-        return run(**({"start": angle, "duration": duration} | given | changes))
+        return run(**({"start": angle, "duration": duration, "check": False} | given | changes))
 
     with suppress(model.errors.InvalidParameter, model.errors.ConvergenceError):
         short = min(duration, max(WARM_UP_DURATION, given.get("step", 0.0)))
@@ -87,15 +93,19 @@ def answer_release(
             names=_body_names(design),
             body=body,
         )
+    result = timing.result
+    if check:
+        result = model.dynamics.checked(asked, result, start=angle, body=_reported(design))
     return motion(
-        timing.result,
+        result,
         model=settings.model,
         settings=keywords,
         effects=effects_of(asked),
-        bodies=_places(timing.result),
+        bodies=_places(result),
         body=body,
         wall_s=max(timing.median - _wall_of_start(release, timing.result, repeat), 0.0),
         solve_s=timing.median_part,
+        energy=_energy(design),
     )
 
 
@@ -103,18 +113,20 @@ def answer_modes(
     design: Design,
     settings: Settings,
     *,
-    rotation: float = 0.0,
+    rotation: float | None = None,
     count: int = 10,
     held: bool = False,
 ) -> Spectrum:
-    """Return the lowest natural modes about the static state at a rotation, by the settings' model.
+    """Return the lowest natural modes about a static state, by the settings' model.
 
-    At rest loads are absent, but weight and pre-strain act; at a rotation loads are in full.
+    They are of what a release from that state lets go of: the driven rotation, unless it is `held`, and
+    driven displacements without a history. In the state weight, pre-strain, driven displacements and loads
+    are in full.
 
     Args:
         design: the pivot or mechanism.
         settings: names the model and its discretisation.
-        rotation: of the static state [rad].
+        rotation: of the static state [rad]; None for 0 of a pivot, and for no driven rotation of a mechanism.
         count: of modes [1].
         held: whether the rotation is held; if not, the driving torque acts on as it is.
 
@@ -122,17 +134,14 @@ def answer_modes(
         BadInput: a setting or option that the model refuses; one line.
     """
     model = model_of(settings)
-    if rotation == 0.0:
-        unloaded = [name for name in design.effects.names if name not in LOADS]
-        design = replace(design, effects=design.effects.renamed(unloaded))
     asked, keywords = built(model, design, settings, moving=True)
     body = _reported(design)
-    state = model.at_rest if isinstance(design, Mechanism) and rotation == 0.0 and not held else rotation
+    state = state_of(design, rotation, held=held)
     identity: dict[str, Any] = {
         "model": settings.model,
         "settings": keywords,
         "effects": effects_of(asked),
-        "rotation": rotation,
+        "rotation": rotation or 0.0,
         "body": body,
     }
     try:
@@ -149,6 +158,21 @@ def answer_modes(
     names = _body_names(design)
     place = names.index(body) if model.all_shapes and body is not None else 0
     return spectrum(timing.result, place=place, wall_s=timing.median, **identity)
+
+
+def state_of(design: Design, rotation: float | None, *, held: bool) -> float | None:
+    """Return the rotation that is driven in the static state of modes [rad]; None for none."""
+    return 0.0 if rotation is None and (held or isinstance(design, Problem)) else rotation
+
+
+def _energy(design: Design) -> float:
+    """Return EI/L of the stiffest strip [J]."""
+    if isinstance(design, Problem):
+        return design.youngs_modulus * design.second_moment_of_area / design.length
+    return max(
+        strip.youngs_modulus * strip.second_moment_of_area / math.dist(strip.start, strip.end)
+        for strip in design.strips
+    )
 
 
 def spline_mechanism(design: Design, settings: SplineSettings) -> Any:
@@ -184,8 +208,7 @@ def _release_of(model: Model, design: Design, asked: Any) -> Callable[..., Any]:
         return release_pivot
 
     def release(start: float | None, **keywords: Any) -> Any:
-        begin = start or model.at_rest
-        return model.dynamics.solve_motion(asked, start=begin, body=design.body, **keywords)
+        return model.dynamics.solve_motion(asked, start=start, body=design.body, **keywords)
 
     return release
 

@@ -7,7 +7,8 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 
 from studies.answers.adapters import answer_release
-from studies.answers.metrics import Array, extrapolate, swing_frequency
+from studies.answers.frequency import swing_frequency
+from studies.answers.metrics import Array, extrapolate
 from studies.answers.motion import Motion
 from studies.answers.reference import NoReference
 from studies.answers.settings import FeSettings
@@ -103,12 +104,12 @@ def limit_of(levels: Sequence[Motion], instants: Array) -> SwingReference:
     }
     rotation = limits["rotation"]
     before = extrapolate([swing.rotation for swing in swings[:-1]], ratio=RATIO).value
-    frequency = swing_frequency(instants, rotation.value)
+    frequency = swing_frequency(instants, rotation.value).value
     return SwingReference(
         swing=Swing(time=instants, **{name: limit.value for name, limit in limits.items()}),
         frequency=frequency,
         uncertainty=rotation.uncertainty,
         centre_uncertainty=limits["centre"].uncertainty,
-        frequency_uncertainty=abs(swing_frequency(instants, before) / frequency - 1.0),
+        frequency_uncertainty=abs(swing_frequency(instants, before).value / frequency - 1.0),
         levels=tuple(levels),
     )

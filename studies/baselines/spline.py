@@ -128,7 +128,7 @@ def release(
 
     def run(length: float, **more: Any) -> Callable[[], Any]:
         return lambda: solve_release(
-            pivot, start=start, duration=length, step=h, integrator=integrator, **more
+            pivot, start=start, duration=length, step=h, integrator=integrator, check=False, **more
         )
 
     motion = run(duration, **records)()

@@ -27,9 +27,6 @@ MOTION_ONLY = (
     "body_damping",
 )
 
-#: Loads that grow with the load factor: there are none at rest.
-LOADS = ("applied_force", "applied_moment", "tip_force")
-
 _BODY = ("body", "body", Text(expected="the name of a body"), True)
 _HISTORY = ("history", "history", History(), True)
 

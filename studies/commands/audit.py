@@ -4,8 +4,9 @@
     python -m studies audit my_pivot.toml --tolerance 1e-2 --json audit.json
 
 Every scene is asked, by the spline model, the static path of the case and then the motion from its end. The
-full scene is that of the case with weight and the rotary inertia of the sections. One line an effect says how
-far the answer is from the full one's when the effect is left out or replaced by its simpler form, which is
+full scene is that of the case with weight and the rotary inertia of the sections; where one of these makes
+the design unstable at rest, it is left out and a last line says so. One line an effect says how far the
+answer is from the full one's when the effect is left out or replaced by its simpler form, which is
 inextensible strips for stretching and massless strips for their inertia. Changes are of the path over the
 travel, of the torque over the largest, of the swing's and the first mode's frequency, and of the part of the
 energy that is lost. Times are of static path and motion together, the full scene's over the line's: above 1

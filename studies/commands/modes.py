@@ -4,8 +4,11 @@
     python -m studies modes studies/cases/cross_axis_pivot.toml --model fe --rotation-deg 45 --held --json -
     python -m studies modes studies/cases/parallel_strip_guide.toml --model spline --effects=-strip_inertia
 
-At rest no loads act, but weight does. With --held the rotation is held; without it the driving torque acts
-on as it is. A negative frequency is an unstable mode (growth rate over 2 pi). slide_frequency_Hz holds those
+Modes are free vibrations about a static state: of a pivot with the body turned to --rotation-deg, 0 unless
+said otherwise; of a mechanism with none turned unless --rotation-deg is given. In that state loads, weight,
+pre-strain and driven displacements act in full. Free is what a release from it lets go of: the rotation,
+unless it is --held, and driven displacements without a history; the torque and forces that drove them act on
+as they are. A negative frequency is an unstable mode (growth rate over 2 pi). slide_frequency_Hz holds those
 frequencies that are of the spline's parametrisation alone. Exit code 0: done; 2: bad input; 3: statics does
 not reach the rotation.
 """
@@ -35,9 +38,8 @@ def add_arguments(parser: Parser) -> None:
     parser.add_argument(
         "--rotation-deg",
         type=degrees,
-        default=0.0,
         metavar="X",
-        help="of the static state, in deg, default 0",
+        help="of the static state, in deg (default: 0 of a pivot; a mechanism is not turned)",
     )
     parser.add_argument("--held", action="store_true", help="hold the rotation of the body")
     parser.add_argument(
@@ -51,7 +53,8 @@ def main(arguments: argparse.Namespace) -> int:
     design = chosen_design(arguments)
     settings = chosen_settings(arguments)
     try:
-        rotation = ROTATION.parse(arguments.rotation_deg)
+        given = arguments.rotation_deg
+        rotation = None if given is None else ROTATION.parse(given)
     except ValueError as error:
         raise BadInput(f"--rotation-deg: {error}") from None
     require_target(arguments)

@@ -4,12 +4,20 @@
     python -m studies release studies/cases/cross_axis_pivot.toml --model fe --duration 0.02 --json -
     python -m studies release studies/cases/cantilever_with_body.toml --model spline --effects=-gravity
 
-Of a pivot coordinates have their origin at A1, the ground clamp of strip 1; rotation is counter-clockwise. A
-mechanism without a rotation starts where its weight settles it, and its loads follow their histories. The
-arrays of the JSON run over the instants, the release first, and effects are those that were assembled;
-frequency_Hz is null with fewer than two passages through zero. wall_s leaves out the static path to the
-start. Exit code 0: done, though `resolution` may say that the step is too long for the swing; 2: bad input;
-3: statics does not reach the start, or the motion stopped early.
+The start is at rest in static equilibrium: the body turned to the rotation of the case or of --from-deg,
+weight, pre-strain and driven displacements in full, and each load at its value times its history at t = 0, in
+full without a history. Then the rotation is let go, and a driven displacement without a history; one with a
+history goes on holding (spline only). Loads go on as value times history(t), constant before its first and
+after its last time. A mechanism without a rotation starts where all of this settles it: under constant loads
+it stands still, and `message` says so.
+
+Of a pivot coordinates have their origin at A1, the ground clamp of strip 1; rotation is counter-clockwise.
+The arrays of the JSON run over the instants, the release first, and effects are those that were assembled.
+frequency_Hz is of the swing about its rest, ripples not counted; null without a whole swing, and
+frequency_reason says why. rotation_error_rad estimates the error of the rotation by a companion motion, of
+two control points more or of half the elements (--no-check leaves it out). wall_s leaves out that, and the
+static path to the start. Exit code 0: done, though `resolution` may say that the step or the discretisation
+does not resolve the motion; 2: bad input; 3: statics does not reach the start, or the motion stopped early.
 """
 
 import argparse
@@ -37,8 +45,9 @@ from studies.commands.model import add_model_arguments, chosen_design, chosen_se
 from studies.commands.parser import Parser, degrees, whole_number
 from studies.errors import BadInput
 
-#: Options of the motion that the finite elements lack, and those that both have.
+#: Options of the motion that the finite elements lack, those that only they have, and those of both.
 SPLINE_OPTIONS = ("accuracy",)
+FE_OPTIONS = ("most_steps",)
 OPTIONS = ("step", "integrator")
 
 #: Lines of the table, beside the release itself.
@@ -75,6 +84,17 @@ def add_arguments(parser: Parser) -> None:
         metavar="R",
         help="wall_s is the median of R releases, default 1",
     )
+    parser.add_argument(
+        "--no-check",
+        action="store_true",
+        help="leave out the companion motion that says how far the rotation is resolved",
+    )
+    parser.add_argument(
+        "--most-steps",
+        type=whole_number(1),
+        metavar="N",
+        help="explicit steps that are not too many to begin with (finite elements; default 20000000)",
+    )
     add_json_argument(parser)
 
 
@@ -83,7 +103,9 @@ def main(arguments: argparse.Namespace) -> int:
     design = chosen_design(arguments)
     settings = chosen_settings(arguments)
     if settings.model != "spline":
-        refuse(arguments, SPLINE_OPTIONS, OPTIONS)
+        refuse(arguments, SPLINE_OPTIONS, (*OPTIONS, *FE_OPTIONS))
+    else:
+        refuse(arguments, FE_OPTIONS, (*OPTIONS, *SPLINE_OPTIONS))
     start = design.rotation
     if arguments.from_deg is not None:
         try:
@@ -91,9 +113,15 @@ def main(arguments: argparse.Namespace) -> int:
         except ValueError as error:
             raise BadInput(f"--from-deg: {error}") from None
     require_target(arguments)
-    options = {name: getattr(arguments, name) for name in (*OPTIONS, *SPLINE_OPTIONS)}
+    options = {name: getattr(arguments, name) for name in (*OPTIONS, *SPLINE_OPTIONS, *FE_OPTIONS)}
     answer = answer_release(
-        design, settings, start=start, duration=arguments.duration, repeat=arguments.repeat, **options
+        design,
+        settings,
+        start=start,
+        duration=arguments.duration,
+        repeat=arguments.repeat,
+        check=not arguments.no_check,
+        **options,
     )
     failure = None if answer.converged else answer.message
     return deliver(arguments, as_document(design, answer), _readable(design, answer), failure=failure)
@@ -122,7 +150,9 @@ def as_document(design: Design, answer: Motion) -> dict[str, Any]:
         "model": answer.model,
         "settings": answer.settings,
         "effects": list(answer.effects),
-        "frequency_Hz": number(answer.frequency),
+        "rotation_error_rad": number(answer.rotation_error),
+        "frequency_Hz": number(answer.swing.value),
+        "frequency_reason": answer.swing.reason,
         "time_s": answer.time.tolist(),
         **(place if pivot else {"bodies": places(answer.bodies)}),
         "kinetic_J": answer.kinetic_energy.tolist(),
@@ -160,11 +190,17 @@ def _readable(design: Design, answer: Motion) -> Iterator[str]:
             plain("clamp gap", (f"{gap:.1e}" for gap in answer.constraint_residual[shown]), "m"),
         ]
     )
-    if math.isfinite(answer.frequency):
-        yield f"frequency {answer.frequency:.4f} Hz; energy balanced to {answer.energy_error:.1e}"
+    swing = answer.swing
+    if len(answer.time):
+        rate = f"{swing.value:.4f} Hz" if math.isfinite(swing.value) else f"-: {swing.reason}"
+        yield f"frequency {rate}; energy balanced to {answer.energy_error:.1e}"
+    if math.isfinite(answer.rotation_error):
+        yield f"rotation uncertain by {answer.rotation_error:.1e} rad, by the discretisation"
     if answer.estimate is not None:
         whole, *parts = (f"{answer.estimate[name]:.1e} rad" for name in ("rotation", "time", "space"))
         yield f"estimated error of the rotation {whole}: {parts[0]} by steps, {parts[1]} by control points"
     if answer.resolution:
         yield answer.resolution
+    if answer.converged and answer.message:
+        yield answer.message
     yield ending(answer.status, answer.counters, answer.wall_s)

@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 
 from spline_model.pivot import SLIDE_STIFFNESS, swinging_slide_stiffness
 from studies.answers.adapters import answer_static
-from studies.answers.metrics import swing_frequency
+from studies.answers.frequency import swing_frequency
 from studies.answers.reference import errors
 from studies.answers.settings import SplineSettings
 from studies.cases.problem import named_case
@@ -105,7 +105,7 @@ def _motion(n: int, value: float) -> dict[str, Any]:
     instants = swings.INSTANTS[swings.INSTANTS <= DURATION]
     exact = swings.reference().swing.rotation[: len(instants)]
     motion = swings.resolved(SplineSettings(control_points=n, slide_stiffness=value), duration=DURATION)
-    shift = motion.frequency / swing_frequency(instants, exact) - 1.0
+    shift = motion.frequency / swing_frequency(instants, exact).value - 1.0
     return {
         "control_points": n,
         "slide_stiffness": value,

@@ -8,8 +8,8 @@ import numpy as np
 
 from studies.answers.settings import SplineSettings
 from studies.cases.design import Design
-from studies.effects.outcome import Answer, Outcome, Run, answered, outcome, run_of, timed
-from studies.effects.variants import Variant, full_scene, without
+from studies.effects.outcome import Answer, Outcome, Run, Unanswered, answered, outcome, run_of, timed
+from studies.effects.variants import Variant, beside, full_scene, without
 from studies.record.progress import silent
 
 #: Timed rounds of all scenes, one after the other; and of the cheapest against the full one.
@@ -58,12 +58,14 @@ def audit(design: Design, settings: SplineSettings, tolerance: float, progress: 
     """Answer the full scene and those that leave effects out, and find the cheapest within the tolerance.
 
     The full scene is that of the design with what could matter beside it: weight and the rotary inertia of
-    the sections. Changes are against it.
+    the sections, but for one of them that alone makes the design unstable, which is a finding: a row says so.
+    Changes are against the full scene.
 
     Raises:
         BadInput: the model refuses the full scene. Unanswered: the full scene has no answer.
     """
-    scene = full_scene(design.effects)
+    upset = _upsetting(design, settings)
+    scene = full_scene(design.effects, [row.variant.added[0] for row in upset])
     whole = replace(design, effects=scene.effects)
     run = run_of(whole, settings)
     base = answered(whole, run)
@@ -83,11 +85,26 @@ def audit(design: Design, settings: SplineSettings, tolerance: float, progress: 
         tolerance=tolerance,
         run=run,
         full=full,
-        rows=tuple(others[: len(rows)]),
+        rows=(*others[: len(rows)], *upset),
         tried=tuple(others[len(rows) :]),
         cheapest=_outcome(cheapest.variant, design, run, base).timed(duel[1]),
         seconds=duel,
     )
+
+
+def _upsetting(design: Design, settings: SplineSettings) -> list[Outcome]:
+    """Return a row for each effect beside the design's own that makes a stable design unstable at rest."""
+    rows: list[Outcome] = []
+    for name in beside(design.effects):
+        variant = Variant(
+            dropped=(), added=(name,), effects=design.effects.renamed([*design.effects.names, name])
+        )
+        try:
+            run_of(replace(design, effects=variant.effects), settings)
+        except Unanswered as error:
+            run_of(design, settings)  # refused for its own sake, if it is
+            rows.append(Outcome(variant=variant, status="unstable", reason=str(error)))
+    return rows
 
 
 def _outcome(variant: Variant, design: Design, run: Run, base: Answer) -> Outcome:

@@ -9,7 +9,6 @@ from numpy.typing import NDArray
 
 from studies.answers.adapters import answer_mechanism, answer_modes, answer_release, answer_static
 from studies.answers.assembly import MechanismResponse
-from studies.answers.metrics import whole_swing_frequency
 from studies.answers.motion import Motion
 from studies.answers.response import Response
 from studies.answers.settings import SplineSettings
@@ -73,8 +72,8 @@ class Outcome:
     """A scene held against the full one.
 
     Attributes:
-        variant: the scene. status: "converged", "refused" or "not_converged"; reason: in a line, also why
-            there was no motion.
+        variant: the scene. status: "converged", "refused", "not_converged" or "unstable"; reason: in a line,
+            also why there was no motion.
         trajectory: largest distance of a body's centre along the static path over the largest travel [1].
         torque: largest change along the path over the largest torque [1]; NaN where nothing is driven.
         swing, mode: change of the frequencies [1]; loss: change of the energy lost [1].
@@ -138,7 +137,7 @@ def answered(design: Design, run: Run, full: Answer | None = None) -> Answer:
     driven = bool(design.rotation)
     return replace(
         answer,
-        swing=whole_swing_frequency(motion.time, motion.rotation) if driven else math.nan,
+        swing=motion.frequency if driven else math.nan,
         loss=_loss(motion),
         wall_s=static.wall_s + motion.wall_s,
     )

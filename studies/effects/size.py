@@ -45,7 +45,7 @@ def size_of(design: Design, settings: SplineSettings) -> Size:
     with refusals(model_of(settings), settings):
         system = compile_scene(mechanism.released())
         motion = set_in_motion(system)
-        start = static_state(mechanism, design.rotation or 0.0, body=body)[: system.layout.size]
+        start = static_state(mechanism.at_start(), design.rotation, body=body)[: system.layout.size]
         highest = highest_frequency(system, motion, start)
         modes = linear_modes(system, system.rest, motion.mass)[0]
     return Size(

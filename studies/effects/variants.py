@@ -21,24 +21,31 @@ class Variant:
 
     Attributes:
         dropped: effects of the full scene that were left out or simplified.
+        added: those that were put in though the full scene could not have them.
         effects: of the scene.
     """
 
     dropped: tuple[str, ...]
     effects: Effects
+    added: tuple[str, ...] = ()
 
     @property
     def label(self) -> str:
         """What was changed, in words."""
-        words = [CALLED.get(name, f"no {name.replace('_', ' ')}") for name in self.dropped]
+        words = [f"with {name.replace('_', ' ')}" for name in self.added]
+        words += [CALLED.get(name, f"no {name.replace('_', ' ')}") for name in self.dropped]
         return ", ".join(words) or "full scene"
 
 
-def full_scene(effects: Effects) -> Variant:
-    """Return the scene with what could matter beside its own effects."""
-    names = list(effects.names)
-    names += [name for name, base in BESIDE.items() if name not in names and base in names]
+def full_scene(effects: Effects, omitted: Iterable[str] = ()) -> Variant:
+    """Return the scene with what could matter beside its own effects, but for what is omitted."""
+    names = [*effects.names, *(name for name in beside(effects) if name not in omitted)]
     return Variant(dropped=(), effects=effects.renamed(names))
+
+
+def beside(effects: Effects) -> list[str]:
+    """Return the effects that a scene does not have but that could matter."""
+    return [name for name, base in BESIDE.items() if name not in effects.names and base in effects.names]
 
 
 def without(full: Variant, dropped: Iterable[str]) -> Variant:

@@ -1,17 +1,16 @@
 """Solve a design by either model for the fields along its strips: static path, motion or natural modes."""
 
 from collections.abc import Callable
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from studies.answers.fields import Array, Fields, blocks_of, parts_of, strip_arrays
 from studies.answers.models import built, effects_of, model_of, refusals
+from studies.answers.moving import state_of
 from studies.answers.response import assembled
 from studies.answers.settings import Settings
 from studies.cases.design import Design
-from studies.cases.effects import LOADS
 from studies.cases.problem import Problem
 
 #: Arrays of the design, not of its states.
@@ -69,13 +68,13 @@ def release_fields(
     model = model_of(settings)
     asked, keywords = built(model, design, settings, moving=True)
     given = {name: value for name, value in options.items() if value is not None} | model.release_options
-    given |= {"duration": duration, model.records: records}
+    given |= {"duration": duration, model.records: records, "check": False}
     with refusals(model, settings):
         try:
             if isinstance(design, Problem):
                 result = model.dynamics.solve_release(asked, start=design.rotation, **given)
             else:
-                begin = design.rotation or model.at_rest
+                begin = design.rotation
                 result = model.dynamics.solve_motion(asked, start=begin, body=design.body, **given)
         except model.errors.ConvergenceError as error:
             raise NoState(f"statics does not reach the start: {error}") from None
@@ -93,7 +92,7 @@ def mode_fields(design: Design, settings: Settings, *, count: int, held: bool) -
     """Return the fields of the lowest modes about the end of a design's static path, or about rest.
 
     Args:
-        design, settings: as in `static_fields`; at rotation 0 no loads act, but weight and pre-strain do.
+        design, settings: as in `static_fields`; loads act in full.
         count: of modes [1].
         held: whether the rotation is held.
 
@@ -101,14 +100,10 @@ def mode_fields(design: Design, settings: Settings, *, count: int, held: bool) -
         BadInput: a setting or option that the model refuses; one line.
         NoState: statics does not reach the rotation.
     """
-    rotation = design.rotation or 0.0
-    if rotation == 0.0:
-        unloaded = [name for name in design.effects.names if name not in LOADS]
-        design = replace(design, effects=design.effects.renamed(unloaded))
     model = model_of(settings)
     asked, keywords = built(model, design, settings, moving=True)
     body = "body" if isinstance(design, Problem) else design.body
-    about = model.at_rest if not isinstance(design, Problem) and rotation == 0.0 and not held else rotation
+    about = state_of(design, design.rotation, held=held)
     with refusals(model, settings):
         try:
             result = model.modes.natural_frequencies(asked, rotation=about, count=count, held=held, body=body)

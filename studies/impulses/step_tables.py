@@ -56,7 +56,12 @@ def steps(progress: Callable[[], None]) -> tuple[pd.DataFrame, pd.DataFrame]:
         limit = stability_limit(pivot(design))
         # half the step that its stability allows: of order four
         exact = solve_release(
-            pivot(design), start=START, duration=DURATION[design], integrator="explicit", records=2000
+            pivot(design),
+            start=START,
+            duration=DURATION[design],
+            integrator="explicit",
+            records=2000,
+            check=False,
         )
         chosen = {
             "printed": [part * limit for part in FRACTIONS],

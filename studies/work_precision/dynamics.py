@@ -13,7 +13,8 @@ import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
-from studies.answers.metrics import Array, swing_frequency
+from studies.answers.frequency import swing_frequency
+from studies.answers.metrics import Array
 from studies.answers.settings import SplineSettings
 from studies.baselines.registry import missing
 from studies.cases.problem import Problem, named_case
@@ -97,7 +98,7 @@ def _reference(problem: Problem, progress: Callable[[int], None]) -> tuple[Array
         )
         rotations.append(at(member.solve(problem, DURATION), INSTANTS))
     coarse, fine = rotations
-    frequencies = [swing_frequency(INSTANTS, rotation) for rotation in rotations]
+    frequencies = [swing_frequency(INSTANTS, rotation).value for rotation in rotations]
     source = " and ".join(f"n = {n} at {1e6 * step:g} µs" for n, step in REFERENCE.items())
     values = {
         "rotation_rad": float(np.abs(fine - coarse).max()),

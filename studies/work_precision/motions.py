@@ -9,7 +9,8 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 
 from studies.answers.adapters import answer_release
-from studies.answers.metrics import Array, swing_frequency
+from studies.answers.frequency import swing_frequency
+from studies.answers.metrics import Array
 from studies.answers.settings import Settings
 from studies.baselines.answer import BaselineFailed
 from studies.cases.problem import Problem
@@ -147,6 +148,7 @@ def motion_errors(motion: SolvedMotion, rotation: Array, instants: Array) -> dic
         return dict.fromkeys(names, math.nan)
     # a last record may fall short of the end by round-off
     gap = np.abs(at(motion, np.minimum(instants, motion.time[-1])) - rotation)
-    frequency, exact = swing_frequency(motion.time, motion.rotation), swing_frequency(instants, rotation)
+    frequency = swing_frequency(motion.time, motion.rotation).value
+    exact = swing_frequency(instants, rotation).value
     values = (float(gap.max()), float(gap[-1]), abs(frequency / exact - 1.0))
     return dict(zip(names, values, strict=True))

@@ -41,7 +41,13 @@ def test_explicit_and_implicit_agree_over_the_paper_s_duration() -> None:
     def error(step: float = 1e-6) -> float:
         explicit = solve_release(pivot(), start=QUARTER, duration=0.05, step=1e-7, samples=500)
         implicit = solve_release(
-            pivot(), start=QUARTER, duration=0.05, step=step, integrator="generalised-alpha", samples=500
+            pivot(),
+            start=QUARTER,
+            duration=0.05,
+            step=step,
+            integrator="generalised-alpha",
+            samples=500,
+            check=False,
         )
         return float(np.abs(implicit.rotation - explicit.rotation).max())
 
@@ -62,6 +68,7 @@ def test_order_of_the_integrators(integrator: str) -> None:
                 integrator=integrator,
                 samples=50,
                 raise_on_failure=False,
+                check=False,
             )
             for k in (4, 2, 1)
         ]
@@ -139,7 +146,8 @@ def test_run_is_described() -> None:
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        ({"start": 0.0}, "start: got 0.0, expected a rotation that is not zero [rad]"),
+        ({"start": np.nan}, "start: got nan, expected a finite number [rad]"),
+        ({"most_steps": 0}, "most_steps: got 0, expected an integer of at least 1 [1]"),
         ({"duration": 0.0}, "duration: got 0.0, expected a number above 0 [s]"),
         ({"step": -1e-6}, "step: got -1e-06, expected a number above 0 [s]"),
         (
@@ -147,7 +155,7 @@ def test_run_is_described() -> None:
             "integrator: got 'euler', expected one of central-difference, generalised-alpha",
         ),
         ({"samples": 0}, "samples: got 0, expected an integer of at least 1 [1]"),
-        ({"duration": 1e6}, "duration: got 1000000.0, expected at most 1e+09 steps of"),
+        ({"duration": 1e6}, "duration: got 1000000.0, expected at most 2e+07 steps of"),
         ({"duration": 1.0, "samples": 10**7}, "samples: got "),
         ({"integrator": "generalised-alpha", "spectral_radius": 1.5}, "spectral_radius: got 1.5, expected"),
     ],

@@ -38,7 +38,7 @@ def energy_error(trajectory):
 )
 def test_energy_and_constraints_hold_at_any_step(step, control_points):
     """Requirement: the default integrator keeps energy and constraints at any step, and stays bounded."""
-    trajectory = released({"control_points": control_points}, duration=0.05, step=step)
+    trajectory = released({"control_points": control_points}, duration=0.05, step=step, check=False)
     assert trajectory.status.value == "converged", trajectory.message
     gates.check("spline_swing_energy", energy_error(trajectory))
     gates.check("spline_swing_constraints", trajectory.constraint_residual.max())

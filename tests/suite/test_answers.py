@@ -14,10 +14,7 @@ from studies.answers.metrics import (
     quasi_static_frequency,
     relative_error,
     richardson,
-    swing_frequency,
     trajectory_error,
-    whole_swing_frequency,
-    zero_crossings,
 )
 from studies.answers.motion import RESIDUALS, SHARED_ARRAYS, Motion
 from studies.answers.response import centre_shift, extreme_fibre_strain
@@ -104,26 +101,6 @@ def test_fingerprint_follows_values_not_layout(case, table_1):
 
     assert read_case(case(("# Table 1: 206 GPa", ""))).fingerprint() == TABLE_1.fingerprint()
     assert read_case(case(("206e9", "207e9"))).fingerprint() != TABLE_1.fingerprint()
-
-
-def test_frequency_of_a_known_swing():
-    """Crossings of a cosine are found between records, its frequency from them; one crossing has none."""
-    time = np.linspace(0.0, 0.1, 400)
-    swing = np.cos(2.0 * np.pi * 42.0 * time)
-    assert zero_crossings(time, swing)[:2] == pytest.approx([1.0 / 168.0, 3.0 / 168.0], rel=1e-4)
-    assert swing_frequency(time, swing) == pytest.approx(42.0, rel=1e-4)
-    assert math.isnan(swing_frequency(time, 2.0 + swing))
-    assert math.isnan(swing_frequency(time[:60], swing[:60]))
-
-
-def test_frequency_of_a_swing_about_another_rest():
-    """Whole swings have the right frequency although passages through zero are not evenly spaced."""
-    time = np.linspace(0.0, 0.1, 4000)
-    swing = 0.3 + np.cos(2.0 * np.pi * 42.0 * time)
-    assert whole_swing_frequency(time, swing) == pytest.approx(42.0, rel=1e-6)
-    uneven = slice(0, 900)  # two passages, less than half a swing apart
-    assert abs(swing_frequency(time[uneven], swing[uneven]) / 42.0 - 1.0) > 1e-2
-    assert math.isnan(whole_swing_frequency(time[uneven], swing[uneven]))
 
 
 @pytest.mark.parametrize(("cubic", "amplitude"), [(0.0, 0.5), (0.0, -1.5), (40.0, 1.2)])

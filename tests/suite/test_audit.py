@@ -5,12 +5,14 @@ What a scene costs is counted here, not timed: an audit is told Newton iteration
 
 import dataclasses
 import json
+import math
 
 import numpy as np
 import pytest
 
+from studies.__main__ import main
 from studies.answers.adapters import answer_modes, answer_release, answer_static
-from studies.answers.metrics import relative_error, trajectory_error, whole_swing_frequency
+from studies.answers.metrics import relative_error, trajectory_error
 from studies.answers.settings import SplineSettings
 from studies.cases.design import named_design
 from studies.cases.effects import Effects
@@ -66,9 +68,7 @@ def test_cheapest_scene_is_within_the_tolerance(audited):
     changes = {
         "trajectory": float(trajectory_error(two.centre, one.centre).max()),
         "torque": float(np.abs(two.torque - one.torque).max() / np.abs(one.torque).max()),
-        "swing_frequency": whole_swing_frequency(other.time, other.rotation)
-        / whole_swing_frequency(swing.time, swing.rotation)
-        - 1.0,
+        "swing_frequency": other.frequency / swing.frequency - 1.0,
         "first_mode": answer_modes(least, SplineSettings(), count=1).frequency[0]
         / answer_modes(full, SplineSettings(), count=1).frequency[0]
         - 1.0,
@@ -235,3 +235,25 @@ def test_stored_worth_says_where_effects_matter():
     assert (tables["cheapest"]["largest"] <= tables["cheapest"]["tolerance"]).all()
     steps = tables["steps"].pivot(index="control_points", columns="stretching", values="explicit_step_s")
     assert (relative_error(steps["no"].to_numpy(), steps["yes"].to_numpy()) >= 1.0).all()
+
+
+def test_weight_that_makes_a_design_unstable_is_a_finding(monkeypatch):
+    """The polymer pivot, which its weight would tip over, is audited without it, and a row says why."""
+    monkeypatch.setattr(outcome, "SWINGS", 0.05)
+    monkeypatch.setattr(module, "ROUNDS", 1)
+    monkeypatch.setattr(module, "DUELS", 1)
+    found = module.audit(named_design("polymer_pivot"), SplineSettings(), 1e-3)
+    assert "gravity" not in found.full.variant.effects.names
+    row = found.rows[-1]
+    assert (row.variant.label, row.status) == ("with gravity", "unstable")
+    assert row.reason == "the first natural frequency at rest is -1.017 Hz"
+    assert row.largest == math.inf
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", sorted(path.stem for path in FOLDER.glob("*.toml")))
+def test_every_shipped_case_can_be_audited(name, monkeypatch, capsys):
+    """None of the cases that come with the suite is refused."""
+    monkeypatch.setattr(outcome, "SWINGS", 0.2)
+    assert main(["audit", str(FOLDER / f"{name}.toml")]) == 0
+    assert "cheape" in capsys.readouterr().out

@@ -14,7 +14,8 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from studies.answers.adapters import answer_release, answer_static
-from studies.answers.metrics import Array, relative_error, swing_frequency, trajectory_error
+from studies.answers.frequency import swing_frequency
+from studies.answers.metrics import Array, relative_error, trajectory_error
 from studies.answers.response import Response
 from studies.answers.settings import SplineSettings
 from studies.baselines import four_bar, linear_pivot, pin_joint, spline
@@ -200,7 +201,7 @@ def _swings(problem: Problem, amplitude: float) -> list[dict[str, Any]]:
     rows = []
     for name, each in SURROGATES.items():
         motion = each.release(problem, **options, step=STEP)
-        frequency = swing_frequency(motion.time, motion.rotation)
+        frequency = swing_frequency(motion.time, motion.rotation).value
         rows.append(
             {
                 "model": name,

@@ -109,7 +109,9 @@ def reversals(model: str, count: int) -> Found:
     factors = [float(i % 2) for i in range(count + 1)]
     corners = tuple(zip(times, factors, strict=True))
     drive = DrivenRotation(body="body", angle=REVERSAL, history=corners)
-    run = solve_motion(mechanism_of(model), drive=drive, duration=count * between, step=STEP, records=200)
+    run = solve_motion(
+        mechanism_of(model), drive=drive, duration=count * between, step=STEP, records=200, check=False
+    )
     place = np.interp(run.time, times, factors) * REVERSAL
     return _booked(run, extra=float(np.abs(run.rotation - place).max()))
 
@@ -119,7 +121,7 @@ def catches(model: str, count: int) -> Found:
     mechanism = mechanism_of(model)
     held = DrivenRotation(body="body", angle=0.0)
     span = STEPS_BETWEEN * STEP
-    run = solve_motion(mechanism, start=RELEASE, duration=span, step=STEP, records=1)
+    run = solve_motion(mechanism, start=RELEASE, duration=span, step=STEP, records=1, check=False)
     energy = run.kinetic_energy[0] + run.strain_energy[0]
     worst, steps = 0.0, 0
     for number in range(2 * count - 1):
@@ -142,7 +144,7 @@ def jump_in_motion(model: str) -> Found:
     """Let a drive's target jump by 60 degrees within a nanosecond of a motion: followed, or refused."""
     history = ((1e-3, 0.0), (1e-3 + INSTANT, 1.0))
     drive = DrivenRotation(body="body", angle=math.radians(60.0), history=history)
-    run = solve_motion(mechanism_of(model), drive=drive, duration=2e-3, step=STEP)
+    run = solve_motion(mechanism_of(model), drive=drive, duration=2e-3, step=STEP, check=False)
     return _booked(run, extra=0.0)
 
 

@@ -1,0 +1,114 @@
+"""The frequency of a swing: about its rest, ripples not counted, or none with the reason."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from studies.answers.adapters import answer_modes, answer_release
+from studies.answers.frequency import passages, swing_frequency
+from studies.answers.settings import FeSettings, SplineSettings
+from studies.cases.design import named_design
+from studies.cases.problem import named_case
+from tests import gates
+
+TIME = np.linspace(0.0, 0.1, 4000)
+
+
+def swing(frequency=42.0, time=TIME):
+    """A cosine [rad]."""
+    return np.cos(2.0 * np.pi * frequency * time)
+
+
+def test_frequency_of_a_known_swing():
+    """Passages of a cosine are found between records, its frequency from them; less than a swing has none."""
+    assert passages(TIME, swing(), 0.0)[:2] == pytest.approx([1.0 / 168.0, 3.0 / 168.0], rel=1e-4)
+    assert swing_frequency(TIME, swing()).value == pytest.approx(42.0, rel=1e-6)
+    short = swing_frequency(TIME[:600], swing()[:600])
+    assert math.isnan(short.value)
+    assert "not a whole swing" in short.reason
+
+
+def test_half_a_swing_is_enough_where_it_turns_as_far_to_both_sides():
+    """One swing from its turning point has two passages; a swing cut short has them too, but no frequency."""
+    assert swing_frequency(TIME[:953], swing()[:953]).value == pytest.approx(42.0, rel=1e-4)
+    assert math.isnan(swing_frequency(TIME[:800], 0.2 + swing()[:800]).value)
+
+
+@pytest.mark.parametrize("rest", [0.3, -2.0])
+def test_frequency_is_of_the_swing_about_its_rest(rest):
+    """A swing about another rest than zero has the same frequency, and its rest is found."""
+    found = swing_frequency(TIME, rest + swing())
+    assert found.value == pytest.approx(42.0, rel=1e-6)
+    assert found.rest == pytest.approx(rest, abs=1e-3)
+
+
+@pytest.mark.parametrize("decay", [0.0, 8.0])
+def test_ripples_are_not_counted(decay):
+    """A ripple of a quarter of the amplitude at twelve times the frequency leaves the frequency as it is."""
+    rippled = np.exp(-decay * TIME) * (swing() + 0.25 * np.cos(2.0 * np.pi * 511.0 * TIME + 1.0)) - 0.1
+    assert swing_frequency(TIME, rippled).value == pytest.approx(42.0, rel=5e-3)
+
+
+def test_what_stands_still_has_no_frequency():
+    """A constant rotation has no frequency, and the reason says that nothing swings."""
+    assert swing_frequency(TIME, np.full_like(TIME, 0.2)).reason == "nothing swings"
+
+
+def cantilever(weight):
+    """The shipped cantilever, with its weight or without: its second mode ripples the rotation."""
+    design = named_design("cantilever_with_body")
+    names = [name for name in design.effects.names if weight or name != "gravity"]
+    return replace(design, effects=design.effects.renamed(names))
+
+
+def difference_to_the_first_mode(settings, weight, duration, **options):
+    """Relative difference of the cantilever's swing to its first mode about the rest that it swings about."""
+    motion = answer_release(cantilever(weight), settings, duration=duration, **options)
+    return abs(motion.frequency / answer_modes(cantilever(weight), settings, count=1).frequency[0] - 1.0)
+
+
+@pytest.mark.parametrize("weight", [True, False])
+def test_cantilever_swings_at_its_first_mode(weight):
+    """A small damped swing whose rotation has ripples of a quarter has the frequency of its first mode."""
+    gates.check(
+        "cantilever_swing_frequency", difference_to_the_first_mode(SplineSettings(), weight, 1.0, step=5e-4)
+    )
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("weight", [True, False])
+def test_elements_of_the_cantilever_swing_at_its_first_mode(weight):
+    """So does the swing by finite elements."""
+    gates.check(
+        "cantilever_swing_frequency", difference_to_the_first_mode(FeSettings(elements=10), weight, 1.0)
+    )
+
+
+def test_cantilever_frequency_gate_has_teeth():
+    """A swing from 86 deg, which is not small, does not pass."""
+    with pytest.raises(AssertionError, match="x the gate"):
+        gates.check(
+            "cantilever_swing_frequency",
+            difference_to_the_first_mode(
+                SplineSettings(), True, 1.0, step=5e-4, **gates.teeth("cantilever_swing_frequency")
+            ),
+        )
+
+
+def test_part_of_a_swing_has_no_frequency():
+    """After 0.15 s of a swing of 0.2 s there is no frequency, and the reason counts the passages."""
+    motion = answer_release(cantilever(True), SplineSettings(), duration=0.15, step=5e-4)
+    assert math.isnan(motion.frequency)
+    assert "1 passage through the rest in 0.15 s" in motion.swing.reason
+
+
+def test_symmetric_swing_is_counted_by_its_half_swings():
+    """Table 1 from 90 deg, which swings about zero, has the frequency between its passages through zero."""
+    motion = answer_release(named_case("cross_axis_pivot"), SplineSettings(), duration=0.05)
+    instants = passages(motion.time, motion.rotation, 0.0)
+    assert len(instants) == 8
+    assert motion.swing.rest == 0.0
+    assert motion.frequency == (len(instants) - 1) / (2.0 * (instants[-1] - instants[0]))
+    assert motion.frequency == pytest.approx(84.2986, abs=1e-3)

@@ -1,0 +1,143 @@
+"""A motion that its discretisation does not resolve says so without being asked."""
+
+import dataclasses
+import math
+
+import numpy as np
+import pytest
+
+from fe_reference import companion as of_elements
+from fe_reference.dynamics import solve_release as release_elements
+from fe_reference.errors import InvalidParameter
+from fe_reference.pivot import cross_axis_pivot as elements_pivot
+from spline_model import companion
+from spline_model.dynamics import solve_motion, solve_release
+from spline_model.pivot import cross_axis_pivot
+from studies.answers.adapters import answer_release
+from studies.answers.settings import FeSettings, SplineSettings
+from studies.cases.problem import named_case
+from tests.table_one import TABLE_ONE
+
+
+@pytest.mark.slow
+def test_motion_that_tumbles_says_that_it_is_not_resolved():
+    """A short polymer pivot with a light body moves otherwise with more control points, and says so."""
+    given = {"length": 0.05, "inclination": math.radians(35.0), "crossing_ratio": 0.7}
+    light = {"body_mass": 0.02, "body_moment_of_inertia": 1e-5}
+    pivot = dataclasses.replace(named_case("polymer_pivot"), **given, **light)
+    motion = answer_release(pivot, SplineSettings(), duration=1.5, step=1e-4, check=True)
+    assert motion.converged
+    assert "with 8 control points the rotation differs" in motion.resolution
+    assert "the motion is not resolved" in motion.resolution
+    assert motion.rotation_error > 0.1
+
+
+def test_swing_of_a_light_body_says_that_it_is_not_resolved():
+    """Table 1 with a body of 0.4 times the mass of its strips, from 92 deg, is not resolved and says so."""
+    light = TABLE_ONE | {"body_mass": 0.0265, "body_moment_of_inertia": 2.65e-5}
+    motion = solve_release(cross_axis_pivot(**light), start=math.radians(92.0), duration=0.02)
+    assert "the motion is not resolved" in motion.resolution
+    assert motion.rotation_error > 0.2
+
+
+def test_coarse_motion_says_so_by_default():
+    """Four control points are told in the answer, with the difference; nothing was asked for."""
+    motion = solve_release(cross_axis_pivot(**TABLE_ONE, control_points=4))
+    assert "with 6 control points the rotation differs by up to" in motion.resolution
+    assert motion.rotation_error > 0.05 * math.pi / 2.0
+
+
+def test_resolved_motion_has_an_error_and_no_remark():
+    """Six control points are enough for Table 1; the estimate is what eight make of it by the leapfrog."""
+    motion = solve_release(cross_axis_pivot(**TABLE_ONE), duration=0.02)
+    finer = solve_release(
+        cross_axis_pivot(**TABLE_ONE, control_points=8),
+        duration=0.02,
+        integrator="leapfrog",
+        step=1e-6,
+        records=400,
+        check=False,
+    )
+    assert motion.resolution == ""
+    exact = np.abs(motion.rotation - finer.rotation).max()
+    assert motion.rotation_error == pytest.approx(exact, rel=0.05)
+
+
+def test_check_can_be_left_out(monkeypatch):
+    """With ``check=False`` no companion runs, and there is no estimate."""
+    monkeypatch.setattr(companion, "with_points", None)
+    motion = solve_release(cross_axis_pivot(**TABLE_ONE), duration=1e-3, check=False)
+    assert math.isnan(motion.rotation_error)
+
+
+def test_companion_of_a_loaded_motion_has_its_integrator():
+    """A scene that the leapfrog does not know has a companion too, from its own start."""
+    effects = ("bending", "stretching", "strip_inertia", "body_inertia", "gravity")
+    pivot = cross_axis_pivot(**TABLE_ONE, effects=effects)
+    motion = solve_motion(pivot.mechanism, start=0.5, duration=0.01)
+    assert motion.resolution == ""
+    assert 0.0 < motion.rotation_error < 0.01
+
+
+def test_companion_that_fails_is_told(monkeypatch):
+    """A companion without an answer leaves the motion as it is and says that it was not checked."""
+    monkeypatch.setattr(
+        companion, "_scheme", lambda motion, task, chosen, spacing: ("leapfrog", 50.0 * spacing)
+    )
+    motion = solve_release(cross_axis_pivot(**TABLE_ONE), duration=1e-3)
+    assert motion.status.value == "converged"
+    assert motion.resolution.startswith("not checked with 8 control points: ")
+
+
+def test_elements_estimate_their_error_by_a_coarser_mesh():
+    """The estimate of ten elements is their difference to five over three, near that to a finer mesh."""
+    ten, forty = (
+        release_elements(
+            elements_pivot(**TABLE_ONE, elements=count),
+            start=1.0,
+            duration=0.01,
+            samples=50,
+            check=count == 10,
+        )
+        for count in (10, 40)
+    )
+    exact = np.abs(np.interp(ten.time, forty.time, forty.rotation) - ten.rotation).max()
+    assert ten.rotation_error == pytest.approx(exact, rel=0.5)
+    assert ten.resolution == ""
+    assert math.isnan(forty.rotation_error)
+
+
+def test_mesh_of_a_prime_number_of_elements_has_no_companion():
+    """Seven elements have no coarser mesh on their nodes: no estimate, and no remark."""
+    model, every = of_elements.coarser(elements_pivot(**TABLE_ONE, elements=7))
+    assert every == 1
+    assert len(model.strips[0].nodes) == 8
+
+
+def test_explicit_run_of_too_many_steps_is_refused_before_it_starts():
+    """A stiffly damped release that needs 5e9 explicit steps names the scheme that needs twenty thousand."""
+    damped = {
+        "effects": ("bending", "stretching", "strip_inertia", "body_inertia", "strip_damping"),
+        "parameters": {"strip_damping": {"relaxation_time": 2e-3}},
+    }
+    pivot = elements_pivot(**TABLE_ONE, **damped)
+    with pytest.raises(InvalidParameter) as refused:
+        release_elements(pivot, start=0.1, duration=0.05, increments=2)
+    assert "at most 2e+07 steps" in str(refused.value)
+    assert "--integrator generalised-alpha takes about 2.3e+04" in str(refused.value)
+    brief = {"start": 0.1, "duration": 1e-8, "increments": 2, "samples": 2}
+    run = release_elements(pivot, **brief, most_steps=1000)
+    assert 100 < run.counters["steps"] <= 1000
+    with pytest.raises(InvalidParameter, match="at most 100 steps"):
+        release_elements(pivot, **brief, most_steps=100)
+
+
+@pytest.mark.parametrize("settings", [SplineSettings(), FeSettings(elements=4)])
+def test_design_that_stands_still_says_so(settings):
+    """Let go where it is in equilibrium a design does not move, and the message says why and what to do."""
+    still = answer_release(named_case("cross_axis_pivot"), settings, start=0.0, duration=1e-3)
+    assert still.converged
+    assert still.message.startswith("nothing moves: the start is in equilibrium")
+    assert still.swing.reason == "nothing swings"
+    moved = answer_release(named_case("cross_axis_pivot"), settings, start=1e-3, duration=1e-3)
+    assert moved.message == ""
