@@ -47,23 +47,25 @@ def follow(
     """
     require_choice("branch", branch, BRANCHES)
     model = reduced(system) if (branch, method) == ("primary", "condensed") else None
-    watch, first = None, None
-    if model is not None and start is None and not is_preloaded(system):
-        path = follow_reduced(model, load_factors, (0.0, system.rest))
-    else:
-        watch = Watch(Workspace.of(system), leaves=branch == "follow", by_load=True)
-        first = first_point(watch, start)
-        path = None
-        if model is not None and not watch.before:
-            path = follow_reduced(model, load_factors, (first[0].load_factor, first[0].z))
-    if path is not None:
-        for i in range(len(load_factors) if progress is not None else 0):
+    begun, begin = None, (0.0, system.rest)
+    if start is not None or is_preloaded(system):
+        begun = _begin(system, start, branch)
+        begin = (begun.here.load_factor, begun.here.z)
+    path = None
+    if model is not None and (begun is None or not begun.watch.before):
+        path = follow_reduced(model, load_factors, begin)
+    if path is None:
+        return _bordered(begun or _begin(system, start, branch), load_factors, progress)
+    if progress is not None:
+        for i in range(len(load_factors)):
             progress(i + 1, len(load_factors))
-        return path
-    if watch is None or first is None:
-        watch = Watch(Workspace.of(system), leaves=branch == "follow", by_load=True)
-        first = first_point(watch, start)
-    return _bordered(Follower(watch, *first), load_factors, progress)
+    return path
+
+
+def _begin(system: System, start: tuple[float, Array] | None, branch: str) -> Follower:
+    """A follower at the first state of a path by the bordered system."""
+    watch = Watch(Workspace.of(system), leaves=branch == "follow", by_load=True)
+    return Follower(watch, *first_point(watch, start))
 
 
 def _bordered(follower: Follower, load_factors: Sequence[float], progress: Progress | None) -> Path:

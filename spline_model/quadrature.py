@@ -60,14 +60,16 @@ def strip_points(strips: Sequence[tuple[Strip, int]], layout: Layout) -> Points:
 
 
 @lru_cache(maxsize=256)
-def _tables(basis: SplineBasis, count: int) -> tuple[Array, Array, NDArray[np.int64], Array, Array, Array, Array]:
+def _tables(
+    basis: SplineBasis, count: int
+) -> tuple[Array, Array, NDArray[np.int64], Array, Array, Array, Array]:
     """u, weight, first of the support (P,), its d1, d2 (P, degree + 1), and of all functions (P, n); kept."""
     u, weight = basis.gauss_rule(count)
     support = basis.first_of_support(u)
     columns = support[:, None] + np.arange(basis.degree + 1)
     first, second = basis.evaluate(u, 1), basis.evaluate(u, 2)
-    narrow = (np.take_along_axis(values, columns, axis=1) for values in (first, second))
-    kept = (u, weight, support, *narrow, first, second)
+    d1, d2 = (np.take_along_axis(values, columns, axis=1) for values in (first, second))
+    kept = (u, weight, support, d1, d2, first, second)
     for array in kept:
         array.setflags(write=False)
     return kept

@@ -12,8 +12,8 @@ from __future__ import annotations
 
 import math
 
-from spline_model.strip.compiled import part
 from spline_model.fast.strip_force import strip_energy, strip_force
+from spline_model.strip.compiled import part
 
 
 @part()

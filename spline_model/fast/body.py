@@ -8,9 +8,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from spline_model.strip.compiled import part
 from spline_model.fast.condense import condense
 from spline_model.fast.strip import evaluate
+from spline_model.strip.compiled import part
 
 
 class Frame(NamedTuple):

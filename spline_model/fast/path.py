@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 from spline_model.checks import LARGEST_CORRECTION, SLOWEST_SPEED
 from spline_model.continuation.resolution import LARGEST_DEFECT
 from spline_model.fast.body import assemble, turn_into
-from spline_model.strip.compiled import copy, kernel, part
 from spline_model.fast.condense import recover, recover_rate
 from spline_model.fast.doubt import defect, inertia, jumped, strip_defect
+from spline_model.strip.compiled import copy, kernel, part
 
 ITERATIONS, EVALUATIONS, HALVED = range(3)
 KNOWN = 3

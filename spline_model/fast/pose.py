@@ -16,10 +16,10 @@ from numba import njit
 from numpy.typing import NDArray
 
 from spline_model.checks import SLOWEST_SPEED
-from spline_model.strip.compiled import FAST
 from spline_model.fast.condense import condense, recover, recover_rate
 from spline_model.fast.path import EVALUATIONS, HALVED, ITERATIONS
 from spline_model.fast.strip import evaluate
+from spline_model.strip.compiled import FAST
 
 MOST_ITERATIONS = 10
 """Newton iterations at one pose; a part of the way that needs more is halved."""

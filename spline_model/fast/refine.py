@@ -13,10 +13,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.fast.body import Frame
-from spline_model.strip.compiled import kernel
 from spline_model.fast.path import Answer, newton, tangent
 from spline_model.fast.solve import TOLERANCE, arrays, empty_answer, frame_of, grid_of, mode_count
 from spline_model.mechanism import Mechanism
+from spline_model.strip.compiled import kernel
 
 Array = NDArray[np.float64]
 

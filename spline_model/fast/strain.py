@@ -11,8 +11,8 @@ from numpy.polynomial import legendre
 from numpy.typing import NDArray
 
 from spline_model.basis import bezier
-from spline_model.strip.compiled import kernel
 from spline_model.fast.strip import place_points
+from spline_model.strip.compiled import kernel
 
 
 class Stations(NamedTuple):

@@ -13,8 +13,8 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from spline_model.strip.compiled import part
 from spline_model.fast.strip import Grid
+from spline_model.strip.compiled import part
 
 Array = NDArray[np.float64]
 

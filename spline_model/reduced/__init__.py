@@ -1,1 +1,1 @@
-"""A mechanism in reduced coordinates: three a body, the strips condensed to their ends; its equilibrium paths."""
+"""A mechanism in three coordinates a body, its strips condensed to their ends, and its equilibrium paths."""

@@ -10,8 +10,9 @@ from numpy.typing import NDArray
 
 from spline_model.strip.compiled import kernel, part
 from spline_model.strip.condense import SINGULAR, condense, condense_coupled, recover
-from spline_model.strip.element import evaluate_points, place_points, to_element
+from spline_model.strip.element import place_points, to_element
 from spline_model.strip.laws import MATERIAL
+from spline_model.strip.points import evaluate_points
 
 Array = NDArray[np.float64]
 
@@ -23,8 +24,8 @@ class Bodies(NamedTuple):
     """B bodies, free strip ends among them, and what acts on them; coordinates x, y over L and theta.
 
     rest (3 B,); load (Q,) generalised force at load factor 1; weight (Q,) at any, Q = 3 B and one more
-    for each strip whose mean axial force stands beside the bodies; free (F,) and held (D,) of these; driven: place among the held ones of the rotation whose torque is asked
-    for, or -1.
+    for each strip whose mean axial force stands beside the bodies; free (F,) and held (D,) of these;
+    driven: place among the held ones of the rotation whose torque is asked for, or -1.
     """
 
     rest: Array
@@ -81,7 +82,7 @@ def working_space(bodies: Bodies, size: int) -> Space:
 
 @kernel()
 def place_of(i, body_tip, body_root, outer):
-    """Unknown of the bodies' system that the i-th outer coordinate of a strip is: of its tip, its root, its mean force."""
+    """The bodies' unknown that a strip's i-th outer coordinate is: of its tip, its root or its mean force."""
     tip = body_tip >= 0
     if tip and i < 3:
         return 3 * body_tip + i
@@ -186,7 +187,10 @@ def assemble(y, load, bodies, strips, shape, local, space):
 
 @kernel()
 def factorise(free, tangent, factors, outer):
-    """L D L^T of the free part of the bodies' tangent; its negative pivots beside the mean forces', or SINGULAR."""
+    """L D L^T of the free part of the bodies' tangent; returns its negative pivots, or SINGULAR.
+
+    outer: mean axial forces in it, each of which has a negative pivot that does not count.
+    """
     negative = -outer
     for i in range(free.size):
         for j in range(i, free.size):

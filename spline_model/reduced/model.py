@@ -11,20 +11,20 @@ from scipy.interpolate import BSpline
 
 from spline_model.basis import SlideModes, SplineBasis
 from spline_model.compile import System
-from spline_model.effects import Bending, Clamp, DrivenRotation, MixedStretching, Stretching, StripGravity
-from spline_model.effects.base import Constraint
+from spline_model.effects import Bending, MixedStretching, Stretching, StripGravity
 from spline_model.effects.elastic import MEASURES
 from spline_model.reduced.assembly import Bodies
+from spline_model.reduced.ends import Ends, bodies_of, ends_of, frames_of
 from spline_model.scene import Scene
-from spline_model.strip.element import GROUNDED, Local, Shape, Strips, local_arrays
+from spline_model.strip.element import Local, Shape, Strips, local_arrays
 
 Array = NDArray[np.float64]
 
 LEAST_COMPLIANCE = 1e-9
-"""Axial compliance in L^2/EI below which an axial force stays beside w: 1 over it would drown in round-off."""
+"""Axial compliance in L^2/EI below which an axial force stays beside w: its inverse drowns in round-off."""
 GAIN = 100.0
-"""Stiffness by which such a force is condensed all the same, exactly: of the order of the bending's, so that no
-digit is lost."""
+"""Stiffness by which such a force is condensed all the same, exactly: of the order of the bending's, so
+that no digit is lost."""
 MOST_CONTROL_POINTS = 24
 """Longer B-splines are narrow bands, which the element's dense tangent does not use."""
 
@@ -49,7 +49,8 @@ class Reduced:
     def size(self) -> int:
         """Number of unknowns."""
         own = 2 * len(self.shape.order) - 6
-        return len(self.bodies.rest) + len(self.strips.roots) * (own + self.strips.compliance.shape[1])
+        modes = int(self.strips.compliance.shape[1])
+        return len(self.bodies.rest) + len(self.strips.roots) * (own + modes)
 
     def local(self) -> Local:
         """Working arrays of the strips."""
@@ -70,19 +71,27 @@ def reduced(system: System) -> Reduced | None:
     basis, points = scene.strips[0].basis, next(iter(bending.values())).gauss_points
     length, energy = system.scales.length, system.scales.energy
     shape = _shape(basis, points)
-    ends = _ends(system)
+    ends = ends_of(system)
     strips, to_modes = _strips(system, shape, basis, points, ends)
-    bodies = _bodies(system, ends, strips.outer * len(scene.strips))
+    bodies = bodies_of(system, ends, strips.outer * len(scene.strips))
     if bodies is None:
         return None
     return Reduced(
-        system=system, bodies=bodies, strips=strips, shape=shape, to_modes=to_modes, length=length, energy=energy
+        system=system,
+        bodies=bodies,
+        strips=strips,
+        shape=shape,
+        to_modes=to_modes,
+        length=length,
+        energy=energy,
     )
 
 
 def _known(scene: Scene, system: System) -> bool:
     bending = scene.of(Bending)
-    grids = {(e.gauss_points, e.measure) for e in (*bending, *scene.of(MixedStretching), *scene.of(Stretching))}
+    grids = {(e.gauss_points, e.measure) for e in bending}
+    grids |= {(e.gauss_points, e.measure) for e in scene.of(MixedStretching)}
+    grids |= {(e.gauss_points, e.measure) for e in scene.of(Stretching)}
     bases = {strip.basis for strip in scene.strips}
     return (
         not system.open_potentials
@@ -106,82 +115,12 @@ def _shape(basis: SplineBasis, points: int) -> Shape:
     return Shape(order=order, d0=d0, d1=d1, d2=d2, beyond=beyond, u=u, weight=weight)
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class _End:
-    """An end of a strip: body or GROUNDED, point in its frame [m], direction at rest, row of its clamp or -1."""
-
-    body: int
-    point: Array
-    direction: float
-    row: int
-
-
-def _ends(system: System) -> dict[tuple[str, str], _End]:
-    """Both ends of all strips by (strip, end); a free end is a body of its own, behind the scene's."""
-    scene, ends, free = system.scene, {}, len(system.scene.bodies)
-    places = {body.name: i for i, body in enumerate(scene.bodies)}
-    rows = {(c.strip, c.end): system.layout.rows(i).start for i, c in enumerate(scene.of(Constraint)) if isinstance(c, Clamp)}
-    for strip in scene.strips:
-        for end, (at, inner, sign) in {"start": (0, 1, 1.0), "end": (-1, -2, -1.0)}.items():
-            point = strip.control_points[at]
-            along = sign * (strip.control_points[inner] - point)
-            direction = float(np.arctan2(along[1], along[0]))
-            clamp = scene.clamp_of(strip.name, end)
-            if clamp is None:
-                ends[strip.name, end] = _End(body=free, point=np.zeros(2), direction=direction, row=-1)
-                free += 1
-            elif clamp.to in places:
-                centre = scene.body(clamp.to).centre
-                ends[strip.name, end] = _End(body=places[clamp.to], point=point - centre, direction=direction, row=rows[strip.name, end])
-            else:
-                ends[strip.name, end] = _End(body=GROUNDED, point=point, direction=direction, row=rows[strip.name, end])
-    return ends
-
-
-def _bodies(system: System, ends: dict[tuple[str, str], _End], outer: int) -> Bodies | None:
-    """The bodies and what acts on them; None where a load acts on a clamped end."""
-    scene, layout, tables = system.scene, system.layout, system.tables
-    length, force = system.scales.length, system.scales.energy / system.scales.length
-    rest = [v for body in scene.bodies for v in (*(body.centre / length), 0.0)]
-    places = {layout.bodies[body.name] + k: 3 * i + k for i, body in enumerate(scene.bodies) for k in range(3)}
-    for strip in scene.strips:
-        start, count = layout.strips[strip.name]
-        for end, at in (("start", start), ("end", start + 2 * count - 2)):
-            if ends[strip.name, end].row < 0:
-                for k in range(2):
-                    places[at + k] = len(rest) + k
-                point = strip.control_points[0 if end == "start" else -1]
-                rest += [*(point / length), 0.0]
-    load, weight = np.zeros(len(rest)), np.zeros(len(rest))
-    unit = np.tile([force, force, force * length], len(rest) // 3)
-    for coordinate, value in zip(tables.loads.coordinate, tables.loads.value, strict=True):
-        if int(coordinate) not in places:
-            return None
-        load[places[int(coordinate)]] += value
-    if tables.weight.size:
-        for body in scene.bodies:
-            at = layout.body(body.name)
-            weight[3 * scene.bodies.index(body) : 3 * scene.bodies.index(body) + 3] += tables.weight[at]
-    held = np.array([places[int(c)] for c in tables.drives.coordinate], dtype=np.int64)
-    if len(set(held.tolist())) != len(held):
-        return None
-    turns = np.flatnonzero(tables.drives.turns)
-    return Bodies(
-        rest=np.array(rest),
-        load=np.concatenate((load / unit, np.zeros(outer))),
-        weight=np.concatenate((weight / unit, np.zeros(outer))),
-        free=np.array([i for i in range(len(rest) + outer) if i not in set(held.tolist())], dtype=np.int64),
-        held=held,
-        driven=int(turns[0]) if len(turns) == 1 else -1,
-    )
-
-
 def _strips(
-    system: System, shape: Shape, basis: SplineBasis, points: int, ends: dict[tuple[str, str], _End]
+    system: System, shape: Shape, basis: SplineBasis, points: int, ends: Ends
 ) -> tuple[Strips, Array]:
     scene, tables = system.scene, system.tables
     length, energy = system.scales.length, system.scales.energy
-    count, gauss, n = len(scene.strips), len(shape.weight), basis.control_points
+    count, gauss = len(scene.strips), len(shape.weight)
     order = {e.strip: i for i, e in enumerate(scene.of(Bending))}
     rows = [slice(order[s.name] * gauss, (order[s.name] + 1) * gauss) for s in scene.strips]
     speed = np.array([tables.bending.speed[r] for r in rows]) / length
@@ -190,9 +129,9 @@ def _strips(
     split = len_modes(mixed[0], slide=False)
     modes, compliance, to_modes = [], [], []
     for parts, v in zip(mixed, speed, strict=True):
-        values, c, back = _orthonormal(parts, shape.u, shape.weight * v)
+        values, each, back = _orthonormal(parts, shape.u, shape.weight * v)
         modes.append(values)
-        compliance.append(np.array(c) * energy / length)
+        compliance.append(np.array(each) * energy / length)
         to_modes.append(back)
     measure = MEASURES.index(scene.of(Bending)[0].measure)
     c = np.array(compliance).reshape(count, -1)
@@ -204,10 +143,15 @@ def _strips(
         speed=speed,
         curvature=np.array([tables.bending.curvature[r] for r in rows]) * length,
         rigidity=np.array([tables.bending.rigidity[r] for r in rows]) / (energy * length),
-        stretching=np.array([consistent[s.name].axial_rigidity if s.name in consistent else 0.0 for s in scene.strips])
+        stretching=np.array(
+            [consistent[s.name].axial_rigidity if s.name in consistent else 0.0 for s in scene.strips]
+        )
         / (energy / length),
         strain=np.array(
-            [_natural_strain(parts, consistent.get(s.name)) for s, parts in zip(scene.strips, mixed, strict=True)]
+            [
+                _natural_strain(parts, consistent.get(s.name))
+                for s, parts in zip(scene.strips, mixed, strict=True)
+            ]
         ),
         modes=np.ascontiguousarray(np.array(modes).reshape(count, gauss, -1)),
         split=split,
@@ -217,11 +161,14 @@ def _strips(
         outer=outer,
         roots=np.array([ends[s.name, "start"].body for s in scene.strips], dtype=np.int64),
         tips=np.array([ends[s.name, "end"].body for s in scene.strips], dtype=np.int64),
-        root=_frames([ends[s.name, "start"] for s in scene.strips], length),
-        tip=_frames([ends[s.name, "end"] for s in scene.strips], length),
+        root=frames_of([ends[s.name, "start"] for s in scene.strips], length),
+        tip=frames_of([ends[s.name, "end"] for s in scene.strips], length),
         reach=np.array(
             [
-                [np.hypot(*(s.control_points[a] - s.control_points[b])) / length for a, b in ((1, 0), (-1, -2))]
+                [
+                    np.hypot(*(s.control_points[a] - s.control_points[b])) / length
+                    for a, b in ((1, 0), (-1, -2))
+                ]
                 for s in scene.strips
             ]
         ),
@@ -263,10 +210,6 @@ def _natural_strain(parts: list[MixedStretching], consistent: Stretching | None)
     return parts[0].natural_strain if parts else 0.0
 
 
-def _frames(ends: list[_End], length: float) -> Array:
-    return np.array([[*(e.point / length), e.direction] for e in ends])
-
-
 def _dead(system: System, shape: Shape) -> tuple[Array, Array]:
     """Dead load on the control points (S, 2 n), in the order of elimination, and per du (S, 2)."""
     scene, weight = system.scene, system.tables.weight
@@ -297,12 +240,22 @@ def from_unknowns(model: Reduced, z: Array) -> Array:
     for s, strip in enumerate(scene.strips):
         points = z[layout.strip(strip.name)].reshape(n, 2) / model.length
         chords = (points[1] - points[0], points[-1] - points[-2])
-        for bodies, frames, at, chord in ((strips.roots, strips.root, 0, chords[0]), (strips.tips, strips.tip, -1, chords[1])):
+        for bodies, frames, at, chord in (
+            (strips.roots, strips.root, 0, chords[0]),
+            (strips.tips, strips.tip, -1, chords[1]),
+        ):
             if bodies[s] >= len(scene.bodies):  # a free end is its own body
                 turn = np.arctan2(chord[1], chord[0]) - frames[s, 2]
-                pose[3 * bodies[s] : 3 * bodies[s] + 3] = (*points[at], np.arctan2(np.sin(turn), np.cos(turn)))
-        reach = [np.hypot(*chord) / k for chord, k in zip(chords, strips.reach[s], strict=True)]
+                pose[3 * bodies[s] : 3 * bodies[s] + 3] = (
+                    *points[at],
+                    np.arctan2(np.sin(turn), np.cos(turn)),
+                )
+        reach = np.array([np.hypot(*chord) for chord in chords]) / strips.reach[s]
         effects = [i for i, e in enumerate(scene.of(MixedStretching)) if e.strip == strip.name]
         forces = np.concatenate([z[layout.axial_modes(i)] for i in effects] or [np.zeros(0)])
-        y += [points[2:-2].ravel(), reach, np.linalg.solve(model.to_modes[s], forces) * model.length / model.energy]
+        y += [
+            points[2:-2].ravel(),
+            reach,
+            np.linalg.solve(model.to_modes[s], forces) * model.length / model.energy,
+        ]
     return np.concatenate(y)

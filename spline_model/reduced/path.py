@@ -14,27 +14,13 @@ from numpy.typing import NDArray
 from spline_model.checks import LARGEST_CORRECTION, SLOWEST_SPEED, SMALLEST_CORRECTION
 from spline_model.continuation.balance import ROUND_OFF, WORK_MISMATCH
 from spline_model.continuation.resolution import LARGEST_DEFECT, SMALLEST_MOMENT
-from spline_model.reduced.assembly import (
-    AXIAL,
-    BENDING,
-    DEAD,
-    NEGATIVE,
-    SLOWEST,
-    assemble,
-    factorise,
-    moment_defect,
-    move_strips,
-    root_of,
-    solve_free,
-)
+from spline_model.reduced.assembly import AXIAL, BENDING, DEAD, SLOWEST, moment_defect, root_of
+from spline_model.reduced.equilibrium import HALVED, conjugate, newton, stiffness_of, tangent
 from spline_model.strip.compiled import copy, kernel, part
-from spline_model.strip.condense import SINGULAR
 
 Array = NDArray[np.float64]
 
-ITERATIONS, EVALUATIONS, HALVED = range(3)
 KNOWN = 3
-MOST_ITERATIONS = 15
 SMALLEST_STEP = 2.0**-10
 
 
@@ -50,8 +36,8 @@ class Route(NamedTuple):
 
 
 class Answer(NamedTuple):
-    """S states: y (S, Y); reaction and its rate in the factor (S, D); stiffness (S,) of the driven rotation at
-    fixed loads; rate (S, 3 B) of the bodies; energies (S, 2) bending, axial; done (S,) the potential's
+    """S states: y (S, Y); reaction and its rate in the factor (S, D); stiffness (S,) of the driven rotation
+    at fixed loads; rate (S, 3 B) of the bodies; energies (S, 2) bending, axial; done (S,) the potential's
     derivative integrated over the factor; inertia, defect (S,); counters (3,).
     """
 
@@ -81,96 +67,6 @@ def empty_answer(states: int, size: int, bodies: int, held: int) -> Answer:
         defect=np.zeros(states),
         counters=np.zeros(3, dtype=np.int64),
     )
-
-
-@part()
-def newton(y, load, bodies, strips, shape, local, space, tolerance, counters):
-    """Solve in place at the held coordinates in y; the negative eigenvalues, or -1 where it fails."""
-    before = np.inf
-    free, raw, poses = bodies.free, space.raw, bodies.rest.size
-    for trial in range(MOST_ITERATIONS + 1):
-        norm = assemble(y, load, bodies, strips, shape, local, space)
-        counters[EVALUATIONS] += 1
-        for i in range(free.size):
-            norm = max(norm, abs(raw[free[i]]))
-        if not norm < 1e12:
-            return -1
-        negative = factorise(bodies.free, space.tangent, space.factors, bodies.load.size - poses)
-        if negative == SINGULAR:
-            return -1
-        if norm <= tolerance or (norm <= 1e3 * tolerance and norm > 0.5 * before):
-            return max(0, negative + int(space.out[NEGATIVE]))
-        if trial == MOST_ITERATIONS:
-            return -1
-        before = norm
-        space.move[:] = 0.0
-        for i in range(free.size):
-            space.change[i] = -space.force[free[i]]
-        solve_free(space.factors, space.change)
-        for i in range(free.size):
-            space.move[free[i]] = space.change[i]
-            if free[i] < poses:
-                y[free[i]] += space.change[i]
-        move_strips(1.0, bodies, strips, shape, local, space, space.rate)
-        for i in range(bodies.rest.size, y.size):
-            y[i] += space.rate[i]
-        counters[ITERATIONS] += 1
-    return -1
-
-
-@kernel()
-def entry(matrix, i, j):
-    """Entry of a symmetric matrix of which the upper triangle is filled."""
-    return matrix[i, j] if i <= j else matrix[j, i]
-
-
-@part()
-def tangent(held_rate, load_rate, bodies, strips, shape, local, space):
-    """Rates in the factor at a state that was just solved, in ``space.rate``; reactions and their rates in ``space``.
-
-    The residual that is left is carried to equilibrium by the tangent.
-    """
-    free, held, matrix, x = bodies.free, bodies.held, space.tangent, space.change
-    for i in range(free.size):
-        x[i] = -space.force[free[i]]
-    solve_free(space.factors, space.change)
-    for d in range(held.size):
-        total = space.force[held[d]]
-        for i in range(free.size):
-            total += entry(matrix, held[d], free[i]) * x[i]
-        space.reaction[d] = total
-    for i in range(free.size):
-        total = load_rate * bodies.load[free[i]]
-        for d in range(held.size):
-            total -= entry(matrix, free[i], held[d]) * held_rate[d]
-        x[i] = total
-    solve_free(space.factors, space.change)
-    for i in range(free.size):
-        space.move[free[i]] = x[i]
-    for d in range(held.size):
-        space.move[held[d]] = held_rate[d]
-    for d in range(held.size):
-        total = -load_rate * bodies.load[held[d]]
-        for i in range(space.move.size):
-            total += entry(matrix, held[d], i) * space.move[i]
-        space.reaction_rate[d] = total
-    for i in range(bodies.rest.size):
-        space.rate[i] = space.move[i]
-    move_strips(0.0, bodies, strips, shape, local, space, space.rate)
-
-
-@part()
-def stiffness_of(bodies, space):
-    """Derivative of the driven rotation's torque in it, all else held or in equilibrium at fixed loads."""
-    free, x = bodies.free, space.change
-    row = bodies.held[bodies.driven]
-    for i in range(free.size):
-        x[i] = -entry(space.tangent, free[i], row)
-    solve_free(space.factors, space.change)
-    total = space.tangent[row, row]
-    for i in range(free.size):
-        total += entry(space.tangent, row, free[i]) * x[i]
-    return total
 
 
 @kernel()
@@ -209,20 +105,6 @@ def accepted(y, known, bodies, strips, shape, space):
             step += (predicted[k] - last[k]) ** 2
             correction += (y[k] - predicted[k]) ** 2
     return correction <= max(LARGEST_CORRECTION**2 * step, SMALLEST_CORRECTION**2)
-
-
-@part()
-def conjugate(held_rate, load_rate, bodies, y, space):
-    """First and second derivative of the potential in the factor: of reactions on drives, less moved loads."""
-    slope = bend = 0.0
-    for d in range(bodies.held.size):
-        slope += space.reaction[d] * held_rate[d]
-        bend += space.reaction_rate[d] * held_rate[d]
-    if load_rate != 0.0:
-        for i in range(bodies.rest.size):
-            slope -= load_rate * bodies.load[i] * (y[i] - bodies.rest[i])
-            bend -= load_rate * bodies.load[i] * space.rate[i]
-    return slope, bend
 
 
 @kernel()

@@ -10,8 +10,9 @@ from numpy.typing import NDArray
 from spline_model.effects import Stretching
 from spline_model.newton import TOLERANCE
 from spline_model.reduced.assembly import working_space
+from spline_model.reduced.equilibrium import EVALUATIONS, HALVED, ITERATIONS
 from spline_model.reduced.model import Reduced, from_unknowns
-from spline_model.reduced.path import EVALUATIONS, HALVED, ITERATIONS, Answer, Route, empty_answer, follow
+from spline_model.reduced.path import Answer, Route, empty_answer, follow
 from spline_model.reduced.states import unknowns_of
 from spline_model.solution import Path, Status
 
@@ -59,7 +60,11 @@ def _path_of(model: Reduced, factors: Array, answer: Answer) -> Path:
     states = unknowns_of(model, answer, len(factors))
     rates = np.zeros_like(states)
     for i, body in enumerate(system.scene.bodies):
-        rates[:, layout.body(body.name)] = answer.rate[:, 3 * i : 3 * i + 3] * [model.length, model.length, 1.0]
+        rates[:, layout.body(body.name)] = answer.rate[:, 3 * i : 3 * i + 3] * [
+            model.length,
+            model.length,
+            1.0,
+        ]
     rates[:, drives.row] = answer.reaction_rate * (energy / np.where(drives.turns == 1, 1.0, model.length))
     by_loads = factors * ((states - system.rest)[:, loads.coordinate] @ loads.value)
     counters = answer.counters

@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from spline_model.effects import MixedStretching
+from spline_model.effects import Clamp, MixedStretching
 from spline_model.effects.base import Constraint
-from spline_model.effects import Clamp
 from spline_model.reduced.model import Reduced
 from spline_model.reduced.path import Answer
 from spline_model.strip.compiled import kernel
-from spline_model.strip.element import evaluate_points, place_points
+from spline_model.strip.element import place_points
+from spline_model.strip.points import evaluate_points
 
 Array = NDArray[np.float64]
 
@@ -39,7 +39,9 @@ def place_all(y, poses, shape, strips, local, out, points, forces):
                 outer = 2 * n - 2 - 2 * end
                 forces[row, s, end, 0] = g[inner] + g[outer]
                 forces[row, s, end, 1] = g[inner + 1] + g[outer + 1]
-                forces[row, s, end, 2] = (p[inner] - p[outer]) * g[inner + 1] - (p[inner + 1] - p[outer + 1]) * g[inner]
+                forces[row, s, end, 2] = (p[inner] - p[outer]) * g[inner + 1] - (
+                    p[inner + 1] - p[outer + 1]
+                ) * g[inner]
 
 
 def unknowns_of(model: Reduced, answer: Answer, count: int) -> Array:
@@ -55,7 +57,9 @@ def unknowns_of(model: Reduced, answer: Answer, count: int) -> Array:
     for i, body in enumerate(scene.bodies):
         z[:, layout.body(body.name)] = y[:, 3 * i : 3 * i + 3] * [model.length, model.length, 1.0]
     unit = model.energy / model.length * np.array([1.0, 1.0, model.length])
-    rows = {(c.strip, c.end): layout.rows(i) for i, c in enumerate(scene.of(Constraint)) if isinstance(c, Clamp)}
+    rows: dict[tuple[str, str], slice] = {
+        (c.strip, c.end): layout.rows(i) for i, c in enumerate(scene.of(Constraint)) if isinstance(c, Clamp)
+    }
     for s, strip in enumerate(scene.strips):
         in_order = np.empty((count, n, 2))
         in_order[:, shape.order] = points[:, s].reshape(count, n, 2)

@@ -102,7 +102,8 @@ def condense_coupled(own, size, coupled, outer, by_state, compliance, gain, g, h
 def recover(own, size, share, coupled, outer, gain, g, h, b, gap, change, dw, da):
     """Changes of own coordinates (W,) and axial forces (K,) for a change of the ends' poses.
 
-    change: of the ends' coordinates in use, and of the outer axial force; share: 1 with the residual, 0 along a path of equilibria.
+    change: of the ends' coordinates in use, and of the outer axial force; share: 1 with the residual,
+    0 along a path of equilibria.
     """
     last, end = own + coupled - outer, size - outer
     if outer:

@@ -8,9 +8,10 @@ the ground or carried by bodies,
 k_A and k_B the distances at rest. Own coordinates w = (P_2 ... P_(n-3), s_A, s_B); axial forces a.
 Control points stand in the order of elimination: P_2 ... P_(n-3), P_1, P_(n-2), P_(n-1), P_0. The
 element's coordinates are (w, coupled axial forces, pose of the tip's body, pose of the root's, mean
-axial force); those of a grounded end do not exist, and the last one only of inextensible strips: no w
-can give a straight strip another length, so its mean axial force cannot be condensed. All is dimensionless (lengths over L, energy over EI/L) and
-in the ground's frame, so that dead loads are constant.
+axial force). Those of a grounded end do not exist; the last one only that of inextensible strips: no w
+can give a straight strip another length, so its mean axial force cannot be condensed. All is
+dimensionless (lengths over L, energy over EI/L) and in the ground's frame, so that dead loads are
+constant.
 """
 
 from __future__ import annotations
@@ -22,7 +23,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.strip.compiled import kernel, part
-from spline_model.strip.laws import MATERIAL, bending_law, mixed_law, stretching_law
 
 Array = NDArray[np.float64]
 GROUNDED = -1
@@ -50,10 +50,11 @@ class Strips(NamedTuple):
     speed, curvature, rigidity (S, G): J0, stress-free curvature and EI at the Gauss points;
     stretching (S,) EA of stretching by quadrature, 0 for the mixed form; strain (S,) natural strain;
     modes (S, G, K) of the axial force, orthonormal along the strip, of which ``split`` belong to the
-    stretching and the others to the sliding of control points; compliance (S, K) of each; gain (S, K) the stiffness by which they are condensed;
-    coupled: leading axial forces that stay beside w, where a compliance is too small to divide by
-    or depends on the state; outer: 1 if the first of them, the mean, stays beside the bodies, or 0; roots, tips (S,) bodies or GROUNDED; root, tip (S, 3): clamped point in
-    its body's frame, or on the ground, and direction at rest [rad]; reach (S, 2) k_A, k_B;
+    stretching and the others to the sliding of control points; compliance (S, K) of each; gain (S, K)
+    the stiffness by which they are condensed; coupled: leading axial forces that stay beside w, where a
+    compliance is too small to divide by or depends on the state; outer: 1 if the first of them, the
+    mean, stays beside the bodies, or 0; roots, tips (S,) bodies or GROUNDED; root, tip (S, 3): clamped
+    point in its body's frame, or on the ground, and direction at rest [rad]; reach (S, 2) k_A, k_B;
     dead (S, 2 n) dead load on the control points; weight (S, 2) dead load per du; measure: of all.
     """
 
@@ -145,7 +146,7 @@ def end_frame(body, frame, pose, out):
 
 @part()
 def place_points(s, w, pose, strips, local):
-    """Control points of strip s from its own coordinates w (W,) and the bodies' poses (3 B,); fills its map."""
+    """Control points of strip s from its own coordinates w (W,) and the bodies' poses (3 B,), and its map."""
     points, ends, frame = local.points[s], local.map[s], local.line
     own = w.size
     inner = own - 2
@@ -165,157 +166,6 @@ def place_points(s, w, pose, strips, local):
     ends[2], ends[3] = kx, ky
     ends[4], ends[5] = frame[5] - points[inner + 3], points[inner + 2] - frame[4]
     ends[6], ends[7] = frame[5] - frame[1], frame[0] - frame[4]
-
-
-@part()
-def assemble_points(
-    points, a, moving, d1, d2, weights, speeds, curvature, rigidity, stretching, strain, modes, split,
-    compliance, dead, measure, gradient, hessian, coupling, gap, gram, moment, out,
-):  # fmt: skip
-    """Fill gradient, upper Hessian, coupling and gap of the first ``moving`` places of one strip.
-
-    Adds bending and axial energy to out[0] and out[1], the dead load's to out[2]; out[3] becomes the
-    least v / J0. The arguments are one strip's rows of ``Strips`` and ``Local``: whole tuples of
-    arrays would cost more to pass on than the strip to evaluate.
-    """
-    n, count, slowest = d1.shape[1], a.size, np.inf
-    bending = axial = fallen = 0.0
-    for i in range(2 * n):
-        gradient[i] = -dead[i]
-        fallen -= dead[i] * points[i]
-    for i in range(2 * moving):
-        for j in range(i, 2 * moving):
-            hessian[i, j] = 0.0
-    for k in range(count):
-        for i in range(2 * moving):
-            coupling[k, i] = 0.0
-        if measure == MATERIAL:
-            gap[k] = -compliance[k] * a[k]
-            axial += 0.5 * compliance[k] * a[k] * a[k]
-        else:
-            gap[k] = 0.0
-            for j in range(count):
-                gram[k, j] = 0.0
-    for p in range(weights.size):
-        x1 = y1 = x2 = y2 = 0.0
-        for i in range(n):
-            x, y = points[2 * i], points[2 * i + 1]
-            x1 += d1[p, i] * x
-            y1 += d1[p, i] * y
-            x2 += d2[p, i] * x
-            y2 += d2[p, i] * y
-        weight, speed = weights[p], speeds[p]
-        square = x1 * x1 + y1 * y1
-        v, r = math.sqrt(square), 1.0 / square
-        slowest = min(slowest, v / speed)
-        tx, ty = x1 / v, y1 / v
-        phi = (x1 * y2 - y1 * x2) * r
-        density, m, m_phi, m_v, f, f_v = bending_law(phi, v, speed, curvature[p], rigidity[p], measure)
-        bending += weight * density
-        moment[p] = m
-        force = sliding = by_nv = 0.0
-        if count > 0:
-            for k in range(split):
-                force += modes[p, k] * a[k]
-            for k in range(split, count):
-                sliding += modes[p, k] * a[k]
-            loss = compliance[0] * force * force
-            if split < count:
-                loss += compliance[split] * sliding * sliding
-            density, by_v, by_vv, by_n, by_nv = mixed_law(v, speed, strain, force + sliding, loss, measure)
-            f += by_v
-            f_v += by_vv
-            if measure == MATERIAL:
-                for k in range(count):
-                    gap[k] += weight * modes[p, k] * by_n
-            else:
-                axial += weight * density
-                for k in range(count):
-                    mine, first, last = (force, 0, split) if k < split else (sliding, split, count)
-                    gap[k] += weight * modes[p, k] * (by_n - compliance[k] * mine * v)
-                    for j in range(first, last):
-                        gram[k, j] += weight * compliance[k] * v * modes[p, k] * modes[p, j]
-        if stretching > 0.0:
-            density, by_v, by_vv = stretching_law(v, speed, strain, stretching, measure)
-            axial += weight * density
-            f += by_v
-            f_v += by_vv
-        # gradient of phi in (x', y', x'', y'')
-        p0, p1 = (y2 - 2.0 * phi * x1) * r, (-x2 - 2.0 * phi * y1) * r
-        p2, p3 = -y1 * r, x1 * r
-        g0, g1 = weight * (m * p0 + f * tx), weight * (m * p1 + f * ty)
-        g2, g3 = weight * m * p2, weight * m * p3
-        # Hessian of E(phi, v): the second derivatives of phi and v are those of the curve
-        side, two = f / v, 2.0 * r
-        q0, q1 = m_phi * p0 + m_v * tx, m_phi * p1 + m_v * ty
-        u0, u1 = m_v * p0 + f_v * tx, m_v * p1 + f_v * ty
-        h00 = weight * (q0 * p0 + u0 * tx - m * two * (2.0 * x1 * p0 + phi) + side * ty * ty)
-        h11 = weight * (q1 * p1 + u1 * ty - m * two * (2.0 * y1 * p1 + phi) + side * tx * tx)
-        h01 = weight * (q0 * p1 + u0 * ty - m * two * (x1 * p1 + y1 * p0) - side * tx * ty)
-        h02 = weight * (q0 * p2 - m * two * x1 * p2)
-        h03 = weight * (q0 * p3 + m * (1.0 - 2.0 * x1 * p3) * r)
-        h12 = weight * (q1 * p2 + m * (-1.0 - 2.0 * y1 * p2) * r)
-        h13 = weight * (q1 * p3 - m * two * y1 * p3)
-        bend = weight * m_phi
-        h22, h23, h33 = bend * p2 * p2, bend * p2 * p3, bend * p3 * p3
-        for i in range(moving):
-            u, q = d1[p, i], d2[p, i]
-            gradient[2 * i] += u * g0 + q * g2
-            gradient[2 * i + 1] += u * g1 + q * g3
-            xx1, xx2 = u * h00 + q * h02, u * h02 + q * h22
-            xy1, xy2 = u * h01 + q * h12, u * h03 + q * h23
-            yx1, yx2 = u * h01 + q * h03, u * h12 + q * h23
-            yy1, yy2 = u * h11 + q * h13, u * h13 + q * h33
-            row0, row1 = hessian[2 * i], hessian[2 * i + 1]
-            for j in range(i, moving):
-                row0[2 * j] += xx1 * d1[p, j] + xx2 * d2[p, j]
-                row0[2 * j + 1] += xy1 * d1[p, j] + xy2 * d2[p, j]
-                row1[2 * j] += yx1 * d1[p, j] + yx2 * d2[p, j]
-                row1[2 * j + 1] += yy1 * d1[p, j] + yy2 * d2[p, j]
-        for k in range(count):
-            factor = by_nv
-            if measure != MATERIAL:
-                factor -= compliance[k] * (force if k < split else sliding)
-            wk = weight * modes[p, k] * factor
-            row = coupling[k]
-            kx, ky = wk * tx, wk * ty
-            for i in range(moving):
-                row[2 * i] += kx * d1[p, i]
-                row[2 * i + 1] += ky * d1[p, i]
-    out[0] += bending
-    out[1] += axial
-    out[2] += fallen
-    out[3] = min(out[3], slowest)
-
-
-@part()
-def evaluate_points(s, a, moving, shape, strips, local, out):
-    """``assemble_points`` of strip s."""
-    assemble_points(
-        local.points[s],
-        a,
-        moving,
-        shape.d1,
-        shape.d2,
-        shape.weight,
-        strips.speed[s],
-        strips.curvature[s],
-        strips.rigidity[s],
-        strips.stretching[s],
-        strips.strain[s],
-        strips.modes[s],
-        strips.split,
-        strips.compliance[s],
-        strips.dead[s],
-        strips.measure,
-        local.gradient[s],
-        local.hessian[s],
-        local.coupling[s],
-        local.gap[s],
-        local.gram[s],
-        local.moment[s],
-        out,
-    )
 
 
 @kernel()

@@ -72,10 +72,10 @@ def test_an_unnamed_effect_is_never_asked(monkeypatch):
 
 
 POISONED = """
-import spline_model.kernels.drives as drives, spline_model.strip.element as element
+import spline_model.kernels.drives as drives, spline_model.strip.points as points
 def poison(*_):
     raise RuntimeError("not in the scene")
-element.stretching_law = drives.factor_at = poison
+points.stretching_law = drives.factor_at = poison
 from spline_model.pivot import cross_axis_pivot
 from spline_model.statics import solve_statics
 from tests.table_one import TABLE_ONE

@@ -1,0 +1,109 @@
+"""The ends of the strips, and the bodies that carry them: free ends are bodies without mass."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from spline_model.compile import System
+from spline_model.effects import Clamp
+from spline_model.effects.base import Constraint
+from spline_model.reduced.assembly import Bodies
+from spline_model.strip.element import GROUNDED
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class End:
+    """An end of a strip: its body or GROUNDED, point there [m], direction at rest, row of its clamp or -1."""
+
+    body: int
+    point: Array
+    direction: float
+    row: int
+
+
+Ends = dict[tuple[str, str], End]
+"""Ends by (strip, \"start\" or \"end\")."""
+
+
+def ends_of(system: System) -> Ends:
+    """Both ends of all strips by (strip, end); a free end is a body of its own, behind the scene's."""
+    scene, free = system.scene, len(system.scene.bodies)
+    ends: Ends = {}
+    places = {body.name: i for i, body in enumerate(scene.bodies)}
+    rows: dict[tuple[str, str], int] = {
+        (c.strip, c.end): system.layout.rows(i).start
+        for i, c in enumerate(scene.of(Constraint))
+        if isinstance(c, Clamp)
+    }
+    for strip in scene.strips:
+        for end, (at, inner, sign) in {"start": (0, 1, 1.0), "end": (-1, -2, -1.0)}.items():
+            point = strip.control_points[at]
+            along = sign * (strip.control_points[inner] - point)
+            direction = float(np.arctan2(along[1], along[0]))
+            clamp = scene.clamp_of(strip.name, end)
+            if clamp is None:
+                ends[strip.name, end] = End(body=free, point=np.zeros(2), direction=direction, row=-1)
+                free += 1
+            elif clamp.to in places:
+                centre = scene.body(clamp.to).centre
+                ends[strip.name, end] = End(
+                    body=places[clamp.to],
+                    point=point - centre,
+                    direction=direction,
+                    row=rows[strip.name, end],
+                )
+            else:
+                ends[strip.name, end] = End(
+                    body=GROUNDED, point=point, direction=direction, row=rows[strip.name, end]
+                )
+    return ends
+
+
+def bodies_of(system: System, ends: Ends, outer: int) -> Bodies | None:
+    """The bodies and what acts on them; None where a load acts on a clamped end."""
+    scene, layout, tables = system.scene, system.layout, system.tables
+    length, force = system.scales.length, system.scales.energy / system.scales.length
+    rest = [v for body in scene.bodies for v in (*(body.centre / length), 0.0)]
+    places = {
+        layout.bodies[body.name] + k: 3 * i + k for i, body in enumerate(scene.bodies) for k in range(3)
+    }
+    for strip in scene.strips:
+        start, count = layout.strips[strip.name]
+        for end, at in (("start", start), ("end", start + 2 * count - 2)):
+            if ends[strip.name, end].row < 0:
+                for k in range(2):
+                    places[at + k] = len(rest) + k
+                point = strip.control_points[0 if end == "start" else -1]
+                rest += [*(point / length), 0.0]
+    load, weight = np.zeros(len(rest)), np.zeros(len(rest))
+    unit = np.tile([force, force, force * length], len(rest) // 3)
+    for coordinate, value in zip(tables.loads.coordinate, tables.loads.value, strict=True):
+        if int(coordinate) not in places:
+            return None
+        load[places[int(coordinate)]] += value
+    if tables.weight.size:
+        for body in scene.bodies:
+            mine = 3 * scene.bodies.index(body)
+            weight[mine : mine + 3] += tables.weight[layout.body(body.name)]
+    held = np.array([places[int(c)] for c in tables.drives.coordinate], dtype=np.int64)
+    if len(set(held.tolist())) != len(held):
+        return None
+    turns = np.flatnonzero(tables.drives.turns)
+    return Bodies(
+        rest=np.array(rest),
+        load=np.concatenate((load / unit, np.zeros(outer))),
+        weight=np.concatenate((weight / unit, np.zeros(outer))),
+        free=np.array([i for i in range(len(rest) + outer) if i not in set(held.tolist())], dtype=np.int64),
+        held=held,
+        driven=int(turns[0]) if len(turns) == 1 else -1,
+    )
+
+
+def frames_of(ends: list[End], length: float) -> Array:
+    """Point over the length and direction of each end, (S, 3)."""
+    return np.array([[*(e.point / length), e.direction] for e in ends])
