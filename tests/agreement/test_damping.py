@@ -44,6 +44,7 @@ def decay(damper, settings, **options):
     return abs(np.log(energy[0] / energy[-1]) / (2.0 * rate * duration) - 1.0)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("settings, options", SETTINGS, ids=["spline", "fe"])
 @pytest.mark.parametrize("damper", DAMPERS)
 def test_body_damping_makes_a_swing_die_away_at_its_rate(damper, settings, options):

@@ -77,6 +77,7 @@ def frequency_difference(control_points):
 CHECKS = {"agreement_swing": swing_difference, "agreement_swing_frequency": frequency_difference}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("gate", CHECKS)
 def test_eight_control_points_swing_like_the_refined_elements(gate):
     """Requirement: n = 8 follows the refined elements for 0.05 s, in rotation and in frequency."""
@@ -96,6 +97,7 @@ def test_four_locking_free_control_points_swing_a_little_too_fast():
     assert 0.002 < shift < 0.006
 
 
+@pytest.mark.slow
 def test_four_consistent_control_points_swing_nearly_twice_as_fast():
     """Requirement: n = 4 by consistent quadrature is shown for what it is: a locked pivot."""
     locked = spline_swing(4, step=1e-6, stretch="consistent", measure="spatial", integrator="energy")

@@ -12,6 +12,9 @@ from fe_reference.model import Body, Model, Section, straight_strip
 from fe_reference.pivot import cross_axis_pivot
 from tests import gates
 
+QUICK_ELEMENTS = ("corotational", pytest.param("reissner", marks=pytest.mark.slow))
+"""Both elements where the interpreted forms of the second take seconds."""
+
 LENGTH = 0.06 * np.sqrt(2.0)
 TABLE_1: dict[str, Any] = {
     "length": LENGTH,

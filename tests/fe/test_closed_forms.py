@@ -8,12 +8,24 @@ import pytest
 from fe_reference.model import ELEMENTS
 from fe_reference.statics import solve_loads, solve_statics
 from tests import gates
-from tests.fe.cases import EI, FORCE, LENGTH, MOMENT, SECTION, cantilever, extrapolated, hold, pivot
+from tests.fe.cases import (
+    EI,
+    FORCE,
+    LENGTH,
+    MOMENT,
+    QUICK_ELEMENTS,
+    SECTION,
+    cantilever,
+    extrapolated,
+    hold,
+    pivot,
+)
 from tests.fe.elastica import by_elliptic_integrals, by_quadrature
 
 LOADS = (0.5, 1.0, 2.0, 5.0, 7.5, 10.0)
 
 
+@pytest.mark.slow
 def test_end_moment_rolls_the_strip_into_two_full_circles() -> None:
     """An end moment of 4 pi EI/L turns the tip by two whole turns, back to the clamp, in both elements."""
 
@@ -61,7 +73,7 @@ def tips(element: str, elements: int) -> np.ndarray:
     return np.column_stack([path.rotation, path.centre / LENGTH])[rows]
 
 
-@pytest.mark.parametrize("element", ELEMENTS)
+@pytest.mark.parametrize("element", QUICK_ELEMENTS)
 def test_tip_force_follows_the_elastica(element: str) -> None:
     """Under a tip force up to 10 EI/L^2 the tip follows the elastica with the same stretch and shear.
 

@@ -23,6 +23,7 @@ def release(duration: float, integrator: str = "central-difference", **settings:
     )
 
 
+@pytest.mark.slow
 def test_explicit_and_implicit_agree() -> None:
     """Both integrators follow the same motion over 0.01 s, sampled at the same instants."""
 
@@ -54,6 +55,7 @@ def test_explicit_and_implicit_agree_over_the_paper_s_duration() -> None:
     hold("fe_integrators_agree_long", error)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("integrator", ["central-difference", "generalised-alpha"])
 def test_order_of_the_integrators(integrator: str) -> None:
     """The rotation over 0.0048 s converges with the second power of the step."""
@@ -114,6 +116,7 @@ def test_attachments_hold_exactly(integrator: str) -> None:
     hold("fe_attachments", error)
 
 
+@pytest.mark.slow
 def test_reissner_motion_is_sound() -> None:
     """Shear-deformable strips swing with the same integrators: both schemes stay together."""
     settings: dict[str, Any] = {"start": QUARTER, "duration": 0.004, "samples": 200}

@@ -61,6 +61,7 @@ def test_damping_ratio_of_a_cantilever(name: str) -> None:
     hold(f"fe_{name}_ratio", error)
 
 
+@pytest.mark.slow
 def test_body_damping() -> None:
     """A pivot on massless strips decays with c.phi^2 / (2 omega) of its first mode."""
     given = {"body_damping": {"translation": 1.5, "rotation": 0.04}}

@@ -7,7 +7,7 @@ import pytest
 
 from fe_reference.model import ELEMENTS, rotation_matrix
 from fe_reference.statics import solve_loads, solve_mechanism, solve_statics
-from tests.fe.cases import EI, LENGTH, cantilever, extrapolated, hold, pivot
+from tests.fe.cases import EI, LENGTH, QUICK_ELEMENTS, cantilever, extrapolated, hold, pivot
 from tests.fe.scenes import APART, GUIDE, LINK, PARAMETERS, four_bar, free_cantilever, guide
 
 SOFT = {
@@ -40,7 +40,7 @@ def test_cantilever_under_its_own_weight() -> None:
     hold("fe_own_weight", error)
 
 
-@pytest.mark.parametrize("element", ELEMENTS)
+@pytest.mark.parametrize("element", QUICK_ELEMENTS)
 def test_natural_curvature_gives_a_stress_free_arc(element: str) -> None:
     """A strip with natural curvature and strain lies on the arc of that radius, without energy."""
     curvature, strain = 0.75 * np.pi / GUIDE, 0.02
@@ -158,7 +158,7 @@ def all_static(**discretisation: Any) -> Any:
     return four_bar(STATIC, rise=0.002, **discretisation)
 
 
-@pytest.mark.parametrize("element", ELEMENTS)
+@pytest.mark.parametrize("element", QUICK_ELEMENTS)
 def test_static_balance(element: str) -> None:
     """Work of drives and loads is the change of strain and gravity energy along the whole path."""
 
@@ -172,7 +172,7 @@ def test_static_balance(element: str) -> None:
     hold(f"fe_static_balance_{element}", error)
 
 
-@pytest.mark.parametrize("element", ELEMENTS)
+@pytest.mark.parametrize("element", QUICK_ELEMENTS)
 def test_mechanism_does_not_depend_on_the_frame(element: str) -> None:
     """A four-bar turned as a whole with its gravity and its loads moves as before, turned."""
 

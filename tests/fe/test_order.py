@@ -58,6 +58,7 @@ def test_level_of_twenty_elements(element: str, quantity: str) -> None:
     hold(f"fe_level_{quantity}_{element}", error)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("quantity", QUANTITIES)
 def test_reissner_without_shear_is_the_corotational_pivot(quantity: str) -> None:
     """With a very large shear rigidity both elements extrapolate to the same path."""

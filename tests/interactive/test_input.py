@@ -111,6 +111,7 @@ def test_every_parameter_can_be_set_over_its_range():
             assert codes(state) == []
 
 
+@pytest.mark.slow
 def test_camera_faults_are_named_and_never_shown_as_right():
     """Requirement: swapped markers, a single jump, stretched strips and lost markers are named at once, and
     the first two leave the pose as it was."""

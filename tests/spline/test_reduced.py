@@ -139,7 +139,7 @@ def test_elements_find_the_states_of_the_bordered_system(scene, form):
 @pytest.mark.parametrize("form", FORMS)
 @pytest.mark.parametrize("scene", SCENES)
 def test_unknowns_come_back_from_the_elements(scene, form):
-    """Requirement: the unknowns at rest are those of straight or curved strips with speeds 1 at the clamps."""
+    """Requirement: at rest the unknowns are those of straight or curved strips of speed 1 at the clamps."""
     system = compile_scene(SCENES[scene](FORMS[form]))
     model = reduced(system)
     y = at_rest(model)

@@ -113,6 +113,7 @@ def test_static_advice_as_json(capsys, monkeypatch):
     assert not found["pin joint"]["meets"] and found["pin joint"]["error_trajectory"] > 0.1
 
 
+@pytest.mark.slow
 def test_dynamic_advice_as_a_table(capsys, monkeypatch):
     """The command with --dynamic prints each model's setting, errors of rotation and frequency, and time."""
     monkeypatch.setattr(advice, "REFERENCE", (6, 5))

@@ -59,6 +59,7 @@ def swing_of(effects, audited):
     return problem, answer_release(problem, SplineSettings(), **run)
 
 
+@pytest.mark.slow
 def test_cheapest_scene_is_within_the_tolerance(audited):
     """Run apart from the audit, the cheapest scene of Table 1 answers within 1e-3 of the full one."""
     best = audited["cheapest"]
@@ -138,6 +139,7 @@ def test_leaving_out_an_effect():
     assert "section_rotary_inertia" not in massless.effects.names
 
 
+@pytest.mark.slow
 def test_audit_of_a_mechanism_without_a_drive(command, monkeypatch):
     """A guide that follows its load has no torque and no swing, and is judged by path and first mode."""
     monkeypatch.setattr(outcome, "SWINGS", 0.5)

@@ -33,6 +33,7 @@ def test_stored_result_is_fresh(name):
     assert (state.kind, state.reason) == ("fresh", "")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", STUDIES)
 def test_stored_tables_draw_the_stored_figures(name):
     """With the same libraries the committed tables give the committed vector figures byte by byte."""
