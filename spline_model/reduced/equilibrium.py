@@ -28,9 +28,8 @@ def newton(y, load, bodies, strips, shape, local, space, tolerance, counters):
         negative = factorise(bodies.free, space.tangent, space.factors, bodies.load.size - poses)
         if negative == SINGULAR:
             return -1
-        if norm <= tolerance or (norm <= 1e3 * tolerance and norm > 0.5 * before):
-            return max(0, negative + int(space.out[NEGATIVE]))
-        if trial == MOST_ITERATIONS:
+        done = norm <= tolerance or (norm <= 1e3 * tolerance and norm > 0.5 * before)
+        if not done and trial == MOST_ITERATIONS:
             return -1
         before = norm
         space.move[:] = 0.0
@@ -44,6 +43,8 @@ def newton(y, load, bodies, strips, shape, local, space, tolerance, counters):
         move_strips(1.0, bodies, strips, shape, local, space, space.rate)
         for i in range(bodies.rest.size, y.size):
             y[i] += space.rate[i]
+        if done:  # with a last correction, whose own residual is of second order
+            return max(0, negative + int(space.out[NEGATIVE]))
         counters[ITERATIONS] += 1
     return -1
 

@@ -50,14 +50,15 @@ def follow_reduced(model: Reduced, load_factors: Sequence[float], start: tuple[f
         TOLERANCE,
         answer,
     )
-    return _path_of(model, route.factor, answer) if done == len(route.factor) else None
+    return _path_of(model, route.factor, answer, start[1]) if done == len(route.factor) else None
 
 
-def _path_of(model: Reduced, factors: Array, answer: Answer) -> Path:
-    """A complete answer in the unknowns of the scene and in SI units."""
+def _path_of(model: Reduced, factors: Array, answer: Answer, begin: Array) -> Path:
+    """A complete answer in the scene's unknowns and in SI units; begin (N,): its first state, as given."""
     system, energy = model.system, model.energy
     layout, drives, loads = system.layout, system.tables.drives, system.tables.loads
     states = unknowns_of(model, answer, len(factors))
+    states[0] = begin
     rates = np.zeros_like(states)
     for i, body in enumerate(system.scene.bodies):
         rates[:, layout.body(body.name)] = answer.rate[:, 3 * i : 3 * i + 3] * [

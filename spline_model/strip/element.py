@@ -83,8 +83,9 @@ class Local(NamedTuple):
     """What one evaluation of S strips fills; E = W + coupled + 7 element coordinates, at most.
 
     points (S, 2 n); gradient (S, 2 n), hessian (S, 2 n, 2 n), coupling (S, K, 2 n) in the control
-    points; moment (S, G); g (S, E), h (S, E, E), b (S, K, E), gap (S, K), gram (S, K, K) derivative
-    of -gap in a; map (S, 16) of the ends; square, lines (8, 8) and line (8,): scratch.
+    points; moment (S, G); g (S, E), h (S, E, E), b and e (S, K, E), the coupling and its combination,
+    gap (S, K), gram (S, K, K) derivative of -gap in a; map (S, 16) of the ends; lever (n,) moment of
+    the tip's reaction about the control points; square, lines (8, 8) and line (8,): scratch.
     """
 
     points: Array
