@@ -20,8 +20,9 @@ from spline_model.strip.element import Local, Shape, Strips, local_arrays
 
 Array = NDArray[np.float64]
 
-LEAST_COMPLIANCE = 1e-9
-"""Axial compliance in L^2/EI below which an axial force stays beside w: its inverse drowns in round-off."""
+LEAST_COMPLIANCE = 1e-4
+"""Axial compliance in L^2/EI below which an axial force stays beside w (L/h above 29): condensed, it would be
+the strain's round-off over the compliance; beside w it follows from equilibrium."""
 GAIN = 100.0
 """Stiffness by which such a force is condensed all the same, exactly: of the order of the bending's, so
 that no digit is lost."""
