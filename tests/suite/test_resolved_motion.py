@@ -21,7 +21,10 @@ from tests.table_one import TABLE_ONE
 
 @pytest.mark.slow
 def test_motion_that_tumbles_says_that_it_is_not_resolved():
-    """A short polymer pivot with a light body moves otherwise with more control points, and says so."""
+    """A short polymer pivot with a light body moves otherwise with more control points, and says so.
+
+    By how much depends on the last digit of the start, as the motion is hardly predictable: 0.06 to 0.2 rad.
+    """
     given = {"length": 0.05, "inclination": math.radians(35.0), "crossing_ratio": 0.7}
     light = {"body_mass": 0.02, "body_moment_of_inertia": 1e-5}
     pivot = dataclasses.replace(named_case("polymer_pivot"), **given, **light)
@@ -29,7 +32,7 @@ def test_motion_that_tumbles_says_that_it_is_not_resolved():
     assert motion.converged
     assert "with 8 control points the rotation differs" in motion.resolution
     assert "the motion is not resolved" in motion.resolution
-    assert motion.rotation_error > 0.1
+    assert motion.rotation_error > companion.UNRESOLVED * np.abs(motion.rotation).max()
 
 
 def test_swing_of_a_light_body_says_that_it_is_not_resolved():
