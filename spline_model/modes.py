@@ -20,6 +20,8 @@ from spline_model.operator import evaluate
 from spline_model.path import follow
 from spline_model.pivot import Pivot, mechanism_in_motion
 from spline_model.proportional import solve_mechanism, solve_path
+from spline_model.reduced.model import Reduced, from_unknowns, reduced
+from spline_model.reduced.whole import coordinates_by, whole_tangents
 from spline_model.static_answers import STATIONS
 
 Array = NDArray[np.float64]
@@ -131,39 +133,76 @@ def static_state(
 def linear_modes(system: System, z: Array, mass: Array) -> tuple[Array, Array, Array]:
     """Squared circular frequencies, shapes in q (columns) and slide share, of a state.
 
-    The axial forces are condensed, inextensible strips and clamps become constraints on
-    whose null space the problem is solved: K and M of the free coordinates alone.
+    K and M in the coordinates of the strips' elements that are free, in which clamps hold by
+    construction; axial forces are condensed, and what inextensible strips ask for is a constraint on
+    whose null space the problem is solved.
     """
-    layout, unit = system.layout, system.scales.unit
     if not np.any(mass):
         raise InvalidParameter("effects", "no inertia", "strip or body inertia for a natural mode")
-    count = layout.coordinate_count
-    gradient, hessian = np.empty(layout.size), np.empty((layout.size, layout.size))
-    evaluate(system, z, 0.0, gradient, hessian)
-    hessian *= unit[:, None] * unit
-    stiffness = hessian[:count, :count].copy()
-    rows = [hessian[layout.multiplier_start :, :count]]
-    slide = np.zeros_like(stiffness)
-    for i, effect in enumerate(system.scene.of(MixedStretching)):
-        at = layout.axial_modes(i)
-        coupling = hessian[at, :count]
-        if effect.axial_compliance == 0:
-            rows.append(coupling)
-            continue
-        part = coupling.T @ np.linalg.solve(-hessian[at, at], coupling)
-        stiffness += part
-        if isinstance(effect.modes, SlideModes):
-            slide += part
-    constraints = np.concatenate(rows)
-    constraints = constraints / np.linalg.norm(constraints, axis=1, keepdims=True)
-    free = null_space(constraints)
-    scaled_mass = mass * unit[:count, None] * unit[:count]
-    free = _without_massless(free, stiffness, scaled_mass)
-    values, vectors = _sorted_modes(free.T @ stiffness @ free, free.T @ scaled_mass @ free)
+    model = reduced(system, longest=math.inf)
+    stiffness, slide, rows, by = _bordered(system, z) if model is None else _on_elements(model, z)
+    norms = np.linalg.norm(rows, axis=1, keepdims=True)
+    free = null_space(rows / norms) if len(rows) else np.eye(len(stiffness))
+    inertia = by.T @ mass @ by
+    free = _without_massless(free, stiffness, inertia)
+    values, vectors = _sorted_modes(free.T @ stiffness @ free, free.T @ inertia @ free)
     shapes = free @ vectors
     strain = np.einsum("im,ij,jm->m", shapes, stiffness, shapes)
     share = np.einsum("im,ij,jm->m", shapes, slide, shapes) / np.abs(strain)
-    return values, shapes * unit[:count, None], share
+    return values, by @ shapes, share
+
+
+Linear = tuple[Array, Array, Array, Array]
+"""Of F coordinates: stiffness and its part from sliding (F, F) [J], constraints (C, F), dq by them (Q, F)."""
+
+
+def _on_elements(model: Reduced, z: Array) -> Linear:
+    """In the coordinates of the strips' elements, which the clamps hold by construction."""
+    y, strips = from_unknowns(model, z), model.strips
+    hessian = model.energy * whole_tangents(model, y[None])[1][0]
+    indices, parts = np.arange(model.size), []
+    for s, compliance in enumerate(strips.compliance):
+        axial = indices[model.places(s)[1]]
+        for part, slides in ((slice(strips.split), False), (slice(strips.split, None), True)):
+            parts.append((axial[part], not compliance[part].any(), slides))
+    free = np.setdiff1d(indices, np.concatenate([model.bodies.held, *(at for at, _, _ in parts)]))
+    return *_condensed(hessian, free, parts, hessian[:0, free]), coordinates_by(model, y)[:, free]
+
+
+def _bordered(system: System, z: Array) -> Linear:
+    """In all coordinates, clamps among the constraints: where the element does not know a scene."""
+    layout, unit = system.layout, system.scales.unit
+    gradient, hessian = np.empty(layout.size), np.empty((layout.size, layout.size))
+    evaluate(system, z, 0.0, gradient, hessian)
+    hessian *= unit[:, None] * unit
+    free, indices = np.arange(layout.coordinate_count), np.arange(layout.size)
+    parts = [
+        (indices[layout.axial_modes(i)], effect.axial_compliance == 0, isinstance(effect.modes, SlideModes))
+        for i, effect in enumerate(system.scene.of(MixedStretching))
+    ]
+    rows = hessian[layout.multiplier_start :, free]
+    return *_condensed(hessian, free, parts, rows), np.diag(unit[free])
+
+
+def _condensed(
+    hessian: Array, free: NDArray[np.int64], parts: list[tuple[NDArray[np.int64], bool, bool]], rows: Array
+) -> tuple[Array, Array, Array]:
+    """Stiffness, its part from sliding, and constraints: axial forces that comply are eliminated.
+
+    parts: places of axial forces, whether they do not comply, and whether they belong to sliding.
+    """
+    stiffness = hessian[np.ix_(free, free)]
+    slide = np.zeros_like(stiffness)
+    for at, rigid, slides in parts:
+        coupling = hessian[np.ix_(at, free)]
+        if rigid:
+            rows = np.concatenate((rows, coupling))
+            continue
+        part = coupling.T @ np.linalg.solve(-hessian[np.ix_(at, at)], coupling)
+        stiffness += part
+        if slides:
+            slide += part
+    return stiffness, slide, rows
 
 
 def _sorted_modes(stiffness: Array, mass: Array) -> tuple[Array, Array]:

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import BSpline
 
-from spline_model.basis import SlideModes, SplineBasis
+from spline_model.basis import AxialModes, SlideModes, SplineBasis
 from spline_model.compile import System
 from spline_model.effects import Bending, MixedStretching, Stretching, StripGravity
 from spline_model.effects.elastic import MEASURES
@@ -27,7 +27,7 @@ GAIN = 100.0
 """Stiffness by which such a force is condensed all the same, exactly: of the order of the bending's, so
 that no digit is lost."""
 MOST_CONTROL_POINTS = 24
-"""Longer B-splines are narrow bands, which the element's dense tangent does not use."""
+"""Longer B-splines are narrow bands, which the element's dense tangent does not use along a path."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -53,20 +53,26 @@ class Reduced:
         modes = int(self.strips.compliance.shape[1])
         return len(self.bodies.rest) + len(self.strips.roots) * (own + modes)
 
+    def places(self, strip: int) -> tuple[slice, slice]:
+        """Where w and a of a strip stand in y."""
+        own, modes = 2 * len(self.shape.order) - 6, int(self.strips.compliance.shape[1])
+        at = len(self.bodies.rest) + strip * (own + modes)
+        return slice(at, at + own), slice(at + own, at + own + modes)
+
     def local(self) -> Local:
         """Working arrays of the strips."""
         s, g, k = self.strips.modes.shape
         return local_arrays(s, len(self.shape.order), k, g, self.strips.coupled)
 
 
-def reduced(system: System) -> Reduced | None:
+def reduced(system: System, *, longest: float = MOST_CONTROL_POINTS) -> Reduced | None:
     """The reduced mechanism of a scene, or None where the element does not know one of its parts.
 
     Strips of one basis and quadrature, clamped or free at their ends, with bending in the material
-    or the spatial measure.
+    or the spatial measure; longest: control points of a strip, at most.
     """
     scene = system.scene
-    if not _known(scene, system):
+    if not _known(scene, system, longest):
         return None
     bending = {e.strip: e for e in scene.of(Bending)}
     basis, points = scene.strips[0].basis, next(iter(bending.values())).gauss_points
@@ -88,7 +94,7 @@ def reduced(system: System) -> Reduced | None:
     )
 
 
-def _known(scene: Scene, system: System) -> bool:
+def _known(scene: Scene, system: System, longest: float) -> bool:
     bending = scene.of(Bending)
     grids = {(e.gauss_points, e.measure) for e in bending}
     grids |= {(e.gauss_points, e.measure) for e in scene.of(MixedStretching)}
@@ -101,7 +107,7 @@ def _known(scene: Scene, system: System) -> bool:
         and "printed" not in {measure for _, measure in grids}
         and sorted(e.strip for e in bending) == sorted(strip.name for strip in scene.strips)
         and all(e.flexural_rigidity > 0.0 for e in bending)
-        and 4 <= next(iter(bases)).control_points <= MOST_CONTROL_POINTS
+        and 4 <= next(iter(bases)).control_points <= longest
     )
 
 
@@ -130,8 +136,9 @@ def _strips(
     split = len_modes(mixed[0], slide=False)
     modes, compliance, to_modes = [], [], []
     for parts, v in zip(mixed, speed, strict=True):
-        values, each, back = _orthonormal(parts, shape.u, shape.weight * v)
+        values, back = _orthonormal(tuple(e.modes for e in parts), basis, points, tuple(v))
         modes.append(values)
+        each = [e.axial_compliance for e in parts for _ in range(e.modes.count)]
         compliance.append(np.array(each) * energy / length)
         to_modes.append(back)
     measure = MEASURES.index(scene.of(Bending)[0].measure)
@@ -184,25 +191,32 @@ def len_modes(parts: list[MixedStretching], *, slide: bool) -> int:
     return sum(e.modes.count for e in parts if isinstance(e.modes, SlideModes) == slide)
 
 
-def _orthonormal(parts: list[MixedStretching], u: Array, weight: Array) -> tuple[Array, list[float], Array]:
-    """Modes (G, K) orthonormal in the weight, each with its compliance, and the scene's modes from them."""
-    values, compliances, back = np.zeros((len(u), 0)), [], np.zeros((0, 0))
-    for part in parts:
-        first, shown = part.modes.evaluate(u)
-        full = np.zeros((len(u), part.modes.count))
-        np.put_along_axis(full, first[:, None] + np.arange(shown.shape[1]), shown, axis=1)
-        if not isinstance(part.modes, SlideModes):  # the mean first
-            mean = np.eye(part.modes.count)
-            mean[:, 0] = np.linalg.lstsq(full, np.ones(len(u)), rcond=None)[0]
-            full, to_part = full @ mean, mean
-        else:
-            to_part = np.eye(part.modes.count)
+def values_at(modes: AxialModes, u: Array) -> Array:
+    """All axial modes at points u, (len(u), count)."""
+    first, shown = modes.evaluate(np.asarray(u))
+    full = np.zeros((len(u), modes.count))
+    np.put_along_axis(full, first[:, None] + np.arange(shown.shape[1]), shown, axis=1)
+    return full
+
+
+@lru_cache(maxsize=64)
+def _orthonormal(
+    parts: tuple[AxialModes, ...], basis: SplineBasis, points: int, speed: tuple[float, ...]
+) -> tuple[Array, Array]:
+    """Modes (G, K) orthonormal along the strip, and the scene's modes from them; kept."""
+    u, weight = basis.gauss_rule(points)
+    weight = weight * speed
+    values, back = np.zeros((len(u), 0)), np.zeros((0, 0))
+    for modes in parts:
+        full, to_part = values_at(modes, u), np.eye(modes.count)
+        if not isinstance(modes, SlideModes):  # the mean first
+            to_part[:, 0] = np.linalg.lstsq(full, np.ones(len(u)), rcond=None)[0]
+            full = full @ to_part
         factor = np.linalg.cholesky(full.T @ (weight[:, None] * full))
         values = np.column_stack((values, np.linalg.solve(factor, full.T).T))
-        compliances += [part.axial_compliance] * part.modes.count
-        k, m = len(back), part.modes.count
+        k, m = len(back), modes.count
         back = np.block([[back, np.zeros((k, m))], [np.zeros((m, k)), to_part @ np.linalg.inv(factor).T]])
-    return values, compliances, back
+    return values, back
 
 
 def _natural_strain(parts: list[MixedStretching], consistent: Stretching | None) -> float:
@@ -232,31 +246,28 @@ def at_rest(model: Reduced) -> Array:
 
 
 def from_unknowns(model: Reduced, z: Array) -> Array:
-    """The state y of unknowns z (N,) of the scene, whose clamps hold."""
+    """The states y (..., Y) of unknowns z (..., N) of the scene, whose clamps hold."""
     scene, layout, strips, n = model.system.scene, model.system.layout, model.strips, len(model.shape.order)
-    y = [model.bodies.rest.copy()]
-    pose = y[0]
+    y = np.empty((*z.shape[:-1], model.size))
     for i, body in enumerate(scene.bodies):
-        pose[3 * i : 3 * i + 3] = z[layout.body(body.name)] / [model.length, model.length, 1.0]
+        y[..., 3 * i : 3 * i + 3] = z[..., layout.body(body.name)] / [model.length, model.length, 1.0]
     for s, strip in enumerate(scene.strips):
-        points = z[layout.strip(strip.name)].reshape(n, 2) / model.length
-        chords = (points[1] - points[0], points[-1] - points[-2])
-        for bodies, frames, at, chord in (
-            (strips.roots, strips.root, 0, chords[0]),
-            (strips.tips, strips.tip, -1, chords[1]),
+        w, a = model.places(s)
+        points = z[..., layout.strip(strip.name)].reshape(*z.shape[:-1], n, 2) / model.length
+        y[..., w.start : w.stop - 2] = points[..., 2:-2, :].reshape(*z.shape[:-1], -1)
+        for end, (bodies, frames, outer, inner) in enumerate(
+            ((strips.roots, strips.root, 0, 1), (strips.tips, strips.tip, n - 1, n - 2))
         ):
+            chord = (1 - 2 * end) * (points[..., inner, :] - points[..., outer, :])
+            y[..., w.stop - 2 + end] = np.hypot(chord[..., 0], chord[..., 1]) / strips.reach[s, end]
             if bodies[s] >= len(scene.bodies):  # a free end is its own body
-                turn = np.arctan2(chord[1], chord[0]) - frames[s, 2]
-                pose[3 * bodies[s] : 3 * bodies[s] + 3] = (
-                    *points[at],
-                    np.arctan2(np.sin(turn), np.cos(turn)),
-                )
-        reach = np.array([np.hypot(*chord) for chord in chords]) / strips.reach[s]
+                turn = np.arctan2(chord[..., 1], chord[..., 0]) - frames[s, 2]
+                place = 3 * bodies[s]
+                y[..., place : place + 2] = points[..., outer, :]
+                y[..., place + 2] = np.arctan2(np.sin(turn), np.cos(turn))
         effects = [i for i, e in enumerate(scene.of(MixedStretching)) if e.strip == strip.name]
-        forces = np.concatenate([z[layout.axial_modes(i)] for i in effects] or [np.zeros(0)])
-        y += [
-            points[2:-2].ravel(),
-            reach,
-            np.linalg.solve(model.to_modes[s], forces) * model.length / model.energy,
-        ]
-    return np.concatenate(y)
+        forces = np.concatenate([z[..., layout.axial_modes(i)] for i in effects] or [z[..., :0]], axis=-1) * (
+            model.length / model.energy
+        )
+        y[..., a] = forces @ np.linalg.inv(model.to_modes[s]).T
+    return y

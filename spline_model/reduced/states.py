@@ -46,34 +46,40 @@ def place_all(y, poses, shape, strips, local, out, points, forces):
 
 def unknowns_of(model: Reduced, answer: Answer, count: int) -> Array:
     """Unknowns z (S, N) of the first ``count`` states."""
-    system, strips, shape = model.system, model.strips, model.shape
-    scene, layout, n = system.scene, system.layout, len(shape.order)
-    own, modes, poses = 2 * n - 6, strips.compliance.shape[1], len(model.bodies.rest)
+    strips, shape, n = model.strips, model.shape, len(model.shape.order)
     y = answer.y[:count]
-    points = np.zeros((count, len(scene.strips), 2 * n))
-    forces = np.zeros((count, len(scene.strips), 2, 3))
-    place_all(y, poses, shape, strips, model.local(), np.zeros(5), points, forces)
-    z = np.zeros((count, layout.size))
+    points = np.zeros((count, len(strips.roots), 2 * n))
+    forces = np.zeros((count, len(strips.roots), 2, 3))
+    place_all(y, len(model.bodies.rest), shape, strips, model.local(), np.zeros(5), points, forces)
+    return gathered(model, y, points, forces, answer.reaction[:count])
+
+
+def gathered(model: Reduced, y: Array, points: Array, forces: Array, reaction: Array) -> Array:
+    """Unknowns z (..., N) from y (..., Y), control points and clamp forces as of ``place_all``, and
+    reactions (..., D) of the drives."""
+    system, shape = model.system, model.shape
+    scene, layout, n = system.scene, system.layout, len(shape.order)
+    many = y.shape[:-1]
+    z = np.zeros((*many, layout.size), dtype=points.dtype)
     for i, body in enumerate(scene.bodies):
-        z[:, layout.body(body.name)] = y[:, 3 * i : 3 * i + 3] * [model.length, model.length, 1.0]
+        z[..., layout.body(body.name)] = y[..., 3 * i : 3 * i + 3] * [model.length, model.length, 1.0]
     unit = model.energy / model.length * np.array([1.0, 1.0, model.length])
     rows: dict[tuple[str, str], slice] = {
         (c.strip, c.end): layout.rows(i) for i, c in enumerate(scene.of(Constraint)) if isinstance(c, Clamp)
     }
     for s, strip in enumerate(scene.strips):
-        in_order = np.empty((count, n, 2))
-        in_order[:, shape.order] = points[:, s].reshape(count, n, 2)
-        z[:, layout.strip(strip.name)] = in_order.reshape(count, 2 * n) * model.length
-        at = poses + s * (own + modes) + own
-        force = y[:, at : at + modes] @ model.to_modes[s].T * (model.energy / model.length)
+        in_order = np.empty((*many, n, 2), dtype=points.dtype)
+        in_order[..., shape.order, :] = points[..., s, :].reshape(*many, n, 2)
+        z[..., layout.strip(strip.name)] = in_order.reshape(*many, 2 * n) * model.length
+        force = y[..., model.places(s)[1]] @ model.to_modes[s].T * (model.energy / model.length)
         done = 0
         for i, effect in enumerate(scene.of(MixedStretching)):
             if effect.strip == strip.name:
-                z[:, layout.axial_modes(i)] = force[:, done : done + effect.modes.count]
+                z[..., layout.axial_modes(i)] = force[..., done : done + effect.modes.count]
                 done += effect.modes.count
         for end, place in (("start", 0), ("end", 1)):
             if (strip.name, end) in rows:
-                z[:, rows[strip.name, end]] = forces[:, s, place] * unit
+                z[..., rows[strip.name, end]] = forces[..., s, place, :] * unit
     drives = system.tables.drives
-    z[:, drives.row] = answer.reaction[:count] * unit[2 * drives.turns]
+    z[..., drives.row] = reaction * unit[2 * drives.turns]
     return z
