@@ -1,4 +1,4 @@
-"""Design parameters of the cross-axis pivot, and how fast what it is made of changes with each."""
+"""Design parameters of a pivot or any mechanism, and how fast points and sections change with each."""
 
 from __future__ import annotations
 
@@ -9,28 +9,30 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from spline_model.design import StripDesign
+from spline_model.design import Design, StripDesign
 from spline_model.errors import InvalidParameter
+from spline_model.mechanism import Mechanism
 from spline_model.pivot import Pivot
 
 Array = NDArray[np.float64]
 
-KEYWORDS = (
-    "length",
-    "inclination",
-    "crossing_ratio",
-    "area",
-    "second_moment_of_area",
-    "youngs_modulus",
-)
+SHAPE = ("length", "inclination", "crossing_ratio")
+MATERIAL = ("area", "second_moment_of_area", "youngs_modulus")
+KEYWORDS = (*SHAPE, *MATERIAL)
 """Keywords of ``cross_axis_pivot`` that the statics of both strips alike depends on. Poisson's ratio,
-density and the inertias do not enter; ``centre_offset`` and ``orientation`` move what is reported rigidly."""
+density and the inertias do not enter, but by weight; ``centre_offset`` and ``orientation`` move what is
+reported rigidly."""
 
 SECTION = ("thickness", "width")
 """Sides of a rectangular section h x b, A = b h and I = b h^3 / 12, in place of A and I."""
 
 PARAMETERS = (*KEYWORDS, *SECTION)
-"""All that derivatives are taken by."""
+"""All that derivatives of a pivot are taken by. Those of section and material are of all strips alike, in any
+mechanism; a name before a dot picks one strip, "strip_1.thickness", and then also its ends' places at rest,
+"strip_1.end_x", or a body's centre, "body.centre_y"."""
+
+POINTS = ("start_x", "start_y", "end_x", "end_y")
+CENTRES = ("centre_x", "centre_y")
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -54,34 +56,23 @@ class Section:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Rates:
-    """Derivatives by P parameters of what the equations of a pivot hold.
+    """Derivatives by P parameters of a design of G strips and B bodies, over the parameter's own unit.
 
-    length [m], area [m^2], second_moment [m^4], modulus [Pa] of both strips (P,); ground (P, 2, 2)
-    [strip, xy] clamped points, arm (P, 2, 2) of the strips' ends from the body's centre at rest,
-    direction (P, 2) of the clamps [rad], centre (P, 2) of the body at rest and crossing (P, 2) of
-    the strips there, each over the parameter's own unit.
+    section (P, G, 3) of area [m^2], second moment [m^4] and modulus [Pa]; ends (P, G, 2, 2) [root / tip,
+    xy] of the strips at rest, centres (P, B, 2) of the bodies [m]; crossing (P, 2) of a pivot's strips [m].
     """
 
-    names: tuple[str, ...]
-    length: Array
-    area: Array
-    second_moment: Array
-    modulus: Array
-    ground: Array
-    arm: Array
-    direction: Array
-    centre: Array
+    section: Array
+    ends: Array
+    centres: Array
     crossing: Array
 
-
-def check_parameters(names: Sequence[str]) -> tuple[str, ...]:
-    """The names as a tuple; refuses unknown and doubled ones."""
-    for name in names:
-        if name not in PARAMETERS:
-            raise InvalidParameter("parameters", name, "one of " + ", ".join(PARAMETERS))
-    if not names or len(set(names)) != len(names):
-        raise InvalidParameter("parameters", list(names), "at least one name, each once")
-    return tuple(names)
+    def by_length(self, strips: Sequence[StripDesign]) -> tuple[Array, Array]:
+        """Derivatives (P, G) of log length and of direction [rad] of straight strips."""
+        chord = np.array([np.subtract(s.end, s.start) for s in strips])
+        moved = (self.ends[:, :, 1] - self.ends[:, :, 0]) / np.sum(chord**2, axis=1)[:, None]
+        turned = chord[:, 0] * moved[..., 1] - chord[:, 1] * moved[..., 0]
+        return np.sum(chord * moved, axis=-1), turned
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -115,48 +106,58 @@ class Geometry:
         angle = self.inclination + self.orientation
         return np.array([reach * math.cos(angle), reach * math.sin(angle)])
 
+    def rates(self, name: str) -> tuple[Array, Array]:
+        """Derivatives of the strips' ends (2, 2, 2) and their crossing (2,) by a parameter of the shape."""
+        cos, sin, at = math.cos(self.inclination), math.sin(self.inclination), SHAPE.index(name)
+        tangents, normals = np.array([[cos, sin], [-cos, sin]]), np.array([[-sin, cos], [sin, cos]])
+        length, ratio = self.length, self.crossing_ratio
+        moved = (tangents, length * normals, np.zeros((2, 2)))[at]  # of the tips from the roots
+        ends = np.zeros((2, 2, 2))
+        ends[1, :, 0] = (2 * ratio * cos, -2 * ratio * length * sin, 2 * length * cos)[at]
+        ends[:, 1] += moved
+        crossing = (ratio * tangents[0], ratio * length * normals[0], length * tangents[0])[at]
+        cos, sin = math.cos(self.orientation), math.sin(self.orientation)
+        turn = np.array([[cos, sin], [-sin, cos]])  # of row vectors
+        return ends @ turn, crossing @ turn
 
-def rates_of(pivot: Pivot, names: tuple[str, ...]) -> Rates:
-    """The rates of a pivot, by the names of its parameters."""
-    strip = pivot.mechanism.design.strips[0]
-    basic = np.zeros((len(names), len(KEYWORDS)))  # each parameter as a direction in the keywords
-    for i, name in enumerate(names):
-        if name in KEYWORDS:
-            basic[i, KEYWORDS.index(name)] = 1.0
-        else:
-            basic[i, 3:5] = Section.of(strip).rates(name)
-    by_shape = _shape_rates(Geometry.of(pivot))
-    return Rates(
-        names=names,
-        length=basic[:, 0],
-        area=basic[:, 3],
-        second_moment=basic[:, 4],
-        modulus=basic[:, 5],
-        **{key: np.tensordot(basic[:, :3], value, 1) for key, value in by_shape.items()},
+
+def rates_of(asked: Pivot | Mechanism, names: Sequence[str]) -> Rates:
+    """The rates of a design by the names of its parameters; refuses unknown and doubled ones."""
+    if not names or len(set(names)) != len(names):
+        raise InvalidParameter("parameters", list(names), "at least one name, each once")
+    design = (asked.mechanism if isinstance(asked, Pivot) else asked).design
+    strips, bodies = [s.name for s in design.strips], [b.name for b in design.bodies]
+    rates = Rates(
+        section=np.zeros((len(names), len(strips), 3)),
+        ends=np.zeros((len(names), len(strips), 2, 2)),
+        centres=np.zeros((len(names), len(bodies), 2)),
+        crossing=np.zeros((len(names), 2)),
     )
+    for i, name in enumerate(names):
+        owner, _, field = name.rpartition(".")
+        if isinstance(asked, Pivot) and name in SHAPE:
+            rates.ends[i], rates.crossing[i] = Geometry.of(asked).rates(name)
+            rates.centres[i] = rates.ends[i, :, 1].mean(axis=0)
+        elif field in (*MATERIAL, *SECTION) and owner in ("", *strips):
+            _set_section(rates.section[i], design, owner, field)
+        elif field in POINTS and owner in strips:
+            if design.strips[strips.index(owner)].rise != 0.0:
+                raise InvalidParameter("parameters", name, "an end of a straight strip")
+            rates.ends[i, strips.index(owner)].flat[POINTS.index(field)] = 1.0
+        elif field in CENTRES and owner in bodies:
+            rates.centres[i, bodies.index(owner), CENTRES.index(field)] = 1.0
+        else:
+            known = (*(SHAPE if isinstance(asked, Pivot) else ()), *MATERIAL, *SECTION)
+            one = f"STRIP.{', STRIP.'.join(POINTS)} or BODY.{', BODY.'.join(CENTRES)}"
+            raise InvalidParameter("parameters", name, f"one of {', '.join(known)}, {one}")
+    return rates
 
 
-def _shape_rates(shape: Geometry) -> dict[str, Array]:
-    """Rates of the clamps and points by length, inclination and crossing ratio, (3, ...) each."""
-    length, ratio = shape.length, shape.crossing_ratio
-    cos, sin = math.cos(shape.inclination), math.sin(shape.inclination)
-    tangents = np.array([[cos, sin], [-cos, sin]])
-    normals = np.array([[-sin, cos], [sin, cos]])  # d(tangents)/d(inclination)
-    ground = np.zeros((3, 2, 2))
-    ground[:, 1, 0] = 2 * ratio * cos, -2 * ratio * length * sin, 2 * length * cos
-    ends = ground + np.stack((tangents, length * normals, np.zeros((2, 2))))
-    centre = ends.mean(axis=1)
-    crossing = np.stack((ratio * tangents[0], ratio * length * normals[0], length * tangents[0]))
-    turn = np.array(
-        [
-            [math.cos(shape.orientation), math.sin(shape.orientation)],
-            [-math.sin(shape.orientation), math.cos(shape.orientation)],
-        ]
-    )  # of row vectors
-    return {
-        "ground": ground @ turn,
-        "arm": (ends - centre[:, None]) @ turn,
-        "direction": np.array([[0.0, 0.0], [1.0, -1.0], [0.0, 0.0]]),
-        "centre": centre @ turn,
-        "crossing": crossing @ turn,
-    }
+def _set_section(section: Array, design: Design, owner: str, field: str) -> None:
+    """Rates (G, 3) of A, I and E of one strip, or of all."""
+    for rate, strip in zip(section, design.strips, strict=True):
+        if owner in ("", strip.name):
+            if field in SECTION:
+                rate[:2] = Section.of(strip).rates(field)
+            else:
+                rate[MATERIAL.index(field)] = 1.0

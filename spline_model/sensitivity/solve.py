@@ -2,155 +2,181 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from spline_model.compile import System, compile_scene
-from spline_model.effects import DrivenRotation
-from spline_model.effects.base import Constraint
-from spline_model.effects.registry import MOTION_ONLY
+from spline_model.compile import compile_scene
 from spline_model.errors import InvalidParameter
-from spline_model.newton import getrf, getrs
-from spline_model.operator import evaluate
-from spline_model.pivot import BODY, Pivot
-from spline_model.sensitivity.clamps import ClampRows
-from spline_model.sensitivity.model import axial_points, bending_points
-from spline_model.sensitivity.parameters import (
-    KEYWORDS,
-    Geometry,
-    Rates,
-    check_parameters,
-    rates_of,
-)
+from spline_model.layout import Layout
+from spline_model.mechanism import Mechanism
+from spline_model.pivot import Pivot
+from spline_model.reduced.model import from_unknowns, reduced
+from spline_model.reduced.states import gathered
+from spline_model.reduced.whole import whole_tangents
+from spline_model.sensitivity.element import Elements, turned
+from spline_model.sensitivity.parameters import KEYWORDS, Geometry, Rates, rates_of
 from spline_model.sensitivity.result import Quantity, Sensitivities
-from spline_model.sensitivity.stress import fibre_stress
-from spline_model.solution import StaticSolution
+from spline_model.sensitivity.varied import STEP, held_rates, varied_strips
+from spline_model.solution import MechanismSolution, StaticSolution
 from spline_model.statics import STATIONS
 
 Array = NDArray[np.float64]
 
-EFFECTS = {"bending", "stretching", "inextensible", "pre_strain", *MOTION_ONLY}
-"""Effects whose dependence on the design is known here."""
+TOGETHER = 4
+"""Parameters at a time: the arrays of more outgrow the processor's cache."""
 LARGEST_RESIDUAL = 1e-7
-"""Residual [EI/L^2, EI/L, L, rad] above which states are not the pivot's: solved ones are below 1e-8."""
+"""Residual [EI/L^2, EI/L, L, rad] above which states are not the design's: solved ones are below 1e-8."""
 
 
 def sensitivities(
-    pivot: Pivot,
-    solution: StaticSolution,
+    asked: Pivot | Mechanism,
+    solution: StaticSolution | MechanismSolution,
     *,
     parameters: Sequence[str] = KEYWORDS,
     stations: Array = STATIONS,
+    body: str | None = None,
 ) -> Sensitivities:
-    """Derivatives of a solved path by the design, at constant rotations.
+    """Derivatives of a solved path by the design, at constant rotations, loads and driven displacements.
 
-    parameters: names of ``spline_model.sensitivity.parameters.PARAMETERS``; for area and second
+    parameters: names as of ``spline_model.sensitivity.parameters.PARAMETERS``; for area and second
     moment the section's depth follows as sqrt(12 I / A), for thickness and width it is the
-    thickness. stations: where stresses are taken, reference arc length over L.
+    thickness. stations: where stresses are taken, reference arc length over L. body: of a mechanism, the
+    one that was driven and is reported, or the only one.
 
-    With the residual R(z; p) = dL/dz, L = V - lambda psi, and its tangent K at a converged state
+    With the residual R(y; p) of the strips' elements and its tangent K at a converged state
 
-        dz/dp = -K^-1 dR/dp,    dT/dp = d(lambda_13)/dp,    dk/dp = z_t^T (dK/dp) z_t,    z_t = dz/d(theta)
+        dy/dp = -K^-1 dR/dp,    dT/dp = dR_driven/dp,    dk/dp = y_t^T (dK/dp) y_t,    y_t = dy/d(theta)
 
-    where dK/dp counts the change of the state too: one factorisation a state, one back-substitution
-    a parameter and one for the rate z_t. Exact for the discrete answer: the slide stiffness, the
-    axial modes and the clamps go with the design as in ``cross_axis_pivot``. Both strips change
-    alike. Refuses the spatial and printed measures, loads and open potentials.
+    where dT/dp and dK/dp count the change of the state too: one factorisation a state, one
+    back-substitution a parameter and one for the rate y_t. The parameters enter through the end frames,
+    reach, speed, EI, compliance and dead load of the strips, by a complex step: exact to round-off for
+    the discrete answer, in either measure, under loads and pre-strain. The slide stiffness goes with the
+    design. Bodies keep their mass. Refuses what the elements do not know: printed forces, own potentials.
     Source: implicit function theorem; Haftka and Guerdal, Elements of Structural Optimization
     (1992), ch. 7.
     """
-    names = check_parameters(parameters)
-    _check(pivot)
-    system = compile_scene(pivot.driven(1.0))
-    rates = rates_of(pivot, names)
-    bending, axial = bending_points(pivot, system, rates), axial_points(pivot, system, rates)
-    clamps = ClampRows.of(system, rates)
-    z = _states(system, solution)
-    partial = bending.residual(z) + axial.residual(z) + clamps.residual(z)
-    rate, by_state = _differentiate(system, z, solution.rotation, partial)
-    changes = np.ascontiguousarray(by_state.transpose(2, 0, 1))
-    row, (x, turn) = _drive_row(system), (system.layout.body(BODY).start, system.layout.body(BODY).stop - 1)
-    stiffness = sum(part.third(z, rate, changes) for part in (bending, axial, clamps))
-    centre = Quantity(value=z[:, x : x + 2], derivative=by_state[:, x : x + 2])
-    stress = fibre_stress(system, pivot.mechanism.design.strips[0], rates, z, changes, stations)
-    return Sensitivities(
-        parameters=names,
-        torque=Quantity(value=z[:, row], derivative=by_state[:, row]),
-        stiffness=Quantity(value=rate[:, row], derivative=np.asarray(stiffness)),
-        centre=centre,
-        body_shift=_shift(centre, z[:, turn], pivot.centre, rates.centre, pivot.centre, rates.centre),
-        centre_shift=_shift(centre, z[:, turn], pivot.centre, rates.centre, *_crossing(pivot, rates)),
-        bending_energy=Quantity(value=solution.bending_energy, derivative=bending.energy(z, changes)),
-        axial_energy=Quantity(value=solution.axial_energy, derivative=axial.energy(z, changes)),
-        fibre_stress=Quantity(value=stress[0], derivative=stress[1]),
-        stations=np.asarray(stations, dtype=float),
-        states=by_state,
-        counters={"factorisations": len(z), "back_substitutions": len(z) * (len(names) + 1)},
-    )
-
-
-def _check(pivot: Pivot) -> None:
-    """Refuse what the derivatives are not known for."""
-    mechanism = pivot.mechanism
-    unknown = [name for name in mechanism.effects if name not in EFFECTS]
-    if unknown:
-        raise InvalidParameter("effects", unknown[0], "only " + ", ".join(sorted(EFFECTS)))
-    if mechanism.design.discretisation.measure != "material":
-        raise InvalidParameter("measure", mechanism.design.discretisation.measure, "material")
-
-
-def _states(system: System, solution: StaticSolution) -> Array:
-    if solution.states.shape[1:] != (system.layout.size,):
-        got = f"{solution.states.shape[1:]} unknowns"
+    rates = rates_of(asked, parameters)
+    mechanism = asked.mechanism if isinstance(asked, Pivot) else asked
+    driven = not np.isnan(solution.torque).all()
+    system = compile_scene(mechanism.driven(1.0, body) if driven else mechanism.scene)
+    model = reduced(system, longest=math.inf)
+    if model is None:
+        raise InvalidParameter(
+            "effects", "printed forces or an own potential", "what the strips' elements know"
+        )
+    z = solution.states
+    if z.shape[1:] != (system.layout.size,):
+        got = f"{z.shape[1:]} unknowns"
         raise InvalidParameter("solution", got, f"a solution of this pivot with {system.layout.size}")
-    return solution.states
-
-
-def _differentiate(system: System, states: Array, rotations: Array, partial: Array) -> tuple[Array, Array]:
-    """Rates by the rotation (S, N) and derivatives by the parameters (S, N, P) of the states."""
-    size, unit, energy = system.layout.size, system.scales.unit, system.scales.energy
-    gradient, hessian = np.empty(size), np.empty((size, size))
-    scale = unit[:, None] * unit / energy
-    push = np.zeros((size, 1))
-    push[_drive_row(system)] = -1.0  # -dR/d(theta): the drive's row is -(theta - rotation)
-    rate, by_state = np.empty_like(states), np.empty_like(partial)
-    for s, z in enumerate(states):
-        evaluate(system, z, float(rotations[s]), gradient, hessian)
-        residual = float(np.abs(gradient * unit).max() / energy)
-        if not residual <= LARGEST_RESIDUAL:
-            expected = f"at most {LARGEST_RESIDUAL:g}: a solution of this pivot"
-            raise InvalidParameter("solution", f"state {s} with residual {residual:.1e}", expected)
-        factors, pivots, failed = getrf(hessian * scale)
-        if failed:
-            raise InvalidParameter("solution", f"state {s} with a singular tangent", "a regular state")
-        right = np.concatenate((push, -partial[s]), axis=1) * (unit / energy)[:, None]
-        found = unit[:, None] * getrs(factors, pivots, right)[0]
-        rate[s], by_state[s] = found[:, 0], found[:, 1:]
-    return rate, by_state
-
-
-def _drive_row(system: System) -> int:
-    """Place of the drive's multiplier in the unknowns."""
-    constraints = system.scene.of(Constraint)
-    place = next(i for i, c in enumerate(constraints) if isinstance(c, DrivenRotation))
-    return system.layout.multipliers[place][0]
-
-
-def _crossing(pivot: Pivot, rates: Rates) -> tuple[Array, Array]:
-    """The strips' crossing at rest (2,) [m], and its rates (P, 2)."""
-    return pivot.clamp_points[0, 0] + Geometry.of(pivot).crossing, rates.crossing
-
-
-def _shift(
-    centre: Quantity, rotation: Array, rest: Array, by_rest: Array, point: Array, by_point: Array
-) -> Quantity:
-    """Displacement (S, 2) of the body's point that lies in ``point`` at rest: g + R (x - g_0) - x."""
-    cos, sin = np.cos(rotation), np.sin(rotation)
-    turn = np.stack((np.stack((cos, -sin), -1), np.stack((sin, cos), -1)), axis=1)
-    by_arm = np.einsum("sij,pj->sip", turn, by_point - by_rest)
-    return Quantity(
-        value=centre.value + turn @ (point - rest) - point,
-        derivative=centre.derivative + by_arm - by_point.T,
+    y, strips = from_unknowns(model, z), varied_strips(model, mechanism.design, rates)
+    parts = [slice(i, i + TOGETHER) for i in range(0, len(parameters), TOGETHER)]
+    still = [Elements(model=model, varied=strips.part(part), y=y[None] + 0j) for part in parts]
+    changes, rate = _differentiate(still, solution, held_rates(model, rates))
+    steps = y + 1j * STEP * changes
+    moved = [
+        Elements(model=model, varied=each.varied, y=steps[part])
+        for each, part in zip(still, parts, strict=True)
+    ]
+    found = [
+        (_unknowns(each), each.second_along(rate), *each.energies, each.fibre_stress(stations))
+        for each in moved
+    ]
+    unknowns, stiffness, bending, axial, stress = (np.concatenate(each) for each in zip(*found, strict=True))
+    states = _quantity(unknowns)
+    torque = Quantity(value=solution.torque, derivative=np.full((len(z), len(parameters)), np.nan))
+    if driven:
+        torque = replace(
+            torque, derivative=states.derivative[:, system.tables.drives.row[model.bodies.driven]]
+        )
+    return Sensitivities(
+        parameters=tuple(parameters),
+        torque=torque,
+        stiffness=_quantity(model.energy * stiffness) if driven else torque,
+        **_shifts(asked, rates, unknowns, system.layout, body),
+        bending_energy=Quantity(
+            value=solution.bending_energy, derivative=_quantity(model.energy * bending).derivative
+        ),
+        axial_energy=Quantity(
+            value=solution.axial_energy, derivative=_quantity(model.energy * axial).derivative
+        ),
+        fibre_stress=_quantity(stress),
+        stations=np.asarray(stations, dtype=float),
+        states=states.derivative,
+        counters={"factorisations": len(z), "back_substitutions": len(z) * (len(parameters) + 1)},
     )
+
+
+def _unknowns(elements: Elements) -> NDArray[np.complex128]:
+    """The scene's unknowns z (P, S, N), reactions of drives without the loads, which no parameter moves."""
+    force, at_clamps = elements.residual()
+    points = elements.points.transpose(3, 4, 2, 0, 1)
+    points, forces = points.reshape(*points.shape[:3], -1), at_clamps.transpose(3, 4, 2, 0, 1)
+    return gathered(elements.model, elements.y, points, forces, force[..., elements.model.bodies.held])
+
+
+def _differentiate(
+    still: list[Elements], solution: StaticSolution | MechanismSolution, held: Array
+) -> tuple[Array, Array]:
+    """Derivatives (P, S, Y) by the parameters, ``held`` (P, D) of held coordinates, and (1, S, Y) by the
+    rotation."""
+    model, y = still[0].model, still[0].y[0].real
+    bodies, scene, poses = model.bodies, model.system.scene, len(model.bodies.rest)
+    force = np.concatenate([each.residual()[0] for each in still])
+    left = force[0].real.copy()
+    left[:, :poses] -= np.multiply.outer(solution.load_factor, bodies.load[:poses]) + bodies.weight[:poses]
+    at = [solution.states[:, model.system.layout.strip(strip.name)] for strip in scene.strips]
+    given = np.stack(at, axis=-1).reshape(len(y), -1, 2, len(at))[:, model.shape.order] / model.length
+    apart = still[0].points[..., 0, :].real.transpose(3, 0, 1, 2) - given
+    free = np.setdiff1d(np.arange(model.size), bodies.held)
+    wrong = np.maximum(np.abs(left[:, free]).max(axis=1), np.abs(apart).max(axis=(1, 2, 3)))
+    if not wrong.max() <= LARGEST_RESIDUAL:
+        s = int(np.argmax(~(wrong <= LARGEST_RESIDUAL)))
+        expected = f"at most {LARGEST_RESIDUAL:g}: a solution of this pivot"
+        raise InvalidParameter("solution", f"state {s} with residual {wrong[s]:.1e}", expected)
+    tangent = whole_tangents(model, y)[1]
+    changes = np.zeros((len(held) + 1, *y.shape))
+    changes[:-1, :, bodies.held] = held[:, None]
+    if bodies.driven >= 0:
+        changes[-1, :, bodies.held[bodies.driven]] = 1.0
+    right = -np.einsum("sfd,psd->psf", tangent[:, free[:, None], bodies.held], changes[..., bodies.held])
+    right[:-1] -= force[..., free].imag / STEP
+    try:
+        found = np.linalg.solve(tangent[:, free[:, None], free], right.transpose(1, 2, 0))
+    except np.linalg.LinAlgError:
+        raise InvalidParameter("solution", "a state with a singular tangent", "regular states") from None
+    changes[..., free] = found.transpose(2, 0, 1)
+    return changes[:-1], changes[-1:]
+
+
+def _shifts(
+    asked: Pivot | Mechanism, rates: Rates, unknowns: NDArray[np.complex128], layout: Layout, body: str | None
+) -> dict[str, Quantity]:
+    """Centre of the body, its displacement, and that of its point in a pivot's crossing at rest; nan without
+    a body."""
+    design, step = (asked.mechanism if isinstance(asked, Pivot) else asked).design, 1j * STEP
+    if not design.bodies:
+        none = _quantity(np.full((*unknowns.shape[:-1], 2), np.nan + 0j))
+        return {"centre": none, "body_shift": none, "centre_shift": none}
+    name = design.body_named(body)
+    place = [each.name for each in design.bodies].index(name)
+    centre, angle = unknowns[..., layout.body(name)][..., :2], unknowns[..., layout.body(name)][..., 2]
+    rest = np.asarray(design.bodies[place].centre) + step * rates.centres[:, place]
+    point = rest
+    if isinstance(asked, Pivot):
+        point = asked.clamp_points[0, 0] + Geometry.of(asked).crossing + step * rates.crossing
+    arm = (point - rest).T[..., None]
+    swung = np.moveaxis(turned(angle, arm[0], arm[1]), 1, -1)
+    return {
+        "centre": _quantity(centre),
+        "body_shift": _quantity(centre - rest[:, None]),
+        "centre_shift": _quantity(centre + swung - point[:, None]),
+    }
+
+
+def _quantity(found: NDArray[np.complex128]) -> Quantity:
+    """Values (...) and derivatives (..., P) of what a complex step gave, (P, ...)."""
+    return Quantity(value=found[0].real, derivative=np.moveaxis(found.imag / STEP, 0, -1))

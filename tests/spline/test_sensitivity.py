@@ -32,6 +32,17 @@ FORMS = (
     {"control_points": 5, "axial_modes": 3},
 )
 
+#: All loads of a pivot, of a size that is seen.
+LOADED = {
+    "effects": ("bending", "stretching", "gravity", "applied_force", "applied_moment", "pre_strain"),
+    "parameters": {
+        "gravity": {"acceleration": (2e3, -9e3)},
+        "applied_force": {"force": (900.0, -1500.0)},
+        "applied_moment": {"moment": 30.0},
+        "pre_strain": {"curvature": 2.0, "strain": 1e-4},
+    },
+}
+
 
 def _error(design, parameter, rotation, grid, quantities=QUANTITIES, **keywords):
     """Largest error of p dq/dp over quantities and path, relative to the largest one along it."""
@@ -64,6 +75,21 @@ def test_agrees_with_extrapolated_differences(seed):
 def test_agrees_with_extrapolated_differences_on_many_designs(seed):
     """The same on more designs, in all forms of strip in turn."""
     gates.check("sensitivities", _worst(seed, FORMS[seed % len(FORMS)]))
+
+
+@pytest.mark.parametrize(
+    ("parameter", "grid"),
+    [
+        ("length", {"measure": "spatial"}),
+        ("inclination", {"measure": "spatial", "stretch": "consistent"}),
+        ("area", LOADED),
+        ("crossing_ratio", LOADED),
+        ("thickness", LOADED),
+    ],
+)
+def test_agrees_with_differences_under_loads_and_in_the_spatial_measure(parameter, grid):
+    """Weight, dead loads and pre-strain, and the spatial measure, count as they act."""
+    gates.check("sensitivities", _error(TABLE_ONE | {"crossing_ratio": 0.4}, parameter, 0.6, grid))
 
 
 def test_the_gate_of_sensitivities_has_teeth():
@@ -215,16 +241,16 @@ def test_one_factorisation_a_state_and_one_back_substitution_a_parameter():
             "parameters: got ['length', 'length'], expected at least one name, each once",
         ),
         ({}, (), "parameters: got [], expected at least one name, each once"),
-        ({"measure": "spatial"}, KEYWORDS, "measure: got 'spatial', expected material"),
         (
-            {"effects": ("bending", "stretching", "gravity")},
+            {"measure": "printed", "stretch": "consistent"},
             KEYWORDS,
-            "effects: got 'gravity', expected only bending, ",
+            "effects: got 'printed forces or an own potential', expected what the strips' elements know",
         ),
+        ({}, ("strip_3.area",), "parameters: got 'strip_3.area', expected one of length, "),
     ],
 )
 def test_refuses_what_it_does_not_know(keywords, parameters, message):
-    """Unknown parameters, measures and effects are refused in one line."""
+    """Unknown parameters and forces without a potential are refused in one line."""
     pivot = cross_axis_pivot(**TABLE_ONE, **keywords)
     path = solve_statics(pivot, rotation=0.3, increments=2)
     with pytest.raises(InvalidParameter, match=re.escape(message)):
