@@ -22,9 +22,8 @@ from spline_model.strip import laws
 
 Array = NDArray[Any]
 
-bending_law, stretching_law, mixed_law = (
-    getattr(law, "py_func", law) for law in (laws.bending_law, laws.stretching_law, laws.mixed_law)
-)
+uncompiled: list[Any] = [laws.bending_law, laws.stretching_law, laws.mixed_law]
+bending_law, stretching_law, mixed_law = (getattr(law, "py_func", law) for law in uncompiled)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -216,9 +215,9 @@ class Elements:
         """
         model, varied, strips = self.model, self.varied, self.model.strips
         scene, order = model.system.scene, model.shape.order
-        tables = [scene.strips[0].basis.evaluate(stations, k)[:, order] for k in (1, 2)]
+        d1, d2 = (scene.strips[0].basis.evaluate(stations, k)[:, order] for k in (1, 2))
         rest_points = np.stack([s.control_points[order] for s in scene.strips], axis=-1) / model.length
-        rest, curve = Curve.of(*tables, rest_points[..., None, None]), Curve.of(*tables, self.points)
+        rest, curve = Curve.of(d1, d2, rest_points[..., None, None]), Curve.of(d1, d2, self.points)
         natural = {e.strip: model.length * e.natural_curvature for e in scene.of(Bending)}
         curvature = np.array([natural[s.name] for s in scene.strips])[:, None, None]
         curvature, speed = curvature + rest.turning / rest.speed, rest.speed * varied.longer

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -110,7 +111,7 @@ def sensitivities(
     )
 
 
-def _unknowns(elements: Elements) -> NDArray[np.complex128]:
+def _unknowns(elements: Elements) -> NDArray[Any]:
     """The scene's unknowns z (P, S, N), reactions of drives without the loads, which no parameter moves."""
     force, at_clamps = elements.residual()
     points = elements.points.transpose(3, 4, 2, 0, 1)
@@ -153,7 +154,7 @@ def _differentiate(
 
 
 def _shifts(
-    asked: Pivot | Mechanism, rates: Rates, unknowns: NDArray[np.complex128], layout: Layout, body: str | None
+    asked: Pivot | Mechanism, rates: Rates, unknowns: NDArray[Any], layout: Layout, body: str | None
 ) -> dict[str, Quantity]:
     """Centre of the body, its displacement, and that of its point in a pivot's crossing at rest; nan without
     a body."""
@@ -177,6 +178,6 @@ def _shifts(
     }
 
 
-def _quantity(found: NDArray[np.complex128]) -> Quantity:
+def _quantity(found: NDArray[Any]) -> Quantity:
     """Values (...) and derivatives (..., P) of what a complex step gave, (P, ...)."""
     return Quantity(value=found[0].real, derivative=np.moveaxis(found.imag / STEP, 0, -1))
