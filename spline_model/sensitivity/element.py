@@ -86,10 +86,14 @@ class Elements:
         return w, a, np.where(bodies < 0, self.model.size, 3 * bodies) + np.arange(3)[:, None]
 
     @cached_property
+    def _state(self) -> tuple[Array, Array, Array, Array]:
+        return self._own(self.y)
+
+    @cached_property
     def _ends(self) -> tuple[Array, Array, Array]:
         """Arms from the bodies' centres to the clamped points, and sticks from there to the inner control
         points at rest, (2, 2, ...); shares of these (2, 1, ...)."""
-        _, share, _, pose = self._own(self.y)
+        _, share, _, pose = self._state
         frames, angle = self.varied.frames, pose[:, 2]
         arm = turned(angle, frames[:, 0], frames[:, 1])
         return arm, turned(angle + frames[:, 2], self.varied.reach, 0.0), share
@@ -98,7 +102,7 @@ class Elements:
     def points(self) -> Array:
         """Control points (n, 2, ...) in the order of elimination."""
         arm, stick, share = self._ends
-        free, _, _, pose = self._own(self.y)
+        free, _, _, pose = self._state
         clamped = pose[:, :2] + arm
         return _ordered(free, clamped + share * stick, clamped)
 
@@ -110,7 +114,7 @@ class Elements:
     @cached_property
     def axial(self) -> Array:
         """Axial forces a (K, ...)."""
-        return self._own(self.y)[2]
+        return self._state[2]
 
     @cached_property
     def _bending(self) -> tuple[Array, ...]:
@@ -136,7 +140,7 @@ class Elements:
     def _forces(self, a: Array) -> list[Array]:
         """Axial force at the Gauss points, its part of the stretching and of the sliding, (Q, ...)."""
         modes, split = self.model.strips.modes, self.model.strips.split
-        return [np.einsum("gqk,kgps->qgps", modes[..., k], a[k]) for k in (slice(split), slice(split, None))]
+        return [_times_each(modes[..., k], a[k]) for k in (slice(split), slice(split, None))]
 
     @cached_property
     def energies(self) -> tuple[Array, Array]:
@@ -175,7 +179,7 @@ class Elements:
         for k, force in enumerate(self._forces(self.axial)):
             modes = strips.modes[..., (slice(strips.split), slice(strips.split, None))[k]]
             left = by_n - self.varied.compliance[k] * force * length
-            parts.append(np.einsum("q,gqk,qgps->kgps", self.model.shape.weight, modes, left))
+            parts.append(_times_each((self.model.shape.weight[:, None] * modes).swapaxes(1, 2), left))
         return np.concatenate(parts)
 
     def second_along(self, rate: Array) -> Array:
@@ -231,7 +235,7 @@ class Elements:
         if len(self.axial):
             parts = [e.modes for e in scene.of(MixedStretching) if e.strip == scene.strips[0].name]
             shown = np.column_stack([values_at(modes, stations) for modes in parts]) @ model.to_modes
-            force = force + np.einsum("gqk,kgps->qgps", shown, self.axial)
+            force = force + _times_each(shown, self.axial)
         mean = force * (model.energy / model.length / varied.area)
         return np.stack((mean - side, mean + side)).transpose(3, 4, 2, 1, 0)
 
@@ -252,6 +256,11 @@ def _times(table: Array, values: Array) -> Array:
     """table @ values along the first axis, one product of real matrices."""
     flat = np.ascontiguousarray(values).reshape(len(values), -1)
     return (table @ flat.view(np.float64)).view(flat.dtype).reshape(len(table), *values.shape[1:])
+
+
+def _times_each(tables: Array, values: Array) -> Array:
+    """The same with a table for each strip, (G, ...) of values (..., G, P, S)."""
+    return np.stack([_times(table, values[:, s]) for s, table in enumerate(tables)], axis=1)
 
 
 def _across(v: Array) -> Array:

@@ -27,8 +27,6 @@ from spline_model.statics import STATIONS
 
 Array = NDArray[np.float64]
 
-TOGETHER = 4
-"""Parameters at a time: the arrays of more outgrow the processor's cache."""
 LARGEST_RESIDUAL = 1e-7
 """Residual [EI/L^2, EI/L, L, rad] above which states are not the design's: solved ones are below 1e-8."""
 
@@ -73,38 +71,25 @@ def sensitivities(
     if z.shape[1:] != (system.layout.size,):
         got = f"{z.shape[1:]} unknowns"
         raise InvalidParameter("solution", got, f"a solution of this pivot with {system.layout.size}")
-    y, strips = from_unknowns(model, z), varied_strips(model, mechanism.design, rates)
-    parts = [slice(i, i + TOGETHER) for i in range(0, len(parameters), TOGETHER)]
-    still = [Elements(model=model, varied=strips.part(part), y=y[None] + 0j) for part in parts]
+    y, varied = from_unknowns(model, z), varied_strips(model, mechanism.design, rates)
+    still = Elements(model=model, varied=varied, y=y[None] + 0j)
     changes, rate = _differentiate(still, solution, held_rates(model, rates))
-    steps = y + 1j * STEP * changes
-    moved = [
-        Elements(model=model, varied=each.varied, y=steps[part])
-        for each, part in zip(still, parts, strict=True)
-    ]
-    found = [
-        (_unknowns(each), each.second_along(rate), *each.energies, each.fibre_stress(stations))
-        for each in moved
-    ]
-    unknowns, stiffness, bending, axial, stress = (np.concatenate(each) for each in zip(*found, strict=True))
-    states = _quantity(unknowns)
+    moved = Elements(model=model, varied=varied, y=y + 1j * STEP * changes)
+    unknowns = _unknowns(moved)
+    states, stiffness = _quantity(unknowns), _quantity(model.energy * moved.second_along(rate))
+    bending, axial = (_quantity(model.energy * each).derivative for each in moved.energies)
     torque = Quantity(value=solution.torque, derivative=np.full((len(z), len(parameters)), np.nan))
     if driven:
-        torque = replace(
-            torque, derivative=states.derivative[:, system.tables.drives.row[model.bodies.driven]]
-        )
+        row = system.tables.drives.row[model.bodies.driven]
+        torque = replace(torque, derivative=states.derivative[:, row])
     return Sensitivities(
         parameters=tuple(parameters),
         torque=torque,
-        stiffness=_quantity(model.energy * stiffness) if driven else torque,
+        stiffness=stiffness if driven else torque,
         **_shifts(asked, rates, unknowns, system.layout, body),
-        bending_energy=Quantity(
-            value=solution.bending_energy, derivative=_quantity(model.energy * bending).derivative
-        ),
-        axial_energy=Quantity(
-            value=solution.axial_energy, derivative=_quantity(model.energy * axial).derivative
-        ),
-        fibre_stress=_quantity(stress),
+        bending_energy=Quantity(value=solution.bending_energy, derivative=bending),
+        axial_energy=Quantity(value=solution.axial_energy, derivative=axial),
+        fibre_stress=_quantity(moved.fibre_stress(stations)),
         stations=np.asarray(stations, dtype=float),
         states=states.derivative,
         counters={"factorisations": len(z), "back_substitutions": len(z) * (len(parameters) + 1)},
@@ -120,18 +105,18 @@ def _unknowns(elements: Elements) -> NDArray[Any]:
 
 
 def _differentiate(
-    still: list[Elements], solution: StaticSolution | MechanismSolution, held: Array
+    still: Elements, solution: StaticSolution | MechanismSolution, held: Array
 ) -> tuple[Array, Array]:
     """Derivatives (P, S, Y) by the parameters, ``held`` (P, D) of held coordinates, and (1, S, Y) by the
     rotation."""
-    model, y = still[0].model, still[0].y[0].real
+    model, y = still.model, still.y[0].real
     bodies, scene, poses = model.bodies, model.system.scene, len(model.bodies.rest)
-    force = np.concatenate([each.residual()[0] for each in still])
+    force = still.residual()[0]
     left = force[0].real.copy()
     left[:, :poses] -= np.multiply.outer(solution.load_factor, bodies.load[:poses]) + bodies.weight[:poses]
     at = [solution.states[:, model.system.layout.strip(strip.name)] for strip in scene.strips]
     given = np.stack(at, axis=-1).reshape(len(y), -1, 2, len(at))[:, model.shape.order] / model.length
-    apart = still[0].points[..., 0, :].real.transpose(3, 0, 1, 2) - given
+    apart = still.points[..., 0, :].real.transpose(3, 0, 1, 2) - given
     free = np.setdiff1d(np.arange(model.size), bodies.held)
     wrong = np.maximum(np.abs(left[:, free]).max(axis=1), np.abs(apart).max(axis=(1, 2, 3)))
     if not wrong.max() <= LARGEST_RESIDUAL:

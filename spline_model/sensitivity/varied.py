@@ -36,10 +36,6 @@ class Varied(NamedTuple):
     second_moment: Array
     longer: Array
 
-    def part(self, parameters: slice) -> Varied:
-        """Of some of the parameters."""
-        return Varied(*(each[..., parameters, :] for each in self))
-
 
 def varied_strips(model: Reduced, design: Design, rates: Rates) -> Varied:
     """The strips of a design, which ``model`` is of."""
