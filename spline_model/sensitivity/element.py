@@ -229,7 +229,7 @@ class Elements:
         side = bend * (
             varied.rigidity[:1] * model.energy * np.sqrt(3.0 / (varied.area * varied.second_moment))
         )
-        force = 0.0
+        force: Any = 0.0
         if strips.stretching.any():
             force = varied.stretching * (curve.speed / speed - 1.0 - strips.strain[:, None, None])
         if len(self.axial):

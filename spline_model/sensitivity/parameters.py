@@ -75,50 +75,29 @@ class Rates:
         return np.sum(chord * moved, axis=-1), turned
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Geometry:
-    """A pivot's shape read back from its clamps: L [m], inclination and orientation [rad], crossing ratio."""
+def crossing_reach(pivot: Pivot) -> tuple[float, float]:
+    """Crossing ratio r and the length L [m] of a pivot's strips, which cross at r L from the ground."""
+    apart = pivot.clamp_directions[0, 0] - pivot.clamp_directions[1, 0]
+    base, length = (
+        pivot.clamp_points[1, 0] - pivot.clamp_points[0, 0],
+        pivot.mechanism.design.strips[0].length,
+    )
+    return float(base @ apart / (apart @ apart)) / length, length
 
-    length: float
-    inclination: float
-    crossing_ratio: float
-    orientation: float
 
-    @classmethod
-    def of(cls, pivot: Pivot) -> Geometry:
-        """The shape of a pivot that ``cross_axis_pivot`` made."""
-        first, second = pivot.clamp_directions[:, 0]
-        axis = first + second  # 2 sin(inclination) along the pivot's axis of symmetry
-        base = pivot.clamp_points[1, 0] - pivot.clamp_points[0, 0]
-        across = float(np.hypot(*(first - second))) / 2.0
-        length = pivot.mechanism.design.strips[0].length
-        return cls(
-            length=length,
-            inclination=math.atan2(float(np.hypot(*axis)) / 2.0, across),
-            crossing_ratio=float(np.hypot(*base)) / (2.0 * length * across),
-            orientation=math.atan2(-axis[0], axis[1]),
-        )
+def _shape_rates(pivot: Pivot, name: str) -> tuple[Array, Array]:
+    """Derivatives of the strips' ends (2, 2, 2) and their crossing (2,) by a parameter of the shape.
 
-    @property
-    def crossing(self) -> Array:
-        """The strips' crossing at rest from the ground clamp of strip 1 (2,) [m]."""
-        reach = self.crossing_ratio * self.length
-        angle = self.inclination + self.orientation
-        return np.array([reach * math.cos(angle), reach * math.sin(angle)])
-
-    def rates(self, name: str) -> tuple[Array, Array]:
-        """Derivatives of the strips' ends (2, 2, 2) and their crossing (2,) by a parameter of the shape."""
-        cos, sin, at = math.cos(self.inclination), math.sin(self.inclination), SHAPE.index(name)
-        tangents, normals = np.array([[cos, sin], [-cos, sin]]), np.array([[-sin, cos], [sin, cos]])
-        length, ratio = self.length, self.crossing_ratio
-        moved = (tangents, length * normals, np.zeros((2, 2)))[at]  # of the tips from the roots
-        ends = np.zeros((2, 2, 2))
-        ends[1, :, 0] = (2 * ratio * cos, -2 * ratio * length * sin, 2 * length * cos)[at]
-        ends[:, 1] += moved
-        crossing = (ratio * tangents[0], ratio * length * normals[0], length * tangents[0])[at]
-        cos, sin = math.cos(self.orientation), math.sin(self.orientation)
-        turn = np.array([[cos, sin], [-sin, cos]])  # of row vectors
-        return ends @ turn, crossing @ turn
+    With the tangents t_i the roots are 0 and r L (t_1 - t_2), the crossing r L t_1.
+    """
+    by_length, by_angle, by_ratio = (float(name == each) for each in SHAPE)
+    (ratio, length), tangents = crossing_reach(pivot), pivot.clamp_directions[:, 0]
+    turned = by_angle * np.stack((-tangents[:, 1], tangents[:, 0]), axis=1) * [[1.0], [-1.0]]
+    reach = (by_ratio * length + ratio * by_length) * tangents + ratio * length * turned
+    ends = np.zeros((2, 2, 2))
+    ends[1, 0] = reach[0] - reach[1]
+    ends[:, 1] = ends[:, 0] + by_length * tangents + length * turned
+    return ends, reach[0]
 
 
 def rates_of(asked: Pivot | Mechanism, names: Sequence[str]) -> Rates:
@@ -136,7 +115,7 @@ def rates_of(asked: Pivot | Mechanism, names: Sequence[str]) -> Rates:
     for i, name in enumerate(names):
         owner, _, field = name.rpartition(".")
         if isinstance(asked, Pivot) and name in SHAPE:
-            rates.ends[i], rates.crossing[i] = Geometry.of(asked).rates(name)
+            rates.ends[i], rates.crossing[i] = _shape_rates(asked, name)
             rates.centres[i] = rates.ends[i, :, 1].mean(axis=0)
         elif field in (*MATERIAL, *SECTION) and owner in ("", *strips):
             _set_section(rates.section[i], design, owner, field)

@@ -19,7 +19,7 @@ from spline_model.reduced.model import from_unknowns, reduced
 from spline_model.reduced.states import gathered
 from spline_model.reduced.whole import whole_tangents
 from spline_model.sensitivity.element import Elements, turned
-from spline_model.sensitivity.parameters import KEYWORDS, Geometry, Rates, rates_of
+from spline_model.sensitivity.parameters import KEYWORDS, Rates, crossing_reach, rates_of
 from spline_model.sensitivity.result import Quantity, Sensitivities
 from spline_model.sensitivity.varied import STEP, held_rates, varied_strips
 from spline_model.solution import MechanismSolution, StaticSolution
@@ -153,7 +153,9 @@ def _shifts(
     rest = np.asarray(design.bodies[place].centre) + step * rates.centres[:, place]
     point = rest
     if isinstance(asked, Pivot):
-        point = asked.clamp_points[0, 0] + Geometry.of(asked).crossing + step * rates.crossing
+        ratio, length = crossing_reach(asked)
+        crossing = asked.clamp_points[0, 0] + ratio * length * asked.clamp_directions[0, 0]
+        point = crossing + step * rates.crossing
     arm = (point - rest).T[..., None]
     swung = np.moveaxis(turned(angle, arm[0], arm[1]), 1, -1)
     return {

@@ -7,6 +7,7 @@ import pytest
 from scipy.optimize import brentq
 
 from spline_model.compile import compile_scene
+from spline_model.effects.registry import DEFAULT_EFFECTS
 from spline_model.errors import InvalidParameter
 from spline_model.mass import mass_matrix
 from spline_model.modes import linear_modes, natural_frequencies
@@ -107,6 +108,27 @@ def test_modes_about_a_bent_state():
     assert 70 < rest.frequency[0] < 80
     assert held.frequency[0] > 5 * bent.frequency[0]  # without the swing only the strips vibrate
     assert np.abs(held.body_shapes[:, 2]).max() < 1e-9 * np.abs(bent.body_shapes[:, 2]).max()
+
+
+@pytest.mark.parametrize(
+    "keywords",
+    [
+        {},
+        {"stretch": "inextensible"},
+        {"measure": "spatial", "effects": (*DEFAULT_EFFECTS, "gravity", "section_rotary_inertia")},
+        {"basis": "bspline", "control_points": 7, "stretch": "consistent"},
+    ],
+)
+def test_modes_of_elements_are_those_under_constraints(keywords, monkeypatch):
+    """Requirement: clamps that hold by construction or as constraints give the same modes to 1e-9."""
+    pivot = cross_axis_pivot(**TABLE_ONE, **keywords)
+    found = natural_frequencies(pivot, rotation=0.7, count=6)
+    monkeypatch.setattr("spline_model.modes.reduced", lambda *_, **__: None)
+    other = natural_frequencies(pivot, rotation=0.7, count=6)
+    np.testing.assert_allclose(found.frequency, other.frequency, rtol=1e-9)
+    np.testing.assert_allclose(found.slide_frequency, other.slide_frequency, rtol=1e-9)
+    scale = np.abs(other.shapes).max()
+    assert np.abs(np.abs(found.shapes) - np.abs(other.shapes)).max() < 1e-6 * scale
 
 
 def test_slide_modes_are_named_not_counted():
