@@ -12,11 +12,11 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicHermiteSpline
-from scipy.sparse import csc_matrix
 
-from .control import Control, factorise, free_block, respond
+from .control import Balance, Control, respond
 from .errors import ConvergenceError, InvalidParameter, count
-from .newton import ITERATIONS, TOLERANCE, equilibrate, round_off
+from .matrix import Factors, Singular
+from .newton import ITERATIONS, TOLERANCE, equilibrate
 from .path import ROUND_OFF
 
 Array = NDArray[np.float64]
@@ -74,6 +74,12 @@ class ArcPath:
     negative: NDArray[np.int64]
     critical: tuple[Critical, ...]
 
+    @property
+    def message(self) -> str:
+        """What is to be said of the path: where it is critical, and whether it ends unstable; else ""."""
+        told = [f"{point.kind} at load factor {point.parameter:.4g}" for point in self.critical]
+        return "; ".join([*told, *(["the last state is unstable"] if self.negative[-1] else [])])
+
 
 @dataclass(kw_only=True, eq=False)
 class Walk:
@@ -89,18 +95,18 @@ class Walk:
         """Return the inner product of two changes of (y, p)."""
         return float((self.weight * a[0]) @ (self.weight * b[0])) + a[1] * b[1]
 
-    def push(self, y: Array, tangent: csc_matrix) -> Array:
-        """Return dr/dp on the free coordinates, the held ones going with p."""
-        control = self.control
-        rate = np.zeros(control.structure.size)
-        rate[control.held] = control.slope
-        change: Array = (tangent @ rate)[control.free]
-        load = control.residual_rate(y)
-        return change if load is None else change + load[control.free]
+    def push(self, parameter: float, y: Array, balance: Balance) -> Array:
+        """Return dr/dp (size,), the held coordinates going with p."""
+        rate = np.zeros(len(y))
+        rate[self.control.held] = self.control.slope
+        change, load = balance.at.tangent.times(rate), self.control.rates(y, parameter, 0.0)[0]
+        return change if load is None else change + load
 
-    def place(self, y: Array, parameter: float, along: tuple[Array, float]) -> Place:
+    def place(
+        self, y: Array, parameter: float, balance: Balance, factors: Factors, along: tuple[Array, float]
+    ) -> Place:
         """Complete a state in equilibrium; the tangent goes with `along`."""
-        response = respond(self.control, y, parameter, self.counters)
+        response = respond(self.control, y, parameter, balance, factors)
         rate, slope = response.rate, 1.0
         size = np.sqrt(self.product((rate, slope), (rate, slope)))
         scale = float(np.copysign(1.0 / size, self.product((rate, slope), along)))
@@ -112,43 +118,39 @@ class Walk:
             negative=response.inertia,
             torque=response.torque,
             steepness=response.stiffness,
-            potential=self.control.potential(y, parameter),
+            potential=balance.potential,
             conjugate=(response.conjugate, scale * response.slope),
         )
 
     def step(self, here: Place, length: float, bend: Array | float = 0.0) -> tuple[Place | None, int]:
         """Return the state on the plane at `length` along the tangent, or None, and the iterations."""
-        control, free = self.control, self.control.free
+        control, normal = self.control, (here.rate, here.slope)
         y = here.y + length * here.rate + 0.5 * length**2 * bend
         parameter = here.parameter + length * here.slope
-        start, tolerance = (y.copy(), parameter), max(TOLERANCE, round_off(control.structure))
+        start, tolerance = (y.copy(), parameter), max(TOLERANCE, control.structure.round_off)
         for iteration in range(ITERATIONS + 1):
             y[control.held] = control.prescribed(parameter)
-            residual = control.residual(y, parameter)[free]
-            norm = np.abs(residual / control.structure.scale[free]).max()
+            balance = control.balance(y, parameter)
+            norm = control.unbalanced(balance.residual)
+            if not np.isfinite(norm) or (norm > tolerance and iteration == ITERATIONS):
+                return None, iteration
+            try:
+                factors = control.factors(balance)
+            except Singular:  # at the end of a step: as good a critical point as there is
+                return None, iteration
             if norm <= tolerance:
                 break
-            if not np.isfinite(norm) or iteration == ITERATIONS:
-                return None, iteration
-            tangent = control.tangent(y, parameter)
-            try:
-                lu = factorise(free_block(control, tangent), self.counters)
-            except RuntimeError:
-                return None, iteration
-            a, b = np.zeros_like(y), np.zeros_like(y)
-            a[free], b[free] = lu.solve(-residual), lu.solve(-self.push(y, tangent))
+            self.counters["factorisations"] += 1
+            right = np.stack([balance.residual, self.push(parameter, y, balance)])
+            a, b = factors.solve(-right)
             b[control.held] = control.slope
-            normal = (here.rate, here.slope)
             off = self.product((y - start[0], parameter - start[1]), normal)
             change = -(off + self.product((a, 0.0), normal)) / self.product((b, 1.0), normal)
             y, parameter = y + a + change * b, parameter + change
         away = (y - start[0], parameter - start[1])
         if np.sqrt(self.product(away, away)) > FARTHEST * abs(length):
             return None, iteration
-        try:
-            there = self.place(y, parameter, (here.rate, here.slope))
-        except RuntimeError:  # exactly singular: as good a critical point as there is
-            return None, iteration
+        there = self.place(y, parameter, balance, factors, normal)
         turn = self.product((there.rate, there.slope), (here.rate, here.slope))
         sound = turn >= SHARPEST and self.balanced(here, there)
         return (there if sound else None), iteration
@@ -179,9 +181,10 @@ def follow_arc(control: Control, *, increments: int = 20) -> ArcPath:
     """
     walk, end = Walk(control=control), control.span[1]
     first = equilibrate(control, np.zeros(control.structure.size), control.span[0], walk.counters)
-    if first.failure:
+    if first.failure or first.factors is None:
         raise InvalidParameter("control", first.failure, "a scene at rest at its beginning [1]")
-    here = walk.place(first.y, control.span[0], (np.zeros_like(first.y), end - control.span[0]))
+    along = (np.zeros_like(first.y), end - control.span[0])
+    here = walk.place(first.y, control.span[0], first.balance, first.factors, along)
     length = shortest = abs(end - control.span[0]) / count("increments", increments) / abs(here.slope)
     length, shortest = min(length, LONGEST), SHORTEST * shortest
     places, critical = [here], []
@@ -243,8 +246,9 @@ def _last(walk: Walk, here: Place, there: Place) -> Place:
     end = walk.control.span[1]
     share = (end - here.parameter) / (there.parameter - here.parameter)
     outcome = equilibrate(walk.control, here.y + share * (there.y - here.y), end, walk.counters)
-    place = walk.place(outcome.y, end, (there.rate, there.slope))
-    return place if not outcome.failure else replace(place, y=np.full_like(place.y, np.nan))
+    if outcome.factors is None:
+        return replace(there, parameter=end, y=np.full_like(there.y, np.nan))
+    return walk.place(outcome.y, end, outcome.balance, outcome.factors, (there.rate, there.slope))
 
 
 def _packed(places: list[Place], critical: list[Critical]) -> ArcPath:

@@ -13,6 +13,8 @@ from .explicit import critical_step
 from .mass import about_mass_centre
 from .model import Model
 from .solution import Status
+from .structure import structure_of
+from .trajectory import Trajectory
 
 Array = NDArray[np.float64]
 
@@ -34,7 +36,9 @@ def coarser(model: Model) -> tuple[Model, int]:
     return replace(model, strips=strips), every
 
 
-def with_companion(model: Model, motion: Any, body: str | None, run: Callable[..., Any]) -> Any:
+def with_companion(
+    model: Model, motion: Trajectory, body: str | None, run: Callable[..., Trajectory]
+) -> Trajectory:
     """Return a trajectory with its `rotation_error`, and a remark in `resolution` where that is much.
 
     The error goes with the square of the element, so that of the motion is the difference to the companion
@@ -60,7 +64,8 @@ def with_companion(model: Model, motion: Any, body: str | None, run: Callable[..
         return replace(motion, resolution=f"not checked with 1/{every} of the elements: {failed}")
     fine = _rotation(motion, model, body)[: samples + 1]
     error = np.abs(fine - _rotation(other, coarse, body)) / (every**2 - 1)
-    remark = _remark(model, motion, body, error)
+    remarks = [motion.resolution, _remark(model, motion, body, error)]
+    remark = "; ".join(each for each in remarks if each)
     return replace(motion, rotation_error=float(error.max()), resolution=remark)
 
 
@@ -70,19 +75,17 @@ def _longest(model: Model, coarse: Model, settings: Any) -> float:
         return float(settings["step_s"]) * (1.0 + 1e-9)
     at_rest = []
     for each in (model, coarse):
-        structure, bodies = about_mass_centre(each.structure)
+        structure, bodies = about_mass_centre(structure_of(each))
         at_rest.append(critical_step(structure, bodies, np.zeros(structure.size)))
     return SAFETY * float(settings["critical_step_s"]) * at_rest[1] / at_rest[0]
 
 
-def _rotation(motion: Any, model: Model, body: str | None) -> Array:
+def _rotation(motion: Trajectory, model: Model, body: str | None) -> Array:
     """Return the rotation of the body (T,) [rad]."""
-    if hasattr(motion, "rotation"):
-        return np.asarray(motion.rotation)
-    return np.asarray(motion.bodies[model.body_names[model.body_index(body)]][:, 2])
+    return motion.bodies[model.body_names[model.body_index(body)]][:, 2]
 
 
-def _remark(model: Model, motion: Any, body: str | None, error: Array) -> str:
+def _remark(model: Model, motion: Trajectory, body: str | None, error: Array) -> str:
     """Return what is to be said of the estimated errors (T,) [rad], or nothing.
 
     They are held against the swing: half the range of the rotation, or of the nodes over the longest strip

@@ -6,21 +6,34 @@ gradient of the potential. While a scene settles, p is the share of gravity and 
 nothing else acts.
 """
 
-from collections import Counter
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import csc_matrix
-from scipy.sparse.linalg import SuperLU, splu
 
-from .effects.loads import DeadLoad
-from .stability import negative_eigenvalues
-from .structure import Structure
+from .matrix import Factors
+from .structure import Evaluation, Structure
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Balance:
+    """Where the forces stand at coordinates and a parameter.
+
+    Attributes:
+        residual (size,): [N, N m]; on the held coordinates it is what the drives exert. at: the structure
+            there, whose tangent is d r / d y: loads act at centres and free ends, where they have no
+            stiffness. potential: whose gradient is r [J]. load_work: of the full load from rest [J].
+    """
+
+    residual: Array
+    at: Evaluation
+    potential: float
+    load_work: float
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -30,7 +43,7 @@ class Control:
     Args:
         structure: what is led, reduced about the centres of its bodies.
         held (H,): coordinates that are prescribed. values (2, H): at the beginning and the end of the span.
-        span: parameter at both. load: F, or None.
+        span: parameter at both. load (size,): F, or None.
         watched: coordinate of the turn whose torque and stiffness are reported, or None.
         settling: whether the parameter is the share of gravity and natural strains.
     """
@@ -39,14 +52,21 @@ class Control:
     held: Indices
     values: Array
     span: tuple[float, float] = (0.0, 1.0)
-    load: DeadLoad | None = None
+    load: Array | None = None
     watched: int | None = None
     settling: bool = False
 
     @cached_property
+    def is_held(self) -> NDArray[np.bool_]:
+        """Which coordinates are held (size,)."""
+        held = np.zeros(self.structure.size, dtype=bool)
+        held[self.held] = True
+        return held
+
+    @cached_property
     def free(self) -> Indices:
         """The coordinates that are not held."""
-        return np.setdiff1d(np.arange(self.structure.size), self.held)
+        return np.flatnonzero(~self.is_held)
 
     @cached_property
     def slope(self) -> Array:
@@ -60,38 +80,30 @@ class Control:
         value: Array = (1.0 - part) * self.values[0] + part * self.values[1]
         return value
 
-    def share(self, parameter: float) -> float:
-        """Return the share of gravity and natural strains at p."""
-        return parameter if self.settling else 1.0
+    def balance(self, y: Array, parameter: float) -> Balance:
+        """Return the forces at y and p, by one compiled call."""
+        share = parameter if self.settling else 1.0
+        here = self.structure.evaluate(y, share)
+        residual, potential, work = here.gradient, sum(here.strain) + share * here.gravity, 0.0
+        if self.load is not None:
+            work = float(self.load @ y)
+            residual, potential = residual - parameter * self.load, potential - parameter * work
+        return Balance(residual=residual, at=here, potential=potential, load_work=work)
 
-    def residual(self, y: Array, parameter: float) -> Array:
-        """Return r (size,) [N, N m]; on the held coordinates it is what the drives exert."""
-        force = self.structure.internal_force(y, self.share(parameter))
-        return force if self.load is None else force - parameter * self.load.generalised(y)
+    def unbalanced(self, residual: Array) -> float:
+        """Return the largest residual of the free coordinates, forces over EI/L^2, moments over EI/L."""
+        return float(np.abs(residual / self.structure.scale)[self.free].max(initial=0.0))
 
-    def tangent(self, y: Array, parameter: float) -> csc_matrix:
-        """Return d r / d y; loads act at centres and free ends, where they have no stiffness."""
-        return self.structure.tangent_stiffness(y, self.share(parameter))
-
-    def residual_rate(self, y: Array) -> Array | None:
-        """Return d r / d p at fixed y (size,); None if it is zero."""
+    def rates(self, y: Array, parameter: float, load_work: float) -> tuple[Array | None, float, float]:
+        """Return what p changes at fixed y: r (size,) or None; the potential, once and twice [J]."""
         if self.settling:
-            return self.structure.share_force(y)
-        return None if self.load is None else -self.load.generalised(y)
+            force, rate, bend = self.structure.share_rates(y)
+            return force, rate + (parameter - 1.0) * bend, bend
+        return (None, 0.0, 0.0) if self.load is None else (-self.load, -load_work, 0.0)
 
-    def load_work(self, y: Array) -> float:
-        """Return the work of the full load F from rest to y [J]."""
-        return 0.0 if self.load is None else self.load.work(y)
-
-    def potential(self, y: Array, parameter: float) -> float:
-        """Return the total potential [J]: whose gradient is r."""
-        return self.structure.potential(y, self.share(parameter)) - parameter * self.load_work(y)
-
-    def potential_rate(self, y: Array, parameter: float) -> tuple[float, float]:
-        """Return its first and second derivative in p at fixed y [J]."""
-        if self.settling:
-            return self.structure.share_energy(y, parameter)
-        return -self.load_work(y), 0.0
+    def factors(self, balance: Balance) -> Factors:
+        """Return the factors of the tangent on the free coordinates; raises `matrix.Singular`."""
+        return balance.at.tangent.factors(self.is_held)
 
     def describe(self, parameter: float) -> str:
         """Return what the parameter stands for, with its value."""
@@ -102,21 +114,40 @@ class Control:
         return f"load factor {parameter:.6g}"
 
 
-def free_block(control: Control, tangent: csc_matrix) -> csc_matrix:
-    """Return the block of the free coordinates."""
-    free, many = control.free, len(control.free)
-    if many == tangent.shape[0]:
-        return tangent
-    # as where the last body is driven: slices take a third of the time
-    leading = many > 0 and free[-1] == many - 1
-    block: csc_matrix = (tangent[:many, :many] if leading else tangent[:, free][free]).tocsc()
-    return block
+def spans(
+    structure: Structure,
+    *,
+    body: int | None = None,
+    rotations: Sequence[float] | None = None,
+    displacement: Sequence[float] | None = None,
+    load: Array | None = None,
+    watched: int | None = None,
+) -> list[Control]:
+    """Return the spans of a path on which a body is led through `rotations` [rad], one leg each.
 
+    The displacement [m] of the body's centre and the load grow with the load factor over all legs.
+    """
+    ends = [0.0, *rotations] if rotations is not None else [0.0, 0.0]
+    at = structure.body_slice(0 if body is None else body).start
+    held = [] if displacement is None else [at, at + 1]
+    held += [at + 2] if rotations is not None else []
+    legs = len(ends) - 1
 
-def factorise(block: csc_matrix, counters: Counter[str]) -> SuperLU:
-    """Factorise the block of the free coordinates; raises RuntimeError if it is singular."""
-    counters["factorisations"] += 1
-    return splu(block, permc_spec="MMD_AT_PLUS_A", options={"SymmetricMode": True})
+    def values(leg: int) -> list[float]:
+        place = [] if displacement is None else [leg / legs * part for part in displacement]
+        return place + ([ends[leg]] if rotations is not None else [])
+
+    return [
+        Control(
+            structure=structure,
+            held=np.array(held, dtype=np.int64),
+            values=np.array([values(leg), values(leg + 1)]),
+            span=(leg / legs, (leg + 1) / legs),
+            load=load,
+            watched=watched,
+        )
+        for leg in range(legs)
+    ]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -141,50 +172,44 @@ class Response:
     inertia: int
 
 
-def respond(control: Control, y: Array, parameter: float, counters: Counter[str]) -> Response:
-    """Return the response at an equilibrium: one factorisation, one solve for each drive and for the load.
-
-    The signs of the eigenvalues take another elimination, without pivots off the diagonal.
+def respond(control: Control, y: Array, parameter: float, balance: Balance, factors: Factors) -> Response:
+    """Return the response at an equilibrium: one solve for each drive and for the load.
 
     What is left of the residual is carried to the drives by the same solve: to first order what they exert
     is that of exact equilibrium, free of the round-off in the last elements' forces.
     """
-    residual, tangent = control.residual(y, parameter), control.tangent(y, parameter)
-    counters["residual_evaluations"] += 1
-    counters["tangent_evaluations"] += 1
-    block, free, held = free_block(control, tangent), control.free, control.held
-    lu = factorise(block, counters)
-    moves = np.zeros((control.structure.size, len(held)))
-    moves[held] = np.eye(len(held))
-    if len(held):
-        moves[free] = lu.solve(-tangent[:, held].toarray()[free])
-    drive = moves.T @ residual
-    stiffness = moves.T @ (tangent @ moves)  # errors of the solve enter squared
-    rate, change = moves @ control.slope, control.residual_rate(y)
-    first, second = control.potential_rate(y, parameter)
+    tangent, held = balance.at.tangent, control.held
+    moves = np.zeros((len(held), control.structure.size))
+    moves[np.arange(len(held)), held] = 1.0
+    moves -= factors.solve(tangent.times(moves))
+    drive, pushed = moves @ balance.residual, tangent.times(moves)
+    stiffness = moves @ pushed.T  # errors of the solve enter squared
+    rate = control.slope @ moves
+    change, first, second = control.rates(y, parameter, balance.load_work)
     if change is not None:
-        rate[free] -= lu.solve(change[free])
+        rate -= factors.solve(change)
         second += 2.0 * float(change @ rate)
-    pushed, torque_rate = tangent @ rate, 0.0
+    along, torque_rate = tangent.times(rate), 0.0
     if control.watched is None:
         torque, turning = np.nan, np.nan
-    elif control.watched in control.held:
+    elif control.is_held[control.watched]:
         k = int(np.flatnonzero(held == control.watched)[0])
         torque, turning = float(drive[k]), float(stiffness[k, k])
         if control.slope[k] != 0.0:
-            torque_rate = float(
-                pushed[control.watched] + (0.0 if change is None else change[control.watched])
-            )
+            torque_rate = float(along[control.watched])
+            torque_rate += 0.0 if change is None else float(change[control.watched])
     else:
-        unit = (free == control.watched).astype(float)
-        torque = float(control.structure.internal_force(y)[control.watched])
-        turning = 1.0 / float(unit @ lu.solve(unit))
+        unit = np.zeros(control.structure.size)
+        unit[control.watched] = 1.0
+        torque = float(balance.residual[control.watched])
+        torque += 0.0 if control.load is None else parameter * float(control.load[control.watched])
+        turning = 1.0 / float(factors.solve(unit)[control.watched])
     return Response(
         rate=rate,
         conjugate=first + float(drive @ control.slope),
-        slope=second + float(rate @ pushed),
+        slope=second + float(rate @ along),
         torque=torque,
         stiffness=turning,
         torque_rate=torque_rate,
-        inertia=negative_eigenvalues(block),
+        inertia=factors.negative,
     )

@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from .control import Control, free_block
+from .control import Control
+from .matrix import Symmetric
 from .solution import CriticalPoint
-from .stability import critical_mode
 
 if TYPE_CHECKING:
     from .path import State
@@ -17,6 +17,8 @@ Array = NDArray[np.float64]
 
 #: Largest motion of a body over that of the nodes in a mode of the strips alone.
 STANDS = 0.25
+#: Inverse iterations to the critical mode; next to a critical point each gains several digits.
+INVERSE_ITERATIONS = 6
 #: Rates of the torque over p below which they are round-off, in EI/L.
 ROUND_OFF = 1e-9
 PREFIXES = {9: "G", 6: "M", 3: "k", 0: "", -3: "m", -6: "u", -9: "n"}
@@ -28,8 +30,7 @@ def critical_point(control: Control, before: "State", after: "State") -> Critica
     It is where the line through the eigenvalues nearest to zero has its zero.
     """
     (first, _), (last, mode) = (
-        critical_mode(free_block(control, control.tangent(state.y, state.parameter)))
-        for state in (before, after)
+        critical_mode(state.balance.at.tangent, control.is_held) for state in (before, after)
     )
     part = first / (first - last) if first * last < 0.0 else 0.5
     inertia = after.response.inertia
@@ -37,6 +38,21 @@ def critical_point(control: Control, before: "State", after: "State") -> Critica
     what = moves if inertia > before.response.inertia else "the strips are stable again"
     y, parameter = _between(before, after, part)
     return point(control, "bifurcation", y, parameter, inertia, f"bifurcation: {what}")
+
+
+def critical_mode(tangent: Symmetric, held: NDArray[np.bool_]) -> tuple[float, Array]:
+    """Return the eigenvalue nearest to zero of the tangent, scaled to units on its diagonal, and its mode.
+
+    The mode (size,) is in the coordinates of the tangent, of any size, and zero at those that are held.
+    """
+    root = 1.0 / np.sqrt(np.abs(tangent.data[tangent.pattern.diagonal]) + np.finfo(float).tiny)
+    factors = tangent.factors(held)
+    mode = np.where(held, 0.0, np.cos(np.arange(1.0, len(root) + 1.0) ** 2))  # along no symmetry
+    for _ in range(INVERSE_ITERATIONS):
+        mode = factors.solve(mode / root) / root
+        mode /= np.linalg.norm(mode)
+    moved = mode * root
+    return float(moved @ tangent.times(moved)), moved
 
 
 def extremes(control: Control, before: "State", after: "State") -> list[CriticalPoint]:
@@ -89,7 +105,7 @@ def places(control: Control, y: Array, parameter: float) -> Iterator[str]:
         yield "load factor 0"
         return
     if control.load is not None:
-        vector = parameter * control.load.vector
+        vector = parameter * control.load
         force, moment = np.hypot(vector[0::3].sum(), vector[1::3].sum()), abs(vector[2::3].sum())
         yield from (quantity(size, unit) for size, unit in ((force, "N"), (moment, "N m")) if size > 0.0)
     if control.watched is not None and control.watched in control.held[control.slope != 0.0]:
@@ -104,10 +120,6 @@ def quantity(size: float, unit: str) -> str:
 
 
 def bodies_stand(control: Control, mode: Array) -> bool:
-    """Return whether only the strips move in a mode of the free coordinates."""
-    structure = control.structure
-    full = np.zeros(structure.size)
-    full[control.free] = mode
-    full *= structure.measure
-    bodies = np.abs(full[structure.first_body :]).max(initial=0.0)
-    return bool(bodies <= STANDS * np.abs(full).max())
+    """Return whether only the strips move in a mode (size,)."""
+    size = np.abs(np.where(control.is_held, 0.0, mode) * control.structure.measure)
+    return bool(size[control.structure.first_body :].max(initial=0.0) <= STANDS * size.max())

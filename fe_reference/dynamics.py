@@ -8,20 +8,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .companion import with_companion
-from .effects.actions import start_load
-from .effects.named import DEFAULT_EFFECTS, needs_inertia, read_effects
+from .effects import DEFAULT_EFFECTS, needs_inertia, read_effects
 from .errors import ConvergenceError, InvalidParameter, choice, count, finite, positive, within
 from .explicit import Explicit, critical_step
 from .implicit import Implicit
+from .loads import start_load
 from .mass import about_mass_centre, carried_over
 from .model import Model
 from .modes import natural_frequencies
 from .motion import Progress, Samples, sampling
 from .solution import Status
-from .statics import static_state
+from .statics import settled_state
 from .stopwatch import Stopwatch
-from .structure import Structure
-from .trajectory import MechanismTrajectory, Trajectory, mechanism_trajectory, pivot_trajectory
+from .structure import Structure, structure_of
+from .trajectory import Trajectory, trajectory
 
 Array = NDArray[np.float64]
 INTEGRATORS = ("central-difference", "generalised-alpha")
@@ -105,27 +105,22 @@ def solve_release(
         ConvergenceError: statics does not reach the start; or (unless `raise_on_failure` is False) the motion
             blew up or a step had no solution: carries the trajectory until then.
     """
-    if start is not None:
-        finite("start", start, "rad")
-    run = Run(
+    pivot.body_index(None)
+    return solve_motion(
+        pivot,
+        start=start,
         duration=duration,
         step=step,
         integrator=integrator,
         safety=safety,
         spectral_radius=spectral_radius,
         samples=samples,
+        increments=increments,
         most_steps=most_steps,
+        check=check,
+        raise_on_failure=raise_on_failure,
         progress=progress,
     )
-    pivot.body_index(None)
-    watch = Stopwatch()
-    y = _start(pivot, start, None, increments)
-    watch.stop("start")
-    structure, motion, settings = _integrate(pivot, y, run, watch)
-    begin: dict[str, float | str] = {} if start is None else {"start_rad": start}
-    trajectory = pivot_trajectory(structure, motion, begin | settings, watch)
-    _raise_if_stopped(trajectory, motion, run, raise_on_failure)
-    return checked(pivot, trajectory, start=start) if check else trajectory
 
 
 def solve_motion(
@@ -145,7 +140,7 @@ def solve_motion(
     check: bool = True,
     raise_on_failure: bool = True,
     progress: Progress | None = None,
-) -> MechanismTrajectory:
+) -> Trajectory:
     """Let a mechanism go at rest and follow the motion of all its bodies.
 
     What holds at the start, what lets go and which loads act is as in `solve_release`.
@@ -173,40 +168,51 @@ def solve_motion(
         most_steps=most_steps,
         progress=progress,
     )
+    if start is not None:
+        finite("start", start, "rad")
     if start is not None and not settled:
         raise InvalidParameter("settled", settled, "True for a start at a held rotation [1]")
     watch = Stopwatch()
-    y = _start(mechanism, start, body, increments) if settled else np.zeros(mechanism.structure.size)
+    rest = np.zeros(structure_of(mechanism).size)
+    y, remark = _start(mechanism, start, body, increments) if settled else (rest, "")
     watch.stop("start")
     structure, motion, settings = _integrate(mechanism, y, run, watch)
     begin: dict[str, float | str] = {} if start is None else {"start_rad": start}
-    trajectory = mechanism_trajectory(structure, motion, begin | settings, watch)
-    _raise_if_stopped(trajectory, motion, run, raise_on_failure)
-    return checked(mechanism, trajectory, start=start, body=body) if check and settled else trajectory
+    motion.remarks += [remark] if remark else []
+    motion_of = trajectory(structure, motion, begin | settings, watch)
+    if motion_of.status is not Status.CONVERGED and raise_on_failure:
+        raise ConvergenceError(
+            f"{motion_of.message}; {motion_of.status.text}",
+            solution=motion_of,
+            load_factor=float(motion_of.time[-1] / duration),
+            history=tuple(motion.history),
+        )
+    return checked(mechanism, motion_of, start=start, body=body) if check and settled else motion_of
 
 
-def checked(model: Model, trajectory: Any, *, start: float | None, body: str | None = None) -> Any:
-    """Return a trajectory with its `rotation_error` and `resolution`, by a companion of fewer elements.
+def checked(model: Model, motion: Trajectory, *, start: float | None, body: str | None = None) -> Trajectory:
+    """Return a motion with its `rotation_error` and `resolution`, by a companion of fewer elements.
 
     Args:
         model, start, body: as of the motion, which began in equilibrium.
-        trajectory: of either kind.
     """
     names = ("integrator", "spectral_radius")
-    settings = {name: trajectory.settings[name] for name in names if name in trajectory.settings}
+    settings: dict[str, Any] = {name: motion.settings[name] for name in names if name in motion.settings}
     if not model.bodies or (body is None and len(model.bodies) > 1):
-        return trajectory
+        return motion
 
-    def run(chosen: Model, **more: Any) -> Any:
+    def run(chosen: Model, **more: Any) -> Trajectory:
         return solve_motion(chosen, start=start, body=body, check=False, **settings, **more)
 
-    return with_companion(model, trajectory, body, run)
+    return with_companion(model, motion, body, run)
 
 
-def _start(model: Model, rotation: float | None, body: str | None, increments: int) -> Array:
-    """Return the coordinates of the start about the bodies' centres."""
+def _start(model: Model, rotation: float | None, body: str | None, increments: int) -> tuple[Array, str]:
+    """Return the coordinates of the start about the bodies' centres, and what is to be said of them."""
     needs_inertia(model.effects)
-    return static_state(model, rotation, body, count("increments", increments), start_load(model.structure))
+    load = start_load(structure_of(model))
+    y, remark = settled_state(model, rotation, body, count("increments", increments), load)
+    return y, f"the way to the start: {remark}" if remark else ""
 
 
 def _integrate(
@@ -214,8 +220,8 @@ def _integrate(
 ) -> tuple[Structure, Samples, dict[str, float | str]]:
     """Integrate from rest at y; return the structure the samples belong to, the samples and the settings."""
     needs_inertia(model.effects)
-    structure, bodies = about_mass_centre(model.structure)
-    y = carried_over(model.structure, y, structure)
+    structure, bodies = about_mass_centre(structure_of(model))
+    y = carried_over(structure_of(model), y, structure)
     scheme: Explicit | Implicit
     choices: dict[str, float]
     if run.integrator == "central-difference":
@@ -243,17 +249,6 @@ def _first_frequency(model: Model) -> float:
     if frequency <= 0.0:
         raise InvalidParameter("step", None, "a step: the model can move freely and has no first period [s]")
     return frequency
-
-
-def _raise_if_stopped(trajectory: Any, motion: Samples, run: Run, raise_on_failure: bool) -> None:
-    """Raise if a motion ended early, with what there is of it."""
-    if trajectory.status is not Status.CONVERGED and raise_on_failure:
-        raise ConvergenceError(
-            f"{trajectory.message}; {trajectory.status.text}",
-            solution=trajectory,
-            load_factor=float(trajectory.time[-1] / run.duration),
-            history=tuple(motion.history),
-        )
 
 
 def _cheaper(model: Model, run: Run) -> str:

@@ -13,16 +13,12 @@ Source: T. Belytschko, W. K. Liu, B. Moran, Nonlinear Finite Elements for Contin
 ch. 6.
 """
 
-from typing import Any
-
 import numpy as np
 from numpy.typing import NDArray
 
-from .compiled import CompiledForces
-from .effects.actions import Actions, Resistance
-from .effects.kernels import advance_scene
+from .actions import Actions, Resistance, advance
 from .errors import InvalidParameter
-from .kernels import advance
+from .law import TANGENT
 from .mass import RigidBodies, lumped_diagonal, lumped_elements
 from .motion import FLOOR, Energy, Progress, Samples
 from .structure import Structure
@@ -42,13 +38,13 @@ def critical_step(structure: Structure, bodies: RigidBodies, y: Array) -> float:
     Dampers reduce the step: with c the sum of the highest ratios of damping to mass of strips and bodies,
     h = 4 / (c + sqrt(c^2 + 4 w^2)); without them it is 2 / w.
     """
-    u, lumped = structure.element_displacement(y), lumped_elements(structure)
+    lumped = lumped_elements(structure)
     root = np.sqrt(lumped).T
-    tangents = structure.element_tangents(u).transpose(2, 0, 1) / (root[:, :, None] * root[:, None, :])
+    tangents = structure.element_matrices(y, TANGENT) / (root[:, :, None] * root[:, None, :])
     highest = float(np.linalg.eigvalsh(tangents)[:, -1].max())
-    curvature = structure.attachments.curvature(structure.element_forces(u), y[structure.turns])
+    curvature = structure.evaluate(y).curvature
     square = highest + float(np.max(curvature / bodies.moment_of_inertia, initial=0.0))
-    actions = Actions(CompiledForces(structure))
+    actions = Actions(structure)
     decay = actions.fastest_decay(y, lumped, bodies.mass, bodies.moment_of_inertia) if actions.damped else 0.0
     return float(4.0 / (decay + np.sqrt(decay**2 + 4.0 * square)))
 
@@ -62,8 +58,7 @@ class Explicit:
 
     def __init__(self, structure: Structure, bodies: RigidBodies) -> None:
         self.structure = structure
-        self.compiled = CompiledForces(structure)
-        self.actions = Actions(self.compiled)
+        self.actions = Actions(structure)
         self.mass = lumped_diagonal(structure, bodies)
         if not np.all(self.mass > 0.0):
             raise InvalidParameter(
@@ -74,29 +69,31 @@ class Explicit:
         self.compliance = np.zeros((structure.strips * structure.stations, 3))
         self.compliance[structure.free_nodes] = 1.0 / self.mass[: structure.first_body].reshape(-1, 3)
         self.body_compliance = 1.0 / self.mass[structure.first_body :].reshape(-1, 3)
-        self.pure = not (self.actions.named or structure.constant_effects)
         self.totals = np.zeros(2)
 
     def run(self, y: Array, v: Array, step: float, chunks: list[int], progress: Progress | None) -> Samples:
         """Integrate from coordinates y and velocities v over chunks of steps; keep a sample after each."""
-        s, samples, done = self.structure, Samples(floor=FLOOR * self.structure.moment_unit), 0
-        force, strain, first = self._act(y, v, 0.0)
+        s, actions, done = self.structure, self.actions, 0
+        samples = Samples(floor=FLOOR * s.moment_unit)
+        first = self.actions.resist(y, v, 0.0)
         self.totals[:] = 0.0
-        samples.keep(0.0, y, v, self._energy(y, v, strain, step, first, first))
-        late = v + 0.5 * step * force / self.mass  # half a step before the start
+        samples.keep(0.0, y, v, self._energy(y, v, step, first, first))
+        late = v + 0.5 * step * first.force / self.mass  # half a step before the start
         nodal_v, bodies = np.zeros((s.strips * s.stations, 3)), y[s.first_body :].reshape(-1, 3).copy()
         nodal_v[s.free_nodes] = late[: s.first_body].reshape(-1, 3)
         state = (s.displacement(y), nodal_v, bodies, late[s.first_body :].reshape(-1, 3).copy())
         for number, steps in enumerate(chunks, start=1):
-            self._advance(state, done * step, step, steps)
+            tables = (actions.given, actions.dissipative, actions.histories, actions.arrays)
+            masses = (self.compliance, self.body_compliance)
+            advance(*tables, *masses, *state, self.totals, done * step, step, steps)
             done += steps
             now, late = (
                 np.concatenate([nodes[s.free_nodes].ravel(), carried.ravel()])
                 for nodes, carried in (state[::2], state[1::2])
             )
-            force, strain, acting = self._act(now, late, done * step)
-            now_v = late - 0.5 * step * force / self.mass
-            energy = self._energy(now, now_v, strain, step, first, acting)
+            acting = actions.resist(now, late, done * step)
+            now_v = late - 0.5 * step * acting.force / self.mass
+            energy = self._energy(now, now_v, step, first, acting)
             if not samples.keep(done * step, now, now_v, energy):
                 break
             if progress is not None:
@@ -104,38 +101,12 @@ class Explicit:
         samples.counters.update(steps=done, force_evaluations=done + len(samples.time))
         return samples
 
-    def _advance(self, state: tuple[Array, ...], time: float, step: float, steps: int) -> None:
-        """Make steps in place; a scene of strips and bodies alone takes the loop that knows nothing else."""
-        compiled, actions = self.compiled, self.actions
-        masses = (self.compliance, self.body_compliance)
-        arguments: tuple[Any, ...]
-        if self.pure:
-            arguments = (*compiled.given, *masses, *state, *compiled.work, step, steps)
-            advance(*arguments)
-            return
-        tables = (compiled.given, compiled.conservative, actions.dissipative, actions.histories)
-        arguments = (*tables, *masses, *state, compiled.work, actions.pulls, self.totals, time, step, steps)
-        advance_scene(*arguments)
-
-    def _act(self, y: Array, v: Array, time: float) -> tuple[Array, float, Resistance | None]:
-        """Return all that resists the motion (size,), the strain energy and what loads and dampers exert."""
-        force, strain = self.compiled.forces(y)
-        if not self.actions.named:
-            return force, strain, None
-        acting = self.actions.resist(y, v, time)
-        return force + acting.force, strain, acting
-
-    def _energy(
-        self, y: Array, v: Array, strain: float, step: float, first: Resistance | None, now: Resistance | None
-    ) -> Energy:
+    def _energy(self, y: Array, v: Array, step: float, first: Resistance, now: Resistance) -> Energy:
         """Return the energies of a sample; what the loop gathered is brought from mid-step to the sample."""
-        kinetic, gravity = 0.5 * float(self.mass @ v**2), self.structure.gravity_energy(y)
-        if first is None or now is None:
-            return Energy(kinetic=kinetic, strain=strain, gravity=gravity)
         return Energy(
-            kinetic=kinetic,
-            strain=strain,
-            gravity=gravity,
+            kinetic=0.5 * float(self.mass @ v**2),
+            strain=now.strain,
+            gravity=now.gravity,
             work=float(self.totals[0]) + 0.5 * step * (now.load_power - first.load_power),
             dissipated=float(self.totals[1]) + step * (now.loss_power - first.loss_power),
         )

@@ -6,7 +6,8 @@
 with am = (2 r - 1)/(r + 1), af = r/(r + 1), g = 1/2 - am + af, b = (1 - am + af)^2 / 4 and spectral radius r
 at infinite frequency: second order, and high frequencies that the step does not resolve are damped if r < 1.
 Energy is not conserved exactly in large motion; it is recorded, the work of loads and dampers by the
-trapezoidal rule over the steps. About the common centres of mass M is diagonal and constant.
+trapezoidal rule over the steps, and a motion that gains energy is stopped. What the step leaves unresolved is
+remarked on. About the common centres of mass M is diagonal and constant.
 
 Strips without inertia are legal: their rows hold no mass and become (1 - af) f_{n+1} + af f_n = 0, so that
 the strips stay in equilibrium with the bodies if they start there, and else reach it as (-r)^n.
@@ -18,14 +19,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import diags_array
-from scipy.sparse.linalg import SuperLU, splu
 
-from .compiled import CompiledForces
-from .effects.actions import Actions, Resistance
+from .actions import Actions, Resistance
 from .mass import RigidBodies, lumped_diagonal
+from .matrix import Factors, Singular
 from .motion import FLOOR, Energy, Progress, Samples
-from .newton import round_off
 from .structure import Structure
 
 Array = NDArray[np.float64]
@@ -37,6 +35,10 @@ SLOW = 0.1
 TOLERANCE = 1e-9
 #: A step that fails is halved at most so often.
 HALVINGS = 6
+#: Relative gain of energy that stops a motion, and loss to numerical damping that is remarked on.
+GAIN = LOST = 0.01
+#: Fewest steps in the mean period of a motion, by its kinetic energy, that are not remarked on.
+COARSEST = 20.0
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -44,18 +46,15 @@ class Instant:
     """The state at an instant of a motion.
 
     Attributes:
-        time [s]. y, v, a (size,): coordinates, velocities, accelerations.
-        force (size,): all that resists [N, N m]. strain: energy [J].
-        acting: what loads and dampers exert, None if none is named; work, dissipated: by them so far [J].
+        time [s]. y, v, a (size,): coordinates, velocities, accelerations. acting: what resists there.
+        work, dissipated: by loads and dampers so far [J].
     """
 
     time: float
     y: Array
     v: Array
     a: Array
-    force: Array
-    strain: float
-    acting: Resistance | None = None
+    acting: Resistance
     work: float = 0.0
     dissipated: float = 0.0
 
@@ -70,27 +69,17 @@ class Implicit:
         self.am, self.af = (2.0 * r - 1.0) / (r + 1.0), r / (r + 1.0)
         self.gamma = 0.5 - self.am + self.af
         self.beta = 0.25 * (1.0 - self.am + self.af) ** 2
-        self.tolerance = max(TOLERANCE, round_off(structure))
+        self.tolerance = max(TOLERANCE, structure.round_off)
 
-        self.compiled = CompiledForces(structure)
-        self.actions = Actions(self.compiled)
-        self._factor: SuperLU | None = None
+        self.actions = Actions(structure)
+        self._factor: Factors | None = None
         self._factor_step = 0.0
 
     def start(self, y: Array, v: Array) -> Instant:
         """Return the initial instant with its consistent acceleration, zero where there is no inertia."""
-        force, strain, acting = self._act(y, v, 0.0)
-        inert = self.mass > 0.0
-        a = np.where(inert, -force / np.where(inert, self.mass, 1.0), 0.0)
-        return Instant(time=0.0, y=y, v=v, a=a, force=force, strain=strain, acting=acting)
-
-    def _act(self, y: Array, v: Array, time: float) -> tuple[Array, float, Resistance | None]:
-        """Return all that resists the motion (size,), the strain energy and what loads and dampers exert."""
-        force, strain = self.compiled.forces(y)
-        if not self.actions.named:
-            return force, strain, None
-        acting = self.actions.resist(y, v, time)
-        return force + acting.force, strain, acting
+        acting, inert = self.actions.resist(y, v, 0.0), self.mass > 0.0
+        a = np.where(inert, -acting.force / np.where(inert, self.mass, 1.0), 0.0)
+        return Instant(time=0.0, y=y, v=v, a=a, acting=acting)
 
     def step(self, now: Instant, h: float, samples: Samples, depth: int = 0) -> Instant | None:
         """Return the instant after h [s], in halved steps where needed; None if those fail too."""
@@ -108,47 +97,50 @@ class Implicit:
         mass, scale, time = self.mass, self.structure.scale, now.time + h
         coasting = now.y + h * now.v + h**2 * (0.5 - self.beta) * now.a
         drifting = now.v + h * (1.0 - self.gamma) * now.a
-        held = self.am * mass * now.a + self.af * now.force
+        held = self.am * mass * now.a + self.af * now.acting.force
         reach = self.beta * h**2
         # the unknown is the acceleration: taken from differences of positions it would drown in round-off
         a, norms = now.a.copy(), [np.inf]
         for _ in range(ITERATIONS):
             y, v = coasting + reach * a, drifting + self.gamma * h * a
-            force, strain, acting = self._act(y, v, time)
-            residual = (1.0 - self.am) * mass * a + (1.0 - self.af) * force + held
+            acting = self.actions.resist(y, v, time)
+            residual = (1.0 - self.am) * mass * a + (1.0 - self.af) * acting.force + held
             norms.append(float(np.abs(residual / scale).max()))
             samples.counters["force_evaluations"] += 1
             if norms[-1] <= self.tolerance:
-                after = Instant(time=time, y=y, v=v, a=a, force=force, strain=strain, acting=acting)
-                return _accounted(now, after)
+                return _accounted(now, Instant(time=time, y=y, v=v, a=a, acting=acting))
             if not np.isfinite(norms[-1]):
                 break
             samples.counters["iterations"] += 1
             factor = self._factor
             if factor is None or h != self._factor_step or norms[-1] > SLOW * norms[-2]:
-                factor = self._factorise(y, h, samples)
+                try:
+                    factor = self._factorise(y, h, samples)
+                except Singular:
+                    break
             a -= factor.solve(residual) / reach
         samples.history.append(tuple(norms[1:]))
         self._factor = None
         return None
 
-    def _factorise(self, y: Array, h: float, samples: Samples) -> SuperLU:
+    def _factorise(self, y: Array, h: float, samples: Samples) -> Factors:
         """Factorise the tangent of a step of h [s] at y, and keep the factors for the steps that follow.
 
         What the dampers' forces change with the place is left out: the iteration is a modified one anyway.
         """
-        inertia = diags_array((1.0 - self.am) / (self.beta * h**2) * self.mass)
-        resisting = self.structure.tangent_stiffness(y)
+        tangent = self.structure.evaluate(y).tangent
         if self.actions.damped:
-            resisting = resisting + self.gamma / (self.beta * h) * self.actions.damping_matrix(y)
-        tangent = (1.0 - self.af) * resisting + inertia
-        self._factor, self._factor_step = splu(tangent.tocsc(), options={"SymmetricMode": True}), h
+            tangent.data += self.gamma / (self.beta * h) * self.actions.damping_matrix(y).data
+        tangent.data *= 1.0 - self.af
+        tangent.data[tangent.pattern.diagonal] += (1.0 - self.am) / (self.beta * h**2) * self.mass
+        self._factor, self._factor_step = tangent.factors(np.zeros(len(y), dtype=bool)), h
         samples.counters["factorisations"] += 1
         return self._factor
 
     def run(self, y: Array, v: Array, step: float, chunks: list[int], progress: Progress | None) -> Samples:
         """Integrate from coordinates y and velocities v over chunks of steps; keep a sample after each."""
-        samples, now, done = Samples(floor=FLOOR * self.structure.moment_unit), self.start(y, v), 0
+        samples = Samples(floor=FLOOR * self.structure.moment_unit, blow_up=GAIN)
+        now, done, content = self.start(y, v), 0, np.zeros(2)
         self._keep(samples, now, 0.0)
         for number, steps in enumerate(chunks, start=1):
             for _ in range(steps):
@@ -157,28 +149,44 @@ class Implicit:
                     samples.message = f"no solution of the step of {step:.3g} s at {done * step:.6g} s"
                     return samples
                 now, done = after, done + 1
+                content += self.mass @ now.a**2, self.mass @ now.v**2
                 samples.counters["steps"] += 1
             if not self._keep(samples, now, done * step):
                 break
             if progress is not None:
                 progress(number, len(chunks))
+        samples.remarks += _unresolved(step, content, samples.lost())
         return samples
 
     def _keep(self, samples: Samples, now: Instant, time: float) -> bool:
         energy = Energy(
             kinetic=0.5 * float(self.mass @ now.v**2),
-            strain=now.strain,
-            gravity=self.structure.gravity_energy(now.y),
+            strain=now.acting.strain,
+            gravity=now.acting.gravity,
             work=now.work,
             dissipated=now.dissipated,
         )
         return samples.keep(time, now.y, now.v, energy)
 
 
+def _unresolved(step: float, content: Array, lost: float) -> list[str]:
+    """Return what the step leaves unresolved.
+
+    Args:
+        step: h [s]. content: sums of a.M a and v.M v over the steps, whose ratio is the mean square of the
+            circular frequencies by their kinetic energy. lost: part of the energy that the scheme damped.
+    """
+    remarks = []
+    if content[0] * step**2 * COARSEST**2 > 4.0 * np.pi**2 * content[1]:
+        each = 2.0 * np.pi * np.sqrt(content[1] / content[0]) / step
+        remarks.append(f"only {each:.3g} steps in a mean period of what moves: take shorter steps")
+    if lost > LOST:
+        remarks.append(f"the scheme damped {lost:.1%} of the energy away: take shorter steps")
+    return remarks
+
+
 def _accounted(before: Instant, after: Instant) -> Instant:
     """Return `after` with the work of loads and dampers in the step, by the trapezoidal rule."""
-    if before.acting is None or after.acting is None:
-        return after
     half = 0.5 * (after.time - before.time)
     work = before.work + half * (before.acting.load_power + after.acting.load_power)
     lost = before.dissipated + half * (before.acting.loss_power + after.acting.loss_power)

@@ -5,6 +5,7 @@ from numpy.typing import NDArray
 
 from .arc_length import Place, Walk, bisect
 from .critical import bodies_stand, point
+from .matrix import Singular
 from .path import Path
 from .solution import CriticalPoint
 
@@ -25,8 +26,9 @@ def limit_point(path: Path, toward: float) -> CriticalPoint | None:
     walk = Walk(control=path.control, counters=path.counters)
     along = (np.zeros_like(last.y), toward - last.parameter)
     try:
-        here = walk.place(last.y, last.parameter, along)
-    except RuntimeError:
+        balance = path.control.balance(last.y, last.parameter)
+        here = walk.place(last.y, last.parameter, balance, path.control.factors(balance), along)
+    except Singular:
         return None
     length, bend = FIRST, np.zeros_like(last.y)
     for _ in range(MOST):
@@ -48,6 +50,6 @@ def _turned(walk: Walk, here: Place, length: float, bend: Array) -> CriticalPoin
     at, control = bisect(walk, here, length, bend, lambda place: place.slope * here.slope > 0.0), walk.control
     driven = control.watched is not None and control.watched in control.held
     kind = "turning point" if driven else "limit point"
-    strips = bodies_stand(control, at.rate[control.free])
+    strips = bodies_stand(control, at.rate)
     what = "the strips buckle" if strips else "the strips give way with the body"
     return point(control, kind, at.y, at.parameter, at.negative + 1, f"{kind}: {what}")

@@ -25,8 +25,8 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import coo_matrix, csc_matrix
 
+from .matrix import Symmetric
 from .structure import Structure
 
 Array = NDArray[np.float64]
@@ -55,7 +55,7 @@ def lumped_elements(structure: Structure) -> Array:
     if "strip_inertia" not in effects:
         return np.zeros((6, len(e.length)))
     half = 0.5 * e.linear_density * e.length
-    physical = structure.model.element == "reissner" or "section_rotary_inertia" in effects
+    physical = structure.shear or "section_rotary_inertia" in effects
     rotary = 0.5 * e.rotary_density * e.length if physical else e.linear_density * e.length**3 / 78.0
     return np.stack([half, half, rotary, half, half, rotary])
 
@@ -121,38 +121,32 @@ def lumped_diagonal(structure: Structure, bodies: RigidBodies) -> Array:
     return np.concatenate([free.ravel(), carried.ravel()])
 
 
-def mass_matrix(structure: Structure, y: Array, kind: str) -> csc_matrix:
+def mass_matrix(structure: Structure, y: Array, kind: str) -> Symmetric:
     """Return the mass matrix (size, size) of strips and bodies at y, "consistent" or "lumped"."""
     if kind == "lumped" or "strip_inertia" not in structure.model.effects:
         masses = np.eye(6)[:, :, None] * lumped_elements(structure)
-    elif structure.model.element == "reissner":
+    elif structure.shear:
         masses = _linear_elements(structure)
     else:
         masses = _cubic_elements(structure, y)
-    whole: csc_matrix = (
-        structure.reduced_matrix(masses, y) + body_blocks(structure, y, own_inertia(structure))
-    ).tocsc()
+    whole = structure.reduced_matrix(masses.transpose(2, 0, 1), y)
+    body_blocks(structure, y, own_inertia(structure), whole)
     return whole
 
 
-def body_blocks(structure: Structure, y: Array, values: Array) -> csc_matrix:
-    """Return what (B, 2) values, for translation of the bodies' centres and for rotation, make (size, size).
+def body_blocks(structure: Structure, y: Array, values: Array, whole: Symmetric) -> None:
+    """Add to a matrix what (B, 2) values make, for translation of the bodies' centres and for rotation.
 
     They are masses and moments of inertia, or the coefficients of dampers.
     """
-    theta, blocks = y[structure.turns], []
+    theta = y[structure.turns]
     for k, (translation, rotation) in enumerate(values):
         c, s = np.cos(theta[k]), np.sin(theta[k])
         gx, gy = structure.model.bodies[k].centre - structure.points[k]
         slope = np.array([[1.0, 0.0, -s * gx - c * gy], [0.0, 1.0, c * gx - s * gy]])
         block = translation * slope.T @ slope
         block[2, 2] += rotation
-        blocks.append(block)
-    last = np.arange(structure.first_body, structure.size).reshape(-1, 3)
-    indices = (np.repeat(last, 3, axis=1).ravel(), np.tile(last, (1, 3)).ravel())
-    data = np.reshape(blocks, -1)
-    placed: csc_matrix = coo_matrix((data, indices), (structure.size, structure.size)).tocsc()
-    return placed
+        whole.data[structure.pattern.blocks[k]] += block
 
 
 def _linear_elements(structure: Structure) -> Array:
@@ -167,8 +161,8 @@ def _linear_elements(structure: Structure) -> Array:
 def _cubic_elements(structure: Structure, y: Array) -> Array:
     """Return consistent masses (6, 6, E) of linear stretching and cubic bending in the frame of the chord."""
     e = structure.elements
-    u = structure.element_displacement(y)
-    c, s = (chord := e.chord + u[3:5] - u[0:2]) / np.hypot(*chord)
+    nodes = structure.displacement(y)[structure.basis.mesh.t, :2]
+    c, s = (chord := e.chord + (nodes[1] - nodes[0]).T) / np.hypot(*chord)
     one, zero = np.ones_like(c), np.zeros_like(c)
     along, across = np.array([0, 3]), np.array([1, 2, 4, 5])
     local = np.zeros((6, 6, len(c)))

@@ -7,10 +7,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .attachments import FREE, GROUND
-from .effects.named import DEFAULT_EFFECTS, read_effects
+from .effects import DEFAULT_EFFECTS, read_effects
 from .errors import InvalidParameter, count, finite, pair
-from .model import Body, Model, Section, Strip
+from .model import FREE, GROUND, Body, Model, Section, Strip
 
 Array = NDArray[np.float64]
 

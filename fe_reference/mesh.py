@@ -1,24 +1,31 @@
-"""The scikit-fem mesh of the strips and the reference geometry of their elements.
+"""The scikit-fem mesh of the strips, the reference geometry of their elements and the ends on bodies.
 
 One `MeshLine` carries all strips: the mesh coordinate is the arc length along a strip, from 0 at its ground
 end, and strips are separate chains of it. Three P1 fields live on it: the displacement u_x, u_y [m] and the
 turn phi [rad] of the cross-section, both from the unloaded reference.
+
+An end at the offset b from the reference point of its body follows without penalty or extra unknowns:
+
+    u = d + (R(theta) - 1) b,    phi = theta
+
+with displacement d of that point and turn theta of the body. Forces are reduced by the transpose of the
+derivative P of the map; the tangent is P^T K P plus the curvature of the map, -(R b).f on the diagonal entry
+of theta, with f the force of the element on the end.
 """
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 from skfem import Basis, ElementLineP1, ElementVector, MeshLine
 
-if TYPE_CHECKING:
-    from .model import Model
+from .effects import PreStrain
+from .model import Model
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
 
-#: One-point rule: free of shear and membrane locking in the two-node shear-deformable element.
+#: One-point rule: what the shear-deformable element is free of locking by.
 MIDPOINT = (np.array([[0.5]]), np.array([1.0]))
 
 
@@ -41,8 +48,14 @@ class Elements:
     linear_density: Array
     rotary_density: Array
 
+    def table(self, natural: PreStrain) -> Array:
+        """Return the rows of `law`, (E, 8)."""
+        own = [np.full_like(self.length, part) for part in (natural.strain, natural.curvature)]
+        rigidities = [self.axial_rigidity, self.flexural_rigidity, self.shear_rigidity]
+        return np.ascontiguousarray(np.transpose([*self.chord, self.length, *rigidities, *own]))
 
-def strip_basis(model: "Model") -> Basis:
+
+def strip_basis(model: Model) -> Basis:
     """Return the scikit-fem basis of (u_x, u_y, phi) on all strips; nodes are numbered strip by strip."""
     arcs, connections, first = [], [], 0
     for strip in model.strips:
@@ -55,16 +68,33 @@ def strip_basis(model: "Model") -> Basis:
     return Basis(mesh, ElementVector(ElementLineP1(), 3), quadrature=MIDPOINT)
 
 
-def reference_elements(model: "Model") -> Elements:
+def reference_elements(model: Model) -> Elements:
     """Return the reference geometry and rigidities of all elements, strip by strip."""
-    chords = [np.diff(strip.nodes, axis=0).T for strip in model.strips]
-
-    def constant(name: str) -> Array:
-        values = [
-            np.full(c.shape[1], getattr(s.section, name)) for s, c in zip(model.strips, chords, strict=True)
-        ]
-        return np.concatenate(values)
-
-    chord = np.hstack(chords)
+    chord = np.hstack([np.diff(strip.nodes, axis=0).T for strip in model.strips])
+    many = [len(strip.nodes) - 1 for strip in model.strips]
     names = ("axial_rigidity", "flexural_rigidity", "shear_rigidity", "linear_density", "rotary_density")
-    return Elements(chord=chord, length=np.hypot(*chord), **{name: constant(name) for name in names})
+    constants = {
+        name: np.repeat([getattr(strip.section, name) for strip in model.strips], many) for name in names
+    }
+    return Elements(chord=chord, length=np.hypot(*chord), **constants)
+
+
+class Attachments:
+    """The K attached ends of a model whose bodies have the reference points (B, 2) [m].
+
+    Attributes:
+        body (K,): index of the carrying body. node (K,): the node it carries.
+        offsets (K, 2): from the reference point of the body at rest [m].
+        ends (E, 2): which of them the elements' ends are, -1 for none.
+    """
+
+    def __init__(self, model: Model, points: Array) -> None:
+        stations = len(model.strips[0].nodes)
+        first = [(g, 0, strip.root) for g, strip in enumerate(model.strips) if strip.root >= 0]
+        last = [(g, 1, strip.tip) for g, strip in enumerate(model.strips) if strip.tip >= 0]
+        strip, end, self.body = np.array([*first, *last], dtype=np.int64).reshape(-1, 3).T.copy()
+        self.node: Indices = strip * stations + end * (stations - 1)
+        self.ends: Indices = np.full((len(model.strips) * (stations - 1), 2), -1)
+        self.ends[strip * (stations - 1) + end * (stations - 2), end] = np.arange(len(self.node))
+        rest = np.concatenate([each.nodes for each in model.strips])
+        self.offsets: Array = rest[self.node] - points[self.body]

@@ -5,18 +5,17 @@ radians.
 """
 
 from dataclasses import dataclass, field, replace
-from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .attachments import FREE, GROUND
-from .effects.named import AppliedForce, AppliedMoment, DrivenDisplacement, Effects, TipForce
+from .effects import AppliedForce, AppliedMoment, DrivenDisplacement, Effects, TipForce
 from .errors import InvalidParameter, choice, count, not_negative, positive, within
-from .structure import Structure
 
 Array = NDArray[np.float64]
 ELEMENTS = ("corotational", "reissner")
+#: What an end of a strip is on, where it is not on a body: clamped to ground, or on nothing.
+GROUND, FREE = -1, -2
 
 
 def rotation_matrix(angle: float) -> Array:
@@ -217,11 +216,6 @@ class Model:
     def strip_index(self, name: str) -> int:
         """Return the place of the strip of this name."""
         return self.strip_names.index(choice("strip", name, self.strip_names))
-
-    @cached_property
-    def structure(self) -> Structure:
-        """Mesh, element law and dof numbering, built at first use."""
-        return Structure(self)
 
     def rotated(self, angle: float) -> "Model":
         """Return the same model turned as a whole about the origin by `angle` [rad], with its loads."""

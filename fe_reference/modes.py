@@ -8,13 +8,13 @@ from scipy.linalg import eigh
 from scipy.sparse import csc_matrix
 from scipy.sparse.linalg import eigsh, splu
 
-from .effects.named import needs_inertia
+from .effects import needs_inertia
 from .errors import InvalidParameter, choice
 from .errors import count as at_least_one
 from .mass import MASSES, mass_matrix
 from .model import Model
 from .statics import static_state
-from .structure import Structure
+from .structure import Structure, structure_of
 
 Array = NDArray[np.float64]
 
@@ -73,15 +73,15 @@ def natural_frequencies(
             rotation that is held but not driven.
         ConvergenceError: the static state cannot be reached.
     """
-    kind, structure = choice("mass", mass, MASSES), pivot.structure
+    kind, structure = choice("mass", mass, MASSES), structure_of(pivot)
     needs_inertia(pivot.effects)
     if rotation is None and held:
         raise InvalidParameter("held", held, "a driven rotation to hold [1]")
     y = static_state(pivot, rotation, body, increments)
     turn = structure.turns[pivot.body_index(body)] if held else -1
     kept = np.flatnonzero(np.arange(structure.size) != turn)
-    stiffness = structure.tangent_stiffness(y)[:, kept][kept].tocsc()
-    inertia = mass_matrix(structure, y, kind)[:, kept][kept].tocsc()
+    stiffness = structure.evaluate(y).tangent.sparse()[:, kept][kept].tocsc()
+    inertia = mass_matrix(structure, y, kind).sparse()[:, kept][kept].tocsc()
     values, vectors = _lowest(structure, stiffness, inertia, count)
     full = np.zeros((len(values), structure.size))
     full[:, kept] = vectors.T
@@ -112,7 +112,7 @@ def _lowest(
         values, vectors = eigh(stiffness.toarray(), mass.toarray())
         return values[:wanted], vectors[:, :wanted]
     shift = -0.01 * structure.force_unit / float(np.abs(mass.diagonal()[0::3]).sum())
-    shift /= max(strip.length for strip in structure.model.strips)
+    shift /= structure.length
     start = np.ones(stiffness.shape[0])
     values, vectors = eigsh(stiffness, wanted, mass, sigma=shift, which="LM", v0=start, tol=0.0)
     order = np.argsort(values)

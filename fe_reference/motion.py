@@ -48,7 +48,7 @@ class Samples:
         unstable: whether the motion was stopped because its energy blew up.
         message: why and when the motion stopped early ("" if it did not).
         floor: energy that is at stake in any motion [J]: what loads put into a rest at first is held against
-            it.
+            it. blow_up: relative gain of energy that stops the motion. remarks: on what it leaves unresolved.
     """
 
     time: list[float] = field(default_factory=list)
@@ -60,6 +60,8 @@ class Samples:
     unstable: bool = False
     message: str = ""
     floor: float = 0.0
+    blow_up: float = BLOW_UP
+    remarks: list[str] = field(default_factory=list)
     _stake: float = 0.0
 
     def keep(self, time: float, y: Array, v: Array, energy: Energy) -> bool:
@@ -70,7 +72,7 @@ class Samples:
         start = self.energy[0] if self.time else energy
         self._stake = max(self._stake, (self.energy[-1] if self.time else energy).scale)
         at_stake = max(self._stake, abs(energy.work), abs(energy.gravity), self.floor)
-        if not np.isfinite(energy.balance) or energy.balance - start.balance > BLOW_UP * at_stake:
+        if not np.isfinite(energy.balance) or energy.balance - start.balance > self.blow_up * at_stake:
             self.unstable = True
             self.message = (
                 f"the energy grew from {start.balance:.6g} J to {energy.balance:.6g} J"
@@ -82,6 +84,11 @@ class Samples:
         self.v.append(v.copy())
         self.energy.append(energy)
         return True
+
+    def lost(self) -> float:
+        """Return the part of the energy at stake that is gone at the end, neither work nor dissipation."""
+        at_stake = max(self._stake, self.floor)
+        return (self.energy[0].balance - self.energy[-1].balance) / at_stake if at_stake > 0.0 else 0.0
 
     def energies(self, name: str) -> Array:
         """Return one part of the energies over the samples (T,) [J]."""

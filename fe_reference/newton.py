@@ -6,62 +6,64 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from .control import Control, factorise, free_block
-from .structure import Structure
+from .control import Balance, Control
+from .matrix import Factors, Singular
 
 Array = NDArray[np.float64]
 
-#: Newton's iterations of one increment; from a tangent predictor a sound increment takes four to six.
+#: Newton's iterations of one increment; from a tangent predictor a sound increment takes one to four.
 ITERATIONS = 25
 #: Dimensionless residual (forces over EI/L^2, moments over EI/L) taken as equilibrium where round-off allows
 #: it.
 TOLERANCE = 1e-10
+#: The factors at the end give one more correction, unless it is longer than this [strip lengths, rad]: then
+#: it is the round-off of the residual over a stiffness that vanishes.
+LAST = 1e-9
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Outcome:
-    """What Newton's method left: coordinates, norms of its residuals, and "" or the reason of its failure."""
+    """What Newton's method left.
+
+    Attributes:
+        y: coordinates. norms: of the residuals. failure: "" or the reason.
+        balance, factors: at the last iterate; no factors after a failure.
+    """
 
     y: Array
     norms: tuple[float, ...]
     failure: str
-
-
-def round_off(structure: Structure) -> float:
-    """Return the dimensionless residual below which round-off decides.
-
-    Displacements of order L carry an error of one unit in the last place: relative to an element of length l
-    it is a strain of L/l of it, hence a force of EA L/l (or kGA L/l, if that is part of the element and
-    larger); and a turn of the chord of L/l of it, hence a force of 12 EI L/l^3. The factor 4 covers the few
-    operations between them.
-    """
-    e = structure.elements
-    length = max(strip.length for strip in structure.model.strips)
-    axial = np.max(structure.law.force_rigidity * length / e.length) / structure.force_unit
-    bending = np.max(12.0 * e.flexural_rigidity * length / e.length**3) / structure.force_unit
-    return float(4.0 * np.finfo(float).eps * (axial + bending))
+    balance: Balance
+    factors: Factors | None = None
 
 
 def equilibrate(control: Control, start: Array, parameter: float, counters: Counter[str]) -> Outcome:
-    """Iterate from `start` to equilibrium at `parameter`, with the consistent tangent at every iteration."""
-    structure, free = control.structure, control.free
-    tolerance = max(TOLERANCE, round_off(structure))
+    """Iterate from `start` to equilibrium at `parameter`, with the consistent tangent at every iteration.
+
+    One compiled call gives residual and tangent; the factors at the equilibrium serve what is asked there.
+    """
+    tolerance = max(TOLERANCE, control.structure.round_off)
     y, norms = start.copy(), []
     y[control.held] = control.prescribed(parameter)
-    for _ in range(ITERATIONS + 1):
-        counters["residual_evaluations"] += 1
-        residual = control.residual(y, parameter)[free]
-        norms.append(float(np.abs(residual / structure.scale[free]).max(initial=0.0)))
+    while True:
+        for counted in ("residual_evaluations", "tangent_evaluations"):
+            counters[counted] += 1
+        balance = control.balance(y, parameter)
+        norms.append(control.unbalanced(balance.residual))
+        failure = "" if np.isfinite(norms[-1]) else "the residual is not finite"
+        if len(norms) > ITERATIONS and norms[-1] > tolerance:
+            failure = f"no equilibrium in {ITERATIONS} iterations"
+        if not failure:
+            counters["factorisations"] += 1
+            try:
+                factors = control.factors(balance)
+            except Singular as error:
+                failure = str(error)
+        if failure:
+            return Outcome(y=y, norms=tuple(norms), failure=failure, balance=balance)
         if norms[-1] <= tolerance:
-            return Outcome(y=y, norms=tuple(norms), failure="")
-        if not np.isfinite(norms[-1]):
-            return Outcome(y=y, norms=tuple(norms), failure="the residual is not finite")
-        if len(norms) > ITERATIONS:
-            break
+            last = factors.solve(balance.residual)
+            y = y - last if np.abs(control.structure.measure * last).max(initial=0.0) <= LAST else y
+            return Outcome(y=y, norms=tuple(norms), failure="", balance=balance, factors=factors)
         counters["newton_iterations"] += 1
-        counters["tangent_evaluations"] += 1
-        try:
-            y[free] -= factorise(free_block(control, control.tangent(y, parameter)), counters).solve(residual)
-        except RuntimeError:
-            return Outcome(y=y, norms=tuple(norms), failure="the tangent is singular")
-    return Outcome(y=y, norms=tuple(norms), failure=f"no equilibrium in {ITERATIONS} iterations")
+        y = y - factors.solve(balance.residual)

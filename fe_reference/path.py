@@ -4,11 +4,8 @@ An increment at which the number of negative eigenvalues changes is halved like 
 change goes away (it was another branch, or a sharp bend of this one) or until it is within so small a part of
 the path that the two states beside it are one: a critical point.
 
-The predictor is the tangent of the path, with the curvature of the path seen over the increment before:
-
-    y(p + h) = y + h y' + h^2/2 (y' - y'_before) / (p - p_before)
-
-On fine meshes the second term matters: nodes moved along straight lines stretch every element by h^2/2.
+The predictor is the polynomial through the last states and their rates (Hermite), extrapolated: of order six
+from the third increment on, so that one or two iterations are left of an increment.
 """
 
 from collections import Counter
@@ -17,10 +14,11 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from .control import Control, Response, respond
+from .control import Balance, Control, Response, respond
 from .critical import critical_point, extremes
 from .errors import InvalidParameter
-from .newton import Outcome, equilibrate
+from .matrix import Singular
+from .newton import LAST, Outcome, equilibrate
 from .solution import CriticalPoint
 
 Array = NDArray[np.float64]
@@ -48,6 +46,14 @@ ROUND_OFF = 1e-10
 DISTORTION = 0.5 * np.pi
 
 
+#: States that the predictor looks back at.
+BACK = 3
+#: Least mean distance of these states, in parts of the step.
+CLOSEST = 0.5
+#: Step below which a path is straight, in parts of it.
+STRAIGHT = 2.0**-9
+
+
 @dataclass(frozen=True, kw_only=True, eq=False)
 class State:
     """A state in equilibrium.
@@ -55,20 +61,47 @@ class State:
     Attributes:
         parameter: p. y: reduced coordinates (size,).
         response: its derivatives along the path, torque and stiffness.
-        bend: second derivative of y in p (size,), by the difference of the first over the increment before
-            (zero at the first state).
-        potential: total potential [J].
+        balance: of its forces.
         work: of loads and drives since the first state [J].
         norms: residual norms of the iteration that led here.
+        behind: parameter, coordinates and rate of the last states before on the same span, latest first.
     """
 
     parameter: float
     y: Array
     response: Response
-    bend: Array
-    potential: float
+    balance: Balance
     work: float
     norms: tuple[float, ...]
+    behind: tuple[tuple[float, Array, Array], ...] = ()
+
+    @property
+    def trail(self) -> tuple[tuple[float, Array, Array], ...]:
+        """The same with this state first, no more than the predictor looks back at."""
+        return ((self.parameter, self.y, self.response.rate), *self.behind)[:BACK]
+
+    def ahead(self, parameter: float) -> Array:
+        """Return the coordinates at a parameter by the polynomial through the last states and their rates.
+
+        States that are too close for a step so long are left out: round-off would be carried far. A step that
+        was halved often is straight: next to a critical point the rest is round-off.
+        """
+        step, back = abs(parameter - self.parameter), self.trail
+        far = [k * CLOSEST * max(step, STRAIGHT) for k in range(len(back))]
+        known = [at for at, least in zip(back, far, strict=True) if abs(self.parameter - at[0]) >= least]
+        nodes = [node for node, _, _ in known for _ in range(2)]
+        column = [y for _, y, _ in known for _ in range(2)]
+        guess, factor = self.y.copy(), 1.0
+        for k in range(1, len(nodes)):
+            column = [
+                known[i // 2][2]
+                if nodes[i + k] == nodes[i]
+                else (column[i + 1] - column[i]) / (nodes[i + k] - nodes[i])
+                for i in range(len(nodes) - k)
+            ]
+            factor *= parameter - nodes[k - 1]
+            guess += factor * column[0]
+        return guess
 
 
 @dataclass(kw_only=True, eq=False)
@@ -90,18 +123,24 @@ class Path:
         """Put down the first state: rest, or coordinates in equilibrium (size,)."""
         y = np.zeros(self.control.structure.size) if y is None else y
         try:
-            self.states.append(self._state(y, self.control.span[0], (0.0,), None))
-        except RuntimeError as error:
+            self.states.append(self._at(y, self.control.span[0]))
+        except Singular as error:
             raise InvalidParameter(
                 "strips", "a model that can move freely", "clamps that hold it [1]"
             ) from error
 
     def turn_to(self, control: Control) -> None:
         """Go on from the last state in the next span."""
-        last = self.states[-1]
-        self.control = control
-        there = self._state(last.y, last.parameter, last.norms, None)
-        self.states[-1] = replace(there, work=last.work)
+        last, self.control = self.states[-1], control
+        there = self._at(last.y, last.parameter)
+        self.states[-1] = replace(there, work=last.work, norms=last.norms)
+
+    def _at(self, y: Array, parameter: float) -> State:
+        """Return the state at coordinates in equilibrium; raises Singular."""
+        balance = self.control.balance(y, parameter)
+        factors = self.control.factors(balance)
+        outcome = Outcome(y=y, norms=(0.0,), failure="", balance=balance, factors=factors)
+        return self._state(outcome, parameter, None)
 
     def advance(self, target: float) -> bool:
         """Go from the last state to `target` in one increment or in halved ones, and keep its end."""
@@ -122,19 +161,14 @@ class Path:
 
     def _reach(self, state: State, target: float, depth: int) -> State | None:
         step = target - state.parameter
-        guess = state.y + step * state.response.rate + 0.5 * step**2 * state.bend
-        outcome = equilibrate(self.control, guess, target, self.counters)
+        outcome = equilibrate(self.control, state.ahead(target), target, self.counters)
         failure = outcome.failure
         if not failure:
-            try:
-                reached = self._state(outcome.y, target, outcome.norms, state)
-            except RuntimeError:
-                failure = "the tangent is singular"
-            else:
-                failure = self._doubt(state, reached) or self._judged(state, reached)
-                if not failure:
-                    self.critical += extremes(self.control, state, reached)
-                    return reached
+            reached = self._state(outcome, target, state)
+            failure = self._doubt(state, reached) or self._judged(state, reached)
+            if not failure:
+                self.critical += extremes(self.control, state, reached)
+                return reached
         self.failures.append(outcome.norms)
         if depth >= HALVINGS and abs(step) <= SMALLEST:
             self.last = state
@@ -156,7 +190,7 @@ class Path:
         first, last = step * before.response.rate, step * after.response.rate
         size = self._size(moved)
         off = self._size(moved - 0.5 * (first + last)) > OFF_THE_PATH * size
-        one = abs(step) <= SMALLEST and size <= APART
+        one = size <= (APART if abs(step) <= SMALLEST else 10.0 * LAST)  # or nothing moves but round-off
         if not one and (off or self._size(last - first) > SHARPEST * size):
             return "the state lies on another branch (it is not where the path leads)"
         if crossed:
@@ -173,35 +207,35 @@ class Path:
             f" after {depth} halvings of the increment; last residual {outcome.norms[-1]:.3g}"
         )
 
-    def _state(self, y: Array, parameter: float, norms: tuple[float, ...], before: State | None) -> State:
-        """Complete a converged state by its response, curvature of the path, potential and work."""
-        response = respond(self.control, y, parameter, self.counters)
-        step = 0.0 if before is None else parameter - before.parameter
-        bend, work = np.zeros_like(y), 0.0
-        if before is not None and step != 0.0:
-            bend = (response.rate - before.response.rate) / step
+    def _state(self, outcome: Outcome, parameter: float, before: State | None) -> State:
+        """Complete a converged state by its response, potential and work."""
+        if outcome.factors is None:
+            raise Singular(outcome.failure)
+        response = respond(self.control, outcome.y, parameter, outcome.balance, outcome.factors)
+        done, work = outcome.balance.load_work, 0.0
+        if before is not None:
             # loads p F.q: their work is [p F.q] less the integral of F.q, which is part of the conjugate
-            gain = parameter * self.control.load_work(y) - before.parameter * self.control.load_work(before.y)
-            work = before.work + gain + _integral(step, before.response, response)
+            gain = parameter * done - before.parameter * before.balance.load_work
+            work = before.work + gain + _integral(parameter - before.parameter, before.response, response)
         return State(
             parameter=parameter,
-            y=y,
+            y=outcome.y,
             response=response,
-            bend=bend,
-            potential=self.control.potential(y, parameter),
+            balance=outcome.balance,
             work=work,
-            norms=norms,
+            norms=outcome.norms,
+            behind=() if before is None else before.trail,
         )
 
     def _doubt(self, before: State, after: State) -> str:
         """Return why a converged state is not believed, or ""."""
         structure = self.control.structure
-        if structure.law.distortion(structure.element_displacement(after.y)) > DISTORTION:
+        if after.balance.at.ends[:, 4].max() > DISTORTION:
             return "an element is folded"
-        step, gained = after.parameter - before.parameter, after.potential - before.potential
+        step, gained = after.parameter - before.parameter, after.balance.potential - before.balance.potential
         integral = _integral(step, before.response, after.response)
         largest = abs(before.response.conjugate) + abs(after.response.conjugate)
-        unit = structure.moment_unit + abs(self.control.potential_rate(after.y, after.parameter)[1])
+        unit = structure.moment_unit + abs(self.control.rates(after.y, after.parameter, 0.0)[2])
         scale = max(abs(gained), 0.5 * abs(step) * largest)
         if abs(gained - integral) > WORK_MISMATCH * scale + ROUND_OFF * unit:
             return "the state lies on another branch (energy gained and work done differ)"

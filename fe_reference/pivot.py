@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from .effects.named import DEFAULT_EFFECTS, read_effects
+from .effects import DEFAULT_EFFECTS, read_effects
 from .errors import InvalidParameter, finite, positive, within
 from .model import Body, Model, Section, straight_strip
 

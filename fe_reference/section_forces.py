@@ -5,10 +5,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from .effects.named import PreStrain
+from .effects import PreStrain
+from .law import FORCES
 from .model import Model
-from .recovery import at_nodes, nodal_angles, recover
-from .statics import body_motion
+from .structure import Structure, structure_of
 
 Array = NDArray[np.float64]
 
@@ -23,7 +23,9 @@ class StripFields:
         rotation (S, G, P): turn of the section from rest, as the nodes have it, without wrapping [rad].
         curvature (S, G, P): d theta / d s0, that at rest and M / EI + natural curvature [1/m].
         stretch (S, G, P): 1 + N / EA + natural strain [1].
-        axial_force, shear_force, bending_moment (S, G, P): as in `solution.StaticSolution` [N], [N m].
+        axial_force, shear_force (S, G, P): N = n.t, V = n.normal [N] at the nodes: n is the force of the part
+            beyond on the part before, t the normal of the cross-section, normal = t turned by +90 deg.
+        bending_moment (S, G, P): M at the nodes [N m], positive for counter-clockwise curvature from root.
         reactions (S, G, 2, 3): force x, y [N] and moment [N m] on the strip at its root and its tip; at a
             free end the force that acts there.
         rest_bodies (B, 2): centres at rest [m]. bodies (S, B, 3): centre [m] and turn [rad].
@@ -43,35 +45,89 @@ class StripFields:
     bodies: Array
 
 
-#: What `recovery` gives of each state, by the names here.
-RECOVERED = ("shape", "axial_force", "shear_force", "bending_moment")
-
-
-def strip_fields(model: Model, states: Array) -> StripFields:
+def strip_fields(model: Model, states: Array, ends: Array | None = None) -> StripFields:
     """Return the fields of states (S, size) in the reduced coordinates, natural strains in full.
 
     Section forces are those that hold the elements: they obey the balance of the mesh, with weight and
-    inertia lumped at the nodes, to the residual of the state. Exact at the nodes without distributed load;
-    with it, and for strains, of second order in the element length.
+    inertia lumped at the nodes, to the residual of the state. Those at a node are the means of the end values
+    of the adjacent elements, which agree to the residual. Exact at the nodes without distributed load; with
+    it, and for strains, of second order in the element length. Reactions are the section forces at the ends.
+
+    Args:
+        model: with the structure that the states belong to. ends (S, E, 5): of the elements, if known.
     """
-    structure, y = model.structure, np.asarray(states)
-    grid = (structure.strips, structure.stations)
-    recovered = [recover(structure, each) for each in y]
-    found = {name: np.array([getattr(each, name) for each in recovered]) for name in RECOVERED}
-    pre_strain = model.effects.find(PreStrain) or PreStrain()
-    elements, rows = structure.elements, (structure.strips, -1)
+    structure, y = structure_of(model), np.asarray(states)
+    if ends is None:
+        ends = np.array([structure.evaluate(each, asked=FORCES).ends for each in y])
+    grid, rows, many = (structure.strips, structure.stations), (structure.strips, -1), len(y)
+    force_x, force_y, first, last = np.moveaxis(ends[..., :4], -1, 0).reshape(4, many, *rows)
+    force_x, force_y, moment = midpoints(force_x), midpoints(force_y), at_nodes(-first, last)
+    nodal = np.array([structure.displacement(each) for each in y]).reshape(many, *grid, 3)
+    angle = nodal_angles(structure)
+    c, s = np.cos(angle + nodal[..., 2]), np.sin(angle + nodal[..., 2])
+    axial, beyond = force_x * c + force_y * s, np.stack([force_x, force_y, moment], axis=-1)
+    natural, elements = model.effects.find(PreStrain) or PreStrain(), structure.elements
     bending = elements.flexural_rigidity.reshape(rows)[:, :1]
-    axial = elements.axial_rigidity.reshape(rows)[:, :1]
-    turning = np.diff(nodal_angles(structure), axis=1) / elements.length.reshape(rows)
+    turning = np.diff(angle, axis=1) / elements.length.reshape(rows)
     moved = [body_motion(structure, y, k) for k in range(len(model.bodies))]
+    rest = np.array([strip.nodes for strip in model.strips])
     return StripFields(
         arc_length=structure.basis.mesh.p[0].reshape(grid),
-        rest_shape=np.array([strip.nodes for strip in model.strips]),
-        rotation=np.array([structure.displacement(each)[:, 2].reshape(grid) for each in y]),
-        curvature=at_nodes(turning, turning) + found["bending_moment"] / bending + pre_strain.curvature,
-        stretch=1.0 + found["axial_force"] / axial + pre_strain.strain,
-        reactions=np.array([each.clamp_reactions for each in recovered]),
+        rest_shape=rest,
+        shape=rest + nodal[..., :2],
+        rotation=nodal[..., 2],
+        curvature=at_nodes(turning, turning) + moment / bending + natural.curvature,
+        stretch=1.0 + axial / elements.axial_rigidity.reshape(rows)[:, :1] + natural.strain,
+        axial_force=axial,
+        shear_force=force_y * c - force_x * s,
+        bending_moment=moment,
+        reactions=np.stack([-beyond[:, :, 0], beyond[:, :, -1]], axis=2),
         rest_bodies=np.array([body.centre for body in model.bodies]).reshape(-1, 2),
-        bodies=np.array(moved).reshape(-1, len(y), 3).swapaxes(0, 1),
-        **found,
+        bodies=np.array(moved).reshape(-1, many, 3).swapaxes(0, 1),
     )
+
+
+def nodal_angles(structure: Structure) -> Array:
+    """Return the reference direction at the nodes (G, P) [rad] from those of the chords; see `midpoints`."""
+    chord = structure.elements.chord.reshape(2, structure.strips, -1)
+    return midpoints(np.unwrap(np.arctan2(chord[1], chord[0]), axis=1))
+
+
+def at_nodes(first: Array, last: Array) -> Array:
+    """Merge the end values of elements (..., E) at the nodes (..., P): the means of the adjacent elements."""
+    inner = 0.5 * (first[..., 1:] + last[..., :-1])
+    return np.concatenate([first[..., :1], inner, last[..., -1:]], axis=-1)
+
+
+def midpoints(values: Array) -> Array:
+    """Return values of the elements' middles (..., E) at the nodes (..., P).
+
+    They are the means of the adjacent elements, and at the ends the line through the last two: a force there
+    holds the weight or the inertia of the half element that stands at the end node, and a curved strip has
+    the direction of its end.
+    """
+    if values.shape[-1] == 1:
+        return np.repeat(values, 2, axis=-1)
+    first = 1.5 * values[..., :1] - 0.5 * values[..., 1:2]
+    last = 1.5 * values[..., -1:] - 0.5 * values[..., -2:-1]
+    return np.concatenate([first, 0.5 * (values[..., 1:] + values[..., :-1]), last], axis=-1)
+
+
+def body_motion(structure: Structure, y: Array, body: int) -> Array:
+    """Return the place of a body's centre and its turn (S, 3) [m, rad] for coordinates (S, size)."""
+    place = y[:, structure.body_slice(body)]
+    c, s = np.cos(place[:, 2]), np.sin(place[:, 2])
+    x0, y0 = structure.model.bodies[body].centre - structure.points[body]
+    moved = structure.points[body] + place[:, :2] + np.stack([c * x0 - s * y0, s * x0 + c * y0], axis=1)
+    return np.concatenate([moved, place[:, 2:]], axis=1)
+
+
+def body_rates(structure: Structure, y: Array, v: Array, body: int) -> Array:
+    """Return the rates of a body's centre and turn (T, 3) [m/s, rad/s] at coordinates and rates (T, size)."""
+    at = structure.body_slice(body)
+    theta, rates = y[:, at][:, 2], v[:, at].copy()
+    c, s = np.cos(theta), np.sin(theta)
+    x0, y0 = structure.model.bodies[body].centre - structure.points[body]
+    rates[:, 0] -= rates[:, 2] * (s * x0 + c * y0)
+    rates[:, 1] += rates[:, 2] * (c * x0 - s * y0)
+    return rates

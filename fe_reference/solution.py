@@ -7,6 +7,8 @@ from enum import StrEnum
 import numpy as np
 from numpy.typing import NDArray
 
+from .errors import InvalidParameter
+
 Array = NDArray[np.float64]
 
 
@@ -54,79 +56,23 @@ class StaticSolution:
         inertia (S,): negative eigenvalues of the tangent with the drives held, 0 for a stable state.
         critical_points: in the order of the path.
         load_factor (S,): fraction of the path, or of the load in load control [1].
-        rotation (S,): turn of the body [rad].
-        centre (S, 2): centre of mass of the body, origin at the ground end of the first strip [m].
-        torque (S,): generalised force on the rotation [N m]: the driving torque, or the applied moment.
+        bodies: by name, place of the centre [m] and turn [rad], (S, 3) x, y, theta.
+        torque (S,): generalised force on the watched rotation [N m]: the driving torque, or the applied
+            moment; nan if no rotation is driven or watched.
         stiffness (S,): d torque / d rotation from the consistent tangent, all else free [N m/rad].
         bending_energy, axial_energy, shear_energy (S,): strain energy of all strips by part [J].
-        clamp_reactions (S, G, 2, 3): force x, y [N] and moment [N m] exerted on the strip at its ground end
-            (0) and by the body at the other end (1).
-        stations (P,): reference arc length of the nodes over the strip's length, 0 at ground [1].
-        shape (S, G, P, 2): positions of the nodes, same origin as the centre [m].
-        axial_force, shear_force (S, G, P): N = n.t, V = n.normal [N] at the nodes: n is the force of the part
-            beyond on the part before, t the normal of the cross-section, normal = t turned by
-            +90 deg.
-        bending_moment (S, G, P): M at the nodes [N m], positive for counter-clockwise curvature from ground.
-            Forces and moments at a node are those of nodal equilibrium: the means of the end values of the
-            adjacent elements, which agree to the residual.
         gravity_energy (S,): energy of the weight, zero in the shape at rest [J].
         work (S,): of drives and loads since the first state, by Hermite's rule over the increments [J].
-        seconds: by part, see `fe_reference.stopwatch`.
-        states (S, size): reduced coordinates, for `section_forces`.
-        counters: increments, halvings, newton_iterations, residual_evaluations, tangent_evaluations,
-            factorisations.
-        history: dimensionless residual norms of every accepted increment.
-    """
-
-    status: Status
-    message: str
-    inertia: NDArray[np.int64]
-    critical_points: tuple[CriticalPoint, ...]
-    load_factor: Array
-    rotation: Array
-    centre: Array
-    torque: Array
-    stiffness: Array
-    bending_energy: Array
-    axial_energy: Array
-    shear_energy: Array
-    gravity_energy: Array
-    work: Array
-    clamp_reactions: Array
-    stations: Array
-    shape: Array
-    axial_force: Array
-    bending_moment: Array
-    shear_force: Array
-    states: Array
-    counters: Mapping[str, int]
-    history: tuple[tuple[float, ...], ...]
-    seconds: Mapping[str, float]
-
-    @property
-    def strain_energy(self) -> Array:
-        """Sum of the three parts (S,) [J]."""
-        return self.bending_energy + self.axial_energy + self.shear_energy
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class MechanismSolution:
-    """Converged states of a mechanism: S states from load factor 0 on, G strips, P nodes a strip.
-
-    Attributes:
-        status, message, inertia, critical_points, history: as in `StaticSolution`.
-        load_factor (S,): [1].
-        bodies: by name, place of the centre [m] and turn [rad], (S, 3) x, y, theta.
-        torque, stiffness (S,): of the driven rotation [N m], [N m/rad]; nan if no rotation is driven.
-        bending_energy, axial_energy, shear_energy (S,): strain energy of all strips by part [J].
-        gravity_energy (S,): energy of the weight, zero in the shape at rest [J].
-        work (S,): of drives and loads since the first state [J].
-        shape (S, G, P, 2): positions of the nodes [m]. bending_moment (S, G, P): [N m].
-        clamp_reactions (S, G, 2, 3): force x, y [N] and moment [N m] on the strip at its root and its tip.
+        clamp_reactions (S, G, 2, 3): force x, y [N] and moment [N m] exerted on the strip at its root (0) and
+            at its tip (1).
+        stations (P,): reference arc length of the nodes over the first strip's length, 0 at its root [1].
+        shape, axial_force, shear_force, bending_moment: as in `section_forces.StripFields`.
         states (S, size): reduced coordinates, for `section_forces`.
         effects: names of the effects of the scene.
-        seconds: as in `StaticSolution`.
-        counters: as in `StaticSolution`, and settling_increments: of the way to the first state.
+        counters: increments, halvings, newton_iterations, evaluations, factorisations, and
+            settling_increments: of the way to the first state. history: residual norms of the increments.
+        seconds: by part, see `fe_reference.stopwatch`.
+        estimate: of the error, where an accuracy was asked for.
     """
 
     status: Status
@@ -142,16 +88,77 @@ class MechanismSolution:
     shear_energy: Array
     gravity_energy: Array
     work: Array
-    shape: Array
-    bending_moment: Array
     clamp_reactions: Array
+    stations: Array
+    shape: Array
+    axial_force: Array
+    bending_moment: Array
+    shear_force: Array
     states: Array
     effects: tuple[str, ...]
     counters: Mapping[str, int]
     history: tuple[tuple[float, ...], ...]
     seconds: Mapping[str, float]
+    estimate: "ErrorEstimate | None" = None
 
     @property
     def strain_energy(self) -> Array:
         """Sum of the three parts (S,) [J]."""
         return self.bending_energy + self.axial_energy + self.shear_energy
+
+    @property
+    def rotation(self) -> Array:
+        """Turn of the only body (S,) [rad]."""
+        return only(self.bodies)[:, 2]
+
+    @property
+    def centre(self) -> Array:
+        """Centre of mass of the only body (S, 2) [m]."""
+        return only(self.bodies)[:, :2]
+
+    def columns(self) -> dict[str, Array]:
+        """Return what is one number in every state, by names with units: the columns of a frame."""
+        return {
+            "load_factor": self.load_factor,
+            **body_columns(self.bodies, ("x_m", "y_m", "rotation_rad")),
+            "torque_Nm": self.torque,
+            "stiffness_Nm_per_rad": self.stiffness,
+            **{f"{name}_J": getattr(self, name) for name in ENERGIES},
+            "inertia": self.inertia,
+        }
+
+
+ENERGIES = ("bending_energy", "axial_energy", "shear_energy", "gravity_energy", "work")
+
+
+@dataclass(frozen=True, kw_only=True)
+class ErrorEstimate:
+    """Estimated errors of an answer that meshes were refined for.
+
+    Attributes:
+        accuracy: what was asked for [1]. elements: of the finest mesh, a strip. meshes: all of them.
+        errors: by quantity, the largest over the states in parts of its largest value [1].
+    """
+
+    accuracy: float
+    elements: int
+    meshes: tuple[int, ...]
+    errors: Mapping[str, float]
+
+
+def only(bodies: Mapping[str, Array]) -> Array:
+    """Return what belongs to the one body there is."""
+    if len(bodies) != 1:
+        known = ", ".join(bodies) or "none"
+        raise InvalidParameter("bodies", known, "one body, or the name of one in `bodies` [name]")
+    return next(iter(bodies.values()))
+
+
+def body_columns(bodies: Mapping[str, Array], names: tuple[str, ...]) -> dict[str, Array]:
+    """Return the columns of arrays (S, 3) of bodies, named after them if there are many."""
+    many = len(bodies) > 1
+    return {
+        f"{body}_{name}" if many else name: values[:, k]
+        for body, values in bodies.items()
+        for k, name in enumerate(names)
+    }

@@ -6,16 +6,18 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .effects.loads import DeadLoad, at_body, together
-from .effects.named import DrivenDisplacement
-from .errors import InvalidParameter, count, finite, pair, several
-from .follow import COUNTERS, Progress, checked, follow, full_load, load_factors, spans
+from .control import spans
+from .effects import DrivenDisplacement
+from .errors import ConvergenceError, InvalidParameter, count, finite, pair, several
+from .follow import COUNTERS, Progress, follow
+from .law import FORCES
+from .loads import full_load, on_body
 from .model import Model
 from .path import Path
-from .recovery import recover
-from .solution import MechanismSolution, StaticSolution, Status
+from .section_forces import strip_fields
+from .solution import StaticSolution, Status
 from .stopwatch import Stopwatch
-from .structure import Structure
+from .structure import structure_of
 
 Array = NDArray[np.float64]
 
@@ -30,8 +32,8 @@ def solve_statics(
 ) -> StaticSolution:
     """Drive the rotation of the one body from 0 to `rotation` and return every state in between.
 
-    Each increment is one tangent predictor and Newton with the consistent tangent on all other coordinates;
-    an increment that fails, or whose state is not believed, is halved. The torque is the generalised force on
+    Each increment is one extrapolation and Newton with the consistent tangent on all other coordinates; an
+    increment that fails, or whose state is not believed, is halved. The torque is the generalised force on
     the rotation, the stiffness the Schur complement of the tangent. Gravity and natural strains act in full
     from the first state on, loads and the driven displacement of the scene grow with the load factor.
 
@@ -46,23 +48,9 @@ def solve_statics(
         InvalidParameter: a rotation that is not finite, fewer than one increment, several bodies.
         ConvergenceError: the path ended early; carries the converged part.
     """
-    watch = Stopwatch()
+    pivot.body_index(None)
     ends = several("rotation", rotation, "rad")
-    steps = count("increments", increments)
-    structure, body = pivot.structure, pivot.body_index(None)
-    controls = spans(
-        structure,
-        body=body,
-        rotations=ends,
-        displacement=_displacement(pivot, None),
-        load=full_load(structure),
-        watched=int(structure.turns[body]),
-    )
-    watch.stop("compile")
-    path = follow(controls, steps, progress)
-    watch.stop("solve")
-    solution: StaticSolution = checked(_pack(path, steps * len(ends), watch), path, raise_on_failure)
-    return solution
+    return _solved(pivot, None, ends, None, increments, raise_on_failure, progress)
 
 
 def solve_loads(
@@ -81,22 +69,13 @@ def solve_loads(
         force: final force (2,) [N], fixed in space. moment: final moment [N m].
         increments, raise_on_failure, progress: as in `solve_statics`.
     """
-    watch = Stopwatch()
-    structure = model.structure
     pull = [finite("force", part, "N") for part in np.ravel(np.asarray(force)).tolist()]
     if len(pull) != 2:
         raise InvalidParameter("force", force, "two components [N]")
-    mine = at_body(structure, None, force=pull, moment=finite("moment", moment, "N m"))
-    named = full_load(structure)
-    load = together([mine] if named is None else [mine, named])
-    steps = count("increments", increments)
-    led = _displacement(model, None)
-    controls = spans(structure, displacement=led, load=load, watched=int(structure.turns[0]))
-    watch.stop("compile")
-    path = follow(controls, steps, progress)
-    watch.stop("solve")
-    solution: StaticSolution = checked(_pack(path, steps, watch), path, raise_on_failure)
-    return solution
+    structure = structure_of(model)
+    mine = on_body(structure, None, force=pull, moment=finite("moment", moment, "N m"))
+    load = full_load(structure, mine)
+    return _solved(model, None, None, None, increments, raise_on_failure, progress, load=load, watch=True)
 
 
 def solve_mechanism(
@@ -108,7 +87,7 @@ def solve_mechanism(
     increments: int = 20,
     raise_on_failure: bool = True,
     progress: Progress | None = None,
-) -> MechanismSolution:
+) -> StaticSolution:
     """Return the states of a mechanism of any bodies from load factor 0 to 1.
 
     Args:
@@ -125,25 +104,8 @@ def solve_mechanism(
         InvalidParameter: an unknown body, a drive without a body, a displacement given twice.
         ConvergenceError: the path ended early; carries the converged part.
     """
-    watch = Stopwatch()
-    steps, structure = count("increments", increments), mechanism.structure
-    led = _displacement(mechanism, displacement)
-    driven = rotation is not None or led is not None
-    which = mechanism.body_index(body) if driven or body is not None else None
-    controls = spans(
-        structure,
-        body=which,
-        rotations=None if rotation is None else [finite("rotation", rotation, "rad")],
-        displacement=led,
-        load=full_load(structure),
-        watched=int(structure.turns[which]) if which is not None and rotation is not None else None,
-    )
-    watch.stop("compile")
-    path = follow(controls, steps, progress)
-    watch.stop("solve")
-    packed = _pack_mechanism(path, steps, watch)
-    solution: MechanismSolution = checked(packed, path, raise_on_failure)
-    return solution
+    ends = None if rotation is None else [finite("rotation", rotation, "rad")]
+    return _solved(mechanism, body, ends, displacement, increments, raise_on_failure, progress)
 
 
 def static_state(
@@ -151,30 +113,71 @@ def static_state(
     rotation: float | None,
     body: str | None = None,
     increments: int = 20,
-    load: DeadLoad | None = None,
+    load: Array | None = None,
 ) -> Array:
-    """Return the coordinates (size,) of `model.structure` in equilibrium at a driven rotation [rad].
+    """Return the coordinates (size,) of the model in equilibrium at a driven rotation [rad].
 
-    The load is by default that of the scene in full, as is its driven displacement. Errors as above; the
-    solution that a ConvergenceError carries is that of a mechanism.
+    The load (size,) is by default that of the scene in full, as is its driven displacement. Errors as above.
     """
-    structure, led = model.structure, _displacement(model, None)
-    which = model.body_index(body) if rotation is not None or led is not None else None
+    return settled_state(model, rotation, body, increments, load)[0]
+
+
+def settled_state(
+    model: Model,
+    rotation: float | None,
+    body: str | None,
+    increments: int,
+    load: Array | None,
+) -> tuple[Array, str]:
+    """Return the same, and what is to be said of the path to it, or ""."""
+    structure = structure_of(model)
+    load = full_load(structure) if load is None else load
+    ends = None if rotation is None else [finite("rotation", rotation, "rad")]
+    still = not rotation and load is None and not model.effects.find(DrivenDisplacement)
+    if still and not structure.constant_effects:
+        return np.zeros(structure.size), ""  # rest, whether or not clamps hold it
+    solution = _solved(model, body, ends, None, increments, True, None, load=load)
+    return solution.states[-1], solution.message
+
+
+def _solved(
+    model: Model,
+    body: str | None,
+    rotations: Sequence[float] | None,
+    displacement: Sequence[float] | None,
+    increments: int,
+    raise_on_failure: bool,
+    progress: Progress | None,
+    *,
+    load: Array | None = None,
+    watch: bool = False,
+) -> StaticSolution:
+    """Follow the path through the rotations [rad], one leg each; the load is by default that of the scene."""
+    clock, steps, structure = Stopwatch(), count("increments", increments), structure_of(model)
+    led = _displacement(model, displacement)
+    driven = rotations is not None or led is not None
+    which = model.body_index(body) if driven or watch or body is not None else None
+    watched = which is not None and (watch or rotations is not None)
     controls = spans(
         structure,
         body=which,
-        rotations=None if rotation is None else [finite("rotation", rotation, "rad")],
+        rotations=rotations,
         displacement=led,
         load=full_load(structure) if load is None else load,
-        watched=int(structure.turns[which]) if which is not None and rotation is not None else None,
+        watched=int(structure.turns[which]) if watched else None,
     )
-    first = controls[0]
-    if not first.values.any() and first.load is None and not structure.constant_effects:
-        return np.zeros(structure.size)  # rest, whether or not clamps hold it
-    steps = count("increments", increments)
-    path = follow(controls, steps)
-    checked(_pack_mechanism(path, steps, Stopwatch()), path, True)
-    return path.states[-1].y
+    clock.stop("compile")
+    path = follow(controls, steps, progress)
+    clock.stop("solve")
+    solution = _packed(path, steps * len(controls), clock)
+    if solution.status is not Status.CONVERGED and raise_on_failure:
+        raise ConvergenceError(
+            f"{solution.message}; {solution.status.text}",
+            solution=solution,
+            load_factor=float(solution.load_factor[-1]),
+            history=tuple(path.failures),
+        )
+    return solution
 
 
 def _displacement(model: Model, given: Sequence[float] | None) -> tuple[float, float] | None:
@@ -187,79 +190,34 @@ def _displacement(model: Model, given: Sequence[float] | None) -> tuple[float, f
     return pair("displacement", given, "m")
 
 
-def _status(path: Path, total: int) -> Status:
-    return Status.CONVERGED if len(path.states) == total + 1 else Status.NOT_CONVERGED
-
-
-def _energies(path: Path) -> dict[str, Any]:
-    """Return energies and work [J], torque, stiffness and inertia of the states, arrays (S,) by name."""
+def _packed(path: Path, total: int, clock: Stopwatch) -> StaticSolution:
+    """Gather the states of a path into arrays."""
     structure, states = path.control.structure, path.states
-    energies = np.array([structure.energies(state.y) for state in states])
-    return {
-        "bending_energy": energies[:, 0],
-        "axial_energy": energies[:, 1],
-        "shear_energy": energies[:, 2],
-        "gravity_energy": np.array([structure.gravity_energy(state.y) for state in states]),
-        "work": np.array([state.work for state in states]),
-        "torque": np.array([state.response.torque for state in states]),
-        "stiffness": np.array([state.response.stiffness for state in states]),
-        "inertia": np.array([state.response.inertia for state in states]),
+    model, here = structure.model, [structure.evaluate(state.y, asked=FORCES) for state in states]
+    y, strain = np.array([state.y for state in states]), np.array([at.strain for at in here])
+    fields = strip_fields(model, y, np.array([at.ends for at in here]))
+    answers: dict[str, Any] = {
+        name: np.array([getattr(state.response, name) for state in states])
+        for name in ("torque", "stiffness", "inertia")
     }
-
-
-def _pack(path: Path, total: int, watch: Stopwatch) -> StaticSolution:
-    """Gather the states of a path of one body into arrays."""
-    structure, states = path.control.structure, path.states
-    fields = [recover(structure, state.y) for state in states]
-    y = np.array([state.y for state in states])
-    origin = structure.model.strips[0].nodes[0]
-    names = ("axial_force", "bending_moment", "shear_force", "clamp_reactions")
     return StaticSolution(
-        status=_status(path, total),
+        status=Status.CONVERGED if len(states) == total + 1 else Status.NOT_CONVERGED,
         message=path.remark(),
         critical_points=tuple(path.critical),
-        load_factor=load_factors(path, total),
-        rotation=y[:, -1],
-        centre=body_motion(structure, y, 0)[:, :2] - origin,
-        stations=structure.basis.mesh.p[0, : structure.stations] / structure.model.strips[0].length,
-        shape=np.array([each.shape - origin for each in fields]),
+        load_factor=np.arange(len(states)) / total,
+        bodies={name: fields.bodies[:, k] for k, name in enumerate(model.body_names)},
+        **answers,
+        bending_energy=strain[:, 0],
+        axial_energy=strain[:, 1],
+        shear_energy=strain[:, 2],
+        gravity_energy=np.array([at.gravity for at in here]),
+        work=np.array([state.work for state in states]),
+        clamp_reactions=fields.reactions,
+        stations=structure.basis.mesh.p[0, : structure.stations] / model.strips[0].length,
+        **{name: getattr(fields, name) for name in ("shape", "axial_force", "shear_force", "bending_moment")},
         states=y,
-        counters={name: path.counters[name] for name in COUNTERS},
-        history=tuple(state.norms for state in states[1:]),
-        **_energies(path),
-        **{name: np.array([getattr(each, name) for each in fields]) for name in names},
-        seconds=watch.stop("recover"),
-    )
-
-
-def _pack_mechanism(path: Path, total: int, watch: Stopwatch) -> MechanismSolution:
-    """Gather the states of a mechanism."""
-    structure, states = path.control.structure, path.states
-    y = np.array([state.y for state in states])
-    fields = [recover(structure, state.y) for state in states]
-    names = structure.model.body_names
-    return MechanismSolution(
-        status=_status(path, total),
-        message=path.remark(),
-        critical_points=tuple(path.critical),
-        load_factor=load_factors(path, total),
-        bodies={name: body_motion(structure, y, k) for k, name in enumerate(names)},
-        shape=np.array([each.shape for each in fields]),
-        bending_moment=np.array([each.bending_moment for each in fields]),
-        clamp_reactions=np.array([each.clamp_reactions for each in fields]),
-        states=y,
-        effects=structure.model.effects.names,
+        effects=model.effects.names,
         counters={name: path.counters[name] for name in (*COUNTERS, "settling_increments")},
         history=tuple(state.norms for state in states[1:]),
-        **_energies(path),
-        seconds=watch.stop("recover"),
+        seconds=clock.stop("recover"),
     )
-
-
-def body_motion(structure: Structure, y: Array, body: int) -> Array:
-    """Return the place of a body's centre and its turn (S, 3) [m, rad] for coordinates (S, size)."""
-    place = y[:, structure.body_slice(body)]
-    c, s = np.cos(place[:, 2]), np.sin(place[:, 2])
-    x0, y0 = structure.model.bodies[body].centre - structure.points[body]
-    moved = structure.points[body] + place[:, :2] + np.stack([c * x0 - s * y0, s * x0 + c * y0], axis=1)
-    return np.concatenate([moved, place[:, 2:]], axis=1)

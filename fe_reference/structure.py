@@ -1,33 +1,58 @@
-"""A model made ready for computation: mesh, element law, dof numbering and exact master-slave reduction.
+"""A model made ready for computation: mesh, numbering and exact master-slave reduction, in one compiled call.
 
 Reduced coordinates y: displacement and turn (u_x, u_y, phi) of every free node, strip by strip, then for
 every body the displacement d (2,) of its reference point and its turn theta. Attached ends of strips follow
-their bodies as in `attachments`.
+their bodies as in `mesh`.
 
 Gravity and natural strains, where they are named, are part of the potential here. They can be applied in
 part: `share` goes from 0 to 1 on the way from the shape at rest to the state under both.
 """
 
-from functools import cached_property
-from typing import TYPE_CHECKING
+import math
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.sparse import csc_matrix
-from skfem.assembly.form.coo_data import COOData
 
-from .attachments import GROUND, Attachments
-from .corotational import Corotational
-from .effects.loads import DeadLoad, weight
-from .effects.named import Gravity, PreStrain
-from .effects.prestrain import NaturalStrain
-from .mesh import reference_elements, strip_basis
-from .reissner import Reissner
-
-if TYPE_CHECKING:
-    from .model import Model
+from .effects import Gravity, PreStrain
+from .law import (
+    FORCES,
+    TANGENT,
+    body_forces,
+    carry,
+    carry_velocity,
+    elements,
+    gravity_energy,
+    kernel,
+    put_weight,
+)
+from .matrix import Envelope, Symmetric, assemble
+from .mesh import Attachments, reference_elements, strip_basis
+from .model import GROUND, Model
 
 Array = NDArray[np.float64]
+Indices = NDArray[np.int64]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Evaluation:
+    """What the potential is at a state.
+
+    Attributes:
+        gradient (size,): [N, N m]. tangent: its derivative, zero if it was not asked for.
+        strain (3,): bending, axial and shear energy [J]. gravity: energy of the full weight [J].
+        ends (E, 5): force x, y [N] at the second node of the elements, moments [N m] at both, and the largest
+            turn of an end from its element [rad].
+        curvature (B,): what the carrying of nodes adds to the stiffness of the turns [N m].
+    """
+
+    gradient: Array
+    tangent: Symmetric
+    strain: tuple[float, float, float]
+    gravity: float
+    ends: Array
+    curvature: Array
 
 
 class Structure:
@@ -38,27 +63,31 @@ class Structure:
         points: reference points of the bodies at rest (B, 2) [m]; default: their centres.
     """
 
-    def __init__(self, model: "Model", points: ArrayLike | None = None) -> None:
+    def __init__(self, model: Model, points: ArrayLike | None = None) -> None:
         self.model = model
         self.basis = strip_basis(model)
         self.elements = reference_elements(model)
-        self.law: Corotational | Reissner = (
-            Corotational(self.elements)
-            if model.element == "corotational"
-            else Reissner(self.elements, self.basis)
-        )
+        self.shear = model.element == "reissner"
         centres = np.array([body.centre for body in model.bodies])
         self.points: Array = np.reshape(centres if points is None else np.asarray(points), (-1, 2))
         self.strips, self.stations = len(model.strips), len(model.strips[0].nodes)
         self.attachments = Attachments(model, self.points)
         self._number()
-        self._pattern()
-        self.force_unit, self.moment_unit = self._units()
+        self.length = max(strip.length for strip in model.strips)
+        rigidity = max(strip.section.flexural_rigidity for strip in model.strips)
+        self.force_unit, self.moment_unit = rigidity / self.length**2, rigidity / self.length
         self.scale = np.full(self.size, self.force_unit)
         self.scale[2::3] = self.moment_unit
-        strain, gravity = model.effects.find(PreStrain), model.effects.find(Gravity)
-        self.natural = None if strain is None else NaturalStrain(self, strain)
-        self.weight: DeadLoad | None = None if gravity is None else weight(self, gravity)
+        #: what changes of the coordinates are multiplied with to count in strip lengths and rad
+        self.measure = np.full(self.size, 1.0 / self.length)
+        self.measure[2::3] = 1.0
+        ends = self.attachments
+        self.carried = (ends.node, ends.body, ends.offsets)
+        first = np.ascontiguousarray(self.basis.mesh.t[0], dtype=np.int64)
+        self.given = (self.shear, self.elements.table(model.effects.find(PreStrain) or PreStrain()), first)
+        self.weight = self._weight()
+        nodes = self.strips * self.stations
+        self.work = (np.zeros((nodes, 3)), np.zeros((len(self.points), 3)), np.zeros((4, 4)))
 
     def _number(self) -> None:
         """Number the reduced coordinates; -1 marks what is clamped."""
@@ -70,46 +99,67 @@ class Structure:
         self.first_body = 3 * len(self.free_nodes)
         self.size = self.first_body + 3 * len(self.points)
         self.turns = np.arange(self.first_body + 2, self.size, 3)
-        reduced = np.full((free.size, 3), -1, dtype=np.int64)
-        reduced[self.free_nodes] = np.arange(self.first_body).reshape(-1, 3)
+        numbers = np.full((free.size, 3), -1, dtype=np.int64)
+        numbers[self.free_nodes] = np.arange(self.first_body).reshape(-1, 3)
         bodies = np.arange(self.first_body, self.size).reshape(-1, 3)
-        reduced[self.attachments.node] = bodies[self.attachments.body]
-        self.reduced_dofs = reduced.ravel()[self.basis.element_dofs]
-
-    def _pattern(self) -> None:
-        """Keep where element entries go: those of free coordinates, and those of the map's curvature."""
-        rows, columns = np.broadcast_arrays(self.reduced_dofs[:, None], self.reduced_dofs[None, :])
-        self._kept = ((rows >= 0) & (columns >= 0)).ravel()
-        self._indices = np.array(
-            [np.concatenate([part.ravel()[self._kept], self.turns]) for part in (rows, columns)],
-            dtype=np.int32,
-        )
-        self._kept_force = (self.reduced_dofs >= 0).ravel()
-        self._force_indices = self.reduced_dofs.ravel()[None, self._kept_force]
-
-    def _units(self) -> tuple[float, float]:
-        """Return EI/L^2 [N] and EI/L [N m] of the stiffest strip: what residuals are measured in."""
-        length = max(strip.length for strip in self.model.strips)
-        rigidity = max(strip.section.flexural_rigidity for strip in self.model.strips)
-        return rigidity / length**2, rigidity / length
+        numbers[self.attachments.node] = bodies[self.attachments.body]
+        self.numbers = numbers.ravel()[self.basis.element_dofs].T
 
     @cached_property
-    def constant_effects(self) -> bool:
-        """Whether gravity or natural strains act, so that the shape at rest is not in equilibrium."""
-        return self.weight is not None or self.natural is not None
+    def pattern(self) -> Envelope:
+        """Where the entries of matrices in the reduced coordinates lie."""
+        bodies = np.arange(self.first_body, self.size).reshape(-1, 3)
+        return Envelope(self.numbers, bodies, self.size)
 
-    @cached_property
-    def measure(self) -> Array:
-        """What changes of the coordinates are multiplied with to count in strip lengths and rad, (size,)."""
-        weight: Array = np.full(self.size, 1.0 / max(strip.length for strip in self.model.strips))
-        weight[2::3] = 1.0
-        return weight
+    def _weight(self) -> tuple[Array, Array]:
+        """Return the weight of nodes (nodes, 3) and bodies (B, 4) as in `law.put_weight`, empty if not named.
+
+        Half of every element is at each of its nodes: an error of second order in the element length. What
+        hangs on a clamp is not felt.
+        """
+        gravity = self.model.effects.find(Gravity)
+        if gravity is None:
+            return np.zeros((0, 3)), np.zeros((0, 4))
+        g, masses, ends = np.array(gravity.acceleration), self.nodal_masses(), self.attachments
+        nodes, bodies = np.zeros((len(masses), 3)), np.zeros((len(self.points), 4))
+        nodes[self.free_nodes, :2] = masses[self.free_nodes, None] * g
+        own = np.array([body.mass for body in self.model.bodies])
+        total, moments = own.copy(), np.zeros((len(own), 2))
+        if len(own):
+            centres = np.array([body.centre for body in self.model.bodies])
+            moments = own[:, None] * (centres - self.points)
+        np.add.at(total, ends.body, masses[ends.node])
+        np.add.at(moments, ends.body, masses[ends.node][:, None] * ends.offsets)
+        heavy = total > 0.0
+        bodies[:, :2] = total[:, None] * g
+        bodies[heavy, 2:] = moments[heavy] / total[heavy, None]
+        return nodes, bodies
 
     @property
+    def constant_effects(self) -> bool:
+        """Whether gravity or natural strains act, so that the shape at rest is not in equilibrium."""
+        return bool(self.constant_words)
+
+    @cached_property
     def constant_words(self) -> str:
         """What of weight and natural strains acts, in words."""
-        acting = {"the weight": self.weight, "the natural strains": self.natural}
-        return " and ".join(word for word, effect in acting.items() if effect is not None)
+        acting = {"the weight": Gravity, "the natural strains": PreStrain}
+        return " and ".join(word for word, kind in acting.items() if self.model.effects.find(kind))
+
+    @cached_property
+    def round_off(self) -> float:
+        """Return the dimensionless residual below which round-off decides.
+
+        Displacements of order L carry an error of one unit in the last place: relative to an element of
+        length l it is a strain of L/l of it, hence a force of EA L/l (or kGA L/l, if that is part of the
+        element and larger); and a turn of the chord of L/l of it, hence a force of 12 EI L/l^3. The factor 4
+        covers the few operations between them.
+        """
+        e = self.elements
+        rigidity = np.maximum(e.axial_rigidity, e.shear_rigidity) if self.shear else e.axial_rigidity
+        axial = np.max(rigidity * self.length / e.length) / self.force_unit
+        bending = np.max(12.0 * e.flexural_rigidity * self.length / e.length**3) / self.force_unit
+        return float(4.0 * np.finfo(float).eps * (axial + bending))
 
     def body_slice(self, body: int) -> slice:
         """Return where the coordinates of a body lie."""
@@ -118,102 +168,141 @@ class Structure:
     def nodal_masses(self) -> Array:
         """Return the mass of the strips that falls to each node, half of every element (nodes,) [kg]."""
         half = 0.5 * self.elements.linear_density * self.elements.length
-        ends = self.basis.mesh.t
-        masses = np.zeros(self.strips * self.stations)
-        np.add.at(masses, ends.ravel(), np.tile(half, 2))
+        masses: Array = np.bincount(self.basis.mesh.t.ravel(), np.tile(half, 2)).astype(float)
         return masses
 
     def displacement(self, y: Array) -> Array:
         """Return displacement and turn of all nodes, (nodes, 3) [m, rad]."""
         full = np.zeros((self.strips * self.stations, 3))
         full[self.free_nodes] = y[: self.first_body].reshape(-1, 3)
-        full[self.attachments.node] = self.attachments.displacement(y[self.first_body :].reshape(-1, 3))
+        carry(y[self.first_body :].reshape(-1, 3), *self.carried, full)
         return full
 
     def velocity(self, y: Array, v: Array) -> Array:
         """Return the rates of displacement and turn of all nodes, (nodes, 3) [m/s, rad/s]."""
         full = np.zeros((self.strips * self.stations, 3))
-        bodies = (part[self.first_body :].reshape(-1, 3) for part in (y, v))
+        bodies, rates = (part[self.first_body :].reshape(-1, 3) for part in (y, v))
         full[self.free_nodes] = v[: self.first_body].reshape(-1, 3)
-        full[self.attachments.node] = self.attachments.velocity(*bodies)
+        carry_velocity(bodies, rates, *self.carried, full)
         return full
 
-    def element_displacement(self, y: Array) -> Array:
-        """Return the displacements of the elements (6, E)."""
-        local: Array = self.displacement(y).ravel()[self.basis.element_dofs]
-        return local
+    def evaluate(self, y: Array, share: float = 1.0, asked: int = TANGENT) -> Evaluation:
+        """Return gradient, tangent and energies at y under a share of weight and natural strains."""
+        many = len(self.numbers)
+        matrices = np.empty((many if asked != FORCES else 0, 6, 6))
+        tangent, gradient = self.pattern.zero(), np.empty(self.size)
+        ends, curvature, bodies = np.empty((many, 5)), np.empty((2, len(self.points))), y[self.first_body :]
+        u = self.displacement(y)
+        shear, table, first = self.given
+        strain, gravity = _evaluate(
+            shear, table, first, share, asked, u, bodies.reshape(-1, 3), self.free_nodes, *self.carried,
+            *self.weight, *self.work, ends, matrices, gradient, curvature,
+        )  # fmt: skip
+        if asked != FORCES:
+            self._assemble(matrices, y, tangent)
+        if asked == TANGENT:
+            tangent.data[self.pattern.diagonal[self.turns]] += curvature.sum(axis=0)
+        return Evaluation(
+            gradient=gradient,
+            tangent=tangent,
+            strain=strain,
+            gravity=gravity,
+            ends=ends,
+            curvature=curvature[0],
+        )
 
-    def element_forces(self, displacement: Array, share: float = 1.0) -> Array:
-        """Return the forces of the elements (6, E), with a share of the natural strains."""
-        forces = self.law.forces(displacement)
-        return forces if self.natural is None else forces + share * self.natural.forces(displacement)
+    def _assemble(self, matrices: Array, y: Array, into: Symmetric) -> None:
+        _, carrier, offsets = self.carried
+        places = self.pattern.places
+        assemble(matrices, self.attachments.ends, carrier, offsets, y[self.turns], places, into.data)
 
-    def element_tangents(self, displacement: Array, share: float = 1.0) -> Array:
-        """Return their derivatives (6, 6, E)."""
-        tangents = self.law.tangents(displacement)
-        return tangents if self.natural is None else tangents + share * self.natural.tangents(displacement)
+    def reduced_matrix(self, matrices: Array, y: Array) -> Symmetric:
+        """Assemble element matrices (E, 6, 6) into the reduced coordinates as P^T K P."""
+        whole = self.pattern.zero()
+        self._assemble(matrices.copy(), y, whole)
+        return whole
 
-    def reduced_force(self, forces: Array, y: Array) -> Array:
-        """Assemble element forces (6, E) into the reduced coordinates, (size,) [N, N m]."""
-        local = self.attachments.reduce_forces(forces, y[self.turns])
-        data = local.ravel()[self._kept_force]
-        assembled: Array = COOData(self._force_indices, data, (self.size,), None).toarray()
-        return assembled
-
-    def reduced_matrix(self, matrices: Array, y: Array, curvature: ArrayLike = 0.0) -> csc_matrix:
-        """Assemble element matrices (6, 6, E) into the reduced coordinates as P^T K P + curvature (B,).
-
-        The matrices are symmetric, so that the transpose of the assembled rows is the matrix by columns.
-        """
-        local = self.attachments.reduce_matrices(matrices, y[self.turns])
-        added = np.broadcast_to(np.asarray(curvature, dtype=float), self.turns.shape)
-        data = np.concatenate([local.ravel()[self._kept], added])
-        assembled: csc_matrix = COOData(self._indices, data, (self.size, self.size), None).tocsr().T
-        return assembled
-
-    def internal_force(self, y: Array, share: float = 1.0) -> Array:
-        """Return the gradient of the potential in the reduced coordinates, (size,) [N, N m]."""
-        force = self.reduced_force(self.element_forces(self.element_displacement(y), share), y)
-        return force if self.weight is None else force - share * self.weight.generalised(y)
-
-    def tangent_stiffness(self, y: Array, share: float = 1.0) -> csc_matrix:
-        """Return the second derivative of the potential in the reduced coordinates (size, size)."""
-        u = self.element_displacement(y)
-        curvature = self.attachments.curvature(self.element_forces(u, share), y[self.turns])
-        if self.weight is not None:
-            curvature = curvature - share * self.weight.curvature(y)
-        return self.reduced_matrix(self.element_tangents(u, share), y, curvature)
+    def element_matrices(self, y: Array, asked: int) -> Array:
+        """Return the tangents of the elements, or the part that is asked for, (E, 6, 6)."""
+        many, (force, _, scratch) = len(self.numbers), self.work
+        matrices, u = np.empty((many, 6, 6)), self.displacement(y)
+        elements(*self.given, 1.0, asked, u, force, np.empty((many, 5)), matrices, scratch)
+        return matrices
 
     def energies(self, y: Array, share: float = 1.0) -> tuple[float, float, float]:
         """Return bending, axial and shear energy of the strips [J]."""
-        u = self.element_displacement(y)
-        bending, axial, shear = (float(part.sum()) for part in self.law.energies(u))
-        if self.natural is not None:
-            more_bending, more_axial = self.natural.energies(u, share)
-            bending, axial = bending + more_bending, axial + more_axial
-        return bending, axial, shear
-
-    def gravity_energy(self, y: Array) -> float:
-        """Return the energy of the full weight, zero in the shape at rest [J]."""
-        return 0.0 if self.weight is None else -self.weight.work(y)
+        return self.evaluate(y, share, FORCES).strain
 
     def potential(self, y: Array, share: float = 1.0) -> float:
         """Return strain energy and energy of the weight, both in the given share [J]."""
-        return sum(self.energies(y, share)) + share * self.gravity_energy(y)
+        here = self.evaluate(y, share, FORCES)
+        return math.fsum(here.strain) + share * here.gravity
 
-    def share_force(self, y: Array) -> Array:
-        """Return the derivative of the internal force in the share, (size,) [N, N m]."""
-        rate = np.zeros(self.size)
-        if self.natural is not None:
-            rate += self.reduced_force(self.natural.forces(self.element_displacement(y)), y)
-        if self.weight is not None:
-            rate -= self.weight.generalised(y)
-        return rate
+    def share_rates(self, y: Array) -> tuple[Array, float, float]:
+        """Return what the share changes at fixed y: the gradient (size,), and the potential, once and twice.
 
-    def share_energy(self, y: Array, share: float) -> tuple[float, float]:
-        """Return first and second derivative of the potential in the share, at fixed y [J]."""
-        rate, bend = self.gravity_energy(y), 0.0
-        if self.natural is not None:
-            rate += self.natural.energy_rate(self.element_displacement(y), share)
-            bend = self.natural.energy_bend
-        return rate, bend
+        The gradient is linear in the share and the potential a parabola, of which the derivative at the full
+        share is returned; its bend is that of the energy of natural strains.
+        """
+        none, half, full = (self.evaluate(y, share, FORCES) for share in (0.0, 0.5, 1.0))
+        u_0, u_1, u_2 = (
+            sum(at.strain) + share * at.gravity for at, share in ((none, 0.0), (half, 0.5), (full, 1.0))
+        )
+        bend = 4.0 * (u_0 - 2.0 * u_1 + u_2)
+        return full.gradient - none.gradient, u_2 - u_0 + 0.5 * bend, bend
+
+
+@lru_cache(maxsize=16)
+def structure_of(model: Model) -> Structure:
+    """Return the structure of a model about the centres of its bodies, built at first use."""
+    return Structure(model)
+
+
+@kernel()
+def _evaluate(
+    shear: bool,
+    table: Array,
+    first: Indices,
+    share: float,
+    asked: int,
+    u: Array,
+    bodies: Array,
+    free_nodes: Indices,
+    attached: Indices,
+    carrier: Indices,
+    offsets: Array,
+    weight: Array,
+    body_weight: Array,
+    force: Array,
+    resultants: Array,
+    scratch: Array,
+    ends: Array,
+    matrices: Array,
+    gradient: Array,
+    curvature: Array,
+) -> tuple[tuple[float, float, float], float]:
+    """Write what `Structure.evaluate` returns; return energies of the strips and of the full weight."""
+    strain = elements(shear, table, first, share, asked, u, force, ends, matrices, scratch)
+    for b in range(len(bodies)):
+        curvature[0, b] = curvature[1, b] = 0.0
+    for k in range(len(attached)):
+        i, b = attached[k], carrier[k]
+        c, s = math.cos(bodies[b, 2]), math.sin(bodies[b, 2])
+        x, y = offsets[k, 0], offsets[k, 1]
+        curvature[0, b] -= (c * x - s * y) * force[i, 0] + (s * x + c * y) * force[i, 1]
+    body_forces(bodies, attached, carrier, offsets, force, resultants)
+    put_weight(share, weight, body_weight, bodies, force, resultants)
+    for b in range(len(body_weight)):
+        w_x, w_y, x, y = body_weight[b, 0], body_weight[b, 1], body_weight[b, 2], body_weight[b, 3]
+        c, s = math.cos(bodies[b, 2]), math.sin(bodies[b, 2])
+        curvature[1, b] += share * (w_x * (c * x - s * y) + w_y * (s * x + c * y))
+    at = 0
+    for i in free_nodes:
+        for k in range(3):
+            gradient[at] = force[i, k]
+            at += 1
+    for b in range(len(bodies)):
+        for k in range(3):
+            gradient[at] = resultants[b, k]
+            at += 1
+    return strain, gravity_energy(weight, body_weight, bodies, u)

@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from fe_reference.arc_length import follow_arc
-from fe_reference.follow import spans
+from fe_reference.control import spans
 from fe_reference.mechanism import BodyDesign, StripDesign, mechanism
+from fe_reference.structure import structure_of
 from spline_model.pivot import cross_axis_pivot
 from spline_model.statics import solve_loads, solve_statics
 from tests import gates
@@ -63,7 +64,7 @@ def test_first_instability_of_the_pivot_agrees():
     """Requirement: the torque of Table 1 has its first limit at the same rotation in both models."""
     found = []
     for elements in (20, 40):
-        structure = fe_pivot(elements=elements).structure
+        structure = structure_of(fe_pivot(elements=elements))
         rotation = math.radians(320)
         control = spans(structure, body=0, rotations=[rotation], watched=int(structure.turns[0]))[0]
         path = follow_arc(control, increments=64)
@@ -100,7 +101,7 @@ def fe_buckling_deg(elements, offset=0.01, half=0.05):
         effects=("bending", "stretching"),
         elements=elements,
     )
-    structure = model.structure
+    structure = structure_of(model)
     control = spans(structure, body=0, rotations=[-0.05], watched=int(structure.turns[0]))[0]
     (point,) = [c for c in follow_arc(control).critical if c.kind == "bifurcation"]
     return math.degrees(-0.05 * point.parameter)

@@ -7,9 +7,10 @@ from typing import Any
 import numpy as np
 
 from fe_reference.control import Control
-from fe_reference.follow import full_load
+from fe_reference.loads import full_load
 from fe_reference.mechanism import BodyDesign, StripDesign, mechanism
 from fe_reference.model import Model
+from fe_reference.structure import structure_of
 
 EFFECTS = ("bending", "stretching", "applied_force")
 
@@ -21,7 +22,7 @@ def section_of(**given: float) -> dict[str, float]:
 
 def led(model: Model, *held: str) -> Control:
     """Return load control of a mechanism, with the centres of some bodies held in their places."""
-    structure = model.structure
+    structure = structure_of(model)
     starts = [structure.body_slice(model.body_index(name)).start for name in held]
     at = np.array(sorted(start + k for start in starts for k in range(2)), dtype=np.int64)
     return Control(structure=structure, held=at, values=np.zeros((2, len(at))), load=full_load(structure))

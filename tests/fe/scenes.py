@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from fe_reference.effects.named import DEFAULT_EFFECTS
+from fe_reference.effects import DEFAULT_EFFECTS
 from fe_reference.mechanism import BodyDesign, StripDesign, mechanism
 from fe_reference.model import Model
 from tests.fe.cases import TABLE_1

@@ -142,8 +142,6 @@ def test_run_is_described() -> None:
     assert motion.kinetic_energy[0] == 0.0
     assert motion.settings["step_s"] <= 0.9 * motion.settings["critical_step_s"]
     assert motion.counters["steps"] * motion.settings["step_s"] == pytest.approx(1e-4, rel=1e-12)
-    assert not motion.constraint_residual.any()
-    assert not motion.velocity_residual.any()
 
 
 @pytest.mark.parametrize(
@@ -191,3 +189,15 @@ def test_implicit_step_without_solution_ends_the_run() -> None:
     assert motion.status is not Status.CONVERGED
     assert motion.message != ""
     assert len(motion.time) >= 1
+
+
+def test_an_implicit_step_that_is_too_long_is_told() -> None:
+    """A step of 1 ms on a swing whose strips follow within it gains energy: stopped, with what to do."""
+    settings = {"start": 1.0, "duration": 0.02, "integrator": "generalised-alpha", "check": False}
+    motion = solve_release(pivot(elements=10), **settings, step=1e-3, raise_on_failure=False)
+    assert motion.status is Status.UNSTABLE
+    assert "the energy grew" in motion.message
+    assert "steps in a mean period" in motion.resolution
+    sound = solve_release(pivot(elements=10), **settings, step=1e-4)
+    assert sound.resolution == ""
+    assert list(sound.columns())[:4] == ["time_s", "x_m", "y_m", "rotation_rad"]

@@ -5,7 +5,7 @@ from itertools import pairwise
 import numpy as np
 from scipy.optimize import brentq
 
-from fe_reference.effects.named import DEFAULT_EFFECTS
+from fe_reference.effects import DEFAULT_EFFECTS
 from fe_reference.modes import natural_frequencies
 from tests.fe.cases import hold
 from tests.fe.scenes import GUIDE, SECTION, free_cantilever

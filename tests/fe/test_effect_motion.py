@@ -5,10 +5,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from fe_reference.compiled import CompiledForces
+from fe_reference.actions import Actions
 from fe_reference.control import Control
 from fe_reference.dynamics import INTEGRATORS, solve_motion, solve_release
-from fe_reference.effects.actions import Actions
 from fe_reference.errors import InvalidParameter
 from fe_reference.explicit import Explicit, critical_step
 from fe_reference.follow import follow
@@ -16,6 +15,7 @@ from fe_reference.mass import about_mass_centre, lumped_diagonal
 from fe_reference.mechanism import BodyDesign, StripDesign, mechanism
 from fe_reference.model import ELEMENTS, Model
 from fe_reference.modes import natural_frequencies
+from fe_reference.structure import structure_of
 from tests.fe.cases import EI, MOMENT, TABLE_1, hold, pivot
 from tests.fe.scenes import GUIDE, PARAMETERS, SECTION, decay_and_frequency, four_bar, free_cantilever
 
@@ -43,7 +43,7 @@ def plucked(name: str, key: str, ratio: float) -> float:
         integrator=IMPLICIT,
     )
     # the share of the first mode alone: the others are orthogonal to it in the equal masses of the nodes
-    masses = bare.structure.nodal_masses()
+    masses = structure_of(bare).nodal_masses()
     share = (motion.shape[:, 0, :, 1] - motion.shape[0, 0, 0, 1]) @ (masses * modes.shapes[0, 0, :, 1])
     rate, frequency = decay_and_frequency(share[:: steps // 10], 0.1 / modes.frequency[0])
     assert frequency == pytest.approx(omega * np.sqrt(1.0 - ratio**2), rel=1e-3)
@@ -127,7 +127,7 @@ def test_massless_strips_stay_in_equilibrium() -> None:
 
 def statically(model: Model, bodies: dict[str, np.ndarray]) -> np.ndarray:
     """Return where the nodes of the strips are in equilibrium when the bodies are held there (nodes, 2)."""
-    structure = model.structure
+    structure = structure_of(model)
     moved = np.concatenate([bodies[b.name] - [*b.centre, 0.0] for b in model.bodies])
     held = np.arange(structure.first_body, structure.size)
     control = Control(structure=structure, held=held, values=np.stack([0.0 * moved, moved]))
@@ -198,7 +198,7 @@ def test_impulse_of_a_load() -> None:
             parameters={"applied_force": force},
             elements=5,
         )
-        structure, bodies = about_mass_centre(model.structure)
+        structure, bodies = about_mass_centre(structure_of(model))
         scheme, rest = Explicit(structure, bodies), np.zeros(structure.size)
         steps = round(5e-4 / step)
         motion = scheme.run(rest, rest, step, [steps], None)
@@ -251,13 +251,13 @@ def test_critical_step_with_dampers(name: str) -> None:
         "body_damping": {"translation": 1e6, "rotation": 1e4},
     }
     model = four_bar({name: strong[name]}, elements=3)
-    structure, bodies = about_mass_centre(model.structure)
-    rest, plain = np.zeros(structure.size), about_mass_centre(four_bar(elements=3).structure)
+    structure, bodies = about_mass_centre(structure_of(model))
+    rest, plain = np.zeros(structure.size), about_mass_centre(structure_of(four_bar(elements=3)))
     h = critical_step(structure, bodies, rest)
     assert h < 0.8 * critical_step(*plain, rest)
     inverse = 1.0 / lumped_diagonal(structure, bodies)[:, None]
-    stiffness = inverse * structure.tangent_stiffness(rest).toarray()
-    damping = inverse * Actions(CompiledForces(structure)).damping_matrix(rest).toarray()
+    stiffness = inverse * structure.evaluate(rest).tangent.sparse().toarray()
+    damping = inverse * Actions(structure).damping_matrix(rest).sparse().toarray()
 
     def radius(step: float) -> float:
         one = np.eye(len(rest))

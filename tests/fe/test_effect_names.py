@@ -5,17 +5,16 @@ from typing import Any
 import numpy as np
 import pytest
 
-from fe_reference.compiled import CompiledForces
+from fe_reference import actions, loads
+from fe_reference.actions import Actions
 from fe_reference.dynamics import solve_motion, solve_release
-from fe_reference.effects import actions, kernels, loads, prestrain
-from fe_reference.effects.actions import Actions
-from fe_reference.effects.named import DEFAULT_EFFECTS, KNOWN
+from fe_reference.effects import DEFAULT_EFFECTS, KNOWN
 from fe_reference.errors import InvalidParameter
-from fe_reference.explicit import Explicit
 from fe_reference.mass import about_mass_centre
 from fe_reference.mechanism import BodyDesign, StripDesign, mechanism
 from fe_reference.modes import natural_frequencies
 from fe_reference.statics import solve_mechanism, solve_statics
+from fe_reference.structure import Structure, structure_of
 from tests.fe.cases import hold, pivot
 from tests.fe.scenes import NOTHING, SECTION, four_bar, free_cantilever, guide
 
@@ -27,19 +26,19 @@ STILL = ("gravity", "applied_force", "applied_moment", "pre_strain")
 def test_zero_equals_absent(name: str) -> None:
     """An effect with a coefficient of zero leaves statics, motion and frequencies as they are without it."""
 
-    def error(increments: int = 5) -> float:
+    def error(turn: float = 0.4) -> float:
         bare, named = four_bar(elements=4), four_bar({name: NOTHING[name]}, elements=4)
         gaps = []
         if name in STILL:
             one = solve_mechanism(bare, body="crank", rotation=0.4, increments=5)
-            other = solve_mechanism(named, body="crank", rotation=0.4, increments=increments)
+            other = solve_mechanism(named, body="crank", rotation=turn, increments=5)
             gaps = [(one.torque[-1] - other.torque[-1]) / one.torque[-1]]
             gaps += [np.abs(one.shape[-1] - other.shape[-1]).max() / 0.1]
         for integrator, step in (("central-difference", 5e-8), ("generalised-alpha", 1e-6)):
-            settings: dict[str, Any] = {"body": "crank", "start": 0.4, "duration": 2e-5, "step": step}
+            settings: dict[str, Any] = {"body": "crank", "duration": 2e-5, "step": step, "increments": 5}
             settings["integrator"] = integrator
-            one_way = solve_motion(bare, **settings, increments=5)
-            other_way = solve_motion(named, **settings, increments=increments)
+            one_way = solve_motion(bare, **settings, start=0.4)
+            other_way = solve_motion(named, **settings, start=turn)
             gaps.append(np.abs(one_way.shape - other_way.shape).max() / 0.1)
         # the same operations in the same order leave nothing: one unit in the last place stands for it
         return max(*(float(abs(gap)) for gap in gaps), float(np.finfo(float).eps))
@@ -52,19 +51,15 @@ def refuse(*_: Any, **__: Any) -> Any:
 
 
 def test_absent_effects_are_not_run(monkeypatch: pytest.MonkeyPatch) -> None:
-    """With the code of all effects poisoned, a scene that names none of them runs in statics and motion."""
-    for name in ("viscous_forces", "drag_forces", "grip_forces", "load_forces", "put_loads"):
-        monkeypatch.setattr(actions, name, refuse)
+    """With what only effects need poisoned, a scene that names none of them runs in statics and motion."""
     for place, name in (
-        (prestrain.NaturalStrain, "__init__"),
-        (loads.DeadLoad, "generalised"),
-        (loads.DeadLoad, "work"),
-        (actions.Actions, "resist"),
+        (Structure, "share_rates"),
+        (loads, "load_vector"),
+        (actions, "body_blocks"),
         (actions.Actions, "damping_matrix"),
-        (kernels, "viscous_forces"),
+        (actions.Actions, "fastest_decay"),
     ):
         monkeypatch.setattr(place, name, refuse)
-    monkeypatch.setattr("fe_reference.explicit.advance_scene", refuse)
     model = pivot(elements=4)
     assert solve_statics(model, rotation=0.5).status.value == "converged"
     natural_frequencies(model, count=2)
@@ -76,24 +71,22 @@ def test_absent_effects_are_not_run(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_tables_of_absent_effects_have_no_length() -> None:
-    """Nothing is kept for effects that are not named, and the loop is the one that knows none of them."""
-    structure, bodies = about_mass_centre(four_bar().structure)
-    compiled = CompiledForces(structure)
-    acting = Actions(compiled)
-    assert [len(table) for table in (*compiled.conservative, *acting.dissipative)] == [0] * 6
+    """Nothing is kept for effects that are not named."""
+    structure, _ = about_mass_centre(structure_of(four_bar()))
+    acting = Actions(structure)
+    assert [len(table) for table in (*structure.weight, *acting.dissipative)] == [0] * 5
     assert len(acting.histories[0]) == 0
     assert not acting.named
-    assert Explicit(structure, bodies).pure
 
 
 def test_compiled_once_for_all_scenes() -> None:
     """Scenes of different effects use the same compiled steps."""
     settings: dict[str, Any] = {"body": "crank", "start": 0.1, "duration": 1e-7, "step": 5e-8}
     solve_motion(four_bar({"strip_drag": NOTHING["strip_drag"]}, elements=2), **settings)
-    before = len(kernels.advance_scene.signatures)
+    before = len(actions.advance.signatures)
     for name, parameters in NOTHING.items():
         solve_motion(four_bar({name: parameters}, elements=2), **settings)
-    assert len(kernels.advance_scene.signatures) == before == 1
+    assert len(actions.advance.signatures) == before == 1
 
 
 BAD: list[tuple[dict[str, Any], str]] = [

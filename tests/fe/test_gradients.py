@@ -5,8 +5,9 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
+from fe_reference.law import FORCES, TANGENT, elements
 from fe_reference.model import ELEMENTS, rotation_matrix
-from fe_reference.structure import Structure
+from fe_reference.structure import Structure, structure_of
 from tests.fe.cases import FORCE, LENGTH, hold, pivot
 
 #: Sixth-order central difference of a first derivative, offsets 1 to 3.
@@ -50,7 +51,7 @@ def test_force_is_the_gradient_of_the_energy(element: str, about: str) -> None:
     def error(step: float = 1e-3) -> float:
         size = np.where(structure.scale == structure.force_unit, LENGTH, 1.0)
         slope = derivative(lambda z: np.array(sum(structure.energies(z))), y, step * size)
-        force = structure.internal_force(y)
+        force = structure.evaluate(y).gradient
         return float(np.abs((slope - force) * size).max() / np.abs(force * size).max())
 
     hold("fe_force_is_gradient", error)
@@ -66,8 +67,8 @@ def test_tangent_is_the_derivative_of_the_force(element: str, about: str) -> Non
 
     def error(step: float = 1e-3) -> float:
         size = np.where(structure.scale == structure.force_unit, LENGTH, 1.0)
-        slope = derivative(structure.internal_force, y, step * size) * size * size[:, None]
-        tangent = structure.tangent_stiffness(y).toarray() * size * size[:, None]
+        slope = derivative(lambda z: structure.evaluate(z).gradient, y, step * size) * size * size[:, None]
+        tangent = structure.evaluate(y).tangent.sparse().toarray() * size * size[:, None]
         return float(np.abs(slope - tangent).max() / np.abs(tangent).max())
 
     hold("fe_tangent_is_derivative", error)
@@ -75,10 +76,10 @@ def test_tangent_is_the_derivative_of_the_force(element: str, about: str) -> Non
 
 def test_curvature_of_the_reduction_matters() -> None:
     """Without the curvature of the master-slave map the tangent would be visibly wrong here."""
-    structure = pivot(elements=4, crossing_ratio=0.4).structure
+    structure = structure_of(pivot(elements=4, crossing_ratio=0.4))
     y = far_state(structure)
-    with_it = structure.tangent_stiffness(y)
-    without = structure.reduced_matrix(structure.law.tangents(structure.element_displacement(y)), y)
+    with_it = structure.evaluate(y).tangent.sparse()
+    without = structure.reduced_matrix(structure.element_matrices(y, TANGENT), y).sparse()
     gap = (with_it - without).toarray()
     assert np.count_nonzero(gap) == 1
     assert abs(gap[-1, -1]) > FORCE * LENGTH
@@ -87,13 +88,14 @@ def test_curvature_of_the_reduction_matters() -> None:
 @pytest.mark.parametrize("element", ELEMENTS)
 def test_rigid_motion_costs_nothing(element: str) -> None:
     """Turned by three turns and a half and moved as a whole, a strip holds no force."""
-    structure = pivot(elements=3, element=element).structure
+    structure = structure_of(pivot(elements=3, element=element))
 
     def error(turn: float = 7.0 * np.pi, stretch: float = 0.0) -> float:
         rest = np.concatenate([strip.nodes for strip in structure.model.strips])
-        field = np.full((len(rest), 3), turn)
+        field, many = np.full((len(rest), 3), turn), len(structure.numbers)
         field[:, :2] = (1.0 + stretch) * rest @ rotation_matrix(turn).T - rest + 0.3 * LENGTH
-        moved = field.ravel()[structure.basis.element_dofs]
-        return float(np.abs(structure.law.forces(moved)).max() / FORCE)
+        force, ends, none = np.empty_like(field), np.empty((many, 5)), np.empty((0, 6, 6))
+        elements(*structure.given, 1.0, FORCES, field, force, ends, none, np.empty((4, 4)))
+        return float(np.abs(ends[:, :4]).max() / FORCE)
 
     hold("fe_rigid_motion", error)

@@ -6,9 +6,8 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from fe_reference.attachments import FREE
 from fe_reference.errors import InvalidParameter
-from fe_reference.model import ELEMENTS, Body
+from fe_reference.model import ELEMENTS, FREE, Body
 from fe_reference.modes import natural_frequencies
 from tests.fe.cases import (
     LENGTH,

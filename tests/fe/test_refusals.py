@@ -7,9 +7,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from fe_reference.attachments import FREE
 from fe_reference.errors import ConvergenceError, InvalidParameter
-from fe_reference.model import Body, Model, Section, Strip, straight_strip
+from fe_reference.model import FREE, Body, Model, Section, Strip, straight_strip
 from fe_reference.solution import Status
 from fe_reference.statics import solve_loads, solve_statics
 from tests.fe.cases import LENGTH, SECTION, cantilever, pivot

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from fe_reference.arc_length import follow_arc
-from fe_reference.follow import spans
-from fe_reference.stability import negative_eigenvalues
+from fe_reference.control import spans
 from fe_reference.statics import solve_statics
+from fe_reference.structure import structure_of
 from tests import gates
 from tests.fe.cases import extrapolated, hold, observed_order, pivot
 from tests.fe.frames import column, lees_frame, toggle
@@ -26,11 +26,13 @@ def test_inertia_counts_the_negative_eigenvalues():
     control = toggle(elements=6)
     path, seen = follow_arc(control), set()
     for y, parameter, negative in zip(path.y, path.parameter, path.negative, strict=True):
-        block = control.tangent(y, parameter)[:, control.free][control.free]
-        assert np.count_nonzero(np.linalg.eigvalsh(block.toarray()) < 0.0) == negative
-        assert negative_eigenvalues(block) == negative
+        balance = control.balance(y, parameter)
+        block = balance.at.tangent.sparse().toarray()[np.ix_(control.free, control.free)]
+        assert np.count_nonzero(np.linalg.eigvalsh(block) < 0.0) == negative
+        assert control.factors(balance).negative == negative
         seen.add(int(negative))
     assert seen == {0, 1}
+    assert path.message.startswith("limit point at load factor")
 
 
 def euler_error(elements=(10, 20, 40), slenderness=100.0):
@@ -80,7 +82,7 @@ def test_a_flatter_toggle_has_no_limit_point():
 def test_the_driven_pivot_ends_as_in_rotation_control():
     """Arc length and equal increments of the rotation end in the same torque."""
     model = pivot(elements=10)
-    structure = model.structure
+    structure = structure_of(model)
     control = spans(structure, body=0, rotations=[1.5], watched=int(structure.turns[0]))[0]
     path, plain = follow_arc(control), solve_statics(model, rotation=1.5)
     assert path.critical == ()

@@ -6,13 +6,14 @@ from dataclasses import replace
 import numpy as np
 
 from fe_reference.arc_length import ArcPath, follow_arc
-from fe_reference.control import Control, free_block
-from fe_reference.effects.named import DrivenDisplacement
+from fe_reference.control import Control
+from fe_reference.effects import DrivenDisplacement
 from fe_reference.errors import ConvergenceError
-from fe_reference.follow import follow, full_load
+from fe_reference.follow import follow
+from fe_reference.loads import full_load
 from fe_reference.model import Model
 from fe_reference.newton import equilibrate
-from fe_reference.stability import negative_eigenvalues
+from fe_reference.structure import structure_of
 from studies.answers.models import built, model_of
 from studies.answers.settings import FeSettings
 from studies.stability.frames.arcs import Arc, Critical
@@ -32,7 +33,7 @@ def element_arc(frame: Frame, settings: FeSettings) -> Arc:
 
 def led(model: Model, frame: Frame) -> Control:
     """Return the control of a frame: its pins held, its load or the displacement of its body growing."""
-    structure = model.structure
+    structure = structure_of(model)
     ways = {name: (0.0, 0.0) for name in frame.pins}
     named = model.effects.find(DrivenDisplacement)
     if named is not None:
@@ -55,7 +56,7 @@ def tilted_state(frame: Frame, settings: FeSettings, tilt: float) -> Arc:
     """
     model, _ = built(model_of(settings), frame.design, settings, moving=False)
     control = led(model, frame)
-    turn = model.structure.body_slice(model.body_index(frame.body)).stop - 1
+    turn = structure_of(model).body_slice(model.body_index(frame.body)).stop - 1
     held = np.append(control.held, turn)
     values = np.zeros((3, len(held)))
     values[1:, -1], values[2, :-1] = tilt, control.values[1]
@@ -71,16 +72,14 @@ def tilted_state(frame: Frame, settings: FeSettings, tilt: float) -> Arc:
         parameter=np.array([control.span[1]]),
         y=y,
         torque=np.array([np.nan]),
-        negative=np.array(
-            [negative_eigenvalues(free_block(control, control.tangent(outcome.y, control.span[1])))]
-        ),
+        negative=np.array([0 if outcome.factors is None else outcome.factors.negative]),
         critical=(),
     )
     return _arc(model, frame, path, message or outcome.failure)
 
 
 def _arc(model: Model, frame: Frame, path: ArcPath, message: str) -> Arc:
-    at = model.structure.body_slice(model.body_index(frame.body))
+    at = structure_of(model).body_slice(model.body_index(frame.body))
     rest = np.array([*next(body.centre for body in frame.design.bodies if body.name == frame.body), 0.0])
     critical = tuple(
         Critical(kind=point.kind, load=frame.load * point.parameter, place=rest + point.y[at])
@@ -89,7 +88,7 @@ def _arc(model: Model, frame: Frame, path: ArcPath, message: str) -> Arc:
     return Arc(
         load=frame.load * path.parameter,
         place=rest + path.y[:, at],
-        energy=np.array([sum(model.structure.energies(y)) for y in path.y]),
+        energy=np.array([sum(structure_of(model).energies(y)) for y in path.y]),
         inertia=path.negative,
         critical=critical,
         reached=not message,

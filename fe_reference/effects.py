@@ -11,7 +11,7 @@ from typing import Any, Self, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import InvalidParameter, finite, not_negative, pair
+from .errors import InvalidParameter, finite, not_negative, pair
 
 Array = NDArray[np.float64]
 Pair = tuple[float, float]

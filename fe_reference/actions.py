@@ -1,0 +1,248 @@
+"""All that resists a motion: the gradient of the potential, dampers and loads, compiled.
+
+Every effect has its own table, of length zero where the scene does not name it:
+
+    relaxation (E,)      relaxation time of the elements [s]: material tangent times velocity times it
+    drag (nodes,)        drag coefficient of the nodes [N s/m]
+    grip (B, 4)          dampers of the bodies: translation, rotation, and the offset of the centre
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .effects import BodyDamping, StripDamping, StripDrag
+from .law import (
+    FORCES,
+    MATERIAL,
+    body_forces,
+    carry,
+    carry_velocity,
+    elements,
+    gravity_energy,
+    kernel,
+    put_weight,
+)
+from .loads import applied, load_forces, load_power, load_tables, put_loads
+from .mass import body_blocks
+from .matrix import Symmetric
+from .structure import Structure
+
+Array = NDArray[np.float64]
+Indices = NDArray[np.int64]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Resistance:
+    """What resists a motion at an instant: generalised force (size,) [N, N m], strain energy [J].
+
+    Also the energy of the weight [J], the power of the loads and the power lost [W].
+    """
+
+    force: Array
+    strain: float
+    gravity: float
+    load_power: float
+    loss_power: float
+
+
+class Actions:
+    """The tables of one structure, and the arrays that the compiled loops write.
+
+    Attributes:
+        dissipative: relaxation (E,), drag (nodes,), grip (B, 4). histories: tables of the loads.
+        arrays: forces on nodes (nodes, 3) and bodies (B, 3), ends and matrices of the elements, of the loads.
+    """
+
+    def __init__(self, structure: Structure) -> None:
+        self.structure = structure
+        effects, many = structure.model.effects, len(structure.numbers)
+        damping, drag = effects.find(StripDamping), effects.find(StripDrag)
+        relaxation = np.full(0 if damping is None else many, damping.relaxation_time if damping else 0.0)
+        self.drag_rate = 0.0 if drag is None else drag.rate
+        dragged = np.zeros(0) if drag is None else drag.rate * structure.nodal_masses()
+        self.dissipative = (relaxation, dragged, self._grip())
+        self.damped = any(len(table) for table in self.dissipative)
+        pulls = [pull for pull in applied(structure) if pull.row[:3].any()]
+        self.named = self.damped or bool(pulls)
+        self.histories = load_tables(pulls)
+        force, resultants, scratch = structure.work
+        matrices = np.zeros((len(relaxation), 6, 6))
+        self.arrays = (force, resultants, np.zeros((many, 5)), matrices, scratch, np.zeros((len(pulls), 3)))
+        self.given = (*structure.given, *structure.carried, *structure.weight)
+
+    def _grip(self) -> Array:
+        model, points = self.structure.model, self.structure.points
+        damping = model.effects.find(BodyDamping)
+        if damping is None:
+            return np.zeros((0, 4))
+        offsets = [body.centre - point for body, point in zip(model.bodies, points, strict=True)]
+        rows = [[damping.translation, damping.rotation, *offset] for offset in offsets]
+        return np.array(rows).reshape(-1, 4)
+
+    def resist(self, y: Array, v: Array, time: float) -> Resistance:
+        """Return what resists at coordinates y, velocities v and an instant [s]."""
+        s, u = self.structure, self.structure.displacement(y)
+        bodies, rates = (part[s.first_body :].reshape(-1, 3) for part in (y, v))
+        tables = (self.given, self.dissipative, self.histories, self.arrays)
+        strain, loads, loss = act(*tables, u, s.velocity(y, v), bodies, rates, time)
+        force = np.concatenate([self.arrays[0][s.free_nodes].ravel(), self.arrays[1].ravel()])
+        gravity = float(gravity_energy(*s.weight, bodies, u))
+        return Resistance(force=force, strain=strain, gravity=gravity, load_power=loads, loss_power=loss)
+
+    def damping_matrix(self, y: Array) -> Symmetric:
+        """Return the derivative of the damping force in the velocities (size, size) [N s/m, N m s]."""
+        s, (relaxation, drag, grip) = self.structure, self.dissipative
+        local = np.zeros((len(s.numbers), 6, 6))
+        if len(relaxation):
+            local += relaxation[:, None, None] * s.element_matrices(y, MATERIAL)
+        if len(drag):
+            half = 0.5 * self.drag_rate * s.elements.linear_density * s.elements.length
+            local[:, [0, 1, 3, 4], [0, 1, 3, 4]] += half[:, None]
+        whole = s.reduced_matrix(local, y)
+        if len(grip):
+            body_blocks(s, y, grip[:, :2], whole)
+        return whole
+
+    def fastest_decay(self, y: Array, lumped: Array, mass: Array, inertia: Array) -> float:
+        """Return a rate [1/s] that no ratio of damping to mass exceeds at y.
+
+        Args:
+            y: coordinates. lumped (6, E): element masses. mass, inertia (B,): of the bodies.
+        """
+        (relaxation, drag, grip), rate = self.dissipative, 0.0
+        if len(relaxation):
+            root = np.sqrt(lumped).T
+            material = self.structure.element_matrices(y, MATERIAL)
+            highest = np.linalg.eigvalsh(material / (root[:, :, None] * root[:, None, :]))[:, -1]
+            rate += float(np.max(relaxation * highest))
+        if len(drag):
+            rate += self.drag_rate
+        if len(grip):
+            turning = grip[:, 1] + grip[:, 0] * np.sum(grip[:, 2:] ** 2, axis=1)
+            rate += float(np.max(grip[:, 0] / mass + turning / inertia))
+        return rate
+
+
+Given = tuple[bool, Array, Indices, Indices, Indices, Array, Array, Array]
+Histories = tuple[Indices, Array, Indices, Array, Array]
+Arrays = tuple[Array, Array, Array, Array, Array, Array]
+
+
+@kernel()
+def _viscous_forces(relaxation: Array, first: Indices, matrices: Array, v: Array, force: Array) -> float:
+    """Add the forces of Kelvin-Voigt strips at velocities v (nodes, 3); return the power they take [W]."""
+    power = 0.0
+    for e in range(len(relaxation)):
+        for i in range(6):
+            node, part, total = first[e] + i // 3, i % 3, 0.0
+            for j in range(6):
+                total += matrices[e, i, j] * v[first[e] + j // 3, j % 3]
+            total *= relaxation[e]
+            force[node, part] += total
+            power += total * v[node, part]
+    return power
+
+
+@kernel()
+def _drag_forces(drag: Array, v: Array, force: Array) -> float:
+    """Add the drag of the nodes; return the power it takes [W]."""
+    power = 0.0
+    for i in range(len(drag)):
+        for k in range(2):
+            force[i, k] += drag[i] * v[i, k]
+            power += drag[i] * v[i, k] * v[i, k]
+    return power
+
+
+@kernel()
+def _grip_forces(grip: Array, bodies: Array, bodies_v: Array, out: Array) -> float:
+    """Add the dampers of the bodies to their resultants (B, 3); return the power they take [W]."""
+    power = 0.0
+    for b in range(len(grip)):
+        c, s = np.cos(bodies[b, 2]), np.sin(bodies[b, 2])
+        arm_x, arm_y = c * grip[b, 2] - s * grip[b, 3], s * grip[b, 2] + c * grip[b, 3]
+        v_x, v_y = bodies_v[b, 0] - bodies_v[b, 2] * arm_y, bodies_v[b, 1] + bodies_v[b, 2] * arm_x
+        moment = grip[b, 1] * bodies_v[b, 2]
+        out[b, 0] += grip[b, 0] * v_x
+        out[b, 1] += grip[b, 0] * v_y
+        out[b, 2] += moment + grip[b, 0] * (arm_x * v_y - arm_y * v_x)
+        power += grip[b, 0] * (v_x * v_x + v_y * v_y) + moment * bodies_v[b, 2]
+    return power
+
+
+@kernel()
+def act(
+    given: Given,
+    dissipative: tuple[Array, Array, Array],
+    histories: Histories,
+    arrays: Arrays,
+    u: Array,
+    v: Array,
+    bodies: Array,
+    bodies_v: Array,
+    time: float,
+) -> tuple[float, float, float]:
+    """Write all that resists on nodes and bodies; return strain energy, power of the loads, power lost."""
+    shear, table, first, attached, carrier, offsets, weight, body_weight = given
+    relaxation, drag, grip = dissipative
+    targets, loads, begins, instants, factors = histories
+    force, resultants, ends, matrices, scratch, pulls = arrays
+    asked = MATERIAL if len(relaxation) else FORCES
+    bending, axial, sliding = elements(shear, table, first, 1.0, asked, u, force, ends, matrices, scratch)
+    loss = 0.0
+    if len(relaxation) or len(drag):
+        loss += _viscous_forces(relaxation, first, matrices, v, force) + _drag_forces(drag, v, force)
+    body_forces(bodies, attached, carrier, offsets, force, resultants)
+    put_weight(1.0, weight, body_weight, bodies, force, resultants)
+    loss += _grip_forces(grip, bodies, bodies_v, resultants)
+    load_forces(targets, loads, begins, instants, factors, time, bodies, pulls)
+    put_loads(targets, pulls, force, resultants)
+    return bending + axial + sliding, load_power(targets, pulls, v, bodies_v), loss
+
+
+@kernel()
+def _move(compliance: Array, force: Array, step: float, v: Array, u: Array) -> None:
+    """Advance velocities and places (rows, 3) by one step under `force`: v -= h c f, u += h v."""
+    for i in range(len(u)):
+        for k in range(3):
+            v[i, k] -= step * compliance[i, k] * force[i, k]
+            u[i, k] += step * v[i, k]
+
+
+@kernel()
+def advance(
+    given: Given,
+    dissipative: tuple[Array, Array, Array],
+    histories: Histories,
+    arrays: Arrays,
+    compliance: Array,
+    body_compliance: Array,
+    u: Array,
+    v: Array,
+    bodies: Array,
+    bodies_v: Array,
+    totals: Array,
+    time: float,
+    step: float,
+    steps: int,
+) -> None:
+    """Make `steps` steps of the central difference scheme in place: v is half a step behind u.
+
+    v += h a(u, v), u += h v for the free nodes (`compliance` (nodes, 3) is 1/mass there, else 0) and the
+    bodies; dampers act at the velocities before the step. `totals` gathers the work of the loads, exactly
+    that of the scheme, and what the dampers take [J].
+    """
+    _, _, _, attached, carrier, offsets, _, _ = given
+    viscous = len(dissipative[0]) > 0 or len(dissipative[1]) > 0
+    for n in range(steps):
+        if viscous:
+            carry_velocity(bodies, bodies_v, attached, carrier, offsets, v)
+        at = time + n * step
+        _, power, loss = act(given, dissipative, histories, arrays, u, v, bodies, bodies_v, at)
+        _move(compliance, arrays[0], step, v, u)
+        _move(body_compliance, arrays[1], step, bodies_v, bodies)
+        totals[0] += 0.5 * step * (power + load_power(histories[0], arrays[5], v, bodies_v))
+        totals[1] += step * loss
+        carry(bodies, attached, carrier, offsets, u)

@@ -1,1 +1,0 @@
-"""Effects that a scene names beside bending and stretching: values, loads, natural strains, damping."""

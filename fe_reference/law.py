@@ -1,0 +1,268 @@
+"""The two beam elements: energy, forces and tangent of each, written once and compiled.
+
+Both are functions of the step (x, y) = u_2 - u_1 of the displacement over the element and of the turns phi_1,
+phi_2 of its end sections, all from the reference; l0 is the reference length, (X, Y) the reference chord.
+
+**Corotational** (Euler-Bernoulli). Strains are taken in the frame of the chord, of length l and turned by
+beta:
+
+    eps = (l - l0) / l0,    theta_i = phi_i - beta
+    U = EA l0 (eps - e0)^2 / 2 + (2 EI / l0) (theta_1^2 + theta_1 theta_2 + theta_2^2)
+        - EI k0 (phi_2 - phi_1) + l0 EI k0^2 / 2        [J]
+
+Rotations of the chord are exact; the element itself is a straight linear beam in its own frame, which leaves
+an error of second order in l0 (the bow of the element does not shorten its chord). No shear.
+
+**Reissner** (geometrically exact, with shear). With the middle section turned by phi = (phi_1 + phi_2)/2, its
+normal t and n = t turned by +90 deg, one integration point, free of locking, of second order in l0:
+
+    eps = r'.t - 1,    gamma = r'.n,    kappa = (phi_2 - phi_1) / l0
+    U = l0 (EA (eps - e0)^2 + kGA gamma^2 + EI (kappa - k0)^2) / 2        [J]
+
+e0 and k0 are natural strain and curvature, of which a share may act. A row of the table of elements is
+
+    X, Y, l0, EA, EI, kGA, e0, k0
+
+Both are held by a test against what scikit-fem assembles from these energies as weak forms.
+
+Sources: M. A. Crisfield, Non-linear Finite Element Analysis of Solids and Structures, vol. 1 (1991), ch. 7;
+E. Reissner, J. Appl. Math. Phys. (ZAMP) 23 (1972) 795-804; J. C. Simo, L. Vu-Quoc, Comput. Methods Appl.
+Mech. Eng. 58 (1986) 79-116.
+"""
+
+import math
+from functools import partial
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+Indices = NDArray[np.int64]
+
+#: Without numba's runtime there are no references of arrays and slices to count, which takes half of the time
+#: of a small kernel; what allocates does not compile.
+kernel = partial(njit, cache=True, nogil=True, error_model="numpy", _nrt=False)
+
+#: What is asked of the law: forces, with the tangent, or with the part of it that comes from the change of
+#: the strains alone.
+FORCES, TANGENT, MATERIAL = 0, 1, 2
+
+
+@kernel()
+def _corotational(
+    row: Array, share: float, x: float, y: float, turn_1: float, turn_2: float, asked: int, f: Array, h: Array
+) -> tuple[float, float, float]:
+    """Write force x, y at the second node, both moments and the largest turn of an end from the element (5,).
+
+    Also the tangent (4, 4), if it is asked for; return bending, axial and shear energy.
+    """
+    step_x, step_y, length_0, rate = x, y, row[2], row[4] / row[2]
+    x, y = row[0] + step_x, row[1] + step_y
+    length = math.sqrt(x * x + y * y)
+    # (l^2 - l0^2) / (l + l0) from the displacements: no cancellation of two nearly equal lengths
+    strain = ((row[0] + x) * step_x + (row[1] + y) * step_y) / ((length + length_0) * length_0)
+    strain -= share * row[6]
+    turn = math.atan2(row[0] * y - row[1] * x, row[0] * x + row[1] * y)
+    first, second = turn_1 - turn, turn_2 - turn
+    # less whole turns: nodes and chords may turn by any amount
+    first -= 2.0 * math.pi * math.floor(first / (2.0 * math.pi) + 0.5)
+    second -= 2.0 * math.pi * math.floor(second / (2.0 * math.pi) + 0.5)
+    axial, natural = row[3] * strain / length, share * row[4] * row[7]
+    moment_1, moment_2 = rate * (4.0 * first + 2.0 * second), rate * (2.0 * first + 4.0 * second)
+    shear = (moment_1 + moment_2) / (length * length)
+    f[0], f[1] = axial * x + shear * y, axial * y - shear * x
+    f[2], f[3] = moment_1 + natural, moment_2 - natural
+    # half the turn between the ends is more than the larger only where a node has gained a whole turn
+    f[4] = max(abs(first), abs(second), 0.5 * abs(turn_2 - turn_1))
+    if asked != FORCES:
+        c, s, stretching = x / length, y / length, row[3] / length_0
+        turning, mixed = 12.0 * rate / (length * length), 0.0
+        if asked == TANGENT:
+            turning, mixed = turning + axial, shear
+        h[0, 0] = stretching * c * c + turning * s * s - 2.0 * mixed * c * s
+        h[1, 1] = stretching * s * s + turning * c * c + 2.0 * mixed * c * s
+        h[0, 1] = (stretching - turning) * c * s + mixed * (c * c - s * s)
+        lever = 6.0 * rate / length
+        h[0, 2] = h[0, 3] = lever * s
+        h[1, 2] = h[1, 3] = -lever * c
+        h[2, 2] = h[3, 3] = 4.0 * rate
+        h[2, 3] = 2.0 * rate
+    bending = 0.5 * (moment_1 * first + moment_2 * second)
+    bending += natural * (0.5 * share * row[7] * length_0 - (turn_2 - turn_1))
+    return bending, 0.5 * row[3] * length_0 * strain * strain, 0.0
+
+
+@kernel()
+def _reissner(
+    row: Array, share: float, x: float, y: float, turn_1: float, turn_2: float, asked: int, f: Array, h: Array
+) -> tuple[float, float, float]:
+    """Write the same for the shear-deformable element."""
+    length, half = row[2], 0.25 * (turn_1 + turn_2)
+    sine, less = 2.0 * math.sin(half) * math.cos(half), 2.0 * math.sin(half) ** 2
+    cosine = 1.0 - less
+    c, s = (row[0] * cosine - row[1] * sine) / length, (row[1] * cosine + row[0] * sine) / length
+    # r'.t - 1 with r' = T + u' and T.t = cos(turn): the 1 cancels exactly for small turns
+    strain = (x * c + y * s) / length - less
+    sliding = (y * c - x * s) / length - sine
+    curvature = (turn_2 - turn_1) / length - share * row[7]
+    stretch, strain = 1.0 + strain, strain - share * row[6]
+    axial, shear, moment = row[3] * strain, row[5] * sliding, row[4] * curvature
+    lever = 0.5 * length * (axial * sliding - shear * stretch)
+    f[0], f[1] = axial * c - shear * s, axial * s + shear * c
+    f[2], f[3], f[4] = lever - moment, lever + moment, 0.5 * abs(turn_2 - turn_1)
+    if asked != FORCES:
+        bending = row[4] / length
+        along, across = 0.5 * row[3] * sliding, -0.5 * row[5] * stretch
+        turning = row[3] * sliding * sliding + row[5] * stretch * stretch
+        if asked == TANGENT:
+            along, across = along - 0.5 * shear, across + 0.5 * axial
+            turning -= axial * stretch + shear * sliding
+        h[0, 0] = (row[3] * c * c + row[5] * s * s) / length
+        h[1, 1] = (row[3] * s * s + row[5] * c * c) / length
+        h[0, 1] = (row[3] - row[5]) * c * s / length
+        h[0, 2] = h[0, 3] = along * c - across * s
+        h[1, 2] = h[1, 3] = along * s + across * c
+        h[2, 2] = h[3, 3] = 0.25 * length * turning + bending
+        h[2, 3] = 0.25 * length * turning - bending
+    unit = 0.5 * length
+    return unit * moment * curvature, unit * axial * strain, unit * shear * sliding
+
+
+@kernel()
+def elements(
+    shear: bool,
+    table: Array,
+    first: Indices,
+    share: float,
+    asked: int,
+    u: Array,
+    force: Array,
+    ends: Array,
+    matrices: Array,
+    h: Array,
+) -> tuple[float, float, float]:
+    """Evaluate all elements at once.
+
+    Args:
+        shear: whether they are Reissner's. table (E, 8), first nodes (E,); the second node is the next one.
+        share: of the natural strains that acts. asked: FORCES, TANGENT or MATERIAL.
+        u (nodes, 3): displacements and turns. force (nodes, 3): written, what holds the elements.
+        ends (E, 5): written, force x, y [N] at the second node, the moments [N m] at both, and the largest
+            turn of an end from the element [rad].
+        matrices (E, 6, 6): written where a tangent is asked for. h (4, 4): scratch.
+
+    Returns:
+        Bending, axial and shear energy [J].
+    """
+    for i in range(len(force)):
+        force[i, 0] = force[i, 1] = force[i, 2] = 0.0
+    bending, axial, sliding = 0.0, 0.0, 0.0
+    for e in range(len(first)):
+        i = first[e]
+        j, f = i + 1, ends[e]
+        x, y = u[j, 0] - u[i, 0], u[j, 1] - u[i, 1]
+        if shear:
+            parts = _reissner(table[e], share, x, y, u[i, 2], u[j, 2], asked, f, h)
+        else:
+            parts = _corotational(table[e], share, x, y, u[i, 2], u[j, 2], asked, f, h)
+        bending, axial, sliding = bending + parts[0], axial + parts[1], sliding + parts[2]
+        force[i, 0] -= f[0]
+        force[i, 1] -= f[1]
+        force[i, 2] += f[2]
+        force[j, 0] += f[0]
+        force[j, 1] += f[1]
+        force[j, 2] += f[3]
+        if asked != FORCES:
+            _spread(h, matrices[e])
+    return bending, axial, sliding
+
+
+@kernel()
+def _spread(h: Array, matrix: Array) -> None:
+    """Write the tangent (6, 6) in the displacements of both nodes from that in their difference (4, 4)."""
+    h[1, 0] = h[0, 1]
+    for i in range(2):
+        for j in range(2):
+            matrix[i, j] = matrix[3 + i, 3 + j] = h[i, j]
+            matrix[i, 3 + j] = matrix[3 + i, j] = -h[i, j]
+        for k in range(2):
+            turn = 2 + 3 * k
+            matrix[i, turn] = matrix[turn, i] = -h[i, 2 + k]
+            matrix[3 + i, turn] = matrix[turn, 3 + i] = h[i, 2 + k]
+    matrix[2, 2], matrix[5, 5] = h[2, 2], h[3, 3]
+    matrix[2, 5] = matrix[5, 2] = h[2, 3]
+
+
+@kernel()
+def carry(bodies: Array, attached: Indices, carrier: Indices, offsets: Array, u: Array) -> None:
+    """Move the attached nodes with their bodies (B, 3) (displacement x, y and turn): exact rigid motion."""
+    for k in range(len(attached)):
+        i, b = attached[k], carrier[k]
+        # R - 1 written with sines: no cancellation at small turns
+        sine, less = math.sin(bodies[b, 2]), 2.0 * math.sin(0.5 * bodies[b, 2]) ** 2
+        u[i, 0] = bodies[b, 0] - less * offsets[k, 0] - sine * offsets[k, 1]
+        u[i, 1] = bodies[b, 1] + sine * offsets[k, 0] - less * offsets[k, 1]
+        u[i, 2] = bodies[b, 2]
+
+
+@kernel()
+def carry_velocity(
+    bodies: Array, bodies_v: Array, attached: Indices, carrier: Indices, offsets: Array, v: Array
+) -> None:
+    """Write the velocities of the attached nodes."""
+    for k in range(len(attached)):
+        i, b = attached[k], carrier[k]
+        c, s = math.cos(bodies[b, 2]), math.sin(bodies[b, 2])
+        v[i, 0] = bodies_v[b, 0] - bodies_v[b, 2] * (s * offsets[k, 0] + c * offsets[k, 1])
+        v[i, 1] = bodies_v[b, 1] + bodies_v[b, 2] * (c * offsets[k, 0] - s * offsets[k, 1])
+        v[i, 2] = bodies_v[b, 2]
+
+
+@kernel()
+def body_forces(
+    bodies: Array, attached: Indices, carrier: Indices, offsets: Array, force: Array, out: Array
+) -> None:
+    """Write forces and moments about the bodies' points (B, 3) that the forces on attached nodes make up."""
+    for b in range(len(out)):
+        out[b, 0] = out[b, 1] = out[b, 2] = 0.0
+    for k in range(len(attached)):
+        i, b = attached[k], carrier[k]
+        c, s = math.cos(bodies[b, 2]), math.sin(bodies[b, 2])
+        arm_x, arm_y = c * offsets[k, 0] - s * offsets[k, 1], s * offsets[k, 0] + c * offsets[k, 1]
+        out[b, 0] += force[i, 0]
+        out[b, 1] += force[i, 1]
+        out[b, 2] += force[i, 2] + arm_x * force[i, 1] - arm_y * force[i, 0]
+
+
+@kernel()
+def put_weight(
+    share: float, weight: Array, body_weight: Array, bodies: Array, force: Array, resultants: Array
+) -> None:
+    """Take a share of the weight of nodes (nodes, 3) and bodies (B, 4) from the forces that resist.
+
+    A row of a body is force x, y [N] and the offset of its point from the body's [m].
+    """
+    for i in range(len(weight)):
+        force[i, 0] -= share * weight[i, 0]
+        force[i, 1] -= share * weight[i, 1]
+    for b in range(len(body_weight)):
+        w_x, w_y, x, y = body_weight[b, 0], body_weight[b, 1], body_weight[b, 2], body_weight[b, 3]
+        c, s = math.cos(bodies[b, 2]), math.sin(bodies[b, 2])
+        resultants[b, 0] -= share * w_x
+        resultants[b, 1] -= share * w_y
+        resultants[b, 2] -= share * ((c * x - s * y) * w_y - (s * x + c * y) * w_x)
+
+
+@kernel()
+def gravity_energy(weight: Array, body_weight: Array, bodies: Array, u: Array) -> float:
+    """Return the energy of the full weight, zero in the shape at rest [J]."""
+    energy = 0.0
+    for i in range(len(weight)):
+        energy -= weight[i, 0] * u[i, 0] + weight[i, 1] * u[i, 1]
+    for b in range(len(body_weight)):
+        x, y = body_weight[b, 2], body_weight[b, 3]
+        sine, less = math.sin(bodies[b, 2]), 2.0 * math.sin(0.5 * bodies[b, 2]) ** 2
+        energy -= body_weight[b, 0] * (bodies[b, 0] - less * x - sine * y)
+        energy -= body_weight[b, 1] * (bodies[b, 1] + sine * x - less * y)
+    return energy

@@ -1,0 +1,215 @@
+"""Symmetric matrices in the reduced coordinates: a pattern that is kept, and its factors in the same order.
+
+scikit-fem assembles the pattern once; afterwards entries of elements go to their places in it, compiled.
+The factors are K = L D L^T within the envelope of the rows, without pivoting: the coordinates are those of
+the nodes along the strips, then those of the bodies, which leaves a band and a border, and no fill. By
+Sylvester's law of inertia D has as many negative entries as K has negative eigenvalues. Rows of held
+coordinates are left out of the elimination.
+
+Source: A. George, J. W. H. Liu, Computer Solution of Large Sparse Positive Definite Systems (1981), ch. 4.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import csc_matrix
+from skfem.assembly.form.coo_data import COOData
+
+from .law import kernel
+
+Array = NDArray[np.float64]
+Indices = NDArray[np.int64]
+
+
+class Singular(ArithmeticError):
+    """A matrix that has no inverse."""
+
+
+@kernel()
+def assemble(
+    matrices: Array,
+    ends: Indices,
+    carrier: Indices,
+    offsets: Array,
+    turns: Array,
+    places: Indices,
+    data: Array,
+) -> None:
+    """Add element matrices (E, 6, 6) to the entries of a matrix; the ends on bodies are reduced in place.
+
+    Args:
+        ends (E, 2): which attached node the ends are, or -1. turns (B,): of the bodies.
+        places (E, 6, 6): of the entries in data, or -1.
+    """
+    for e in range(len(matrices)):
+        matrix = matrices[e]
+        for end in range(2):
+            k, row = ends[e, end], 3 * end
+            if k >= 0:
+                c, s = np.cos(turns[carrier[k]]), np.sin(turns[carrier[k]])
+                slope_x, slope_y = (
+                    -s * offsets[k, 0] - c * offsets[k, 1],
+                    c * offsets[k, 0] - s * offsets[k, 1],
+                )
+                for j in range(6):
+                    matrix[row + 2, j] += slope_x * matrix[row, j] + slope_y * matrix[row + 1, j]
+                for j in range(6):
+                    matrix[j, row + 2] += slope_x * matrix[j, row] + slope_y * matrix[j, row + 1]
+        for i in range(6):
+            for j in range(6):
+                if places[e, i, j] >= 0:
+                    data[places[e, i, j]] += matrix[i, j]
+
+
+@kernel()
+def _times(starts: Indices, rows: Indices, data: Array, x: Array, out: Array) -> None:
+    """Write the product of the symmetric matrix and the rows of x (R, size)."""
+    for r in range(len(x)):
+        for i in range(len(starts) - 1):
+            total = 0.0
+            for p in range(starts[i], starts[i + 1]):
+                total += data[p] * x[r, rows[p]]
+            out[r, i] = total
+
+
+@kernel()
+def _factorise(
+    starts: Indices,
+    rows: Indices,
+    data: Array,
+    held: NDArray[np.bool_],
+    begin: Indices,
+    first: Indices,
+    low: Array,
+    d: Array,
+) -> int:
+    """Write L within the envelope and D; return the number of negative entries of D, -1 if one is zero.
+
+    Row i of L begins in column first[i], at low[begin[i]].
+    """
+    negative = 0
+    for i in range(len(d)):
+        at = begin[i] - first[i]
+        for p in range(begin[i], begin[i] + i - first[i]):
+            low[p] = 0.0
+        d[i] = 1.0
+        if held[i]:
+            continue
+        pivot = 0.0
+        for p in range(starts[i], starts[i + 1]):
+            j = rows[p]
+            if j == i:
+                pivot = data[p]
+            elif j < i and not held[j]:
+                low[at + j] = data[p]
+        for j in range(first[i], i):
+            total, there = low[at + j], begin[j] - first[j]
+            for k in range(max(first[i], first[j]), j):
+                total -= low[at + k] * low[there + k]
+            low[at + j] = total
+        for j in range(first[i], i):
+            entry = low[at + j] / d[j]
+            pivot -= entry * low[at + j]
+            low[at + j] = entry
+        if pivot == 0.0 or not np.isfinite(pivot):
+            return -1
+        d[i] = pivot
+        negative += pivot < 0.0
+    return negative
+
+
+@kernel()
+def _solve(begin: Indices, first: Indices, low: Array, d: Array, x: Array) -> None:
+    """Solve for the rows of x (R, size) in place."""
+    for r in range(len(x)):
+        for i in range(len(d)):
+            at = begin[i] - first[i]
+            for j in range(first[i], i):
+                x[r, i] -= low[at + j] * x[r, j]
+        for i in range(len(d)):
+            x[r, i] /= d[i]
+        for i in range(len(d) - 1, -1, -1):
+            at = begin[i] - first[i]
+            for j in range(first[i], i):
+                x[r, j] -= low[at + j] * x[r, i]
+
+
+class Envelope:
+    """Where the entries of symmetric matrices of element blocks lie.
+
+    Attributes:
+        size: of the matrices.
+        places (E, 6, 6), blocks (B, 3, 3), diagonal (size,): of the entries, -1 for none.
+    """
+
+    def __init__(self, numbers: Indices, bodies: Indices, size: int) -> None:
+        """Take the coordinates of elements (E, 6), -1 where they are clamped, and of bodies (B, 3)."""
+        every, pairs = np.arange(size), [_pairs(numbers), _pairs(bodies)]
+        indices = np.hstack([np.reshape(pair, (2, -1)) for pair in [*pairs, (every, every)]])
+        indices = indices[:, (indices >= 0).all(axis=0)].astype(np.int32)
+        summed = COOData(indices, np.ones(indices.shape[1]), (size, size), None).tocsr()
+        summed.sort_indices()
+        self.size, self.starts, self.rows = size, summed.indptr, summed.indices
+        keys = np.repeat(every, np.diff(self.starts)) * size + self.rows
+        self.places, self.blocks = (
+            np.where((i >= 0) & (j >= 0), np.searchsorted(keys, i * size + j), -1) for i, j in pairs
+        )
+        self.diagonal = np.searchsorted(keys, every * (size + 1))
+        self.first = np.minimum(self.rows[self.starts[:-1]], every).astype(np.int64) if size else every
+        self.begin = np.concatenate([[0], np.cumsum(every - self.first)])[:-1]
+
+    def zero(self) -> "Symmetric":
+        """Return a matrix of zeros."""
+        return Symmetric(self, np.zeros(len(self.rows)))
+
+
+def _pairs(numbers: Indices) -> tuple[Indices, Indices]:
+    """Return rows and columns (n, k, k) of the entries of blocks with the coordinates (n, k)."""
+    rows, columns = np.broadcast_arrays(numbers[:, :, None], numbers[:, None, :])
+    return rows, columns
+
+
+@dataclass(eq=False)
+class Symmetric:
+    """A symmetric matrix (size, size) on a pattern."""
+
+    pattern: Envelope
+    data: Array
+
+    def sparse(self) -> csc_matrix:
+        """Return it as a sparse matrix."""
+        p = self.pattern
+        return csc_matrix((self.data, p.rows, p.starts), (p.size, p.size))
+
+    def times(self, x: Array) -> Array:
+        """Return the product with vectors (..., size)."""
+        p, out = self.pattern, np.empty(np.shape(x))
+        _times(p.starts, p.rows, self.data, np.atleast_2d(x), out.reshape(-1, p.size))
+        return out
+
+    def factors(self, held: NDArray[np.bool_]) -> "Factors":
+        """Return the factors of its rows and columns that are not held (size,); raises Singular."""
+        p = self.pattern
+        low, d = np.empty(int(np.sum(np.arange(p.size) - p.first))), np.empty(p.size)
+        negative = _factorise(p.starts, p.rows, self.data, held, p.begin, p.first, low, d)
+        if negative < 0:
+            raise Singular("the tangent is singular")
+        return Factors(p, held, low, d, negative)
+
+
+@dataclass(eq=False)
+class Factors:
+    """Factors of a matrix; negative: the number of its negative eigenvalues, the held rows left out."""
+
+    pattern: Envelope
+    held: NDArray[np.bool_]
+    low: Array
+    d: Array
+    negative: int
+
+    def solve(self, b: Array) -> Array:
+        """Return the solution (..., size) for right sides (..., size), zero at what is held."""
+        x = np.where(self.held, 0.0, b)
+        _solve(self.pattern.begin, self.pattern.first, self.low, self.d, x.reshape(-1, self.pattern.size))
+        return x
