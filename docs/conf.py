@@ -46,7 +46,7 @@ nitpick_ignore = [
         "SuperLU",
         # type variables
         *("spline_model.accuracy.Found", "spline_model.scene.Kind"),
-        *("fe_reference.effects.named.T", "studies.record.timing.Result"),
+        *("fe_reference.effects.T", "studies.record.timing.Result"),
     )
 ]
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
@@ -11,27 +12,23 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from spline_model.compile import compile_scene
+from spline_model.effects.registry import MOTION_ONLY
 from spline_model.errors import InvalidParameter, require_count
-from spline_model.fast.body import Frame
-from spline_model.fast.many import follow_share
-from spline_model.fast.solve import (
-    LEAST_COMPLIANCE,
-    TOLERANCE,
-    arrays,
-    at_rest,
-    compliances,
-    empty_answer,
-    frame_of,
-    grid_of,
-    is_fast,
-    mode_count,
-)
-from spline_model.fast.strain import stations_of
-from spline_model.mechanism import Mechanism
+from spline_model.newton import TOLERANCE
 from spline_model.pivot import cross_axis_pivot
-from spline_model.statics import STATIONS
+from spline_model.reduced.assembly import working_space
+from spline_model.reduced.many import Designs, follow_share, stations_of
+from spline_model.reduced.model import LEAST_COMPLIANCE, Reduced, at_rest, reduced
+from spline_model.reduced.path import Route, empty_answer
+from spline_model.reduced.preload import preload_of
+from spline_model.static_answers import STATIONS
+from spline_model.strip.laws import MATERIAL
 
 Array = NDArray[np.float64]
+
+BATCHED = {"bending", "stretching", *MOTION_ONLY}
+"""Effects of a batch; of these statics asks for the first two only."""
 
 POSITIVE = ("length", "area", "second_moment_of_area", "youngs_modulus")
 """Columns that statics reads and that must be above zero; the others are checked on the first design."""
@@ -85,27 +82,55 @@ def solve_many(
     """
     require_count("increments", increments, 1)
     columns = _columns(designs)
-    first = cross_axis_pivot(
-        **{name: _plain(values[0]) for name, values in columns.items()}, **discretisation
-    )
-    if not is_fast(first.mechanism):
-        raise InvalidParameter("discretisation", discretisation, "Bezier strips, material, mixed")
-    frames = _frames(columns, first.mechanism)
-    count = len(frames.length)
-    paths = np.linspace(0.0, _one_each("rotation", rotation, count), increments + 1, axis=1)
+    cross_axis_pivot(**{name: _plain(values[0]) for name, values in columns.items()}, **discretisation)
+    numbers = _designs(columns, rotation)
+    count = len(numbers.length)
     depth = np.zeros(0)
     if section_depth is not None:
-        depth = np.broadcast_to(_one_each("section_depth", section_depth, count, above=0.0), (count,)).copy()
-    batch = _empty(count, paths if np.ndim(rotation) else paths[0])
+        given = _one_each("section_depth", section_depth, count, above=0.0)
+        depth = np.broadcast_to(given, (count,)) / numbers.length
+    batch = _empty(count, increments, rotation, numbers.rotation)
     workers = threads or os.cpu_count() or 1
     with ThreadPoolExecutor(workers) as pool:
-        list(
-            pool.map(
-                lambda w: _solve_share(w, workers, first.mechanism, frames, paths, depth, batch),
-                range(workers),
+        for slender in (False, True):  # their elements differ: see ``LEAST_COMPLIANCE``
+            rows = np.flatnonzero((numbers.compliance < LEAST_COMPLIANCE) == slender)
+            if not rows.size:
+                continue
+            share = _Share(
+                model=_model(slender, discretisation),
+                rows=rows,
+                designs=Designs(*(part[rows] for part in numbers)),
+                depth=depth[rows] if depth.size else depth,
+                increments=increments,
+                workers=workers,
+                batch=batch,
             )
-        )
+            list(pool.map(share.solve, range(workers)))
     return batch
+
+
+def _model(slender: bool, discretisation: Mapping[str, Any]) -> Reduced:
+    """The element's scene of a pivot of unit length and rigidity; refused where a batch does not know it."""
+    compliance = LEAST_COMPLIANCE * (0.1 if slender else 10.0)
+    pivot = cross_axis_pivot(
+        length=1.0,
+        area=1.0 / compliance,
+        second_moment_of_area=1.0,
+        youngs_modulus=1.0,
+        poisson_ratio=0.3,
+        density=1.0,
+        body_mass=1.0,
+        body_moment_of_inertia=1.0,
+        inclination=math.pi / 4,
+        crossing_ratio=0.5,
+        **discretisation,
+    )
+    model = reduced(compile_scene(pivot.driven(1.0)))
+    loaded = set(pivot.mechanism.effects) - BATCHED
+    if model is None or loaded or model.strips.measure != MATERIAL or not model.strips.split:
+        expected = "material measure, mixed stretching, no loads"
+        raise InvalidParameter("discretisation", dict(discretisation), expected)
+    return model
 
 
 def _columns(designs: Mapping[str, ArrayLike] | Sequence[Mapping[str, Any]]) -> dict[str, Array]:
@@ -123,42 +148,36 @@ def _plain(value: Any) -> Any:
     return tuple(float(part) for part in value) if np.ndim(value) else float(value)
 
 
-def _frames(columns: Mapping[str, Array], first: Mechanism) -> Frame:
-    """Frames of all designs, every field with a first axis (D, ...)."""
-    for name in POSITIVE:
-        _refuse(columns, name, columns[name] > 0, "a finite number > 0")
-    _refuse(
-        columns,
-        "inclination",
-        (columns["inclination"] > 0) & (columns["inclination"] < np.pi / 2),
-        "0 to pi/2",
-    )
-    _refuse(
-        columns, "crossing_ratio", (columns["crossing_ratio"] > 0) & (columns["crossing_ratio"] < 1), "0 to 1"
-    )
+def _designs(columns: Mapping[str, Array], rotation: ArrayLike) -> Designs:
+    """The designs' numbers over their own length and energy."""
     c = columns
+    for name in POSITIVE:
+        _refuse(c, name, c[name] > 0, "a finite number > 0")
+    _refuse(c, "inclination", (c["inclination"] > 0) & (c["inclination"] < np.pi / 2), "0 to pi/2")
+    _refuse(c, "crossing_ratio", (c["crossing_ratio"] > 0) & (c["crossing_ratio"] < 1), "0 to 1")
     length, count = c["length"], len(c["length"])
     turn = np.broadcast_to(c.get("orientation", np.zeros(1)), (count,))
-    offset = np.broadcast_to(c.get("centre_offset", np.zeros((1, 2))), (count, 2))
+    offset = np.broadcast_to(c.get("centre_offset", np.zeros((1, 2))), (count, 2)) / length[:, None]
     cos, sin = np.cos(c["inclination"]), np.sin(c["inclination"])
     axis = np.stack((np.stack((cos, sin), -1), np.stack((-cos, sin), -1)), axis=1)
     root = np.zeros((count, 2, 2))
-    root[:, 1, 0] = 2 * c["crossing_ratio"] * length * cos
-    tip = root + length[:, None, None] * axis
-    arm = tip - (tip.mean(axis=1) + offset)[:, None]
+    root[:, 1, 0] = 2 * c["crossing_ratio"] * cos
+    tip = root + axis
+    centre = tip.mean(axis=1) + offset
     matrix = np.moveaxis(np.array([[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]]), -1, 0)
-    axis, root, arm = (np.einsum("dij,dsj->dsi", matrix, part) for part in (axis, root, arm))
+    arm = np.einsum("dij,dsj->dsi", matrix, tip - centre[:, None])
+    axis, root = (np.einsum("dij,dsj->dsi", matrix, part) for part in (axis, root))
+    angle = np.arctan2(axis[..., 1], axis[..., 0])[..., None]
     rigidity = c["youngs_modulus"] * c["second_moment_of_area"]
-    axial = rigidity / (c["youngs_modulus"] * c["area"] * length**2)
-    _refuse(columns, "area", axial >= LEAST_COMPLIANCE, "strips below a slenderness of 9000")
-    return Frame(
-        root=root,
-        axis=axis,
-        length=np.repeat(length[:, None], 2, axis=1),
-        rigidity=np.repeat(rigidity[:, None], 2, axis=1),
-        arm=arm,
-        compliance=np.repeat(compliances(first.design, axial)[:, None], 2, axis=1),
-        centre=root[:, 0] + length[:, None] * axis[:, 0] - arm[:, 0],
+    turned = np.broadcast_to(_one_each("rotation", rotation, count), (count,))
+    return Designs(
+        length=np.ascontiguousarray(length),
+        energy=rigidity / length,
+        root=np.concatenate((root, angle), axis=2),
+        tip=np.concatenate((arm, angle), axis=2),
+        compliance=rigidity / (c["youngs_modulus"] * c["area"] * length**2),
+        centre=root[:, 0] + axis[:, 0] - arm[:, 0],
+        rotation=np.ascontiguousarray(turned),
     )
 
 
@@ -178,11 +197,12 @@ def _one_each(name: str, given: ArrayLike, count: int, above: float = -np.inf) -
     return values
 
 
-def _empty(designs: int, rotations: Array) -> Batch:
-    shape = (designs, rotations.shape[-1])
+def _empty(designs: int, increments: int, rotation: ArrayLike, turned: Array) -> Batch:
+    shape = (designs, increments + 1)
+    paths = np.linspace(0.0, turned, increments + 1, axis=1)
     return Batch(
         states=np.zeros(designs, dtype=np.int64),
-        rotation=rotations,
+        rotation=paths if np.ndim(rotation) else paths[0],
         centre=np.full((*shape, 2), np.nan),
         torque=np.full(shape, np.nan),
         stiffness=np.full(shape, np.nan),
@@ -194,39 +214,56 @@ def _empty(designs: int, rotations: Array) -> Batch:
     )
 
 
-def _solve_share(
-    worker: int, workers: int, first: Mechanism, frames: Frame, paths: Array, depth: Array, batch: Batch
-) -> None:
-    """Solve the designs of one thread with one set of working arrays."""
-    design = first.design
-    n, modes = design.discretisation.control_points, mode_count(design)
-    grid = grid_of(design)
-    locals_, space = arrays(len(design.strips), grid)
-    answer = empty_answer(paths.shape[1], len(space.y))
-    stations = stations_of(n, modes, STATIONS)
-    results = (
-        batch.states,
-        batch.centre,
-        batch.torque,
-        batch.stiffness,
-        batch.energy,
-        batch.strain,
-        batch.inertia,
-        batch.moment_defect,
-        batch.iterations,
-    )
-    follow_share(
-        worker,
-        workers,
-        frames,
-        at_rest(frame_of(first), n, modes),
-        np.ascontiguousarray(paths[:, 1:]),
-        grid,
-        locals_,
-        space,
-        TOLERANCE,
-        answer,
-        depth,
-        stations,
-        results,
-    )
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _Share:
+    """Designs of one kind of element, their rows in the batch, and what each thread does of them."""
+
+    model: Reduced
+    rows: NDArray[np.int64]
+    designs: Designs
+    depth: Array
+    increments: int
+    workers: int
+    batch: Batch
+
+    def solve(self, worker: int) -> None:
+        """Solve the designs of one thread, with working arrays of its own."""
+        model, batch = self.model, self.batch
+        own = {name: getattr(model.strips, name).copy() for name in ("root", "tip", "compliance", "gain")}
+        bodies = model.bodies._replace(rest=model.bodies.rest.copy())
+        factors = np.linspace(0.0, 1.0, self.increments + 1)
+        route = Route(
+            factor=factors, origin=np.zeros(1), target=np.zeros(1), load=0.0, growth=0.0, passes=True
+        )
+        results = (
+            batch.states,
+            batch.centre,
+            batch.torque,
+            batch.stiffness,
+            batch.energy,
+            batch.strain,
+            batch.inertia,
+            batch.moment_defect,
+            batch.iterations,
+        )
+        follow_share(
+            worker,
+            self.workers,
+            self.rows,
+            self.designs,
+            np.arange(model.strips.compliance.shape[1]) < model.strips.split,
+            self.depth,
+            stations_of(model, STATIONS),
+            route,
+            True,
+            preload_of(model),
+            at_rest(model),
+            bodies,
+            model.strips._replace(**own),
+            model.shape,
+            model.local(),
+            working_space(bodies, model.size),
+            TOLERANCE,
+            empty_answer(len(factors), model.size, len(bodies.rest), 1),
+            results,
+        )

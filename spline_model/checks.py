@@ -36,10 +36,12 @@ def refuse(system: System, z: Array) -> str:
     return ""
 
 
-def left_the_branch(system: System, previous: Array, predicted: Array, corrected: Array) -> str:
-    """Why a corrected state is not the continuation of the previous one; empty if it is."""
-    q = slice(0, system.layout.coordinate_count)
-    unit = system.scales.unit[q]
+def left_the_branch(unit: Array, previous: Array, predicted: Array, corrected: Array) -> str:
+    """Why a corrected state is not the continuation of the previous one; empty if it is.
+
+    unit: of the coordinates, which the states begin with.
+    """
+    q = slice(0, len(unit))
     step = float(np.linalg.norm((predicted[q] - previous[q]) / unit))
     correction = float(np.linalg.norm((corrected[q] - predicted[q]) / unit))
     if correction > max(LARGEST_CORRECTION * step, SMALLEST_CORRECTION):

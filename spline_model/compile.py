@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,7 +29,7 @@ class System:
     open_potentials : the potentials whose derivatives are Python's.
     layout : what stands where in the vector of unknowns z.
     scales : the unit of each unknown, which makes residuals dimensionless.
-    rest : z at rest, shape (layout.size,); rest_curvature at the points of bending (P,) [1/m].
+    rest : z at rest, shape (layout.size,).
     """
 
     scene: Scene
@@ -37,7 +38,15 @@ class System:
     layout: Layout
     scales: Scales
     rest: Array
-    rest_curvature: Array
+
+    @cached_property
+    def rest_curvature(self) -> Array:
+        """Curvature at rest at the points of bending (P,) [1/m]."""
+        bending = self.scene.of(Bending)
+        if not any(effect.natural_curvature for effect in bending):
+            return self.tables.bending.curvature
+        straight = [replace(effect, natural_curvature=0.0) for effect in bending]
+        return build.bending_table(self.scene, self.layout, straight).curvature
 
 
 def compile_scene(scene: Scene) -> System:
@@ -65,9 +74,6 @@ def compile_scene(scene: Scene) -> System:
         layout=layout,
         scales=scene_scales(scene, layout),
         rest=rest,
-        rest_curvature=build.bending_table(
-            scene, layout, [replace(e, natural_curvature=0.0) for e in bending]
-        ).curvature,
     )
 
 

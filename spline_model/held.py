@@ -3,31 +3,30 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from spline_model.compile import System
+from spline_model.compile import System, compile_scene
+from spline_model.effects.registry import MOTION_ONLY
 from spline_model.errors import InvalidParameter
-from spline_model.fast import pose as compiled
-from spline_model.fast.body import assemble
-from spline_model.fast.path import EVALUATIONS, HALVED, ITERATIONS, SMALLEST_STEP, newton, tangent
-from spline_model.fast.solve import (
-    TOLERANCE,
-    arrays,
-    at_rest,
-    empty_answer,
-    frame_of,
-    grid_of,
-    is_fast,
-    mode_count,
-)
-from spline_model.fast.states import states_of
-from spline_model.fast.strip import place_points
 from spline_model.mechanism import Mechanism
+from spline_model.newton import TOLERANCE
+from spline_model.reduced import pose as compiled
+from spline_model.reduced.assembly import AXIAL, BENDING, NEGATIVE, SLOWEST, assemble, working_space
+from spline_model.reduced.equilibrium import EVALUATIONS, HALVED, ITERATIONS, newton, tangent
+from spline_model.reduced.model import Reduced, at_rest, reduced
+from spline_model.reduced.path import SMALLEST_STEP
+from spline_model.reduced.states import unknowns_of
+from spline_model.strip.laws import MATERIAL
 
 Array = NDArray[np.float64]
+
+HELD_EFFECTS = {"bending", "stretching", *MOTION_ONLY}
+"""Effects under which a body can be held; of these statics asks for the first two only."""
+LEAST_COMPLIANCE = 1e-9
+"""Axial compliance in L^2/EI below which a strip cannot follow a pose (beyond a slenderness of 9000)."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -55,37 +54,39 @@ class HeldState:
 
 
 class HeldPivot:
-    """Static states of one body on Bezier strips, each found from the one before.
+    """Static states of one body on its strips, each found from the one before.
 
     ``hold`` prescribes x, y and theta (a body in the hand: Eq 7 and the driven displacements),
-    ``turn`` theta alone. Exact for the discretised equations to TOLERANCE, as the multiplier
-    path with the same drives is; leaves out gravity and loads. A call that finds no
-    equilibrium in a bounded number of iterations leaves the state as it was and says so.
+    ``turn`` theta alone. Exact for the discretised equations to TOLERANCE, as the path with the same
+    drives is; leaves out gravity and loads. A call that finds no equilibrium in a bounded number of
+    iterations leaves the state as it was and says so.
     """
 
     def __init__(self, mechanism: Mechanism) -> None:
-        if not is_fast(mechanism):
-            raise InvalidParameter("mechanism", list(mechanism.effects), "straight Bezier strips on one body")
-        design = mechanism.design
-        n, modes = design.discretisation.control_points, mode_count(design)
-        self.frame, self.grid = frame_of(mechanism), grid_of(design)
-        self._locals, self._space = arrays(len(design.strips), self.grid)
-        self._rest = at_rest(self.frame, n, modes)
-        size = len(self._rest)
-        own = 2 * n - 6
-        self._room = compiled.Room(
-            tip=np.zeros(3), change=np.zeros(3), step=np.zeros(own + modes),
-            last=np.zeros(size), here=np.zeros(3), start=np.zeros(size),
-        )  # fmt: skip
-        self._y, self.pose = self._rest.copy(), np.zeros(3)
-        self._out = np.zeros(4)
+        model = _held_model(mechanism)
+        if model is None:
+            expected = "one body on strips that bend and stretch, mixed form and material measure, no loads"
+            raise InvalidParameter("mechanism", list(mechanism.effects), expected)
+        self.model = model
+        self._local = model.local()
+        self._space = working_space(model.bodies, model.size)
+        self._y = at_rest(model)
+        self._rest = self._y.copy()
+        own, modes = 2 * len(model.shape.order) - 6, model.strips.compliance.shape[1]
+        self._room = compiled.room_of(model.size, own + modes)
+        self.pose = self._y[:3] * self._unit
+        self._free = True  # whether the centre is where no force is needed
         self.reset()
+
+    @property
+    def _unit(self) -> Array:
+        return np.array([self.model.length, self.model.length, 1.0])
 
     def reset(self) -> HeldState:
         """Back to rest, unloaded."""
-        self._y[:] = self._rest
-        self.pose[:] = (*self.frame.centre, 0.0)
-        return self._state(1.0, np.zeros(3, dtype=np.int64))
+        state = self.restore(np.concatenate((self._rest[:3] * self._unit, self._rest)))
+        self._free = True
+        return state
 
     @property
     def unknowns(self) -> Array:
@@ -95,6 +96,7 @@ class HeldPivot:
     def restore(self, unknowns: Array) -> HeldState:
         """Back to a state that ``unknowns`` gave."""
         self.pose[:], self._y[:] = unknowns[:3], unknowns[3:]
+        self._free = False
         return self._state(1.0, np.zeros(3, dtype=np.int64))
 
     def hold(self, x: float, y: float, rotation: float) -> HeldState:
@@ -102,10 +104,21 @@ class HeldPivot:
         target = np.array([x, y, rotation])
         if not np.isfinite(target).all():
             raise InvalidParameter("pose", [x, y, rotation], "finite numbers [m, m, rad]")
-        counters = np.zeros(3, dtype=np.int64)
+        counters, model = np.zeros(3, dtype=np.int64), self.model
         reached = compiled.hold(
-            self._y, self.pose, target, self.frame, self.grid, self._locals, self._room, TOLERANCE, counters
+            self._y,
+            target / self._unit,
+            np.zeros(3),
+            model.strips,
+            model.shape,
+            self._local,
+            self._room,
+            TOLERANCE,
+            counters,
         )
+        if reached == 1.0:
+            self.pose[:] = target
+            self._free = False
         return self._state(float(reached), counters)
 
     def turn(self, rotation: float) -> HeldState:
@@ -113,8 +126,10 @@ class HeldPivot:
         if not math.isfinite(rotation):
             raise InvalidParameter("rotation", rotation, "a finite number [rad]")
         counters = np.zeros(3, dtype=np.int64)
-        start, begin = self._y.copy(), float(self.pose[2])
+        start, begin = self._y.copy(), float(self._y[2])
         whole = rotation - begin
+        if whole == 0.0 and self._free:
+            return self._state(1.0, counters)
         parts = max(1, math.ceil(abs(whole) / compiled.LONGEST_TURN))
         done, step = 0.0, 1.0 / parts
         while done < 1.0:
@@ -126,49 +141,51 @@ class HeldPivot:
             step *= 0.5
             if step < SMALLEST_STEP or counters[ITERATIONS] > compiled.MOST_WORK:
                 self._y[:] = start
-                self.pose[:] = (*(start[:2] * self.frame.length[0]), begin)
+                self.pose[:] = start[:3] * self._unit
                 return self._state(done, counters)
+        self._free = True
         return self._state(1.0, counters)
 
     def _turn(self, rotation: float, counters: NDArray[np.int64]) -> bool:
         """One part of the way of ``turn``, predicted by the tangent; the state stays if it fails."""
-        before = self._y.copy()
-        assemble(self._y, self.pose[2], self.frame, self.grid, self._locals, self._space, self._out)
-        tangent(self._y, self.pose[2], self.frame, self.grid, self._locals, self._space)
-        self._y += (rotation - self.pose[2]) * self._space.rate
-        solved = newton(
-            self._y,
-            rotation,
-            self.frame,
-            self.grid,
-            self._locals,
-            self._space,
-            self._out,
-            TOLERANCE,
-            counters,
-        )
-        strips, own = len(self.frame.length), len(self._room.step) - self.frame.compliance.shape[1]
-        strip = self._y[2:].reshape(strips, -1)
-        forward = (strip[:, 0] > 0).all() and (strip[:, own - 1] > 0).all()
-        if solved and forward and self._out[2] > compiled.SLOWEST_SPEED:
-            self.pose[:] = (*(self._y[:2] * self.frame.length[0]), rotation)
+        before, space, model = self._y.copy(), self._space, self.model
+        parts = (model.bodies, model.strips, model.shape, self._local, space)
+        if newton(self._y, 0.0, *parts, TOLERANCE, counters) < 0:  # with the rotation as it is
+            self._y[:] = before
+            return False
+        tangent(np.ones(1), 0.0, *parts)
+        self._y += (rotation - before[2]) * space.rate
+        self._y[2] = rotation
+        solved = newton(self._y, 0.0, *parts, TOLERANCE, counters) >= 0
+        forward = (self._strips[:, self._own - 2 : self._own] > 0.0).all()
+        if solved and forward and space.out[SLOWEST] > compiled.SLOWEST_SPEED:
+            self.pose[:] = self._y[:3] * self._unit
             return True
         self._y[:] = before
         return False
 
+    @property
+    def _own(self) -> int:
+        return 2 * len(self.model.shape.order) - 6
+
+    @property
+    def _strips(self) -> Array:
+        """w and a of the strips, (G, W + K)."""
+        return self._y[3:].reshape(len(self.model.strips.roots), -1)
+
     def _state(self, reached: float, counters: NDArray[np.int64]) -> HeldState:
-        body, out = self._space.body, self._out
-        assemble(self._y, self.pose[2], self.frame, self.grid, self._locals, self._space, out)
-        stiffness = np.triu(body[:, :3])
+        model, space = self.model, self._space
+        assemble(self._y, 0.0, model.bodies, model.strips, model.shape, self._local, space)
+        stiffness, units = np.triu(space.tangent), 1.0 / self._unit
         return HeldState(
             solved=reached == 1.0,
             reached=reached,
             pose=self.pose.copy(),
-            force=body[:, 3].copy(),
-            tangent=stiffness + np.triu(stiffness, 1).T,
-            bending_energy=float(out[0]),
-            axial_energy=float(out[1]),
-            unstable=int(out[3]),
+            force=space.force * units * model.energy,
+            tangent=(stiffness + np.triu(stiffness, 1).T) * np.outer(units, units) * model.energy,
+            bending_energy=float(space.out[BENDING]) * model.energy,
+            axial_energy=float(space.out[AXIAL]) * model.energy,
+            unstable=int(space.out[NEGATIVE]),
             iterations=int(counters[ITERATIONS]),
             evaluations=int(counters[EVALUATIONS]),
             halved=int(counters[HALVED]),
@@ -177,21 +194,31 @@ class HeldPivot:
     @property
     def control_points(self) -> Array:
         """Control points of the strips in the ground's frame, (G, n, 2) [m]."""
-        frame, strips = self.frame, len(self.frame.length)
-        own = len(self._room.step) - frame.compliance.shape[1]
-        points = np.zeros((strips, own // 2 + 3, 2))
-        for s in range(strips):
-            compiled.tip_of(frame, s, self.pose, self._room.tip)
-            x, y, angle = self._room.tip
-            at = 2 + s * len(self._room.step)
-            place_points(self._y[at : at + own], x, y, math.cos(angle), math.sin(angle), points[s])
-            c, d = frame.axis[s]
-            points[s] = frame.root[s] + frame.length[s] * points[s] @ np.array([[c, d], [-d, c]])
-        return points
+        shape, points = self.model.shape, self._local.points
+        ordered = np.empty((len(points), len(shape.order), 2))
+        ordered[:, shape.order] = points.reshape(ordered.shape) * self.model.length
+        return ordered
 
     def full_state(self, system: System) -> Array:
         """The unknowns z (N,) of a compiled scene of the same mechanism, clamp reactions included."""
-        answer = empty_answer(1, len(self._y))
-        answer.y[0] = self._y
-        answer.torque[0] = self._space.body[2, 3]
-        return np.asarray(states_of(system, self.frame, self.pose[2:], answer)[0])
+        model = reduced(system)
+        assert model is not None, "the scene of a held mechanism"
+        reaction = self._space.force[model.bodies.held]
+        return np.asarray(unknowns_of(model, self._y[None], reaction[None])[0])
+
+
+def _held_model(mechanism: Mechanism) -> Reduced | None:
+    """The mechanism with its rotation driven; all axial forces are the strips' own."""
+    if len(mechanism.design.bodies) != 1 or not set(mechanism.effects) <= HELD_EFFECTS:
+        return None
+    model = reduced(compile_scene(mechanism.driven(1.0)))
+    if model is None or model.strips.measure != MATERIAL or model.strips.stretching.any():
+        return None
+    if (model.strips.compliance < LEAST_COMPLIANCE).any():
+        return None
+    bodies = model.bodies
+    return replace(
+        model,
+        strips=model.strips._replace(outer=0),
+        bodies=bodies._replace(load=bodies.load[:3], weight=bodies.weight[:3], free=bodies.free[:2]),
+    )

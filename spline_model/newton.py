@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -65,7 +66,7 @@ class Workspace:
     counters: Counters = field(default_factory=Counters)
 
     @classmethod
-    def of(cls, system: System) -> Workspace:
+    def of(cls, system: System) -> Self:
         """Fresh arrays for a system."""
         size = system.layout.size
         return cls(
@@ -74,6 +75,16 @@ class Workspace:
             hessian=np.empty((size, size)),
             pattern=pattern_of(system),
         )
+
+    @property
+    def unit(self) -> Array:
+        """Unit of each unknown (N,), which with that of energy makes residuals dimensionless."""
+        return self.system.scales.unit
+
+    @property
+    def energy(self) -> float:
+        """Unit of energy."""
+        return self.system.scales.energy
 
     def evaluate(self, z: Array, load_factor: float) -> tuple[float, float]:
         """Fill gradient and hessian at z; returns bending and axial energy [J].
@@ -90,12 +101,11 @@ class Workspace:
 
     def norm(self) -> float:
         """Largest entry of the dimensionless residual."""
-        scales = self.system.scales
-        return float(np.abs(self.gradient * scales.unit).max() / scales.energy)
+        return float(np.abs(self.gradient * self.unit).max() / self.energy)
 
     def solve(self, right_side: Array) -> Array:
         """Solve hessian x = right_side (N,) or (N, K), dimensionless inside; LinAlgError if singular."""
-        unit, energy = self.system.scales.unit, self.system.scales.energy
+        unit, energy = self.unit, self.energy
         own = unit if right_side.ndim == 1 else unit[:, None]
         self.counters.factorisations += 1
         if self.pattern is not None:
@@ -107,33 +117,6 @@ class Workspace:
         if failed:
             raise np.linalg.LinAlgError("the tangent is singular")
         return np.asarray(own * getrs(factors, pivots, right_side * own / energy)[0])
-
-    def push(self, z: Array) -> Array:
-        """Minus the derivative of the gradient in the load factor at z, shape (N,)."""
-        drives, loads = self.system.tables.drives, self.system.tables.loads
-        force = np.zeros(self.system.layout.size)
-        force[drives.row] = -drives.target
-        np.add.at(force, loads.coordinate, loads.value)
-        return force
-
-    def potential(self, z: Array, load_factor: float, energies: tuple[float, float]) -> float:
-        """Energy of strips, dead weight, potentials in Python and loads [J]."""
-        loads, weight, system = self.system.tables.loads, self.system.tables.weight, self.system
-        moved, count = z - system.rest, system.layout.coordinate_count
-        dead = float(moved[: weight.size] @ weight)
-        by_loads = load_factor * float(moved[loads.coordinate] @ loads.value)
-        open_ = sum(p.derivatives(z[:count], system.layout)[0] for p in system.open_potentials)
-        return sum(energies) - dead - by_loads + open_
-
-    def conjugate(self, z: Array, load_factor: float) -> tuple[float, float]:
-        """First and second derivative of the potential in the load factor, drives released [J]."""
-        drives, loads = self.system.tables.drives, self.system.tables.loads
-        moved = z[loads.coordinate] - self.system.rest[loads.coordinate]
-        return float(z[drives.row] @ drives.target - moved @ loads.value), 0.0
-
-    def preload(self, load_factor: float) -> float:
-        """Share of weight and pre-strain that acts at a load factor."""
-        return 1.0
 
 
 def solve(work: Workspace, start: Array, load_factor: float) -> Newton:

@@ -10,13 +10,15 @@ from numpy.typing import NDArray
 from spline_model.compile import System
 from spline_model.continuation.branch import BRANCHES
 from spline_model.continuation.follower import Follower
-from spline_model.continuation.start import first_point
+from spline_model.continuation.point import Point, stand
+from spline_model.continuation.start import equilibrium, first_point
 from spline_model.continuation.watch import Watch
 from spline_model.errors import require_choice
-from spline_model.newton import Workspace
 from spline_model.preload import is_preloaded
-from spline_model.reduced.model import reduced
-from spline_model.reduced.solve import follow_reduced
+from spline_model.reduced.elements import Elements, followed
+from spline_model.reduced.model import at_rest
+from spline_model.reduced.solve import grown, run
+from spline_model.reduced.states import by_state
 from spline_model.solution import Path
 
 Array = NDArray[np.float64]
@@ -36,9 +38,8 @@ def follow(
 ) -> Path:
     """Solve the scene at each load factor in turn, from rest at load factor 0.
 
-    method: "condensed" runs compiled on the strips' elements, where they know the scene, and by the
-    bordered system with multipliers where that path stops or becomes unstable; "multipliers" by that
-    system alone. Both agree to 1e-10.
+    method: "condensed" takes the strips' elements, where they know the scene; "multipliers" the
+    bordered system of the paper. Both agree to 1e-10.
     An increment whose Newton fails, or whose solution does not pass the checks, is taken
     in halves; when a part below SMALLEST_STEP still fails, the path ends with its last
     good state and the reason. start: load factor and unknowns (N,) of an equilibrium to go
@@ -46,36 +47,125 @@ def follow(
     crosses; "follow" leaves it there, along the critical mode.
     """
     require_choice("branch", branch, BRANCHES)
-    model = reduced(system) if (branch, method) == ("primary", "condensed") else None
-    begun, begin = None, (0.0, system.rest)
-    if start is not None or is_preloaded(system):
-        begun = _begin(system, start, branch)
-        begin = (begun.here.load_factor, begun.here.z)
-    path = None
-    if model is not None and (begun is None or not begun.watch.before):
-        path = follow_reduced(model, load_factors, begin)
-    if path is None:
-        return _bordered(begun or _begin(system, start, branch), load_factors, progress)
-    if progress is not None:
-        for i in range(len(load_factors)):
-            progress(i + 1, len(load_factors))
-    return path
-
-
-def _begin(system: System, start: tuple[float, Array] | None, branch: str) -> Follower:
-    """A follower at the first state of a path by the bordered system."""
-    watch = Watch(Workspace.of(system), leaves=branch == "follow", by_load=True)
-    return Follower(watch, *first_point(watch, start))
-
-
-def _bordered(follower: Follower, load_factors: Sequence[float], progress: Progress | None) -> Path:
-    """The path by the bordered system, told what it is watched for."""
+    work = followed(system, method)
+    watch = Watch(work, leaves=branch == "follow", by_load=True)
+    track = _Track(watch, np.array([0.0 if start is None else start[0], *load_factors]), progress)
+    track.begin(start)
     message = ""
-    for i, target in enumerate(load_factors):
-        message = follower.advance(float(target))
+    while track.states < len(track.factors) and not message:
+        message = track.advance()
+    return track.path(message)
+
+
+class _Track:
+    """The states of a path: on the elements compiled while nothing happens, in steps where something does.
+
+    pieces: rows by state, and z (S, N) of these; waiting: points that are not rows yet, with ``done`` of
+    each; given: unknowns (N,) of the first state, where they were given and are an equilibrium.
+    """
+
+    def __init__(self, watch: Watch, factors: Array, progress: Progress | None) -> None:
+        self.watch, self.work, self.factors, self.progress = watch, watch.work, factors, progress
+        self.pieces: list[tuple[dict[str, Array], Array]] = []
+        self.waiting: list[tuple[Point, float]] = []
+        self.states, self.done = 0, 0.0
+        self.follower: Follower | None = None
+        self.history: list[tuple[float, ...]] = []
+        self.given: Array | None = None
+
+    def begin(self, start: tuple[float, Array] | None) -> None:
+        """The first state, and on the elements all those up to where something happens."""
+        if isinstance(self.work, Elements):
+            if start is not None:
+                newton = equilibrium(self.work, *start)
+                self.given = start[1] if len(newton.norms) == 1 else None
+                self._run(self.work, self.work.y(newton.z))
+            elif not is_preloaded(self.work.system):
+                self.given = self.work.system.rest  # reactions at rest are none, not their round-off
+                self._run(self.work, at_rest(self.work.model))
+            elif (y := grown(self.work)) is not None:
+                self._run(self.work, y)
+        if self.states == 0:
+            point, norms = first_point(self.watch, start)
+            self.follower = Follower(self.watch, point, norms)
+            self._keep([point], [0.0])
+            if isinstance(self.work, Elements):
+                self._run(self.work, self.work.y(point.z))
+
+    def advance(self) -> str:
+        """One increment in steps, and on the elements on from there; returns why it failed, or nothing."""
+        if self.follower is None:
+            self.follower = Follower(self.watch, self._point(self.states - 1), ())
+        follower, known, before = self.follower, len(self.follower.points), self.done - self.follower.done[-1]
+        message = follower.advance(float(self.factors[self.states]))
+        self._keep(follower.points[known:], [before + done for done in follower.done[known:]])
         if message:
-            break
-        follower.work.counters.increments += 1
-        if progress is not None:
-            progress(i + 1, len(load_factors))
-    return follower.watch.path(follower.points, follower.done, message, follower.history)
+            while self.states > 1 and not self.watch.is_resolved(self._point(self.states - 1)):
+                self.states -= 1
+        else:
+            self.work.counters.increments += 1
+            if isinstance(self.work, Elements):
+                self._run(self.work, self.work.y(follower.here.z))
+        return message
+
+    def _run(self, work: Elements, y: Array) -> None:
+        """Go on from a state (Y,) of the first row or the last one, compiled."""
+        known = min(self.states, 1)
+        factors = self.factors[self.states - known :]
+        answer = run(work, factors, y)
+        count = len(answer.y)
+        if count <= known:
+            return
+        self._flush()
+        answer = answer.rows(slice(known, count))
+        rows = by_state(work.model, factors[known:count], answer._replace(done=answer.done + self.done))
+        self.pieces.append((rows, work.z(answer.y, answer.reaction)))
+        self.done += float(answer.done[-1])
+        work.counters.increments += count - 1
+        self._count(count - known)
+        if self.follower is not None:
+            self.history += self.follower.history
+            self.follower = None
+
+    def _keep(self, points: Sequence[Point], done: Sequence[float]) -> None:
+        self.waiting += zip(points, done, strict=True)
+        self.done = done[-1] if done else self.done
+        self._count(len(points))
+
+    def _count(self, more: int) -> None:
+        """More states, those of the increments told to the progress."""
+        for state in range(self.states, self.states + more):
+            if self.progress is not None and state > 0:
+                self.progress(state, len(self.factors) - 1)
+        self.states += more
+        if self.watch.first is None:
+            self.watch.first = (float(self.factors[0]), self._z()[0])
+
+    def _flush(self) -> None:
+        if self.waiting:
+            points, done = zip(*self.waiting, strict=True)
+            self.pieces.append((self.work.rows(points, done), np.array([p.z for p in points])))
+            self.waiting.clear()
+
+    def _z(self) -> Array:
+        """z of all states (S, N)."""
+        self._flush()
+        return np.concatenate([z for _, z in self.pieces])
+
+    def _rows(self, name: str) -> Array:
+        """What a ``Path`` has by state, of that name."""
+        return np.concatenate([rows[name] for rows, _ in self.pieces])[: self.states]
+
+    def _point(self, state: int) -> Point:
+        """A state as a point to go on from."""
+        z, factor = self._z()[state], float(self._rows("load_factor")[state])
+        return stand(self.work, z, factor, self.work.evaluate(z, factor))
+
+    def path(self, message: str) -> Path:
+        """What was followed, told what it is watched for."""
+        self._flush()
+        rows = {name: self._rows(name) for name in self.pieces[0][0]}
+        if self.given is not None:
+            rows["states"][0] = self.given
+        history = [*self.history, *([] if self.follower is None else self.follower.history)]
+        return self.watch.path(rows, message, [norms for norms in history if norms])

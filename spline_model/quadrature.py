@@ -86,9 +86,8 @@ def modes_at(modes: AxialModes, basis: SplineBasis, count: int) -> tuple[NDArray
 
 def _points_of(source: int, strip: Strip, count: int, layout: Layout, widest: int) -> dict[str, NDArray]:
     basis = strip.basis
-    u, weight, support, d1, d2, first, second = _tables(basis, count)
-    tangent, bend = first @ strip.control_points, second @ strip.control_points
-    speed = np.hypot(tangent[:, 0], tangent[:, 1])
+    u, weight, support, d1, d2, _, _ = _tables(basis, count)
+    speed, curvature = _rest_of(strip, count)
     return {
         "source": np.full(len(u), source, dtype=np.int64),
         "u": u,
@@ -98,8 +97,17 @@ def _points_of(source: int, strip: Strip, count: int, layout: Layout, widest: in
         "d1": _widened(d1, widest),
         "d2": _widened(d2, widest),
         "speed": speed,
-        "curvature": (tangent[:, 0] * bend[:, 1] - tangent[:, 1] * bend[:, 0]) / speed**3,
+        "curvature": curvature,
     }
+
+
+@lru_cache(maxsize=256)
+def _rest_of(strip: Strip, count: int) -> tuple[Array, Array]:
+    """Speed and curvature (P,) at rest; kept, as several tables of a scene ask for them."""
+    first, second = _tables(strip.basis, count)[-2:]
+    tangent, bend = first @ strip.control_points, second @ strip.control_points
+    speed = np.hypot(tangent[:, 0], tangent[:, 1])
+    return speed, (tangent[:, 0] * bend[:, 1] - tangent[:, 1] * bend[:, 0]) / speed**3
 
 
 def _widened(values: Array, width: int) -> Array:

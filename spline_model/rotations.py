@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.compile import System, compile_scene
+from spline_model.laps import Laps
 from spline_model.path import Progress, follow
 from spline_model.scene import Scene
 from spline_model.solution import Path, Status
@@ -50,16 +51,19 @@ def follow_rotations(
     start: tuple[float, Array] | None = None,
     branch: str = "primary",
     method: str = "condensed",
+    laps: Laps,
 ) -> tuple[System, Path]:
     """The scene driven to ``largest`` [rad], and its path through signed load factors.
 
     driven: the scene that is driven to a rotation. Where the factor is below zero the body turns
     the other way and the loads still grow with its size: under loads that part is the path of the
     scene driven to -``largest``, which begins where the other one has come back to rest. start: signed
-    factor and unknowns (N,). The path's load factors are signed, those of critical points are not.
+    factor and unknowns (N,). laps: told when the scene is compiled and when the path is solved. The path's
+    load factors are signed, those of critical points are not.
     """
     path, done, back = None, 0, False
     whole = compile_scene(driven(largest))
+    laps.lap("compile")
     for side in _sides(whole, factors, 0.0 if start is None else start[0]):
         system = whole if side.sign > 0.0 else compile_scene(driven(-largest))
         aims = [side.sign * factor for factor in side.factors] + [0.0] * side.returns
@@ -73,6 +77,7 @@ def follow_rotations(
         if path.status is not Status.CONVERGED:
             break
         start, done, back = (0.0, path.states[-1]), done + len(side.factors), side.returns
+    laps.lap("solve")
     assert path is not None, "a path has at least one rotation"
     points = tuple(replace(point, load_factor=abs(point.load_factor)) for point in path.critical_points)
     return whole, replace(path, critical_points=points)

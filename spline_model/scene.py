@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TypeVar
+from functools import cached_property
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -86,8 +87,14 @@ class Scene:
         return next(body for body in self.bodies if body.name == name)
 
     def of(self, kind: type[Kind]) -> tuple[Kind, ...]:
-        """The scene's effects of this class, in scene order."""
-        return tuple(effect for effect in self.effects if isinstance(effect, kind))
+        """The scene's effects of this class, in scene order; sorted out once."""
+        if kind not in self._sorted:
+            self._sorted[kind] = tuple(effect for effect in self.effects if isinstance(effect, kind))
+        return self._sorted[kind]
+
+    @cached_property
+    def _sorted(self) -> dict[type, tuple[Any, ...]]:
+        return {}
 
     def bending_of(self, strip: str) -> Bending | None:
         """The bending effect of a strip, if the scene names one."""

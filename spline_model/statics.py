@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from spline_model.accuracy import check_accuracy
 from spline_model.accurate_path import solve_accurately
-from spline_model.compile import compile_scene
+from spline_model.compile import System, compile_scene
 from spline_model.continuation.recover import recover
 from spline_model.continuation.start import last_state
 from spline_model.effects.registry import MOTION_ONLY
@@ -22,14 +22,12 @@ from spline_model.errors import (
     require_choice,
     require_count,
 )
-from spline_model.fast.path import Answer
-from spline_model.fast.solve import follow_fast, is_fast, path_of
 from spline_model.laps import Laps
 from spline_model.path import Progress
 from spline_model.pivot import Pivot
 from spline_model.proportional import CONTROLS, solve_loads, solve_mechanism, solve_path
 from spline_model.rotations import factors_of, follow_rotations, largest_of
-from spline_model.solution import StaticSolution, Status
+from spline_model.solution import Path, StaticSolution, Status
 from spline_model.static_answers import STATIONS, pivot_answer
 
 __all__ = [
@@ -77,21 +75,28 @@ def solve_statics(
     relative [1]; the control points are raised from the pivot's until the estimated one is
     below, axial modes and quadrature with them, and the solution has its ``estimate``.
     branch: "primary" or "follow" at a bifurcation; start: a solution of the same
-    pivot to go on from, instead of rest; either of them takes the multiplier path and no
-    accuracy. Raises ConvergenceError with the converged part of the path, or with the best one
+    pivot to go on from, instead of rest; either of them without an accuracy. Raises
+    ConvergenceError with the converged part of the path, or with the best one
     where the accuracy is not reached; returns it as a status with ``raise_on_failure=False``.
     """
     require_count("increments", increments, 1)
     require_choice("method", method, METHODS)
+    laps = Laps()
     origin = 0.0 if start is None else float(start.rotation[-1])
     rotations = _rotations(rotation, increments, origin, loaded=_is_loaded(pivot))
     if accuracy is None:
-        solution = _along(pivot, rotations, method, progress, start=start, branch=branch)
+        system, path = _along(pivot, rotations, method, laps, progress, start=start, branch=branch)
+        solution = pivot_answer(system, path, laps)
     else:
         check_accuracy(accuracy, pivot.mechanism.design)
         if start is not None or branch != "primary":
             raise InvalidParameter("accuracy", accuracy, "no start or branch beside it")
-        solution = _accurate(pivot, rotations, method, accuracy)
+        solution = solve_accurately(
+            pivot,
+            accuracy,
+            path_of=lambda chosen: _along(chosen, rotations, method, laps),
+            answer=lambda system, path: pivot_answer(system, path, laps),
+        )
         if progress is not None:
             progress(len(rotations), len(rotations))
     if raise_on_failure and solution.status is not Status.CONVERGED:
@@ -124,47 +129,23 @@ def _along(
     pivot: Pivot,
     rotations: Array,
     method: str,
+    laps: Laps,
     progress: Progress | None = None,
     *,
     start: StaticSolution | None = None,
     branch: str = "primary",
-) -> StaticSolution:
-    """The solution through the rotations [rad]."""
-    laps = Laps()
+) -> tuple[System, Path]:
+    """The path through the rotations [rad], and the scene that it is one of."""
     largest = largest_of(rotations, 0.0 if start is None else float(start.rotation[-1]))
-    path = None
-    if method == "condensed" and branch == "primary" and start is None and is_fast(pivot.mechanism):
-        system = compile_scene(pivot.driven(largest))
-        path = follow_fast(pivot.mechanism, system, list(rotations), laps, progress)
-    if path is None:  # also where the fast path stops: this one says why
-        laps.lap("compile")
-        begin = None if start is None else last_state(start, largest)
-        factors = factors_of(rotations, largest)
-        system, path = follow_rotations(
-            pivot.driven, largest, factors, progress, start=begin, branch=branch, method=method
-        )
-        laps.lap("solve")
-    return pivot_answer(system, path, laps)
-
-
-def _accurate(pivot: Pivot, rotations: Array, method: str, accuracy: float) -> StaticSolution:
-    """The solution with as many control points as the accuracy takes."""
-
-    laps = Laps()
-
-    def recovered(chosen: Pivot, answer: Answer) -> StaticSolution:
-        laps.lap("solve")  # all trials
-        system = compile_scene(chosen.driven(largest_of(rotations)))
-        laps.lap("compile")
-        path = path_of(chosen.mechanism, system, list(rotations), answer)
-        return _along(chosen, rotations, method) if path is None else pivot_answer(system, path, laps)
-
-    return solve_accurately(
-        pivot,
-        rotations,
-        accuracy,
-        solve=lambda chosen: _along(chosen, rotations, method),
-        recover=recovered if method == "condensed" and is_fast(pivot.mechanism) else None,
+    return follow_rotations(
+        pivot.driven,
+        largest,
+        factors_of(rotations, largest),
+        progress,
+        start=None if start is None else last_state(start, largest),
+        branch=branch,
+        method=method,
+        laps=laps,
     )
 
 

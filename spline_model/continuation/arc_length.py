@@ -13,12 +13,13 @@ from spline_model.compile import System
 from spline_model.continuation.balance import done_by_load_factor
 from spline_model.continuation.branch import BRANCHES
 from spline_model.continuation.corrector import Corrected, correct
+from spline_model.continuation.followed import Followed
 from spline_model.continuation.point import Point, directed, stand
 from spline_model.continuation.predict import KNOWN_STATES, hermite_extrapolation
 from spline_model.continuation.start import first_point
 from spline_model.continuation.watch import Watch
 from spline_model.errors import require_choice
-from spline_model.newton import Workspace
+from spline_model.reduced.elements import followed
 from spline_model.solution import Path
 
 Array = NDArray[np.float64]
@@ -42,16 +43,17 @@ def follow_arc(
     start: tuple[float, Array] | None = None,
     branch: str = "primary",
     progress: Callable[[int, int], None] | None = None,
+    method: str = "condensed",
 ) -> Path:
     """The path from rest, or from load factor and unknowns ``start``, until its load factor is ``end``.
 
     The first step changes the load factor by 1 / increments of the way; later ones follow
     the ease of the path. Every accepted state is in the result. The load factor may go down
-    and up again; ``end`` is where it is first reached. branch as in ``spline_model.path.follow``.
+    and up again; ``end`` is where it is first reached. branch and method as in ``spline_model.path.follow``.
     Source: Riks, J Appl Mech 39 (1972) 1060, with Newton on planes normal to the tangent.
     """
     require_choice("branch", branch, BRANCHES)
-    follower = _ArcFollower(Workspace.of(system), start, end, increments, branch)
+    follower = _ArcFollower(followed(system, method), start, end, increments, branch)
     message = ""
     for taken in range(MOST_STEPS):
         if follower.here.load_factor == end or message:
@@ -68,13 +70,13 @@ class _ArcFollower:
     """The state of a path while it is followed."""
 
     def __init__(
-        self, work: Workspace, start: tuple[float, Array] | None, end: float, increments: int, branch: str
+        self, work: Followed, start: tuple[float, Array] | None, end: float, increments: int, branch: str
     ) -> None:
         self.work, self.end = work, end
         self.watch = Watch(work, leaves=branch == "follow", by_load=False)
         point, norms = first_point(self.watch, start)
         onward = math.copysign(1.0, end - point.load_factor)
-        self.here = directed(work.system, point, onward * point.rate / work.system.scales.unit, onward)
+        self.here = directed(work, point, onward * point.rate / work.unit, onward)
         self.step = self.first = min(
             LARGEST_STEP, abs(end - point.load_factor) / increments / abs(self.here.slope)
         )
@@ -93,7 +95,8 @@ class _ArcFollower:
             self.work.counters.halved_increments += 1
             self.step /= 2
             if self.step < SMALLEST_STEP * self.first:
-                self.watch.keep_sound(self.points)
+                while len(self.points) > 1 and not self.watch.is_resolved(self.points[-1]):
+                    self.points.pop()
                 return f"stopped at load factor {self.here.load_factor:.6g}: {reason}"
         self.work.counters.increments += 1
         iterations = len(found.norms) - 1
@@ -105,7 +108,7 @@ class _ArcFollower:
 
     def _try(self) -> tuple[Corrected, str]:
         """One step of the present length; on success the follower stands at its end."""
-        work, system, here = self.work, self.work.system, self.here
+        work, here = self.work, self.here
         z, load_factor = self._predict()
         normal, along = self._across()
         if (self.end - here.load_factor) * (self.end - load_factor) <= 0.0:
@@ -119,7 +122,7 @@ class _ArcFollower:
             point = stand(work, found.z, found.load_factor, found.energies)
         except np.linalg.LinAlgError as error:
             return found, str(error)
-        point = directed(system, point, *self._across())
+        point = directed(work, point, *self._across())
         if (self.end - here.load_factor) * (self.end - point.load_factor) < 0.0:
             return found, "the step goes beyond the end"
         if self._cosine(point) < SHARPEST_TURN:
@@ -144,20 +147,18 @@ class _ArcFollower:
 
     def _across(self) -> tuple[Array, float]:
         """The tangent here, in dimensionless coordinates, and its load-factor part."""
-        count = self.work.system.layout.coordinate_count
-        normal = self.here.rate / self.work.system.scales.unit
-        normal[count:] = 0.0
+        normal = self.here.rate / self.work.unit
+        normal[self.work.count :] = 0.0
         return normal, self.here.slope
 
     def _cosine(self, point: Point) -> float:
         """Cosine of the angle between the tangents here and at a point."""
         normal, along = self._across()
-        return float(normal @ (point.rate / self.work.system.scales.unit) + along * point.slope)
+        return float(normal @ (point.rate / self.work.unit) + along * point.slope)
 
     def _distance(self, point: Point) -> float:
         """Distance from here to a point, in the measure of the arc length."""
-        count = self.work.system.layout.coordinate_count
-        moved = ((point.z - self.here.z) / self.work.system.scales.unit)[:count]
+        moved = ((point.z - self.here.z) / self.work.unit)[: self.work.count]
         return float(np.hypot(np.linalg.norm(moved), point.load_factor - self.here.load_factor))
 
     def _predict(self) -> tuple[Array, float]:
@@ -178,4 +179,5 @@ class _ArcFollower:
 
     def path(self, message: str) -> Path:
         """What was followed, as a result; ``message`` says why it ended early, if it did."""
-        return self.watch.path(self.points, self.done[: len(self.points)], message, self.history)
+        rows = self.work.rows(self.points, self.done[: len(self.points)])
+        return self.watch.path(rows, message, self.history)

@@ -7,7 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from spline_model.newton import FLOOR, MOST_ITERATIONS, TOLERANCE, Workspace, getrf, getrs
+from spline_model.continuation.followed import Followed
+from spline_model.newton import FLOOR, MOST_ITERATIONS, TOLERANCE, getrf, getrs
 
 Array = NDArray[np.float64]
 
@@ -23,13 +24,13 @@ class Corrected:
     reason: str
 
 
-def correct(work: Workspace, z: Array, load_factor: float, normal: Array, along: float) -> Corrected:
+def correct(work: Followed, z: Array, load_factor: float, normal: Array, along: float) -> Corrected:
     """Newton from (z, load factor), orthogonal to (normal (N,), along) in dimensionless unknowns.
 
     The bordered matrix is regular at a limit point, where the tangent is not. normal = 0 and
     along = 1 hold the load factor.
     """
-    unit, energy = work.system.scales.unit, work.system.scales.energy
+    unit, energy = work.unit, work.energy
     size = len(z)
     matrix = np.zeros((size + 1, size + 1))
     matrix[size, :size], matrix[size, size] = normal, along
@@ -44,7 +45,7 @@ def correct(work: Workspace, z: Array, load_factor: float, normal: Array, along:
         if not np.isfinite(norms[-1]) or iteration == MOST_ITERATIONS:
             reason = f"no convergence in {iteration} iterations (residual {norms[-1]:.1e})"
             break
-        matrix[:size, size] = -work.push(z) * unit / energy
+        matrix[:size, size] = -work.push(z, load_factor) * unit / energy
         matrix[:size, :size] = work.hessian * (unit[:, None] * unit / energy)
         right[:size] = -work.gradient * unit / energy
         work.counters.factorisations += 1

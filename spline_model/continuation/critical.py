@@ -10,17 +10,17 @@ from numpy.typing import NDArray
 
 from spline_model.compile import System
 from spline_model.continuation.corrector import correct
+from spline_model.continuation.followed import Followed
 from spline_model.continuation.point import NOT_TRACKED, Point, directed, stand
 from spline_model.continuation.reduced import reduced_tangent
 from spline_model.effects import DrivenRotation
 from spline_model.effects.base import Constraint
-from spline_model.newton import Workspace
 from spline_model.solution import CriticalPoint
 
 Array = NDArray[np.float64]
 
 LIMIT, TURN, BIFURCATION = "limit point", "turning point", "bifurcation"
-FINE = 1e-6
+FINE = 1e-7
 """A critical point is known to this part of the step between the two states, or of the value
 there: closer to it the tangent is singular to no purpose."""
 JUMP = 1e-3
@@ -30,10 +30,19 @@ MOST_TRIALS = 60
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
+class Crossing:
+    """A critical point as it is told, and where it lies on the system: z (N,), mode of its coordinates."""
+
+    told: CriticalPoint
+    z: Array
+    mode: Array
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
 class Bracket:
     """The piece of a path between two states, as a function of t in [0, 1]."""
 
-    work: Workspace
+    work: Followed
     before: Point
     after: Point
     step: float
@@ -42,8 +51,8 @@ class Bracket:
         """Normal (N,) and load-factor part of the planes across the path: the chord, or the load factor."""
         if self.before.slope == self.after.slope == 1.0:
             return np.zeros_like(self.before.z), 1.0
-        normal = (self.after.z - self.before.z) / self.work.system.scales.unit
-        normal[self.work.system.layout.coordinate_count :] = 0.0
+        normal = (self.after.z - self.before.z) / self.work.unit
+        normal[self.work.count :] = 0.0
         return normal, self.after.load_factor - self.before.load_factor
 
     def at(self, t: float) -> Point | None:
@@ -54,7 +63,7 @@ class Bracket:
         return corrected(self.work, z, float(factor), *self.plane())
 
 
-def corrected(work: Workspace, z: Array, load_factor: float, normal: Array, along: float) -> Point | None:
+def corrected(work: Followed, z: Array, load_factor: float, normal: Array, along: float) -> Point | None:
     """The point of the path on a plane through (z, load factor); None if Newton does not find it."""
     found = correct(work, z, load_factor, normal, along)
     if found.reason:
@@ -63,10 +72,10 @@ def corrected(work: Workspace, z: Array, load_factor: float, normal: Array, alon
         point = stand(work, found.z, found.load_factor, found.energies)
     except np.linalg.LinAlgError:
         return None
-    return directed(work.system, point, normal, along)
+    return directed(work, point, normal, along)
 
 
-def between(work: Workspace, before: Point, after: Point, step: float) -> tuple[CriticalPoint, ...] | None:
+def between(work: Followed, before: Point, after: Point, step: float) -> tuple[Crossing, ...] | None:
     """All critical points between two neighbouring states; step: their distance in the path's parameter.
 
     Eigenvalues are continuous along the path when they are numbered by size: the one whose
@@ -87,10 +96,10 @@ def between(work: Workspace, before: Point, after: Point, step: float) -> tuple[
             found.append(limit)  # where the inertia changes, the stiffness may go through infinity
     if None in found:
         return None
-    return tuple(sorted((c for c in found if c), key=lambda c: abs(c.load_factor - before.load_factor)))
+    return tuple(sorted((c for c in found if c), key=lambda c: abs(c.told.load_factor - before.load_factor)))
 
 
-def _of_tangent(bracket: Bracket, number: int) -> CriticalPoint | None:
+def _of_tangent(bracket: Bracket, number: int) -> Crossing | None:
     """The state at which one eigenvalue of the reduced tangent vanishes."""
     work, modes = bracket.work, {}
 
@@ -110,14 +119,14 @@ def _of_tangent(bracket: Bracket, number: int) -> CriticalPoint | None:
         kind = BIFURCATION
     else:
         kind = TURN if _drive_moves(work.system) else LIMIT
-    return _point(work.system, kind, point, modes[t], bracket.after.inertia)
+    return _crossing(work, kind, point, modes[t], bracket.after.inertia)
 
 
 def _drive_moves(system: System) -> bool:
     return any(d.angle != 0.0 for d in system.scene.of(Constraint) if isinstance(d, DrivenRotation))
 
 
-def _of_torque(bracket: Bracket) -> CriticalPoint | None:
+def _of_torque(bracket: Bracket) -> Crossing | None:
     """The state at which the stiffness of the driven rotation vanishes, at fixed loads."""
 
     def value(t: float) -> float:
@@ -128,25 +137,26 @@ def _of_torque(bracket: Bracket) -> CriticalPoint | None:
     point = None if t is None else bracket.at(t)
     if point is None or point.turn is None:
         return None
-    system = bracket.work.system
-    count = system.layout.coordinate_count
-    mode = point.turn[:count] / system.scales.unit[:count]
-    return _point(system, LIMIT, point, mode, bracket.after.inertia)
+    work = bracket.work
+    mode = (point.turn / work.unit)[: work.count]
+    return _crossing(work, LIMIT, point, mode, bracket.after.inertia)
 
 
-def _point(system: System, kind: str, at: Point, mode: Array, inertia: int) -> CriticalPoint:
-    """Complete a critical point; ``mode`` in dimensionless coordinates."""
-    size = np.abs(mode)
-    mode = mode / mode[np.flatnonzero(size >= (1.0 - 1e-6) * size.max())[0]]  # ties in a symmetric mode
+def _crossing(work: Followed, kind: str, at: Point, mode: Array, inertia: int) -> Crossing:
+    """Complete a critical point; ``mode`` in dimensionless coordinates of the system."""
+    system, moved = work.system, work.moved(at.z, mode)
+    size = np.abs(moved)
+    scale = 1.0 / moved[np.flatnonzero(size >= (1.0 - 1e-6) * size.max())[0]]  # ties in a symmetric mode
     drives = [d for d in system.scene.of(Constraint) if isinstance(d, DrivenRotation)]
-    return CriticalPoint(
+    told = CriticalPoint(
         kind=kind,
         load_factor=at.load_factor,
         rotation=at.load_factor * drives[0].angle if drives else np.nan,
-        z=at.z,
-        mode=mode * system.scales.unit[: len(mode)],
+        z=work.unknowns(at.z),
+        mode=scale * moved * system.scales.unit[: len(moved)],
         inertia=inertia,
     )
+    return Crossing(told=told, z=at.z, mode=scale * mode)
 
 
 def _zero(value: Callable[[float], float]) -> float | None:

@@ -61,12 +61,11 @@ class Follower:
 
     def _stop(self, aim: float, reason: str) -> str:
         """Keep the last state of a path that stopped, whether or not it was asked for; says why it did."""
-        kept = [*self.points, *self.trail]
-        self.watch.keep_sound(kept)
-        more = kept[len(self.points) :][-1:]
-        self.points = kept[: len(self.points)] + more
-        self.done = self.done[: len(self.points) - len(more)] + [self.done_here] * len(more)
-        return self.watch.stopped(self.points[0], self.here, aim, reason)
+        while self.trail and not self.watch.is_resolved(self.trail[-1]):
+            self.trail.pop()
+        self.points += self.trail[-1:]
+        self.done += [self.done_here] * len(self.trail[-1:])
+        return self.watch.stopped(self.here, aim, reason)
 
     def _try(self, load_factor: float) -> tuple[Newton, str]:
         """One step to ``load_factor``; on success the follower stands there, or on another branch."""

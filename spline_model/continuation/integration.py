@@ -2,13 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
-from spline_model.compile import compile_scene
 from spline_model.continuation.critical import Bracket, between, corrected
+from spline_model.continuation.followed import Followed
 from spline_model.continuation.point import Point
-from spline_model.effects import Bending, MixedStretching, Stretching
-from spline_model.newton import Workspace
 
 UNCONFIRMED = "a {kind} that is not found with twice the Gauss points (use more gauss_points)"
 LARGEST_CHANGE = 0.02
@@ -22,17 +18,10 @@ class Finer:
     while all else still looks sound, and ends in a critical point that the strips do not have.
     """
 
-    def __init__(self, work: Workspace) -> None:
-        scene = work.system.scene
-        effects = tuple(
-            replace(e, gauss_points=2 * e.gauss_points)
-            if isinstance(e, Bending | MixedStretching | Stretching)
-            else e
-            for e in scene.effects
-        )
-        self.work = type(work).of(compile_scene(replace(scene, effects=effects)))
+    def __init__(self, work: Followed) -> None:
+        self.work = work.finer()
 
-    def confirms(self, work: Workspace, before: Point, after: Point, step: float) -> bool:
+    def confirms(self, work: Followed, before: Point, after: Point, step: float) -> bool:
         """Whether a critical point lies between two states here as well."""
         plane = Bracket(work=work, before=before, after=after, step=step).plane()
         ends = [corrected(self.work, p.z, p.load_factor, *plane) for p in (before, after)]

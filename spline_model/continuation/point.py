@@ -9,10 +9,10 @@ from numpy.typing import NDArray
 from scipy.linalg import get_lapack_funcs
 
 from spline_model.compile import System
+from spline_model.continuation.followed import Followed
 from spline_model.effects import DrivenRotation
 from spline_model.effects.base import Constraint
 from spline_model.effects.elastic import MEASURES
-from spline_model.newton import Workspace
 
 Array = NDArray[np.float64]
 
@@ -20,6 +20,9 @@ sytrf, sytrs = get_lapack_funcs(("sytrf", "sytrs"))
 
 BLOCK = 64
 """Columns that LAPACK's symmetric factorisation takes at once."""
+FASTEST = 1e13
+"""Rate of an unknown, dimensionless, from which on a tangent is singular: strips of a slenderness of 1e5 have
+forces of 1e11, round-off in the place of a pivot gives 1e15."""
 NOT_TRACKED = -1
 """Inertia of a state whose forces have no potential: its tangent is not symmetric."""
 
@@ -64,20 +67,21 @@ def has_potential(system: System) -> bool:
     return not ((tables.bending.measure == printed).any() or (tables.stretching.measure == printed).any())
 
 
-def stand(work: Workspace, z: Array, load_factor: float, energies: tuple[float, float]) -> Point:
+def stand(work: Followed, z: Array, load_factor: float, energies: tuple[float, float]) -> Point:
     """The point of a state that ``work`` was just evaluated at, s being the load factor.
 
     One symmetric factorisation gives the rate, the turn and, by Sylvester's law, the inertia: of
     the negative eigenvalues of the bordered matrix one belongs to each axial force and to each
     constraint, the rest to the reduced tangent. Raises LinAlgError if it is singular.
     """
-    system, row = work.system, driven_row(work.system)
-    push = work.push(z)
+    row, push = work.driven, work.push(z, load_factor)
     right = np.zeros((len(z), 1 if row is None else 2))
     right[:, 0] = push
     if row is not None:
         right[row, 1] = -1.0  # the drive's row is -(theta - angle)
-    found, inertia = _symmetric(work, right) if has_potential(system) else (work.solve(right), NOT_TRACKED)
+    found, inertia = (
+        _symmetric(work, right) if has_potential(work.system) else (work.solve(right), NOT_TRACKED)
+    )
     rate = found[:, 0].copy()
     conjugate, curvature = work.conjugate(z, load_factor)
     return Point(
@@ -95,7 +99,7 @@ def stand(work: Workspace, z: Array, load_factor: float, energies: tuple[float, 
     )
 
 
-def directed(system: System, point: Point, direction: Array, along: float) -> Point:
+def directed(work: Followed, point: Point, direction: Array, along: float) -> Point:
     """The point with the arc length as parameter, growing along (direction (N,), along).
 
     Arc length is measured in dimensionless coordinates (lengths of a strip, rad) and load
@@ -104,8 +108,7 @@ def directed(system: System, point: Point, direction: Array, along: float) -> Po
     """
     if not direction.any():
         return point
-    count = system.layout.coordinate_count
-    rate = point.rate / system.scales.unit
+    count, rate = work.count, point.rate / work.unit
     speed = np.hypot(np.linalg.norm(rate[:count]), point.slope)
     scale = float(np.copysign(1.0 / speed, direction[:count] @ rate[:count] + along * point.slope))
     return replace(
@@ -116,10 +119,9 @@ def directed(system: System, point: Point, direction: Array, along: float) -> Po
     )
 
 
-def _symmetric(work: Workspace, right: Array) -> tuple[Array, int]:
+def _symmetric(work: Followed, right: Array) -> tuple[Array, int]:
     """Solve hessian x = right (N, K), and count the negative eigenvalues of the reduced tangent."""
-    layout, unit, energy = work.system.layout, work.system.scales.unit[:, None], work.system.scales.energy
-    not_free = layout.size - layout.coordinate_count
+    unit, energy, not_free = work.unit[:, None], work.energy, len(right) - work.count
     if work.pattern is not None:
         return work.solve(right), work.pattern.negative(work.hessian) - not_free
     work.counters.factorisations += 1
@@ -131,5 +133,7 @@ def _symmetric(work: Workspace, right: Array) -> tuple[Array, int]:
     single = pivots > 0
     # a block of two is indefinite: one negative eigenvalue each (Bunch and Kaufman 1977)
     negative = int((np.diag(factors)[single] < 0.0).sum() + (~single).sum() // 2)
-    found = unit * sytrs(factors, pivots, right * unit / energy, lower=1)[0]
-    return np.asarray(found), negative - not_free
+    found = np.asarray(sytrs(factors, pivots, right * unit / energy, lower=1)[0])
+    if not np.abs(found).max() < FASTEST:
+        raise np.linalg.LinAlgError("the tangent is singular")
+    return unit * found, negative - not_free

@@ -8,11 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.compile import System
-from spline_model.continuation.resolution import Resolution
 from spline_model.continuation.start import equilibrium
 from spline_model.errors import InvalidParameter
-from spline_model.newton import Workspace
 from spline_model.path import follow
+from spline_model.reduced.elements import followed
 from spline_model.solution import Path, Status
 
 Array = NDArray[np.float64]
@@ -31,13 +30,13 @@ def recover(system: System, load_factor: float, guess: Array, increments: int) -
     """
     whole = np.linspace(0.0, load_factor, increments + 1)
     try:
-        found = equilibrium(Workspace.of(system), Resolution(system), load_factor, guess)
+        found = equilibrium(work := followed(system), load_factor, guess)
     except InvalidParameter as error:
         if np.shape(guess) != (system.layout.size,):
             raise
         reason = str(error.got)
     else:
-        back = follow(system, list(whole[-2::-1]), start=(load_factor, found.z))
+        back = follow(system, list(whole[-2::-1]), start=(load_factor, work.unknowns(found.z)))
         reason = "it lies on another branch"
         if back.status is Status.CONVERGED and _is_rest(system, back.states[-1]):
             return _only(back, 0, "found from the given state")

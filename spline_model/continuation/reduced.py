@@ -8,8 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import eigh, null_space
 
-from spline_model.effects import MixedStretching
-from spline_model.newton import Workspace
+from spline_model.continuation.followed import Followed
 
 Array = NDArray[np.float64]
 
@@ -27,24 +26,19 @@ class ReducedTangent:
         return float(values[0]), np.asarray(self.free @ vectors[:, 0])
 
 
-def reduced_tangent(work: Workspace) -> ReducedTangent:
+def reduced_tangent(work: Followed) -> ReducedTangent:
     """The reduced tangent at the state that ``work`` was last evaluated at.
 
-    Axial forces are condensed; clamps, drives and inextensible strips are constraints.
+    Forces with a compliance are condensed; those of clamps, drives and inextensible strips are constraints.
     """
-    system = work.system
-    layout, unit = system.layout, system.scales.unit
-    count = layout.coordinate_count
-    hessian = work.hessian * (unit[:, None] * unit / system.scales.energy)
-    stiffness = hessian[:count, :count].copy()
-    rows = [hessian[layout.multiplier_start :, :count]]
-    for i, effect in enumerate(system.scene.of(MixedStretching)):
-        at = layout.axial_modes(i)
-        if effect.axial_compliance == 0.0:
-            rows.append(hessian[at, :count])
-        else:
-            stiffness += hessian[at, :count].T @ np.linalg.solve(-hessian[at, at], hessian[at, :count])
-    constraints = np.concatenate(rows)
+    hessian = work.hessian * (work.unit[:, None] * work.unit / work.energy)
+    count = work.count
+    rows, between = hessian[count:, :count], hessian[count:, count:]
+    soft = np.diag(between) != 0.0
+    stiffness = hessian[:count, :count] + rows[soft].T @ np.linalg.solve(
+        -between[np.ix_(soft, soft)], rows[soft]
+    )
+    constraints = rows[~soft]
     norms = np.linalg.norm(constraints, axis=1, keepdims=True)
     free = null_space(constraints / norms) if len(constraints) else np.eye(count)
     return ReducedTangent(stiffness=free.T @ stiffness @ free, free=free)

@@ -11,7 +11,7 @@ from scipy.interpolate import BSpline
 
 from spline_model.basis import SplineBasis
 from spline_model.compile import System
-from spline_model.effects import Bending, Clamp, Stretching, StripGravity
+from spline_model.effects import Bending, Clamp, StripGravity
 from spline_model.effects.base import Constraint
 
 Array = NDArray[np.float64]
@@ -53,7 +53,6 @@ class Resolution:
 
     def __init__(self, system: System) -> None:
         self.system = system
-        self.judged = not system.scene.of(Stretching)
         table = system.tables.bending
         self.columns = table.first[:, None] + 2 * np.minimum(
             np.arange(table.d1.shape[1]), table.width[:, None] - 1
@@ -61,23 +60,8 @@ class Resolution:
         self.length = table.weight * table.speed
         self.spans = tuple(_spans(system))
 
-    def refuse(self, z: Array, share: float = 1.0) -> str:
-        """Why the discretisation no longer describes the strips; empty if it does.
-
-        share: of weight and pre-strain.
-
-        Stretching by quadrature, the paper's form, is not judged: it is there to show what it does.
-        """
-        defect = self.defect(z, share) if self.judged else 0.0
-        if defect > LARGEST_DEFECT:
-            return (
-                "the control points do not resolve the strips any more: their moments differ from balance"
-                f" by {defect:.0%}"
-            )
-        return ""
-
     def defect(self, z: Array, share: float = 1.0) -> float:
-        """Root of the energy of the moment defect over the bending energy."""
+        """Root of the energy of the moment defect over the bending energy; share: of the preload."""
         rest = self.system.rest_curvature
         table = self.system.tables.bending
         x1, y1, x2, y2 = (

@@ -5,28 +5,27 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from spline_model.checks import refuse
+from spline_model.continuation.followed import Followed
 from spline_model.continuation.point import Point, stand
-from spline_model.continuation.resolution import Resolution
 from spline_model.continuation.watch import Watch
 from spline_model.errors import InvalidParameter
-from spline_model.newton import Newton, Workspace, solve
+from spline_model.newton import Newton, solve
 from spline_model.preload import settle
 from spline_model.solution import MechanismSolution, Path, StaticSolution
 
 Array = NDArray[np.float64]
 
 
-def equilibrium(work: Workspace, resolution: Resolution, load_factor: float, z: Array) -> Newton:
-    """The equilibrium that Newton finds from z, if it passes the checks of an accepted state.
+def equilibrium(work: Followed, load_factor: float, unknowns: Array) -> Newton:
+    """The equilibrium that Newton finds from the scene's unknowns, if an accepted state's checks pass.
 
-    Raises InvalidParameter if z has another size, is not finite, or leads to no such state.
+    Raises InvalidParameter if these have another size, are not finite, or lead to no such state.
     """
     size = work.system.layout.size
-    if np.shape(z) != (size,) or not np.isfinite(z).all():
-        raise InvalidParameter("start", np.shape(z), f"finite unknowns of shape ({size},)")
-    newton = solve(work, np.asarray(z, dtype=float), load_factor)
-    reason = newton.reason or refuse(work.system, newton.z) or resolution.refuse(newton.z)
+    if np.shape(unknowns) != (size,) or not np.isfinite(unknowns).all():
+        raise InvalidParameter("start", np.shape(unknowns), f"finite unknowns of shape ({size},)")
+    newton = solve(work, work.state(np.asarray(unknowns, dtype=float)), load_factor)
+    reason = newton.reason or work.refuse(newton.z) or work.unresolved(newton.z, load_factor)
     if reason:
         raise InvalidParameter("start", reason, "a state from which Newton finds an equilibrium")
     return newton
@@ -38,7 +37,7 @@ def first_point(watch: Watch, start: tuple[float, Array] | None) -> tuple[Point,
     Raises InvalidParameter where there is none, or where nothing holds the scene.
     """
     work = watch.work
-    newton = settle(watch) if start is None else equilibrium(work, watch.resolution, *start)
+    newton = settle(watch) if start is None else equilibrium(work, *start)
     try:
         point = stand(work, newton.z, 0.0 if start is None else start[0], newton.energies)
     except np.linalg.LinAlgError as error:

@@ -6,8 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.compile import System
-from spline_model.fast.body import Frame
-from spline_model.fast.solve import frame_of, grid_of, is_fast
+from spline_model.fast.frame import Frame, frame_of, grid_of, is_fast
 from spline_model.fast.swing import Swing, swing_of
 from spline_model.kernels.motion import Motion
 from spline_model.mechanism import Mechanism

@@ -1,6 +1,6 @@
 """The elastic force of one strip, without tangent: what an explicit time step asks for.
 
-As in ``spline_model.fast.strip`` everything is dimensionless, lengths over L and energy over
+As in ``spline_model.strip`` everything is dimensionless, lengths over L and energy over
 EI/L, in the ground clamp's frame. The axial forces are condensed:
 N = sum P_k (2 k + 1) / c_k int P_k (v - 1) du is, at the Gauss points, one constant matrix
 times v - 1.
@@ -13,7 +13,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from spline_model.fast.strip import Grid
+from spline_model.fast.frame import Grid
 from spline_model.strip.compiled import part
 
 Array = NDArray[np.float64]

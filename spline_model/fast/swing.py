@@ -19,8 +19,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from spline_model.fast.body import Frame
-from spline_model.fast.strip import Grid
+from spline_model.fast.frame import Frame, Grid
 from spline_model.fast.strip_force import axial_matrix
 
 Array = NDArray[np.float64]

@@ -18,6 +18,8 @@ Array = NDArray[np.float64]
 
 BENDING, AXIAL, DEAD, SLOWEST, NEGATIVE = range(5)
 """Places of what ``assemble`` sums up: energies in EI/L, least v / J0, negative pivots of the strips."""
+KNOWN = 4
+"""States and rates that the next one is predicted from: of five, round-off would outgrow what they add."""
 
 
 class Bodies(NamedTuple):
@@ -68,9 +70,9 @@ def working_space(bodies: Bodies, size: int) -> Space:
         change=np.zeros(f),
         move=np.zeros(q),
         ends=np.zeros(7),
-        known_at=np.zeros(3),
-        known_y=np.zeros((3, size)),
-        known_rate=np.zeros((3, size)),
+        known_at=np.zeros(KNOWN),
+        known_y=np.zeros((KNOWN, size)),
+        known_rate=np.zeros((KNOWN, size)),
         y=np.zeros(size),
         rate=np.zeros(size),
         predicted=np.zeros(size),
@@ -106,6 +108,56 @@ def scatter(first, size, tip, root, outer, g, h, force, tangent):
 
 
 @part()
+def element_of(s, at, y, strips, shape, local, out):
+    """Evaluate strip s, whose w and a begin at y[at], in its element coordinates; returns their number."""
+    n, modes, inner = shape.order.size, strips.compliance.shape[1], strips.coupled - strips.outer
+    own, tip, root = 2 * n - 6, strips.tips[s] >= 0, strips.roots[s] >= 0
+    moving = n if root else n - 1
+    place_points(s, y[at : at + own], y, strips, local)
+    evaluate_points(s, y[at + own : at + own + modes], moving, shape, strips, local, out)
+    to_element(
+        moving,
+        inner,
+        tip,
+        root,
+        local.map[s],
+        local.gradient[s],
+        local.hessian[s],
+        local.coupling[s],
+        local.g[s],
+        local.h[s],
+        local.b[s],
+        local.square,
+        local.lines,
+        local.line,
+    )
+    return own + inner + 3 * tip + 3 * root + strips.outer
+
+
+@part()
+def condensed(s, own, size, strips, local):
+    """Condense strip s to its ends; returns its negative pivots, or SINGULAR."""
+    g, h, gap = local.g[s], local.h[s], local.gap[s]
+    if strips.coupled == 0:
+        return condense(own, size, strips.gain[s], g, h, local.b[s], gap)
+    return condense_coupled(
+        own,
+        size,
+        strips.coupled,
+        strips.outer,
+        strips.measure != MATERIAL,
+        strips.compliance[s],
+        strips.gain[s],
+        g,
+        h,
+        local.b[s],
+        local.e[s],
+        gap,
+        local.gram[s],
+    )
+
+
+@kernel()
 def assemble(y, load, bodies, strips, shape, local, space):
     """Condense all strips at y; the bodies' tangent (upper) and force in ``space``.
 
@@ -127,29 +179,9 @@ def assemble(y, load, bodies, strips, shape, local, space):
     norm = 0.0
     for s in range(count):
         at = poses + s * (own + modes)
-        tip, root = strips.tips[s] >= 0, strips.roots[s] >= 0
-        moving = n if root else n - 1
-        last = own + inner
-        size = last + 3 * tip + 3 * root + strips.outer
-        place_points(s, y[at : at + own], y, strips, local)
-        evaluate_points(s, y[at + own : at + own + modes], moving, shape, strips, local, out)
+        tip, root, last = strips.tips[s] >= 0, strips.roots[s] >= 0, own + inner
+        size = element_of(s, at, y, strips, shape, local, out)
         g, h, gap = local.g[s], local.h[s], local.gap[s]
-        to_element(
-            moving,
-            inner,
-            tip,
-            root,
-            local.map[s],
-            local.gradient[s],
-            local.hessian[s],
-            local.coupling[s],
-            g,
-            h,
-            local.b[s],
-            local.square,
-            local.lines,
-            local.line,
-        )
         for i in range(own):
             norm = max(norm, abs(g[i]))
         for k in range(modes):
@@ -160,24 +192,7 @@ def assemble(y, load, bodies, strips, shape, local, space):
         if root:
             for i in range(3):
                 raw[3 * strips.roots[s] + i] += g[last + 3 * tip + i]
-        if strips.coupled == 0:
-            negative = condense(own, size, strips.gain[s], g, h, local.b[s], gap)
-        else:
-            negative = condense_coupled(
-                own,
-                size,
-                strips.coupled,
-                strips.outer,
-                strips.measure != MATERIAL,
-                strips.compliance[s],
-                strips.gain[s],
-                g,
-                h,
-                local.b[s],
-                local.e[s],
-                gap,
-                local.gram[s],
-            )
+        negative = condensed(s, own, size, strips, local)
         if negative == SINGULAR:
             return np.inf
         out[NEGATIVE] += negative

@@ -100,7 +100,7 @@ def bodies_of(system: System, ends: Ends, outer: int) -> Bodies | None:
         weight=np.concatenate((weight / unit, np.zeros(outer))),
         free=np.array([i for i in range(len(rest) + outer) if i not in set(held.tolist())], dtype=np.int64),
         held=held,
-        driven=int(turns[0]) if len(turns) == 1 else -1,
+        driven=int(turns[0]) if len(turns) else -1,
     )
 
 

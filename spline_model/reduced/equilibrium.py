@@ -11,6 +11,8 @@ from spline_model.strip.condense import SINGULAR
 ITERATIONS, EVALUATIONS, HALVED = range(3)
 """Places of the counters."""
 MOST_ITERATIONS = 15
+NEARLY = 10.0
+"""Residual over the tolerance from which the last correction, which squares it, is enough."""
 
 
 @part()
@@ -28,7 +30,7 @@ def newton(y, load, bodies, strips, shape, local, space, tolerance, counters):
         negative = factorise(bodies.free, space.tangent, space.factors, bodies.load.size - poses)
         if negative == SINGULAR:
             return -1
-        done = norm <= tolerance or (norm <= 1e3 * tolerance and norm > 0.5 * before)
+        done = norm <= NEARLY * tolerance or (norm <= 1e3 * tolerance and norm > 0.5 * before)
         if not done and trial == MOST_ITERATIONS:
             return -1
         before = norm

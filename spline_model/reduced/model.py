@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property, lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -58,6 +58,17 @@ class Reduced:
         own, modes = 2 * len(self.shape.order) - 6, int(self.strips.compliance.shape[1])
         at = len(self.bodies.rest) + strip * (own + modes)
         return slice(at, at + own), slice(at + own, at + own + modes)
+
+    @cached_property
+    def drive_length(self) -> Array:
+        """Unit of each driven coordinate (D,): 1 rad or the length."""
+        return np.where(self.system.tables.drives.turns == 1, 1.0, self.length)
+
+    @cached_property
+    def drives(self) -> tuple[Array, Array]:
+        """Driven coordinates at load factor 0, and their change to 1 (D,)."""
+        drives = self.system.tables.drives
+        return drives.origin / self.drive_length, drives.target / self.drive_length
 
     def local(self) -> Local:
         """Working arrays of the strips."""
@@ -136,7 +147,7 @@ def _strips(
     split = len_modes(mixed[0], slide=False)
     modes, compliance, to_modes = [], [], []
     for parts, v in zip(mixed, speed, strict=True):
-        values, back = _orthonormal(tuple(e.modes for e in parts), basis, points, tuple(v))
+        values, back = orthonormal_modes(tuple(e.modes for e in parts), basis, points, tuple(v))
         modes.append(values)
         each = [e.axial_compliance for e in parts for _ in range(e.modes.count)]
         compliance.append(np.array(each) * energy / length)
@@ -157,7 +168,7 @@ def _strips(
         / (energy / length),
         strain=np.array(
             [
-                _natural_strain(parts, consistent.get(s.name))
+                natural_strain(parts, consistent.get(s.name))
                 for s, parts in zip(scene.strips, mixed, strict=True)
             ]
         ),
@@ -200,7 +211,7 @@ def values_at(modes: AxialModes, u: Array) -> Array:
 
 
 @lru_cache(maxsize=64)
-def _orthonormal(
+def orthonormal_modes(
     parts: tuple[AxialModes, ...], basis: SplineBasis, points: int, speed: tuple[float, ...]
 ) -> tuple[Array, Array]:
     """Modes (G, K) orthonormal along the strip, and the scene's modes from them; kept."""
@@ -219,7 +230,8 @@ def _orthonormal(
     return values, back
 
 
-def _natural_strain(parts: list[MixedStretching], consistent: Stretching | None) -> float:
+def natural_strain(parts: list[MixedStretching], consistent: Stretching | None) -> float:
+    """Stress-free strain of a strip."""
     if consistent is not None:
         return consistent.natural_strain
     return parts[0].natural_strain if parts else 0.0

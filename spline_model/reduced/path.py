@@ -1,7 +1,7 @@
 """An equilibrium path of any mechanism, compiled: predict, correct, check, halve.
 
-Held coordinates and loads are linear in one factor. Stable states only: where the path becomes
-unstable, or stops, the bordered path finds out why.
+Held coordinates and loads are linear in one factor. As long as stability does not change: where it
+does, or the path stops, ``continuation`` finds out why.
 """
 
 from __future__ import annotations
@@ -14,25 +14,29 @@ from numpy.typing import NDArray
 from spline_model.checks import LARGEST_CORRECTION, SLOWEST_SPEED, SMALLEST_CORRECTION
 from spline_model.continuation.balance import ROUND_OFF, WORK_MISMATCH
 from spline_model.continuation.resolution import LARGEST_DEFECT, SMALLEST_MOMENT
-from spline_model.reduced.assembly import AXIAL, BENDING, DEAD, SLOWEST, moment_defect, root_of
+from spline_model.reduced.assembly import AXIAL, BENDING, DEAD, KNOWN, SLOWEST, moment_defect, root_of
 from spline_model.reduced.equilibrium import HALVED, conjugate, newton, stiffness_of, tangent
+from spline_model.reduced.preload import act, swell
 from spline_model.strip.compiled import copy, kernel, part
 
 Array = NDArray[np.float64]
 
-KNOWN = 3
 SMALLEST_STEP = 2.0**-10
 
 
 class Route(NamedTuple):
     """Where a path goes: factors (S,), the first one its start; held coordinates are origin + factor
-    x target (D,), the load factor is load + factor x growth."""
+    x target (D,), the load factor is load + factor x growth, the share of weight and pre-strain the
+    factor itself where it ``swells``, and all of it otherwise. Critical points end it, or it ``passes`` them.
+    """
 
     factor: Array
     origin: Array
     target: Array
     load: float
     growth: float
+    swells: bool = False
+    passes: bool = False
 
 
 class Answer(NamedTuple):
@@ -51,6 +55,11 @@ class Answer(NamedTuple):
     inertia: NDArray[np.int64]
     defect: Array
     counters: NDArray[np.int64]
+
+    def rows(self, kept: slice) -> Answer:
+        """Some of the states."""
+        by_state = {name: getattr(self, name)[kept] for name in self._fields if name != "counters"}
+        return self._replace(**by_state)
 
 
 def empty_answer(states: int, size: int, bodies: int, held: int) -> Answer:
@@ -107,6 +116,19 @@ def accepted(y, known, bodies, strips, shape, space):
     return correction <= max(LARGEST_CORRECTION**2 * step, SMALLEST_CORRECTION**2)
 
 
+@part()
+def work_of(width, slope0, slope1, bend0, bend1):
+    """Gain of a potential over a step, from its first and second derivatives at both ends."""
+    return 0.5 * width * (slope0 + slope1) + width * width / 12.0 * (bend0 - bend1)
+
+
+@part()
+def is_work(gained, work, width, slope0, slope1, stored):
+    """Whether a gain of potential is the work done, for what is ``stored``: ``continuation.balance``."""
+    scale = max(abs(gained), 0.5 * abs(width) * (abs(slope0) + abs(slope1)))
+    return abs(gained - work) <= WORK_MISMATCH * scale + ROUND_OFF * (1.0 + stored)
+
+
 @kernel()
 def remember(t, y, rate, known, at, known_y, known_rate):
     """Append a state and its rate to the known ones, dropping the oldest; returns their number."""
@@ -133,17 +155,21 @@ def keep_last(known, at, known_y, known_rate):
 
 
 @kernel()
-def follow(start, route, judged, bodies, strips, shape, local, space, tolerance, answer):
+def follow(start, route, judged, preload, bodies, strips, shape, local, space, tolerance, answer):
     """Follow a path from ``start`` (Y,) through the route; returns the number of states that converged.
 
-    judged: whether the moment defect refuses. A state with negative eigenvalues, or with a stiffness of
-    another sign than the one before, ends the path: what happens between is not for here.
+    judged: whether the moment defect refuses; preload: what bodies and strips are overwritten with where
+    the route swells. A state with another number of negative eigenvalues, or with a stiffness of another
+    sign than the one before, ends the path, unless it passes such points: what happens there is not for here.
     """
     y, out, counters, factors = space.y, space.out, answer.counters, route.factor
     held, targets = bodies.held, route.target
     copy(start, y)
+    copy(start, space.predicted)
+    copy(start, space.known_y[0])
     known, at = 0, factors[0]
     energy = gradient = curvature = done = defect = stiffness = 0.0
+    inertia = -1
     for row in range(factors.size):
         begin, step = at, factors[row] - at
         if known > 1 and step * (at - space.known_at[known - 2]) < 0.0:  # the path turns back
@@ -164,8 +190,12 @@ def follow(start, route, judged, bodies, strips, shape, local, space, tolerance,
             for d in range(held.size):
                 y[held[d]] = space.predicted[held[d]] = route.origin[d] + here * targets[d]
             load = route.load + here * route.growth
+            if route.swells:
+                act(here, preload, bodies, strips)
             negative = newton(y, load, bodies, strips, shape, local, space, tolerance, counters)
-            sound = negative == 0 and (row == 0 or accepted(y, known, bodies, strips, shape, space))
+            inertia = negative if row == 0 else inertia
+            sound = inertia >= 0 and (negative == inertia or (route.passes and negative >= 0))
+            sound = sound and accepted(y, max(known, 1), bodies, strips, shape, space)
             if sound:
                 tangent(targets, route.growth, bodies, strips, shape, local, space)
                 slope, bend = conjugate(targets, route.growth, bodies, y, space)
@@ -174,13 +204,14 @@ def follow(start, route, judged, bodies, strips, shape, local, space, tolerance,
                 total = out[BENDING] + out[AXIAL] + out[DEAD]
                 for i in range(bodies.rest.size):
                     total -= load * bodies.load[i] * (y[i] - bodies.rest[i])
+                if route.swells:
+                    slope, bend = swell(y, here, preload, bodies, strips, shape, local, space)
+                    total += here * preload.fallen
                 sound = not (judged and defect > LARGEST_DEFECT)
                 if sound and row > 0:
-                    width, gained = here - at, total - energy
-                    work = 0.5 * width * (gradient + slope) + width * width / 12.0 * (curvature - bend)
-                    scale = max(abs(gained), 0.5 * abs(width) * (abs(gradient) + abs(slope)))
-                    floor = ROUND_OFF * (1.0 + abs(out[BENDING]) + abs(out[AXIAL]))
-                    sound = abs(gained - work) <= WORK_MISMATCH * scale + floor
+                    stored = abs(out[BENDING]) + abs(out[AXIAL])
+                    work = work_of(here - at, gradient, slope, curvature, bend)
+                    sound = is_work(total - energy, work, here - at, gradient, slope, stored)
                     done += work if sound else 0.0
                 if sound:
                     energy, gradient, curvature = total, slope, bend
@@ -200,7 +231,7 @@ def follow(start, route, judged, bodies, strips, shape, local, space, tolerance,
         if bodies.driven >= 0:
             before = stiffness
             stiffness = stiffness_of(bodies, space)
-            if row > 0 and before * stiffness < 0.0:
+            if row > 0 and before * stiffness < 0.0 and not route.passes:
                 return row
             answer.stiffness[row] = stiffness
         copy(y, answer.y[row])

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -11,7 +13,7 @@ from spline_model.reduced.model import Reduced
 from spline_model.reduced.path import Answer
 from spline_model.strip.compiled import kernel
 from spline_model.strip.element import place_points
-from spline_model.strip.points import evaluate_points
+from spline_model.strip.points import visit_points
 
 Array = NDArray[np.float64]
 
@@ -30,7 +32,7 @@ def place_all(y, poses, shape, strips, local, out, points, forces):
             at = poses + s * (own + modes)
             state = y[row]
             place_points(s, state[at : at + own], state, strips, local)
-            evaluate_points(s, state[at + own : at + own + modes], n, shape, strips, local, out)
+            visit_points(s, state[at + own : at + own + modes], n, shape, strips, local, out)
             p, g = local.points[s], local.gradient[s]
             for i in range(2 * n):
                 points[row, s, i] = p[i]
@@ -44,14 +46,40 @@ def place_all(y, poses, shape, strips, local, out, points, forces):
                 ) * g[inner]
 
 
-def unknowns_of(model: Reduced, answer: Answer, count: int) -> Array:
-    """Unknowns z (S, N) of the first ``count`` states."""
+def by_state(model: Reduced, factors: Array, answer: Answer) -> dict[str, Any]:
+    """What a ``Path`` has by state, in the scene's unknowns and in SI units; factors (S,).
+
+    Of the rates those of bodies and drives are filled.
+    """
+    system, layout, drives = model.system, model.system.layout, model.system.tables.drives
+    states = unknowns_of(model, answer.y, answer.reaction)
+    rates = np.zeros_like(states)
+    for i, body in enumerate(system.scene.bodies):
+        rates[:, layout.body(body.name)] = answer.rate[:, 3 * i : 3 * i + 3] * [
+            model.length,
+            model.length,
+            1.0,
+        ]
+    rates[:, drives.row] = answer.reaction_rate * (model.energy / model.drive_length)
+    return {
+        "load_factor": factors,
+        "states": states,
+        "rates": rates,
+        "stiffness": answer.stiffness * model.energy,
+        "energies": answer.energies * model.energy,
+        "done": answer.done * model.energy,
+        "inertia": answer.inertia,
+        "moment_defect": answer.defect,
+    }
+
+
+def unknowns_of(model: Reduced, y: Array, reaction: Array) -> Array:
+    """The scene's unknowns (S, N) at states y (S, Y) with reactions on the drives (S, D)."""
     strips, shape, n = model.strips, model.shape, len(model.shape.order)
-    y = answer.y[:count]
-    points = np.zeros((count, len(strips.roots), 2 * n))
-    forces = np.zeros((count, len(strips.roots), 2, 3))
+    points = np.zeros((len(y), len(strips.roots), 2 * n))
+    forces = np.zeros((len(y), len(strips.roots), 2, 3))
     place_all(y, len(model.bodies.rest), shape, strips, model.local(), np.zeros(5), points, forces)
-    return gathered(model, y, points, forces, answer.reaction[:count])
+    return gathered(model, y, points, forces, reaction)
 
 
 def gathered(model: Reduced, y: Array, points: Array, forces: Array, reaction: Array) -> Array:

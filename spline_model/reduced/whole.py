@@ -10,7 +10,7 @@ from spline_model.reduced.model import Reduced
 from spline_model.strip.compiled import kernel
 from spline_model.strip.element import place_points, to_element
 from spline_model.strip.laws import MATERIAL
-from spline_model.strip.points import evaluate_points
+from spline_model.strip.points import visit_points
 
 Array = NDArray[np.float64]
 
@@ -40,7 +40,7 @@ def _assemble(y, poses, strips, shape, local, place, out, gradient, hessian):
             axial = at + own
             tip, root = strips.tips[s] >= 0, strips.roots[s] >= 0
             place_points(s, state[at:axial], state, strips, local)
-            evaluate_points(s, state[axial : axial + modes], n, shape, strips, local, out)
+            visit_points(s, state[axial : axial + modes], n, shape, strips, local, out)
             g, h, b = local.g[s], local.h[s], local.b[s]
             to_element(
                 n,

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from spline_model.strip.compiled import part
+from spline_model.strip.compiled import kernel, part
 from spline_model.strip.laws import MATERIAL, bending_law, mixed_law, stretching_law
 
 
@@ -159,3 +159,9 @@ def evaluate_points(s, a, moving, shape, strips, local, out):
         local.moment[s],
         out,
     )
+
+
+@kernel()
+def visit_points(s, a, moving, shape, strips, local, out):
+    """``evaluate_points``, called: for what is not the inner loop of a path, which would compile it again."""
+    evaluate_points(s, a, moving, shape, strips, local, out)

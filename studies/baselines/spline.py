@@ -1,7 +1,7 @@
 """The dynamic spline with the interface of a baseline, so that all are timed alike: compiled solve alone.
 
-Static paths are timed around `spline_model.fast.path.follow`, with geometry, quadrature and working arrays
-prepared, as the set-up of other codes is left out too.
+Static paths are timed around `spline_model.reduced.solve.run`, with geometry and quadrature prepared, as the
+set-up of other codes is left out too.
 """
 
 from collections.abc import Callable
@@ -11,10 +11,15 @@ import numpy as np
 
 from spline_model.compile import compile_scene
 from spline_model.dynamics import Trajectory, solve_release
-from spline_model.fast import path, solve
 from spline_model.integrators import leapfrog
 from spline_model.integrators.motion import set_in_motion
 from spline_model.pivot import Pivot, cross_axis_pivot, swinging_slide_stiffness
+from spline_model.preload import is_preloaded
+from spline_model.reduced.elements import Elements, followed
+from spline_model.reduced.equilibrium import EVALUATIONS, ITERATIONS
+from spline_model.reduced.model import at_rest
+from spline_model.reduced.path import Answer
+from spline_model.reduced.solve import run
 from studies.baselines.answer import (
     BaselineFailed,
     BaselineMotion,
@@ -56,41 +61,34 @@ def static_path(
         BadInput: a scene that the condensed path does not cover. BaselineFailed: the path is not reached.
     """
     turns = checked_rotations(rotations)
-    mechanism = _pivot(problem, control_points=control_points, gauss_points=gauss_points).mechanism
-    if not solve.is_fast(mechanism):
+    largest = float(turns[np.abs(turns).argmax()])
+    pivot = _pivot(problem, control_points=control_points, gauss_points=gauss_points)
+    elements = followed(compile_scene(pivot.driven(largest)))
+    if not isinstance(elements, Elements) or is_preloaded(elements.system):
         raise BadInput(
-            f"{MODEL}: got the effects {', '.join(mechanism.effects)}, expected a condensed path's"
+            f"{MODEL}: got the effects {', '.join(pivot.mechanism.effects)}, expected an element's"
         )
-    modes, strips = solve.mode_count(mechanism.design), len(mechanism.design.strips)
-    frame, grid = solve.frame_of(mechanism), solve.grid_of(mechanism.design)
-    start, targets = solve.at_rest(frame, control_points, modes), turns[1:].copy()
-    locals_, space = solve.arrays(strips, grid)
-    answer = solve.empty_answer(len(turns), len(start))
+    model, factors, start = elements.model, turns / largest, at_rest(elements.model)
 
-    def prepare() -> Callable[[], int]:
-        answer.counters[:] = 0
+    def prepare() -> Callable[[], Answer]:
+        return lambda: run(elements, factors, start)
 
-        def work() -> int:
-            done: int = path.follow(start, targets, frame, grid, locals_, space, solve.TOLERANCE, answer)
-            return done
-
-        return work
-
-    if prepare()() < len(turns):
+    answer = prepare()()
+    if len(answer.y) < len(turns):
         raise BaselineFailed(f"spline with {control_points} control points: the path is not reached")
     seconds = median_seconds(prepare, repeat)
     return BaselinePath(
         model=MODEL,
-        settings={"control_points": control_points, "gauss_points": len(grid.weight)},
+        settings={"control_points": control_points, "gauss_points": len(model.shape.weight)},
         rotation=turns,
-        centre=answer.y[:, :2] * frame.length[0],
-        torque=answer.torque,
-        stiffness=answer.stiffness,
+        centre=answer.y[:, :2] * model.length,
+        torque=answer.reaction[:, 0] * model.energy,
+        stiffness=answer.stiffness * model.energy,
         solve_s=seconds,
         work={
-            "unknowns": len(start),
-            "newton_iterations": int(answer.counters[path.ITERATIONS]),
-            "factorisations": int(answer.counters[path.EVALUATIONS]),
+            "unknowns": len(start) - 1,
+            "newton_iterations": int(answer.counters[ITERATIONS]),
+            "factorisations": int(answer.counters[EVALUATIONS]),
         },
     )
 

@@ -23,7 +23,7 @@ MIXED, CONSISTENT = SplineSettings(control_points=4), SplineSettings(control_poi
 #: Small calls that between them enter every kernel, the longest first: settings and what is solved with them.
 CALLS: tuple[tuple[Settings, tuple[str, ...]], ...] = (
     (MIXED, ("sequential impulses",)),
-    (MIXED, ("accuracy", "many", "modes", "energy", "leapfrog", "generalised-alpha", "explicit")),
+    (MIXED, ("accuracy", "many", "modes", "energy", "massless", "leapfrog", "generalised-alpha", "explicit")),
     (FeSettings(elements=4), ("static", "modes", "central-difference")),
     (FeSettings(elements=4, element="reissner"), ("static", "modes", "central-difference")),
     (CONSISTENT, ("static", "modes", "energy", "generalised-alpha", "explicit")),
@@ -53,6 +53,7 @@ def call(settings: Settings, tasks: tuple[str, ...]) -> None:
     from spline_model.sequential_impulse import solve_impulses
     from studies.answers.adapters import answer_modes, answer_release, answer_static
     from studies.answers.models import built, model_of
+    from studies.cases.effects import Effects
     from studies.cases.problem import named_case
 
     problem = replace(named_case("cross_axis_pivot"), rotation=0.1, increments=1)
@@ -67,5 +68,8 @@ def call(settings: Settings, tasks: tuple[str, ...]) -> None:
             pivot = built(model_of(settings), problem, settings, moving=True)[0]
             for form in ("printed", "stable"):
                 solve_impulses(pivot, duration=1e-5, step=1e-6, form=form)
+        elif task == "massless":
+            light = replace(problem, effects=Effects(names=("bending", "stretching", "body_inertia")))
+            answer_release(light, settings, duration=1e-5, integrator="energy", step=1e-8)
         else:
             answer_release(problem, settings, duration=1e-5, integrator=task, step=1e-8)

@@ -7,9 +7,9 @@ import pytest
 from mpmath import ellipk, mp
 
 from spline_model.compile import compile_scene
+from spline_model.continuation.bordered import Bordered
 from spline_model.continuation.reduced import reduced_tangent
 from spline_model.errors import InvalidParameter
-from spline_model.newton import Workspace
 from spline_model.pivot import cross_axis_pivot
 from spline_model.statics import solve_loads, solve_mechanism, solve_path, solve_statics
 from tests import gates
@@ -140,7 +140,7 @@ def test_inertia_counts_the_negative_eigenvalues():
     pivot = opposed(offset=0.03, control_points=7)
     rotation = -0.05
     path = solve_path(pivot.mechanism, rotation, 8)
-    work = Workspace.of(compile_scene(pivot.driven(rotation)))
+    work = Bordered.of(compile_scene(pivot.driven(rotation)))
     assert path.inertia.max() > 0
     for z, factor, inertia in zip(path.states, path.load_factor, path.inertia, strict=True):
         work.evaluate(z, factor)
@@ -154,7 +154,7 @@ def test_a_critical_point_is_where_an_eigenvalue_vanishes():
     path = solve_path(pivot.mechanism, -0.1, 10)
     (point,) = [c for c in path.critical_points if c.kind == "bifurcation"]
     system = compile_scene(pivot.driven(-0.1))
-    work = Workspace.of(system)
+    work = Bordered.of(system)
     work.evaluate(point.z, point.load_factor)
     tangent = reduced_tangent(work)
     values = np.linalg.eigvalsh(tangent.stiffness)

@@ -12,10 +12,11 @@ from spline_model.dynamics import solve_motion
 from spline_model.effects import registry
 from spline_model.effects.registry import DEFAULT_EFFECTS, REGISTRY
 from spline_model.integrators.motion import set_in_motion
-from spline_model.kernels import bending, energy_step
+from spline_model.kernels import bending
 from spline_model.kernels.assemble import assemble
 from spline_model.mechanism import mechanism
 from spline_model.modes import natural_frequencies
+from spline_model.motion import run
 from spline_model.pivot import cross_axis_pivot, swinging_slide_stiffness
 from spline_model.statics import solve_mechanism
 from tests import gates
@@ -44,13 +45,13 @@ def test_unnamed_kinds_have_tables_of_length_zero():
 
 def test_no_combination_recompiles():
     """Requirement: every scene runs the same compiled code."""
-    if not hasattr(energy_step.run, "signatures"):
+    if not hasattr(run.run, "signatures"):
         pytest.skip("the compiler is switched off")
     solve_motion(scene_with(), start=0.5, duration=2e-4)
-    before = [len(kernel.signatures) for kernel in (assemble, energy_step.run, bending.add_bending)]
+    before = [len(kernel.signatures) for kernel in (assemble, run.run, bending.add_bending)]
     for name in EXTRA:
         solve_motion(scene_with(name), start=0.5, duration=2e-4)
-    after = [len(kernel.signatures) for kernel in (assemble, energy_step.run, bending.add_bending)]
+    after = [len(kernel.signatures) for kernel in (assemble, run.run, bending.add_bending)]
     assert after == before
 
 

@@ -150,5 +150,5 @@ def test_bad_poses_are_refused_and_change_nothing():
     with pytest.raises(InvalidParameter, match="rotation: got nan"):
         solver.turn(math.nan)
     assert np.array_equal(solver.unknowns, before)
-    with pytest.raises(InvalidParameter, match="straight Bezier strips"):
+    with pytest.raises(InvalidParameter, match="one body on strips"):
         HeldPivot(cross_axis_pivot(**TABLE_ONE, stretch="consistent").mechanism)

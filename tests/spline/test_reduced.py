@@ -6,11 +6,15 @@ import numpy as np
 import pytest
 
 from spline_model.compile import compile_scene
+from spline_model.continuation.arc_length import follow_arc
+from spline_model.errors import InvalidParameter
 from spline_model.mechanism import BodyDesign, StripDesign, mechanism
 from spline_model.path import follow
 from spline_model.pivot import cross_axis_pivot
 from spline_model.reduced.model import at_rest, from_unknowns, reduced
 from spline_model.statics import solve_statics
+from tests.spline.frames import column, opposed, toggle
+from tests.spline.test_branches import heavy, strained
 from tests.table_one import TABLE_ONE
 
 STEEL = {
@@ -114,8 +118,9 @@ def led_pivot(form):
 
 
 SCENES = {build.__name__: build for build in (guide, free_end, arc, chain, loaded_pivot, led_pivot)}
-PAIRS = [(scene, form) for scene in SCENES for form in FORMS if (scene, form) != ("arc", "four points")]
-"""All but a curved strip of four points, which does not resolve its pre-strain and is refused."""
+REFUSED = [("arc", "four points"), ("led_pivot", "inextensible"), ("led_pivot", "inextensible spatial")]
+"""A curved strip of four points does not resolve its pre-strain, inextensible strips hold their centre."""
+PAIRS = [(scene, form) for scene in SCENES for form in FORMS if (scene, form) not in REFUSED]
 
 
 @pytest.mark.parametrize(("scene", "form"), PAIRS)
@@ -124,16 +129,26 @@ def test_elements_find_the_states_of_the_bordered_system(scene, form):
     system = compile_scene(SCENES[scene](FORMS[form]))
     quick, slow = (follow(system, FACTORS, method=method) for method in ("condensed", "multipliers"))
     assert slow.status is quick.status
-    assert quick.history == () or slow.message  # on the elements, but for what stops or buckles
+    assert quick.history == () or slow.message  # compiled, but for what stops or buckles
     unit = system.scales.unit
     assert np.abs((quick.states - slow.states) / unit).max() < 1e-9
+    alike = quick.counters["halved_increments"] == slow.counters["halved_increments"]
     for name in ("energies", "work", "stiffness"):
         mine, other = getattr(quick, name), getattr(slow, name)
         scale = np.nanmax(np.abs(other), initial=1e-6 * system.scales.energy)
-        np.testing.assert_allclose(mine, other, rtol=0.0, atol=1e-9 * scale, err_msg=name)
+        error = 1e-9 if alike or name != "work" else 1e-5  # a quadrature over other steps
+        np.testing.assert_allclose(mine, other, rtol=0.0, atol=error * scale, err_msg=name)
     np.testing.assert_allclose(quick.moment_defect, slow.moment_defect, atol=1e-7)
     rows = system.tables.drives.row
     np.testing.assert_allclose(quick.rates[:, rows] / unit[rows], slow.rates[:, rows] / unit[rows], atol=1e-8)
+
+
+@pytest.mark.parametrize("method", ["condensed", "multipliers"])
+@pytest.mark.parametrize(("scene", "form"), REFUSED)
+def test_both_refuse_what_has_no_path(scene, form, method):
+    """Requirement: what does not resolve its pre-strain, or leads what cannot move, is refused by both."""
+    with pytest.raises(InvalidParameter, match=r"do not resolve|singular"):
+        follow(compile_scene(SCENES[scene](FORMS[form])), FACTORS, method=method)
 
 
 @pytest.mark.parametrize("form", FORMS)
@@ -170,14 +185,70 @@ def test_what_the_elements_do_not_know_is_left_to_the_bordered_system():
     assert reduced(compile_scene(long.driven(1.0))) is None
 
 
-def test_an_unstable_path_is_left_to_the_bordered_system():
-    """Requirement: a column pressed beyond Euler's load is not answered on the elements, and says so."""
+def buckling_column():
+    """A column pressed to one and a half times Euler's load."""
     load = 1.5 * math.pi**2 / 4 * STEEL["youngs_modulus"] * STEEL["second_moment_of_area"] / 0.1**2
-    column = mechanism(
+    return mechanism(
         strips=[strip("a", (0, 0), (0, 0.1), tip="b")],
         bodies=[BodyDesign(name="b", centre=(0.0, 0.1))],
         effects=("bending", "stretching", "applied_force"),
         parameters={"applied_force": {"force": (0.0, -load)}},
+    ).scene
+
+
+WATCHED = {
+    "column": lambda: column(load=4.0, control_points=8).scene,
+    "pre-strained": lambda: strained(41.0).driven(0.0),
+    "heavy": lambda: heavy(30.0, 0.0).scene,
+    "toggle": lambda: toggle(control_points=8).scene,
+    "opposed": lambda: opposed(offset=0.03, control_points=8).driven(-0.3),
+    "inextensible": lambda: column(load=4.0, effects=("bending", "inextensible")).scene,
+}
+
+
+@pytest.mark.parametrize("name", WATCHED)
+def test_elements_find_the_critical_points_of_the_bordered_system(name):
+    """Requirement: critical points, their modes, stability, status and what is said are the same on both."""
+    system = compile_scene(WATCHED[name]())
+    quick, slow = (
+        follow(system, np.linspace(0.0, 1.0, 9)[1:], method=method) for method in ("condensed", "multipliers")
     )
-    path = follow(compile_scene(column.scene), FACTORS)
-    assert path.history != () and "buckles" in path.message
+    said = [
+        path.message.partition(" (no convergence")[0] for path in (quick, slow)
+    ]  # its residual is round-off
+    assert (quick.status, said[0]) == (slow.status, said[1])
+    assert np.array_equal(quick.inertia, slow.inertia)
+    assert np.abs((quick.states - slow.states) / system.scales.unit).max() < 1e-8
+    unit = system.scales.unit[: system.layout.coordinate_count]
+    assert len(quick.critical_points) == len(slow.critical_points)
+    for mine, other in zip(quick.critical_points, slow.critical_points, strict=True):
+        assert (mine.kind, mine.inertia) == (other.kind, other.inertia)
+        assert abs(mine.load_factor / other.load_factor - 1) < 1e-6
+        assert np.abs((mine.mode - other.mode) / unit).max() < 1e-5
+
+
+def test_arc_length_is_the_same_on_the_elements():
+    """Requirement: a path through two limit points ends in the same state on both, with the same limits."""
+    system = compile_scene(toggle(control_points=6).scene)
+    quick, slow = (follow_arc(system, method=method) for method in ("condensed", "multipliers"))
+    assert np.abs((quick.states[-1] - slow.states[-1]) / system.scales.unit).max() < 1e-8
+    loads = [[c.load_factor for c in path.critical_points] for path in (quick, slow)]
+    np.testing.assert_allclose(*loads, rtol=1e-7)
+    assert len(loads[0]) == 2
+
+
+def test_an_increment_in_which_nothing_happens_stays_compiled():
+    """Requirement: on a column that buckles only the increment where it does is taken in steps."""
+    path = follow(compile_scene(buckling_column()), np.linspace(0.0, 1.0, 21)[1:])
+    assert len(path.history) == 1
+    assert "buckles" in path.message
+    assert path.inertia[-1] == 1
+
+
+@pytest.mark.parametrize("control_points", [6, 15])
+def test_an_unloaded_pivot_is_at_rest(control_points):
+    """Requirement: before anything acts there is no torque and no reaction, not their round-off."""
+    pivot = cross_axis_pivot(**TABLE_ONE, control_points=control_points)
+    answer = solve_statics(pivot, rotation=0.3, increments=2)
+    assert answer.torque[0] == 0.0
+    assert not answer.clamp_reactions[0].any()

@@ -9,16 +9,16 @@ import pytest
 from spline_model.batch import solve_many
 from spline_model.compile import compile_scene
 from spline_model.continuation.balance import jumped
+from spline_model.continuation.bordered import Bordered
 from spline_model.continuation.point import stand
 from spline_model.continuation.resolution import LARGEST_DEFECT
 from spline_model.design import Discretisation, StripDesign
 from spline_model.errors import ConvergenceError, InvalidParameter
-from spline_model.fast import doubt
-from spline_model.fast.solve import frame_of
 from spline_model.mechanism import mechanism
 from spline_model.newton import Workspace, solve
 from spline_model.path import follow
 from spline_model.pivot import cross_axis_pivot
+from spline_model.reduced.path import is_work, work_of
 from spline_model.statics import solve_from, solve_mechanism, solve_path, solve_statics
 from tests import gates
 from tests.spline.frames import opposed
@@ -106,7 +106,7 @@ def test_energy_tells_branches_apart():
     """Requirement: two states of one path are continuous in energy, two of different branches are not."""
     pivot = cross_axis_pivot(**TABLE_ONE, control_points=4, gauss_points=12)
     system = compile_scene(pivot.driven(1.0))
-    work = Workspace.of(system)
+    work = Bordered.of(system)
     path = follow(system, [0.9, 1.0])
     points = [
         stand(work, z, t, work.evaluate(z, t)) for z, t in zip(path.states, path.load_factor, strict=True)
@@ -269,13 +269,13 @@ def test_weight_is_in_the_balance_of_moments():
 
 def test_the_condensed_path_checks_the_energy():
     """Requirement: the compiled check takes an energy that is the work done, and no other."""
-    frame = frame_of(cross_axis_pivot(**TABLE_ONE).mechanism)
     answer = to(90, increments=20)
-    step, stored = answer.rotation[1], answer.bending_energy + answer.axial_energy
-    sides = (*answer.torque[9:11], *answer.stiffness[9:11])
-    gained = stored[10] - stored[9]
-    assert not doubt.jumped(step, *sides, gained, stored[9], frame)
-    assert doubt.jumped(step, *sides, 1.05 * gained, stored[9], frame)
+    step, energy = answer.rotation[1], answer.bending_energy + answer.axial_energy
+    unit = TABLE_ONE["youngs_modulus"] * TABLE_ONE["second_moment_of_area"] / TABLE_ONE["length"]
+    torque, stiffness, gained = answer.torque[9:11] / unit, answer.stiffness[9:11] / unit, np.diff(energy)[9]
+    work = work_of(step, *torque, *stiffness)
+    assert is_work(gained / unit, work, step, *torque, energy[9] / unit)
+    assert not is_work(1.05 * gained / unit, work, step, *torque, energy[9] / unit)
 
 
 def test_a_batch_says_what_is_stable():

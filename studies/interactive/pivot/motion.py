@@ -9,11 +9,10 @@ from numpy.typing import NDArray
 
 from spline_model.compile import System, compile_scene
 from spline_model.impulses.solver import Run
-from spline_model.integrators.energy_consistent import TOLERANCE
-from spline_model.integrators.events import drives_at
+from spline_model.integrators.energy_consistent import Stepper
 from spline_model.integrators.motion import initial_acceleration, set_in_motion
-from spline_model.kernels.energy_step import HALVED, NEWTON, WHOLE, advance
-from spline_model.kernels.record import DISSIPATED, KINETIC, STRAIN, record
+from spline_model.kernels.record import DISSIPATED, KINETIC, STRAIN
+from spline_model.motion.step import HALVED, NEWTON
 from spline_model.pivot import BODY, STRIPS, Pivot
 from spline_model.sequential_impulse import impulse_solver
 
@@ -57,48 +56,35 @@ class EnergyMotion:
 
     def __init__(self, pivot: Pivot, z: Array, velocity: Array) -> None:
         self.system = released(pivot)
-        self._motion = set_in_motion(self.system)
-        self._acceleration, self._z = initial_acceleration(self.system, self._motion, z, velocity)
-        self._v = velocity.copy()
-        self._counters, self._totals = np.zeros(WHOLE + 1, dtype=np.int64), np.zeros(2)
-        self._active = drives_at(self._motion, 0.0)
+        motion = set_in_motion(self.system)
+        acceleration, z = initial_acceleration(self.system, motion, z, velocity)
+        self._stepper = Stepper(self.system, motion, z, velocity, acceleration)
         self._iterations = 0
-        self._start = sum(self._energies()[:2])
+        row = self._stepper.look()[2][0]
+        self._start = float(row[KINETIC] + row[STRAIN])
 
     def advance(self, steps: int, step: float) -> bool:
         """Take steps, halved at need down to SMALLEST_PART."""
-        before = int(self._counters[NEWTON])
-        kept = self._z.copy(), self._v.copy(), self._acceleration.copy(), self._totals.copy()
+        stepper = self._stepper
+        before, kept = int(stepper.counters[NEWTON]), stepper.kept()
         for _ in range(steps):
-            done = advance(
-                self._z, self._v, self._acceleration, 0.0, step, step, step * SMALLEST_PART,
-                self._active, self._motion, TOLERANCE, self._counters, self._totals,
-            )  # fmt: skip
-            if done < step:
-                for array, value in zip(
-                    (self._z, self._v, self._acceleration, self._totals), kept, strict=True
-                ):
-                    array[:] = value
+            if stepper.advance(0.0, step, SMALLEST_PART) < step:
+                stepper.take_back(kept)
                 return False
-        self._iterations = int(self._counters[NEWTON]) - before
+        self._iterations = int(stepper.counters[NEWTON]) - before
         return True
 
     @property
     def halved(self) -> int:
         """Steps that were halved so far."""
-        return int(self._counters[HALVED])
+        return int(self._stepper.counters[HALVED])
 
     def state(self) -> Moving:
         """Return the present state."""
-        kinetic, strain, dissipated = self._energies()
+        (z,), (v,), (row,) = self._stepper.look()
+        kinetic, strain, dissipated = (float(row[place]) for place in (KINETIC, STRAIN, DISSIPATED))
         energies = kinetic, strain, dissipated, self._start - kinetic - strain - dissipated
-        return moving(self.system, self._z, self._v, energies, self._iterations)
-
-    def _energies(self) -> tuple[float, float, float]:
-        """Kinetic and strain energy, and what the strips' damping took [J]."""
-        row = np.zeros(7)
-        record(self._z, self._v, self._motion, np.empty(len(self._motion.rigidity)), self._totals, row)
-        return float(row[KINETIC]), float(row[STRAIN]), float(row[DISSIPATED])
+        return moving(self.system, z, v, energies, self._iterations)
 
 
 class ImpulseMotion:

@@ -1,0 +1,1 @@
+"""Motion on reduced coordinates: clamps hold by construction, over a step as in a state."""

@@ -1,0 +1,300 @@
+"""Bodies on massless strips: the strips in equilibrium at the bodies' poses x, one energy W(x), compiled.
+
+    M (v1 - v0) / h + D (v0 + v1) / 2 + DW(x0, x1) - f = 0,   (v0 + v1) / 2 = (x1 - x0) / h,
+    DW = (g0 + g1) / 2 + (W1 - W0 - (g0 + g1)/2 . dx) / (dx . M dx) M dx
+
+with g the strips' reactions, so that the energy is the same before and after a step of any size.
+Poses and strips are solved for together, the strips condensed as in statics
+(``spline_model.reduced.assembly``); coordinates without mass, of free strip ends, are in equilibrium
+at the step's end. Source of the discrete gradient: Gonzalez, J Nonlinear Sci 6 (1996) 449.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from spline_model.motion.run import MOST_HALVED, MOST_HALVED_A_STEP, SLOWEST_SPEED
+from spline_model.motion.step import (
+    FACTORISATIONS,
+    FOLDED,
+    HALVED,
+    MOST_ITERATIONS,
+    NEWTON,
+    STEPS,
+    WHOLE,
+    load_at,
+    solve_rows,
+)
+from spline_model.reduced.assembly import (
+    AXIAL,
+    BENDING,
+    DEAD,
+    SLOWEST,
+    assemble,
+    move_strips,
+)
+from spline_model.reduced.equilibrium import entry
+from spline_model.strip.compiled import copy, kernel, part
+from spline_model.strip.laws import MATERIAL
+
+Array = NDArray[np.float64]
+
+KNOWN = 3
+"""States before that the next one is extrapolated from."""
+ROUND_OFF = 1e-14
+"""Part of the energy below which the gap between its change and the mean gradient's work is round-off: the
+gap goes with the third power of a step, and divided by the second it would drown a short one."""
+
+
+class Poses(NamedTuple):
+    """State of the bodies, Q coordinates and Q' with the axial forces beside them, and working arrays.
+
+    y (Y,) with the strips' coordinates; rate (Q,) velocities; known (3, Y) the states before, newest first,
+    and last (2,) their distance [s] and number; energy (2,) W and the next one; pull, next (Q',) reactions
+    g, slope (Q',) derivative of the gap; totals (2,) work and losses; trial (Y,), dx, load (Q,); system
+    (Q', Q'), x, free (Q',).
+    """
+
+    y: Array
+    rate: Array
+    known: Array
+    last: Array
+    energy: Array
+    pull: Array
+    next: Array
+    slope: Array
+    totals: Array
+    trial: Array
+    dx: Array
+    load: Array
+    system: Array
+    x: Array
+    free: NDArray[np.int64]
+
+
+def poses_of(y: Array, rate: Array, all_bodies: int) -> Poses:
+    """A state with these coordinates and velocities."""
+    return Poses(
+        y=y,
+        rate=rate,
+        known=np.zeros((KNOWN, len(y))),
+        last=np.zeros(2),
+        energy=np.zeros(2),
+        pull=np.zeros(all_bodies),
+        next=np.zeros(all_bodies),
+        slope=np.zeros(all_bodies),
+        totals=np.zeros(2),
+        trial=y.copy(),
+        dx=np.zeros_like(rate),
+        load=np.zeros_like(rate),
+        system=np.zeros((all_bodies, all_bodies)),
+        x=np.zeros(all_bodies),
+        free=np.zeros(all_bodies, dtype=np.int64),
+    )
+
+
+@part()
+def stored(y, bodies, strips, shape, local, space):
+    """The potential W at a state just assembled: stationary in the strips' coordinates and forces."""
+    total = space.out[BENDING] + space.out[AXIAL] + space.out[DEAD]
+    if strips.measure == MATERIAL:
+        own, modes = 2 * shape.order.size - 6, strips.compliance.shape[1]
+        for s in range(strips.roots.size):
+            at = bodies.rest.size + s * (own + modes) + own
+            for k in range(modes):
+                total += y[at + k] * local.gap[s, k]
+    return total
+
+
+@kernel()
+def solve(h, moving, poses, masses, bodies, strips, shape, local, space, tolerance, counters):
+    """Solve a step of length h from the guess ``trial``, or the strips at held bodies; True if it converged.
+
+    With bodies that move dx is their change, kept apart as their inertia would drown in its round-off.
+    """
+    y, dx, free, x, count = poses.trial, poses.dx, poses.free, poses.x, 0
+    for i in range(bodies.load.size):
+        if moving or i >= dx.size or masses.inertia[i] == 0.0:
+            free[count] = i
+            count += 1
+    before = math.inf
+    for _ in range(MOST_ITERATIONS):
+        norm = assemble(y, 0.0, bodies, strips, shape, local, space)
+        if not norm < 1e12:
+            return False
+        poses.energy[1] = stored(y, bodies, strips, shape, local, space)
+        metric, gap = 0.0, poses.energy[1] - poses.energy[0]
+        for i in range(bodies.load.size):
+            poses.next[i] = space.force[i]
+            if i < dx.size and masses.inertia[i] > 0.0:
+                metric += masses.inertia[i] * dx[i] * dx[i]
+                gap -= 0.5 * (poses.pull[i] + space.force[i]) * dx[i]
+        push = gap / metric if metric > 0.0 and abs(gap) > ROUND_OFF * abs(poses.energy[0]) else 0.0
+        if push != 0.0:  # the gap's derivative, less that of the metric
+            for i in range(bodies.load.size):
+                total = space.force[i]
+                heavy = i < dx.size and masses.inertia[i] > 0.0
+                if heavy:
+                    total -= 0.5 * (poses.pull[i] + space.force[i]) + 2.0 * push * masses.inertia[i] * dx[i]
+                for j in range(dx.size):
+                    if masses.inertia[j] > 0.0:
+                        total -= 0.5 * entry(space.tangent, j, i) * dx[j]
+                poses.slope[i] = total
+        for r in range(count):
+            i = free[r]
+            share, x[r] = 1.0, space.force[i]
+            if i < dx.size:
+                x[r] -= poses.load[i]
+                if masses.inertia[i] > 0.0:
+                    share, mass, mean = 0.5, masses.inertia[i], dx[i] / h
+                    x[r] = 0.5 * (poses.pull[i] + space.force[i]) + push * mass * dx[i] - poses.load[i]
+                    x[r] += 2.0 / h * mass * (mean - poses.rate[i]) + masses.drag[i] * mean
+            norm = max(norm, abs(x[r])) if x[r] == x[r] else math.inf
+            for c in range(count):
+                poses.system[r, c] = share * entry(space.tangent, i, free[c])
+            if share == 0.5:
+                mass, part_of_gap = masses.inertia[i], masses.inertia[i] * dx[i] / max(metric, 1e-300)
+                poses.system[r, r] += 2.0 * mass / (h * h) + masses.drag[i] / h + push * mass
+                if push != 0.0:
+                    for c in range(count):
+                        poses.system[r, c] += part_of_gap * poses.slope[free[c]]
+            x[r] = -x[r]
+        if norm <= tolerance or (norm <= 1e3 * tolerance and norm > 0.5 * before):
+            return True
+        if not norm < 1e12 or not solve_rows(count, poses.system, x):
+            return False
+        before = norm
+        counters[NEWTON] += 1
+        counters[FACTORISATIONS] += 1
+        space.move[:] = 0.0
+        for r in range(count):
+            i = free[r]
+            space.move[i] = x[r]
+            if i < dx.size:
+                dx[i] += x[r]
+                y[i] = poses.y[i] + dx[i]
+        move_strips(1.0, bodies, strips, shape, local, space, space.rate)
+        for i in range(dx.size, y.size):
+            y[i] += space.rate[i]
+    return False
+
+
+@kernel()
+def settle(poses, masses, bodies, strips, shape, local, space, tolerance, counters):
+    """Bring strips and massless coordinates into equilibrium at the bodies' poses; True if that converged."""
+    for i in range(poses.dx.size):
+        poses.dx[i] = 0.0
+    copy(poses.y, poses.trial)
+    if not solve(1.0, 0.0, poses, masses, bodies, strips, shape, local, space, tolerance, counters):
+        return False
+    copy(poses.trial, poses.y)
+    copy(poses.next, poses.pull)
+    poses.energy[0] = poses.energy[1]
+    return True
+
+
+@part()
+def guess(h, poses, masses):
+    """Extrapolate the last states where they are as far apart as the step; else the bodies alone move."""
+    y, known, trial = poses.y, poses.known, poses.trial
+    if poses.last[0] == h and poses.last[1] >= KNOWN:
+        for i in range(y.size):
+            trial[i] = 4.0 * (y[i] + known[1, i]) - 6.0 * known[0, i] - known[2, i]
+    else:
+        copy(y, trial)
+        for i in range(poses.dx.size):
+            if masses.inertia[i] > 0.0:
+                pull = (poses.load[i] - poses.pull[i]) / masses.inertia[i]
+                trial[i] += h * (poses.rate[i] + 0.5 * h * pull)
+    for i in range(poses.dx.size):
+        poses.dx[i] = trial[i] - y[i]
+        trial[i] = y[i] + poses.dx[i]
+
+
+@part()
+def is_strip(poses, bodies, strips, shape, space, scene_bodies):
+    """True if every clamped end's tangent points forwards and |C'| is above a tenth of that at rest."""
+    own, modes = 2 * shape.order.size - 6, strips.compliance.shape[1]
+    for s in range(strips.roots.size):
+        at = bodies.rest.size + s * (own + modes) + own
+        if strips.roots[s] < scene_bodies and not poses.trial[at - 2] > 0.0:
+            return False
+        if strips.tips[s] < scene_bodies and not poses.trial[at - 1] > 0.0:
+            return False
+    return space.out[SLOWEST] > SLOWEST_SPEED
+
+
+@part()
+def accept(h, poses, masses):
+    """Take the solved step: books, velocities, coordinates."""
+    for i in range(poses.dx.size):
+        change = poses.dx[i]
+        poses.totals[0] += poses.load[i] * change
+        poses.totals[1] += masses.drag[i] * change * change / h
+        poses.rate[i] = 2.0 * change / h - poses.rate[i] if masses.inertia[i] > 0.0 else 0.0
+    for k in range(KNOWN - 1, 0, -1):
+        copy(poses.known[k - 1], poses.known[k])
+    copy(poses.y, poses.known[0])
+    copy(poses.trial, poses.y)
+    copy(poses.next, poses.pull)
+    poses.energy[0] = poses.energy[1]
+    poses.last[1] = poses.last[1] + 1.0 if poses.last[0] == h else 1.0
+    poses.last[0] = h
+
+
+@kernel()
+def advance(
+    time, duration, first_step, smallest, scene_bodies, poses, masses, bodies, strips, shape, local, space,
+    tolerance, counters,
+):  # fmt: skip
+    """Advance in place by ``duration``, halving steps whose Newton fails; returns the time done."""
+    done, step = 0.0, min(first_step, duration)
+    while duration - done > 1e-9 * duration:
+        step = min(step, duration - done)
+        for i in range(poses.load.size):
+            poses.load[i] = 0.0
+        for f in range(masses.load_value.size):
+            poses.load[masses.load_body[f]] += load_at(f, time + done + 0.5 * step, masses)
+        guess(step, poses, masses)
+        solved = solve(step, 1.0, poses, masses, bodies, strips, shape, local, space, tolerance, counters)
+        if not (solved and is_strip(poses, bodies, strips, shape, space, scene_bodies)):
+            counters[HALVED] += 1
+            counters[FOLDED] = 1 if solved else 0
+            step *= 0.5
+            if step < smallest or counters[HALVED] > MOST_HALVED + MOST_HALVED_A_STEP * counters[WHOLE]:
+                return done
+            continue
+        counters[STEPS] += 1
+        accept(step, poses, masses)
+        done += step
+        step = min(2.0 * step, first_step)
+    counters[WHOLE] += 1
+    return duration
+
+
+@kernel()
+def run(
+    step, begin, end, every, smallest, scene_bodies, poses, masses, bodies, strips, shape, local, space,
+    tolerance, counters, states, rates, books,
+):  # fmt: skip
+    """Take the steps ``begin`` ... ``end`` - 1; returns the next step's number.
+
+    states (R, Y), rates (R, Q) and books (R, 3) W, work and losses: at steps whose number ``every`` divides.
+    """
+    for k in range(begin, end):
+        done = advance(
+            k * step, step, step, smallest, scene_bodies, poses, masses, bodies, strips, shape, local, space,
+            tolerance, counters,
+        )  # fmt: skip
+        if done < step:
+            return k
+        if (k + 1) % every == 0:
+            r = (k + 1) // every - begin // every - 1
+            copy(poses.y, states[r])
+            copy(poses.rate, rates[r])
+            books[r, 0], books[r, 1], books[r, 2] = poses.energy[0], poses.totals[0], poses.totals[1]
+    return end

@@ -1,0 +1,174 @@
+"""Runs of energy-consistent steps: halving, books of work and losses, records, compiled."""
+
+from __future__ import annotations
+
+import math
+
+from spline_model.motion.step import FOLDED, HALVED, STEPS, WHOLE, cayley, load_at, newton
+from spline_model.motion.strip import curve_at, look_at, place_strip
+from spline_model.strip.compiled import kernel, part
+
+MOST_HALVED, MOST_HALVED_A_STEP = 500, 150
+"""A run is given up when it has been halved more often than this, and this for every step done: the
+swing of Table 1 at steps of its own period takes 120 a step; without a bound a step may take minutes."""
+SLOWEST_SPEED = 0.1
+"""|C'| below which, over that at rest, a strip is folded."""
+
+
+@part()
+def forward(state, strips, masses, work):
+    """True if every clamped end's tangent points forwards and |C'| is above a tenth of that at rest."""
+    n, modes = strips.mass.shape[1], strips.compliance.shape[1]
+    for s in range(strips.roots.size):
+        at = masses.inertia.size + s * (2 * n - 6 + modes) + 2 * n - 8
+        for e in range(2):
+            body = strips.roots[s] if e == 0 else strips.tips[s]
+            if body < strips.free_from and not state.y[at + e] + work.dy[at + e] > 0.0:
+                return False
+        for p in range(strips.weight.size):
+            if not work.at[s, p, 4] > SLOWEST_SPEED * strips.speed[s, p]:
+                return False
+    return True
+
+
+@part()
+def accept(time, h, active, state, strips, masses, work):
+    """Take the solved step: books of work and losses, velocities, coordinates."""
+    poses, n, modes = masses.inertia.size, strips.mass.shape[1], strips.compliance.shape[1]
+    own, dy, y, totals = 2 * n - 6, work.dy, state.y, state.totals
+    for f in range(masses.load_value.size):
+        value, i = load_at(f, time + 0.5 * h, masses), masses.load_body[f]
+        if i >= 0:
+            totals[0] += value * (2.0 * math.atan(0.5 * dy[i]) if i % 3 == 2 else dy[i])
+        else:
+            place = masses.load_place[f]
+            totals[0] += value * work.move[masses.load_strip[f], place // n, place % n]
+    for d in range(masses.drive_at.size):
+        state.reaction[d] = 0.0
+        if active[d] == 1:
+            i = masses.drive_at[d]
+            totals[0] += work.residual[i] * dy[i]
+            state.reaction[d] = work.residual[i] / (cayley(dy[i])[0] if i % 3 == 2 else 1.0)
+    for i in range(poses):
+        mean = dy[i] / h
+        totals[1] += h * masses.drag[i] * mean * mean
+        state.push[i] = 2.0 * (mean - state.rate[i]) / h
+        state.rate[i] = 2.0 * mean - state.rate[i]
+        y[i] = work.pose[i]
+    work.energies[1] = 0.0
+    for s in range(strips.roots.size):
+        at = poses + s * (own + modes)
+        if strips.relaxation[s] > 0.0:
+            look_at(s, state.at[s], work.at[s], h, strips, work.energies)
+        for k in range(2):
+            for i in range(n):
+                mean = work.move[s, k, i] / h
+                lost = 0.0
+                for j in range(n):
+                    lost += strips.drag[s, i, j] * work.move[s, k, j]
+                work.energies[1] += mean * lost
+                state.acceleration[s, k, i] = 2.0 * (mean - state.velocity[s, k, i]) / h
+                state.velocity[s, k, i] = 2.0 * mean - state.velocity[s, k, i]
+        for i in range(at, at + own):
+            y[i] += dy[i]
+        for i in range(at + own, at + own + modes):
+            y[i] = dy[i]
+        place_strip(s, y, at, strips, state.points[s], state.ends[s])
+        for p in range(strips.weight.size):
+            for i in range(5):
+                state.at[s, p, i] = work.at[s, p, i]
+        for e in range(2):
+            end, inner = (0, 1) if e == 0 else (n - 1, n - 2)
+            maps, force = work.maps[s, e], work.force[s]
+            body = strips.roots[s] if e == 0 else strips.tips[s]
+            for k in range(2):
+                state.clamped[s, e, k] = force[k, end] + force[k, inner]
+            state.clamped[s, e, 2] = (maps[0] * force[1, inner] - maps[1] * force[0, inner]) / (
+                maps[7] if body >= 0 else 1.0
+            )
+    totals[1] += work.energies[1]
+
+
+@kernel()
+def advance(time, duration, first_step, smallest, active, state, strips, masses, tolerance, work, counters):
+    """Advance the state in place by ``duration``, halving steps whose Newton fails; returns the time done.
+
+    The step doubles again after each success, up to ``first_step``.
+    """
+    for i in range(work.held.size):
+        work.held[i] = 0
+    for d in range(active.size):
+        if active[d] == 1:
+            work.held[masses.drive_at[d]] = 1
+    done, step = 0.0, min(first_step, duration)
+    while duration - done > 1e-9 * duration:
+        step = min(step, duration - done)
+        solved = newton(time + done, step, active, state, strips, masses, tolerance, work, counters)
+        if not (solved and forward(state, strips, masses, work)):
+            counters[HALVED] += 1
+            counters[FOLDED] = 1 if solved else 0
+            step *= 0.5
+            if step < smallest or counters[HALVED] > MOST_HALVED + MOST_HALVED_A_STEP * counters[WHOLE]:
+                return done
+            continue
+        counters[STEPS] += 1
+        accept(time + done, step, active, state, strips, masses, work)
+        done += step
+        step = min(2.0 * step, first_step)
+    counters[WHOLE] += 1
+    return duration
+
+
+@kernel()
+def set_points(state, strips, masses):
+    """What a state's coordinates y make of its control points, end frames and curve."""
+    n, modes = strips.mass.shape[1], strips.compliance.shape[1]
+    for s in range(strips.roots.size):
+        at = masses.inertia.size + s * (2 * n - 6 + modes)
+        place_strip(s, state.y, at, strips, state.points[s], state.ends[s])
+        for p in range(strips.weight.size):
+            curve_at(p, state.points[s], strips.first, strips.d1, strips.d2, state.at[s, p])
+
+
+@kernel()
+def store(state, strips, masses, work, row):
+    """A record: y, the bodies' rates, points, velocities, clamps, reactions, strain energy, totals."""
+    at, n = 0, strips.mass.shape[1]
+    for i in range(state.y.size):
+        row[at + i] = state.y[i]
+    at += state.y.size
+    for i in range(state.rate.size):
+        row[at + i] = state.rate[i]
+    at += state.rate.size
+    work.energies[0] = 0.0
+    for s in range(strips.roots.size):
+        look_at(s, state.at[s], state.at[s], 0.0, strips, work.energies)
+        for i in range(n):
+            for k in range(2):
+                row[at], row[at + 1] = state.points[s, k, i], state.velocity[s, k, i]
+                at += 2
+        for e in range(2):
+            for k in range(3):
+                row[at] = state.clamped[s, e, k]
+                at += 1
+    for d in range(state.reaction.size):
+        row[at] = state.reaction[d]
+        at += 1
+    row[at], row[at + 1], row[at + 2] = work.energies[0], state.totals[0], state.totals[1]
+
+
+@kernel()
+def run(step, begin, end, every, smallest, active, state, strips, masses, tolerance, work, counters, records):
+    """Take the steps ``begin`` ... ``end`` - 1, each of length ``step``; returns the next step's number.
+
+    records: filled at the ends of steps whose number ``every`` divides.
+    """
+    for k in range(begin, end):
+        done = advance(
+            k * step, step, step, smallest, active, state, strips, masses, tolerance, work, counters
+        )
+        if done < step:
+            return k
+        if (k + 1) % every == 0:
+            store(state, strips, masses, work, records[(k + 1) // every - begin // every - 1])
+    return end

@@ -1,0 +1,274 @@
+"""The energy-consistent time step on reduced coordinates: residual and Newton's method, compiled.
+
+D^T (M (v1 - v0) / h + DV(q0, q1) + damping - loads) = 0,   (v0 + v1) / 2 = (q1 - q0) / h = D dy / h
+"""
+
+from __future__ import annotations
+
+import math
+
+from spline_model.kernels.drives import factor_at
+from spline_model.motion.project import condense, to_reduced
+from spline_model.motion.strip import add_points, move_strip
+from spline_model.strip.compiled import kernel, part
+
+STEPS, HALVED, NEWTON, FACTORISATIONS, FOLDED, WHOLE = range(6)
+"""Places of the counters of a run: STEPS with the parts of halved ones, WHOLE without; FOLDED is 1 if the
+last refused step was solved, but no strip."""
+MOST_ITERATIONS = 20
+
+
+@kernel()
+def cayley(c):
+    """dphi / c for c = 2 tan(dphi / 2), and its derivative in c."""
+    square = c * c
+    if square < 1e-8:  # the series is exact to round-off here
+        return 1.0 - square / 12.0, -c / 6.0
+    share = 2.0 * math.atan(0.5 * c) / c
+    return share, (1.0 / (1.0 + 0.25 * square) - share) / c
+
+
+@kernel()
+def prepare(time, h, state, strips, masses, work):
+    """What does not change in a step: inertia, drag and loads on the control points, and loads on bodies."""
+    n = strips.mass.shape[1]
+    for i in range(masses.inertia.size):
+        work.load[i] = 0.0
+    for s in range(strips.roots.size):
+        for i in range(n):
+            for j in range(n):
+                work.stiff[s, i, j] = 2.0 / (h * h) * strips.mass[s, i, j] + strips.drag[s, i, j] / h
+            for k in range(2):
+                total = 0.0
+                for j in range(n):
+                    total += strips.mass[s, i, j] * state.velocity[s, k, j]
+                work.steady[s, k, i] = -strips.dead[s, k, i] - 2.0 / h * total
+    for f in range(masses.load_value.size):
+        value = load_at(f, time + 0.5 * h, masses)
+        if masses.load_body[f] >= 0:
+            work.load[masses.load_body[f]] += value
+        else:
+            place = masses.load_place[f]
+            work.steady[masses.load_strip[f], place // n, place % n] -= value
+
+
+@kernel()
+def load_at(f, time, masses):
+    """Value of a load."""
+    return masses.load_value[f] * factor_at(
+        time, masses.load_first[f], masses.load_pairs[f], masses.load_times, masses.load_factors
+    )
+
+
+@kernel()
+def place_of(i, tip, root, behind):
+    """The bodies' unknown that a strip's i-th coordinate behind its own ones is."""
+    if tip >= 0:
+        if i < 3:
+            return 3 * tip + i
+        i -= 3
+    if root >= 0:
+        if i < 3:
+            return 3 * root + i
+        i -= 3
+    return behind + i
+
+
+@kernel()
+def assemble(h, state, strips, masses, work):
+    """Residual of the step dy, and its tangent at the bodies with the strips condensed; the largest residual.
+
+    In EI/L^2, EI/L and L, by the places of y; those of held coordinates are what holds them and do not count.
+    """
+    poses, n, modes = masses.inertia.size, strips.mass.shape[1], strips.compliance.shape[1]
+    own, dy, raw, reduced, tangent = 2 * n - 6, work.dy, work.residual, work.reduced, work.tangent
+    for i in range(reduced.size):
+        reduced[i] = 0.0
+        for j in range(reduced.size):
+            tangent[i, j] = 0.0
+    for i in range(poses):
+        mean, load = dy[i] / h, work.load[i]
+        work.pose[i] = state.y[i] + dy[i]
+        tangent[i, i] = 2.0 / (h * h) * masses.inertia[i] + masses.drag[i] / h
+        if i % 3 == 2:
+            work.pose[i] = state.y[i] + 2.0 * math.atan(0.5 * dy[i])
+            if load != 0.0:
+                share, slope = cayley(dy[i])
+                tangent[i, i] -= load * slope
+                load *= share
+        raw[i] = 2.0 / h * masses.inertia[i] * (mean - state.rate[i]) + masses.drag[i] * mean
+        raw[i] -= masses.weight[i] + load
+        reduced[i] = raw[i]
+    for s in range(strips.roots.size):
+        at = poses + s * (own + modes)
+        tip, root = strips.tips[s], strips.roots[s]
+        move_strip(s, at, state, strips, work)
+        force, move = work.force[s], work.move[s]
+        for k in range(2):
+            for i in range(n):
+                total = work.steady[s, k, i]
+                for j in range(n):
+                    total += work.stiff[s, i, j] * move[k, j]
+                force[k, i] = total
+        add_points(s, dy[at + own : at + own + modes], h, state, strips, work)
+        size, g, hessian = to_reduced(s, strips, work), work.g[s], work.h[s]
+        behind = poses + s * strips.outer
+        for i in range(own):
+            raw[at + i] = g[i]
+        for k in range(modes):
+            raw[at + own + k] = work.gap[s, k]
+        for i in range(own, size):
+            raw[place_of(i - own, tip, root, behind)] += g[i]
+        size = condense(s, size, strips, work)
+        for i in range(own, size):
+            row = place_of(i - own, tip, root, behind)
+            reduced[row] += g[i]
+            for j in range(own, size):
+                tangent[row, place_of(j - own, tip, root, behind)] += hessian[i, j]
+    norm = 0.0
+    for i in range(raw.size):
+        if i >= poses or work.held[i] == 0:
+            norm = max(norm, abs(raw[i])) if raw[i] == raw[i] else math.inf
+    return norm
+
+
+@kernel()
+def solve_rows(count, matrix, x):
+    """Solve the leading (count, count) system in place, with partial pivoting; False if it is singular."""
+    for i in range(count):
+        best = i
+        for j in range(i + 1, count):
+            if abs(matrix[j, i]) > abs(matrix[best, i]):
+                best = j
+        if not abs(matrix[best, i]) > 0.0:
+            return False
+        if best != i:
+            for c in range(i, count):
+                matrix[i, c], matrix[best, c] = matrix[best, c], matrix[i, c]
+            x[i], x[best] = x[best], x[i]
+        inverse = 1.0 / matrix[i, i]
+        for j in range(i + 1, count):
+            factor = matrix[j, i] * inverse
+            x[j] -= factor * x[i]
+            for c in range(i + 1, count):
+                matrix[j, c] -= factor * matrix[i, c]
+    for i in range(count - 1, -1, -1):
+        for c in range(i + 1, count):
+            x[i] -= matrix[i, c] * x[c]
+        x[i] /= matrix[i, i]
+    return True
+
+
+@kernel()
+def improve(strips, masses, work):
+    """Newton's correction of dy from the assembled step; False if the bodies' system is singular."""
+    poses, n, modes = masses.inertia.size, strips.mass.shape[1], strips.compliance.shape[1]
+    own, outer, dy, free, x = 2 * n - 6, strips.outer, work.dy, work.free, work.x
+    count = 0
+    for i in range(work.reduced.size):
+        if i >= poses or work.held[i] == 0:
+            free[count] = i
+            count += 1
+    for i in range(count):
+        x[i] = -work.reduced[free[i]]
+        for j in range(count):
+            work.system[i, j] = work.tangent[free[i], free[j]]
+    if not solve_rows(count, work.system, x):
+        return False
+    for i in range(work.reduced.size):
+        work.reduced[i] = 0.0
+    for i in range(count):
+        work.reduced[free[i]] = x[i]
+        if free[i] < poses:
+            dy[free[i]] += x[i]
+    for s in range(strips.roots.size):
+        at, tip, root = poses + s * (own + modes), strips.tips[s], strips.roots[s]
+        ends = own + (3 if tip >= 0 else 0) + (3 if root >= 0 else 0)
+        g, h, change, right = work.g[s], work.h[s], work.ends_change, work.right[s]
+        for i in range(own, ends + outer):
+            change[i] = work.reduced[place_of(i - own, tip, root, poses + s * outer)]
+        for i in range(own - 1, -1, -1):
+            total = -g[i]
+            for j in range(i + 1, ends + outer):
+                total -= h[i, j] * change[j]
+            change[i] = total / h[i, i]
+            dy[at + i] += change[i]
+        for k in range(modes):
+            if k < outer:
+                dy[at + own + k] += change[ends + k]
+            else:
+                strain = work.gap[s, k]
+                for j in range(ends):
+                    strain += right[k, j] * change[j]
+                dy[at + own + k] += strips.gain[s, k] * strain
+    return True
+
+
+@part()
+def guess_step(h, state, strips, masses, work):
+    """Initial dy from velocities and accelerations."""
+    poses, n, modes = masses.inertia.size, strips.mass.shape[1], strips.compliance.shape[1]
+    own, dy = 2 * n - 6, work.dy
+    for i in range(poses):
+        dy[i] = h * (state.rate[i] + 0.5 * h * state.push[i])
+        if i % 3 == 2:
+            dy[i] = 2.0 * math.tan(0.5 * max(-1.5, min(1.5, dy[i])))
+    for s in range(strips.roots.size):
+        at = poses + s * (own + modes)
+        for k in range(2):
+            for i in range(n):
+                work.move[s, k, i] = h * (state.velocity[s, k, i] + 0.5 * h * state.acceleration[s, k, i])
+        for i in range(2, n - 2):
+            dy[at + 2 * i - 4], dy[at + 2 * i - 3] = work.move[s, 0, i], work.move[s, 1, i]
+        for e in range(2):
+            end, inner, body = (0, 1, strips.roots[s]) if e == 0 else (n - 1, n - 2, strips.tips[s])
+            tx, ty = state.ends[s, e, 2], state.ends[s, e, 3]
+            points, move = state.points[s], work.move[s]
+            cx = points[0, inner] - points[0, end] + move[0, inner] - move[0, end]
+            cy = points[1, inner] - points[1, end] + move[1, inner] - move[1, end]
+            square, along = tx * tx + ty * ty, tx * cx + ty * cy
+            if body >= strips.free_from:  # the chord turns as it likes
+                turn = math.atan2(tx * cy - ty * cx, along)
+                dy[3 * body], dy[3 * body + 1] = work.move[s, 0, end], work.move[s, 1, end]
+                dy[3 * body + 2] = 2.0 * math.tan(0.5 * max(-1.5, min(1.5, turn)))
+                along = math.sqrt((cx * cx + cy * cy) * square)
+            elif body >= 0:
+                angle = 2.0 * math.atan(0.5 * dy[3 * body + 2])
+                c, d = math.cos(angle), math.sin(angle)
+                along = (c * tx - d * ty) * cx + (d * tx + c * ty) * cy
+            dy[at + own - 2 + e] = along / square - state.y[at + own - 2 + e]
+        for k in range(modes):
+            dy[at + own + k] = state.y[at + own + k]
+
+
+@part()
+def newton(time, h, active, state, strips, masses, tolerance, work, counters):
+    """Solve one step for dy; True if the residual came below tolerance.
+
+    Rotations of more than a quarter turn in one step are refused: the Cayley map has a pole at a half turn.
+    """
+    prepare(time, h, state, strips, masses, work)
+    guess_step(h, state, strips, masses, work)
+    for d in range(masses.drive_at.size):
+        if active[d] == 1:
+            i = masses.drive_at[d]
+            first, pairs = masses.drive_first[d], masses.drive_pairs[d]
+            factor = factor_at(time + h, first, pairs, masses.drive_times, masses.drive_factors)
+            dy = masses.drive_origin[d] + factor * masses.drive_target[d] - state.y[i]
+            work.dy[i] = 2.0 * math.tan(0.5 * dy) if i % 3 == 2 else dy
+    before = math.inf
+    for _ in range(MOST_ITERATIONS):
+        norm = assemble(h, state, strips, masses, work)
+        if not norm < 1e12:
+            return False
+        if norm <= tolerance or (norm <= 1e3 * tolerance and norm > 0.5 * before):
+            largest = 0.0
+            for i in range(2, masses.inertia.size, 3):
+                largest = max(largest, abs(work.dy[i]))
+            return largest <= 2.0
+        before = norm
+        if not improve(strips, masses, work):
+            return False
+        counters[NEWTON] += 1
+        counters[FACTORISATIONS] += 1
+    return False

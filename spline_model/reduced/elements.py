@@ -1,0 +1,295 @@
+"""The strips' elements as a system to follow paths on, with nothing condensed: regular wherever a path is."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+from spline_model import checks
+from spline_model.compile import System
+from spline_model.continuation.bordered import Bordered
+from spline_model.continuation.followed import Energies, Followed
+from spline_model.continuation.point import Point
+from spline_model.continuation.resolution import SMALLEST_MOMENT
+from spline_model.reduced.assembly import (
+    AXIAL,
+    BENDING,
+    DEAD,
+    SLOWEST,
+    Bodies,
+    moment_defect,
+    place_of,
+    root_of,
+)
+from spline_model.reduced.model import Reduced, from_unknowns, reduced
+from spline_model.reduced.path import empty_answer
+from spline_model.reduced.preload import Preload, act, apart, preload_of
+from spline_model.reduced.states import by_state, unknowns_of
+from spline_model.strip.compiled import kernel
+from spline_model.strip.element import Local, Strips, place_points, to_element
+from spline_model.strip.laws import MATERIAL
+from spline_model.strip.points import visit_points
+
+Array = NDArray[np.float64]
+
+ASIDE = 1e-5
+"""Part of a direction over which it is followed to either side, in lengths and rad: exact to 1e-10."""
+
+
+@kernel()
+def gather(y, reaction, aim, load, bodies, strips, shape, local, out, gradient, hessian):
+    """Gradient (N,) and tangent (Y, Y) in poses, w and then a of all strips, at y (Y,); energies in out.
+
+    Reactions (D,) of the drives, which hold their coordinates at ``aim`` (D,), are the last unknowns. The
+    axial energy is int (N eps - 1/2 c N^2) W du, whose derivatives these are.
+    """
+    n, count, modes, poses = shape.order.size, strips.roots.size, strips.compliance.shape[1], bodies.rest.size
+    own = 2 * n - 6
+    gradient[:] = 0.0
+    hessian[:, :] = 0.0
+    out[:] = 0.0
+    out[SLOWEST] = np.inf
+    for i in range(poses):
+        gradient[i] = -load * bodies.load[i] - bodies.weight[i]
+        out[DEAD] -= bodies.weight[i] * y[i]
+    for d in range(reaction.size):
+        held, row = bodies.held[d], y.size + d
+        gradient[held] -= reaction[d]
+        gradient[row] = aim[d] - y[held]
+        hessian[held, row] = hessian[row, held] = -1.0
+    for s in range(count):
+        at, first, forces = poses + s * (own + modes), poses + s * own, poses + count * own + s * modes
+        tip, root = strips.tips[s] >= 0, strips.roots[s] >= 0
+        a, g, h, b, gap = y[at + own : at + own + modes], local.g[s], local.h[s], local.b[s], local.gap[s]
+        place_points(s, y[at : at + own], y, strips, local)
+        visit_points(s, a, n, shape, strips, local, out)
+        to_element(
+            n,
+            0,
+            tip,
+            root,
+            local.map[s],
+            local.gradient[s],
+            local.hessian[s],
+            local.coupling[s],
+            g,
+            h,
+            b,
+            local.square,
+            local.lines,
+            local.line,
+        )
+        size = own + 3 * tip + 3 * root
+        for i in range(size):
+            row = first + i if i < own else place_of(i - own, strips.tips[s], strips.roots[s], 0)
+            gradient[row] += g[i]
+            hessian[row, row] += h[i, i]
+            for j in range(i + 1, size):
+                column = first + j if j < own else place_of(j - own, strips.tips[s], strips.roots[s], 0)
+                hessian[row, column] += h[i, j]
+                hessian[column, row] += h[i, j]
+            for k in range(modes):
+                hessian[row, forces + k] += b[k, i]
+                hessian[forces + k, row] += b[k, i]
+        for k in range(modes):
+            gradient[forces + k] = gap[k]
+            if strips.measure == MATERIAL:
+                out[AXIAL] += a[k] * gap[k]
+                hessian[forces + k, forces + k] = -strips.compliance[s, k]
+            else:
+                for j in range(modes):
+                    hessian[forces + k, forces + j] = -local.gram[s, k, j]
+
+
+@kernel()
+def defect_of(y, strips, shape, local):
+    """The moment defect of the state that was last gathered."""
+    wrong, stored = moment_defect(y, strips, shape, local)
+    return root_of(wrong, stored, SMALLEST_MOMENT)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Elements(Followed):
+    """Unknowns z (N,): poses, w of all strips, a of all strips, reactions of the drives; dimensionless.
+
+    place (Y,): that of each entry of y in z; bodies, strips: those of the model, and ``loose`` the ones that
+    a share of the preload is written to; out (5,): energies as ``gather`` left them.
+    """
+
+    model: Reduced
+    place: NDArray[np.int64]
+    loose: tuple[Bodies, Strips]
+    preload: Preload
+    local: Local
+    out: Array
+
+    @classmethod
+    def of(cls, system: System) -> Self:
+        """The elements of a system that they know."""
+        model = reduced(system)
+        assert model is not None, "``followed`` asks first"
+        return cls.on(model)
+
+    @classmethod
+    def on(cls, model: Reduced) -> Self:
+        """The elements of a reduced mechanism."""
+        poses, count = len(model.bodies.rest), len(model.strips.roots)
+        modes = int(model.strips.compliance.shape[1])
+        own = (model.size - poses) // count - modes
+        w = poses + np.arange(count * own).reshape(count, own)
+        a = poses + count * own + np.arange(count * modes).reshape(count, modes)
+        size = model.size + len(model.bodies.held)
+        return cls(
+            system=model.system,
+            gradient=np.empty(size),
+            hessian=np.empty((size, size)),
+            model=model,
+            place=np.concatenate((np.arange(poses), np.column_stack((w, a)).ravel())),
+            loose=apart(model),
+            preload=preload_of(model),
+            local=model.local(),
+            out=np.zeros(5),
+        )
+
+    @cached_property
+    def unit(self) -> Array:
+        """Of each unknown (N,): steps are measured in about as much as the control points move.
+
+        With a pose go two points of each strip that is clamped to it, with s_A and s_B one, at its reach.
+        """
+        strips, unit = self.model.strips, np.ones(len(self.gradient))
+        poses, count = len(self.model.bodies.rest), len(strips.roots)
+        carried = np.bincount(np.append(strips.roots, strips.tips) + 1, minlength=poses // 3 + 1)[1:]
+        unit[:poses] = np.repeat(1.0 / np.sqrt(1.0 + 2.0 * carried), 3)
+        unit[poses : self.count].reshape(count, -1)[:, -2:] = 1.0 / strips.reach
+        return unit
+
+    @property
+    def energy(self) -> float:
+        """All is dimensionless."""
+        return 1.0
+
+    @cached_property
+    def count(self) -> int:
+        """Poses and w."""
+        return self.model.size - self.model.strips.compliance.size
+
+    @property
+    def driven(self) -> int | None:
+        """Place of the driven rotation's torque, if there is one."""
+        place = self.model.bodies.driven
+        return self.model.size + place if place >= 0 else None
+
+    def y(self, z: Array) -> Array:
+        """The state in the order of the elements."""
+        return z[..., self.place]
+
+    def z(self, y: Array, reaction: Array) -> Array:
+        """States (S, N) from those of the elements (S, Y) and the reactions of the drives (S, D)."""
+        z = np.empty((len(y), len(self.gradient)))
+        z[:, self.place], z[:, self.model.size :] = y, reaction
+        return z
+
+    def fill(self, z: Array, load_factor: float, share: float) -> Energies:
+        """Gradient, tangent and energies at z."""
+        model, size = self.model, self.model.size
+        bodies, strips = (model.bodies, model.strips) if share == 1.0 else self.loose
+        if share != 1.0:
+            act(share, self.preload, bodies, strips)
+        origin, target = model.drives
+        gather(
+            self.y(z),
+            z[size:],
+            origin + load_factor * target,
+            load_factor,
+            bodies,
+            strips,
+            model.shape,
+            self.local,
+            self.out,
+            self.gradient,
+            self.hessian,
+        )
+        return float(self.out[BENDING]), float(self.out[AXIAL])
+
+    def external(self, z: Array) -> tuple[float, float]:
+        """Work from rest to z of loads and of weight."""
+        bodies, preload = self.model.bodies, self.preload
+        moved = z[: len(bodies.rest)] - bodies.rest
+        loads, weight = (float(moved @ force[: len(moved)]) for force in (bodies.load, bodies.weight))
+        return loads, weight + float((preload.dead * self.local.points).sum()) - preload.hung
+
+    @cached_property
+    def push_of_loads(self) -> Array:
+        """Minus the derivative of the gradient in the load factor (N,)."""
+        force, poses = np.zeros(len(self.gradient)), len(self.model.bodies.rest)
+        force[:poses] = self.model.bodies.load[:poses]
+        force[self.model.size :] = -self.model.drives[1]
+        return force
+
+    def refuse(self, z: Array) -> str:
+        """Why a state that was just evaluated is no strip."""
+        own = self.place[len(self.model.bodies.rest) :].reshape(len(self.model.strips.roots), -1)
+        last = own.shape[1] - self.model.strips.compliance.shape[1]
+        if (z[own[:, last - 2 : last]] > 0.0).all() and self.out[SLOWEST] > checks.SLOWEST_SPEED:
+            return ""
+        return checks.refuse(self.system, self.unknowns(z))
+
+    def defect(self, z: Array, load_factor: float) -> float:
+        """The moment defect of a state."""
+        share = self.acting(load_factor)[1]
+        self.fill(z, load_factor, share)
+        strips = self.model.strips if share == 1.0 else self.loose[1]
+        return float(defect_of(self.y(z), strips, self.model.shape, self.local))
+
+    def state(self, unknowns: Array) -> Array:
+        """z of the scene's unknowns, whose clamps hold."""
+        drives, z = self.system.tables.drives, np.zeros(len(self.gradient))
+        z[self.place] = from_unknowns(self.model, unknowns)
+        z[self.model.size :] = unknowns[drives.row] * self.model.drive_length / self.model.energy
+        return z
+
+    def unknowns(self, z: Array) -> Array:
+        """The scene's unknowns at z."""
+        size = self.model.size
+        return np.asarray(unknowns_of(self.model, self.y(z)[None], z[None, size:])[0])
+
+    def moved(self, z: Array, direction: Array) -> Array:
+        """Change (Q,) of the scene's coordinates, dimensionless, with that of poses and w."""
+        count, step = self.system.layout.coordinate_count, np.zeros(len(z))
+        part = ASIDE / np.abs(direction).max()
+        step[: self.count] = part * self.unit[: self.count] * direction
+        there, back = (self.unknowns(z + way * step)[:count] for way in (1.0, -1.0))
+        return np.asarray((there - back) / (2.0 * part * self.system.scales.unit[:count]))
+
+    def rows(self, points: Sequence[Point], done: Sequence[float]) -> dict[str, Array]:
+        """What a ``Path`` has by state."""
+        z, rate, factor, slope, stiffness, energies, inertia = (
+            np.array([getattr(p, name) for p in points])
+            for name in ("z", "rate", "load_factor", "slope", "stiffness", "energies", "inertia")
+        )
+        rate = rate / slope[:, None]
+        size, bodies, held = self.model.size, len(self.model.bodies.rest), len(self.model.bodies.held)
+        answer = empty_answer(len(points), size, bodies, held)._replace(
+            y=self.y(z),
+            reaction=z[:, size:],
+            reaction_rate=rate[:, size:],
+            stiffness=stiffness,
+            rate=rate[:, :bodies],
+            energies=energies,
+            done=np.array(done),
+            inertia=inertia,
+            defect=np.array([self.defect(p.z, p.load_factor) for p in points]),
+        )
+        return by_state(self.model, factor, answer)
+
+
+def followed(system: System, method: str = "condensed") -> Followed:
+    """The system to follow a path on: the elements, where they know the scene and are asked for."""
+    model = reduced(system) if method == "condensed" else None
+    return Bordered.of(system) if model is None else Elements.on(model)
