@@ -61,10 +61,13 @@ class Holds:
     Attributes:
         words: what must be true, for the message when it is not.
         test: whether it is true.
+        timed: whether it rests on measured seconds. Its sentence is then replaced by what was not so in the
+            run that the tables are of, where others are no longer printed at all: a machine may be busy.
     """
 
     words: str
     test: Callable[[Results], Any]
+    timed: bool = False
 
 
 #: One cell of a table: text, or text with a colour beside it.
@@ -110,7 +113,7 @@ def held(name: str, condition: Holds, results: Results) -> dict[str, Any]:
         answer = bool(condition.test(results))
     except (LookupError, TypeError) as error:
         raise ReportError(f"condition {name}: {error} ({condition.words})") from None
-    return {"holds": answer, "words": condition.words}
+    return {"holds": answer, "words": condition.words, "timed": condition.timed}
 
 
 def listed(name: str, listing: Listing, results: Results) -> Mapping[str, Any]:

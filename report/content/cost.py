@@ -134,7 +134,9 @@ def _cheapest(results: Results) -> bool:
 
 HOLDS = {
     "cost.path.cheapest": Holds(
-        words="at every error of the static path the spline takes the least time", test=_cheapest
+        words="at every error of the static path the spline takes the least time",
+        test=_cheapest,
+        timed=True,
     ),
     "cost.swing.cheapest": Holds(
         words="at every error of the swing the spline takes the least time",
@@ -144,10 +146,12 @@ HOLDS = {
             .dropna()
             > 1.0
         ).all(),
+        timed=True,
     ),
     "cost.python-most": Holds(
         words="more than half of the time of twenty elements is Python's",
         test=lambda r: float(_speeds(r)["python_share"].iloc[0]) > 0.5,
+        timed=True,
     ),
 }
 LISTINGS = {

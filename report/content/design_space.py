@@ -118,6 +118,7 @@ HOLDS = {
                 == "yes"
             ).all()
         ),
+        timed=True,
     ),
 }
 LISTINGS = {"chosen": Listing(made=_chosen), "space-unmet": Listing(made=_unmet)}

@@ -89,6 +89,7 @@ HOLDS = {
                 )
             ).empty
         ),
+        timed=True,
     ),
 }
 LISTINGS = {"effects": Listing(made=_worth), "cheapest": Listing(made=_cheapest)}

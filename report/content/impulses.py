@@ -87,6 +87,7 @@ HOLDS = {
     "impulses.in-time": Holds(
         words="four steps of the stable form take at most 1 ms at the 95th percentile",
         test=lambda r: (r.table(IMPULSES, "findings_of_time")["holds"] == "yes").all(),
+        timed=True,
     ),
 }
 LISTINGS = {"impulse-limits": Listing(made=_limits)}

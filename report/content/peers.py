@@ -155,10 +155,12 @@ HOLDS = {
             for table in ("statics_ratios", "swings_ratios")
             for group in ("Exudyn", "OpenSees")
         ),
+        timed=True,
     ),
     "peers.wanted-missed": Holds(
         words="none of the factors that were wished for against Exudyn is reached",
         test=lambda r: (r.table(CODES, "findings_of_time")["holds"] == "no").all(),
+        timed=True,
     ),
     "surrogates.not-everywhere": Holds(
         words="the four-bar's path is nearer than that of either four-point spline over one range that ends",

@@ -11,9 +11,11 @@ import numpy as np
 import pytest
 
 from spline_model import laps
-from spline_model.fast.solve import fast_path
-from spline_model.laps import Laps
+from spline_model.compile import compile_scene
 from spline_model.pivot import cross_axis_pivot
+from spline_model.reduced.elements import Elements
+from spline_model.reduced.model import at_rest
+from spline_model.reduced.solve import run
 from spline_model.statics import solve_statics
 from studies.record.source import ROOT
 from tests.table_one import TABLE_ONE
@@ -54,16 +56,17 @@ def test_parts_are_all_of_a_solve(monkeypatch):
 
 def test_memory_does_not_grow_with_the_increments():
     """Requirement: apart from its answer a path of 2000 increments needs what one of 20 does."""
-    mechanism = cross_axis_pivot(**TABLE_ONE).mechanism
+    work = Elements.of(compile_scene(cross_axis_pivot(**TABLE_ONE).driven(math.pi / 2)))
+    start = at_rest(work.model)
 
     def beyond_the_answer(increments):
-        rotations = list(np.linspace(0.0, math.pi / 2, increments + 1)[1:])
-        fast_path(mechanism, rotations, Laps())
+        factors = np.linspace(0.0, 1.0, increments + 1)
+        run(work, factors, start)
         tracemalloc.start()
-        _, answer = fast_path(mechanism, rotations, Laps())
+        answer = run(work, factors, start)
         peak = tracemalloc.get_traced_memory()[1]
         tracemalloc.stop()
-        return peak - sum(part.nbytes for part in answer) - 8 * increments
+        return peak - sum(part.nbytes for part in answer)
 
     # less than a byte an increment; compiled code cannot allocate at all, see `spline_model.strip.compiled`
     assert abs(beyond_the_answer(2000) - beyond_the_answer(20)) < 2000 - 20

@@ -10,12 +10,13 @@ from fe_reference.statics import solve_statics as solve_element_statics
 from spline_model.batch import solve_many
 from spline_model.compile import compile_scene
 from spline_model.dynamics import STEP, solve_release
-from spline_model.fast.solve import fast_path
 from spline_model.integrators import energy_consistent
 from spline_model.integrators.motion import initial_acceleration, set_in_motion
-from spline_model.laps import Laps
 from spline_model.modes import static_state
 from spline_model.pivot import cross_axis_pivot
+from spline_model.reduced.elements import Elements
+from spline_model.reduced.model import at_rest
+from spline_model.reduced.solve import run
 from spline_model.statics import solve_statics
 from tests.table_one import TABLE_ONE
 
@@ -44,11 +45,11 @@ def test_static_path(benchmark, n):
 @pytest.mark.parametrize("n", [6, 8])
 def test_compiled_path(benchmark, n):
     """Requirement: the condensed path alone, without recovery, reaches every state."""
-    mechanism = cross_axis_pivot(**TABLE_ONE, control_points=n).mechanism
-    rotations = list(np.linspace(0.0, QUARTER_TURN, INCREMENTS + 1)[1:])
-    done, answer = benchmark(lambda: fast_path(mechanism, rotations, Laps()))
+    work = Elements.of(compile_scene(cross_axis_pivot(**TABLE_ONE, control_points=n).driven(QUARTER_TURN)))
+    factors, start = np.linspace(0.0, 1.0, INCREMENTS + 1), at_rest(work.model)
+    answer = benchmark(lambda: run(work, factors, start))
     benchmark.extra_info.update(newton_iterations=int(answer.counters[0]))
-    assert done == INCREMENTS + 1
+    assert len(answer.y) == INCREMENTS + 1
 
 
 def test_multiplier_path(benchmark):
@@ -113,4 +114,4 @@ def test_element_path(benchmark):
     benchmark.extra_info.update(dict(solution.counters) | {"solve_s": solution.seconds["solve"]})
     counters = solution.counters
     assert counters["halvings"] == 0
-    assert counters["factorisations"] == counters["newton_iterations"] + INCREMENTS + 1
+    assert counters["factorisations"] == counters["newton_iterations"] + INCREMENTS

@@ -73,7 +73,6 @@ def test_bad_input_in_one_line(arguments, message, capsys):
 @pytest.mark.parametrize(
     ("addition", "message"),
     [
-        ('[scene]\neffects = ["bending", "stretching", "gravity"]', "effects: got 'gravity', expected only"),
         ("[strip]", "strip.section_depth_m: got 0.005, expected none"),
     ],
 )

@@ -23,12 +23,13 @@ from tests.table_one import TABLE_ONE
 def test_motion_that_tumbles_says_that_it_is_not_resolved():
     """A short polymer pivot with a light body moves otherwise with more control points, and says so.
 
-    By how much depends on the last digit of the start, as the motion is hardly predictable: 0.06 to 0.2 rad.
+    By how much depends on the last digit of the start, as it is hardly predictable: after 1.5 s it was
+    0.05 to 0.28 rad, near the threshold; at twice that time it is more than a radian.
     """
     given = {"length": 0.05, "inclination": math.radians(35.0), "crossing_ratio": 0.7}
     light = {"body_mass": 0.02, "body_moment_of_inertia": 1e-5}
     pivot = dataclasses.replace(named_case("polymer_pivot"), **given, **light)
-    motion = answer_release(pivot, SplineSettings(), duration=1.5, step=1e-4, check=True)
+    motion = answer_release(pivot, SplineSettings(), duration=3.0, step=1e-4, check=True)
     assert motion.converged
     assert "with 8 control points the rotation differs" in motion.resolution
     assert "the motion is not resolved" in motion.resolution

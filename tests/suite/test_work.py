@@ -5,16 +5,19 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from fe_reference import law
 from fe_reference.pivot import cross_axis_pivot as element_pivot
+from fe_reference.structure import structure_of
 from spline_model.compile import compile_scene
 from spline_model.fast import strip_force
-from spline_model.fast.condense import condense, recover
-from spline_model.fast.solve import grid_of, mode_count
-from spline_model.fast.strip import Grid, Local, assemble_points, local_arrays
+from spline_model.fast.frame import Grid, grid_of, mode_count
 from spline_model.newton import Workspace
 from spline_model.path import follow
 from spline_model.pivot import cross_axis_pivot
+from spline_model.reduced.model import reduced
 from spline_model.sparse import LEAST_SIZE
+from spline_model.strip import condense as strip_condense
+from spline_model.strip import points
 from studies.answers.adapters import answer_release, answer_static
 from studies.answers.settings import FeSettings, SplineSettings
 from studies.cases.problem import named_case
@@ -34,30 +37,57 @@ def operations(call, *arguments):
 
 
 @pytest.mark.parametrize("n", [4, 5, 6, 9])
-def test_operations_of_the_condensed_spline(n):
+def test_operations_of_the_condensed_spline(monkeypatch, n):
     """Assembly, condensation and recovery of a strip do as many operations as the formulas say."""
-    design = cross_axis_pivot(**TABLE_ONE, control_points=n).mechanism.design
-    grid, modes, own = grid_of(design), mode_count(design), 2 * n - 6
-    local = Local(*(counting(array) for array in local_arrays(n, modes, len(grid.weight))))
-    points = counting(np.column_stack((np.linspace(0.0, 1.0, n), 0.01 * np.sin(np.arange(n)))))
-    compliance = counting(np.ones(modes))
-    table = Grid(*(counting(array) for array in grid))
-    done = operations(assemble_points.py_func, points, compliance, compliance, table, local)
-    assert done == work.assembly_flops(len(grid.weight), n - 1, modes)
+    model = reduced(compile_scene(cross_axis_pivot(**TABLE_ONE, control_points=n).driven(1.0)))
+    strips, shape, local = model.strips, model.shape, model.local()
+    for name in ("bending_law", "mixed_law"):
+        monkeypatch.setattr(points, name, getattr(points, name).py_func)
+    monkeypatch.setattr(points, "math", SimpleNamespace(sqrt=lambda value: value.sqrt()))
+    monkeypatch.setattr(strip_condense, "eliminate", strip_condense.eliminate.py_func)
+    modes, own = strips.compliance.shape[1], 2 * n - 6
+    curve = np.column_stack((np.linspace(0.0, 1.0, n), 0.01 * np.sin(np.arange(n))))
+    done = operations(
+        points.assemble_points.py_func,
+        *map(counting, (curve.ravel(), np.ones(modes))),
+        n - 1,
+        *map(counting, (shape.d1, shape.d2, shape.weight)),
+        *map(counting, (strips.speed[0], strips.curvature[0], strips.rigidity[0])),
+        0.0,
+        Counted(0.0),
+        counting(strips.modes[0]),
+        strips.split,
+        *map(counting, (strips.compliance[0], strips.dead[0])),
+        strips.measure,
+        *map(counting, (local.gradient[0], local.hessian[0], local.coupling[0])),
+        *map(counting, (local.gap[0], local.gram[0], local.moment[0], np.zeros(5))),
+    )
+    assert done == work.assembly_flops(len(shape.weight), n - 1, modes)
 
-    local.h[:] = counting(10.0 * np.eye(own + 3) + 1.0)
-    assert operations(condense.py_func, local, compliance, own) == work.condensation_flops(own, modes)
+    size = own + 3
+    gain, gap = counting(np.ones(modes)), counting(np.ones(modes))
+    g, h = counting(np.ones(size)), counting(10.0 * np.eye(size) + 1.0)
+    b = counting(np.ones((modes, size)))
+    condense = (strip_condense.condense.py_func, own, size, gain, g, h, b, gap)
+    assert operations(*condense) == work.condensation_flops(own, modes)
     change = (counting(np.zeros(k)) for k in (3, own, modes))
-    assert operations(recover.py_func, local, compliance, own, *change) == work.recovery_flops(own, modes)
+    recover = (strip_condense.recover.py_func, own, size, Counted(1.0), 0, 0, gain, g, h, b, gap, *change)
+    assert operations(*recover) == work.recovery_flops(own, modes)
 
 
-@pytest.mark.parametrize("elements", [1, 3])
-def test_operations_of_an_element(elements):
+def test_operations_of_an_element(monkeypatch):
     """Forces and tangent of an element do as many operations as the constants say."""
-    law = element_pivot(**TABLE_ONE, elements=elements).structure.law
-    moved = counting(1e-3 * np.random.default_rng(3).normal(size=(6, 2 * elements)))
-    assert operations(law.forces, moved) == 2 * elements * work.ELEMENT_FORCES
-    assert operations(law.tangents, moved) == 2 * elements * work.ELEMENT_TANGENT
+    plain = SimpleNamespace(
+        pi=np.pi, sqrt=Counted.sqrt, atan2=Counted.arctan2, floor=lambda value: np.floor(float(value))
+    )
+    monkeypatch.setattr(law, "math", plain)
+    (row,) = counting(structure_of(element_pivot(**TABLE_ONE, elements=1)).given[1][:1])
+    moved = counting(1e-3 * np.random.default_rng(3).normal(size=4))
+    done = []
+    for asked in (law.FORCES, law.TANGENT):
+        room = np.empty(5, dtype=object), np.empty((4, 4), dtype=object)
+        done.append(operations(law._corotational.py_func, row, 1.0, *moved, asked, *room))
+    assert done == [work.ELEMENT_FORCES, work.ELEMENT_FORCES + work.ELEMENT_TANGENT]
 
 
 @pytest.mark.parametrize(
@@ -73,7 +103,7 @@ def test_sizes_are_those_of_the_models(settings):
     """Unknowns and points are those of the systems that the models solve."""
     found = work.work_of(settings, answer_static(named_case("cross_axis_pivot"), settings).counters)
     if isinstance(settings, FeSettings):
-        structure = element_pivot(**TABLE_ONE, **settings.keywords()).structure
+        structure = structure_of(element_pivot(**TABLE_ONE, **settings.keywords()))
         assert (found.unknowns, found.points) == (structure.size - 1, 2 * settings.elements)
         return
     pivot = cross_axis_pivot(**TABLE_ONE, **settings.keywords())
@@ -103,15 +133,15 @@ def test_operations_of_the_sparse_factorisation(n):
 def test_operations_of_a_strip_in_motion(monkeypatch, n):
     """The forces of a strip without tangent take as many operations as the formula says."""
     design = cross_axis_pivot(**TABLE_ONE, control_points=n).mechanism.design
-    grid, points = grid_of(design), n + 2
+    grid, count = grid_of(design), n + 2
     monkeypatch.setattr(strip_force, "evaluate_points", strip_force.evaluate_points.py_func)
     monkeypatch.setattr(strip_force, "math", SimpleNamespace(sqrt=lambda value: value.sqrt()))
     x, y = (counting(np.ones((1, n)) * values) for values in (np.linspace(0.0, 1.0, n), 0.01))
-    room = [counting(np.zeros(shape)) for shape in ((4, points), points, (1, n), (1, n))]
-    axial = counting(np.ones((1, points, points)))
+    room = [counting(np.zeros(shape)) for shape in ((4, count), count, (1, n), (1, n))]
+    axial = counting(np.ones((1, count, count)))
     table = Grid(*(counting(array) for array in grid))
     done = operations(strip_force.strip_force.py_func, 0, x, y, table, axial, *room)
-    assert len(grid.weight) == points
+    assert len(grid.weight) == count
     assert done == strip_force_flops(n)
 
 
