@@ -1,6 +1,6 @@
 # `make` alone lists the targets. Everything happens in .venv, which `make setup` creates.
 .DEFAULT_GOAL := help
-.PHONY: help setup figures results report interactive test test-all bench docs lint clean
+.PHONY: help setup figures results report interactive test test-all mutate bench docs lint size clean
 
 PYTHON ?= python3
 BIN := .venv/bin
@@ -51,6 +51,9 @@ test: $(STAMP)  ## run the quick tests
 test-all: $(STAMP)  ## run all tests
 	$(BIN)/python -m pytest -q -n auto
 
+mutate: $(STAMP)  ## put slips into a copy of both models: a named test must notice each (10 minutes)
+	$(BIN)/python -m tests.mutate $(ARGS)
+
 bench: $(STAMP)  ## time the solvers; counters are stored beside the seconds
 	@mkdir -p .benchmarks
 	$(BIN)/python -m pytest -q tests/bench --benchmark-enable --benchmark-sort=name \
@@ -64,6 +67,9 @@ lint: $(STAMP)  ## check style and types
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
+
+size: $(STAMP)  ## count code lines, files and public names of every package, beside the aim
+	$(BIN)/python -m tests.size
 
 clean:  ## remove .venv and every cache, but no results
 	rm -rf .venv .mypy_cache .pytest_cache .ruff_cache .hypothesis .benchmarks build docs/_build *.egg-info

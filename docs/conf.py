@@ -42,11 +42,13 @@ nitpick_ignore = [
     for name in (
         # aliases of numpy.typing.NDArray where annotations are postponed: names for a reader
         *("NDArray", "Array", "Indices"),
+        # imported for annotations alone
+        "Study",
         # scipy's class, which says that it belongs to no module
         "SuperLU",
         # type variables
         *("spline_model.accuracy.Found", "spline_model.scene.Kind"),
-        *("fe_reference.effects.T", "studies.record.timing.Result"),
+        *("fe_reference.effects.T", "fe_reference.refined.Answer", "studies.record.timing.Result"),
     )
 ]
 

@@ -4,6 +4,7 @@ Data flow one way, and so do the imports:
 
     effects -> model (pivot, mechanism) -> mesh -> structure (law, matrix) -> control -> path -> statics
     structure -> mass, loads -> actions -> explicit, implicit -> dynamics; statics -> modes; all -> solution
+    solution -> refined (meshes to a wanted accuracy) -> statics, modes, dynamics
 
 What is scikit-fem's, and what is not: the mesh of the strips, the basis of three linear fields on it, the
 numbering of its degrees of freedom and the pattern of the assembled matrices are scikit-fem's. The energies
@@ -21,7 +22,7 @@ from .model import Body, Model, Section, Strip, straight_strip
 from .modes import Modes, natural_frequencies
 from .pivot import cross_axis_pivot
 from .section_forces import StripFields, strip_fields
-from .solution import CriticalPoint, StaticSolution, Status
+from .solution import CriticalPoint, ErrorEstimate, StaticSolution, Status
 from .statics import solve_loads, solve_mechanism, solve_statics
 from .trajectory import Trajectory
 
@@ -31,6 +32,7 @@ __all__ = [
     "BodyDesign",
     "ConvergenceError",
     "CriticalPoint",
+    "ErrorEstimate",
     "InvalidParameter",
     "Model",
     "Modes",

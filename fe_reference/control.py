@@ -1,9 +1,9 @@
 """How a structure is led along an equilibrium path: what is held, what is loaded, and what is reported.
 
 The path is followed in one parameter p. On a span p_0 to p_1 the held coordinates go linearly from their
-values at its beginning to those at its end, and the load is p F. The residual is r = f(y) - p F, with f the
-gradient of the potential. While a scene settles, p is the share of gravity and natural strains instead, and
-nothing else acts.
+values at its beginning to those at its end, and so does the load a F, whose share a is p itself unless the
+span says otherwise. The residual is r = f(y) - a F, with f the gradient of the potential. While a scene
+settles, p is the share of gravity and natural strains instead, and nothing else acts.
 """
 
 from collections.abc import Sequence
@@ -43,7 +43,7 @@ class Control:
     Args:
         structure: what is led, reduced about the centres of its bodies.
         held (H,): coordinates that are prescribed. values (2, H): at the beginning and the end of the span.
-        span: parameter at both. load (size,): F, or None.
+        span: parameter at both. load (size,): F, or None. shares: of it at both, by default the parameters.
         watched: coordinate of the turn whose torque and stiffness are reported, or None.
         settling: whether the parameter is the share of gravity and natural strains.
     """
@@ -55,6 +55,17 @@ class Control:
     load: Array | None = None
     watched: int | None = None
     settling: bool = False
+    shares: tuple[float, float] | None = None
+
+    @property
+    def growth(self) -> float:
+        """Rate of the load's share in p."""
+        shares = self.span if self.shares is None else self.shares
+        return (shares[1] - shares[0]) / (self.span[1] - self.span[0])
+
+    def share(self, parameter: float) -> float:
+        """Return the share of the load that acts at p."""
+        return parameter if self.shares is None else self.shares[0] + self.growth * (parameter - self.span[0])
 
     @cached_property
     def is_held(self) -> NDArray[np.bool_]:
@@ -87,7 +98,8 @@ class Control:
         residual, potential, work = here.gradient, sum(here.strain) + share * here.gravity, 0.0
         if self.load is not None:
             work = float(self.load @ y)
-            residual, potential = residual - parameter * self.load, potential - parameter * work
+            acts = self.share(parameter)
+            residual, potential = residual - acts * self.load, potential - acts * work
         return Balance(residual=residual, at=here, potential=potential, load_work=work)
 
     def unbalanced(self, residual: Array) -> float:
@@ -99,7 +111,9 @@ class Control:
         if self.settling:
             force, rate, bend = self.structure.share_rates(y)
             return force, rate + (parameter - 1.0) * bend, bend
-        return (None, 0.0, 0.0) if self.load is None else (-self.load, -load_work, 0.0)
+        if self.load is None or self.growth == 0.0:
+            return None, 0.0, 0.0
+        return -self.growth * self.load, -self.growth * load_work, 0.0
 
     def factors(self, balance: Balance) -> Factors:
         """Return the factors of the tangent on the free coordinates; raises `matrix.Singular`."""
@@ -109,9 +123,11 @@ class Control:
         """Return what the parameter stands for, with its value."""
         if self.settling:
             return f"{100.0 * parameter:.6g} % of {self.structure.constant_words}"
-        if self.watched is not None and self.held.tolist() == [self.watched] and self.load is None:
-            return f"rotation {np.degrees(self.prescribed(parameter)[0]):.6g} deg"
-        return f"load factor {parameter:.6g}"
+        turning = self.watched is not None and self.watched in self.held[self.slope != 0.0]
+        if turning and (self.load is None or self.growth == 0.0):
+            at = self.held.tolist().index(self.watched)
+            return f"rotation {np.degrees(self.prescribed(parameter)[at]):.6g} deg"
+        return f"load factor {self.share(parameter):.6g}"
 
 
 def spans(
@@ -122,19 +138,25 @@ def spans(
     displacement: Sequence[float] | None = None,
     load: Array | None = None,
     watched: int | None = None,
+    first: bool = False,
 ) -> list[Control]:
     """Return the spans of a path on which a body is led through `rotations` [rad], one leg each.
 
-    The displacement [m] of the body's centre and the load grow with the load factor over all legs.
+    The displacement [m] of the body's centre and the load grow with the load factor over all legs, or
+    `first`: in a leg of their own before the rotation, and then they stay.
     """
     ends = [0.0, *rotations] if rotations is not None else [0.0, 0.0]
+    ends = [0.0, *ends] if first else ends
     at = structure.body_slice(0 if body is None else body).start
     held = [] if displacement is None else [at, at + 1]
     held += [at + 2] if rotations is not None else []
     legs = len(ends) - 1
 
+    def share(leg: int) -> float:
+        return min(float(leg), 1.0) if first else leg / legs
+
     def values(leg: int) -> list[float]:
-        place = [] if displacement is None else [leg / legs * part for part in displacement]
+        place = [] if displacement is None else [share(leg) * part for part in displacement]
         return place + ([ends[leg]] if rotations is not None else [])
 
     return [
@@ -145,6 +167,7 @@ def spans(
             span=(leg / legs, (leg + 1) / legs),
             load=load,
             watched=watched,
+            shares=(share(leg), share(leg + 1)),
         )
         for leg in range(legs)
     ]
@@ -159,7 +182,6 @@ class Response:
         conjugate, slope: first and second derivative of the total potential along the path [J].
         torque, stiffness: generalised force on the watched turn [N m] and its derivative [N m/rad], all that
             is not held being free; nan if no turn is watched.
-        torque_rate: derivative of the torque in p [N m]; zero unless a watched turn is driven.
         inertia: number of negative eigenvalues of the tangent on the free coordinates; 0: stable.
     """
 
@@ -168,7 +190,6 @@ class Response:
     slope: float
     torque: float
     stiffness: float
-    torque_rate: float
     inertia: int
 
 
@@ -189,20 +210,19 @@ def respond(control: Control, y: Array, parameter: float, balance: Balance, fact
     if change is not None:
         rate -= factors.solve(change)
         second += 2.0 * float(change @ rate)
-    along, torque_rate = tangent.times(rate), 0.0
+    along = tangent.times(rate)
     if control.watched is None:
         torque, turning = np.nan, np.nan
     elif control.is_held[control.watched]:
         k = int(np.flatnonzero(held == control.watched)[0])
         torque, turning = float(drive[k]), float(stiffness[k, k])
-        if control.slope[k] != 0.0:
-            torque_rate = float(along[control.watched])
-            torque_rate += 0.0 if change is None else float(change[control.watched])
     else:
         unit = np.zeros(control.structure.size)
         unit[control.watched] = 1.0
         torque = float(balance.residual[control.watched])
-        torque += 0.0 if control.load is None else parameter * float(control.load[control.watched])
+        torque += (
+            0.0 if control.load is None else control.share(parameter) * float(control.load[control.watched])
+        )
         turning = 1.0 / float(factors.solve(unit)[control.watched])
     return Response(
         rate=rate,
@@ -210,6 +230,5 @@ def respond(control: Control, y: Array, parameter: float, balance: Balance, fact
         slope=second + float(rate @ along),
         torque=torque,
         stiffness=turning,
-        torque_rate=torque_rate,
         inertia=factors.negative,
     )

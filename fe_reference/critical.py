@@ -1,13 +1,16 @@
 """Critical points between two neighbouring states of a path, and what is said of them in words of design."""
 
+from collections import Counter
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.optimize import brentq
 
-from .control import Control
+from .control import Control, respond
 from .matrix import Symmetric
+from .newton import equilibrate
 from .solution import CriticalPoint
 
 if TYPE_CHECKING:
@@ -19,8 +22,8 @@ Array = NDArray[np.float64]
 STANDS = 0.25
 #: Inverse iterations to the critical mode; next to a critical point each gains several digits.
 INVERSE_ITERATIONS = 6
-#: Rates of the torque over p below which they are round-off, in EI/L.
-ROUND_OFF = 1e-9
+#: Stiffness below which it is round-off, in EI/L, and part of an increment within which its zero is placed.
+ROUND_OFF, PLACED = 1e-9, 1e-6
 PREFIXES = {9: "G", 6: "M", 3: "k", 0: "", -3: "m", -6: "u", -9: "n"}
 
 
@@ -55,22 +58,32 @@ def critical_mode(tangent: Symmetric, held: NDArray[np.bool_]) -> tuple[float, A
     return float(moved @ tangent.times(moved)), moved
 
 
-def extremes(control: Control, before: "State", after: "State") -> list[CriticalPoint]:
-    """Return where the torque of a driven rotation is stationary between two states; that is not unstable.
+def tipping(control: Control, before: "State", after: "State", counters: Counter[str]) -> list[CriticalPoint]:
+    """Return where the stiffness of a driven turn at fixed loads vanishes between two states, if it does.
 
-    The torque is taken as the cubic of its values and its rates at both ends: error of fourth order.
+    Without loads its torque is stationary there, which is not unstable; let go under loads the body tips
+    over.
     """
-    rates = before.response.torque_rate, after.response.torque_rate
-    if rates[0] * rates[1] >= 0.0 or min(map(abs, rates)) <= ROUND_OFF * control.structure.moment_unit:
+    stiff, soft = before.response.stiffness, after.response.stiffness
+    same = before.response.inertia == after.response.inertia  # else it may have gone through infinity
+    least = ROUND_OFF * control.structure.moment_unit
+    if control.watched not in control.held or not same or stiff * soft >= 0.0:
         return []
-    step = after.parameter - before.parameter
-    gained = (after.response.torque - before.response.torque) / step
-    cubic = [3.0 * (sum(rates) - 2.0 * gained), 2.0 * (3.0 * gained - 2.0 * rates[0] - rates[1]), rates[0]]
-    part = next(
-        float(root.real) for root in np.roots(cubic) if abs(root.imag) == 0.0 and 0.0 <= root.real <= 1.0
-    )
+    if min(abs(stiff), abs(soft)) <= least:
+        return []
+
+    def remaining(part: float) -> float:
+        y, parameter = _between(before, after, part)
+        found = equilibrate(control, y, parameter, counters)
+        if found.factors is None:
+            return stiff + part * (soft - stiff)
+        return respond(control, found.y, parameter, found.balance, found.factors).stiffness
+
+    part = brentq(remaining, 0.0, 1.0, xtol=PLACED)
     y, parameter = _between(before, after, part)
-    return [point(control, "limit point", y, parameter, after.response.inertia, "")]
+    loaded = control.load is not None or control.structure.constant_effects
+    what = "limit point: the body's own stiffness vanishes, let go it tips over" if loaded else ""
+    return [point(control, "limit point", y, parameter, after.response.inertia, what)]
 
 
 def _between(before: "State", after: "State", part: float) -> tuple[Array, float]:
@@ -83,7 +96,7 @@ def point(control: Control, kind: str, y: Array, parameter: float, inertia: int,
     """Return the critical point at a state; its text tells what happens there, if that is to be told."""
     return CriticalPoint(
         kind=kind,
-        load_factor=0.0 if control.settling else parameter,
+        load_factor=0.0 if control.settling else control.share(parameter),
         rotation=rotation(control, y),
         inertia=inertia,
         text=f"{what} at {', '.join(places(control, y, parameter))}" if what else "",
@@ -105,12 +118,12 @@ def places(control: Control, y: Array, parameter: float) -> Iterator[str]:
         yield "load factor 0"
         return
     if control.load is not None:
-        vector = parameter * control.load
+        vector = control.share(parameter) * control.load
         force, moment = np.hypot(vector[0::3].sum(), vector[1::3].sum()), abs(vector[2::3].sum())
         yield from (quantity(size, unit) for size, unit in ((force, "N"), (moment, "N m")) if size > 0.0)
     if control.watched is not None and control.watched in control.held[control.slope != 0.0]:
         yield f"rotation {np.degrees(y[control.watched]):.4g} deg"
-    yield f"load factor {parameter:.4g}"
+    yield f"load factor {parameter if control.settling else control.share(parameter):.4g}"
 
 
 def quantity(size: float, unit: str) -> str:

@@ -17,6 +17,7 @@ from .mass import about_mass_centre, carried_over
 from .model import Model
 from .modes import natural_frequencies
 from .motion import Progress, Samples, sampling
+from .refined import limit_of_motions
 from .solution import Status
 from .statics import settled_state
 from .stopwatch import Stopwatch
@@ -36,7 +37,7 @@ MOST_NUMBERS = 200_000_000
 
 @dataclass(frozen=True, kw_only=True)
 class Run:
-    """How a motion is integrated; the arguments of `solve_release` of the same names."""
+    """How a motion is integrated; the arguments of `solve_motion` of the same names."""
 
     duration: float
     step: float | None
@@ -46,6 +47,7 @@ class Run:
     samples: int
     most_steps: int
     progress: Progress | None
+    accuracy: float | None = None
 
     def __post_init__(self) -> None:
         choice("integrator", self.integrator, INTEGRATORS)
@@ -56,71 +58,14 @@ class Run:
         count("most_steps", self.most_steps)
         positive("safety", self.safety, "1")
         within("spectral_radius", self.spectral_radius, 0.0, 1.0 + 1e-12, "1")
+        if self.accuracy is not None and (self.step is not None or self.integrator != INTEGRATORS[0]):
+            raise InvalidParameter("accuracy", self.accuracy, f"{INTEGRATORS[0]} by its own step beside it")
 
 
-def solve_release(
-    pivot: Model,
-    *,
-    start: float | None,
-    duration: float,
-    step: float | None = None,
-    integrator: str = INTEGRATORS[0],
-    safety: float = 0.9,
-    spectral_radius: float = 0.9,
-    samples: int = 1000,
-    increments: int = 20,
-    most_steps: int = MOST_STEPS,
-    check: bool = True,
-    raise_on_failure: bool = True,
-    progress: Progress | None = None,
-) -> Trajectory:
-    """Let the pivot go at rest from the static state at a rotation, and follow its motion.
-
-    The start is in static equilibrium: with the rotation driven to `start`, gravity, natural strains and the
-    driven displacement in full, and every load at its value times its history at t = 0 (without a history: in
-    full). Then both drives let go; loads go on as value times history(t), constant before its first and after
-    its last time.
-
-    Args:
-        pivot: the model; both elements and both integrators go together. Masses are lumped.
-        start: rotation at the start [rad]; None: no rotation is driven, and under loads without a history the
-            pivot stands still. duration: [s].
-        step: time step [s]. Default: for "central-difference" the smaller critical step of the start and of
-            rest, times `safety`; for "generalised-alpha" a 6000th of the first period of small motion. The
-            default is shortened so that whole steps fill the duration.
-        integrator: "central-difference" (explicit) or "generalised-alpha" (implicit, with `spectral_radius`).
-        samples: states kept beside the start, at most.
-        increments: of the static path to the start.
-        most_steps: beyond which a run is refused before it begins.
-        check: whether a motion with fewer elements says how far the rotation is uncertain: `rotation_error`,
-            and in `resolution` where that is much. It costs an eighth of the motion, half an implicit one.
-        progress: called as progress(done, total) after every sample.
-
-    Unless the scene names the rotary inertia of the sections, the
-    corotational element has none but a numerical one (see `mass`).
-
-    Raises:
-        InvalidParameter: a value outside its domain, a run too long to finish or to keep, nothing with
-            inertia, or parts without inertia in the explicit integrator.
-        ConvergenceError: statics does not reach the start; or (unless `raise_on_failure` is False) the motion
-            blew up or a step had no solution: carries the trajectory until then.
-    """
+def solve_release(pivot: Model, *, start: float | None, duration: float, **options: Any) -> Trajectory:
+    """Let a pivot go at rest from the static state at a rotation: `solve_motion` of the one body there is."""
     pivot.body_index(None)
-    return solve_motion(
-        pivot,
-        start=start,
-        duration=duration,
-        step=step,
-        integrator=integrator,
-        safety=safety,
-        spectral_radius=spectral_radius,
-        samples=samples,
-        increments=increments,
-        most_steps=most_steps,
-        check=check,
-        raise_on_failure=raise_on_failure,
-        progress=progress,
-    )
+    return solve_motion(pivot, start=start, duration=duration, **options)
 
 
 def solve_motion(
@@ -137,26 +82,51 @@ def solve_motion(
     samples: int = 1000,
     increments: int = 20,
     most_steps: int = MOST_STEPS,
+    accuracy: float | None = None,
     check: bool = True,
     raise_on_failure: bool = True,
     progress: Progress | None = None,
 ) -> Trajectory:
-    """Let a mechanism go at rest and follow the motion of all its bodies.
+    """Let a mechanism go at rest from a static state, and follow the motion of all its bodies.
 
-    What holds at the start, what lets go and which loads act is as in `solve_release`.
+    The start is in static equilibrium: with the rotation of a body driven to `start`, gravity, natural
+    strains and the driven displacement in full, and every load at its value times its history at t = 0
+    (without a history: in full). Then both drives let go; loads go on as value times history(t), constant
+    before its first and after its last time.
 
     Args:
-        mechanism: strips, bodies and effects.
+        mechanism: strips, bodies and effects; both elements and both integrators go together. Masses are
+            lumped.
         start: rotation at which a body is held until the start [rad]; None: none is held, and under loads
             without a history the mechanism stands still.
         body: name of the held body; None: the only one.
         settled: whether the start is in equilibrium; if not it is the shape at rest, where gravity, natural
             strains and loads act at once.
-        others: as in `solve_release`. The default of the implicit step is a 6000th of the first period about
-            the shape at rest, without gravity and loads.
+        duration: [s].
+        step: time step [s]. Default: for "central-difference" the smaller critical step of the start and of
+            rest, times `safety`; for "generalised-alpha" a 6000th of the first period of small motion about
+            the shape at rest, without gravity and loads. The default is shortened so that whole steps fill
+            the duration.
+        integrator: "central-difference" (explicit) or "generalised-alpha" (implicit, with `spectral_radius`).
+        samples: states kept beside the start, at most.
+        increments: of the static path to the start.
+        most_steps: beyond which a run is refused before it begins.
+        accuracy: wanted error of rotations [rad] and of places in strip lengths; the mesh is doubled until
+            the estimate is below it, and the motion is the limit, at equal instants. Each mesh takes eight
+            times as long as the one before.
+        check: whether a motion with fewer elements says how far the rotation is uncertain: `rotation_error`,
+            and in `resolution` where that is much. It costs an eighth of the motion, half an implicit one;
+            none is made with an accuracy.
+        progress: called as progress(done, total) after every sample.
+
+    Unless the scene names the rotary inertia of the sections, the
+    corotational element has none but a numerical one (see `mass`).
 
     Raises:
-        InvalidParameter, ConvergenceError: as in `solve_release`; a start that is held but not settled.
+        InvalidParameter: a value outside its domain, a run too long to finish or to keep, nothing with
+            inertia, parts without inertia in the explicit integrator, a start that is held but not settled.
+        ConvergenceError: statics does not reach the start; or (unless `raise_on_failure` is False) the motion
+            blew up, a step had no solution or the accuracy was not reached: carries what there is.
     """
     run = Run(
         duration=duration,
@@ -167,27 +137,41 @@ def solve_motion(
         samples=samples,
         most_steps=most_steps,
         progress=progress,
+        accuracy=accuracy,
     )
     if start is not None:
         finite("start", start, "rad")
     if start is not None and not settled:
         raise InvalidParameter("settled", settled, "True for a start at a held rotation [1]")
-    watch = Stopwatch()
-    rest = np.zeros(structure_of(mechanism).size)
-    y, remark = _start(mechanism, start, body, increments) if settled else (rest, "")
-    watch.stop("start")
-    structure, motion, settings = _integrate(mechanism, y, run, watch)
-    begin: dict[str, float | str] = {} if start is None else {"start_rad": start}
-    motion.remarks += [remark] if remark else []
-    motion_of = trajectory(structure, motion, begin | settings, watch)
-    if motion_of.status is not Status.CONVERGED and raise_on_failure:
+
+    def solve(model: Model) -> Trajectory:
+        return _moved(model, start, body, settled, increments, run)
+
+    motion = solve(mechanism) if accuracy is None else limit_of_motions(mechanism, accuracy, solve)
+    if motion.status is not Status.CONVERGED and raise_on_failure:
         raise ConvergenceError(
-            f"{motion_of.message}; {motion_of.status.text}",
-            solution=motion_of,
-            load_factor=float(motion_of.time[-1] / duration),
-            history=tuple(motion.history),
+            f"{motion.message}; {motion.status.text}",
+            solution=motion,
+            load_factor=float(motion.time[-1] / duration),
+            history=motion.history,
         )
-    return checked(mechanism, motion_of, start=start, body=body) if check and settled else motion_of
+    if accuracy is not None or not check or not settled:
+        return motion
+    return checked(mechanism, motion, start=start, body=body)
+
+
+def _moved(
+    model: Model, start: float | None, body: str | None, settled: bool, increments: int, run: Run
+) -> Trajectory:
+    """Return the motion of a model, however it ended."""
+    watch = Stopwatch()
+    rest = np.zeros(structure_of(model).size)
+    y, remark = _start(model, start, body, increments) if settled else (rest, "")
+    watch.stop("start")
+    structure, samples, settings = _integrate(model, y, run, watch)
+    begin: dict[str, float | str] = {} if start is None else {"start_rad": start}
+    samples.remarks += [remark] if remark else []
+    return trajectory(structure, samples, begin | settings, watch)
 
 
 def checked(model: Model, motion: Trajectory, *, start: float | None, body: str | None = None) -> Trajectory:
@@ -232,7 +216,7 @@ def _integrate(
         scheme, choices = Implicit(structure, bodies, run.spectral_radius), {}
         choices["spectral_radius"] = run.spectral_radius
         longest = run.duration if run.step is not None else 1.0 / (STEPS_PER_PERIOD * _first_frequency(model))
-    h, steps = _steps(run.duration, longest if run.step is None else run.step, run.step is None)
+    h, steps = _steps(run, longest)
     _affordable(model, run, h, steps, y.size)
     watch.stop("compile")
     motion = scheme.run(y, np.zeros_like(y), h, sampling(steps, run.samples), run.progress)
@@ -260,10 +244,14 @@ def _cheaper(model: Model, run: Run) -> str:
     return f"--integrator generalised-alpha takes about {max(steps, 1.0):.2g}; or {allow}"
 
 
-def _steps(duration: float, longest: float, fill: bool) -> tuple[float, int]:
-    """Return step [s] and number of steps; with `fill` the step is shortened to fill the duration."""
-    steps = max(1, ceil(duration / longest * (1.0 - 1e-12)))
-    return (duration / steps if fill else longest), steps
+def _steps(run: Run, longest: float) -> tuple[float, int]:
+    """Return step [s] and number of steps; what is not given is shortened to fill the duration.
+
+    With an accuracy, to fill the time between two samples, so that all meshes have the same instants.
+    """
+    parts = 1 if run.accuracy is None else run.samples
+    steps = parts * max(1, ceil(run.duration / parts / (run.step or longest) * (1.0 - 1e-12)))
+    return run.step or run.duration / steps, steps
 
 
 def _affordable(model: Model, run: Run, step: float, steps: int, size: int) -> None:

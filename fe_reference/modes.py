@@ -1,6 +1,7 @@
 """Natural frequencies and shapes of small motion about a static state: K x = omega^2 M x."""
 
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,10 +10,12 @@ from scipy.sparse import csc_matrix
 from scipy.sparse.linalg import eigsh, splu
 
 from .effects import needs_inertia
-from .errors import InvalidParameter, choice
+from .errors import ConvergenceError, InvalidParameter, choice
 from .errors import count as at_least_one
 from .mass import MASSES, mass_matrix
 from .model import Model
+from .refined import Quantities, refine
+from .solution import ErrorEstimate
 from .statics import static_state
 from .structure import Structure, structure_of
 
@@ -31,6 +34,7 @@ class Modes:
         shapes (C, G, P, 2): displacements of the nodes, of unit modal mass [m / sqrt(kg m^2)].
         body_shapes (C, 3 B): displacement of the centre of mass and rotation of every body, same scale.
         state (size,): reduced coordinates of the static state.
+        estimate: of the frequencies' errors, where an accuracy was asked for; the rest is of the finest mesh.
     """
 
     rotation: float
@@ -40,6 +44,7 @@ class Modes:
     shapes: Array
     body_shapes: Array
     state: Array
+    estimate: ErrorEstimate | None = None
 
 
 def natural_frequencies(
@@ -51,6 +56,7 @@ def natural_frequencies(
     mass: str = "consistent",
     increments: int = 20,
     body: str | None = None,
+    accuracy: float | None = None,
 ) -> Modes:
     """Return the modes about a static state: free vibrations of what a release from it lets go of.
 
@@ -65,18 +71,54 @@ def natural_frequencies(
         mass: "consistent" (default) or "lumped", the one of the explicit integrator.
         increments: of the static path to the state.
         body: name of the driven body; None: the only one.
+        accuracy: wanted error of every frequency in parts of it; the mesh is doubled until the estimate is
+            below it, and the frequencies are the limits.
 
     Exact for small motion; leaves out damping. Strips without inertia follow the bodies statically.
 
     Raises:
         InvalidParameter: more modes than there are coordinates, an unknown kind of mass, no inertia at all, a
             rotation that is held but not driven.
-        ConvergenceError: the static state cannot be reached.
+        ConvergenceError: the static state cannot be reached, or the accuracy is not.
     """
-    kind, structure = choice("mass", mass, MASSES), structure_of(pivot)
+    kind = choice("mass", mass, MASSES)
     needs_inertia(pivot.effects)
     if rotation is None and held:
         raise InvalidParameter("held", held, "a driven rotation to hold [1]")
+
+    def solve(model: Model) -> Modes:
+        return _modes(model, rotation, count, held, kind, increments, body)
+
+    return solve(pivot) if accuracy is None else _limit(pivot, accuracy, solve)
+
+
+def _limit(model: Model, accuracy: float, solve: Callable[[Model], Modes]) -> Modes:
+    """Return the modes of the finest mesh, with the limits of their frequencies."""
+
+    def quantities(modes: Modes) -> Quantities:
+        largest = float(np.abs(modes.frequency).max())
+        return {f"frequency_{k}": (value, largest) for k, value in enumerate(modes.frequency, start=1)}
+
+    refined = refine(model, accuracy, solve, quantities)
+    modes = replace(
+        refined.answer, frequency=np.array(list(refined.limits.values())), estimate=refined.estimate
+    )
+    if refined.message:
+        raise ConvergenceError(refined.message, solution=modes, load_factor=1.0, history=())
+    return modes
+
+
+def _modes(
+    pivot: Model,
+    rotation: float | None,
+    count: int,
+    held: bool,
+    kind: str,
+    increments: int,
+    body: str | None,
+) -> Modes:
+    """Return the modes of one mesh."""
+    structure = structure_of(pivot)
     y = static_state(pivot, rotation, body, increments)
     turn = structure.turns[pivot.body_index(body)] if held else -1
     kept = np.flatnonzero(np.arange(structure.size) != turn)

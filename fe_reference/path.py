@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .control import Balance, Control, Response, respond
-from .critical import critical_point, extremes
+from .critical import critical_point, tipping
 from .errors import InvalidParameter
 from .matrix import Singular
 from .newton import LAST, Outcome, equilibrate
@@ -167,7 +167,7 @@ class Path:
             reached = self._state(outcome, target, state)
             failure = self._doubt(state, reached) or self._judged(state, reached)
             if not failure:
-                self.critical += extremes(self.control, state, reached)
+                self.critical += tipping(self.control, state, reached, self.counters)
                 return reached
         self.failures.append(outcome.norms)
         if depth >= HALVINGS and abs(step) <= SMALLEST:
@@ -214,8 +214,9 @@ class Path:
         response = respond(self.control, outcome.y, parameter, outcome.balance, outcome.factors)
         done, work = outcome.balance.load_work, 0.0
         if before is not None:
-            # loads p F.q: their work is [p F.q] less the integral of F.q, which is part of the conjugate
-            gain = parameter * done - before.parameter * before.balance.load_work
+            # loads a F.q: their work is [a F.q] less the integral of F.q da, which is part of the conjugate
+            share = self.control.share
+            gain = share(parameter) * done - share(before.parameter) * before.balance.load_work
             work = before.work + gain + _integral(parameter - before.parameter, before.response, response)
         return State(
             parameter=parameter,

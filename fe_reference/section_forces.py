@@ -87,6 +87,18 @@ def strip_fields(model: Model, states: Array, ends: Array | None = None) -> Stri
     )
 
 
+def outer_stress(model: Model, fields: StripFields) -> Array:
+    """Return the largest magnitude of stress at the nodes (S, G, P) [Pa], of sections taken as rectangles.
+
+    |N| / A + |M| d / (2 I) with the depth d = sqrt(12 I / A).
+    """
+    given = np.array([(strip.section.area, strip.section.second_moment_of_area) for strip in model.strips])
+    area, inertia = given.T[:, :, None]
+    stress: Array = np.abs(fields.axial_force) / area
+    stress += np.abs(fields.bending_moment) * np.sqrt(3.0 / (area * inertia))
+    return stress
+
+
 def nodal_angles(structure: Structure) -> Array:
     """Return the reference direction at the nodes (G, P) [rad] from those of the chords; see `midpoints`."""
     chord = structure.elements.chord.reshape(2, structure.strips, -1)

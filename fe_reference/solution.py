@@ -3,11 +3,15 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import StrEnum
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from .errors import InvalidParameter
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 Array = NDArray[np.float64]
 
@@ -31,12 +35,13 @@ class Status(StrEnum):
 
 @dataclass(frozen=True, kw_only=True)
 class CriticalPoint:
-    """Where a path loses or regains stability, or where its torque is stationary.
+    """Where a path loses or regains stability, or a driven body its own stiffness.
 
-    kind: "limit point" of the load factor, or of a driven rotation's torque; "turning point" of a drive,
-    where the driven coordinate itself goes back; "bifurcation" otherwise. load_factor [1]; rotation of the
-    driven body [rad], nan without one; inertia: negative eigenvalues after it; text: what happens at which
-    load, "" for a stationary torque, which is not unstable.
+    kind: "limit point" of the load factor, or where a driven rotation has no stiffness at fixed loads;
+    "turning point" of a drive, where the driven coordinate itself goes back; "bifurcation" otherwise.
+    load_factor [1]; rotation of the driven body [rad], nan without one; inertia: negative eigenvalues after
+    it; text: what happens at which load, "" for the stationary torque of a path without loads, which is not
+    unstable.
     """
 
     kind: str
@@ -65,14 +70,16 @@ class StaticSolution:
         work (S,): of drives and loads since the first state, by Hermite's rule over the increments [J].
         clamp_reactions (S, G, 2, 3): force x, y [N] and moment [N m] exerted on the strip at its root (0) and
             at its tip (1).
+        largest_stress (S,): over all strips, of sections taken as rectangles [Pa].
         stations (P,): reference arc length of the nodes over the first strip's length, 0 at its root [1].
         shape, axial_force, shear_force, bending_moment: as in `section_forces.StripFields`.
-        states (S, size): reduced coordinates, for `section_forces`.
+        states (S, size): reduced coordinates, for `section_forces`, of the finest mesh.
         effects: names of the effects of the scene.
         counters: increments, halvings, newton_iterations, evaluations, factorisations, and
             settling_increments: of the way to the first state. history: residual norms of the increments.
         seconds: by part, see `fe_reference.stopwatch`.
-        estimate: of the error, where an accuracy was asked for.
+        estimate: of the error, where an accuracy was asked for: then all arrays but `states` and `inertia`
+            are limits of meshes, at the nodes of the coarsest.
     """
 
     status: Status
@@ -89,6 +96,7 @@ class StaticSolution:
     gravity_energy: Array
     work: Array
     clamp_reactions: Array
+    largest_stress: Array
     stations: Array
     shape: Array
     axial_force: Array
@@ -124,8 +132,15 @@ class StaticSolution:
             "torque_Nm": self.torque,
             "stiffness_Nm_per_rad": self.stiffness,
             **{f"{name}_J": getattr(self, name) for name in ENERGIES},
+            "largest_stress_Pa": self.largest_stress,
             "inertia": self.inertia,
         }
+
+    def to_frame(self) -> "pd.DataFrame":
+        """Return the columns as a table, a row a state."""
+        import pandas as pd
+
+        return pd.DataFrame(self.columns())
 
 
 ENERGIES = ("bending_energy", "axial_energy", "shear_energy", "gravity_energy", "work")
@@ -136,14 +151,24 @@ class ErrorEstimate:
     """Estimated errors of an answer that meshes were refined for.
 
     Attributes:
-        accuracy: what was asked for [1]. elements: of the finest mesh, a strip. meshes: all of them.
-        errors: by quantity, the largest over the states in parts of its largest value [1].
+        accuracy: what was asked for [1]. meshes: elements of a strip on each of them.
+        errors: by quantity, the largest over the states in parts of its largest value [1]; of a motion the
+            largest over the instants, of the rotations [rad] and of the places in strip lengths [1].
     """
 
     accuracy: float
-    elements: int
     meshes: tuple[int, ...]
     errors: Mapping[str, float]
+
+    @property
+    def elements(self) -> int:
+        """Elements of a strip on the finest mesh."""
+        return self.meshes[-1]
+
+    @property
+    def largest(self) -> float:
+        """The largest of the errors."""
+        return max(self.errors.values())
 
 
 def only(bodies: Mapping[str, Array]) -> Array:

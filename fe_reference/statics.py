@@ -6,20 +6,24 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .control import spans
+from .control import Control, spans
 from .effects import DrivenDisplacement
-from .errors import ConvergenceError, InvalidParameter, count, finite, pair, several
+from .errors import ConvergenceError, InvalidParameter, choice, count, finite, pair, several
 from .follow import COUNTERS, Progress, follow
 from .law import FORCES
 from .loads import full_load, on_body
 from .model import Model
 from .path import Path
-from .section_forces import strip_fields
+from .refined import limit_of_paths
+from .section_forces import outer_stress, strip_fields
 from .solution import StaticSolution, Status
 from .stopwatch import Stopwatch
 from .structure import structure_of
 
 Array = NDArray[np.float64]
+
+#: How loads and a rotation meet.
+LOADS_FIRST, TOGETHER = ORDERS = ("loads first", "together")
 
 
 def solve_statics(
@@ -27,6 +31,8 @@ def solve_statics(
     *,
     rotation: float | Sequence[float],
     increments: int = 20,
+    order: str = LOADS_FIRST,
+    accuracy: float | None = None,
     raise_on_failure: bool = True,
     progress: Progress | None = None,
 ) -> StaticSolution:
@@ -35,22 +41,31 @@ def solve_statics(
     Each increment is one extrapolation and Newton with the consistent tangent on all other coordinates; an
     increment that fails, or whose state is not believed, is halved. The torque is the generalised force on
     the rotation, the stiffness the Schur complement of the tangent. Gravity and natural strains act in full
-    from the first state on, loads and the driven displacement of the scene grow with the load factor.
+    from the first state on, loads and the driven displacement of the scene as `order` says.
 
     Args:
         pivot: the model.
         rotation: end of the path [rad], or the ends of several legs, one after another.
-        increments: equal increments of each leg.
+        increments: equal increments of each leg, and of the loads before it.
+        order: "loads first": they grow with the body held, and stay as it turns; "together": both grow with
+            the load factor.
+        accuracy: wanted error of path, torque, stiffness, strain energy and largest stress, in parts of the
+            largest of each; the mesh is doubled until the estimate is below it, and the answer is the limit.
         raise_on_failure: whether a path that ends early raises, or is returned with its status.
         progress: called as progress(done, total) after every increment.
 
     Raises:
         InvalidParameter: a rotation that is not finite, fewer than one increment, several bodies.
-        ConvergenceError: the path ended early; carries the converged part.
+        ConvergenceError: the path ended early; carries the converged part. The accuracy was not reached;
+            carries the best answer.
     """
     pivot.body_index(None)
     ends = several("rotation", rotation, "rad")
-    return _solved(pivot, None, ends, None, increments, raise_on_failure, progress)
+
+    def solve(model: Model) -> StaticSolution:
+        return _solved(model, None, ends, None, increments, raise_on_failure, progress, order=order)
+
+    return solve(pivot) if accuracy is None else limit_of_paths(pivot, accuracy, solve, raise_on_failure)
 
 
 def solve_loads(
@@ -59,6 +74,7 @@ def solve_loads(
     force: ArrayLike = (0.0, 0.0),
     moment: float = 0.0,
     increments: int = 20,
+    accuracy: float | None = None,
     raise_on_failure: bool = True,
     progress: Progress | None = None,
 ) -> StaticSolution:
@@ -67,15 +83,19 @@ def solve_loads(
     Args:
         model: the model; loads and the driven displacement that its scene names are added.
         force: final force (2,) [N], fixed in space. moment: final moment [N m].
-        increments, raise_on_failure, progress: as in `solve_statics`.
+        increments, accuracy, raise_on_failure, progress: as in `solve_statics`.
     """
     pull = [finite("force", part, "N") for part in np.ravel(np.asarray(force)).tolist()]
     if len(pull) != 2:
         raise InvalidParameter("force", force, "two components [N]")
-    structure = structure_of(model)
-    mine = on_body(structure, None, force=pull, moment=finite("moment", moment, "N m"))
-    load = full_load(structure, mine)
-    return _solved(model, None, None, None, increments, raise_on_failure, progress, load=load, watch=True)
+    turn = finite("moment", moment, "N m")
+
+    def solve(each: Model) -> StaticSolution:
+        structure = structure_of(each)
+        load = full_load(structure, on_body(structure, None, force=pull, moment=turn))
+        return _solved(each, None, None, None, increments, raise_on_failure, progress, load=load, watch=True)
+
+    return solve(model) if accuracy is None else limit_of_paths(model, accuracy, solve, raise_on_failure)
 
 
 def solve_mechanism(
@@ -85,6 +105,8 @@ def solve_mechanism(
     rotation: float | None = None,
     displacement: Sequence[float] | None = None,
     increments: int = 20,
+    order: str = LOADS_FIRST,
+    accuracy: float | None = None,
     raise_on_failure: bool = True,
     progress: Progress | None = None,
 ) -> StaticSolution:
@@ -96,7 +118,7 @@ def solve_mechanism(
         rotation: that it is led to [rad]; None: its rotation is free.
         displacement: that its centre is led to (2,) [m]; None: the one of the effect driven_displacement, or
             free if that is not named.
-        increments, raise_on_failure, progress: as in `solve_statics`.
+        increments, order, accuracy, raise_on_failure, progress: as in `solve_statics`.
 
     Gravity and natural strains act in full from load factor 0 on; drives and loads grow with it.
 
@@ -105,7 +127,13 @@ def solve_mechanism(
         ConvergenceError: the path ended early; carries the converged part.
     """
     ends = None if rotation is None else [finite("rotation", rotation, "rad")]
-    return _solved(mechanism, body, ends, displacement, increments, raise_on_failure, progress)
+
+    def solve(model: Model) -> StaticSolution:
+        return _solved(model, body, ends, displacement, increments, raise_on_failure, progress, order=order)
+
+    return (
+        solve(mechanism) if accuracy is None else limit_of_paths(mechanism, accuracy, solve, raise_on_failure)
+    )
 
 
 def static_state(
@@ -149,6 +177,7 @@ def _solved(
     raise_on_failure: bool,
     progress: Progress | None,
     *,
+    order: str = LOADS_FIRST,
     load: Array | None = None,
     watch: bool = False,
 ) -> StaticSolution:
@@ -158,18 +187,22 @@ def _solved(
     driven = rotations is not None or led is not None
     which = model.body_index(body) if driven or watch or body is not None else None
     watched = which is not None and (watch or rotations is not None)
+    acting = full_load(structure) if load is None else load
+    first = choice("order", order, ORDERS) == LOADS_FIRST and rotations is not None and any(rotations)
+    first = first and acting is not None and led is None  # a body that is led goes where both lead it
     controls = spans(
         structure,
         body=which,
         rotations=rotations,
         displacement=led,
-        load=full_load(structure) if load is None else load,
+        load=acting,
+        first=first,
         watched=int(structure.turns[which]) if watched else None,
     )
     clock.stop("compile")
     path = follow(controls, steps, progress)
     clock.stop("solve")
-    solution = _packed(path, steps * len(controls), clock)
+    solution = _packed(path, controls, steps, clock)
     if solution.status is not Status.CONVERGED and raise_on_failure:
         raise ConvergenceError(
             f"{solution.message}; {solution.status.text}",
@@ -190,8 +223,10 @@ def _displacement(model: Model, given: Sequence[float] | None) -> tuple[float, f
     return pair("displacement", given, "m")
 
 
-def _packed(path: Path, total: int, clock: Stopwatch) -> StaticSolution:
+def _packed(path: Path, controls: Sequence[Control], steps: int, clock: Stopwatch) -> StaticSolution:
     """Gather the states of a path into arrays."""
+    total = steps * len(controls)
+    shares = [c.share(p) for c in controls for p in np.linspace(*c.span, steps + 1)[1:]]
     structure, states = path.control.structure, path.states
     model, here = structure.model, [structure.evaluate(state.y, asked=FORCES) for state in states]
     y, strain = np.array([state.y for state in states]), np.array([at.strain for at in here])
@@ -204,7 +239,7 @@ def _packed(path: Path, total: int, clock: Stopwatch) -> StaticSolution:
         status=Status.CONVERGED if len(states) == total + 1 else Status.NOT_CONVERGED,
         message=path.remark(),
         critical_points=tuple(path.critical),
-        load_factor=np.arange(len(states)) / total,
+        load_factor=np.array([0.0, *shares])[: len(states)],
         bodies={name: fields.bodies[:, k] for k, name in enumerate(model.body_names)},
         **answers,
         bending_energy=strain[:, 0],
@@ -213,6 +248,7 @@ def _packed(path: Path, total: int, clock: Stopwatch) -> StaticSolution:
         gravity_energy=np.array([at.gravity for at in here]),
         work=np.array([state.work for state in states]),
         clamp_reactions=fields.reactions,
+        largest_stress=outer_stress(model, fields).max(axis=(1, 2)),
         stations=structure.basis.mesh.p[0, : structure.stations] / model.strips[0].length,
         **{name: getattr(fields, name) for name in ("shape", "axial_force", "shear_force", "bending_moment")},
         states=y,

@@ -193,11 +193,9 @@ class Structure:
         tangent, gradient = self.pattern.zero(), np.empty(self.size)
         ends, curvature, bodies = np.empty((many, 5)), np.empty((2, len(self.points))), y[self.first_body :]
         u = self.displacement(y)
-        shear, table, first = self.given
-        strain, gravity = _evaluate(
-            shear, table, first, share, asked, u, bodies.reshape(-1, 3), self.free_nodes, *self.carried,
-            *self.weight, *self.work, ends, matrices, gradient, curvature,
-        )  # fmt: skip
+        tables = (self.given, self.carried, self.weight, self.work)
+        written = (ends, matrices, gradient, curvature)
+        strain, gravity = _evaluate(*tables, share, asked, u, bodies.reshape(-1, 3), self.free_nodes, written)
         if asked != FORCES:
             self._assemble(matrices, y, tangent)
         if asked == TANGENT:
@@ -260,28 +258,20 @@ def structure_of(model: Model) -> Structure:
 
 @kernel()
 def _evaluate(
-    shear: bool,
-    table: Array,
-    first: Indices,
+    given: tuple[bool, Array, Indices],
+    carried: tuple[Indices, Indices, Array],
+    weights: tuple[Array, Array],
+    work: tuple[Array, Array, Array],
     share: float,
     asked: int,
     u: Array,
     bodies: Array,
     free_nodes: Indices,
-    attached: Indices,
-    carrier: Indices,
-    offsets: Array,
-    weight: Array,
-    body_weight: Array,
-    force: Array,
-    resultants: Array,
-    scratch: Array,
-    ends: Array,
-    matrices: Array,
-    gradient: Array,
-    curvature: Array,
+    written: tuple[Array, Array, Array, Array],
 ) -> tuple[tuple[float, float, float], float]:
     """Write what `Structure.evaluate` returns; return energies of the strips and of the full weight."""
+    (shear, table, first), (attached, carrier, offsets), (weight, body_weight) = given, carried, weights
+    (force, resultants, scratch), (ends, matrices, gradient, curvature) = work, written
     strain = elements(shear, table, first, share, asked, u, force, ends, matrices, scratch)
     for b in range(len(bodies)):
         curvature[0, b] = curvature[1, b] = 0.0

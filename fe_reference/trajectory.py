@@ -3,7 +3,7 @@
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,9 +11,12 @@ from numpy.typing import NDArray
 from .mass import carried_over
 from .motion import Samples
 from .section_forces import body_motion, body_rates
-from .solution import Status, body_columns, only
+from .solution import ErrorEstimate, Status, body_columns, only
 from .stopwatch import Stopwatch
 from .structure import Structure, structure_of
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 Array = NDArray[np.float64]
 
@@ -33,10 +36,13 @@ class Trajectory:
         states (T, size): reduced coordinates, for `section_forces`.
         effects: names of the effects of the scene.
         counters: steps, force_evaluations; implicit also iterations, factorisations, halvings.
+        history: residual norms of implicit steps.
         settings: integrator, step_s, critical_step_s (explicit), start_rad and what else defines the run.
         seconds: by part (`fe_reference.stopwatch`), "start" the static state that is let go.
         resolution: empty, or what elements and steps leave unresolved; rotation_error: estimated error of the
-            rotation by a companion with fewer elements [rad], nan without one.
+            rotation by a companion with fewer elements, or by the meshes of an accuracy [rad], nan without.
+        estimate: of the error, where an accuracy was asked for: then all but `states` are limits of meshes,
+            at the nodes of the coarsest.
 
     Clamps and attachments are eliminated exactly, not enforced: there are no residuals of constraints.
     """
@@ -56,9 +62,11 @@ class Trajectory:
     effects: tuple[str, ...]
     counters: Mapping[str, int]
     settings: Mapping[str, float | str]
+    history: tuple[tuple[float, ...], ...]
     seconds: Mapping[str, float]
     resolution: str = ""
     rotation_error: float = math.nan
+    estimate: ErrorEstimate | None = None
 
     @property
     def rotation(self) -> Array:
@@ -69,11 +77,6 @@ class Trajectory:
     def centre(self) -> Array:
         """Centre of mass of the only body (T, 2) [m]."""
         return only(self.bodies)[:, :2]
-
-    @property
-    def rotation_rate(self) -> Array:
-        """Rate of the turn of the only body (T,) [rad/s]."""
-        return only(self.rates)[:, 2]
 
     @property
     def energy_error(self) -> float:
@@ -96,6 +99,12 @@ class Trajectory:
             **body_columns(self.rates, ("x_rate_m_per_s", "y_rate_m_per_s", "rotation_rate_rad_per_s")),
             **{f"{name}_J": getattr(self, name) for name in ENERGIES},
         }
+
+    def to_frame(self) -> "pd.DataFrame":
+        """Return the columns as a table, a row an instant."""
+        import pandas as pd
+
+        return pd.DataFrame(self.columns())
 
 
 ENERGIES = ("kinetic_energy", "strain_energy", "gravity_energy", "work", "dissipated")
@@ -123,6 +132,7 @@ def trajectory(
         states=np.array([carried_over(structure, each, own) for each in motion.y]),
         effects=model.effects.names,
         counters=dict(motion.counters),
+        history=tuple(motion.history),
         settings=settings,
         seconds=watch.stop("recover"),
         resolution="; ".join(motion.remarks),

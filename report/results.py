@@ -59,7 +59,7 @@ class Results:
             raise ReportError(f"{study}: got no stored result, {remedy}") from None
         # the names of the cases are part of the source that is compared, so those noted suffice here and the
         # study, with the models behind it, need not be imported
-        state = self.store.state(study, module=STUDIES[study][0], cases=cases)
+        state = self.store.state(study, module=STUDIES[study], cases=cases)
         if state.kind == "fresh":
             return
         if state.kind == "missing" or not self._allow_stale:

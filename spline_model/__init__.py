@@ -1,1 +1,86 @@
-"""Dynamic splines: flexure strips as curves of a few control points, with Lagrange multipliers."""
+"""Dynamic splines: flexure strips as curves of a few control points.
+
+What is imported from here is public; all else may change. Each name is loaded when it is first used.
+
+    from spline_model import cross_axis_pivot, solve_statics
+
+Data flow one way: design (`cross_axis_pivot`, `Mechanism`) -> scene of effects -> strips as elements
+between bodies -> statics, motion, modes, batches -> solution.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from spline_model.batch import solve_many
+    from spline_model.design import BodyDesign, StripDesign
+    from spline_model.dynamics import solve_motion, solve_release
+    from spline_model.effects.registry import DEFAULT_EFFECTS
+    from spline_model.errors import ConvergenceError, InvalidParameter
+    from spline_model.held import HeldPivot
+    from spline_model.mechanism import Mechanism
+    from spline_model.modes import natural_frequencies
+    from spline_model.pivot import cross_axis_pivot
+    from spline_model.proportional import solve_mechanism
+    from spline_model.section_forces import moving_fields, static_fields
+    from spline_model.sensitivity.solve import sensitivities
+    from spline_model.sequential_impulse import solve_impulses
+    from spline_model.solution import Status
+    from spline_model.statics import solve_statics
+
+_HOMES = {
+    "BodyDesign": "design",
+    "ConvergenceError": "errors",
+    "DEFAULT_EFFECTS": "effects.registry",
+    "HeldPivot": "held",
+    "InvalidParameter": "errors",
+    "Mechanism": "mechanism",
+    "Status": "solution",
+    "StripDesign": "design",
+    "cross_axis_pivot": "pivot",
+    "moving_fields": "section_forces",
+    "natural_frequencies": "modes",
+    "sensitivities": "sensitivity.solve",
+    "solve_impulses": "sequential_impulse",
+    "solve_many": "batch",
+    "solve_mechanism": "proportional",
+    "solve_motion": "dynamics",
+    "solve_release": "dynamics",
+    "solve_statics": "statics",
+    "static_fields": "section_forces",
+}
+
+
+__all__ = [
+    "DEFAULT_EFFECTS",
+    "BodyDesign",
+    "ConvergenceError",
+    "HeldPivot",
+    "InvalidParameter",
+    "Mechanism",
+    "Status",
+    "StripDesign",
+    "cross_axis_pivot",
+    "moving_fields",
+    "natural_frequencies",
+    "sensitivities",
+    "solve_impulses",
+    "solve_many",
+    "solve_mechanism",
+    "solve_motion",
+    "solve_release",
+    "solve_statics",
+    "static_fields",
+]
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _HOMES:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}; public are {', '.join(_HOMES)}")
+    return getattr(import_module(f"{__name__}.{_HOMES[name]}"), name)
+
+
+def __dir__() -> list[str]:
+    return __all__

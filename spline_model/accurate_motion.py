@@ -1,10 +1,10 @@
 """A motion to a wanted accuracy: steps and control points until the estimated error is below it.
 
 Runs with other steps differ by what the steps are worth, runs with other strips by what the
-control points are worth. The energy-consistent scheme converges with its order only
-where its steps are longer than the axial waves that a release excites, and again where they
-resolve them; in between the error stays where it is. The differences of runs show that,
-where a local error does not, and the explicit scheme takes over, whose steps resolve the waves.
+control points are worth. Free motions take the leapfrog, whose steps resolve the axial waves that
+a release excites. With damping, loads, drives or massless strips the energy-consistent scheme converges
+with its order only where its steps are longer than these waves, and again where they resolve them; in
+between the error stays where it is. The differences of runs show that, where a local error does not.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from spline_model.mechanism import Mechanism
 from spline_model.solution import MotionEstimate, Status
 
 if TYPE_CHECKING:
-    from spline_model.integrators.trajectory import Trajectory
+    from spline_model.motion.trajectory import Trajectory
 
 Array = NDArray[np.float64]
 
@@ -38,15 +38,14 @@ FINE = 4
 """Records of the finest run between two such instants."""
 SHARE = 2.0 / 3.0
 """The part of the accuracy that the steps may use; the rest is for the control points."""
-NO_GAIN = 0.5
-"""Energy-consistent steps of at most half the length that leave more than this of the error do not
-resolve what it is made of."""
 LARGEST_PART, SMALLEST_PART = 0.7, 0.1
 """First and least explicit step over the critical one."""
 EXPLICIT_RATIO = 4.0 / 3.0
 """Coarse explicit step over the fine one."""
-ORDERS = {"explicit": 4, "leapfrog": 2}
-"""Order of the explicit schemes in the rotation; the leapfrog's is four in the phase of the waves alone."""
+EXPLICIT = "leapfrog"
+"""The scheme of the runs whose steps resolve all."""
+ORDER = 2
+"""Its order in the rotation; it is four in the phase of the waves alone."""
 DOUBT = 0.25
 """The part of the difference of explicit runs that is added, for want of a third below the critical step."""
 MOST_STEPS = 500_000
@@ -84,15 +83,14 @@ class Task:
     """What is asked for: a motion of ``duration`` [s] with a swing of ``amplitude`` [rad].
 
     frequency: slowest circular frequency at rest [rad/s], 0 for none; run: solves a mechanism
-    with an integrator, a step [s] and a number of records; explicit: the explicit integrator;
-    critical: its longest stable step with a mechanism [s], 0 where it cannot be used.
+    with an integrator, a step [s] and a number of records; critical: the longest stable step of the
+    explicit one with a mechanism [s], 0 where it cannot be used.
     """
 
     duration: float
     amplitude: float
     frequency: float
     run: Callable[[Mechanism, str, float, int], Trajectory]
-    explicit: str
     critical: Callable[[Mechanism], float]
 
 
@@ -106,7 +104,7 @@ def solve_accurately(mechanism: Mechanism, accuracy: float, task: Task, records:
     """
     instants, every = comparison(task, records)
     runs = _Runs(mechanism, task, instants)
-    n = mechanism.design.discretisation.control_points
+    n = mechanism.design.discretisation.points
     while True:
         rung = runs.resolve(n, runs.first(n, accuracy), accuracy)
         by_steps, by_points = runs.solved(n, rung), runs.by_points(n, rung)
@@ -118,9 +116,7 @@ def solve_accurately(mechanism: Mechanism, accuracy: float, task: Task, records:
             control_points=n,
             runs=runs.count,
         )
-        # explicit steps wait until there are about enough control points
-        early = rung.integrator == "energy" and runs.critical(n) > 0.0
-        stuck = by_steps.error > SHARE * accuracy and not early
+        stuck = by_steps.error > SHARE * accuracy
         if estimate.rotation <= accuracy or stuck or n + MORE > MOST:
             return _answer(by_steps.fine, estimate, slide_stiffness(mechanism, n), every)
         n += MORE
@@ -182,22 +178,17 @@ class _Runs:
         The leapfrog's steps are a hundred times cheaper and resolve all from the start.
         """
         task = self.task
-        if task.explicit == "leapfrog" and self.critical(n) > 0.0:
-            return Rung(task.explicit, FINE, LARGEST_PART)
+        if self.critical(n) > 0.0:
+            return Rung(EXPLICIT, FINE, LARGEST_PART)
         angle = task.amplitude * task.frequency * task.duration  # that the phase error is a part of
         step = math.inf
         if angle > 0:
             step = math.sqrt(6 * SHARE * accuracy / angle) / task.frequency
-        if step < self.critical(n):
-            return Rung(self.task.explicit, FINE, LARGEST_PART)
         return Rung("energy", FINE * max(1, math.ceil(self.spacing / (FINE * step))), 0.0)
 
     def resolve(self, n: int, rung: Rung, accuracy: float) -> Rung:
-        """The first rung from ``rung`` on whose error leaves enough of the accuracy, or else the best.
-
-        Explicit steps are not taken before there are about enough control points.
-        """
-        best, least, before = rung, math.inf, math.inf
+        """The first rung from ``rung`` on whose error leaves enough of the accuracy, or else the best."""
+        best, least = rung, math.inf
         following: Rung | None = rung
         while following is not None:
             rung = following
@@ -206,27 +197,17 @@ class _Runs:
                 best, least = rung, error
             if error <= SHARE * accuracy:
                 break
-            following = self.finer(n, rung, error / (SHARE * accuracy), stuck=error > NO_GAIN * before)
-            before = error
-            dearer = following is not None and following.integrator != rung.integrator
-            if dearer and largest(self.by_points(n, rung)) > accuracy + error:
-                break
+            following = self.finer(rung, error / (SHARE * accuracy))
         return best
 
-    def finer(self, n: int, rung: Rung, excess: float, *, stuck: bool) -> Rung | None:
+    def finer(self, rung: Rung, excess: float) -> Rung | None:
         """The next rung after one whose error is ``excess`` times too large; None if there is none."""
-        critical = self.critical(n)
         if rung.integrator != "energy":
-            order = ORDERS[rung.integrator]
-            part = rung.part * min(max(0.9 * excess ** (-1.0 / order), 0.3), 0.8)
-            return Rung(self.task.explicit, FINE, part) if part >= SMALLEST_PART else None
+            part = rung.part * min(max(0.9 * excess ** (-1.0 / ORDER), 0.3), 0.8)
+            return Rung(EXPLICIT, FINE, part) if part >= SMALLEST_PART else None
         factor = min(max(1.2 * math.sqrt(min(excess, 1e6)), 2.0), 8.0)
         fine = FINE * math.ceil(rung.fine * factor / FINE)
-        if critical == 0.0:
-            return Rung("energy", fine, 0.0) if fine * self.instants <= MOST_STEPS else None
-        if stuck or self.spacing / fine < critical:
-            return Rung(self.task.explicit, FINE, LARGEST_PART)
-        return Rung("energy", fine, 0.0)
+        return Rung("energy", fine, 0.0) if fine * self.instants <= MOST_STEPS else None
 
     def solved(self, n: int, rung: Rung) -> Resolved:
         """The runs of a rung and what they say of the fine one."""
@@ -235,7 +216,7 @@ class _Runs:
         change = self.rotation(fine) - coarser
         if rung.integrator != "energy":
             doubt = DOUBT * largest(change)
-            gain = EXPLICIT_RATIO ** ORDERS[rung.integrator] - 1.0
+            gain = EXPLICIT_RATIO**ORDER - 1.0
             return Resolved(fine, coarser, change / gain, doubt)
         before = coarser - self.rotation(self.run(n, rung.integrator, steps // 4))
         return Resolved(fine, coarser, change / 3.0, largest(before - 4.0 * change) / 4.0)
@@ -276,7 +257,7 @@ class _Runs:
 
 def with_points(mechanism: Mechanism, n: int) -> Mechanism:
     """The mechanism with n control points, and a slide stiffness in the proportion that goes with them."""
-    if n == mechanism.design.discretisation.control_points:
+    if n == mechanism.design.discretisation.points:
         return mechanism
     return mechanism.with_discretisation(control_points=n, slide_stiffness=slide_stiffness(mechanism, n))
 
@@ -284,4 +265,4 @@ def with_points(mechanism: Mechanism, n: int) -> Mechanism:
 def slide_stiffness(mechanism: Mechanism, n: int) -> float:
     """That of the mechanism, in the proportion that goes with n control points [EI/L^2]."""
     grid = mechanism.design.discretisation
-    return grid.slide * swinging_slide_stiffness(n) / swinging_slide_stiffness(grid.control_points)
+    return grid.slide * swinging_slide_stiffness(n) / swinging_slide_stiffness(grid.points)

@@ -87,11 +87,13 @@ class SplineBasis:
         return (left + width * (nodes + 1) / 2).ravel(), (width * weights / 2).ravel()
 
 
+@cache
 def bezier(control_points: int) -> SplineBasis:
     """Bezier curve: degree control_points - 1 in one span."""
     return SplineBasis(control_points=control_points, degree=control_points - 1)
 
 
+@cache
 def cubic_bspline(control_points: int) -> SplineBasis:
     """Cubic B-spline with control_points - 3 uniform spans."""
     return SplineBasis(control_points=control_points, degree=3)

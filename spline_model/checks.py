@@ -16,8 +16,9 @@ LARGEST_CORRECTION = 0.5
 """Largest distance from the predicted to the corrected state, over the length of the step: a
 corrector that goes further has probably left the branch."""
 
-SMALLEST_CORRECTION = 1e-9
-"""Corrections below this, in lengths and rad, are round-off: a straight strip under its load stays put."""
+SMALLEST_CORRECTION = 1e-7
+"""Corrections below this, in lengths and rad, are round-off: a straight strip under its load stays put, and
+the points of a Bezier strip of more than twenty are known no better. Another branch is farther away."""
 
 
 def refuse(system: System, z: Array) -> str:
@@ -50,7 +51,7 @@ def left_the_branch(unit: Array, previous: Array, predicted: Array, corrected: A
 
 
 def _slowest_speed(system: System, z: Array) -> float:
-    table = system.tables.bending
+    table = system.bending
     if table.first.size == 0:
         return np.inf
     columns = table.first[:, None] + 2 * np.minimum(np.arange(table.d1.shape[1]), table.width[:, None] - 1)

@@ -1,8 +1,8 @@
 """How far a motion is resolved, by a companion that has two control points more.
 
-Where the scene is a swing of undamped strips and one free body the companion is the compiled leapfrog,
-whose steps resolve all, so that the difference shows what the motion's own steps and its control points
-leave out together; else it has the motion's own integrator and step, and shows the control points alone.
+Where the scene is undamped and free the companion is the leapfrog, whose steps resolve all, so that the
+difference shows what the motion's own steps and its control points leave out together; else it has the
+motion's own integrator and step, and shows the control points alone.
 """
 
 from __future__ import annotations
@@ -14,20 +14,20 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from spline_model.accurate_motion import MORE, Task, with_points
+from spline_model.accurate_motion import EXPLICIT, MORE, Task, with_points
 from spline_model.errors import ConvergenceError, InvalidParameter
-from spline_model.integrators.dispatch import QUASI_STATIC
 from spline_model.laps import Laps
 from spline_model.mechanism import Mechanism
+from spline_model.motion.dispatch import QUASI_STATIC
 
 if TYPE_CHECKING:
-    from spline_model.integrators.trajectory import Trajectory
+    from spline_model.motion.trajectory import Trajectory
 
 Array = NDArray[np.float64]
 
 UNRESOLVED = 0.05
 """Largest difference to the companion over the swing that is not remarked on."""
-PARTS = {"leapfrog": 0.9, "explicit": 0.5}
+PART = 0.9
 """Explicit step of the companion over the critical one."""
 MOST_SHORTER = 20.0
 """Leapfrog steps that cost about as much as one step of the default integrator."""
@@ -43,7 +43,7 @@ def with_companion(mechanism: Mechanism, motion: Trajectory, task: Task) -> Traj
     task: solves a mechanism from the same start. A companion that fails leaves nothing to compare, and the
     remark says so.
     """
-    laps, points = Laps(), mechanism.design.discretisation.control_points + MORE
+    laps, points = Laps(), mechanism.design.discretisation.points + MORE
     every = _thinning(len(motion.time) - 1)
     instants = motion.time[::every]
     try:
@@ -73,10 +73,9 @@ def _thinning(records: int) -> int:
 def _scheme(motion: Trajectory, task: Task, chosen: Mechanism, spacing: float) -> tuple[str, float]:
     """Integrator and step [s] of the companion, whole steps between two instants ``spacing`` [s] apart."""
     own, step = str(motion.settings["integrator"]), float(motion.settings["step_s"])
-    if task.explicit == "leapfrog" or own == task.explicit:
-        critical = PARTS[task.explicit] * task.critical(chosen)
-        if critical > 0.0 and (own == task.explicit or step <= MOST_SHORTER * critical):
-            return task.explicit, spacing / math.ceil(spacing / critical)
+    critical = PART * task.critical(chosen)
+    if critical > 0.0 and (own == EXPLICIT or step <= MOST_SHORTER * critical):
+        return EXPLICIT, spacing / math.ceil(spacing / critical)
     return ("energy" if own == QUASI_STATIC else own), spacing / round(spacing / step)
 
 

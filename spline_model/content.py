@@ -11,11 +11,11 @@ from numpy.typing import NDArray
 from spline_model.basis import SlideModes
 from spline_model.compile import System, compile_scene
 from spline_model.effects import MixedStretching
-from spline_model.integrators.motion import initial_acceleration, set_in_motion
 from spline_model.kernels.assemble import assemble
 from spline_model.kernels.motion import Motion
 from spline_model.kernels.stretching import add_stretching
 from spline_model.modes import SLIDE_SHARE, linear_modes
+from spline_model.motion.start import initial_acceleration, set_in_motion
 from spline_model.scene import Scene
 
 Array = NDArray[np.float64]
@@ -111,7 +111,7 @@ def _stretching_share(system: System, z: Array, shapes: Array, squares: Array) -
     layout = system.layout
     count, size = layout.coordinate_count, layout.size
     gradient, hessian = np.zeros(size), np.zeros((size, size))
-    add_stretching(z, system.tables.stretching, gradient, hessian)
+    add_stretching(z, system.stretching, gradient, hessian)
     stiffness = hessian[:count, :count].copy()
     assemble(z, system.tables, 0.0, gradient, hessian)
     for i, effect in enumerate(system.scene.of(MixedStretching)):

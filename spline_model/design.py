@@ -25,6 +25,8 @@ from spline_model.rank import singular
 
 BASES = ("bezier", "bspline")
 STRETCH_FORMS = ("mixed", "consistent", "inextensible")
+FIRST_POINTS = 6
+"""Control points of a design that leaves them open, where no accuracy chooses them."""
 SLIDE_STIFFNESS = 10.0
 """Default stiffness of the strains that the axial modes do not see in statics, in EI/L^2.
 
@@ -49,9 +51,10 @@ def swinging_slide_stiffness(control_points: int) -> float:
 class Discretisation:
     """How every strip is described.
 
-    control_points n >= 4; axial_modes m in 1 ... n - 1, default n - 2; basis "bezier" (degree
-    n - 1) or "bspline" (cubic); measure "material", "spatial" (Eqs 10, 13) or "printed"
-    (forces of Eqs 12, 15); stretch "mixed", "consistent" (Eq 13 by quadrature) or
+    control_points n >= 4, or None for as many as an answer's accuracy takes (``spline_model.accuracy``;
+    FIRST_POINTS where nothing estimates its error); axial_modes m in 1 ... n - 1, default n - 2;
+    basis "bezier" (degree n - 1) or "bspline" (cubic); measure "material", "spatial" (Eqs 10, 13)
+    or "printed" (forces of Eqs 12, 15); stretch "mixed", "consistent" (Eq 13 by quadrature) or
     "inextensible"; gauss_points in each knot span, default degree + 3, which follows the
     primary branch to a half turn where n - 1 points lose it; slide_stiffness of the strains
     that the axial modes do not see, in EI/L^2, 0 for none, default SLIDE_STIFFNESS in statics
@@ -59,7 +62,7 @@ class Discretisation:
     the tangent of a straight strip singular is refused with the reason (``spline_model.rank``).
     """
 
-    control_points: int = 6
+    control_points: int | None = None
     axial_modes: int | None = None
     basis: str = "bezier"
     measure: str = "material"
@@ -68,7 +71,13 @@ class Discretisation:
     slide_stiffness: float | None = None
 
     def __post_init__(self) -> None:
-        require_count("control_points", self.control_points, 4)
+        if self.control_points is not None:
+            require_count("control_points", self.control_points, 4)
+        for name in ("axial_modes", "gauss_points"):
+            if self.control_points is None and getattr(self, name) is not None:
+                raise InvalidParameter(
+                    name, getattr(self, name), "control_points beside it, which it goes with"
+                )
         require_choice("basis", self.basis, BASES)
         require_choice("measure", self.measure, MEASURES)
         require_choice("stretch", self.stretch, STRETCH_FORMS)
@@ -81,21 +90,26 @@ class Discretisation:
         if self.axial_modes is not None:
             if self.stretch == "consistent":
                 raise InvalidParameter("axial_modes", self.axial_modes, "none with stretch = consistent")
-            require_count("axial_modes", self.axial_modes, 1, self.control_points - 1)
+            require_count("axial_modes", self.axial_modes, 1, self.points - 1)
         axial = None if self.stretch == "consistent" else self.modes
         reason = singular(self.spline, self.points_a_span, axial, self.slide > 0)
         if reason:
             raise InvalidParameter("discretisation", reason, "a strip whose tangent at rest is regular")
 
+    @property
+    def points(self) -> int:
+        """Control points that were given, or those of a design that leaves them open."""
+        return FIRST_POINTS if self.control_points is None else self.control_points
+
     @cached_property
     def spline(self) -> SplineBasis:
         """The basis of the control points."""
-        return (bezier if self.basis == "bezier" else cubic_bspline)(self.control_points)
+        return (bezier if self.basis == "bezier" else cubic_bspline)(self.points)
 
     @cached_property
     def modes(self) -> LegendreModes | HatModes:
         """The axial-force modes: Legendre's for one span, hats for a B-spline."""
-        count = self.control_points - 2 if self.axial_modes is None else self.axial_modes
+        count = self.points - 2 if self.axial_modes is None else self.axial_modes
         return LegendreModes(count=count) if self.basis == "bezier" else HatModes(count=count)
 
     @property

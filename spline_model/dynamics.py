@@ -3,34 +3,32 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from spline_model.accurate_motion import Task, solve_accurately
+from spline_model.accurate_motion import EXPLICIT, Task, solve_accurately
 from spline_model.companion import with_companion
 from spline_model.compile import System, compile_scene
 from spline_model.content import unresolved
 from spline_model.effects import DrivenRotation
 from spline_model.errors import InvalidParameter, require_choice, require_finite, require_positive
-from spline_model.fast.release import is_swing
-from spline_model.integrators import explicit, leapfrog
-from spline_model.integrators.dispatch import INTEGRATORS, integrate, require_options
-from spline_model.integrators.motion import initial_acceleration, set_in_motion
-from spline_model.integrators.steps import (
+from spline_model.kernels.motion import Motion
+from spline_model.laps import Laps
+from spline_model.mechanism import Mechanism
+from spline_model.modes import linear_modes, static_state
+from spline_model.motion.dispatch import INTEGRATORS, integrate, require_options
+from spline_model.motion.explicit import require_explicit, stability_limit
+from spline_model.motion.start import initial_acceleration, set_in_motion
+from spline_model.motion.steps import (
     EXPLICIT_STEPS,
     STEP,
     count_steps,
     default_step,
     highest_frequency,
 )
-from spline_model.integrators.trajectory import Trajectory, trajectory_of
-from spline_model.kernels.motion import Motion
-from spline_model.laps import Laps
-from spline_model.mechanism import Mechanism
-from spline_model.modes import linear_modes, static_state
-from spline_model.pivot import Pivot, mechanism_in_motion
+from spline_model.motion.trajectory import Trajectory, trajectory_of
+from spline_model.pivot import Pivot
 from spline_model.restart import counted_on, last_state, later
 from spline_model.solution import Status
 
@@ -48,9 +46,34 @@ __all__ = [
 Array = NDArray[np.float64]
 
 
-def solve_release(pivot: Pivot, *, start: float | None = math.pi / 2, **settings: Any) -> Trajectory:
+def solve_release(
+    pivot: Pivot,
+    *,
+    start: float | None = math.pi / 2,
+    drive: DrivenRotation | None = None,
+    duration: float = 0.05,
+    step: float | None = None,
+    integrator: str = "energy",
+    accuracy: float | None = None,
+    records: int | None = None,
+    after: Trajectory | None = None,
+    check: bool = True,
+    spectral_radius: float | None = None,
+) -> Trajectory:
     """Let the pivot go at rest from the static state at rotation ``start`` [rad]; see ``solve_motion``."""
-    return solve_motion(pivot.mechanism, start=start, **settings)
+    return solve_motion(
+        pivot,
+        start=start,
+        drive=drive,
+        duration=duration,
+        step=step,
+        integrator=integrator,
+        accuracy=accuracy,
+        records=records,
+        after=after,
+        check=check,
+        spectral_radius=spectral_radius,
+    )
 
 
 def solve_motion(
@@ -66,7 +89,7 @@ def solve_motion(
     records: int | None = None,
     after: Trajectory | None = None,
     check: bool = True,
-    **options: float,
+    spectral_radius: float | None = None,
 ) -> Trajectory:
     """Motion of a mechanism that is let go at rest.
 
@@ -84,8 +107,8 @@ def solve_motion(
     duration, step : [s]; the step defaults to STEP, or to that of EXPLICIT_STEPS; it is
         shortened so that a whole number of steps fits between the records.
     integrator : "energy" (default, cannot create energy; with massless strips, only the bodies
-        are dynamic), "generalised-alpha", "explicit", or "leapfrog": the fastest, for a free
-        body on straight mixed Bezier strips.
+        are dynamic), "generalised-alpha", or for free scenes of which no strip is damped or massless
+        "leapfrog", the fastest, and "explicit".
     accuracy : wanted error of the rotation over the run [rad] instead of a step: steps and control
         points are chosen, and the trajectory has its ``estimate``.
     records : largest number of records; default every step, or with an accuracy 128 a swing or more.
@@ -94,12 +117,13 @@ def solve_motion(
         less; none is made with an accuracy, which has its own estimate, or with ``after``.
     after : a motion of this mechanism to go on with from its last record, instead of ``start``;
         time, work, losses and the clock of loads and drives run on.
-    options : of the integrator: ``spectral_radius`` of "generalised-alpha", 0 to 1 (default 0.8).
+    spectral_radius : of "generalised-alpha" alone, 0 to 1 (default 0.8).
 
     Raises InvalidParameter, also for an option that the integrator does not read, and
     ConvergenceError if statics does not reach ``start``.
     """
     _check(integrator, duration, start, step, accuracy)
+    options = {} if spectral_radius is None else {"spectral_radius": spectral_radius}
     require_options(integrator, options)
     if accuracy is not None and after is not None:
         raise InvalidParameter("accuracy", accuracy, "a step for a motion that goes on after another")
@@ -122,7 +146,7 @@ def solve_motion(
     laps.lap("compile")
     began = z, v, acceleration
     ran, run = integrate(
-        integrator, mechanism, system, motion, began, step=step, steps=steps, every=every, options=options
+        integrator, system, motion, began, step=step, steps=steps, every=every, options=options
     )
     laps.lap("solve")
     trajectory = trajectory_of(
@@ -142,7 +166,7 @@ def solve_motion(
 
 
 def checked(
-    mechanism: Mechanism | Pivot,
+    mechanism: Mechanism,
     trajectory: Trajectory,
     *,
     start: float | None,
@@ -153,7 +177,7 @@ def checked(
 
     Arguments as of the motion. A motion that stopped or has an estimate is returned as it is.
     """
-    mechanism = mechanism_in_motion(mechanism)
+    mechanism = mechanism.in_motion()
     if trajectory.status is not Status.CONVERGED or trajectory.estimate is not None:
         return trajectory
     body = mechanism.design.body_named(body)
@@ -188,8 +212,6 @@ def _task(
     """The motion as a task of accuracy on request."""
     system = compile_scene(mechanism.released())
     squares = linear_modes(system, system.rest, set_in_motion(system).mass)[0]
-    scheme = "leapfrog" if is_swing(mechanism, system) else "explicit"
-    limit = {"leapfrog": leapfrog.STABILITY_LIMIT, "explicit": explicit.STABILITY_LIMIT}[scheme]
 
     def run(chosen: Mechanism, integrator: str, step: float, records: int) -> Trajectory:
         return solve_motion(
@@ -207,16 +229,15 @@ def _task(
     def critical(chosen: Mechanism) -> float:
         scene = compile_scene(chosen.released())
         motion = set_in_motion(scene)
-        explicit.require_explicit(scene, motion)
+        require_explicit(scene, motion, EXPLICIT)
         held = static_state(chosen.at_start(), start, body=body)[: scene.layout.size]
-        return limit / highest_frequency(scene, motion, held)
+        return stability_limit(EXPLICIT, motion) / highest_frequency(scene, motion, held)
 
     return Task(
         duration=duration,
         amplitude=abs(start or 0.0),
         frequency=math.sqrt(max(float(squares[0]), 0.0)),
         run=run,
-        explicit=scheme,
         critical=critical if drive is None else lambda chosen: 0.0,
     )
 

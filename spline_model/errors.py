@@ -8,7 +8,7 @@ from numbers import Real
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from spline_model.solution import MechanismSolution, StaticSolution
+    from spline_model.solution import StaticSolution
 
 
 class InvalidParameter(ValueError):
@@ -33,7 +33,7 @@ class ConvergenceError(RuntimeError):
         self,
         message: str,
         *,
-        solution: StaticSolution | MechanismSolution,
+        solution: StaticSolution,
         load_factor: float,
         history: tuple[tuple[float, ...], ...],
     ) -> None:
@@ -45,6 +45,8 @@ class ConvergenceError(RuntimeError):
 
 def is_finite(value: Any) -> bool:
     """Whether this is one finite number, which a truth value is not."""
+    if type(value) is float:
+        return math.isfinite(value)
     if isinstance(value, bool) or not isinstance(value, Real):
         return False
     try:

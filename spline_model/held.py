@@ -9,10 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.compile import System, compile_scene
-from spline_model.effects.registry import MOTION_ONLY
 from spline_model.errors import InvalidParameter
 from spline_model.mechanism import Mechanism
 from spline_model.newton import TOLERANCE
+from spline_model.preload import is_preloaded
 from spline_model.reduced import pose as compiled
 from spline_model.reduced.assembly import AXIAL, BENDING, NEGATIVE, SLOWEST, assemble, working_space
 from spline_model.reduced.equilibrium import EVALUATIONS, HALVED, ITERATIONS, newton, tangent
@@ -23,9 +23,7 @@ from spline_model.strip.laws import MATERIAL
 
 Array = NDArray[np.float64]
 
-HELD_EFFECTS = {"bending", "stretching", *MOTION_ONLY}
-"""Effects under which a body can be held; of these statics asks for the first two only."""
-LEAST_COMPLIANCE = 1e-9
+LEAST_HELD_COMPLIANCE = 1e-9
 """Axial compliance in L^2/EI below which a strip cannot follow a pose (beyond a slenderness of 9000)."""
 
 
@@ -209,14 +207,17 @@ class HeldPivot:
 
 def _held_model(mechanism: Mechanism) -> Reduced | None:
     """The mechanism with its rotation driven; all axial forces are the strips' own."""
-    if len(mechanism.design.bodies) != 1 or not set(mechanism.effects) <= HELD_EFFECTS:
+    if len(mechanism.design.bodies) != 1:
         return None
-    model = reduced(compile_scene(mechanism.driven(1.0)))
+    system = compile_scene(mechanism.driven(1.0))
+    model = reduced(system)
     if model is None or model.strips.measure != MATERIAL or model.strips.stretching.any():
         return None
-    if (model.strips.compliance < LEAST_COMPLIANCE).any():
+    if (model.strips.compliance < LEAST_HELD_COMPLIANCE).any():
         return None
     bodies = model.bodies
+    if is_preloaded(system) or bodies.load.any() or len(bodies.held) != 1 or len(bodies.rest) != 3:
+        return None
     return replace(
         model,
         strips=model.strips._replace(outer=0),

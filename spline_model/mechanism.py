@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields, replace
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 
@@ -34,26 +34,35 @@ class Mechanism:
     parameters: Mapping[str, Mapping[str, Any]]
     scene: Scene
 
-    def with_discretisation(self, **changes: Any) -> Mechanism:
+    def with_discretisation(self, **changes: Any) -> Self:
         """The same mechanism with other keywords of ``Discretisation``."""
         grid = self.design.discretisation
-        return mechanism(
+        made = mechanism(
             strips=self.design.strips,
             bodies=self.design.bodies,
             effects=self.effects,
             parameters=self.parameters,
             **({part.name: getattr(grid, part.name) for part in fields(grid)} | changes),
         )
+        return replace(self, design=made.design, effects=made.effects, scene=made.scene)
 
-    def in_motion(self) -> Mechanism:
+    def with_control_points(self, control_points: int | None) -> Self:
+        """The same mechanism with so many control points a strip."""
+        if control_points == self.design.discretisation.control_points:
+            return self
+        return self.with_discretisation(control_points=control_points)
+
+    def in_motion(self) -> Self:
         """The mechanism as it swings: with ``swinging_slide_stiffness`` where no slide stiffness was given.
 
-        Motions and modes, and the static states that they begin from, are those of this mechanism.
+        Motions and modes, and the static states that they begin from, are those of this mechanism, whose
+        number of control points is settled.
         """
         grid = self.design.discretisation
-        if grid.slide_stiffness is not None:
+        if None not in (grid.slide_stiffness, grid.control_points):
             return self
-        return self.with_discretisation(slide_stiffness=swinging_slide_stiffness(grid.control_points))
+        stiffness = swinging_slide_stiffness(grid.points) if grid.slide_stiffness is None else grid.slide
+        return self.with_discretisation(control_points=grid.points, slide_stiffness=stiffness)
 
     def driven(self, rotation: float, body: str | None = None) -> Scene:
         """The scene with a body's rotation driven to ``rotation`` [rad] at load factor 1 (Eq 7)."""
@@ -75,7 +84,7 @@ class Mechanism:
         kept = (e for e in scene.effects if not (isinstance(e, DrivenDisplacement) and e.lets_go))
         return replace(scene, effects=tuple(kept))
 
-    def at_start(self) -> Mechanism:
+    def at_start(self) -> Self:
         """The mechanism with loads and driven displacements as they are at the start of a motion."""
         timed = AppliedForce | AppliedMoment | TipForce | DrivenDisplacement
         effects = (e.at(0.0) if isinstance(e, timed) else e for e in self.scene.effects)
@@ -88,15 +97,30 @@ def mechanism(
     bodies: Sequence[BodyDesign] = (),
     effects: Sequence[str] = DEFAULT_EFFECTS,
     parameters: Mapping[str, Mapping[str, Any]] | None = None,
-    **discretisation: Any,
+    control_points: int | None = None,
+    axial_modes: int | None = None,
+    basis: str = "bezier",
+    measure: str = "material",
+    stretch: str = "mixed",
+    gauss_points: int | None = None,
+    slide_stiffness: float | None = None,
 ) -> Mechanism:
     """A mechanism whose scene holds the named effects and nothing else.
 
     effects: names of ``spline_model.effects.registry``; parameters: of each named effect,
-    by effect; discretisation: keywords of ``Discretisation``. ``stretch="inextensible"`` and
+    by effect; the others as of ``Discretisation``. ``stretch="inextensible"`` and
     the effect "inextensible" are the same thing.
     """
-    grid, given = Discretisation(**discretisation), dict(parameters or {})
+    grid = Discretisation(
+        control_points=control_points,
+        axial_modes=axial_modes,
+        basis=basis,
+        measure=measure,
+        stretch=stretch,
+        gauss_points=gauss_points,
+        slide_stiffness=slide_stiffness,
+    )
+    given = dict(parameters or {})
     names = tuple(effects)
     if grid.stretch == "inextensible":
         names = tuple("inextensible" if name == "stretching" else name for name in names)

@@ -3,25 +3,28 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import eigh, null_space
 
+from spline_model.accuracy import search, wanted
 from spline_model.basis import SlideModes
 from spline_model.compile import System, compile_scene, make_layout
 from spline_model.effects import DrivenDisplacement, DrivenRotation, MixedStretching
 from spline_model.effects.base import Constraint, Load
-from spline_model.errors import InvalidParameter, require_count, require_finite
+from spline_model.errors import ConvergenceError, InvalidParameter, require_count, require_finite
 from spline_model.mass import mass_matrix
 from spline_model.mechanism import Mechanism
 from spline_model.operator import evaluate
 from spline_model.path import follow
-from spline_model.pivot import Pivot, mechanism_in_motion
+from spline_model.pivot import Pivot
 from spline_model.proportional import solve_mechanism, solve_path
 from spline_model.reduced.model import Reduced, from_unknowns, reduced
 from spline_model.reduced.whole import coordinates_by, whole_tangents
+from spline_model.solution import FrequencyEstimate
 from spline_model.static_answers import STATIONS
 
 Array = NDArray[np.float64]
@@ -31,6 +34,8 @@ SLIDE_SHARE = 0.5
 points' sliding along the strip: a number of the discretisation, not of the pivot."""
 
 
+NEARLY_NONE = 1e-3
+"""Part of the highest frequency below which errors are related to that part: where stability is lost."""
 MASSLESS = 1e-13
 """Directions with less than this of the largest modal mass follow the others statically."""
 
@@ -44,7 +49,8 @@ class Modes:
     the body (x, y, theta; zero without one) at unit modal mass; bodies: those of every body by
     name; slide_frequency: those left out as slide modes [Hz]; rotation of the static state [rad],
     nan where none was driven; held: whether the body's rotation was held; state: unknowns of the
-    static state (N,).
+    static state (N,); control_points: of a strip; estimate: of the error, where they were chosen for an
+    accuracy.
     """
 
     frequency: Array
@@ -55,16 +61,19 @@ class Modes:
     rotation: float
     held: bool
     state: Array
+    control_points: int
+    estimate: FrequencyEstimate | None = None
 
 
 def natural_frequencies(
-    pivot: Pivot | Mechanism,
+    pivot: Mechanism,
     *,
     rotation: float | None = None,
     body: str | None = None,
     count: int = 10,
     held: bool = False,
     increments: int = 20,
+    accuracy: float | None = None,
 ) -> Modes:
     """Modes about a static state: free vibrations of what a release from it lets go of.
 
@@ -72,14 +81,66 @@ def natural_frequencies(
     with driven displacements, weight, pre-strain and all loads in full. rotation None: 0 of a pivot; of a
     mechanism nothing is driven, its loads settle it. Free are then the driven rotation, whose torque acts
     on as a dead moment (``held=True`` fixes it), and the driven displacements without a history, whose
-    forces act on. Raises ConvergenceError if statics does not reach the state.
+    forces act on. accuracy: wanted relative error of all frequencies [1], for which the control points are
+    raised and the modes have their ``estimate``; default 1e-4 without a number of control points, else just
+    that number. Raises ConvergenceError if statics does not reach the state, or if none reaches the accuracy.
     """
     require_count("count", count, 1)
     if rotation is not None:
         require_finite("rotation", rotation, "rad")
-    mechanism = mechanism_in_motion(pivot)
+    given = pivot
     if rotation is None and (held or isinstance(pivot, Pivot)):
         rotation = 0.0
+    chosen = wanted(accuracy, given.design)
+    if chosen is None:
+        return _modes(given.in_motion(), rotation, body, count, held, increments)
+
+    @cache
+    def modes(control_points: int) -> Modes | ConvergenceError:
+        finer = given.with_control_points(control_points).in_motion()
+        try:
+            return _modes(finer, rotation, body, count, held, increments)
+        except ConvergenceError as error:  # more control points may reach the state
+            return error
+
+    def attempt(fewer: int, more: int) -> tuple[float, Modes] | None:
+        coarse, fine = modes(fewer), modes(more)
+        if isinstance(coarse, ConvergenceError) or isinstance(fine, ConvergenceError):
+            return None
+        apart = _apart(coarse.frequency, fine.frequency)
+        return None if apart is None else (apart, coarse)
+
+    outcome = search(given.design, chosen, attempt)
+    if outcome.found is None:
+        last = modes(outcome.trials[-1])
+        if isinstance(last, ConvergenceError):
+            raise last
+        return last
+    if accuracy is not None and outcome.message:
+        raise InvalidParameter("accuracy", accuracy, f"no less than {outcome.error:.2g}, which is reached")
+    return replace(
+        outcome.found,
+        estimate=FrequencyEstimate(
+            accuracy=chosen,
+            frequency=outcome.error,
+            control_points=outcome.control_points,
+            trials=outcome.trials,
+        ),
+    )
+
+
+def _apart(frequency: Array, better: Array) -> float | None:
+    """Largest relative difference of frequencies; None where one has fewer."""
+    if frequency.shape != better.shape:
+        return None
+    least = NEARLY_NONE * float(np.abs(better).max(initial=0.0))
+    return float((np.abs(frequency - better) / np.maximum(np.abs(better), least)).max(initial=0.0))
+
+
+def _modes(
+    mechanism: Mechanism, rotation: float | None, body: str | None, count: int, held: bool, increments: int
+) -> Modes:
+    """The modes of a mechanism in motion, with its control points."""
     body = mechanism.design.body_named(body) if mechanism.design.bodies else None
     released = mechanism.released()
     scene = released
@@ -106,6 +167,7 @@ def natural_frequencies(
         rotation=math.nan if rotation is None else rotation,
         held=held,
         state=z,
+        control_points=mechanism.design.discretisation.points,
     )
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -14,60 +13,77 @@ from spline_model.design import SLIDE_STIFFNESS, BodyDesign, StripDesign, swingi
 from spline_model.effects.registry import DEFAULT_EFFECTS
 from spline_model.errors import InvalidParameter, require_positive
 from spline_model.mechanism import Mechanism, mechanism
-from spline_model.scene import Scene
 
 __all__ = ["BODY", "SLIDE_STIFFNESS", "STRIPS", "Pivot", "cross_axis_pivot", "swinging_slide_stiffness"]
 
 BODY = "body"
 STRIPS = ("strip_1", "strip_2")
+DERIVED = (
+    "flexural_rigidity",
+    "axial_rigidity",
+    "linear_density",
+    "clamp_points",
+    "clamp_directions",
+    "centre",
+    "strip_mass",
+    "body_mass",
+    "body_moment_of_inertia",
+)
+"""What two models must make alike of one design."""
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Pivot:
-    """A cross-axis pivot: its mechanism, and what was derived from its design.
-
-    clamp_points (2, 2, 2) [strip, ground / body end, xy] in m and clamp_directions (2, 2, 2)
-    unit tangents, at rest; centre (2,) of the body.
-    """
-
-    mechanism: Mechanism
-    flexural_rigidity: float
-    axial_rigidity: float
-    linear_density: float
-    clamp_points: NDArray[np.float64]
-    clamp_directions: NDArray[np.float64]
-    centre: NDArray[np.float64]
-    strip_mass: float
-    body_mass: float
-    body_moment_of_inertia: float
+class Pivot(Mechanism):
+    """A cross-axis pivot: a mechanism of two strips and one body, and what follows from its design."""
 
     @property
-    def scene(self) -> Scene:
-        """The scene without a driven rotation."""
-        return self.mechanism.scene
+    def flexural_rigidity(self) -> float:
+        """EI of a strip [N m^2]."""
+        return self.design.strips[0].flexural_rigidity
 
-    def driven(self, rotation: float) -> Scene:
-        """The scene with the body's rotation driven to ``rotation`` [rad] at load factor 1 (Eq 7)."""
-        return self.mechanism.driven(rotation)
+    @property
+    def axial_rigidity(self) -> float:
+        """EA of a strip [N]."""
+        return self.design.strips[0].axial_rigidity
 
-    def released(self) -> Scene:
-        """The scene in motion, without the drive."""
-        return self.mechanism.released()
+    @property
+    def linear_density(self) -> float:
+        """Mass of a strip per length [kg/m]."""
+        return self.design.strips[0].linear_density
+
+    @property
+    def strip_mass(self) -> float:
+        """Mass of a strip [kg]."""
+        return self.linear_density * self.design.strips[0].length
+
+    @property
+    def body_mass(self) -> float:
+        """Mass of the body [kg]."""
+        return self.design.bodies[0].mass
+
+    @property
+    def body_moment_of_inertia(self) -> float:
+        """Moment of inertia of the body about its centre [kg m^2]."""
+        return self.design.bodies[0].moment_of_inertia
+
+    @property
+    def centre(self) -> NDArray[np.float64]:
+        """Centre of the body at rest (2,) [m]."""
+        return np.asarray(self.design.bodies[0].centre)
+
+    @property
+    def clamp_points(self) -> NDArray[np.float64]:
+        """Clamped points at rest (2, 2, 2) [strip, ground / body end, xy] [m]."""
+        return np.array([(strip.start, strip.end) for strip in self.design.strips])
+
+    @property
+    def clamp_directions(self) -> NDArray[np.float64]:
+        """Unit tangents at the clamped points at rest (2, 2, 2)."""
+        along = np.diff(self.clamp_points, axis=1)
+        return np.repeat(along / np.linalg.norm(along, axis=2, keepdims=True), 2, axis=1)
 
     def derived(self) -> dict[str, Any]:
         """Derived data by name, for comparison with another model's."""
-        names = (
-            "flexural_rigidity",
-            "axial_rigidity",
-            "linear_density",
-            "clamp_points",
-            "clamp_directions",
-            "centre",
-            "strip_mass",
-            "body_mass",
-            "body_moment_of_inertia",
-        )
-        return {name: getattr(self, name) for name in names}
+        return {name: getattr(self, name) for name in DERIVED}
 
 
 def cross_axis_pivot(
@@ -86,7 +102,13 @@ def cross_axis_pivot(
     orientation: float = 0.0,
     effects: Sequence[str] = DEFAULT_EFFECTS,
     parameters: Mapping[str, Mapping[str, Any]] | None = None,
-    **discretisation: Any,
+    control_points: int | None = None,
+    axial_modes: int | None = None,
+    basis: str = "bezier",
+    measure: str = "material",
+    stretch: str = "mixed",
+    gauss_points: int | None = None,
+    slide_stiffness: float | None = None,
 ) -> Pivot:
     """The pivot of Table 1, or any other design, in SI units and radians.
 
@@ -99,8 +121,8 @@ def cross_axis_pivot(
     centre_offset : of the body's centre of mass from the midpoint of B1 B2 [m].
     orientation : turns the whole pivot about A1 [rad].
     effects, parameters : names of the effects of the scene, and the parameters of each.
-    discretisation : keywords of ``spline_model.design.Discretisation`` (control_points,
-        axial_modes, basis, measure, stretch, gauss_points, slide_stiffness).
+    control_points ... slide_stiffness : how strips are described, see ``design.Discretisation``; without
+        control_points answers take as many as an accuracy of 1e-4 needs.
 
     Source: paper, section 2 and Table 1.
     """
@@ -111,7 +133,7 @@ def cross_axis_pivot(
         raise InvalidParameter("inclination", inclination, "an angle between 0 and pi/2 [rad]")
     if not 0 < crossing_ratio < 1:
         raise InvalidParameter("crossing_ratio", crossing_ratio, "a number between 0 and 1")
-    points, directions = _clamps_at_rest(length, inclination, crossing_ratio, orientation)
+    points = _clamps_at_rest(length, inclination, crossing_ratio, orientation)
     centre = points[:, 1].mean(axis=0) + _rotation(orientation) @ np.asarray(centre_offset, dtype=float)
     strips = [
         StripDesign(
@@ -130,37 +152,31 @@ def cross_axis_pivot(
     body = BodyDesign(
         name=BODY, centre=tuple(centre), mass=body_mass, moment_of_inertia=body_moment_of_inertia
     )
-    return Pivot(
-        mechanism=mechanism(
-            strips=strips, bodies=[body], effects=effects, parameters=parameters, **discretisation
-        ),
-        flexural_rigidity=youngs_modulus * second_moment_of_area,
-        axial_rigidity=youngs_modulus * area,
-        linear_density=density * area,
-        clamp_points=points,
-        clamp_directions=directions,
-        centre=centre,
-        strip_mass=density * area * length,
-        body_mass=body_mass,
-        body_moment_of_inertia=body_moment_of_inertia,
+    made = mechanism(
+        strips=strips,
+        bodies=[body],
+        effects=effects,
+        parameters=parameters,
+        control_points=control_points,
+        axial_modes=axial_modes,
+        basis=basis,
+        measure=measure,
+        stretch=stretch,
+        gauss_points=gauss_points,
+        slide_stiffness=slide_stiffness,
     )
-
-
-def mechanism_in_motion(pivot: Pivot | Mechanism) -> Mechanism:
-    """The mechanism of a pivot, or any other, as it swings."""
-    return (pivot.mechanism if isinstance(pivot, Pivot) else pivot).in_motion()
+    return Pivot(design=made.design, effects=made.effects, parameters=made.parameters, scene=made.scene)
 
 
 def _clamps_at_rest(
     length: float, inclination: float, crossing_ratio: float, orientation: float
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Clamp points and unit tangents, (2, 2, 2) each: strips from ground to body, crossing at r L."""
+) -> NDArray[np.float64]:
+    """Clamped points (2, 2, 2): strips from the ground to the body, crossing at r L."""
     cos, sin = math.cos(inclination), math.sin(inclination)
     tangents = np.array([[cos, sin], [-cos, sin]])
     ground = np.array([[0.0, 0.0], [2 * crossing_ratio * length * cos, 0.0]])
     points = np.stack((ground, ground + length * tangents), axis=1)
-    turn = _rotation(orientation)
-    return points @ turn.T, np.repeat((tangents @ turn.T)[:, None], 2, axis=1)
+    return points @ _rotation(orientation).T
 
 
 def _rotation(angle: float) -> NDArray[np.float64]:

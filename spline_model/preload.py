@@ -10,6 +10,7 @@ from spline_model.continuation.follower import Follower
 from spline_model.continuation.point import stand
 from spline_model.continuation.remark import Place
 from spline_model.continuation.watch import Watch
+from spline_model.effects import Bending, MixedStretching, Stretching
 from spline_model.errors import InvalidParameter
 from spline_model.newton import Newton, solve
 
@@ -49,7 +50,10 @@ def _grown(watch: Watch) -> Array:
 
 def is_preloaded(system: System) -> bool:
     """Whether weight or pre-strain act."""
-    tables = system.tables
-    strains = (tables.stretching.strain, tables.axial_force.strain, tables.weight)
-    curved = bool((tables.bending.curvature != system.rest_curvature).any())
-    return curved or any(bool(values.any()) for values in strains)
+    scene = system.scene
+    strains = (
+        *(e.natural_curvature for e in scene.of(Bending)),
+        *(e.natural_strain for e in scene.of(Stretching)),
+        *(e.natural_strain for e in scene.of(MixedStretching)),
+    )
+    return any(strains) or bool(system.weight.any())

@@ -87,7 +87,7 @@ def modes_at(modes: AxialModes, basis: SplineBasis, count: int) -> tuple[NDArray
 def _points_of(source: int, strip: Strip, count: int, layout: Layout, widest: int) -> dict[str, NDArray]:
     basis = strip.basis
     u, weight, support, d1, d2, _, _ = _tables(basis, count)
-    speed, curvature = _rest_of(strip, count)
+    speed, curvature = rest_of(strip, count)
     return {
         "source": np.full(len(u), source, dtype=np.int64),
         "u": u,
@@ -102,7 +102,7 @@ def _points_of(source: int, strip: Strip, count: int, layout: Layout, widest: in
 
 
 @lru_cache(maxsize=256)
-def _rest_of(strip: Strip, count: int) -> tuple[Array, Array]:
+def rest_of(strip: Strip, count: int) -> tuple[Array, Array]:
     """Speed and curvature (P,) at rest; kept, as several tables of a scene ask for them."""
     first, second = _tables(strip.basis, count)[-2:]
     tangent, bend = first @ strip.control_points, second @ strip.control_points

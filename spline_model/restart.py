@@ -13,7 +13,7 @@ from spline_model.errors import InvalidParameter
 from spline_model.kernels.motion import Motion
 
 if TYPE_CHECKING:
-    from spline_model.integrators.trajectory import Trajectory
+    from spline_model.motion.trajectory import Trajectory
 
 Array = NDArray[np.float64]
 

@@ -1,4 +1,8 @@
-"""A path through rotations of a driven body: loads in proportion to their size, whatever their sign."""
+"""A path through rotations of a driven body under loads: these come on first, or together with the rotation.
+
+First: from rest to all of them with the body held, then they stay as the body turns. Together: in
+proportion to the size of the rotation, whatever its sign.
+"""
 
 from __future__ import annotations
 
@@ -10,14 +14,83 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.compile import System, compile_scene
+from spline_model.effects import DrivenDisplacement
+from spline_model.effects.base import Load
 from spline_model.laps import Laps
 from spline_model.path import Progress, follow
 from spline_model.scene import Scene
 from spline_model.solution import Path, Status
+from spline_model.tables import SIZED
 
 Array = NDArray[np.float64]
 
 BY_STATE = ("load_factor", "states", "rates", "stiffness", "energies", "work", "inertia", "moment_defect")
+
+
+LOADS_FIRST, TOGETHER = ORDERS = ("loads first", "together")
+
+
+def has_loads(scene: Scene) -> bool:
+    """Whether loads act that may come on first: beside a driven displacement all grow together."""
+    led = any(isinstance(effect, DrivenDisplacement) for effect in scene.effects)
+    return not led and any(isinstance(effect, Load) for effect in scene.effects)
+
+
+def follow_loads_first(
+    driven: Callable[[float], Scene],
+    rotations: Array,
+    increments: int,
+    progress: Progress | None = None,
+    *,
+    start: tuple[float, float, Array] | None = None,
+    branch: str = "primary",
+    method: str = "condensed",
+    laps: Laps,
+) -> tuple[System, Path, Array]:
+    """The scene, its path, and the rotation of each state: loads in ``increments``, then the rotations [rad].
+
+    driven: the scene that is driven to a rotation; start: rotation, load factor and unknowns (N,). The
+    path's load factors are those of the loads, in critical points too.
+    """
+    largest, total = largest_of(rotations, 0.0 if start is None else start[0]), increments + len(rotations)
+    whole = compile_scene(driven(0.0))
+    turned = compile_scene(_steady(driven(largest)))
+    laps.lap("compile")
+    before = None
+    if start is None or (start[0] == 0.0 and start[1] < 1.0):
+        begin = None if start is None else start[1:]
+        factors = np.linspace(0.0 if begin is None else begin[0], 1.0, increments + 1)[1:]
+        told = None if progress is None else _later(progress, 0, total)
+        before = follow(whole, list(factors), told, start=begin, branch=branch, method=method)
+        branch = "primary" if before.critical_points else branch
+        if before.status is not Status.CONVERGED:
+            laps.lap("solve")
+            return whole, before, np.zeros(len(before.work))
+        start = 0.0, 1.0, before.states[-1]
+    told = None if progress is None else _later(progress, increments if before else 0, total)
+    at = start[0] / largest, start[2]
+    after = follow(turned, list(rotations / largest), told, start=at, branch=branch, method=method)
+    laps.lap("solve")
+    turns = after.load_factor * largest
+    loads = whole.loads
+    moved = (after.states - after.states[0])[:, loads.coordinate] @ loads.value
+    after = replace(
+        after,
+        load_factor=np.ones(len(turns)),
+        work=after.work + moved,
+        critical_points=tuple(replace(point, load_factor=1.0) for point in after.critical_points),
+    )
+    if before is None:
+        return whole, after, turns
+    return whole, _joined(before, after, back=False), np.append(np.zeros(len(before.work)), turns[1:])
+
+
+def _steady(scene: Scene) -> Scene:
+    """The scene with loads and driven displacements in full at any load factor."""
+    effects = (
+        replace(e, steady=True) if isinstance(e, (*SIZED, DrivenDisplacement)) else e for e in scene.effects
+    )
+    return replace(scene, effects=tuple(effects))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -85,7 +158,7 @@ def follow_rotations(
 
 def _sides(system: System, factors: Array, begin: float) -> list[Side]:
     """The factors by their side of rest, that of the start where they are zero; all at once without loads."""
-    if not system.tables.loads.value.any() and np.count_nonzero(system.tables.drives.target) < 2:
+    if not system.loads.value.any() and np.count_nonzero(system.drives.target) < 2:
         return [Side(sign=1.0, factors=tuple(factors), returns=False)]
     signs = np.sign(np.append(begin, factors))
     for i in range(1, len(signs)):

@@ -67,12 +67,13 @@ class Scene:
         names = [strip.name for strip in self.strips] + [body.name for body in self.bodies]
         if len(set(names)) != len(names) or GROUND in names:
             raise InvalidParameter("names", names, f"different names, none of them {GROUND!r}")
+        strips, bodies = names[: len(self.strips)], names[len(self.strips) :]
         for effect in self.effects:
             strip, body = getattr(effect, "strip", None), getattr(effect, "body", None)
-            if strip is not None and strip not in {s.name for s in self.strips}:
-                raise InvalidParameter("strip", strip, f"one of {[s.name for s in self.strips]}")
-            if body is not None and body not in {b.name for b in self.bodies}:
-                raise InvalidParameter("body", body, f"one of {[b.name for b in self.bodies]}")
+            if strip is not None and strip not in strips:
+                raise InvalidParameter("strip", strip, f"one of {strips}")
+            if body is not None and body not in bodies:
+                raise InvalidParameter("body", body, f"one of {bodies}")
 
     def with_effects(self, *more: Effect) -> Scene:
         """The scene with some effects more."""
@@ -89,8 +90,13 @@ class Scene:
     def of(self, kind: type[Kind]) -> tuple[Kind, ...]:
         """The scene's effects of this class, in scene order; sorted out once."""
         if kind not in self._sorted:
-            self._sorted[kind] = tuple(effect for effect in self.effects if isinstance(effect, kind))
+            kinds = {each for each in self._kinds if issubclass(each, kind)}
+            self._sorted[kind] = tuple(effect for effect in self.effects if type(effect) in kinds)
         return self._sorted[kind]
+
+    @cached_property
+    def _kinds(self) -> set[type]:
+        return {type(effect) for effect in self.effects}
 
     @cached_property
     def _sorted(self) -> dict[type, tuple[Any, ...]]:

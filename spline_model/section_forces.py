@@ -12,10 +12,9 @@ from scipy.interpolate import CubicSpline
 from spline_model.basis import SlideModes
 from spline_model.compile import System, compile_scene
 from spline_model.effects import GROUND, MixedStretching
-from spline_model.integrators.motion import axial_rigidity
 from spline_model.mechanism import Mechanism
+from spline_model.motion.start import axial_rigidity
 from spline_model.operator import evaluate
-from spline_model.pivot import Pivot
 from spline_model.sections import Sections, clamp_reactions, sections
 from spline_model.statics import STATIONS
 
@@ -56,7 +55,7 @@ Shear = Callable[[System, Array, str, Sections, Array, Array], tuple[Array, Arra
 """From system, states, strip, sections, stretch and direction (S, P) to shear force and reactions."""
 
 
-def static_fields(asked: Pivot | Mechanism, states: Array) -> StripFields:
+def static_fields(asked: Mechanism, states: Array) -> StripFields:
     """Fields of static states (S, N), as solutions hold them; a drive's multiplier at the end is ignored.
 
     Shear force and reactions are those of balance with the clamps: exact but for the solver's
@@ -66,7 +65,7 @@ def static_fields(asked: Pivot | Mechanism, states: Array) -> StripFields:
     return _fields(mechanism, system, np.asarray(states)[:, : system.layout.size], _balanced)
 
 
-def moving_fields(asked: Pivot | Mechanism, states: Array) -> StripFields:
+def moving_fields(asked: Mechanism, states: Array) -> StripFields:
     """Fields of the states (T, N) of a motion.
 
     Inertia is not among the states: the shear force is that of the moments' balance in a
@@ -80,13 +79,17 @@ def moving_fields(asked: Pivot | Mechanism, states: Array) -> StripFields:
     return _fields(mechanism, system, known, _by_moments)
 
 
-def _compiled(asked: Pivot | Mechanism) -> tuple[Mechanism, System]:
-    mechanism = asked.mechanism if isinstance(asked, Pivot) else asked
+def _compiled(asked: Mechanism) -> tuple[Mechanism, System]:
+    mechanism = asked
     return mechanism, compile_scene(mechanism.scene)
 
 
 def _fields(mechanism: Mechanism, system: System, states: Array, shear: Shear) -> StripFields:
-    strips = [_strip_fields(system, states, s.name, s.root, shear) for s in mechanism.design.strips]
+    along = sections(system, states, STATIONS)
+    strips = [
+        _strip_fields(system, states, along.strip(i), s.name, s.root, shear)
+        for i, s in enumerate(mechanism.design.strips)
+    ]
     bodies = [states[:, system.layout.body(body.name)] for body in mechanism.design.bodies]
     return StripFields(
         **{name: np.stack([each[name] for each in strips], axis=int(name not in GIVEN)) for name in ALONG},
@@ -95,8 +98,10 @@ def _fields(mechanism: Mechanism, system: System, states: Array, shear: Shear) -
     )
 
 
-def _strip_fields(system: System, states: Array, name: str, root: str, shear: Shear) -> dict[str, Array]:
-    strip, along = system.scene.strip(name), sections(system, states, name, STATIONS)
+def _strip_fields(
+    system: System, states: Array, along: Sections, name: str, root: str, shear: Shear
+) -> dict[str, Array]:
+    strip = system.scene.strip(name)
     first, second = (strip.basis.evaluate(STATIONS, order) for order in (1, 2))
     points = states[:, system.layout.strip(name)].reshape(len(states), -1, 2)
     tangent, rest = first @ points, first @ strip.control_points

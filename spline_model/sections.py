@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from functools import lru_cache
 
 import numpy as np
@@ -10,20 +10,23 @@ from numpy.typing import NDArray
 
 from spline_model.basis import AxialModes, SplineBasis
 from spline_model.compile import System
+from spline_model.continuation.resolution import areas_of, balance, weight_of
 from spline_model.effects import Clamp, MixedStretching, Stretching, StripGravity
 from spline_model.effects.base import Constraint
+from spline_model.scene import Strip
 
 Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Sections:
-    """Along one strip at P stations, for S states.
+    """Along G strips at P stations, for S states.
 
-    shape (S, P, 2) [m]; axial_force N and bending_moment M by the constitutive law, so
-    that the oscillation of a locking strain is seen; shear_force V from the balance with
+    shape (S, G, P, 2) [m]; axial_force N and bending_moment M by the constitutive law, so
+    that the oscillation of a locking strain is seen, or of a ``balanced`` static state by balance, which
+    converges as the reactions do; shear_force V from the balance with
     the clamp's reaction and the strip's weight (no law gives it in a shear-rigid strip), so
-    of a static state only; (S, P) [N, N m, N].
+    of a static state only; (S, G, P) [N, N m, N].
     """
 
     shape: Array
@@ -31,62 +34,106 @@ class Sections:
     bending_moment: Array
     shear_force: Array
 
+    def strip(self, place: int) -> Sections:
+        """The same along one strip, without the axis of the strips."""
+        return Sections(**{part.name: getattr(self, part.name)[:, place] for part in fields(self)})
 
-def sections(system: System, states: Array, strip_name: str, stations: Array) -> Sections:
-    """Recover one strip's sections at ``stations`` (P,), u in [0, 1]; states (S, N)."""
-    scene, layout = system.scene, system.layout
-    strip = scene.strip(strip_name)
-    basis = strip.basis
-    points = states[:, layout.strip(strip_name)].reshape(len(states), -1, 2)
-    values = _basis_at(basis, tuple(stations))
-    shape, tangent, bend = (each @ points for each in values)
-    speed = np.hypot(tangent[..., 0], tangent[..., 1])
-    at_rest = [each @ strip.control_points for each in values[1:]]
-    rest_speed = np.hypot(*at_rest[0].T)
-    rest_curvature = _cross(at_rest[0], at_rest[1]) / rest_speed**3
 
-    bending = scene.bending_of(strip_name)
-    moment = np.zeros_like(speed)
-    if bending is not None:
-        length = rest_speed if bending.measure == "material" else speed
-        strain = _cross(tangent, bend) / speed**2 / length - rest_curvature - bending.natural_curvature
-        moment = bending.flexural_rigidity * strain
-
-    force = np.zeros_like(speed)
-    for consistent in scene.of(Stretching):
-        if consistent.strip == strip_name:
-            force += consistent.axial_rigidity * (speed / rest_speed - 1.0 - consistent.natural_strain)
-    for i, mixed in enumerate(scene.of(MixedStretching)):
-        if mixed.strip == strip_name:
-            first, modes = _modes_at(mixed.modes, tuple(stations))
-            columns = first[:, None] + np.arange(modes.shape[1])
-            force += np.einsum("pk,spk->sp", modes, states[:, layout.axial_modes(i)][:, columns])
-
-    normal = np.stack((-tangent[..., 1], tangent[..., 0]), axis=-1) / speed[..., None]
-    pull = -clamp_reactions(system, states, strip_name, "start")[:, None, :2]
-    for weight in scene.of(StripGravity):
-        if weight.strip == strip_name:
-            mass = weight.linear_density * strip.length_to(stations)
-            pull = pull - mass[:, None] * np.asarray(weight.acceleration)
+def sections(system: System, states: Array, stations: Array, *, balanced: bool = False) -> Sections:
+    """Recover all strips' sections at ``stations`` (P,), u in [0, 1]; states (S, N)."""
+    bases = [strip.basis for strip in system.scene.strips]
+    parts = [
+        _alike(system, states, [s for s in system.scene.strips if s.basis == basis], stations, balanced)
+        for basis in dict.fromkeys(bases)
+    ]
+    if len(parts) == 1:
+        return parts[0]
+    order = np.argsort([i for basis in dict.fromkeys(bases) for i, b in enumerate(bases) if b == basis])
     return Sections(
-        shape=shape,
-        axial_force=force,
-        bending_moment=moment,
-        shear_force=np.einsum("spi,spi->sp", np.broadcast_to(pull, normal.shape), normal),
+        **{
+            part.name: np.concatenate([getattr(p, part.name) for p in parts], axis=1)[:, order]
+            for part in fields(Sections)
+        }
+    )
+
+
+def _alike(system: System, states: Array, strips: list[Strip], stations: Array, balanced: bool) -> Sections:
+    """Sections of strips of one basis: one product with its values, the strips at rest a state more."""
+    scene, layout, count, basis = system.scene, system.layout, len(states), strips[0].basis
+    points = np.empty((basis.control_points, 2, count + 1, len(strips)))
+    for g, strip in enumerate(strips):
+        own = states[:, layout.strip(strip.name)].reshape(count, -1, 2)
+        points[:, :, :count, g], points[:, :, count, g] = own.transpose(1, 2, 0), strip.control_points
+    values = _basis_at(basis, stations.tobytes())
+    curve = (values @ points.reshape(len(points), -1)).reshape(3, len(stations), *points.shape[1:])
+    (x1, y1), (x2, y2) = curve[1].swapaxes(0, 1), curve[2].swapaxes(0, 1)  # (P, S + 1, G)
+    square = x1 * x1 + y1 * y1
+    speed, turning = np.sqrt(square), (x1 * y2 - y1 * x2) / square
+    rest_speed, rest_turning = speed[:, count:], turning[:, count:]
+    x1, y1, speed, turning = x1[:, :count], y1[:, :count], speed[:, :count], turning[:, :count]
+
+    moment, force = np.zeros_like(speed), np.zeros((count, len(strips), len(stations)))
+    pull = np.empty((2, len(stations), count, len(strips)))
+    for g, strip in enumerate(strips):
+        bending = scene.bending_of(strip.name)
+        if bending is not None:
+            length = rest_speed[..., g] if bending.measure == "material" else speed[..., g]
+            strain = turning[..., g] / length - (rest_turning / rest_speed)[..., g]
+            moment[..., g] = bending.flexural_rigidity * (strain - bending.natural_curvature)
+        for consistent in scene.of(Stretching):
+            if consistent.strip == strip.name:
+                strain = speed[..., g] / rest_speed[..., g] - 1.0 - consistent.natural_strain
+                force[:, g] += consistent.axial_rigidity * strain.T
+        for i, mixed in enumerate(scene.of(MixedStretching)):
+            if mixed.strip == strip.name:
+                force[:, g] += states[:, layout.axial_modes(i)] @ _modes_at(mixed.modes, stations.tobytes())
+        pull[..., g] = -clamp_reactions(system, states, strip.name, "start")[:, :2].T[:, None]
+        for weight in scene.of(StripGravity):
+            if weight.strip == strip.name:
+                mass = weight.linear_density * strip.length_to(stations)
+                pull[..., g] -= np.multiply.outer(weight.acceleration, mass)[..., None]
+    shear = (pull[1] * x1 - pull[0] * y1) / speed
+    if balanced:
+        force = ((pull[0] * x1 + pull[1] * y1) / speed).transpose(1, 2, 0)
+        for g, strip in enumerate(strips):
+            reaction = clamp_reactions(system, states, strip.name, "start")
+            moment[..., g] = balance(
+                points[:, :, :count, g].transpose(2, 0, 1),
+                values[: len(stations)],
+                _areas_at(basis, stations.tobytes()),
+                stations,
+                reaction,
+                weight_of(system, strip.name),
+            ).T
+    return Sections(
+        shape=np.ascontiguousarray(curve[0, :, :, :count].transpose(2, 3, 0, 1)),
+        axial_force=np.ascontiguousarray(force),
+        bending_moment=np.ascontiguousarray(moment.transpose(1, 2, 0)),
+        shear_force=np.ascontiguousarray(shear.transpose(1, 2, 0)),
     )
 
 
 @lru_cache(maxsize=64)
-def _basis_at(basis: SplineBasis, stations: tuple[float, ...]) -> tuple[Array, Array, Array]:
-    """The basis and its first two derivatives at stations; kept."""
-    u = np.array(stations)
-    return basis.evaluate(u), basis.evaluate(u, 1), basis.evaluate(u, 2)
+def _basis_at(basis: SplineBasis, stations: bytes) -> Array:
+    """The basis and its first two derivatives at stations, one above the other (3 P, n); kept."""
+    u = np.frombuffer(stations)
+    return np.concatenate([basis.evaluate(u, order) for order in range(3)])
 
 
 @lru_cache(maxsize=64)
-def _modes_at(modes: AxialModes, stations: tuple[float, ...]) -> tuple[NDArray[np.int64], Array]:
-    """Axial modes at stations; kept."""
-    return modes.evaluate(np.array(stations))
+def _areas_at(basis: SplineBasis, stations: bytes) -> Array:
+    """Integrals of the basis from the root to stations (P, n); kept."""
+    return areas_of(basis, np.frombuffer(stations))
+
+
+@lru_cache(maxsize=64)
+def _modes_at(modes: AxialModes, stations: bytes) -> Array:
+    """All axial modes at stations (K, P); kept."""
+    u = np.frombuffer(stations)
+    first, shown = modes.evaluate(u)
+    full = np.zeros((len(u), modes.count))
+    np.put_along_axis(full, first[:, None] + np.arange(shown.shape[1]), shown, axis=1)
+    return np.ascontiguousarray(full.T)
 
 
 def clamp_reactions(system: System, states: Array, strip: str, end: str) -> Array:
@@ -95,7 +142,3 @@ def clamp_reactions(system: System, states: Array, strip: str, end: str) -> Arra
         if isinstance(constraint, Clamp) and (constraint.strip, constraint.end) == (strip, end):
             return np.asarray(states[:, system.layout.rows(i)])
     return np.zeros((len(states), 3))
-
-
-def _cross(a: Array, b: Array) -> Array:
-    return np.asarray(a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0])

@@ -32,14 +32,13 @@ from spline_model.errors import InvalidParameter, require_positive
 from spline_model.impulses.run import Run
 from spline_model.impulses.solver import TOLERANCE, ImpulseSolver
 from spline_model.impulses.state import Outcome, State
-from spline_model.integrators.events import catch, drives_at, event_times, from_here
-from spline_model.integrators.steps import count_steps
-from spline_model.integrators.trajectory import Trajectory, trajectory_of
 from spline_model.laps import Laps
 from spline_model.mass import mass_matrix
 from spline_model.mechanism import Mechanism
 from spline_model.modes import linear_modes, static_state
-from spline_model.pivot import Pivot, mechanism_in_motion
+from spline_model.motion.events import catch, drives_at, event_times, from_here
+from spline_model.motion.steps import count_steps
+from spline_model.motion.trajectory import Trajectory, trajectory_of
 
 __all__ = ["ImpulseSolver", "Outcome", "State", "impulse_solver", "solve_impulses", "stability_limit"]
 
@@ -52,7 +51,7 @@ STABILITY_LIMIT = 2.0
 
 
 def impulse_solver(
-    pivot: Pivot | Mechanism,
+    pivot: Mechanism,
     *,
     body: str | None = None,
     form: str = "stable",
@@ -72,7 +71,7 @@ def impulse_solver(
 
     Raises InvalidParameter.
     """
-    mechanism = mechanism_in_motion(pivot)
+    mechanism = pivot.in_motion()
     mechanism.released()
     scene = mechanism.scene
     if mechanism.design.bodies:
@@ -84,12 +83,12 @@ def impulse_solver(
     )
 
 
-def stability_limit(pivot: Pivot | Mechanism, rotation: float | None = None) -> float:
+def stability_limit(pivot: Mechanism, rotation: float | None = None) -> float:
     """2 / omega [s] of the highest frequency about the static state at a rotation [rad], or undriven.
 
     The step of the printed form must stay below it.
     """
-    mechanism = mechanism_in_motion(pivot)
+    mechanism = pivot.in_motion()
     system = compile_scene(mechanism.released())
     z = static_state(mechanism, rotation)[: system.layout.size]
     highest = linear_modes(system, z, mass_matrix(system.scene, system.layout))[0][-1]
@@ -97,7 +96,7 @@ def stability_limit(pivot: Pivot | Mechanism, rotation: float | None = None) -> 
 
 
 def solve_impulses(
-    pivot: Pivot | Mechanism,
+    pivot: Mechanism,
     *,
     start: float | None = None,
     body: str | None = None,
@@ -120,7 +119,7 @@ def solve_impulses(
 
     Raises InvalidParameter, and ConvergenceError if statics does not reach ``start``.
     """
-    mechanism = mechanism_in_motion(pivot)
+    mechanism = pivot.in_motion()
     for name, value in (("duration", duration), ("step", step)):
         require_positive(name, value, "s")
     if start is not None and not math.isfinite(start):

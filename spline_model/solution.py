@@ -4,11 +4,16 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import Enum
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
+from spline_model.errors import InvalidParameter
 from spline_model.estimate import resolution
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 Array = NDArray[np.float64]
 
@@ -79,12 +84,17 @@ class Path:
     history: tuple[tuple[float, ...], ...]
 
 
+ERRORS = ("trajectory", "torque", "stiffness", "section_forces", "stress")
+"""What an accuracy of a static path is about."""
+
+
 @dataclass(frozen=True, kw_only=True)
 class ErrorEstimate:
     """Estimated error of a static path that was solved to an ``accuracy``, all relative [1].
 
-    trajectory: largest distance of the centre from where it should be, over its largest
-    displacement; torque, stiffness: largest error over the largest magnitude on the path.
+    trajectory: largest error of a body's place over the largest displacement, and of its turn where that is
+    not driven; torque, stiffness, section_forces, stress (the largest over a strip of the rectangular section
+    that A and I imply): largest error over the largest magnitude on the path.
     control_points that were chosen; trials: numbers of control points that were tried.
     Leaves out what more control points do not mend: the theory's own simplifications.
     """
@@ -93,13 +103,37 @@ class ErrorEstimate:
     trajectory: float
     torque: float
     stiffness: float
+    section_forces: float
+    stress: float
     control_points: int
     trials: tuple[int, ...]
 
     @property
     def largest(self) -> float:
-        """The larger error of trajectory and torque, which ``accuracy`` is about."""
-        return max(self.trajectory, self.torque)
+        """The largest of the errors, which ``accuracy`` is about."""
+        return max(float(getattr(self, name)) for name in ERRORS)
+
+    @property
+    def remark(self) -> str:
+        """Empty, or what is more uncertain than the accuracy."""
+        missed = [name for name in ERRORS if not getattr(self, name) <= self.accuracy]
+        if not missed:
+            return ""
+        errors = ", ".join(f"{name.replace('_', ' ')} {getattr(self, name):.1e}" for name in missed)
+        return f"estimated error above {self.accuracy:g} with {self.control_points} control points: {errors}"
+
+
+@dataclass(frozen=True, kw_only=True)
+class FrequencyEstimate:
+    """Estimated error of natural frequencies that were solved to an ``accuracy``, relative [1].
+
+    frequency: the largest of all modes; control_points and trials as of ``ErrorEstimate``.
+    """
+
+    accuracy: float
+    frequency: float
+    control_points: int
+    trials: tuple[int, ...]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -119,79 +153,37 @@ class MotionEstimate:
     runs: int
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class StaticSolution:
-    """Answer of a pivot under a driven rotation; S states, G strips, P stations.
+    """Answer of a mechanism, a pivot or any other; S states, G strips, P stations.
 
-    rotation (S,) [rad]; load_factor (S,) share of the loads that acts; centre (S, 2) [m], origin at
-    A1; torque (S,) lambda_13 [N m];
-    stiffness (S,) d(torque)/d(rotation) [N m/rad] (Eq 20) at fixed loads and driven displacements,
-    from the tangent;
-    bending_energy, axial_energy, shear_energy (S,) [J], the last zero: no shear here;
-    gravity_energy (S,) [J] against rest, work (S,) of drive and loads since the first state;
-    clamp_reactions (S, G, 2, 3): force [N] and moment [N m] of the clamp at the ground
-    and at the body end on the strip; stations (P,) reference arc length over L;
+    load_factor (S,) share of the loads that acts; bodies: x, y, theta (S, 3) by name [m, m, rad]; driven:
+    the body whose rotation is driven, if there is one;
+    torque (S,) lambda_13 [N m], and stiffness (S,) d(torque)/d(rotation) [N m/rad] (Eq 20) at fixed loads
+    and driven displacements, from the tangent, of the driven rotation, nan without one;
+    bending_energy, axial_energy (S,) [J];
+    gravity_energy (S,) [J] against rest, work (S,) of drives and loads since the first state;
+    clamp_reactions (S, G, 2, 3): force [N] and moment [N m] of the clamp at the root and at the tip of a
+    strip, zero at a free end; stations (P,) reference arc length over L;
     shape (S, G, P, 2) [m]; axial_force, bending_moment, shear_force (S, G, P) [N, N m, N];
+    effects: names of what was assembled;
     inertia, moment_defect, critical_points and states as in ``Path``;
-    seconds: by part, see ``spline_model.laps``;
-    estimate: of the error, where an accuracy was asked for.
-    """
-
-    status: Status
-    message: str
-    rotation: Array
-    load_factor: Array
-    centre: Array
-    torque: Array
-    stiffness: Array
-    bending_energy: Array
-    axial_energy: Array
-    shear_energy: Array
-    gravity_energy: Array
-    work: Array
-    clamp_reactions: Array
-    stations: Array
-    shape: Array
-    axial_force: Array
-    bending_moment: Array
-    shear_force: Array
-    inertia: NDArray[np.int64]
-    moment_defect: Array
-    critical_points: tuple[CriticalPoint, ...]
-    states: Array
-    counters: dict[str, int]
-    history: tuple[tuple[float, ...], ...]
-    seconds: dict[str, float]
-    estimate: ErrorEstimate | None = None
-
-    @property
-    def resolution(self) -> str:
-        """Empty, or how uncertain too few control points make the answer (``spline_model.estimate``)."""
-        return resolution(self.moment_defect)
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class MechanismSolution:
-    """Answer of any mechanism; S states, G strips, P stations.
-
-    load_factor (S,); bodies: x, y, theta (S, 3) by name [m, m, rad]; torque, stiffness (S,)
-    of the driven rotation [N m, N m/rad], as of ``StaticSolution``, nan without one; bending_energy,
-    axial_energy, gravity_energy, work (S,) [J]; stations (P,); shape (S, G, P, 2) [m]; axial_force,
-    bending_moment, shear_force (S, G, P); effects: names of what was assembled;
-    inertia, moment_defect, critical_points and states as in ``Path``; seconds: by
-    part, see ``spline_model.laps``.
+    seconds: by part, see ``spline_model.laps``; control_points: of a strip;
+    estimate: of the error, where the control points were chosen for an accuracy.
     """
 
     status: Status
     message: str
     load_factor: Array
     bodies: dict[str, Array]
+    driven: str | None
     torque: Array
     stiffness: Array
     bending_energy: Array
     axial_energy: Array
     gravity_energy: Array
     work: Array
+    clamp_reactions: Array
     stations: Array
     shape: Array
     axial_force: Array
@@ -205,8 +197,60 @@ class MechanismSolution:
     counters: dict[str, int]
     history: tuple[tuple[float, ...], ...]
     seconds: dict[str, float]
+    control_points: int
+    estimate: ErrorEstimate | None = None
+
+    @property
+    def rotation(self) -> Array:
+        """Rotation of the driven body, or of the only one (S,) [rad]."""
+        return self._watched[:, 2]
+
+    @property
+    def centre(self) -> Array:
+        """Centre of the driven body, or of the only one (S, 2) [m]."""
+        return self._watched[:, :2]
+
+    @property
+    def shear_energy(self) -> Array:
+        """None: strips are rigid in shear (S,) [J]."""
+        return np.zeros(len(self.load_factor))
 
     @property
     def resolution(self) -> str:
-        """Empty, or how uncertain too few control points make the answer (``spline_model.estimate``)."""
-        return resolution(self.moment_defect)
+        """Empty, or how uncertain the control points make the answer: by its estimate, or by its moments."""
+        return resolution(self.moment_defect) if self.estimate is None else self.estimate.remark
+
+    @property
+    def _watched(self) -> Array:
+        if self.driven is None and len(self.bodies) != 1:
+            raise InvalidParameter("bodies", list(self.bodies), "one body, or the name of one in ``bodies``")
+        return next(iter(self.bodies.values())) if self.driven is None else self.bodies[self.driven]
+
+    def columns(self) -> dict[str, Array]:
+        """What is one number in every state, by names with units."""
+        moved = {
+            f"{name}_{part}": place[:, k]
+            for name, place in self.bodies.items()
+            for k, part in enumerate(("x_m", "y_m", "rotation_rad"))
+        }
+        energies = ("bending_energy", "axial_energy", "gravity_energy", "work")
+        return {
+            "load_factor": self.load_factor,
+            **moved,
+            "torque_Nm": self.torque,
+            "stiffness_Nm_per_rad": self.stiffness,
+            **{f"{name}_J": getattr(self, name) for name in energies},
+            "inertia": self.inertia,
+            "moment_defect": self.moment_defect,
+        }
+
+    def to_frame(self) -> pd.DataFrame:
+        """The columns as a table, a row a state."""
+        import pandas as pd
+
+        return pd.DataFrame(self.columns())
+
+    def __repr__(self) -> str:
+        ends = {name: values[-1] for name, values in self.columns().items()}
+        told = ", ".join(f"{name} = {value:.6g}" for name, value in ends.items())
+        return f"<StaticSolution {self.status.value}, {len(self.load_factor)} states, the last one: {told}>"

@@ -5,11 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from spline_model.accuracy import check_accuracy
+from spline_model.accuracy import DOUBTFUL, settled, wanted
 from spline_model.accurate_path import solve_accurately
 from spline_model.compile import System, compile_scene
 from spline_model.continuation.recover import recover
@@ -26,9 +27,18 @@ from spline_model.laps import Laps
 from spline_model.path import Progress
 from spline_model.pivot import Pivot
 from spline_model.proportional import CONTROLS, solve_loads, solve_mechanism, solve_path
-from spline_model.rotations import factors_of, follow_rotations, largest_of
+from spline_model.rotations import (
+    LOADS_FIRST,
+    ORDERS,
+    TOGETHER,
+    factors_of,
+    follow_loads_first,
+    follow_rotations,
+    has_loads,
+    largest_of,
+)
 from spline_model.solution import Path, StaticSolution, Status
-from spline_model.static_answers import STATIONS, pivot_answer
+from spline_model.static_answers import STATIONS, static_answer
 
 __all__ = [
     "CONTROLS",
@@ -57,6 +67,7 @@ def solve_statics(
     *,
     rotation: float | Sequence[float],
     increments: int = 20,
+    order: str = LOADS_FIRST,
     method: str = "condensed",
     accuracy: float | None = None,
     branch: str = "primary",
@@ -67,36 +78,44 @@ def solve_statics(
     """Drive the pivot's body from 0 to ``rotation`` [rad] in equal increments.
 
     A sequence of rotations is a path from one to the next (there and back), each leg in
-    ``increments``. Loads and driven displacements grow with |rotation| over the largest one
-    of the path, its start's included; with rotation 0 the body is held and they grow from 0 to 1.
+    ``increments``. order: "loads first" raises loads in ``increments`` with the body held, and then they
+    stay; "together", and so always with driven displacements, lets them grow with |rotation| over the
+    largest one of the path, its start's included. With rotation 0 the body is held and they grow from 0
+    to 1.
     method: "condensed" runs compiled with the clamps solved and the strips
     condensed, where the scene allows it; "multipliers" is the paper's bordered system. Both
-    agree to 1e-10. accuracy: wanted error of trajectory and torque over the whole path,
+    agree to 1e-10. accuracy: wanted error over the whole path of all that ``ErrorEstimate`` has,
     relative [1]; the control points are raised from the pivot's until the estimated one is
-    below, axial modes and quadrature with them, and the solution has its ``estimate``.
+    below, axial modes and quadrature with them, and the solution has its ``estimate``. Default: 1e-4
+    of a pivot without a number of control points, else just its number.
     branch: "primary" or "follow" at a bifurcation; start: a solution of the same
-    pivot to go on from, instead of rest; either of them without an accuracy. Raises
+    pivot to go on from with its control points, instead of rest; without an accuracy. Raises
     ConvergenceError with the converged part of the path, or with the best one
     where the accuracy is not reached; returns it as a status with ``raise_on_failure=False``.
     """
     require_count("increments", increments, 1)
     require_choice("method", method, METHODS)
-    laps = Laps()
+    require_choice("order", order, ORDERS)
+    laps, design = Laps(), pivot.design
     origin = 0.0 if start is None else float(start.rotation[-1])
     rotations = _rotations(rotation, increments, origin, loaded=_is_loaded(pivot))
-    if accuracy is None:
-        system, path = _along(pivot, rotations, method, laps, progress, start=start, branch=branch)
-        solution = pivot_answer(system, path, laps)
+    chosen = wanted(accuracy, design, start)
+
+    def solve(control_points: int | None) -> StaticSolution:
+        given = pivot.with_control_points(control_points)
+        told = progress if chosen is None else None
+        if order == TOGETHER or not rotations.any() or not has_loads(given.scene):
+            system, path = _along(given, rotations, method, laps, told, start=start, branch=branch)
+            return static_answer(system, path, given.effects, laps, balanced=chosen is not None)
+        begin = None if start is None else (origin, float(start.load_factor[-1]), start.states[-1])
+        how: dict[str, Any] = {"start": begin, "branch": branch, "method": method, "laps": laps}
+        system, path, _ = follow_loads_first(given.driven, rotations, increments, told, **how)
+        return static_answer(system, path, given.effects, laps, balanced=chosen is not None)
+
+    if chosen is None:
+        solution = solve(settled(design, start))
     else:
-        check_accuracy(accuracy, pivot.mechanism.design)
-        if start is not None or branch != "primary":
-            raise InvalidParameter("accuracy", accuracy, "no start or branch beside it")
-        solution = solve_accurately(
-            pivot,
-            accuracy,
-            path_of=lambda chosen: _along(chosen, rotations, method, laps),
-            answer=lambda system, path: pivot_answer(system, path, laps),
-        )
+        solution = solve_accurately(design, chosen, solve, least=DOUBTFUL if accuracy is None else None)
         if progress is not None:
             progress(len(rotations), len(rotations))
     if raise_on_failure and solution.status is not Status.CONVERGED:
@@ -111,7 +130,7 @@ def solve_statics(
 
 def _is_loaded(pivot: Pivot) -> bool:
     """Whether anything but a driven rotation moves the pivot."""
-    return not set(pivot.mechanism.effects) <= UNLOADED
+    return not set(pivot.effects) <= UNLOADED
 
 
 def _rotations(rotation: float | Sequence[float], increments: int, origin: float, *, loaded: bool) -> Array:
@@ -165,7 +184,7 @@ def solve_from(
     laps.lap("compile")
     path = recover(system, 1.0, np.asarray(guess, dtype=float), increments)
     laps.lap("solve")
-    solution = pivot_answer(system, path, laps)
+    solution = static_answer(system, path, pivot.effects, laps)
     if raise_on_failure and path.status is not Status.CONVERGED:
         at = float(path.load_factor[-1])
         raise ConvergenceError(path.message, solution=solution, load_factor=at, history=path.history)

@@ -35,6 +35,8 @@ from spline_model.quadrature import Points, modes_at, strip_points
 from spline_model.scene import Scene
 
 Array = NDArray[np.float64]
+Sized = AppliedForce | AppliedMoment | TipForce
+SIZED = (AppliedForce, AppliedMoment, TipForce)
 
 
 def bending_table(scene: Scene, layout: Layout, effects: Sequence[Bending]) -> BendingTable:
@@ -146,7 +148,11 @@ def drive_table(scene: Scene, layout: Layout) -> DriveTable:
             parts = [(2, 0.0, drive.angle)]
         elif isinstance(drive, DrivenDisplacement):
             centre = scene.body(drive.body).centre
-            parts = [(k, float(centre[k]), drive.displacement[k]) for k in range(2)]
+            grown = 0.0 if drive.steady else 1.0
+            parts = [
+                (k, float(centre[k]) + (1.0 - grown) * moved, grown * moved)
+                for k, moved in enumerate(drive.displacement)
+            ]
         else:
             continue
         for k, (offset, origin, target) in enumerate(parts):
@@ -167,28 +173,31 @@ def drive_table(scene: Scene, layout: Layout) -> DriveTable:
 
 
 def load_table(scene: Scene, layout: Layout) -> LoadTable:
-    """Forces on bodies and strip ends and moments on bodies, one row a component."""
+    """Forces on bodies and strip ends and moments on bodies that grow, one row a component."""
     rows: list[tuple[int, float, int]] = []
     histories: list[History] = []
     for load in scene.of(Load):
-        if isinstance(load, AppliedMoment):
-            parts = [(layout.bodies[load.body] + 2, load.moment, 1)]
-        elif isinstance(load, AppliedForce):
-            parts = [(layout.bodies[load.body] + k, load.force[k], 0) for k in range(2)]
-        elif isinstance(load, TipForce):
-            start, count = layout.strips[load.strip]
-            end = start if load.end == "start" else start + 2 * count - 2
-            parts = [(end + k, load.force[k], 0) for k in range(2)]
-        else:
-            continue
-        rows += parts
-        histories += [load.history] * len(parts)
+        if isinstance(load, SIZED) and not load.steady:
+            parts = _components(load, layout)
+            rows += parts
+            histories += [load.history] * len(parts)
     return LoadTable(
         coordinate=np.array([row[0] for row in rows], dtype=np.int64),
         value=np.array([row[1] for row in rows], dtype=float),
         turns=np.array([row[2] for row in rows], dtype=np.int64),
         **_histories(histories),
     )
+
+
+def _components(load: Sized, layout: Layout) -> list[tuple[int, float, int]]:
+    """Place, value and kind (1: a moment) of each component of a load."""
+    if isinstance(load, AppliedMoment):
+        return [(layout.bodies[load.body] + 2, load.moment, 1)]
+    if isinstance(load, AppliedForce):
+        return [(layout.bodies[load.body] + k, load.force[k], 0) for k in range(2)]
+    start, count = layout.strips[load.strip]
+    end = start if load.end == "start" else start + 2 * count - 2
+    return [(end + k, load.force[k], 0) for k in range(2)]
 
 
 def _histories(histories: Sequence[History]) -> dict[str, Any]:
@@ -203,10 +212,17 @@ def _histories(histories: Sequence[History]) -> dict[str, Any]:
     }
 
 
+def steady_loads(scene: Scene, layout: Layout) -> list[tuple[int, float]]:
+    """Place and value of each component of the loads that act in full at any load factor."""
+    steady = [load for load in scene.of(Load) if isinstance(load, SIZED) and load.steady]
+    return [(place, value) for load in steady for place, value, _ in _components(load, layout)]
+
+
 def weight(scene: Scene, layout: Layout) -> Array:
-    """Generalised force of gravity, (Q,) [N]; empty where no effect names gravity."""
+    """Generalised force of gravity and steady loads, (Q,) [N, N m]; empty where no effect names any."""
     strips, bodies = scene.of(StripGravity), scene.of(BodyGravity)
-    if not strips and not bodies:
+    steady = steady_loads(scene, layout)
+    if not (strips or bodies or steady):
         return np.zeros(0)
     force = np.zeros(layout.coordinate_count)
     for strip in strips:
@@ -214,4 +230,6 @@ def weight(scene: Scene, layout: Layout) -> Array:
         force[layout.strip(strip.strip)] += np.outer(share, strip.acceleration).ravel()
     for body in bodies:
         force[layout.body(body.body)][:2] += body.mass * np.asarray(body.acceleration)
+    for place, value in steady:
+        force[place] += value
     return force

@@ -12,7 +12,9 @@ Array = NDArray[np.float64]
 
 def gravity_energy(system: System, states: Array) -> Array:
     """Potential of the dead weight against the state at rest, (S,) [J]; zero without gravity."""
-    weight = system.tables.weight
+    weight = system.weight
+    if not weight.size:
+        return np.zeros(len(states))
     return -(states[:, : weight.size] - system.rest[: weight.size]) @ weight
 
 
@@ -23,7 +25,7 @@ def external_work(system: System, t: Array, states: Array, rates: Array) -> Arra
     int lambda dt of the drives; both integrals by the trapezoidal rule corrected by the end
     slopes, which are known exactly: the error goes with the fourth power of the increment.
     """
-    loads, drives = system.tables.loads, system.tables.drives
+    loads, drives = system.loads, system.drives
     value = states[:, loads.coordinate] @ loads.value
     slope = rates[:, loads.coordinate] @ loads.value
     moment = states[:, drives.row] @ drives.target

@@ -3,9 +3,13 @@
 import difflib
 from collections.abc import Iterable
 from importlib import import_module
-from typing import Any
+from pathlib import Path
+from typing import TYPE_CHECKING
 
 from studies.errors import BadInput
+
+if TYPE_CHECKING:  # a command that runs no study does not wait for tables and figures
+    from studies.engine.study import Study
 
 #: Command -> (module with `add_arguments(parser)` and `main(arguments) -> exit code`, what it does).
 COMMANDS: dict[str, tuple[str, str]] = {
@@ -29,6 +33,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "list": ("studies.commands.list_studies", "list the studies"),
     "run": ("studies.commands.run", "compute and draw studies"),
     "draw": ("studies.commands.draw", "redraw studies from their stored tables"),
+    "verify": ("studies.commands.verify", "compute stale studies anew, fresh where all comes out as stored"),
     "status": ("studies.commands.status", "say which stored results are fresh, stale or missing"),
     "compile": ("studies.commands.compile_kernels", "compile the kernels of both models, once"),
     "readme": (
@@ -37,138 +42,53 @@ COMMANDS: dict[str, tuple[str, str]] = {
     ),
 }
 
-#: Study -> (module with `CASES`, `compute(progress)` and `draw(tables)`, what it shows).
-STUDIES: dict[str, tuple[str, str]] = {
-    "paper/fig03_snapshots": (
-        "studies.paper.fig03_snapshots",
-        "Fig 3: deformed shapes, both models superposed",
-    ),
-    "paper/fig04_trajectory": (
-        "studies.paper.fig04_trajectory",
-        "Fig 4: path of the body's centre and its error",
-    ),
-    "paper/fig05_stiffness": (
-        "studies.paper.fig05_stiffness",
-        "Fig 5: torque and stiffness and their errors",
-    ),
-    "paper/fig06_release": (
-        "studies.paper.fig06_release",
-        "Fig 6: motion after the release from 90 degrees and its errors",
-    ),
-    "paper/fig07_interactive": (
-        "studies.paper.fig07_interactive",
-        "Fig 7: the interactive environment in a browser, its frame rate and solve time",
-    ),
-    "convergence/control_points": (
-        "studies.convergence.control_points",
-        "error against control points for every basis, measure and stretch form: the locking map",
-    ),
-    "convergence/elements": (
-        "studies.convergence.elements",
-        "error against elements, order and Richardson value",
-    ),
-    "convergence/frequency": (
-        "studies.convergence.frequency",
-        "frequency of the swing and of small motion against control points, elements, step and amplitude",
-    ),
-    "convergence/error_estimate": (
-        "studies.convergence.error_estimate",
-        "how well the spline model estimates its own error when it is asked for an accuracy",
-    ),
-    "convergence/slide_stiffness": (
-        "studies.convergence.slide_stiffness",
-        "error against the stiffness of the strains that the axial modes do not see",
-    ),
-    "stability/rotation": (
-        "studies.stability.statics.rotation",
-        "hard cases: rotation to a half turn and beyond, in any number of increments, there and back",
-    ),
-    "stability/slenderness": (
-        "studies.stability.statics.slenderness",
-        "hard cases: slenderness from 10 to 1e5 and strips that cannot stretch",
-    ),
-    "stability/geometry": (
-        "studies.stability.statics.geometry",
-        "hard cases: crossing ratios and inclinations to their ends, parallel, unequal and curved strips",
-    ),
-    "stability/buckling": (
-        "studies.stability.statics.buckling",
-        "hard cases: columns beyond the Euler load, frames that snap through, the pivot pushed down",
-    ),
-    "stability/step_size": (
-        "studies.stability.motion.step_size",
-        "hard cases: steps of a motion from 1e-7 to 1e-2 s: energy, order, and what a step does not resolve",
-    ),
-    "stability/long_run": (
-        "studies.stability.motion.long_run",
-        "hard cases: a million steps without damping, some minutes; goes on where it was interrupted",
-    ),
-    "stability/ratios": (
-        "studies.stability.motion.ratios",
-        "hard cases: light and heavy bodies, massless and heavy strips, one strip far stiffer",
-    ),
-    "stability/axial_modes": (
-        "studies.stability.statics.axial_modes",
-        "hard cases: too few and too many axial modes, too few Gauss points",
-    ),
-    "stability/bad_starts": (
-        "studies.stability.statics.bad_starts",
-        "hard cases: crumpled, reversed and other wrong guesses of a state",
-    ),
-    "stability/fuzz": (
-        "studies.stability.whole.fuzz",
-        "hard cases: random designs and commands",
-    ),
-    "stability/events": (
-        "studies.stability.motion.events",
-        "hard cases: drives reversed, bodies let go and caught a thousand times, targets that jump",
-    ),
-    "stability/environment": (
-        "studies.stability.whole.environment",
-        "hard cases: the same answers on any number of threads and in any order of strips and bodies",
-    ),
-    "effects/worth": (
-        "studies.effects.worth",
-        "what each effect is worth for four designs, and what simpler strips save",
-    ),
-    "design/sizing": (
-        "studies.design.sizing",
-        "two pivots sized by exact gradients: least centre shift, least variation of stiffness",
-    ),
-    "impulses/step_size": (
-        "studies.impulses.step_size",
-        "sequential impulses against their step: error, drift, energy, time, limits and sweeps",
-    ),
-    "baselines/surrogates": (
-        "studies.baselines.comparison.surrogates",
-        "error of pseudo-rigid-body models and the linear pivot over rotation and amplitude",
-    ),
-    "baselines/peers": (
-        "studies.baselines.comparison.peers",
-        "error against time beside other codes, where installed, of the static path and of the swing",
-    ),
-    "work_precision/statics": (
-        "studies.work_precision.statics",
-        "what accuracy costs in statics: error against time and counted work, for every model",
-    ),
-    "work_precision/dynamics": (
-        "studies.work_precision.dynamics",
-        "what accuracy costs in motion: error after the release against time and counted work",
-    ),
-    "sweep/design_space": (
-        "studies.sweep.questions.design_space",
-        "thousands of pivots: stiffness, its variation, shift and stress over +-45 degrees, and the best",
-    ),
-    "sweep/throughput": (
-        "studies.sweep.questions.throughput",
-        "designs a second by threads, processes and Dask workers, and what a chunk costs",
-    ),
+#: Study -> module with its declaration, `STUDY`. What it shows is the first line of that module.
+STUDIES: dict[str, str] = {
+    "paper/fig03_snapshots": "studies.paper.fig03_snapshots",
+    "paper/fig04_trajectory": "studies.paper.fig04_trajectory",
+    "paper/fig05_stiffness": "studies.paper.fig05_stiffness",
+    "paper/fig06_release": "studies.paper.fig06_release",
+    "paper/fig07_interactive": "studies.paper.fig07_interactive",
+    "convergence/control_points": "studies.convergence.control_points",
+    "convergence/elements": "studies.convergence.elements",
+    "convergence/frequency": "studies.convergence.frequency",
+    "convergence/error_estimate": "studies.convergence.error_estimate",
+    "convergence/slide_stiffness": "studies.convergence.slide_stiffness",
+    "stability/rotation": "studies.stability.statics.rotation",
+    "stability/slenderness": "studies.stability.statics.slenderness",
+    "stability/geometry": "studies.stability.statics.geometry",
+    "stability/buckling": "studies.stability.statics.buckling",
+    "stability/step_size": "studies.stability.motion.step_size",
+    "stability/long_run": "studies.stability.motion.long_run",
+    "stability/ratios": "studies.stability.motion.ratios",
+    "stability/axial_modes": "studies.stability.statics.axial_modes",
+    "stability/bad_starts": "studies.stability.statics.bad_starts",
+    "stability/fuzz": "studies.stability.whole.fuzz",
+    "stability/events": "studies.stability.motion.events",
+    "stability/environment": "studies.stability.whole.environment",
+    "effects/worth": "studies.effects.worth",
+    "design/sizing": "studies.design.sizing",
+    "impulses/step_size": "studies.impulses.step_size",
+    "baselines/surrogates": "studies.baselines.comparison.surrogates",
+    "baselines/peers": "studies.baselines.comparison.peers",
+    "work_precision/statics": "studies.work_precision.statics",
+    "work_precision/dynamics": "studies.work_precision.dynamics",
+    "sweep/design_space": "studies.sweep.questions.design_space",
+    "sweep/throughput": "studies.sweep.questions.throughput",
 }
 
 
-def module_of(study: str) -> Any:
-    """Import and return the module of `study`."""
-    return import_module(STUDIES[study][0])
+def study_of(name: str) -> "Study":
+    """Import and return the declaration of a study."""
+    study: Study = import_module(STUDIES[name]).STUDY
+    return study
+
+
+def question_of(name: str) -> str:
+    """Return what a study shows, without importing it."""
+    path = Path(__file__).parents[1].joinpath(*STUDIES[name].split(".")).with_suffix(".py")
+    with path.open(encoding="utf-8") as text:
+        return text.readline().strip().strip('"').removesuffix(".")
 
 
 def selected(names: Iterable[str]) -> list[str]:

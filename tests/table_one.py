@@ -14,3 +14,6 @@ TABLE_ONE = {
     "body_mass": 0.2,
     "body_moment_of_inertia": 0.002,
 }
+
+#: The same as a spline of six control points.
+SIX = TABLE_ONE | {"control_points": 6}

@@ -18,7 +18,7 @@ def _worth(results: Results) -> tuple[list[str], list[list[Cell]]]:
     order = table.groupby("scene")["largest"].max().sort_values(ascending=False).index
     for scene in order:
         found = where(table, scene=scene).set_index("design")["largest"]
-        rows.append([scene, *(power(found[design]) for design in designs)])
+        rows.append([scene, *("–" if pd.isna(found[design]) else power(found[design]) for design in designs)])
     return ["left out", *designs], rows
 
 

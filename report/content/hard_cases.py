@@ -11,7 +11,7 @@ from report.forms import count, percent, power, significant, text, unit
 from report.pick import at, largest, least, where
 from report.results import Results
 from studies.registry import STUDIES
-from studies.stability.columns import DEFAULT, FE, PAPER, TWELVE
+from studies.stability.columns import DEFAULT, FE, PAPER, SIX, TWELVE
 from studies.stability.maps import LOOKS
 from studies.stability.outcome import OUTCOMES
 from studies.stability.summary import GROUP
@@ -25,7 +25,7 @@ FAMILIES = tuple(study.removeprefix(GROUP) for study in STUDIES if study.startsw
 COLUMNS = (DEFAULT, "spline n = 4, locking-free", PAPER, "spline n = 4, printed forces", FE)
 
 #: Families that the text says the default is right in throughout.
-ALL_RIGHT = ("slenderness", "bad_starts", "environment")
+ALL_RIGHT = ("rotation", "slenderness", "bad_starts", "environment")
 #: Families in which the column of the default has control points, modes and Gauss points that vary.
 VARIED = ("axial_modes", "fuzz")
 #: What a model says that stopped before the end.
@@ -127,9 +127,11 @@ def _right_kind(kind: str) -> Fact:
     return _outcomes("fuzz", lambda t: int((where(t, kind=kind)["outcome"] == "right").sum()), count)
 
 
-def _outcomes(family: str, pick: Callable[[pd.DataFrame], Any], form: Callable[[Any], str]) -> Fact:
-    """Return a fact from the default's rows of a family's outcomes."""
-    return fact(GROUP + family, "outcomes", lambda t: pick(where(t, model=DEFAULT)), form)
+def _outcomes(
+    family: str, pick: Callable[[pd.DataFrame], Any], form: Callable[[Any], str], model: str = DEFAULT
+) -> Fact:
+    """Return a fact from the default's rows of a family's outcomes, or those of another model."""
+    return fact(GROUP + family, "outcomes", lambda t: pick(where(t, model=model)), form)
 
 
 def _first_refused(rows: pd.DataFrame) -> float:
@@ -142,7 +144,7 @@ def _last_right(rows: pd.DataFrame) -> float:
 
 
 def _rotation_ends(results: Results) -> bool:
-    rows = where(results.table(GROUP + "rotation", "outcomes"), model=DEFAULT)
+    rows = where(results.table(GROUP + "rotation", "outcomes"), model=SIX)
     reasons = rows.loc[rows["outcome"] == "refused", "reason"]
     for_want = reasons.str.contains("control points do not resolve").all()
     return bool(for_want) and _first_refused(rows) > _last_right(rows)
@@ -197,8 +199,11 @@ FACTS |= {
     ),
     "hard.fuzz.paths": _right_kind(STATIC),
     "hard.fuzz.motions": _right_kind(MOTION),
-    "hard.rotation.right-to": _outcomes("rotation", _last_right, lambda v: f"{significant(v, 3)}°"),
-    "hard.rotation.refused-from": _outcomes("rotation", _first_refused, lambda v: f"{significant(v, 3)}°"),
+    "hard.rotation.right-to": _outcomes("rotation", _last_right, lambda v: f"{significant(v, 3)}°", SIX),
+    "hard.rotation.to": _outcomes("rotation", _last_right, lambda v: f"{significant(v, 3)}°"),
+    "hard.rotation.refused-from": _outcomes(
+        "rotation", _first_refused, lambda v: f"{significant(v, 3)}°", SIX
+    ),
     "hard.rotation.hysteresis": fact(GROUP + "rotation", "increments", largest("hysteresis"), power),
     "hard.rotation.increments": fact(GROUP + "rotation", "increments", largest("torque_change"), power),
     "hard.slenderness.most": fact(GROUP + "slenderness", "limit", largest("slenderness"), power),
@@ -254,7 +259,7 @@ HOLDS: dict[str, Holds] = {
         test=lambda r: _total(r, PAPER, "wrong") > _total(r, PAPER, "tried") / 2,
     ),
     "hard.rotation.ends": Holds(
-        words="the default is refused only beyond its last right rotation, and for want of control points",
+        words="six control points are refused only beyond their last right rotation, and as too few",
         test=_rotation_ends,
     ),
     "hard.buckling.twelve": Holds(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
@@ -50,13 +50,13 @@ class Bordered(Followed):
 
     def external(self, z: Array) -> tuple[float, float]:
         """Work from rest to z of loads and of weight [J]."""
-        loads, weight, moved = self.system.tables.loads, self.system.tables.weight, z - self.system.rest
+        loads, weight, moved = self.system.loads, self.system.weight, z - self.system.rest
         return float(moved[loads.coordinate] @ loads.value), float(moved[: weight.size] @ weight)
 
     @property
     def push_of_loads(self) -> Array:
         """Minus the derivative of the gradient in the load factor (N,)."""
-        drives, loads = self.system.tables.drives, self.system.tables.loads
+        drives, loads = self.system.drives, self.system.loads
         force = np.zeros(self.system.layout.size)
         force[drives.row] = -drives.target
         np.add.at(force, loads.coordinate, loads.value)
@@ -100,14 +100,10 @@ class Bordered(Followed):
 
 def partial(system: System, share: float) -> System:
     """The system with a share of weight and pre-strain."""
-    tables = system.tables
-    curvature = system.rest_curvature + share * (tables.bending.curvature - system.rest_curvature)
-    return replace(
-        system,
-        tables=tables._replace(
-            bending=tables.bending._replace(curvature=curvature),
-            stretching=tables.stretching._replace(strain=share * tables.stretching.strain),
-            axial_force=tables.axial_force._replace(strain=share * tables.axial_force.strain),
-            weight=share * tables.weight,
-        ),
+    curvature = system.rest_curvature + share * (system.bending.curvature - system.rest_curvature)
+    return system.with_tables(
+        bending=system.bending._replace(curvature=curvature),
+        stretching=system.stretching._replace(strain=share * system.stretching.strain),
+        axial_force=system.axial_force._replace(strain=share * system.axial_force.strain),
+        weight=share * system.weight,
     )

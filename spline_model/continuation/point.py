@@ -10,9 +10,8 @@ from scipy.linalg import get_lapack_funcs
 
 from spline_model.compile import System
 from spline_model.continuation.followed import Followed
-from spline_model.effects import DrivenRotation
+from spline_model.effects import Bending, DrivenRotation, Stretching
 from spline_model.effects.base import Constraint
-from spline_model.effects.elastic import MEASURES
 
 Array = NDArray[np.float64]
 
@@ -62,9 +61,9 @@ def driven_row(system: System) -> int | None:
 
 def has_potential(system: System) -> bool:
     """Whether the forces are a gradient: all but the paper's printed ones are."""
-    tables = system.tables
-    printed = MEASURES.index("printed")
-    return not ((tables.bending.measure == printed).any() or (tables.stretching.measure == printed).any())
+    scene = system.scene
+    measures = {*(e.measure for e in scene.of(Bending)), *(e.measure for e in scene.of(Stretching))}
+    return "printed" not in measures
 
 
 def stand(work: Followed, z: Array, load_factor: float, energies: tuple[float, float]) -> Point:

@@ -11,6 +11,7 @@ from spline_model.continuation.critical import BIFURCATION, LIMIT
 from spline_model.continuation.point import driven_row
 from spline_model.effects import AppliedForce, AppliedMoment, DrivenDisplacement, DrivenRotation, TipForce
 from spline_model.effects.base import Constraint, Load
+from spline_model.scene import Scene
 from spline_model.solution import CriticalPoint
 
 
@@ -27,12 +28,16 @@ class Place:
         """One place; rotation [rad] of the driven body, if it is known better than by the load factor."""
         if self.system is None:
             return f"{100 * load_factor:.6g} % of weight and pre-strain"
+        if is_steady(self.system.scene):
+            return self._acting(load_factor, rotation).strip(" ()")
         return f"load factor {abs(load_factor):.6g}{self._acting(load_factor, rotation)}"
 
     def between(self, last: float, following: float) -> str:
         """Two neighbouring places."""
         if self.system is None:
             return f"{100 * last:.6g} and {self.at(following)}"
+        if is_steady(self.system.scene):
+            return f"{self.at(last)} and {self.at(following)}"
         acting = self._acting(following, math.nan)
         return f"load factor {abs(last):.6g} and {abs(following):.6g}{acting}"
 
@@ -49,18 +54,25 @@ def _drives(system: System, load_factor: float, rotation: float) -> list[str]:
             angle = load_factor * drive.angle if math.isnan(rotation) else rotation
             parts.append(f"rotation {math.degrees(angle):.5g} deg")
         elif isinstance(drive, DrivenDisplacement) and any(drive.displacement):
-            parts.append(f"displacement {1e3 * abs(load_factor) * math.hypot(*drive.displacement):.4g} mm")
+            share = 1.0 if drive.steady else abs(load_factor)
+            parts.append(f"displacement {1e3 * share * math.hypot(*drive.displacement):.4g} mm")
     return parts
 
 
 def _loads(system: System, load_factor: float) -> list[str]:
     parts = []
     for load in system.scene.of(Load):
+        share = 1.0 if getattr(load, "steady", False) else load_factor
         if isinstance(load, AppliedMoment) and load.moment:
-            parts.append(f"moment {load_factor * load.moment:.4g} N m")
+            parts.append(f"moment {share * load.moment:.4g} N m")
         elif isinstance(load, AppliedForce | TipForce) and any(load.force):
-            parts.append(f"force {abs(load_factor) * math.hypot(*load.force):.4g} N")
+            parts.append(f"force {abs(share) * math.hypot(*load.force):.4g} N")
     return parts
+
+
+def is_steady(scene: Scene) -> bool:
+    """Whether loads or driven displacements act in full at any load factor, which is the rotation's alone."""
+    return any(getattr(effect, "steady", False) for effect in scene.effects)
 
 
 def remark(system: System, place: Place, critical: Sequence[CriticalPoint], inertia: int) -> str:

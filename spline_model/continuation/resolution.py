@@ -53,7 +53,7 @@ class Resolution:
 
     def __init__(self, system: System) -> None:
         self.system = system
-        table = system.tables.bending
+        table = system.bending
         self.columns = table.first[:, None] + 2 * np.minimum(
             np.arange(table.d1.shape[1]), table.width[:, None] - 1
         )
@@ -63,7 +63,7 @@ class Resolution:
     def defect(self, z: Array, share: float = 1.0) -> float:
         """Root of the energy of the moment defect over the bending energy; share: of the preload."""
         rest = self.system.rest_curvature
-        table = self.system.tables.bending
+        table = self.system.bending
         x1, y1, x2, y2 = (
             np.einsum("pa,pa->p", d, z[self.columns + i]) for d in (table.d1, table.d2) for i in range(2)
         )
@@ -80,11 +80,21 @@ class Resolution:
         return math.sqrt(wrong / stored)
 
     def _balance(self, span: _Span, z: Array, share: float) -> Array:
-        points, reaction = z[span.points].reshape(-1, 2), z[span.clamp]
-        here = span.values @ points
-        arm, weighed = here - points[0], span.u[:, None] * here - span.areas @ points
-        by_weight = weighed[:, 0] * span.load[1] - weighed[:, 1] * span.load[0]
-        return np.asarray(arm[:, 0] * reaction[1] - arm[:, 1] * reaction[0] - reaction[2] + share * by_weight)
+        points = z[span.points].reshape(-1, 2)
+        return balance(points, span.values, span.areas, span.u, z[span.clamp], share * span.load)
+
+
+def balance(points: Array, values: Array, areas: Array, u: Array, reaction: Array, load: Array) -> Array:
+    """Bending moment (..., P) that holds the balance of a strip up to u (P,) [N m].
+
+    points (..., n, 2); values, areas (P, n): basis functions and their integrals from the root; reaction
+    (..., 3) of the clamp there; load (2,): weight per du [N].
+    """
+    here = values @ points
+    arm, weighed = here - points[..., :1, :], u[:, None] * here - areas @ points
+    by_weight = weighed[..., 0] * load[1] - weighed[..., 1] * load[0]
+    x, y, moment = np.moveaxis(reaction, -1, 0)[..., None]
+    return np.asarray(arm[..., 0] * y - arm[..., 1] * x - moment + by_weight)
 
 
 def _spans(system: System) -> list[_Span]:
@@ -107,22 +117,22 @@ def _spans(system: System) -> list[_Span]:
                 rows=rows,
                 points=layout.strip(bending.strip),
                 values=strip.basis.evaluate(u),
-                areas=_areas(strip.basis, u),
+                areas=areas_of(strip.basis, u),
                 clamp=roots[bending.strip],
                 u=u,
-                load=_weight(system, bending.strip),
+                load=weight_of(system, bending.strip),
             )
         )
     return spans
 
 
-def _areas(basis: SplineBasis, u: Array) -> Array:
+def areas_of(basis: SplineBasis, u: Array) -> Array:
     """Integrals of the basis functions from 0 to u, (len(u), n)."""
     spline = BSpline(basis.knots, np.eye(basis.control_points), basis.degree)
     return np.asarray(spline.antiderivative()(u) - spline.antiderivative()(0.0))
 
 
-def _weight(system: System, name: str) -> Array:
+def weight_of(system: System, name: str) -> Array:
     """Weight of a strip (2,) [N], spread evenly over u."""
     total = np.zeros(2)
     for effect in system.scene.of(StripGravity):

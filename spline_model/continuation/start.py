@@ -11,7 +11,7 @@ from spline_model.continuation.watch import Watch
 from spline_model.errors import InvalidParameter
 from spline_model.newton import Newton, solve
 from spline_model.preload import settle
-from spline_model.solution import MechanismSolution, Path, StaticSolution
+from spline_model.solution import Path, StaticSolution
 
 Array = NDArray[np.float64]
 
@@ -45,8 +45,8 @@ def first_point(watch: Watch, start: tuple[float, Array] | None) -> tuple[Point,
     return point, newton.norms
 
 
-def last_state(start: Path | StaticSolution | MechanismSolution, angle: float = 1.0) -> tuple[float, Array]:
-    """Load factor and unknowns where a result ended; of a pivot turned by ``angle`` at most, signed."""
+def last_state(start: Path | StaticSolution, angle: float = 0.0) -> tuple[float, Array]:
+    """Load factor and unknowns where a result ended; of a body turned by ``angle`` at most, signed."""
     if isinstance(start, StaticSolution) and angle != 0.0:
         return float(start.rotation[-1]) / angle, start.states[-1]
     at = start.load_factor

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import asdict, replace
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -109,7 +109,7 @@ class Watch:
     def path(self, rows: dict[str, Array], message: str, history: Sequence[tuple[float, ...]]) -> Path:
         """The result: what was followed, by state; why it ended early, if it did."""
         told = message or self.remark(int(rows["inertia"][-1]))
-        counters = asdict(self.work.counters)
+        counters = dict(vars(self.work.counters))
         path = path_of(self.work.system, rows, told, counters, tuple(self.critical), tuple(history))
         return replace(path, status=Status.NOT_CONVERGED) if message else path
 
@@ -123,7 +123,7 @@ def path_of(
     history: tuple[tuple[float, ...], ...] = (),
 ) -> Path:
     """A converged path of rows by state, ``done`` among them: int P_lambda d(lambda) from the first [J]."""
-    loads = system.tables.loads
+    loads = system.loads
     moved = (rows["states"] - system.rest)[:, loads.coordinate] @ loads.value
     work = rows["load_factor"] * moved + rows["done"]
     return Path(

@@ -60,7 +60,7 @@ def _mixed(design: Design, strip: StripDesign, compliance: float) -> Iterator[Ef
     grid = design.discretisation
     parts: list[tuple[float, AxialModes]] = [(compliance, grid.modes)]
     slide = grid.slide * strip.flexural_rigidity / strip.length**2
-    if slide > 0 and grid.modes.count < grid.control_points - 1:
+    if slide > 0 and grid.modes.count < grid.points - 1:
         parts.append((1.0 / slide, SlideModes(basis=grid.spline, axial=grid.modes)))
     for part, modes in parts:
         yield MixedStretching(

@@ -56,6 +56,8 @@ class DrivenRotation(Constraint):
 class DrivenDisplacement(Constraint):
     """The displacement of a body's centre prescribed as (dx, dy) x load factor, two rows in m.
 
+    A ``steady`` one is there in full at any load factor.
+
     The paper's "two other driving constraints" (section 4). Without a history it holds the start of
     a motion and lets go; with one it goes on holding through the motion, as ``DrivenRotation``. The
     multipliers are the applied force [N].
@@ -66,6 +68,7 @@ class DrivenDisplacement(Constraint):
     displacement: tuple[float, float]
     history: History | None = None
     held: tuple[float, float] = ALWAYS
+    steady: bool = False
 
     def __post_init__(self) -> None:
         if not all(math.isfinite(part) for part in self.displacement):

@@ -1,4 +1,7 @@
-"""Loads: gravity, and forces and moments in proportion to the load factor or to a history."""
+"""Loads: gravity, and forces and moments in proportion to the load factor or to a history.
+
+A ``steady`` load acts in full at any load factor, like gravity.
+"""
 
 from __future__ import annotations
 
@@ -16,6 +19,7 @@ class AppliedForce(Load):
     body: str
     force: tuple[float, float]
     history: History = STEADY
+    steady: bool = False
 
     def __post_init__(self) -> None:
         checked(self.history)
@@ -33,6 +37,7 @@ class AppliedMoment(Load):
     body: str
     moment: float
     history: History = STEADY
+    steady: bool = False
 
     def __post_init__(self) -> None:
         checked(self.history)
@@ -50,6 +55,7 @@ class TipForce(Load):
     end: Literal["start", "end"]
     force: tuple[float, float]
     history: History = STEADY
+    steady: bool = False
 
     def __post_init__(self) -> None:
         checked(self.history)

@@ -1,4 +1,7 @@
-"""A run of steps of either form, in place."""
+"""A run of steps of either form, in place.
+
+What has one caller is inlined: else each level of calls is compiled again with all that is below it.
+"""
 
 from __future__ import annotations
 
@@ -50,7 +53,7 @@ def advance(moving, log, time, h, first, last, every, stable, active, motion, bl
     return last
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, inline="always")
 def printed_advance(moving, time, h, active, motion, blocks, options, space):
     """Advance by one printed step; False, with the state as it was, if it is unstable."""
     z, v, status = moving.z, moving.v, moving.status
@@ -67,7 +70,7 @@ def printed_advance(moving, time, h, active, motion, blocks, options, space):
     return True
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, inline="always")
 def stable_advance(moving, time, duration, active, motion, blocks, options, space):
     """Advance by one step, or by halves of implicit Euler where that fails; False if none is solved."""
     status = moving.status
@@ -97,7 +100,7 @@ def held(active):
     return active.size > 0 and active.max() == 1
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, inline="always")
 def try_step(moving, time, h, rule, active, motion, blocks, options, space):
     """Take one step by a rule; False, with the state as it was, if it is not solved or gains energy."""
     z, v, status = moving.z, moving.v, moving.status

@@ -19,7 +19,7 @@ from spline_model.kernels.drives import factor_at
 from spline_model.kernels.energy import axial_strains
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, inline="always")
 def printed_step(moving, time, h, active, motion, blocks, options, space):
     """Advance by h; returns the largest gap, dimensionless, that the last impulses found.
 

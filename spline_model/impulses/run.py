@@ -12,9 +12,9 @@ from spline_model.impulses.energies import energy_of
 from spline_model.impulses.space import Log, Moving
 from spline_model.impulses.state import Outcome, State
 from spline_model.impulses.totals import HALVED, LIMITED, SOLVES, STEPS, SWEEPS
-from spline_model.integrators.motion import Records
 from spline_model.kernels.motion import Motion
 from spline_model.kernels.record import KINETIC, POSITION, STRAIN, VELOCITY, WEIGHT, record
+from spline_model.motion.start import Records
 
 if TYPE_CHECKING:
     from spline_model.impulses.solver import ImpulseSolver

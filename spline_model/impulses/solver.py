@@ -14,10 +14,10 @@ from spline_model.impulses.blocks import IMPULSES, make_blocks
 from spline_model.impulses.run import Run
 from spline_model.impulses.space import Options, make_space
 from spline_model.impulses.state import Outcome, State
-from spline_model.integrators.motion import require_compiled, set_in_motion
 from spline_model.kernels.motion import Motion
 from spline_model.mechanism import Mechanism
 from spline_model.modes import static_state
+from spline_model.motion.start import require_compiled, set_in_motion
 
 Array = NDArray[np.float64]
 

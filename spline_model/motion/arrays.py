@@ -13,6 +13,9 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 Places = NDArray[np.int64]
 
+KNOWN = 4
+"""States before that the next one of massless strips is extrapolated from."""
+
 
 class Flexures(NamedTuple):
     """S strips of n control points, G Gauss points with W basis functions each, K axial forces.
@@ -205,4 +208,51 @@ def scratch_of(strips: Flexures, masses: Masses) -> Scratch:
         energies=np.zeros(2),
         free=np.zeros(bodies, dtype=np.int64),
         held=np.zeros(q, dtype=np.int64),
+    )
+
+
+class Poses(NamedTuple):
+    """State of the bodies, Q coordinates and Q' with the axial forces beside them, and working arrays.
+
+    y (Y,) with the strips' coordinates; rate (Q,) velocities; known (3, Y) the states before, newest first,
+    and last (2,) their distance [s] and number; energy (2,) W and the next one; pull, next (Q',) reactions
+    g, slope (Q',) derivative of the gap; totals (2,) work and losses; trial (Y,), dx, load (Q,); system
+    (Q', Q'), x, free (Q',).
+    """
+
+    y: Array
+    rate: Array
+    known: Array
+    last: Array
+    energy: Array
+    pull: Array
+    next: Array
+    slope: Array
+    totals: Array
+    trial: Array
+    dx: Array
+    load: Array
+    system: Array
+    x: Array
+    free: Places
+
+
+def poses_of(y: Array, rate: Array, all_bodies: int) -> Poses:
+    """A state with these coordinates and velocities."""
+    return Poses(
+        y=y,
+        rate=rate,
+        known=np.zeros((KNOWN, len(y))),
+        last=np.zeros(2),
+        energy=np.zeros(2),
+        pull=np.zeros(all_bodies),
+        next=np.zeros(all_bodies),
+        slope=np.zeros(all_bodies),
+        totals=np.zeros(2),
+        trial=y.copy(),
+        dx=np.zeros_like(rate),
+        load=np.zeros_like(rate),
+        system=np.zeros((all_bodies, all_bodies)),
+        x=np.zeros(all_bodies),
+        free=np.zeros(all_bodies, dtype=np.int64),
     )

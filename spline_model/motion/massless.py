@@ -12,11 +12,8 @@ at the step's end. Source of the discrete gradient: Gonzalez, J Nonlinear Sci 6 
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
-
+from spline_model.motion.arrays import KNOWN
 from spline_model.motion.run import MOST_HALVED, MOST_HALVED_A_STEP, SLOWEST_SPEED
 from spline_model.motion.step import (
     FACTORISATIONS,
@@ -33,68 +30,27 @@ from spline_model.reduced.assembly import (
     AXIAL,
     BENDING,
     DEAD,
+    FORCE,
+    MOVE,
+    RATE,
     SLOWEST,
     assemble,
     move_strips,
 )
 from spline_model.reduced.equilibrium import entry
 from spline_model.strip.compiled import copy, kernel, part
+from spline_model.strip.element import LAST
 from spline_model.strip.laws import MATERIAL
 
-Array = NDArray[np.float64]
-
-KNOWN = 3
-"""States before that the next one is extrapolated from."""
+WEIGHTS = tuple((-1.0) ** k * math.comb(KNOWN + 1, k + 1) for k in range(KNOWN + 1))
+"""Of the present one and those before, in the next one."""
 ROUND_OFF = 1e-14
 """Part of the energy below which the gap between its change and the mean gradient's work is round-off: the
 gap goes with the third power of a step, and divided by the second it would drown a short one."""
 
 
-class Poses(NamedTuple):
-    """State of the bodies, Q coordinates and Q' with the axial forces beside them, and working arrays.
-
-    y (Y,) with the strips' coordinates; rate (Q,) velocities; known (3, Y) the states before, newest first,
-    and last (2,) their distance [s] and number; energy (2,) W and the next one; pull, next (Q',) reactions
-    g, slope (Q',) derivative of the gap; totals (2,) work and losses; trial (Y,), dx, load (Q,); system
-    (Q', Q'), x, free (Q',).
-    """
-
-    y: Array
-    rate: Array
-    known: Array
-    last: Array
-    energy: Array
-    pull: Array
-    next: Array
-    slope: Array
-    totals: Array
-    trial: Array
-    dx: Array
-    load: Array
-    system: Array
-    x: Array
-    free: NDArray[np.int64]
-
-
-def poses_of(y: Array, rate: Array, all_bodies: int) -> Poses:
-    """A state with these coordinates and velocities."""
-    return Poses(
-        y=y,
-        rate=rate,
-        known=np.zeros((KNOWN, len(y))),
-        last=np.zeros(2),
-        energy=np.zeros(2),
-        pull=np.zeros(all_bodies),
-        next=np.zeros(all_bodies),
-        slope=np.zeros(all_bodies),
-        totals=np.zeros(2),
-        trial=y.copy(),
-        dx=np.zeros_like(rate),
-        load=np.zeros_like(rate),
-        system=np.zeros((all_bodies, all_bodies)),
-        x=np.zeros(all_bodies),
-        free=np.zeros(all_bodies, dtype=np.int64),
-    )
+NEARLY = 1e-6
+"""Residual from which one more correction ends below round-off, so that nothing is evaluated behind it."""
 
 
 @part()
@@ -106,8 +62,28 @@ def stored(y, bodies, strips, shape, local, space):
         for s in range(strips.roots.size):
             at = bodies.rest.size + s * (own + modes) + own
             for k in range(modes):
-                total += y[at + k] * local.gap[s, k]
+                total += y[at + k] * local.axial[s, LAST, k]
     return total
+
+
+@part()
+def look_ahead(poses, strips, shape, local, space):
+    """W and reactions behind the last correction, to the second and first order in it.
+
+    What the strips were off their equilibrium raises W by g^2 / 2 d a pivot, and lowers it by gap^2 / 2 c.
+    """
+    for s in range(strips.roots.size):
+        for i in range(2 * shape.order.size - 6):
+            poses.energy[1] -= 0.5 * local.reduced[s, LAST, i] ** 2 / local.reduced[s, i, i]
+        for k in range(strips.compliance.shape[1]):
+            poses.energy[1] += 0.5 * strips.gain[s, k] * local.axial[s, LAST, k] ** 2
+    force, move = space.vectors[FORCE], space.vectors[MOVE]
+    for i in range(poses.next.size):
+        change = 0.0
+        for j in range(poses.next.size):
+            change += entry(space.tangent, i, j) * move[j]
+        poses.energy[1] += (force[i] + 0.5 * change) * move[i]
+        poses.next[i] += change
 
 
 @kernel()
@@ -117,6 +93,7 @@ def solve(h, moving, poses, masses, bodies, strips, shape, local, space, toleran
     With bodies that move dx is their change, kept apart as their inertia would drown in its round-off.
     """
     y, dx, free, x, count = poses.trial, poses.dx, poses.free, poses.x, 0
+    force, move, rate = space.vectors[FORCE], space.vectors[MOVE], space.states[RATE]
     for i in range(bodies.load.size):
         if moving or i >= dx.size or masses.inertia[i] == 0.0:
             free[count] = i
@@ -129,29 +106,30 @@ def solve(h, moving, poses, masses, bodies, strips, shape, local, space, toleran
         poses.energy[1] = stored(y, bodies, strips, shape, local, space)
         metric, gap = 0.0, poses.energy[1] - poses.energy[0]
         for i in range(bodies.load.size):
-            poses.next[i] = space.force[i]
-            if i < dx.size and masses.inertia[i] > 0.0:
+            poses.next[i] = force[i]
+        for i in range(dx.size):
+            if masses.inertia[i] > 0.0:
                 metric += masses.inertia[i] * dx[i] * dx[i]
-                gap -= 0.5 * (poses.pull[i] + space.force[i]) * dx[i]
+                gap -= 0.5 * (poses.pull[i] + force[i]) * dx[i]
         push = gap / metric if metric > 0.0 and abs(gap) > ROUND_OFF * abs(poses.energy[0]) else 0.0
         if push != 0.0:  # the gap's derivative, less that of the metric
             for i in range(bodies.load.size):
-                total = space.force[i]
+                total = force[i]
                 heavy = i < dx.size and masses.inertia[i] > 0.0
                 if heavy:
-                    total -= 0.5 * (poses.pull[i] + space.force[i]) + 2.0 * push * masses.inertia[i] * dx[i]
+                    total -= 0.5 * (poses.pull[i] + force[i]) + 2.0 * push * masses.inertia[i] * dx[i]
                 for j in range(dx.size):
                     if masses.inertia[j] > 0.0:
                         total -= 0.5 * entry(space.tangent, j, i) * dx[j]
                 poses.slope[i] = total
         for r in range(count):
             i = free[r]
-            share, x[r] = 1.0, space.force[i]
+            share, x[r] = 1.0, force[i]
             if i < dx.size:
                 x[r] -= poses.load[i]
                 if masses.inertia[i] > 0.0:
                     share, mass, mean = 0.5, masses.inertia[i], dx[i] / h
-                    x[r] = 0.5 * (poses.pull[i] + space.force[i]) + push * mass * dx[i] - poses.load[i]
+                    x[r] = 0.5 * (poses.pull[i] + force[i]) + push * mass * dx[i] - poses.load[i]
                     x[r] += 2.0 / h * mass * (mean - poses.rate[i]) + masses.drag[i] * mean
             norm = max(norm, abs(x[r])) if x[r] == x[r] else math.inf
             for c in range(count):
@@ -170,30 +148,29 @@ def solve(h, moving, poses, masses, bodies, strips, shape, local, space, toleran
         before = norm
         counters[NEWTON] += 1
         counters[FACTORISATIONS] += 1
-        space.move[:] = 0.0
+        for i in range(bodies.load.size):
+            move[i] = 0.0
         for r in range(count):
             i = free[r]
-            space.move[i] = x[r]
+            move[i] = x[r]
             if i < dx.size:
                 dx[i] += x[r]
                 y[i] = poses.y[i] + dx[i]
-        move_strips(1.0, bodies, strips, shape, local, space, space.rate)
+        move_strips(1.0, bodies, strips, shape, local, space, rate)
         for i in range(dx.size, y.size):
-            y[i] += space.rate[i]
+            y[i] += rate[i]
+        if moving and norm <= NEARLY and strips.coupled == 0:
+            look_ahead(poses, strips, shape, local, space)
+            return True
     return False
 
 
-@kernel()
 def settle(poses, masses, bodies, strips, shape, local, space, tolerance, counters):
     """Bring strips and massless coordinates into equilibrium at the bodies' poses; True if that converged."""
-    for i in range(poses.dx.size):
-        poses.dx[i] = 0.0
-    copy(poses.y, poses.trial)
+    poses.dx[:], poses.trial[:] = 0.0, poses.y
     if not solve(1.0, 0.0, poses, masses, bodies, strips, shape, local, space, tolerance, counters):
         return False
-    copy(poses.trial, poses.y)
-    copy(poses.next, poses.pull)
-    poses.energy[0] = poses.energy[1]
+    poses.y[:], poses.pull[:], poses.energy[0] = poses.trial, poses.next, poses.energy[1]
     return True
 
 
@@ -203,7 +180,10 @@ def guess(h, poses, masses):
     y, known, trial = poses.y, poses.known, poses.trial
     if poses.last[0] == h and poses.last[1] >= KNOWN:
         for i in range(y.size):
-            trial[i] = 4.0 * (y[i] + known[1, i]) - 6.0 * known[0, i] - known[2, i]
+            total = WEIGHTS[0] * y[i]
+            for k in range(KNOWN):
+                total += WEIGHTS[k + 1] * known[k, i]
+            trial[i] = total
     else:
         copy(y, trial)
         for i in range(poses.dx.size):

@@ -77,7 +77,7 @@ class Moving:
 
     @property
     def _turning(self) -> Array:
-        return np.where(self.system.tables.drives.turns == 1, 1.0, self.length)
+        return np.where(self.system.drives.turns == 1, 1.0, self.length)
 
     def _coordinates(self, z: Array) -> Array:
         system, strips, n = self.system, self.strips, self.strips.mass.shape[1]
@@ -111,7 +111,7 @@ class Moving:
         Axial forces and multipliers are the means of the steps that end there.
         """
         system, count = self.system, len(records)
-        scene, layout, drives = system.scene, system.layout, system.tables.drives
+        scene, layout, drives = system.scene, system.layout, system.drives
         (s_count, n), k = self.strips.mass.shape[:2], self.strips.modes.shape[2]
         q, own = len(self.masses.inertia), 2 * n - 6
         z, v = np.zeros((count, layout.size)), np.zeros((count, layout.coordinate_count))
@@ -181,7 +181,7 @@ def _strips(system: System, motion: Motion, ends: Ends) -> dict[str, Any]:
     mixed = [[e for e in scene.of(MixedStretching) if e.strip == s.name] for s in scene.strips]
     consistent = {e.strip: e for e in scene.of(Stretching)}
     each = [
-        orthonormal_modes(tuple(e.modes for e in parts), basis, points, tuple(v))
+        orthonormal_modes(tuple(e.modes for e in parts), basis, points, v.tobytes())
         for parts, v in zip(mixed, speed, strict=True)
     ]
     compliances = [[e.axial_compliance for e in parts for _ in range(e.modes.count)] for parts in mixed]

@@ -1,4 +1,4 @@
-"""Records of a run: rows of energies and of how well the clamps hold, all at once."""
+"""Records of a run: rows of energies and of how well the clamps hold, and the watch over gains of energy."""
 
 from __future__ import annotations
 
@@ -9,6 +9,13 @@ from spline_model.kernels.motion import Motion
 from spline_model.kernels.record import DISSIPATED, KINETIC, POSITION, STRAIN, VELOCITY, WEIGHT, WORK
 
 Array = NDArray[np.float64]
+
+MOST_GAIN = 1e-6
+"""Largest gain of an energy-consistent run over its energy: a million steps stay below."""
+MOST_GAIN_OF_OTHERS = 1e-2
+"""Largest gain of a run whose scheme keeps energy in the limit of short steps only."""
+QUIET = 1e-6
+"""Energies below this, in EI/L, are not told from this much: their gain is round-off."""
 
 
 def rows_of(motion: Motion, z: Array, v: Array, energies: Array) -> Array:
@@ -40,3 +47,24 @@ def clamp_gaps(motion: Motion, c: int, z: Array, v: Array) -> tuple[Array, Array
     position = (*(p - pose[:2] - arm), reach * (m[0] * d[1] - m[1] * d[0]))
     velocity = (*(u - rate[:2] - turned), m[0] * w[1] - m[1] * w[0] - rate[2] * (m * d).sum(axis=0))
     return np.array(position), np.array(velocity)
+
+
+def energy_gain(rows: Array, unit: float) -> Array:
+    """Gain of the balance T + V - work + dissipated at each record over the run's energy, (R,) [1].
+
+    rows (R, 7) as named in ``spline_model.kernels.record``; unit EI/L [J]. The energy is the
+    largest of the balance's parts so far, so that the gain of a run that starts at rest, or
+    about which the weight's arbitrary zero says nothing, has a scale.
+    """
+    stored = rows[:, KINETIC] + rows[:, STRAIN]
+    fallen = rows[:, WEIGHT] - rows[0, WEIGHT]
+    balance = stored + fallen - rows[:, WORK] + rows[:, DISSIPATED]
+    parts = np.abs(np.stack((stored, fallen, rows[:, WORK], rows[:, DISSIPATED])))
+    scale = np.maximum(np.maximum.accumulate(parts.max(axis=0)), QUIET * unit)
+    return np.asarray((balance - balance[0]) / scale)
+
+
+def first_gain(rows: Array, unit: float, most: float) -> int:
+    """Number of the first record that has gained more than ``most``, or the number of records."""
+    gained = np.flatnonzero(~(energy_gain(rows, unit) <= most))
+    return int(gained[0]) if gained.size else len(rows)

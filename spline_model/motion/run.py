@@ -32,6 +32,21 @@ def forward(state, strips, masses, work):
 
 
 @part()
+def clamp_forces(s, state, strips, work):
+    """What the clamps do to a strip, from the forces of the step just solved."""
+    n = strips.mass.shape[1]
+    for e in range(2):
+        end, inner = (0, 1) if e == 0 else (n - 1, n - 2)
+        maps, force = work.maps[s, e], work.force[s]
+        body = strips.roots[s] if e == 0 else strips.tips[s]
+        for k in range(2):
+            state.clamped[s, e, k] = force[k, end] + force[k, inner]
+        state.clamped[s, e, 2] = (maps[0] * force[1, inner] - maps[1] * force[0, inner]) / (
+            maps[7] if body >= 0 else 1.0
+        )
+
+
+@part()
 def accept(time, h, active, state, strips, masses, work):
     """Take the solved step: books of work and losses, velocities, coordinates."""
     poses, n, modes = masses.inertia.size, strips.mass.shape[1], strips.compliance.shape[1]
@@ -77,15 +92,7 @@ def accept(time, h, active, state, strips, masses, work):
         for p in range(strips.weight.size):
             for i in range(5):
                 state.at[s, p, i] = work.at[s, p, i]
-        for e in range(2):
-            end, inner = (0, 1) if e == 0 else (n - 1, n - 2)
-            maps, force = work.maps[s, e], work.force[s]
-            body = strips.roots[s] if e == 0 else strips.tips[s]
-            for k in range(2):
-                state.clamped[s, e, k] = force[k, end] + force[k, inner]
-            state.clamped[s, e, 2] = (maps[0] * force[1, inner] - maps[1] * force[0, inner]) / (
-                maps[7] if body >= 0 else 1.0
-            )
+        clamp_forces(s, state, strips, work)
     totals[1] += work.energies[1]
 
 

@@ -10,7 +10,21 @@ from numpy.typing import NDArray
 
 from spline_model.strip.compiled import kernel, part
 from spline_model.strip.condense import SINGULAR, condense, condense_coupled, recover
-from spline_model.strip.element import place_points, to_element
+from spline_model.strip.element import (
+    BEYOND,
+    GRADIENT,
+    LAST,
+    LEVER,
+    PER_U,
+    POINTS,
+    RIGIDITY,
+    SPEED,
+    VALUE,
+    WEIGHT,
+    WHERE,
+    place_points,
+    to_element,
+)
 from spline_model.strip.laws import MATERIAL
 from spline_model.strip.points import evaluate_points
 
@@ -20,6 +34,14 @@ BENDING, AXIAL, DEAD, SLOWEST, NEGATIVE = range(5)
 """Places of what ``assemble`` sums up: energies in EI/L, least v / J0, negative pivots of the strips."""
 KNOWN = 4
 """States and rates that the next one is predicted from: of five, round-off would outgrow what they add."""
+
+
+FORCE, RAW, CHANGE, MOVE, REACTION, REACTION_RATE, ENDS = range(7)
+"""Rows of ``Space.vectors``."""
+Y, RATE, PREDICTED = 2 * KNOWN, 2 * KNOWN + 1, 2 * KNOWN + 2
+"""Rows of ``Space.states`` behind the known ones."""
+FACTORS = 5
+"""Place of the known states' factors behind the sums."""
 
 
 class Bodies(NamedTuple):
@@ -39,50 +61,45 @@ class Bodies(NamedTuple):
 
 
 class Space(NamedTuple):
-    """Working arrays of a path: y, its rate and prediction, known states; the bodies' system."""
+    """Working arrays of a path, few as in ``Strips``: the bodies' system and the states.
+
+    tangent (Q, Q), upper; factors (F, F) of its free part; vectors (7, Q or more): FORCE and RAW, the
+    residuals with the strips condensed and without, CHANGE (F,), MOVE, REACTION and REACTION_RATE (D,), and
+    ENDS of a strip;
+    states (2 KNOWN + 3, Y): known ones, their rates, Y, RATE and PREDICTED; out (5 + KNOWN,): what
+    ``assemble`` sums up, and the factors of the known states.
+    """
 
     tangent: Array
-    force: Array
-    raw: Array
     factors: Array
-    change: Array
-    move: Array
-    ends: Array
-    known_at: Array
-    known_y: Array
-    known_rate: Array
-    y: Array
-    rate: Array
-    predicted: Array
+    vectors: Array
+    states: Array
     out: Array
-    reaction: Array
-    reaction_rate: Array
+
+    @property
+    def force(self) -> Array:
+        """The bodies' residual with the strips condensed (Q,)."""
+        return self.vectors[FORCE, : len(self.tangent)]
+
+    @property
+    def rate(self) -> Array:
+        """Rate of a state (Y,)."""
+        return np.asarray(self.states[RATE])
 
 
 def working_space(bodies: Bodies, size: int) -> Space:
     """Arrays for that many unknowns."""
-    q, f, d = bodies.load.size, bodies.free.size, bodies.held.size
+    q, f = bodies.load.size, bodies.free.size
     return Space(
         tangent=np.zeros((q, q)),
-        force=np.zeros(q),
-        raw=np.zeros(q),
         factors=np.zeros((f, f)),
-        change=np.zeros(f),
-        move=np.zeros(q),
-        ends=np.zeros(7),
-        known_at=np.zeros(KNOWN),
-        known_y=np.zeros((KNOWN, size)),
-        known_rate=np.zeros((KNOWN, size)),
-        y=np.zeros(size),
-        rate=np.zeros(size),
-        predicted=np.zeros(size),
-        out=np.zeros(5),
-        reaction=np.zeros(d),
-        reaction_rate=np.zeros(d),
+        vectors=np.zeros((7, max(q, 7))),
+        states=np.zeros((2 * KNOWN + 3, size)),
+        out=np.zeros(5 + KNOWN),
     )
 
 
-@kernel()
+@part()
 def place_of(i, body_tip, body_root, outer):
     """The bodies' unknown that a strip's i-th outer coordinate is: of its tip, its root or its mean force."""
     tip = body_tip >= 0
@@ -93,7 +110,7 @@ def place_of(i, body_tip, body_root, outer):
     return outer
 
 
-@kernel()
+@part()
 def scatter(first, size, tip, root, outer, g, h, force, tangent):
     """Add a condensed strip's force and upper tangent, from the coordinate ``first`` on, to the bodies'."""
     for i in range(first, size):
@@ -111,50 +128,25 @@ def scatter(first, size, tip, root, outer, g, h, force, tangent):
 def element_of(s, at, y, strips, shape, local, out):
     """Evaluate strip s, whose w and a begin at y[at], in its element coordinates; returns their number."""
     n, modes, inner = shape.order.size, strips.compliance.shape[1], strips.coupled - strips.outer
-    own, tip, root = 2 * n - 6, strips.tips[s] >= 0, strips.roots[s] >= 0
-    moving = n if root else n - 1
+    own, moving = 2 * n - 6, n if strips.roots[s] >= 0 else n - 1
     place_points(s, y[at : at + own], y, strips, local)
     evaluate_points(s, y[at + own : at + own + modes], moving, shape, strips, local, out)
-    to_element(
-        moving,
-        inner,
-        tip,
-        root,
-        local.map[s],
-        local.gradient[s],
-        local.hessian[s],
-        local.coupling[s],
-        local.g[s],
-        local.h[s],
-        local.b[s],
-        local.square,
-        local.lines,
-        local.line,
-    )
-    return own + inner + 3 * tip + 3 * root + strips.outer
+    return to_element(s, moving, inner, strips, local) + strips.outer
 
 
 @part()
 def condensed(s, own, size, strips, local):
     """Condense strip s to its ends; returns its negative pivots, or SINGULAR."""
-    g, h, gap = local.g[s], local.h[s], local.gap[s]
+    h, gram, modes = local.reduced[s], local.axial[s], strips.compliance.shape[1]
+    width = h.shape[1]
+    g, b, gap = h[LAST], h[width : width + modes], gram[LAST]
     if strips.coupled == 0:
-        return condense(own, size, strips.gain[s], g, h, local.b[s], gap)
+        return condense(own, size, strips.gain[s], g, h, b, gap)
+    e, by_state = h[width + modes : width + 2 * modes], strips.measure != MATERIAL
     return condense_coupled(
-        own,
-        size,
-        strips.coupled,
-        strips.outer,
-        strips.measure != MATERIAL,
-        strips.compliance[s],
-        strips.gain[s],
-        g,
-        h,
-        local.b[s],
-        local.e[s],
-        gap,
-        local.gram[s],
-    )
+        own, size, strips.coupled, strips.outer, by_state, strips.compliance[s], strips.gain[s],
+        g, h, b, e, gap, gram,
+    )  # fmt: skip
 
 
 @kernel()
@@ -162,17 +154,17 @@ def assemble(y, load, bodies, strips, shape, local, space):
     """Condense all strips at y; the bodies' tangent (upper) and force in ``space``.
 
     y: the bodies' poses, then w and a of each strip. Returns the largest residual of the strips, in
-    EI/L^2 and L, or inf for a singular strip; the bodies' own is ``space.raw``.
+    EI/L^2 and L, or inf for a singular strip; the bodies' own is RAW of ``space``.
     """
-    out, tangent, force, raw = space.out, space.tangent, space.force, space.raw
+    out, tangent, force, raw = space.out, space.tangent, space.vectors[FORCE], space.vectors[RAW]
     poses, count, modes = bodies.rest.size, strips.roots.size, strips.compliance.shape[1]
     n = shape.order.size
     own, inner = 2 * n - 6, strips.coupled - strips.outer
     out[0] = out[1] = out[2] = out[4] = 0.0
     out[3] = np.inf
-    for i in range(force.size):
+    for i in range(bodies.load.size):
         force[i] = raw[i] = -load * bodies.load[i] - bodies.weight[i]
-        for j in range(i, force.size):
+        for j in range(i, bodies.load.size):
             tangent[i, j] = 0.0
     for i in range(poses):
         out[DEAD] -= bodies.weight[i] * y[i]
@@ -181,7 +173,8 @@ def assemble(y, load, bodies, strips, shape, local, space):
         at = poses + s * (own + modes)
         tip, root, last = strips.tips[s] >= 0, strips.roots[s] >= 0, own + inner
         size = element_of(s, at, y, strips, shape, local, out)
-        g, h, gap = local.g[s], local.h[s], local.gap[s]
+        h, gap = local.reduced[s], local.axial[s, LAST]
+        g = h[LAST]
         for i in range(own):
             norm = max(norm, abs(g[i]))
         for k in range(modes):
@@ -225,8 +218,8 @@ def factorise(free, tangent, factors, outer):
 
 @kernel()
 def solve_free(factors, x):
-    """Solve for the free coordinates in place: the right-hand side is x (F,)."""
-    count = x.size
+    """Solve for the free coordinates in place: the right-hand side is the beginning of x, (F,)."""
+    count = factors.shape[0]
     for i in range(count):
         x[i] /= factors[i, i]
         for j in range(i + 1, count):
@@ -237,72 +230,70 @@ def solve_free(factors, x):
 
 
 @part()
+def recovered(s, own, share, strips, local, change, dw, da):
+    """Changes of a condensed strip's w and a for a change of its ends, in coordinates of the element."""
+    h, modes = local.reduced[s], strips.compliance.shape[1]
+    width, tip, root = h.shape[1], strips.tips[s] >= 0, strips.roots[s] >= 0
+    size = own + strips.coupled + 3 * tip + 3 * root
+    recover(
+        own, size, share, strips.coupled, strips.outer, strips.gain[s], h[LAST], h, h[width : width + modes],
+        local.axial[s, LAST], change, dw, da,
+    )  # fmt: skip
+
+
+@kernel()
 def move_strips(share, bodies, strips, shape, local, space, out):
-    """w and a of all strips for the bodies' change ``space.move`` (3 B,), into out (Y,)."""
+    """w and a of all strips for the bodies' change, MOVE of the vectors (Q,), into out (Y,)."""
     n, modes, poses = shape.order.size, strips.compliance.shape[1], bodies.rest.size
-    own, inner = 2 * n - 6, strips.coupled - strips.outer
+    own, ends, move = 2 * n - 6, space.vectors[ENDS], space.vectors[MOVE]
     for s in range(strips.roots.size):
         at = poses + s * (own + modes)
         tip, root = strips.tips[s] >= 0, strips.roots[s] >= 0
-        ends = 3 * tip + 3 * root + strips.outer
-        for i in range(ends):
-            space.ends[i] = space.move[place_of(i, strips.tips[s], strips.roots[s], poses + s)]
+        for i in range(3 * tip + 3 * root + strips.outer):
+            ends[i] = move[place_of(i, strips.tips[s], strips.roots[s], poses + s)]
         dw, da = out[at : at + own], out[at + own : at + own + modes]
-        recover(
-            own,
-            own + inner + ends,
-            share,
-            strips.coupled,
-            strips.outer,
-            strips.gain[s],
-            local.g[s],
-            local.h[s],
-            local.b[s],
-            local.gap[s],
-            space.ends,
-            dw,
-            da,
-        )
+        recovered(s, own, share, strips, local, ends, dw, da)
 
 
-@part()
+@kernel()
 def moment_defect(y, strips, shape, local):
     """Energy of what the strips' moments differ from balance by, twice, and twice their bending energy.
 
     The balance starts from the force and moment of the clamp at the tip and has the dead load
     beyond each point: int (M - M_b)^2 / EI ds with M_b linear in the curve's points.
     """
-    n = shape.order.size
+    n, rule, tables = shape.order.size, shape.rule, shape.tables
     wrong = stored = 0.0
     tip, inner = n - 2, n - 3
     for s in range(strips.roots.size):
-        points, gradient, lever = local.points[s], local.gradient[s], local.lever
+        points, gradient, lever = local.nodal[s, POINTS], local.nodal[s, GRADIENT], local.nodal[s, LEVER]
+        numbers, along = strips.numbers[s], strips.along[s]
         fx = gradient[2 * tip] + gradient[2 * inner]
         fy = gradient[2 * tip + 1] + gradient[2 * inner + 1]
         x, y0 = points[2 * tip], points[2 * tip + 1]
         bx, by = points[2 * inner] - x, points[2 * inner + 1] - y0
         moment = bx * gradient[2 * inner + 1] - by * gradient[2 * inner]
-        qx, qy = strips.weight[s, 0], strips.weight[s, 1]
+        qx, qy = numbers[PER_U], numbers[PER_U + 1]
         for i in range(n):
             lever[i] = (x - points[2 * i]) * fy - (y0 - points[2 * i + 1]) * fx + moment
-        for p in range(shape.weight.size):
+        for p in range(rule.shape[1]):
             left, cx, cy, ax, ay = local.moment[s, p], 0.0, 0.0, 0.0, 0.0
             for i in range(n):
-                left -= shape.d0[p, i] * lever[i]
-                cx += shape.d0[p, i] * points[2 * i]
-                cy += shape.d0[p, i] * points[2 * i + 1]
-                ax += shape.beyond[p, i] * points[2 * i]
-                ay += shape.beyond[p, i] * points[2 * i + 1]
-            far = 1.0 - shape.u[p]
+                left -= tables[VALUE, p, i] * lever[i]
+                cx += tables[VALUE, p, i] * points[2 * i]
+                cy += tables[VALUE, p, i] * points[2 * i + 1]
+                ax += tables[BEYOND, p, i] * points[2 * i]
+                ay += tables[BEYOND, p, i] * points[2 * i + 1]
+            far = 1.0 - rule[WHERE, p]
             left -= (ax - far * cx) * qy - (ay - far * cy) * qx
-            if strips.rigidity[s, p] > 0.0:
-                ds = shape.weight[p] * strips.speed[s, p] / strips.rigidity[s, p]
+            if along[p, RIGIDITY] > 0.0:
+                ds = rule[WEIGHT, p] * along[p, SPEED] / along[p, RIGIDITY]
                 wrong += ds * left * left
                 stored += ds * local.moment[s, p] ** 2
     return wrong, stored
 
 
-@part()
+@kernel()
 def root_of(wrong, stored, smallest):
     """The moment defect from the two energies."""
     return math.sqrt(wrong / (stored + smallest * smallest))

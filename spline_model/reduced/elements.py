@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import Self
 
 import numpy as np
@@ -23,17 +23,15 @@ from spline_model.reduced.assembly import (
     SLOWEST,
     Bodies,
     moment_defect,
-    place_of,
     root_of,
 )
 from spline_model.reduced.model import Reduced, from_unknowns, reduced
 from spline_model.reduced.path import empty_answer
 from spline_model.reduced.preload import Preload, act, apart, preload_of
 from spline_model.reduced.states import by_state, unknowns_of
+from spline_model.reduced.whole import add_strip
 from spline_model.strip.compiled import kernel
-from spline_model.strip.element import Local, Strips, place_points, to_element
-from spline_model.strip.laws import MATERIAL
-from spline_model.strip.points import visit_points
+from spline_model.strip.element import ON_POINTS, Local, Strips
 
 Array = NDArray[np.float64]
 
@@ -45,8 +43,7 @@ ASIDE = 1e-5
 def gather(y, reaction, aim, load, bodies, strips, shape, local, out, gradient, hessian):
     """Gradient (N,) and tangent (Y, Y) in poses, w and then a of all strips, at y (Y,); energies in out.
 
-    Reactions (D,) of the drives, which hold their coordinates at ``aim`` (D,), are the last unknowns. The
-    axial energy is int (N eps - 1/2 c N^2) W du, whose derivatives these are.
+    Reactions (D,) of the drives, which hold their coordinates at ``aim`` (D,), are the last unknowns.
     """
     n, count, modes, poses = shape.order.size, strips.roots.size, strips.compliance.shape[1], bodies.rest.size
     own = 2 * n - 6
@@ -64,46 +61,7 @@ def gather(y, reaction, aim, load, bodies, strips, shape, local, out, gradient, 
         hessian[held, row] = hessian[row, held] = -1.0
     for s in range(count):
         at, first, forces = poses + s * (own + modes), poses + s * own, poses + count * own + s * modes
-        tip, root = strips.tips[s] >= 0, strips.roots[s] >= 0
-        a, g, h, b, gap = y[at + own : at + own + modes], local.g[s], local.h[s], local.b[s], local.gap[s]
-        place_points(s, y[at : at + own], y, strips, local)
-        visit_points(s, a, n, shape, strips, local, out)
-        to_element(
-            n,
-            0,
-            tip,
-            root,
-            local.map[s],
-            local.gradient[s],
-            local.hessian[s],
-            local.coupling[s],
-            g,
-            h,
-            b,
-            local.square,
-            local.lines,
-            local.line,
-        )
-        size = own + 3 * tip + 3 * root
-        for i in range(size):
-            row = first + i if i < own else place_of(i - own, strips.tips[s], strips.roots[s], 0)
-            gradient[row] += g[i]
-            hessian[row, row] += h[i, i]
-            for j in range(i + 1, size):
-                column = first + j if j < own else place_of(j - own, strips.tips[s], strips.roots[s], 0)
-                hessian[row, column] += h[i, j]
-                hessian[column, row] += h[i, j]
-            for k in range(modes):
-                hessian[row, forces + k] += b[k, i]
-                hessian[forces + k, row] += b[k, i]
-        for k in range(modes):
-            gradient[forces + k] = gap[k]
-            if strips.measure == MATERIAL:
-                out[AXIAL] += a[k] * gap[k]
-                hessian[forces + k, forces + k] = -strips.compliance[s, k]
-            else:
-                for j in range(modes):
-                    hessian[forces + k, forces + j] = -local.gram[s, k, j]
+        add_strip(s, at, first, forces, y, strips, shape, local, out, gradient, hessian)
 
 
 @kernel()
@@ -117,14 +75,10 @@ def defect_of(y, strips, shape, local):
 class Elements(Followed):
     """Unknowns z (N,): poses, w of all strips, a of all strips, reactions of the drives; dimensionless.
 
-    place (Y,): that of each entry of y in z; bodies, strips: those of the model, and ``loose`` the ones that
-    a share of the preload is written to; out (5,): energies as ``gather`` left them.
+    local, out (5,): working arrays, and energies as ``gather`` left them.
     """
 
     model: Reduced
-    place: NDArray[np.int64]
-    loose: tuple[Bodies, Strips]
-    preload: Preload
     local: Local
     out: Array
 
@@ -138,23 +92,31 @@ class Elements(Followed):
     @classmethod
     def on(cls, model: Reduced) -> Self:
         """The elements of a reduced mechanism."""
-        poses, count = len(model.bodies.rest), len(model.strips.roots)
-        modes = int(model.strips.compliance.shape[1])
-        own = (model.size - poses) // count - modes
-        w = poses + np.arange(count * own).reshape(count, own)
-        a = poses + count * own + np.arange(count * modes).reshape(count, modes)
         size = model.size + len(model.bodies.held)
         return cls(
             system=model.system,
             gradient=np.empty(size),
             hessian=np.empty((size, size)),
             model=model,
-            place=np.concatenate((np.arange(poses), np.column_stack((w, a)).ravel())),
-            loose=apart(model),
-            preload=preload_of(model),
             local=model.local(),
             out=np.zeros(5),
         )
+
+    @cached_property
+    def place(self) -> NDArray[np.int64]:
+        """Place of each entry of y in z (Y,)."""
+        poses, (count, modes) = len(self.model.bodies.rest), self.model.strips.compliance.shape
+        return places(poses, count, (self.model.size - poses) // count - modes, modes)
+
+    @cached_property
+    def preload(self) -> Preload:
+        """Weight and pre-strain of the model."""
+        return preload_of(self.model)
+
+    @cached_property
+    def loose(self) -> tuple[Bodies, Strips]:
+        """Bodies and strips that a share of the preload is written to."""
+        return apart(self.model)
 
     @cached_property
     def unit(self) -> Array:
@@ -222,7 +184,8 @@ class Elements(Followed):
         bodies, preload = self.model.bodies, self.preload
         moved = z[: len(bodies.rest)] - bodies.rest
         loads, weight = (float(moved @ force[: len(moved)]) for force in (bodies.load, bodies.weight))
-        return loads, weight + float((preload.dead * self.local.points).sum()) - preload.hung
+        hung = preload.numbers[:, ON_POINTS:] * self.local.points
+        return loads, weight + float(hung.sum() - preload.hung[0])
 
     @cached_property
     def push_of_loads(self) -> Array:
@@ -249,7 +212,7 @@ class Elements(Followed):
 
     def state(self, unknowns: Array) -> Array:
         """z of the scene's unknowns, whose clamps hold."""
-        drives, z = self.system.tables.drives, np.zeros(len(self.gradient))
+        drives, z = self.system.drives, np.zeros(len(self.gradient))
         z[self.place] = from_unknowns(self.model, unknowns)
         z[self.model.size :] = unknowns[drives.row] * self.model.drive_length / self.model.energy
         return z
@@ -287,6 +250,14 @@ class Elements(Followed):
             defect=np.array([self.defect(p.z, p.load_factor) for p in points]),
         )
         return by_state(self.model, factor, answer)
+
+
+@lru_cache(maxsize=64)
+def places(poses: int, count: int, own: int, modes: int) -> NDArray[np.int64]:
+    """Place of each entry of y in z, for strips of ``own`` coordinates w and that many axial forces a."""
+    w = poses + np.arange(count * own).reshape(count, own)
+    a = poses + count * own + np.arange(count * modes).reshape(count, modes)
+    return np.concatenate((np.arange(poses), np.column_stack((w, a)).ravel()))
 
 
 def followed(system: System, method: str = "condensed") -> Followed:

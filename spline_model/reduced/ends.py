@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.compile import System
-from spline_model.effects import Clamp
+from spline_model.effects import BodyGravity, Clamp
 from spline_model.effects.base import Constraint
 from spline_model.reduced.assembly import Bodies
 from spline_model.strip.element import GROUNDED
+from spline_model.tables import steady_loads
 
 Array = NDArray[np.float64]
 
@@ -34,39 +36,30 @@ def ends_of(system: System) -> Ends:
     """Both ends of all strips by (strip, end); a free end is a body of its own, behind the scene's."""
     scene, free = system.scene, len(system.scene.bodies)
     ends: Ends = {}
-    places = {body.name: i for i, body in enumerate(scene.bodies)}
-    rows: dict[tuple[str, str], int] = {
-        (c.strip, c.end): system.layout.rows(i).start
+    bodies = {body.name: (i, body.centre) for i, body in enumerate(scene.bodies)}
+    clamps: dict[tuple[str, str], tuple[str, int]] = {
+        (c.strip, c.end): (c.to, system.layout.rows(i).start)
         for i, c in enumerate(scene.of(Constraint))
         if isinstance(c, Clamp)
     }
     for strip in scene.strips:
-        for end, (at, inner, sign) in {"start": (0, 1, 1.0), "end": (-1, -2, -1.0)}.items():
+        for end, at, inner, sign in (("start", 0, 1, 1.0), ("end", -1, -2, -1.0)):
             point = strip.control_points[at]
             along = sign * (strip.control_points[inner] - point)
-            direction = float(np.arctan2(along[1], along[0]))
-            clamp = scene.clamp_of(strip.name, end)
-            if clamp is None:
+            direction = math.atan2(along[1], along[0])
+            if (strip.name, end) not in clamps:
                 ends[strip.name, end] = End(body=free, point=np.zeros(2), direction=direction, row=-1)
                 free += 1
-            elif clamp.to in places:
-                centre = scene.body(clamp.to).centre
-                ends[strip.name, end] = End(
-                    body=places[clamp.to],
-                    point=point - centre,
-                    direction=direction,
-                    row=rows[strip.name, end],
-                )
-            else:
-                ends[strip.name, end] = End(
-                    body=GROUNDED, point=point, direction=direction, row=rows[strip.name, end]
-                )
+                continue
+            to, row = clamps[strip.name, end]
+            body, centre = bodies.get(to, (GROUNDED, 0.0))
+            ends[strip.name, end] = End(body=body, point=point - centre, direction=direction, row=row)
     return ends
 
 
 def bodies_of(system: System, ends: Ends, outer: int) -> Bodies | None:
     """The bodies and what acts on them; None where a load acts on a clamped end."""
-    scene, layout, tables = system.scene, system.layout, system.tables
+    scene, layout, loads, drives = system.scene, system.layout, system.loads, system.drives
     length, force = system.scales.length, system.scales.energy / system.scales.length
     rest = [v for body in scene.bodies for v in (*(body.centre / length), 0.0)]
     places = {
@@ -82,18 +75,21 @@ def bodies_of(system: System, ends: Ends, outer: int) -> Bodies | None:
                 rest += [*(point / length), 0.0]
     load, weight = np.zeros(len(rest)), np.zeros(len(rest))
     unit = np.tile([force, force, force * length], len(rest) // 3)
-    for coordinate, value in zip(tables.loads.coordinate, tables.loads.value, strict=True):
+    for coordinate, value in zip(loads.coordinate, loads.value, strict=True):
         if int(coordinate) not in places:
             return None
         load[places[int(coordinate)]] += value
-    if tables.weight.size:
-        for body in scene.bodies:
-            mine = 3 * scene.bodies.index(body)
-            weight[mine : mine + 3] += tables.weight[layout.body(body.name)]
-    held = np.array([places[int(c)] for c in tables.drives.coordinate], dtype=np.int64)
+    for coordinate, value in steady_loads(scene, layout):
+        if coordinate not in places:
+            return None
+        weight[places[coordinate]] += value
+    for gravity in scene.of(BodyGravity):
+        at = places[layout.bodies[gravity.body]]
+        weight[at : at + 2] += gravity.mass * np.asarray(gravity.acceleration)
+    held = np.array([places[int(c)] for c in drives.coordinate], dtype=np.int64)
     if len(set(held.tolist())) != len(held):
         return None
-    turns = np.flatnonzero(tables.drives.turns)
+    turns = np.flatnonzero(drives.turns)
     return Bodies(
         rest=np.array(rest),
         load=np.concatenate((load / unit, np.zeros(outer))),

@@ -4,8 +4,21 @@ from __future__ import annotations
 
 import numpy as np
 
-from spline_model.reduced.assembly import NEGATIVE, assemble, factorise, move_strips, solve_free
-from spline_model.strip.compiled import kernel, part
+from spline_model.reduced.assembly import (
+    CHANGE,
+    FORCE,
+    MOVE,
+    NEGATIVE,
+    RATE,
+    RAW,
+    REACTION,
+    REACTION_RATE,
+    assemble,
+    factorise,
+    move_strips,
+    solve_free,
+)
+from spline_model.strip.compiled import kernel
 from spline_model.strip.condense import SINGULAR
 
 ITERATIONS, EVALUATIONS, HALVED = range(3)
@@ -15,11 +28,12 @@ NEARLY = 10.0
 """Residual over the tolerance from which the last correction, which squares it, is enough."""
 
 
-@part()
+@kernel()
 def newton(y, load, bodies, strips, shape, local, space, tolerance, counters):
     """Solve in place at the held coordinates in y; the negative eigenvalues, or -1 where it fails."""
     before = np.inf
-    free, raw, poses = bodies.free, space.raw, bodies.rest.size
+    free, vectors, poses, rate = bodies.free, space.vectors, bodies.rest.size, space.states[RATE]
+    raw, force, move, change = vectors[RAW], vectors[FORCE], vectors[MOVE], vectors[CHANGE]
     for trial in range(MOST_ITERATIONS + 1):
         norm = assemble(y, load, bodies, strips, shape, local, space)
         counters[EVALUATIONS] += 1
@@ -34,17 +48,18 @@ def newton(y, load, bodies, strips, shape, local, space, tolerance, counters):
         if not done and trial == MOST_ITERATIONS:
             return -1
         before = norm
-        space.move[:] = 0.0
+        for i in range(bodies.load.size):
+            move[i] = 0.0
         for i in range(free.size):
-            space.change[i] = -space.force[free[i]]
-        solve_free(space.factors, space.change)
+            change[i] = -force[free[i]]
+        solve_free(space.factors, change)
         for i in range(free.size):
-            space.move[free[i]] = space.change[i]
+            move[free[i]] = change[i]
             if free[i] < poses:
-                y[free[i]] += space.change[i]
-        move_strips(1.0, bodies, strips, shape, local, space, space.rate)
-        for i in range(bodies.rest.size, y.size):
-            y[i] += space.rate[i]
+                y[free[i]] += change[i]
+        move_strips(1.0, bodies, strips, shape, local, space, rate)
+        for i in range(poses, y.size):
+            y[i] += rate[i]
         if done:  # with a last correction, whose own residual is of second order
             return max(0, negative + int(space.out[NEGATIVE]))
         counters[ITERATIONS] += 1
@@ -57,64 +72,65 @@ def entry(matrix, i, j):
     return matrix[i, j] if i <= j else matrix[j, i]
 
 
-@part()
+@kernel()
 def tangent(held_rate, load_rate, bodies, strips, shape, local, space):
     """Rates in the factor at a state that was just solved, reactions and their rates, in ``space``.
 
     The residual that is left is carried to equilibrium by the tangent.
     """
-    free, held, matrix, x = bodies.free, bodies.held, space.tangent, space.change
+    free, held, matrix, vectors = bodies.free, bodies.held, space.tangent, space.vectors
+    x, force, move, rate = vectors[CHANGE], vectors[FORCE], vectors[MOVE], space.states[RATE]
     for i in range(free.size):
-        x[i] = -space.force[free[i]]
-    solve_free(space.factors, space.change)
+        x[i] = -force[free[i]]
+    solve_free(space.factors, x)
     for d in range(held.size):
-        total = space.force[held[d]]
+        total = force[held[d]]
         for i in range(free.size):
             total += entry(matrix, held[d], free[i]) * x[i]
-        space.reaction[d] = total
+        vectors[REACTION, d] = total
     for i in range(free.size):
         total = load_rate * bodies.load[free[i]]
         for d in range(held.size):
             total -= entry(matrix, free[i], held[d]) * held_rate[d]
         x[i] = total
-    solve_free(space.factors, space.change)
+    solve_free(space.factors, x)
     for i in range(free.size):
-        space.move[free[i]] = x[i]
+        move[free[i]] = x[i]
     for d in range(held.size):
-        space.move[held[d]] = held_rate[d]
+        move[held[d]] = held_rate[d]
     for d in range(held.size):
         total = -load_rate * bodies.load[held[d]]
-        for i in range(space.move.size):
-            total += entry(matrix, held[d], i) * space.move[i]
-        space.reaction_rate[d] = total
+        for i in range(bodies.load.size):
+            total += entry(matrix, held[d], i) * move[i]
+        vectors[REACTION_RATE, d] = total
     for i in range(bodies.rest.size):
-        space.rate[i] = space.move[i]
-    move_strips(0.0, bodies, strips, shape, local, space, space.rate)
+        rate[i] = move[i]
+    move_strips(0.0, bodies, strips, shape, local, space, rate)
 
 
-@part()
+@kernel()
 def stiffness_of(bodies, space):
     """Derivative of the driven rotation's torque in it, all else held or in equilibrium at fixed loads."""
-    free, x = bodies.free, space.change
+    free, x = bodies.free, space.vectors[CHANGE]
     row = bodies.held[bodies.driven]
     for i in range(free.size):
         x[i] = -entry(space.tangent, free[i], row)
-    solve_free(space.factors, space.change)
+    solve_free(space.factors, x)
     total = space.tangent[row, row]
     for i in range(free.size):
         total += entry(space.tangent, row, free[i]) * x[i]
     return total
 
 
-@part()
+@kernel()
 def conjugate(held_rate, load_rate, bodies, y, space):
     """First and second derivative of the potential in the factor: reactions on drives less moved loads."""
     slope = bend = 0.0
     for d in range(bodies.held.size):
-        slope += space.reaction[d] * held_rate[d]
-        bend += space.reaction_rate[d] * held_rate[d]
+        slope += space.vectors[REACTION, d] * held_rate[d]
+        bend += space.vectors[REACTION_RATE, d] * held_rate[d]
     if load_rate != 0.0:
         for i in range(bodies.rest.size):
             slope -= load_rate * bodies.load[i] * (y[i] - bodies.rest[i])
-            bend -= load_rate * bodies.load[i] * space.rate[i]
+            bend -= load_rate * bodies.load[i] * space.states[RATE, i]
     return slope, bend

@@ -1,7 +1,8 @@
-"""Many pivots of one kind, one path each, in one compiled loop; and the largest strain of a state."""
+"""Many designs of one mechanism, one path each, in one compiled loop; and the largest strain of a state."""
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -11,26 +12,10 @@ from spline_model.effects import MixedStretching
 from spline_model.reduced.equilibrium import ITERATIONS
 from spline_model.reduced.model import Reduced, values_at
 from spline_model.reduced.path import follow
-from spline_model.strip.compiled import kernel
-from spline_model.strip.element import place_points
+from spline_model.strip.compiled import copy, kernel
+from spline_model.strip.element import CURVATURE, MODES, ON_POINTS, POINTS, SPEED, place_points
 
 Array = NDArray[np.float64]
-
-
-class Designs(NamedTuple):
-    """What tells D pivots of S straight strips from one another.
-
-    length (D,) [m] and energy (D,) [J], their units; root, tip (D, S, 3) as in ``Strips``; compliance (D,)
-    of the strips, EI / (EA L^2); centre (D, 2) of the body over the length; rotation (D,) [rad].
-    """
-
-    length: Array
-    energy: Array
-    root: Array
-    tip: Array
-    compliance: Array
-    centre: Array
-    rotation: Array
 
 
 class Stations(NamedTuple):
@@ -50,101 +35,121 @@ def stations_of(model: Reduced, stations: Array) -> Stations:
     scene, order = model.system.scene, model.shape.order
     basis, mine = scene.strips[0].basis, scene.strips[0].name
     parts = [values_at(e.modes, stations) for e in scene.of(MixedStretching) if e.strip == mine]
-    modes = np.column_stack(parts)
+    modes = np.column_stack(parts) if parts else np.zeros((len(stations), 0))
     d1, d2 = (np.ascontiguousarray(basis.evaluate(stations, k)[:, order].T) for k in (1, 2))
     axial = np.ascontiguousarray((modes @ model.to_modes[0]).T)
     return Stations(d1=d1, d2=d2, modes=axial, work=np.zeros((5, len(stations))))
 
 
 @kernel()
-def take_design(i, designs, soft, bodies, strips, route, start):
-    """Put the i-th design's numbers into the bodies, strips and route, and its rest into start (Y,).
+def take_design(i, designs, along, curved, preload, bodies, strips, route, local):
+    """Put the i-th design's numbers where a path takes them from; along, curved: of the mechanism itself.
 
-    soft (K,): which axial forces are the stretching's, the others keep their compliance.
+    curved (2, S, G): its curvatures as in ``Preload``.
     """
-    modes = strips.compliance.shape[1]
-    count = strips.roots.size
-    own = (start.size - 3) // count - modes
-    points = own // 2 + 3
-    for k in range(2):
-        bodies.rest[k] = start[k] = designs.centre[i, k]
-    route.target[0] = designs.rotation[i]
-    for s in range(count):
-        at = 3 + s * (own + modes)
-        for k in range(3):
-            strips.root[s, k], strips.tip[s, k] = designs.root[i, s, k], designs.tip[i, s, k]
-        for k in range(soft.size):
-            if soft[k]:
-                strips.compliance[s, k] = designs.compliance[i]
-                if strips.coupled == 0:
-                    strips.gain[s, k] = 1.0 / designs.compliance[i]
-        for p in range(points - 4):
-            u = (p + 2) / (points - 1)
+    start, hung, fallen = designs.start[i], 0.0, 0.0
+    for d in range(bodies.held.size):
+        route.origin[d], route.target[d] = start[bodies.held[d]], designs.target[i, d]
+    for k in range(bodies.rest.size):
+        bodies.rest[k], bodies.load[k] = start[k], designs.force[i, 0, k]
+        bodies.weight[k] = preload.bodies[k] = designs.force[i, 1, k]
+        fallen += bodies.weight[k] * start[k]
+    modes, own = strips.compliance.shape[1], strips.numbers.shape[1] - ON_POINTS - 6
+    for s in range(strips.roots.size):
+        factor = designs.factor[i, s]
+        for k in range(strips.numbers.shape[1]):
+            strips.numbers[s, k] = preload.numbers[s, k] = designs.numbers[i, s, k]
+        for k in range(modes):
+            strips.compliance[s, k] = designs.compliance[i, s, k]
+            if k >= strips.coupled:
+                strips.gain[s, k] = 1.0 / designs.compliance[i, s, k]
+        for p in range(strips.along.shape[1]):
             for k in range(2):
-                end = designs.centre[i, k] + designs.tip[i, s, k]
-                start[at + 2 * p + k] = designs.root[i, s, k] + u * (end - designs.root[i, s, k])
+                preload.curvature[k, s, p] = curved[k, s, p] * factor[CURVATURE]
+            for k in range(strips.along.shape[2]):
+                strips.along[s, p, k] = along[s, p, k] * factor[min(k, MODES)]
+        at = bodies.rest.size + s * (own + modes)
+        place_points(s, start[at : at + own], start, strips, local)
+        for k in range(own + 6):
+            hung += strips.numbers[s, ON_POINTS + k] * local.nodal[s, POINTS, k]
+    preload.hung[0], preload.hung[1] = hung, hung + fallen
 
 
 @kernel()
-def largest_strain(y, depth, strips, local, stations):
-    """Largest |N / (EA)| + |M| d / (2 EI) over the strips' stations; depth d of the sections over L.
+def largest_strain(y, poses, depth, along, strips, local, stations):
+    """Largest |N / (EA)| + |M| d / (2 EI) over straight strips' stations; depth d of the sections over L.
 
-    Plane sections: M = EI theta' / L, N the mixed form's axial force, slide modes included, as in
-    ``sections``.
+    Plane sections: M = EI (theta' / J0 - kappa_0), N the mixed form's axial force, slide modes included, as
+    in ``sections``. along: of the mechanism, whose first strip the stations' modes belong to.
     """
     modes, count = strips.compliance.shape[1], strips.roots.size
-    own = (y.size - 3) // count - modes
+    own = (y.size - poses) // count - modes
     x1, y1, x2, y2, force = stations.work
     largest = 0.0
     for s in range(count):
-        at = 3 + s * (own + modes)
+        at, speed = poses + s * (own + modes), strips.along[s, 0, SPEED]
+        natural, shorter = strips.along[s, 0, CURVATURE], math.sqrt(along[0, 0, SPEED] / speed)
         place_points(s, y[at : at + own], y, strips, local)
         for p in range(force.size):
             x1[p] = y1[p] = x2[p] = y2[p] = force[p] = 0.0
         for i in range(stations.d1.shape[0]):
             d1, d2 = stations.d1[i], stations.d2[i]
-            px, py = local.points[s, 2 * i], local.points[s, 2 * i + 1]
+            px, py = local.nodal[s, POINTS, 2 * i], local.nodal[s, POINTS, 2 * i + 1]
             for p in range(force.size):
                 x1[p] += d1[p] * px
                 y1[p] += d1[p] * py
                 x2[p] += d2[p] * px
                 y2[p] += d2[p] * py
         for k in range(modes):
-            mode, a = stations.modes[k], y[at + own + k] * strips.compliance[s, 0]
+            mode, a = stations.modes[k], y[at + own + k] * strips.compliance[s, 0] * shorter
             for p in range(force.size):
                 force[p] += mode[p] * a
         for p in range(force.size):
             turning = (x1[p] * y2[p] - y1[p] * x2[p]) / (x1[p] * x1[p] + y1[p] * y1[p])
-            largest = max(largest, abs(force[p]) + 0.5 * depth * abs(turning))
+            largest = max(largest, abs(force[p]) + 0.5 * depth * abs(turning / speed - natural))
     return largest
 
 
 @kernel()
 def follow_share(
-    begin, stride, rows, designs, soft, depth, stations, route, judged, preload, start, bodies, strips, shape,
-    local, space, tolerance, answer, results,
+    begin, stride, rows, designs, depth, stations, growing, route, judged, place, preload, along, curved,
+    bodies, strips, shape, local, space, tolerance, answer, results,
 ):  # fmt: skip
     """Follow every ``stride``-th of the designs from ``begin`` on, filling ``rows`` (D,) of the results.
 
-    judged and the rest as of ``follow``; depth (D,) of the sections over L, or (0,): no strain is asked for;
-    results are the arrays of
-    ``Batch``: states, centre, torque, stiffness, energy, strain, inertia, moment_defect, iterations.
+    growing: the route along which weight and pre-strain come on first, without factors where there are none;
+    place: of the reported body's pose; depth (D,) of the sections over L, or (0,): no strain is asked for;
+    along, curved: of the mechanism itself, the rest as of ``follow``; results are the arrays of ``Batch``:
+    states, centre, torque, stiffness, energy, strain, inertia, moment_defect, iterations.
     """
     states, centre, torque, stiffness, energy, strain, inertia, defect, iterations = results
     for i in range(begin, rows.size, stride):
         row = rows[i]
-        take_design(i, designs, soft, bodies, strips, route, start)
+        take_design(i, designs, along, curved, preload, bodies, strips, route, local)
         for k in range(answer.counters.size):
             answer.counters[k] = 0
-        done = follow(start, route, judged, preload, bodies, strips, shape, local, space, tolerance, answer)
+        start, stands = designs.start[i], True
+        if growing.factor.size > 0:
+            done = follow(
+                start, growing, judged, preload, bodies, strips, shape, local, space, tolerance, answer
+            )
+            stands = done == growing.factor.size
+            copy(answer.y[1], start)
+        done = 0
+        if stands:
+            done = follow(
+                start, route, judged, preload, bodies, strips, shape, local, space, tolerance, answer
+            )
         states[row] = done
         iterations[row] = answer.counters[ITERATIONS]
         length, unit = designs.length[i], designs.energy[i]
         for k in range(done):
-            centre[row, k, 0] = answer.y[k, 0] * length
-            centre[row, k, 1] = answer.y[k, 1] * length
-            torque[row, k], stiffness[row, k] = answer.reaction[k, 0] * unit, answer.stiffness[k] * unit
+            centre[row, k, 0] = answer.y[k, place] * length
+            centre[row, k, 1] = answer.y[k, place + 1] * length
+            torque[row, k] = answer.reaction[k, bodies.driven] * unit
+            stiffness[row, k] = answer.stiffness[k] * unit
             inertia[row, k], defect[row, k] = answer.inertia[k], answer.defect[k]
             energy[row, k] = (answer.energies[k, 0] + answer.energies[k, 1]) * unit
             if depth.size > 0:
-                strain[row, k] = largest_strain(answer.y[k], depth[i], strips, local, stations)
+                poses = bodies.rest.size
+                strain[row, k] = largest_strain(answer.y[k], poses, depth[i], along, strips, local, stations)

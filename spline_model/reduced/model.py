@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import math
+from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 
 import numpy as np
@@ -13,10 +14,21 @@ from spline_model.basis import AxialModes, SlideModes, SplineBasis
 from spline_model.compile import System
 from spline_model.effects import Bending, MixedStretching, Stretching, StripGravity
 from spline_model.effects.elastic import MEASURES
+from spline_model.quadrature import rest_of
 from spline_model.reduced.assembly import Bodies
 from spline_model.reduced.ends import Ends, bodies_of, ends_of, frames_of
-from spline_model.scene import Scene
-from spline_model.strip.element import Local, Shape, Strips, local_arrays
+from spline_model.scene import Scene, Strip
+from spline_model.strip.element import (
+    CURVATURE,
+    MODES,
+    RIGIDITY,
+    SPEED,
+    Local,
+    Shape,
+    Strips,
+    local_arrays,
+)
+from spline_model.tables import steady_loads
 
 Array = NDArray[np.float64]
 
@@ -34,14 +46,14 @@ MOST_CONTROL_POINTS = 24
 class Reduced:
     """A scene in reduced coordinates y: the bodies' poses, free strip ends among them, then w and a a strip.
 
-    frame (S, 6): of each strip root and tip, direction of each at rest, as in ``Strips``;
-    to_modes (S, K, K): the scene's axial forces from the element's.
+    rest (S, G): the strips' curvature; to_modes (S, K, K): the scene's axial forces from the element's.
     """
 
     system: System
     bodies: Bodies
     strips: Strips
     shape: Shape
+    rest: Array
     to_modes: Array
     length: float
     energy: float
@@ -62,13 +74,22 @@ class Reduced:
     @cached_property
     def drive_length(self) -> Array:
         """Unit of each driven coordinate (D,): 1 rad or the length."""
-        return np.where(self.system.tables.drives.turns == 1, 1.0, self.length)
+        return np.where(self.system.drives.turns == 1, 1.0, self.length)
 
     @cached_property
     def drives(self) -> tuple[Array, Array]:
         """Driven coordinates at load factor 0, and their change to 1 (D,)."""
-        drives = self.system.tables.drives
+        drives = self.system.drives
         return drives.origin / self.drive_length, drives.target / self.drive_length
+
+    def as_slender(self, *, slender: bool) -> Reduced:
+        """The same with, or without, the mean axial forces beside the bodies: see ``LEAST_COMPLIANCE``."""
+        strips, modes = self.strips, int(self.strips.compliance.shape[1])
+        bodies = bodies_of(self.system, ends_of(self.system), slender * len(strips.roots))
+        assert bodies is not None, "the mechanism is known already"
+        coupled = modes if strips.measure else slender * strips.split
+        strips = strips._replace(coupled=coupled, outer=int(slender), gain=np.full_like(strips.gain, GAIN))
+        return replace(self, bodies=bodies, strips=strips)
 
     def local(self) -> Local:
         """Working arrays of the strips."""
@@ -90,7 +111,7 @@ def reduced(system: System, *, longest: float = MOST_CONTROL_POINTS) -> Reduced 
     length, energy = system.scales.length, system.scales.energy
     shape = _shape(basis, points)
     ends = ends_of(system)
-    strips, to_modes = _strips(system, shape, basis, points, ends)
+    strips, rest, to_modes = _strips(system, shape, basis, points, ends)
     bodies = bodies_of(system, ends, strips.outer * len(scene.strips))
     if bodies is None:
         return None
@@ -99,6 +120,7 @@ def reduced(system: System, *, longest: float = MOST_CONTROL_POINTS) -> Reduced 
         bodies=bodies,
         strips=strips,
         shape=shape,
+        rest=rest,
         to_modes=to_modes,
         length=length,
         energy=energy,
@@ -129,72 +151,66 @@ def _shape(basis: SplineBasis, points: int) -> Shape:
     u, weight = basis.gauss_rule(points)
     whole = BSpline(basis.knots, np.eye(n), basis.degree).antiderivative()
     values = [basis.evaluate(u, k) for k in range(3)] + [whole(1.0) - whole(u)]
-    d0, d1, d2, beyond = (np.ascontiguousarray(v[:, order]) for v in values)
-    return Shape(order=order, d0=d0, d1=d1, d2=d2, beyond=beyond, u=u, weight=weight)
+    tables = np.ascontiguousarray(np.array(values)[:, :, order])
+    return Shape(order=order, tables=tables, rule=np.array((u, weight)))
 
 
 def _strips(
     system: System, shape: Shape, basis: SplineBasis, points: int, ends: Ends
-) -> tuple[Strips, Array]:
-    scene, tables = system.scene, system.tables
-    length, energy = system.scales.length, system.scales.energy
-    count, gauss = len(scene.strips), len(shape.weight)
-    order = {e.strip: i for i, e in enumerate(scene.of(Bending))}
-    rows = [slice(order[s.name] * gauss, (order[s.name] + 1) * gauss) for s in scene.strips]
-    speed = np.array([tables.bending.speed[r] for r in rows]) / length
+) -> tuple[Strips, Array, Array]:
+    """The strips' arrays, their curvature at rest (S, G), and the scene's axial forces from theirs."""
+    scene, length, energy = system.scene, system.scales.length, system.scales.energy
+    bending = {e.strip: e for e in scene.of(Bending)}
+    bends = [bending[s.name] for s in scene.strips]
+    at_rest = [rest_of(strip, points) for strip in scene.strips]
+    speed = np.array([v for v, _ in at_rest]) / length
+    rest = np.array([k for _, k in at_rest]) * length
     mixed = [[e for e in scene.of(MixedStretching) if e.strip == s.name] for s in scene.strips]
     consistent = {e.strip: e for e in scene.of(Stretching)}
+    modes, to_modes = zip(
+        *(
+            orthonormal_modes(tuple(e.modes for e in parts), basis, points, v.tobytes())
+            for parts, v in zip(mixed, speed, strict=True)
+        ),
+        strict=True,
+    )
     split = len_modes(mixed[0], slide=False)
-    modes, compliance, to_modes = [], [], []
-    for parts, v in zip(mixed, speed, strict=True):
-        values, back = orthonormal_modes(tuple(e.modes for e in parts), basis, points, tuple(v))
-        modes.append(values)
-        each = [e.axial_compliance for e in parts for _ in range(e.modes.count)]
-        compliance.append(np.array(each) * energy / length)
-        to_modes.append(back)
-    measure = MEASURES.index(scene.of(Bending)[0].measure)
-    c = np.array(compliance).reshape(count, -1)
+    measure = MEASURES.index(bends[0].measure)
+    compliances = [[e.axial_compliance for e in parts for _ in range(e.modes.count)] for parts in mixed]
+    c = np.array(compliances) * (energy / length)
     small = c < LEAST_COMPLIANCE
     outer = int(small[:, :split].any())
-    coupled = c.shape[1] if measure else outer * split
+    along = np.empty((*speed.shape, MODES + c.shape[1]))
+    along[..., SPEED], along[..., MODES:] = speed, modes
+    along[..., CURVATURE] = rest + np.array([[e.natural_curvature * length] for e in bends])
+    along[..., RIGIDITY] = np.array([[e.flexural_rigidity / (energy * length)] for e in bends])
+    starts, tips = ([ends[s.name, end] for s in scene.strips] for end in ("start", "end"))
     dead, per_u = _dead(system, shape)
-    return Strips(
-        speed=speed,
-        curvature=np.array([tables.bending.curvature[r] for r in rows]) * length,
-        rigidity=np.array([tables.bending.rigidity[r] for r in rows]) / (energy * length),
-        stretching=np.array(
-            [consistent[s.name].axial_rigidity if s.name in consistent else 0.0 for s in scene.strips]
-        )
-        / (energy / length),
-        strain=np.array(
-            [
-                natural_strain(parts, consistent.get(s.name))
-                for s, parts in zip(scene.strips, mixed, strict=True)
-            ]
-        ),
-        modes=np.ascontiguousarray(np.array(modes).reshape(count, gauss, -1)),
-        split=split,
+    axial = [
+        consistent[s.name].axial_rigidity * length / energy if s.name in consistent else 0.0
+        for s in scene.strips
+    ]
+    strain = [natural_strain(e, consistent.get(s.name)) for s, e in zip(scene.strips, mixed, strict=True)]
+    reach = np.array([[_reach(s, 1, 0), _reach(s, -1, -2)] for s in scene.strips]) / length
+    frames = (frames_of(each, length) for each in (starts, tips))
+    strips = Strips(
+        along=along,
         compliance=c,
         gain=np.where(small, GAIN, 1.0 / np.where(small, 1.0, c)),
-        coupled=coupled,
+        numbers=np.column_stack((axial, strain, *frames, reach, per_u, dead)),
+        roots=np.array([end.body for end in starts], dtype=np.int64),
+        tips=np.array([end.body for end in tips], dtype=np.int64),
+        split=split,
+        coupled=c.shape[1] if measure else outer * split,
         outer=outer,
-        roots=np.array([ends[s.name, "start"].body for s in scene.strips], dtype=np.int64),
-        tips=np.array([ends[s.name, "end"].body for s in scene.strips], dtype=np.int64),
-        root=frames_of([ends[s.name, "start"] for s in scene.strips], length),
-        tip=frames_of([ends[s.name, "end"] for s in scene.strips], length),
-        reach=np.array(
-            [
-                [
-                    np.hypot(*(s.control_points[a] - s.control_points[b])) / length
-                    for a, b in ((1, 0), (-1, -2))
-                ]
-                for s in scene.strips
-            ]
-        ),
-        dead=dead,
-        weight=per_u,
         measure=measure,
-    ), np.array(to_modes).reshape(count, c.shape[1], c.shape[1])
+    )
+    return strips, rest, np.array(to_modes)
+
+
+def _reach(strip: Strip, a: int, b: int) -> float:
+    """Distance of two control points at rest [m]."""
+    return math.dist(strip.control_points[a], strip.control_points[b])
 
 
 def len_modes(parts: list[MixedStretching], *, slide: bool) -> int:
@@ -212,11 +228,11 @@ def values_at(modes: AxialModes, u: Array) -> Array:
 
 @lru_cache(maxsize=64)
 def orthonormal_modes(
-    parts: tuple[AxialModes, ...], basis: SplineBasis, points: int, speed: tuple[float, ...]
+    parts: tuple[AxialModes, ...], basis: SplineBasis, points: int, speed: bytes
 ) -> tuple[Array, Array]:
-    """Modes (G, K) orthonormal along the strip, and the scene's modes from them; kept."""
+    """Modes (G, K) orthonormal along a strip of a speed (G,), and the scene's modes from them; kept."""
     u, weight = basis.gauss_rule(points)
-    weight = weight * speed
+    weight = weight * np.frombuffer(speed)
     values, back = np.zeros((len(u), 0)), np.zeros((0, 0))
     for modes in parts:
         full, to_part = values_at(modes, u), np.eye(modes.count)
@@ -239,7 +255,9 @@ def natural_strain(parts: list[MixedStretching], consistent: Stretching | None) 
 
 def _dead(system: System, shape: Shape) -> tuple[Array, Array]:
     """Dead load on the control points (S, 2 n), in the order of elimination, and per du (S, 2)."""
-    scene, weight = system.scene, system.tables.weight
+    scene, weight = system.scene, system.weight.copy()
+    for place, value in steady_loads(scene, system.layout):  # they act on bodies and free ends
+        weight[place] -= value
     force = system.scales.energy / system.scales.length
     dead, per_u = np.zeros((len(scene.strips), 2 * len(shape.order))), np.zeros((len(scene.strips), 2))
     for s, strip in enumerate(scene.strips):
@@ -254,7 +272,12 @@ def _dead(system: System, shape: Shape) -> tuple[Array, Array]:
 
 def at_rest(model: Reduced) -> Array:
     """The state y at rest."""
-    return from_unknowns(model, model.system.rest)
+    y, bodies = np.zeros(model.size), model.bodies
+    y[: len(bodies.rest)] = bodies.rest
+    for s, strip in enumerate(model.system.scene.strips):
+        w, _ = model.places(s)
+        y[w] = [*(strip.control_points[2:-2] / model.length).ravel(), 1.0, 1.0]
+    return y
 
 
 def from_unknowns(model: Reduced, z: Array) -> Array:

@@ -14,7 +14,21 @@ from numpy.typing import NDArray
 from spline_model.checks import LARGEST_CORRECTION, SLOWEST_SPEED, SMALLEST_CORRECTION
 from spline_model.continuation.balance import ROUND_OFF, WORK_MISMATCH
 from spline_model.continuation.resolution import LARGEST_DEFECT, SMALLEST_MOMENT
-from spline_model.reduced.assembly import AXIAL, BENDING, DEAD, KNOWN, SLOWEST, moment_defect, root_of
+from spline_model.reduced.assembly import (
+    AXIAL,
+    BENDING,
+    DEAD,
+    FACTORS,
+    KNOWN,
+    PREDICTED,
+    RATE,
+    REACTION,
+    REACTION_RATE,
+    SLOWEST,
+    Y,
+    moment_defect,
+    root_of,
+)
 from spline_model.reduced.equilibrium import HALVED, conjugate, newton, stiffness_of, tangent
 from spline_model.reduced.preload import act, swell
 from spline_model.strip.compiled import copy, kernel, part
@@ -26,14 +40,13 @@ SMALLEST_STEP = 2.0**-10
 
 class Route(NamedTuple):
     """Where a path goes: factors (S,), the first one its start; held coordinates are origin + factor
-    x target (D,), the load factor is load + factor x growth, the share of weight and pre-strain the
+    x target (D,), the load factor is factor x growth, the share of weight and pre-strain the
     factor itself where it ``swells``, and all of it otherwise. Critical points end it, or it ``passes`` them.
     """
 
     factor: Array
     origin: Array
     target: Array
-    load: float
     growth: float
     swells: bool = False
     passes: bool = False
@@ -79,8 +92,9 @@ def empty_answer(states: int, size: int, bodies: int, held: int) -> Answer:
 
 
 @kernel()
-def predict(t, known, at, known_y, known_rate, predicted):
-    """Hermite's polynomial through the last ``known`` states and rates at a factor t, into predicted."""
+def predict(t, known, at, states):
+    """Hermite's polynomial through the last ``known`` states and rates at a factor t, into PREDICTED."""
+    predicted = states[PREDICTED]
     for k in range(predicted.size):
         predicted[k] = 0.0
     for i in range(known):
@@ -92,16 +106,16 @@ def predict(t, known, at, known_y, known_rate, predicted):
         square = lagrange * lagrange
         by_value, by_rate = (1.0 - 2.0 * (t - at[i]) * slope) * square, (t - at[i]) * square
         for k in range(predicted.size):
-            predicted[k] += by_value * known_y[i, k] + by_rate * known_rate[i, k]
+            predicted[k] += by_value * states[i, k] + by_rate * states[KNOWN + i, k]
 
 
-@part()
+@kernel()
 def accepted(y, known, bodies, strips, shape, space):
     """Whether a solved state is the continuation of the last one, with end tangents forward and no fold."""
     if not space.out[SLOWEST] > SLOWEST_SPEED:
         return False
     own, modes = 2 * shape.order.size - 6, strips.compliance.shape[1]
-    last, predicted = space.known_y[known - 1], space.predicted
+    last, predicted = space.states[known - 1], space.states[PREDICTED]
     step = correction = 0.0
     for k in range(bodies.rest.size):
         step += (predicted[k] - last[k]) ** 2
@@ -130,28 +144,28 @@ def is_work(gained, work, width, slope0, slope1, stored):
 
 
 @kernel()
-def remember(t, y, rate, known, at, known_y, known_rate):
-    """Append a state and its rate to the known ones, dropping the oldest; returns their number."""
+def remember(t, known, at, states):
+    """Append Y and RATE to the known states, dropping the oldest; returns their number."""
     if known > 0 and t == at[known - 1]:
         known -= 1
     if known == KNOWN:
         for i in range(KNOWN - 1):
             at[i] = at[i + 1]
-            copy(known_y[i + 1], known_y[i])
-            copy(known_rate[i + 1], known_rate[i])
+            copy(states[i + 1], states[i])
+            copy(states[KNOWN + i + 1], states[KNOWN + i])
         known -= 1
     at[known] = t
-    copy(y, known_y[known])
-    copy(rate, known_rate[known])
+    copy(states[Y], states[known])
+    copy(states[RATE], states[KNOWN + known])
     return known + 1
 
 
 @kernel()
-def keep_last(known, at, known_y, known_rate):
+def keep_last(known, at, states):
     """Forget all known states but the last."""
     at[0] = at[known - 1]
-    copy(known_y[known - 1], known_y[0])
-    copy(known_rate[known - 1], known_rate[0])
+    copy(states[known - 1], states[0])
+    copy(states[KNOWN + known - 1], states[KNOWN])
 
 
 @kernel()
@@ -162,18 +176,19 @@ def follow(start, route, judged, preload, bodies, strips, shape, local, space, t
     the route swells. A state with another number of negative eigenvalues, or with a stiffness of another
     sign than the one before, ends the path, unless it passes such points: what happens there is not for here.
     """
-    y, out, counters, factors = space.y, space.out, answer.counters, route.factor
+    states, out, counters, factors = space.states, space.out, answer.counters, route.factor
+    y, rate, predicted, known_at = states[Y], states[RATE], states[PREDICTED], out[FACTORS:]
     held, targets = bodies.held, route.target
     copy(start, y)
-    copy(start, space.predicted)
-    copy(start, space.known_y[0])
+    copy(start, predicted)
+    copy(start, states[0])
     known, at = 0, factors[0]
     energy = gradient = curvature = done = defect = stiffness = 0.0
     inertia = -1
     for row in range(factors.size):
         begin, step = at, factors[row] - at
-        if known > 1 and step * (at - space.known_at[known - 2]) < 0.0:  # the path turns back
-            keep_last(known, space.known_at, space.known_y, space.known_rate)
+        if known > 1 and step * (at - known_at[known - 2]) < 0.0:  # the path turns back
+            keep_last(known, known_at, states)
             known = 1
         whole = step
         while True:
@@ -182,14 +197,14 @@ def follow(start, route, judged, preload, bodies, strips, shape, local, space, t
                 last = abs(here - at) <= abs(step) * (1 + 1e-9)
                 if not last:
                     here = at + step
-                if known > 1 and abs(here - at) > 2 * abs(at - space.known_at[known - 2]):
-                    keep_last(known, space.known_at, space.known_y, space.known_rate)
+                if known > 1 and abs(here - at) > 2 * abs(at - known_at[known - 2]):
+                    keep_last(known, known_at, states)
                     known = 1
-                predict(here, known, space.known_at, space.known_y, space.known_rate, space.predicted)
-                copy(space.predicted, y)
+                predict(here, known, known_at, states)
+                copy(predicted, y)
             for d in range(held.size):
-                y[held[d]] = space.predicted[held[d]] = route.origin[d] + here * targets[d]
-            load = route.load + here * route.growth
+                y[held[d]] = predicted[held[d]] = route.origin[d] + here * targets[d]
+            load = here * route.growth
             if route.swells:
                 act(here, preload, bodies, strips)
             negative = newton(y, load, bodies, strips, shape, local, space, tolerance, counters)
@@ -206,7 +221,7 @@ def follow(start, route, judged, preload, bodies, strips, shape, local, space, t
                     total -= load * bodies.load[i] * (y[i] - bodies.rest[i])
                 if route.swells:
                     slope, bend = swell(y, here, preload, bodies, strips, shape, local, space)
-                    total += here * preload.fallen
+                    total += here * preload.hung[1]
                 sound = not (judged and defect > LARGEST_DEFECT)
                 if sound and row > 0:
                     stored = abs(out[BENDING]) + abs(out[AXIAL])
@@ -222,7 +237,7 @@ def follow(start, route, judged, preload, bodies, strips, shape, local, space, t
                     return row
                 continue
             at = here
-            known = remember(at, y, space.rate, known, space.known_at, space.known_y, space.known_rate)
+            known = remember(at, known, known_at, states)
             if last:
                 break
             steps = abs(at - begin) / abs(step)
@@ -235,10 +250,11 @@ def follow(start, route, judged, preload, bodies, strips, shape, local, space, t
                 return row
             answer.stiffness[row] = stiffness
         copy(y, answer.y[row])
-        copy(space.reaction, answer.reaction[row])
-        copy(space.reaction_rate, answer.reaction_rate[row])
+        for d in range(held.size):
+            answer.reaction[row, d] = space.vectors[REACTION, d]
+            answer.reaction_rate[row, d] = space.vectors[REACTION_RATE, d]
         for i in range(bodies.rest.size):
-            answer.rate[row, i] = space.rate[i]
+            answer.rate[row, i] = rate[i]
         answer.energies[row, 0], answer.energies[row, 1] = out[BENDING], out[AXIAL]
         answer.inertia[row], answer.defect[row], answer.done[row] = negative, defect, done
     return factors.size

@@ -15,11 +15,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.checks import SLOWEST_SPEED
-from spline_model.reduced.assembly import AXIAL, BENDING, SLOWEST, condensed, element_of
+from spline_model.reduced.assembly import AXIAL, BENDING, SLOWEST, condensed, element_of, recovered
 from spline_model.reduced.equilibrium import EVALUATIONS, HALVED, ITERATIONS
 from spline_model.strip.compiled import copy, kernel
-from spline_model.strip.condense import SINGULAR, recover
-from spline_model.strip.element import end_frame
+from spline_model.strip.condense import SINGULAR
+from spline_model.strip.element import LAST, ROOT, TIP, end_frame
 
 Array = NDArray[np.float64]
 
@@ -83,30 +83,10 @@ def evaluate(s, at, y, strips, shape, local, room):
 
 
 @kernel()
-def eliminate(s, own, size, strips, local):
-    """``condensed``, called: it stands in every caller otherwise."""
-    return condensed(s, own, size, strips, local)
-
-
-@kernel()
-def move(share, s, at, own, size, y, strips, local, room):
+def move(share, s, at, own, y, strips, local, room):
     """Add to a condensed strip's w and a what its residual (share 1) and ``room.change`` ask for."""
     modes = strips.compliance.shape[1]
-    recover(
-        own,
-        size,
-        share,
-        strips.coupled,
-        strips.outer,
-        strips.gain[s],
-        local.g[s],
-        local.h[s],
-        local.b[s],
-        local.gap[s],
-        room.change,
-        room.step[:own],
-        room.step[own:],
-    )
+    recovered(s, own, share, strips, local, room.change, room.step[:own], room.step[own:])
     for i in range(own + modes):
         y[at + i] += room.step[i]
 
@@ -122,19 +102,19 @@ def correct(s, at, own, y, strips, shape, local, room, tolerance, counters):
         counters[EVALUATIONS] += 1
         norm = 0.0
         for i in range(own):
-            norm = max(norm, abs(local.g[s, i]))
-        for k in range(local.gap.shape[1]):
-            norm = max(norm, abs(local.gap[s, k]))
+            norm = max(norm, abs(local.reduced[s, LAST, i]))
+        for k in range(strips.compliance.shape[1]):
+            norm = max(norm, abs(local.axial[s, LAST, k]))
         if not norm < 1e12:
             return -1
-        negative = eliminate(s, own, size, strips, local)
+        negative = condensed(s, own, size, strips, local)
         if negative == SINGULAR:
             return -1
         if norm <= tolerance or (norm <= 1e3 * tolerance and norm > 0.5 * before):
             forward = min(y[at + own - 2], y[at + own - 1]) > 0.0 and room.out[SLOWEST] > SLOWEST_SPEED
             return negative if forward else -1
         before = norm
-        move(1.0, s, at, own, size, y, strips, local, room)
+        move(1.0, s, at, own, y, strips, local, room)
         counters[ITERATIONS] += 1
     return -1
 
@@ -144,9 +124,9 @@ def energy_at(s, at, own, y, strips, shape, local, room):
     """Strain energy of a strip with its axial forces made to follow w; inf for a fold."""
     evaluate(s, at, y, strips, shape, local, room)
     energy = room.out[BENDING]
-    for k in range(local.gap.shape[1]):
+    for k in range(strips.compliance.shape[1]):
         c = strips.compliance[s, k]
-        y[at + own + k] += local.gap[s, k] / c
+        y[at + own + k] += local.axial[s, LAST, k] / c
         energy += 0.5 * c * y[at + own + k] ** 2
     if not min(room.out[SLOWEST], min(y[at + own - 2], y[at + own - 1])) > FOLD:
         return np.inf
@@ -163,13 +143,13 @@ def descend(s, at, own, y, strips, shape, local, room, tolerance, counters):
         size = evaluate(s, at, y, strips, shape, local, room)
         counters[EVALUATIONS] += 1
         for i in range(own):
-            local.h[s, i, i] += shift
-        if eliminate(s, own, size, strips, local) != 0:
+            local.reduced[s, i, i] += shift
+        if condensed(s, own, size, strips, local) != 0:
             shift = max(10.0, 4.0 * shift)
             continue
         for i in range(own):
             room.trial[i] = y[at + i]
-        move(1.0, s, at, own, size, y, strips, local, room)
+        move(1.0, s, at, own, y, strips, local, room)
         counters[ITERATIONS] += 1
         lower = energy_at(s, at, own, y, strips, shape, local, room)
         if lower <= energy + 1e-12 * abs(energy):
@@ -188,10 +168,10 @@ def descend(s, at, own, y, strips, shape, local, room, tolerance, counters):
 @kernel()
 def settle(s, at, own, y, strips, shape, local, room, tolerance, counters):
     """From an unstable equilibrium to a stable one beside it, the lower of both sides; 0 if found."""
-    size, least = own + local.gap.shape[1], np.inf
+    size, least = own + strips.compliance.shape[1], np.inf
     for i in range(size):
         room.saddle[i] = room.best[i] = y[at + i]
-    end_frame(strips.roots[s], strips.root[s], y, room.place)
+    end_frame(strips.roots[s], strips.numbers[s], ROOT, y, room.place)
     for turn in range(2):
         for i in range(size):
             y[at + i] = room.saddle[i]
@@ -222,7 +202,7 @@ def advance(y, pose, strips, shape, local, room, tolerance, counters):
             y[i] = room.last[i]
         size = evaluate(s, at, y, strips, shape, local, room)
         counters[EVALUATIONS] += 1
-        if eliminate(s, own, size, strips, local) == SINGULAR:
+        if condensed(s, own, size, strips, local) == SINGULAR:
             return False
         place = 0
         for body in (strips.tips[s], strips.roots[s]):
@@ -230,7 +210,7 @@ def advance(y, pose, strips, shape, local, room, tolerance, counters):
                 for i in range(3):
                     room.change[place + i] = pose[3 * body + i] - room.last[3 * body + i]
                 place += 3
-        move(0.0, s, at, own, size, y, strips, local, room)
+        move(0.0, s, at, own, y, strips, local, room)
         for i in range(pose.size):
             y[i] = pose[i]
         negative = correct(s, at, own, y, strips, shape, local, room, tolerance, counters)
@@ -252,10 +232,10 @@ def parts_of(before, pose, strips, room):
     for s in range(strips.roots.size):
         for end in range(2):
             body = strips.tips[s] if end else strips.roots[s]
-            frame = strips.tip[s] if end else strips.root[s]
-            end_frame(body, frame, before, room.place)
+            frame = TIP if end else ROOT
+            end_frame(body, strips.numbers[s], frame, before, room.place)
             x, y = room.place[0], room.place[1]
-            end_frame(body, frame, pose, room.place)
+            end_frame(body, strips.numbers[s], frame, pose, room.place)
             longest = max(longest, math.hypot(room.place[0] - x, room.place[1] - y) / LONGEST_SHIFT)
     for i in range(2, pose.size, 3):
         longest = max(longest, abs(pose[i] - before[i]) / LONGEST_TURN)

@@ -47,7 +47,6 @@ def _run(
             factor=factors,
             origin=model.drives[0],
             target=target,
-            load=0.0,
             growth=0.0 if swells else 1.0,
             swells=swells,
         ),

@@ -12,8 +12,8 @@ from spline_model.effects.base import Constraint
 from spline_model.reduced.model import Reduced
 from spline_model.reduced.path import Answer
 from spline_model.strip.compiled import kernel
-from spline_model.strip.element import place_points
-from spline_model.strip.points import visit_points
+from spline_model.strip.element import GRADIENT, POINTS, place_points
+from spline_model.strip.points import evaluate_points
 
 Array = NDArray[np.float64]
 
@@ -32,8 +32,8 @@ def place_all(y, poses, shape, strips, local, out, points, forces):
             at = poses + s * (own + modes)
             state = y[row]
             place_points(s, state[at : at + own], state, strips, local)
-            visit_points(s, state[at + own : at + own + modes], n, shape, strips, local, out)
-            p, g = local.points[s], local.gradient[s]
+            evaluate_points(s, state[at + own : at + own + modes], n, shape, strips, local, out)
+            p, g = local.nodal[s, POINTS], local.nodal[s, GRADIENT]
             for i in range(2 * n):
                 points[row, s, i] = p[i]
             for end in range(2):
@@ -51,7 +51,7 @@ def by_state(model: Reduced, factors: Array, answer: Answer) -> dict[str, Any]:
 
     Of the rates those of bodies and drives are filled.
     """
-    system, layout, drives = model.system, model.system.layout, model.system.tables.drives
+    system, layout, drives = model.system, model.system.layout, model.system.drives
     states = unknowns_of(model, answer.y, answer.reaction)
     rates = np.zeros_like(states)
     for i, body in enumerate(system.scene.bodies):
@@ -108,6 +108,6 @@ def gathered(model: Reduced, y: Array, points: Array, forces: Array, reaction: A
         for end, place in (("start", 0), ("end", 1)):
             if (strip.name, end) in rows:
                 z[..., rows[strip.name, end]] = forces[..., s, place, :] * unit
-    drives = system.tables.drives
+    drives = system.drives
     z[..., drives.row] = reaction * unit[2 * drives.turns]
     return z

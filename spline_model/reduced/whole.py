@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from spline_model.reduced.assembly import place_of
+from spline_model.reduced.assembly import AXIAL, place_of
 from spline_model.reduced.model import Reduced
 from spline_model.strip.compiled import kernel
-from spline_model.strip.element import place_points, to_element
+from spline_model.strip.element import LAST, place_points, to_element
 from spline_model.strip.laws import MATERIAL
-from spline_model.strip.points import visit_points
+from spline_model.strip.points import evaluate_points
 
 Array = NDArray[np.float64]
 
@@ -22,61 +22,54 @@ def whole_tangents(model: Reduced, y: Array) -> tuple[Array, Array]:
     """
     count, size = y.shape
     gradient, hessian = np.zeros((count, size)), np.zeros((count, size, size))
-    place = np.zeros(2 * len(model.shape.order), dtype=np.int64)
     poses, local = len(model.bodies.rest), model.local()
-    _assemble(y, poses, model.strips, model.shape, local, place, np.zeros(5), gradient, hessian)
+    _assemble(y, poses, model.strips, model.shape, local, np.zeros(5), gradient, hessian)
     return gradient, hessian
 
 
 @kernel()
-def _assemble(y, poses, strips, shape, local, place, out, gradient, hessian):
+def _assemble(y, poses, strips, shape, local, out, gradient, hessian):
     """Add all strips of all states."""
-    n, modes = shape.order.size, strips.compliance.shape[1]
-    own = 2 * n - 6
+    modes = strips.compliance.shape[1]
+    own = 2 * shape.order.size - 6
     for row in range(y.shape[0]):
-        state, force, matrix = y[row], gradient[row], hessian[row]
         for s in range(strips.roots.size):
             at = poses + s * (own + modes)
-            axial = at + own
-            tip, root = strips.tips[s] >= 0, strips.roots[s] >= 0
-            place_points(s, state[at:axial], state, strips, local)
-            visit_points(s, state[axial : axial + modes], n, shape, strips, local, out)
-            g, h, b = local.g[s], local.h[s], local.b[s]
-            to_element(
-                n,
-                0,
-                tip,
-                root,
-                local.map[s],
-                local.gradient[s],
-                local.hessian[s],
-                local.coupling[s],
-                g,
-                h,
-                b,
-                local.square,
-                local.lines,
-                local.line,
-            )
-            size = own + 3 * tip + 3 * root
-            for i in range(size):
-                place[i] = at + i if i < own else place_of(i - own, strips.tips[s], strips.roots[s], 0)
-            for i in range(size):
-                force[place[i]] += g[i]
-                for j in range(i, size):
-                    matrix[place[i], place[j]] += h[i, j]
-                    if i != j:
-                        matrix[place[j], place[i]] += h[i, j]
-                for k in range(modes):
-                    matrix[place[i], axial + k] += b[k, i]
-                    matrix[axial + k, place[i]] += b[k, i]
-            for k in range(modes):
-                force[axial + k] = local.gap[s, k]
-                if strips.measure == MATERIAL:
-                    matrix[axial + k, axial + k] = -strips.compliance[s, k]
-                else:
-                    for j in range(modes):
-                        matrix[axial + k, axial + j] = -local.gram[s, k, j]
+            add_strip(s, at, at, at + own, y[row], strips, shape, local, out, gradient[row], hessian[row])
+
+
+@kernel()
+def add_strip(s, at, first, axial, y, strips, shape, local, out, gradient, hessian):
+    """Add strip s, with w and a from y[at] on, to gradient and tangent, where these are at first and axial.
+
+    The axial energy is int (N eps - 1/2 c N^2) W du, whose derivatives these are.
+    """
+    n, modes = shape.order.size, strips.compliance.shape[1]
+    own = 2 * n - 6
+    a = y[at + own : at + own + modes]
+    place_points(s, y[at : at + own], y, strips, local)
+    evaluate_points(s, a, n, shape, strips, local, out)
+    size, h, gram = to_element(s, n, 0, strips, local), local.reduced[s], local.axial[s]
+    g, gap, width = h[LAST], gram[LAST], h.shape[1]
+    for i in range(size):
+        row = first + i if i < own else place_of(i - own, strips.tips[s], strips.roots[s], 0)
+        gradient[row] += g[i]
+        hessian[row, row] += h[i, i]
+        for j in range(i + 1, size):
+            column = first + j if j < own else place_of(j - own, strips.tips[s], strips.roots[s], 0)
+            hessian[row, column] += h[i, j]
+            hessian[column, row] += h[i, j]
+        for k in range(modes):
+            hessian[row, axial + k] += h[width + k, i]
+            hessian[axial + k, row] += h[width + k, i]
+    for k in range(modes):
+        gradient[axial + k] = gap[k]
+        if strips.measure == MATERIAL:
+            out[AXIAL] += a[k] * gap[k]
+            hessian[axial + k, axial + k] = -strips.compliance[s, k]
+        else:
+            for j in range(modes):
+                hessian[axial + k, axial + j] = -gram[k, j]
 
 
 def coordinates_by(model: Reduced, y: Array) -> Array:

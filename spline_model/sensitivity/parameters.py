@@ -80,7 +80,7 @@ def crossing_reach(pivot: Pivot) -> tuple[float, float]:
     apart = pivot.clamp_directions[0, 0] - pivot.clamp_directions[1, 0]
     base, length = (
         pivot.clamp_points[1, 0] - pivot.clamp_points[0, 0],
-        pivot.mechanism.design.strips[0].length,
+        pivot.design.strips[0].length,
     )
     return float(base @ apart / (apart @ apart)) / length, length
 
@@ -100,11 +100,11 @@ def _shape_rates(pivot: Pivot, name: str) -> tuple[Array, Array]:
     return ends, reach[0]
 
 
-def rates_of(asked: Pivot | Mechanism, names: Sequence[str]) -> Rates:
+def rates_of(asked: Mechanism, names: Sequence[str]) -> Rates:
     """The rates of a design by the names of its parameters; refuses unknown and doubled ones."""
     if not names or len(set(names)) != len(names):
         raise InvalidParameter("parameters", list(names), "at least one name, each once")
-    design = (asked.mechanism if isinstance(asked, Pivot) else asked).design
+    design = asked.design
     strips, bodies = [s.name for s in design.strips], [b.name for b in design.bodies]
     rates = Rates(
         section=np.zeros((len(names), len(strips), 3)),

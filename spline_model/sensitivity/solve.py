@@ -22,7 +22,7 @@ from spline_model.sensitivity.element import Elements, turned
 from spline_model.sensitivity.parameters import KEYWORDS, Rates, crossing_reach, rates_of
 from spline_model.sensitivity.result import Quantity, Sensitivities
 from spline_model.sensitivity.varied import STEP, held_rates, varied_strips
-from spline_model.solution import MechanismSolution, StaticSolution
+from spline_model.solution import StaticSolution
 from spline_model.statics import STATIONS
 
 Array = NDArray[np.float64]
@@ -32,8 +32,8 @@ LARGEST_RESIDUAL = 1e-7
 
 
 def sensitivities(
-    asked: Pivot | Mechanism,
-    solution: StaticSolution | MechanismSolution,
+    asked: Mechanism,
+    solution: StaticSolution,
     *,
     parameters: Sequence[str] = KEYWORDS,
     stations: Array = STATIONS,
@@ -58,8 +58,10 @@ def sensitivities(
     Source: implicit function theorem; Haftka and Guerdal, Elements of Structural Optimization
     (1992), ch. 7.
     """
+    if asked.design.discretisation.control_points is None:
+        asked = asked.with_control_points(solution.control_points)
     rates = rates_of(asked, parameters)
-    mechanism = asked.mechanism if isinstance(asked, Pivot) else asked
+    mechanism = asked
     driven = not np.isnan(solution.torque).all()
     system = compile_scene(mechanism.driven(1.0, body) if driven else mechanism.scene)
     model = reduced(system, longest=math.inf)
@@ -80,7 +82,7 @@ def sensitivities(
     bending, axial = (_quantity(model.energy * each).derivative for each in moved.energies)
     torque = Quantity(value=solution.torque, derivative=np.full((len(z), len(parameters)), np.nan))
     if driven:
-        row = system.tables.drives.row[model.bodies.driven]
+        row = system.drives.row[model.bodies.driven]
         torque = replace(torque, derivative=states.derivative[:, row])
     return Sensitivities(
         parameters=tuple(parameters),
@@ -104,9 +106,7 @@ def _unknowns(elements: Elements) -> NDArray[Any]:
     return gathered(elements.model, elements.y, points, forces, force[..., elements.model.bodies.held])
 
 
-def _differentiate(
-    still: Elements, solution: StaticSolution | MechanismSolution, held: Array
-) -> tuple[Array, Array]:
+def _differentiate(still: Elements, solution: StaticSolution, held: Array) -> tuple[Array, Array]:
     """Derivatives (P, S, Y) by the parameters, ``held`` (P, D) of held coordinates, and (1, S, Y) by the
     rotation."""
     model, y = still.model, still.y[0].real
@@ -139,11 +139,11 @@ def _differentiate(
 
 
 def _shifts(
-    asked: Pivot | Mechanism, rates: Rates, unknowns: NDArray[Any], layout: Layout, body: str | None
+    asked: Mechanism, rates: Rates, unknowns: NDArray[Any], layout: Layout, body: str | None
 ) -> dict[str, Quantity]:
     """Centre of the body, its displacement, and that of its point in a pivot's crossing at rest; nan without
     a body."""
-    design, step = (asked.mechanism if isinstance(asked, Pivot) else asked).design, 1j * STEP
+    design, step = asked.design, 1j * STEP
     if not design.bodies:
         none = _quantity(np.full((*unknowns.shape[:-1], 2), np.nan + 0j))
         return {"centre": none, "body_shift": none, "centre_shift": none}

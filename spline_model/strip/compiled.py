@@ -17,8 +17,9 @@ FAST = {"contract", "reassoc", "nsz"}
 kernel = partial(njit, cache=True, nogil=True, fastmath=FAST, error_model="numpy", _nrt=False)
 """Decorator ``@kernel()`` of a function that works on given arrays only."""
 
-part = partial(kernel, inline="always")
-"""The same for a small function that becomes a part of its callers: tables are not passed on."""
+part = partial(kernel, forceinline=True)
+"""The same for a function that becomes a part of its callers: tables are not passed on. The compiler proper
+inlines it, on machine code to be; Numba's own inlining would type and simplify it anew in each caller."""
 
 
 @part()

@@ -27,83 +27,148 @@ from spline_model.strip.compiled import kernel, part
 Array = NDArray[np.float64]
 GROUNDED = -1
 
+VALUE, FIRST, SECOND, BEYOND = range(4)
+"""Places of ``Shape.tables``."""
+WHERE, WEIGHT = range(2)
+"""Places of ``Shape.rule``."""
+SPEED, CURVATURE, RIGIDITY, MODES = range(4)
+"""Places along a strip, ``Strips.along``."""
+STRETCHING, STRAIN, ROOT, TIP, REACH, PER_U, ON_POINTS = 0, 1, 2, 5, 8, 10, 12
+"""Places of a strip's numbers."""
+LEVER, GRADIENT, POINTS = -3, -2, -1
+"""Last rows of ``Local.nodal``."""
+LAST = -1
+"""Row of g in ``Local.reduced``, and of the gap in ``Local.axial``."""
+
 
 class Shape(NamedTuple):
     """Basis at the G Gauss points, the same for all strips, points in the order of elimination.
 
-    order (n,) control point at each place; d0, d1, d2 (G, n); beyond (G, n) integrals of the basis
-    from u to 1; u, weight (G,).
+    order (n,) control point at each place; tables (4, G, n) the basis, its first and second derivatives and
+    its integrals from u to 1; rule (2, G) u and weights.
     """
 
     order: NDArray[np.int64]
-    d0: Array
-    d1: Array
-    d2: Array
-    beyond: Array
-    u: Array
-    weight: Array
+    tables: Array
+    rule: Array
+
+    @property
+    def d1(self) -> Array:
+        """First derivatives (G, n)."""
+        return np.asarray(self.tables[FIRST])
+
+    @property
+    def d2(self) -> Array:
+        """Second derivatives (G, n)."""
+        return np.asarray(self.tables[SECOND])
+
+    @property
+    def weight(self) -> Array:
+        """Weights (G,)."""
+        return np.asarray(self.rule[WEIGHT])
 
 
 class Strips(NamedTuple):
-    """What tells S strips from one another.
+    """What tells S strips from one another, in few arrays: each costs every kernel that they are passed to.
 
-    speed, curvature, rigidity (S, G): J0, stress-free curvature and EI at the Gauss points;
-    stretching (S,) EA of stretching by quadrature, 0 for the mixed form; strain (S,) natural strain;
-    modes (S, G, K) of the axial force, orthonormal along the strip, of which ``split`` belong to the
-    stretching and the others to the sliding of control points; compliance (S, K) of each; gain (S, K)
-    the stiffness by which they are condensed; coupled: leading axial forces that stay beside w, where a
-    compliance is too small to divide by or depends on the state; outer: 1 if the first of them, the
-    mean, stays beside the bodies, or 0; roots, tips (S,) bodies or GROUNDED; root, tip (S, 3): clamped
-    point in its body's frame, or on the ground, and direction at rest [rad]; reach (S, 2) k_A, k_B;
-    dead (S, 2 n) dead load on the control points; weight (S, 2) dead load per du; measure: of all.
+    along (S, G, 3 + K): J0, stress-free curvature, EI, and the modes of the axial force at the Gauss points,
+    orthonormal along the strip, of which ``split`` belong to the stretching and the others to the sliding of
+    control points; compliance (S, K) of each; gain (S, K) the stiffness by which they are condensed; numbers
+    (S, 12 + 2 n): EA of stretching by quadrature, 0 for the mixed form; natural strain; root and tip, three
+    each, the clamped point in its body's frame, or on the ground, and direction at rest [rad]; reach, k_A and
+    k_B; dead load per du, two, and on the control points; roots, tips (S,) bodies or GROUNDED; coupled:
+    leading axial forces that stay beside w, where a compliance is too small to divide by or depends on the
+    state; outer: 1 if the first of them, the mean, stays beside the bodies, or 0; measure: of all.
     """
 
-    speed: Array
-    curvature: Array
-    rigidity: Array
-    stretching: Array
-    strain: Array
-    modes: Array
-    split: int
+    along: Array
     compliance: Array
     gain: Array
-    coupled: int
-    outer: int
+    numbers: Array
     roots: NDArray[np.int64]
     tips: NDArray[np.int64]
-    root: Array
-    tip: Array
-    reach: Array
-    dead: Array
-    weight: Array
+    split: int
+    coupled: int
+    outer: int
     measure: int
+
+    @property
+    def speed(self) -> Array:
+        """J0 (S, G)."""
+        return self.along[..., SPEED]
+
+    @property
+    def curvature(self) -> Array:
+        """Stress-free curvature (S, G)."""
+        return self.along[..., CURVATURE]
+
+    @property
+    def rigidity(self) -> Array:
+        """EI (S, G)."""
+        return self.along[..., RIGIDITY]
+
+    @property
+    def modes(self) -> Array:
+        """Modes of the axial force (S, G, K)."""
+        return self.along[..., MODES:]
+
+    @property
+    def stretching(self) -> Array:
+        """EA of stretching by quadrature (S,)."""
+        return self.numbers[:, STRETCHING]
+
+    @property
+    def strain(self) -> Array:
+        """Natural strain (S,)."""
+        return self.numbers[:, STRAIN]
+
+    @property
+    def root(self) -> Array:
+        """Clamped point and direction at the root (S, 3)."""
+        return self.numbers[:, ROOT:TIP]
+
+    @property
+    def tip(self) -> Array:
+        """Clamped point and direction at the tip (S, 3)."""
+        return self.numbers[:, TIP:REACH]
+
+    @property
+    def reach(self) -> Array:
+        """k_A, k_B (S, 2)."""
+        return self.numbers[:, REACH:PER_U]
+
+    @property
+    def per_u(self) -> Array:
+        """Dead load per du (S, 2)."""
+        return self.numbers[:, PER_U:ON_POINTS]
+
+    @property
+    def dead(self) -> Array:
+        """Dead load on the control points (S, 2 n)."""
+        return self.numbers[:, ON_POINTS:]
 
 
 class Local(NamedTuple):
-    """What one evaluation of S strips fills; E = W + coupled + 7 element coordinates, at most.
+    """What one evaluation of S strips fills, in few arrays as ``Strips``; E = W + coupled + 7 coordinates.
 
-    points (S, 2 n); gradient (S, 2 n), hessian (S, 2 n, 2 n), coupling (S, K, 2 n) in the control
-    points; moment (S, G); g (S, E), h (S, E, E), b and e (S, K, E), the coupling and its combination,
-    gap (S, K), gram (S, K, K) derivative of -gap in a; map (S, 16) of the ends; lever (n,) moment of
-    the tip's reaction about the control points; square, lines (8, 8) and line (8,): scratch.
+    nodal (S, 2 n + K + 3, 2 n), in the control points: the Hessian, the coupling of the axial forces, and
+    in its last rows LEVER, GRADIENT and POINTS: moment of the tip's reaction about the points (n), gradient
+    and the points themselves; reduced (S, E + 2 K + 1, E), in the element's coordinates: h, then b and e, the
+    coupling and its combination, and last g; axial (S, K + 1, K): derivative of -gap in a, and last the gap;
+    moment (S, G); map (S, 16) of the ends; scratch (17, 8).
     """
 
-    points: Array
-    gradient: Array
-    hessian: Array
-    coupling: Array
+    nodal: Array
+    reduced: Array
+    axial: Array
     moment: Array
-    g: Array
-    h: Array
-    b: Array
-    e: Array
-    gap: Array
-    gram: Array
     map: Array
-    square: Array
-    lines: Array
-    line: Array
-    lever: Array
+    scratch: Array
+
+    @property
+    def points(self) -> Array:
+        """Control points (S, 2 n)."""
+        return self.nodal[:, POINTS]
 
 
 def local_arrays(strips: int, control_points: int, modes: int, gauss_points: int, coupled: int) -> Local:
@@ -111,57 +176,51 @@ def local_arrays(strips: int, control_points: int, modes: int, gauss_points: int
     s, n, k = strips, control_points, modes
     size = 2 * n - 6 + coupled + 7
     return Local(
-        points=np.zeros((s, 2 * n)),
-        gradient=np.zeros((s, 2 * n)),
-        hessian=np.zeros((s, 2 * n, 2 * n)),
-        coupling=np.zeros((s, k, 2 * n)),
+        nodal=np.zeros((s, 2 * n + k + 3, 2 * n)),
+        reduced=np.zeros((s, size + 2 * k + 1, size)),
+        axial=np.zeros((s, k + 1, k)),
         moment=np.zeros((s, gauss_points)),
-        g=np.zeros((s, size)),
-        h=np.zeros((s, size, size)),
-        b=np.zeros((s, k, size)),
-        e=np.zeros((s, k, size)),
-        gap=np.zeros((s, k)),
-        gram=np.zeros((s, k, k)),
         map=np.zeros((s, 16)),
-        square=np.zeros((8, 8)),
-        lines=np.zeros((8, 8)),
-        line=np.zeros(8),
-        lever=np.zeros(n),
+        scratch=np.zeros((17, 8)),
     )
 
 
 @kernel()
-def end_frame(body, frame, pose, out):
-    """Point, direction and the body's centre of a clamped end: out (6,) = x, y, cos, sin, X, Y."""
+def end_frame(body, numbers, end, pose, out):
+    """Point, direction and the body's centre of a clamped end: out (6,) = x, y, cos, sin, X, Y.
+
+    end: ROOT or TIP, where the end's frame stands in the strip's numbers.
+    """
+    px, py, turn = numbers[end], numbers[end + 1], numbers[end + 2]
     if body < 0:
-        out[0], out[1], out[4], out[5] = frame[0], frame[1], 0.0, 0.0
-        out[2], out[3] = math.cos(frame[2]), math.sin(frame[2])
+        out[0], out[1], out[4], out[5] = px, py, 0.0, 0.0
+        out[2], out[3] = math.cos(turn), math.sin(turn)
     else:
         at = 3 * body
         x, y, angle = pose[at], pose[at + 1], pose[at + 2]
         c, d = math.cos(angle), math.sin(angle)
-        out[0], out[1] = x + c * frame[0] - d * frame[1], y + d * frame[0] + c * frame[1]
-        out[2], out[3] = math.cos(angle + frame[2]), math.sin(angle + frame[2])
+        out[0], out[1] = x + c * px - d * py, y + d * px + c * py
+        out[2], out[3] = math.cos(angle + turn), math.sin(angle + turn)
         out[4], out[5] = x, y
 
 
 @part()
 def place_points(s, w, pose, strips, local):
     """Control points of strip s from its own coordinates w (W,) and the bodies' poses (3 B,), and its map."""
-    points, ends, frame = local.points[s], local.map[s], local.line
+    points, ends, frame, numbers = local.nodal[s, POINTS], local.map[s], local.scratch[16], strips.numbers[s]
     own = w.size
     inner = own - 2
     for i in range(inner):
         points[i] = w[i]
-    end_frame(strips.roots[s], strips.root[s], pose, frame)
-    kx, ky = strips.reach[s, 0] * frame[2], strips.reach[s, 0] * frame[3]
+    end_frame(strips.roots[s], numbers, ROOT, pose, frame)
+    kx, ky = numbers[REACH] * frame[2], numbers[REACH] * frame[3]
     points[inner], points[inner + 1] = frame[0] + w[own - 2] * kx, frame[1] + w[own - 2] * ky
     points[inner + 6], points[inner + 7] = frame[0], frame[1]
     ends[0], ends[1] = kx, ky
     ends[8], ends[9] = frame[5] - points[inner + 1], points[inner] - frame[4]
     ends[10], ends[11] = frame[5] - frame[1], frame[0] - frame[4]
-    end_frame(strips.tips[s], strips.tip[s], pose, frame)
-    kx, ky = -strips.reach[s, 1] * frame[2], -strips.reach[s, 1] * frame[3]
+    end_frame(strips.tips[s], numbers, TIP, pose, frame)
+    kx, ky = -numbers[REACH + 1] * frame[2], -numbers[REACH + 1] * frame[3]
     points[inner + 2], points[inner + 3] = frame[0] + w[own - 1] * kx, frame[1] + w[own - 1] * ky
     points[inner + 4], points[inner + 5] = frame[0], frame[1]
     ends[2], ends[3] = kx, ky
@@ -190,11 +249,14 @@ def to_ends(v, at, ends, tip, root, out, first, behind):
 
 
 @part()
-def to_element(moving, inner, tip, root, ends, gradient, hessian, coupling, g, h, b, square, lines, line):
-    """Gradient, upper Hessian and coupling of one strip in its element coordinates: g, h and b.
+def to_element(s, moving, inner, strips, local):
+    """Gradient, upper Hessian and coupling of strip s in its element coordinates, into ``local.reduced``.
 
-    inner: coupled axial forces beside w; tip, root: whether these ends move.
+    inner: coupled axial forces beside w. Returns the number of coordinates but outer axial forces.
     """
+    tip, root, ends = strips.tips[s] >= 0, strips.roots[s] >= 0, local.map[s]
+    hessian, h, lines = local.nodal[s], local.reduced[s], local.scratch
+    gradient, g, width, first = hessian[GRADIENT], h[LAST], h.shape[1], hessian.shape[1]
     at = gradient.size - 8
     behind = at + 2 + inner
     for i in range(at):
@@ -204,8 +266,8 @@ def to_element(moving, inner, tip, root, ends, gradient, hessian, coupling, g, h
             target[j] = row[j]
         to_ends(row, at, ends, tip, root, target, at, behind)
     to_ends(gradient, at, ends, tip, root, g, at, behind)
-    for k in range(b.shape[0]):
-        row, target = coupling[k], b[k]
+    for k in range(strips.compliance.shape[1]):
+        row, target = hessian[first + k], h[width + k]
         for i in range(at):
             target[i] = row[i]
         to_ends(row, at, ends, tip, root, target, at, behind)
@@ -216,15 +278,15 @@ def to_element(moving, inner, tip, root, ends, gradient, hessian, coupling, g, h
             hessian[at + i, at + j] = hessian[at + j, at + i]
     columns = 2 + 3 * tip + 3 * root
     for i in range(special):
-        to_ends(hessian[at + i], at, ends, tip, root, line, 0, 2)
+        to_ends(hessian[at + i], at, ends, tip, root, lines[16], 0, 2)
         for c in range(columns):
-            lines[c, i] = line[c]
+            lines[c, i] = lines[16, c]
     for c in range(columns):
-        to_ends(lines[c], 0, ends, tip, root, square[c], 0, 2)
+        to_ends(lines[c], 0, ends, tip, root, lines[8 + c], 0, 2)
     for c in range(columns):
         row = at + c if c < 2 else behind + c - 2
         for d in range(c, columns):
-            h[row, at + d if d < 2 else behind + d - 2] = square[c, d]
+            h[row, at + d if d < 2 else behind + d - 2] = lines[8 + c, d]
     if tip:
         turn = behind + 2
         x, y, bx, by = gradient[at + 4], gradient[at + 5], gradient[at + 2], gradient[at + 3]
@@ -235,3 +297,4 @@ def to_element(moving, inner, tip, root, ends, gradient, hessian, coupling, g, h
         x, y, bx, by = gradient[at + 6], gradient[at + 7], gradient[at], gradient[at + 1]
         h[at, turn] += ends[0] * by - ends[1] * bx
         h[turn, turn] += ends[10] * y - ends[11] * x + ends[8] * by - ends[9] * bx
+    return behind + columns - 2

@@ -6,32 +6,53 @@ import math
 
 import numpy as np
 
-from spline_model.strip.compiled import kernel, part
+from spline_model.strip.compiled import part
+from spline_model.strip.element import (
+    CURVATURE,
+    FIRST,
+    GRADIENT,
+    LAST,
+    MODES,
+    ON_POINTS,
+    POINTS,
+    RIGIDITY,
+    SECOND,
+    SPEED,
+    STRAIN,
+    STRETCHING,
+    WEIGHT,
+)
 from spline_model.strip.laws import MATERIAL, bending_law, mixed_law, stretching_law
 
 
 @part()
-def assemble_points(
-    points, a, moving, d1, d2, weights, speeds, curvature, rigidity, stretching, strain, modes, split,
-    compliance, dead, measure, gradient, hessian, coupling, gap, gram, moment, out,
-):  # fmt: skip
-    """Fill gradient, upper Hessian, coupling and gap of the first ``moving`` places of one strip.
+def evaluate_points(s, a, moving, shape, strips, local, out):
+    """Fill gradient, upper Hessian, coupling and gap of the first ``moving`` places of strip s.
 
     Adds bending and axial energy to out[0] and out[1], the dead load's to out[2]; out[3] becomes the
-    least v / J0. The arguments are one strip's rows of ``Strips`` and ``Local``: whole tuples of
-    arrays would cost more to pass on than the strip to evaluate.
+    least v / J0.
     """
+    d1, d2, weights, along = shape.tables[FIRST], shape.tables[SECOND], shape.rule[WEIGHT], strips.along[s]
+    numbers, split, compliance, measure = (
+        strips.numbers[s],
+        strips.split,
+        strips.compliance[s],
+        strips.measure,
+    )
+    hessian, gram, moment = local.nodal[s], local.axial[s], local.moment[s]
+    points, gradient, gap = hessian[POINTS], hessian[GRADIENT], gram[LAST]
+    strain, stretching = numbers[STRAIN], numbers[STRETCHING]
     n, count, slowest = d1.shape[1], a.size, np.inf
     bending = axial = fallen = 0.0
     for i in range(2 * n):
-        gradient[i] = -dead[i]
-        fallen -= dead[i] * points[i]
+        gradient[i] = -numbers[ON_POINTS + i]
+        fallen -= numbers[ON_POINTS + i] * points[i]
     for i in range(2 * moving):
         for j in range(i, 2 * moving):
             hessian[i, j] = 0.0
     for k in range(count):
         for i in range(2 * moving):
-            coupling[k, i] = 0.0
+            hessian[2 * n + k, i] = 0.0
         if measure == MATERIAL:
             gap[k] = -compliance[k] * a[k]
             axial += 0.5 * compliance[k] * a[k] * a[k]
@@ -47,21 +68,22 @@ def assemble_points(
             y1 += d1[p, i] * y
             x2 += d2[p, i] * x
             y2 += d2[p, i] * y
-        weight, speed = weights[p], speeds[p]
+        weight, at = weights[p], along[p]
+        speed, modes = at[SPEED], at[MODES:]
         square = x1 * x1 + y1 * y1
         v, r = math.sqrt(square), 1.0 / square
         slowest = min(slowest, v / speed)
         tx, ty = x1 / v, y1 / v
         phi = (x1 * y2 - y1 * x2) * r
-        density, m, m_phi, m_v, f, f_v = bending_law(phi, v, speed, curvature[p], rigidity[p], measure)
+        density, m, m_phi, m_v, f, f_v = bending_law(phi, v, speed, at[CURVATURE], at[RIGIDITY], measure)
         bending += weight * density
         moment[p] = m
         force = sliding = by_nv = 0.0
         if count > 0:
             for k in range(split):
-                force += modes[p, k] * a[k]
+                force += modes[k] * a[k]
             for k in range(split, count):
-                sliding += modes[p, k] * a[k]
+                sliding += modes[k] * a[k]
             loss = compliance[0] * force * force
             if split < count:
                 loss += compliance[split] * sliding * sliding
@@ -70,14 +92,14 @@ def assemble_points(
             f_v += by_vv
             if measure == MATERIAL:
                 for k in range(count):
-                    gap[k] += weight * modes[p, k] * by_n
+                    gap[k] += weight * modes[k] * by_n
             else:
                 axial += weight * density
                 for k in range(count):
                     mine, first, last = (force, 0, split) if k < split else (sliding, split, count)
-                    gap[k] += weight * modes[p, k] * (by_n - compliance[k] * mine * v)
+                    gap[k] += weight * modes[k] * (by_n - compliance[k] * mine * v)
                     for j in range(first, last):
-                        gram[k, j] += weight * compliance[k] * v * modes[p, k] * modes[p, j]
+                        gram[k, j] += weight * compliance[k] * v * modes[k] * modes[j]
         if stretching > 0.0:
             density, by_v, by_vv = stretching_law(v, speed, strain, stretching, measure)
             axial += weight * density
@@ -119,8 +141,8 @@ def assemble_points(
             factor = by_nv
             if measure != MATERIAL:
                 factor -= compliance[k] * (force if k < split else sliding)
-            wk = weight * modes[p, k] * factor
-            row = coupling[k]
+            wk = weight * modes[k] * factor
+            row = hessian[2 * n + k]
             kx, ky = wk * tx, wk * ty
             for i in range(moving):
                 row[2 * i] += kx * d1[p, i]
@@ -129,39 +151,3 @@ def assemble_points(
     out[1] += axial
     out[2] += fallen
     out[3] = min(out[3], slowest)
-
-
-@part()
-def evaluate_points(s, a, moving, shape, strips, local, out):
-    """``assemble_points`` of strip s."""
-    assemble_points(
-        local.points[s],
-        a,
-        moving,
-        shape.d1,
-        shape.d2,
-        shape.weight,
-        strips.speed[s],
-        strips.curvature[s],
-        strips.rigidity[s],
-        strips.stretching[s],
-        strips.strain[s],
-        strips.modes[s],
-        strips.split,
-        strips.compliance[s],
-        strips.dead[s],
-        strips.measure,
-        local.gradient[s],
-        local.hessian[s],
-        local.coupling[s],
-        local.gap[s],
-        local.gram[s],
-        local.moment[s],
-        out,
-    )
-
-
-@kernel()
-def visit_points(s, a, moving, shape, strips, local, out):
-    """``evaluate_points``, called: for what is not the inner loop of a path, which would compile it again."""
-    evaluate_points(s, a, moving, shape, strips, local, out)

@@ -1,6 +1,5 @@
 """Put a design to either model, and get a neutral answer: static paths here, motions from `moving`."""
 
-from collections.abc import Callable
 from typing import Any
 
 from studies.answers.assembly import MechanismResponse, MechanismResult, mechanism_response
@@ -10,11 +9,10 @@ from studies.answers.response import Response, StaticResult, assembled, response
 from studies.answers.settings import Settings
 from studies.cases.mechanism import Mechanism
 from studies.cases.problem import Problem
+from studies.kinds import Progress
 from studies.record.timing import measure
 
 __all__ = ["answer_mechanism", "answer_modes", "answer_release", "answer_static", "spline_mechanism"]
-
-Progress = Callable[[int, int], None]
 
 
 def answer_static(
@@ -50,7 +48,7 @@ def answer_static(
 
     def solve(rotation: float, increments: int, **options: Any) -> StaticResult:
         result: StaticResult = model.statics.solve_statics(
-            pivot, rotation=rotation, increments=increments, **options
+            pivot, rotation=rotation, increments=increments, order=problem.order, **options
         )
         return result
 
@@ -82,20 +80,23 @@ def answer_mechanism(
     mechanism: Mechanism,
     settings: Settings,
     *,
+    accuracy: float | None = None,
     repeat: int = 1,
     raise_on_failure: bool = False,
     progress: Progress | None = None,
 ) -> MechanismResponse:
     """Solve the path of any mechanism from load factor 0 to 1; arguments and errors as of `answer_static`.
 
-    The path is that of the driven rotation and of the loads together, or of the loads alone.
+    The path is that of the driven rotation and of the loads in the design's order, or of the loads alone.
     """
     model = model_of(settings)
     asked, keywords = built(model, mechanism, settings, moving=False)
+    wanted = {} if accuracy is None else {"accuracy": accuracy}
 
     def whole_path(increments: int = mechanism.increments, **options: Any) -> MechanismResult:
+        drive = {"body": mechanism.body, "rotation": mechanism.rotation, "order": mechanism.order}
         result: MechanismResult = model.statics.solve_mechanism(
-            asked, body=mechanism.body, rotation=mechanism.rotation, increments=increments, **options
+            asked, **drive, increments=increments, **wanted, **options
         )
         return result
 

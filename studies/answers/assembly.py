@@ -5,11 +5,9 @@ from dataclasses import dataclass
 from typing import Any, Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
-from studies.answers.response import Critical, StaticResult, assembled, critical_of
-
-Array = NDArray[np.float64]
+from studies.answers.response import Critical, StaticResult, assembled, chosen_by, critical_of, estimate_of
+from studies.kinds import Array
 
 #: Arrays that a response takes over from a model's solution as they are.
 SHARED_ARRAYS = (
@@ -28,8 +26,8 @@ class MechanismResponse:
     """Static answer of a mechanism over S converged states, that of load factor 0 first.
 
     Attributes:
-        model, settings, status, message, resolution, critical_points, counters, wall_s, solve_s: as in
-            `Response`.
+        model, settings, status, message, resolution, critical_points, counters, wall_s, solve_s, estimate:
+            as in `Response`.
         effects: names of what was assembled.
         load_factor: (S,) [1].
         bodies: (S, 3) by name: centre of mass x, y [m], rotation, counter-clockwise [rad].
@@ -58,6 +56,7 @@ class MechanismResponse:
     counters: dict[str, int]
     wall_s: float
     solve_s: float
+    estimate: dict[str, Any] | None = None
 
     @property
     def converged(self) -> bool:
@@ -90,7 +89,7 @@ def mechanism_response(
     shear = getattr(result, "shear_energy", np.zeros_like(arrays["work"]))
     return MechanismResponse(
         model=model,
-        settings=settings,
+        settings=settings | chosen_by(result),
         effects=assembled(result.effects),
         status=str(result.status.value),
         message=result.message,
@@ -101,5 +100,6 @@ def mechanism_response(
         counters=dict(result.counters),
         wall_s=wall_s,
         solve_s=solve_s,
+        estimate=estimate_of(result),
         **arrays,
     )

@@ -4,13 +4,11 @@ from dataclasses import dataclass, fields
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from studies.cases.design import Design
 from studies.cases.mechanism import GROUND
 from studies.cases.problem import Problem
-
-Array = NDArray[np.float64]
+from studies.kinds import Array
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -4,9 +4,8 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from studies.kinds import Array
 
 #: A passage leads from so far beyond the rest on one side to as far on the other, as a part of the swing's
 #: mean amplitude: a ripple of less does not count.

@@ -2,11 +2,11 @@
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from types import ModuleType
 from typing import Any
 
-from studies.answers.settings import FeSettings, Settings
+from studies.answers.settings import FeSettings, Settings, SplineSettings
 from studies.cases.design import Design
 from studies.cases.problem import Problem
 from studies.errors import BadInput
@@ -88,12 +88,12 @@ def model_of(settings: Settings) -> Model:
 
 
 def _swinging_spline(settings: Settings) -> dict[str, Any]:
-    """Return the slide stiffness of a spline in motion, which goes with the number of control points."""
-    from spline_model.design import Discretisation
+    """Return the control points of a spline in motion, and the slide stiffness that goes with them."""
+    from spline_model.design import FIRST_POINTS
     from spline_model.pivot import swinging_slide_stiffness
 
-    given = settings.keywords().get("control_points", Discretisation.control_points)
-    return {"slide_stiffness": swinging_slide_stiffness(given)}
+    points = settings.keywords().get("control_points") or FIRST_POINTS
+    return {"control_points": points, "slide_stiffness": swinging_slide_stiffness(points)}
 
 
 def built(model: Model, design: Design, settings: Settings, *, moving: bool) -> tuple[Any, dict[str, Any]]:
@@ -117,6 +117,20 @@ def built(model: Model, design: Design, settings: Settings, *, moving: bool) -> 
             **keywords,
         )
         return mechanism, keywords
+
+
+def is_given(settings: Settings) -> bool:
+    """Return whether settings say how fine the discretisation is, or leave that to the model's accuracy."""
+    return getattr(settings, "control_points", 0) is not None
+
+
+def as_solved(
+    model: Model, design: Design, settings: Settings, result: Any, *, moving: bool
+) -> tuple[Any, dict[str, Any]]:
+    """Return what `built` does, with the control points that a result was answered with."""
+    if isinstance(settings, SplineSettings) and not is_given(settings):
+        settings = replace(settings, control_points=result.control_points)
+    return built(model, design, settings, moving=moving)
 
 
 def effects_of(asked: Any) -> tuple[str, ...]:

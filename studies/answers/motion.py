@@ -6,12 +6,10 @@ from dataclasses import dataclass
 from typing import Any, Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
 from studies.answers.frequency import Frequency, swing_frequency
 from studies.answers.response import Result, estimate_of
-
-Array = NDArray[np.float64]
+from studies.kinds import Array
 
 #: Arrays that a motion takes over from a model's trajectory as they are.
 SHARED_ARRAYS = (

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from studies.answers.models import Model, built, effects_of, model_of, refusals
+from studies.answers.models import Model, built, effects_of, is_given, model_of, refusals
 from studies.answers.motion import Motion, motion, no_motion
 from studies.answers.settings import Settings, SplineSettings
 from studies.answers.spectrum import Spectrum, no_spectrum, spectrum
@@ -116,6 +116,7 @@ def answer_modes(
     rotation: float | None = None,
     count: int = 10,
     held: bool = False,
+    accuracy: float | None = None,
 ) -> Spectrum:
     """Return the lowest natural modes about a static state, by the settings' model.
 
@@ -129,12 +130,15 @@ def answer_modes(
         rotation: of the static state [rad]; None for 0 of a pivot, and for no driven rotation of a mechanism.
         count: of modes [1].
         held: whether the rotation is held; if not, the driving torque acts on as it is.
+        accuracy: wanted relative error of the frequencies [1], which the spline's control points are raised
+            for; None for those of the settings.
 
     Raises:
         BadInput: a setting or option that the model refuses; one line.
     """
     model = model_of(settings)
-    asked, keywords = built(model, design, settings, moving=True)
+    asked, keywords = built(model, design, settings, moving=is_given(settings))
+    options = {} if accuracy is None else {"accuracy": accuracy}
     body = _reported(design)
     state = state_of(design, rotation, held=held)
     identity: dict[str, Any] = {
@@ -148,7 +152,7 @@ def answer_modes(
         with refusals(model, settings):
             timing = measure(
                 lambda: model.modes.natural_frequencies(
-                    asked, rotation=state, count=count, held=held, body=body
+                    asked, rotation=state, count=count, held=held, body=body, **options
                 ),
                 repeat=1,
                 warm_up=0,
@@ -178,7 +182,7 @@ def _energy(design: Design) -> float:
 def spline_mechanism(design: Design, settings: SplineSettings) -> Any:
     """Return the spline model's mechanism of a design, as it is in motion; errors as of `answer_release`."""
     asked, _ = built(model_of(settings), design, settings, moving=True)
-    return asked.mechanism if isinstance(design, Problem) else asked
+    return asked
 
 
 def solve_s(result: Any) -> float:

@@ -1,16 +1,16 @@
 """The reference that answers are held against: the limit of refinement of the finite elements."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
 from studies.answers.adapters import answer_static
-from studies.answers.metrics import Array, extrapolate, relative_error, trajectory_error
+from studies.answers.metrics import extrapolate, relative_error, trajectory_error
 from studies.answers.response import Response
 from studies.answers.settings import FeSettings
 from studies.cases.problem import Problem
-from studies.record.progress import silent
+from studies.kinds import Array
 
 #: Meshes that the limit is taken from: four, so that its own uncertainty can be measured. On finer ones the
 #: round-off of the stiffness, which grows fast with the count, exceeds what is left to extrapolate.
@@ -56,18 +56,13 @@ class Errors:
         }
 
 
-def reference(problem: Problem, progress: Callable[[int, int], None] = silent) -> Reference:
+def reference(problem: Problem) -> Reference:
     """Solve `problem` on the meshes and return their limit.
 
     Raises:
         NoReference: the finite elements do not reach the end of the path.
     """
-    answers = []
-    for count, elements in enumerate(MESHES):
-        progress(count, len(MESHES))
-        answers.append(answer_static(problem, FeSettings(elements=elements)))
-    progress(len(MESHES), len(MESHES))
-    return limit_of(answers)
+    return limit_of([answer_static(problem, FeSettings(elements=count)) for count in MESHES])
 
 
 def limit_of(answers: list[Response]) -> Reference:

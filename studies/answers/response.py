@@ -5,16 +5,15 @@ from dataclasses import asdict, dataclass
 from typing import Any, Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
 from studies.cases.effects import MOTION_ONLY
 from studies.cases.problem import Problem
-
-Array = NDArray[np.float64]
+from studies.kinds import Array
 
 #: Arrays that a response takes over from a model's solution as they are.
 SHARED_ARRAYS = (
     "rotation",
+    "load_factor",
     "centre",
     "torque",
     "stiffness",
@@ -81,6 +80,7 @@ class Response:
         resolution: how uncertain too coarse a discretisation makes the answer; empty where it is resolved,
             and of a model that cannot tell.
         rotation: (S,) of the body, counter-clockwise [rad].
+        load_factor: (S,) share of the loads that acts, of the rotation where there are none [1].
         centre: (S, 2) centre of mass of the body, origin at A1 [m].
         torque: (S,) driving torque on the body [N m]; stiffness: (S,) its derivative from the tangent [N m /
             rad].
@@ -106,6 +106,7 @@ class Response:
     message: str
     resolution: str
     rotation: Array
+    load_factor: Array
     centre: Array
     torque: Array
     stiffness: Array
@@ -160,7 +161,7 @@ def response(
     estimate = estimate_of(result)
     return Response(
         model=model,
-        settings=settings if estimate is None else settings | chosen_by(estimate),
+        settings=settings | chosen_by(result),
         effects=effects,
         status=str(result.status.value),
         message=result.message,
@@ -187,14 +188,17 @@ def critical_of(result: Any) -> tuple[Critical, ...]:
 
 
 def estimate_of(result: Any) -> dict[str, Any] | None:
-    """Return a model's estimate of its own error by name; None where no accuracy was asked for."""
+    """Return a model's estimate of its own error by name; None where it was not asked for an accuracy."""
     estimate = getattr(result, "estimate", None)
     return None if estimate is None else asdict(estimate)
 
 
-def chosen_by(estimate: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the settings that an accuracy has chosen."""
-    return {"control_points": estimate["control_points"]}
+def chosen_by(result: Any) -> dict[str, Any]:
+    """Return the settings that a model has chosen for the accuracy of its answer."""
+    meshes = getattr(getattr(result, "estimate", None), "meshes", None)
+    if meshes is not None:
+        return {"elements": meshes[-1]}
+    return {"control_points": result.control_points} if hasattr(result, "control_points") else {}
 
 
 def assembled(names: Iterable[str]) -> tuple[str, ...]:

@@ -9,7 +9,8 @@ class SplineSettings:
     """Discretisation by dynamic splines; what each value may be is checked by `spline_model`.
 
     Args:
-        control_points: n per strip [1].
+        control_points: n per strip [1]; None for as many as the model's own accuracy takes, which the answer
+            then names.
         axial_modes: m axial-force modes per strip [1]; None for the model's default, n - 2.
         basis: "bezier" (degree n - 1) or "bspline" (cubic).
         measure: "material", "spatial" (the paper's energy) or "printed" (the paper's generalised forces as
@@ -20,7 +21,7 @@ class SplineSettings:
             default, which differs between statics and motion.
     """
 
-    control_points: int = 6
+    control_points: int | None = None
     axial_modes: int | None = None
     basis: str = "bezier"
     measure: str = "material"
@@ -30,12 +31,20 @@ class SplineSettings:
 
     model: ClassVar[str] = "spline"
 
+    @property
+    def points(self) -> int:
+        """Return the number of control points of settings that name one, as those of studies do."""
+        if self.control_points is None:
+            raise ValueError("control_points: got none, expected the number that work is counted with")
+        return self.control_points
+
     def keywords(self) -> dict[str, Any]:
-        """Return the discretisation keywords of `spline_model.pivot.cross_axis_pivot`; a slide stiffness only
-        if it is set."""
+        """Return the discretisation keywords of `spline_model.pivot.cross_axis_pivot`; control points and a
+        slide stiffness only if they are set."""
         keywords = asdict(self)
-        if self.slide_stiffness is None:
-            del keywords["slide_stiffness"]
+        for name in ("control_points", "slide_stiffness"):
+            if keywords[name] is None:
+                del keywords[name]
         return keywords
 
 

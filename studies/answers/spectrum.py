@@ -4,9 +4,9 @@ from dataclasses import dataclass
 from typing import Any, Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from studies.answers.response import chosen_by, estimate_of
+from studies.kinds import Array
 
 
 class ModesResult(Protocol):
@@ -41,6 +41,7 @@ class Spectrum:
         body_shapes: (F, 3) its displacement x, y and rotation at unit modal mass.
         slide_frequency: frequencies that are left out because they are the discretisation's alone [Hz].
         wall_s: time of the static path to the state and of the modes [s].
+        estimate: of the frequencies' error, by name; None of a model that was not asked for an accuracy.
     """
 
     model: str
@@ -55,6 +56,7 @@ class Spectrum:
     body_shapes: Array
     slide_frequency: Array
     wall_s: float
+    estimate: dict[str, Any] | None = None
 
     @property
     def converged(self) -> bool:
@@ -82,7 +84,7 @@ def spectrum(
         shapes = np.zeros((len(result.frequency), 3))
     return Spectrum(
         model=model,
-        settings=settings,
+        settings=settings | chosen_by(result),
         status="converged",
         message="",
         effects=effects,
@@ -93,6 +95,7 @@ def spectrum(
         body_shapes=shapes[:, 3 * place : 3 * place + 3],
         slide_frequency=np.asarray(getattr(result, "slide_frequency", ()), dtype=float),
         wall_s=wall_s,
+        estimate=estimate_of(result),
     )
 
 

@@ -1,6 +1,6 @@
 """The reference that motions are held against: the limit of refinement of the explicit finite elements."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -8,12 +8,12 @@ from scipy.interpolate import CubicSpline
 
 from studies.answers.adapters import answer_release
 from studies.answers.frequency import swing_frequency
-from studies.answers.metrics import Array, extrapolate
+from studies.answers.metrics import extrapolate
 from studies.answers.motion import Motion
 from studies.answers.reference import NoReference
 from studies.answers.settings import FeSettings
 from studies.cases.problem import Problem
-from studies.record.progress import silent
+from studies.kinds import Array
 
 #: Meshes that the limit is taken from, a third apart: the work grows with the cube of the count, so that
 #: doubling four times would take minutes. The critical step falls with the square of the element, and with it
@@ -75,23 +75,19 @@ def sampled(motion: Motion, instants: Array) -> Swing:
     )
 
 
-def swing_reference(
-    problem: Problem, *, duration: float, instants: Array, progress: Callable[[int, int], None] = silent
-) -> SwingReference:
+def swing_reference(problem: Problem, *, duration: float, instants: Array) -> SwingReference:
     """Release `problem` from the end of its path on the meshes and return their limit at `instants` [s].
 
     Raises:
         NoReference: a motion stopped early.
     """
     levels = []
-    for count, elements in enumerate(MESHES):
-        progress(count, len(MESHES))
+    for elements in MESHES:
         settings = FeSettings(elements=elements)
         answer = answer_release(problem, settings, duration=duration, records=RECORDS)
         if not answer.converged:
             raise NoReference(f"reference with {elements} elements: {answer.message}")
         levels.append(answer)
-    progress(len(MESHES), len(MESHES))
     return limit_of(levels, instants)
 
 

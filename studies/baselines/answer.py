@@ -7,11 +7,9 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from studies.errors import BadInput
-
-Array = NDArray[np.float64]
+from studies.kinds import Array
 
 
 class BaselineFailed(RuntimeError):

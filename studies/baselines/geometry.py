@@ -4,12 +4,10 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from studies.cases.problem import Problem
 from studies.errors import BadInput
-
-Array = NDArray[np.float64]
+from studies.kinds import Array
 
 #: The effects of a scene that baselines can stand for: what they leave out of these is their error.
 EFFECTS = ("bending", "stretching", "strip_inertia", "body_inertia")

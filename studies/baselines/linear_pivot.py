@@ -23,10 +23,11 @@ from typing import Any
 
 import numpy as np
 
-from studies.baselines.answer import Array, BaselineMotion, BaselinePath
+from studies.baselines.answer import BaselineMotion, BaselinePath
 from studies.baselines.geometry import Geometry, geometry_of
 from studies.baselines.one_coordinate import motion_of, path_of
 from studies.cases.problem import Problem
+from studies.kinds import Array
 
 MODEL = "linear pivot"
 

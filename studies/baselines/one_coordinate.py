@@ -18,13 +18,13 @@ from numba import njit
 from numpy.polynomial import chebyshev
 
 from studies.baselines.answer import (
-    Array,
     BaselineMotion,
     BaselinePath,
     checked_release,
     checked_rotations,
     median_seconds,
 )
+from studies.kinds import Array
 
 #: Highest degree of the series, and the part of their largest coefficient below which they end.
 DEGREE = 64

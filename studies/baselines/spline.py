@@ -11,8 +11,8 @@ import numpy as np
 
 from spline_model.compile import compile_scene
 from spline_model.dynamics import Trajectory, solve_release
-from spline_model.integrators import leapfrog
-from spline_model.integrators.motion import set_in_motion
+from spline_model.motion.explicit import flight
+from spline_model.motion.start import set_in_motion
 from spline_model.pivot import Pivot, cross_axis_pivot, swinging_slide_stiffness
 from spline_model.preload import is_preloaded
 from spline_model.reduced.elements import Elements, followed
@@ -65,9 +65,7 @@ def static_path(
     pivot = _pivot(problem, control_points=control_points, gauss_points=gauss_points)
     elements = followed(compile_scene(pivot.driven(largest)))
     if not isinstance(elements, Elements) or is_preloaded(elements.system):
-        raise BadInput(
-            f"{MODEL}: got the effects {', '.join(pivot.mechanism.effects)}, expected an element's"
-        )
+        raise BadInput(f"{MODEL}: got the effects {', '.join(pivot.effects)}, expected an element's")
     model, factors, start = elements.model, turns / largest, at_rest(elements.model)
 
     def prepare() -> Callable[[], Answer]:
@@ -148,12 +146,12 @@ def release(
 
 def _leapfrog(pivot: Pivot, motion: Trajectory) -> Callable[[], Callable[[], int]]:
     """Return what prepares the compiled run of a motion once more."""
-    system = compile_scene(pivot.mechanism.released())
+    system = compile_scene(pivot.released())
     moving, step, rows = set_in_motion(system), motion.settings["step_s"], len(motion.time)
     every = motion.counters["steps"] // (rows - 1)
 
     def prepare() -> Callable[[], int]:
-        start = leapfrog.flight(system, moving, motion.states[0], motion.velocities[0], rows, pivot.mechanism)
+        start = flight(system, moving, motion.states[0], motion.velocities[0], rows - 1, "leapfrog")
         return lambda: start.fly(step, every)
 
     return prepare

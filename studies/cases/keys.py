@@ -2,7 +2,7 @@
 
 import math
 
-from studies.cases.rules import Key, Number, Whole, finite_pair, positive
+from studies.cases.rules import Choice, Key, Number, Whole, finite_pair, positive
 
 ROTATION = Number(
     expected="a number from -360 to 360 [deg]",
@@ -14,6 +14,10 @@ ROTATION = Number(
     from_si=math.degrees,
 )
 INCREMENTS = Whole(expected="a whole number from 1 to 100000", low=1, high=100_000)
+
+#: How loads and a driven rotation meet: loads come on before it and stay, or both grow together.
+LOADS_FIRST, TOGETHER = "loads first", "together"
+ORDER = Choice(names=(LOADS_FIRST, TOGETHER))
 
 POISSON = Number(expected="a number above -1 and at most 0.5 [1]", low=-1.0, high=0.5, closed_high=True)
 
@@ -65,4 +69,5 @@ KEYS: tuple[Key, ...] = (
     ),
     Key(section="drive", name="rotation_deg", attribute="rotation", rule=ROTATION),
     Key(section="drive", name="increments", attribute="increments", rule=INCREMENTS),
+    Key(section="drive", name="order", attribute="order", rule=ORDER, optional=True),
 )

@@ -9,7 +9,7 @@ from typing import Any
 from studies.cases import document
 from studies.cases.document import CaseError
 from studies.cases.effects import Effects, read_effects
-from studies.cases.keys import INCREMENTS, POISSON, ROTATION
+from studies.cases.keys import INCREMENTS, LOADS_FIRST, ORDER, POISSON, ROTATION
 from studies.cases.rules import Key, Text, finite, finite_pair, not_negative, positive, shown
 
 GROUND, FREE = "ground", "free"
@@ -54,6 +54,7 @@ DRIVE = (
     ),
     Key(section="drive", name="rotation_deg", attribute="rotation", rule=ROTATION, optional=True),
     Key(section="drive", name="increments", attribute="increments", rule=INCREMENTS),
+    Key(section="drive", name="order", attribute="order", rule=ORDER, optional=True),
 )
 SECTIONS = ("strips", "bodies", "section", "material", "drive", "scene", "effects")
 
@@ -99,6 +100,7 @@ class Mechanism:
         rotation: that it is driven to [rad]; None: it follows the loads.
         increments: equal increments of the path [1].
         effects: of the scene.
+        order: of loads and rotation, "loads first" or "together".
     """
 
     strips: tuple[Strip, ...]
@@ -107,6 +109,7 @@ class Mechanism:
     rotation: float | None
     increments: int
     effects: Effects
+    order: str = LOADS_FIRST
 
     def mechanism_parameters(self) -> dict[str, list[dict[str, Any]]]:
         """Return strips and bodies as the keyword arguments of the designs of either model."""
@@ -158,6 +161,7 @@ def read_mechanism(path: str, content: Mapping[str, Any], changes: str | None = 
         rotation=drive.get("rotation"),
         increments=drive["increments"],
         effects=read_effects(path, content, changes),
+        order=drive.get("order", LOADS_FIRST),
     )
 
 

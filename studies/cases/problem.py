@@ -10,7 +10,7 @@ from typing import Any
 
 from studies.cases.document import CaseError, missing, parsed, refuse_sections, refuse_unknown, table, value
 from studies.cases.effects import Effects, read_effects
-from studies.cases.keys import KEYS
+from studies.cases.keys import KEYS, LOADS_FIRST
 
 __all__ = ["FOLDER", "CaseError", "Problem", "named_case", "read_case", "read_problem"]
 
@@ -50,6 +50,7 @@ class Problem:
         centre_offset: of the centre of mass from the midpoint of B1 B2, in body axes [m].
         rotation: end of the driven path, counter-clockwise positive [rad].
         increments: equal increments of the path [1].
+        order: of loads and rotation, "loads first" or "together".
         section_depth: depth of the section in the plane of bending [m]; None for the rectangle that A and I
             imply.
         effects: of the scene.
@@ -71,6 +72,7 @@ class Problem:
     centre_offset: tuple[float, float] = (0.0, 0.0)
     rotation: float
     increments: int
+    order: str = LOADS_FIRST
     section_depth: float | None = None
     effects: Effects = field(default_factory=Effects)
 

@@ -105,6 +105,28 @@ class Text:
 
 
 @dataclass(frozen=True, kw_only=True)
+class Choice:
+    """One of some names."""
+
+    names: tuple[str, ...]
+
+    @property
+    def expected(self) -> str:
+        """The names."""
+        return "one of " + ", ".join(f'"{name}"' for name in self.names)
+
+    def parse(self, value: Any) -> str:
+        """Return `value`; raises ValueError that says what was got and expected."""
+        if value not in self.names:
+            raise ValueError(f"got {shown(value)}, expected {self.expected}")
+        return str(value)
+
+    def verify(self, value: Any) -> None:
+        """Raise ValueError unless `value` is admissible."""
+        self.parse(value)
+
+
+@dataclass(frozen=True, kw_only=True)
 class History:
     """Pairs [time in s, factor] in order of time."""
 
@@ -124,7 +146,7 @@ class History:
         self.parse(value)
 
 
-Rule = Number | Whole | Pair | Text | History
+Rule = Number | Whole | Pair | Text | Choice | History
 
 
 @dataclass(frozen=True, kw_only=True)

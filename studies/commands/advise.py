@@ -23,7 +23,7 @@ import pandas as pd
 from studies.answers.reference import NoReference
 from studies.cases.problem import Problem, read_case
 from studies.commands.answer import NOT_CONVERGED, add_json_argument, deliver, number, require_target
-from studies.commands.parser import Parser, positive
+from studies.commands.parser import Parser, add_case, positive
 from studies.errors import BadInput
 from studies.record.progress import Bar
 from studies.work_precision.advice import MOTION_ERRORS, PATH_ERRORS, advise_motion, advise_path
@@ -31,7 +31,7 @@ from studies.work_precision.advice import MOTION_ERRORS, PATH_ERRORS, advise_mot
 
 def add_arguments(parser: Parser) -> None:
     """Declare the arguments of the command."""
-    parser.add_argument("case", metavar="CASE.toml", help="the design of a pivot")
+    add_case(parser, "the design of a pivot")
     parser.add_argument(
         "--error", type=positive, default=1e-3, metavar="E", help="wanted relative error, default 1e-3"
     )

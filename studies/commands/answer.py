@@ -15,6 +15,9 @@ from studies.record.files import require_writable_file, write_whole
 
 NOT_CONVERGED = 3
 
+#: Parts of an estimate that are no error.
+CHOSEN = ("control_points", "trials")
+
 
 def add_json_argument(parser: Parser) -> None:
     """Declare where the answer goes."""
@@ -75,6 +78,15 @@ def remarks(answer: Response | MechanismResponse) -> Iterator[str]:
         yield f"{point.kind}: load factor {point.load_factor:.6g}{turn}"
     if answer.resolution:
         yield answer.resolution
+
+
+def estimated(estimate: Mapping[str, Any] | None) -> Iterator[str]:
+    """Yield what an answer that was solved to an accuracy says of its error, in a line; nothing of others."""
+    if estimate is not None:
+        errors = {name: value for name, value in estimate.items() if name not in ("accuracy", *CHOSEN)}
+        listed = ", ".join(f"{name.replace('_', ' ')} {value:.1e}" for name, value in errors.items())
+        tried = ", ".join(map(str, estimate["trials"]))
+        yield f"estimated error: {listed}; control points tried: {tried}"
 
 
 def passed(points: Iterable[Critical]) -> list[dict[str, Any]]:

@@ -23,7 +23,7 @@ from typing import Any
 from studies.answers.settings import SplineSettings
 from studies.commands.answer import NOT_CONVERGED, add_json_argument, deliver, number, require_target
 from studies.commands.model import add_effects_argument, chosen_design
-from studies.commands.parser import Parser, positive, whole_number
+from studies.commands.parser import Parser, add_case, positive, whole_number
 from studies.effects.audit import Audit, audit
 from studies.effects.outcome import Outcome, Unanswered
 from studies.record.progress import Bar
@@ -31,7 +31,7 @@ from studies.record.progress import Bar
 
 def add_arguments(parser: Parser) -> None:
     """Declare the arguments of the command."""
-    parser.add_argument("case", metavar="CASE.toml", help="the design")
+    add_case(parser, "the design")
     add_effects_argument(parser)
     parser.add_argument(
         "--control-points",

@@ -23,10 +23,10 @@ MIXED, CONSISTENT = SplineSettings(control_points=4), SplineSettings(control_poi
 #: Small calls that between them enter every kernel, the longest first: settings and what is solved with them.
 CALLS: tuple[tuple[Settings, tuple[str, ...]], ...] = (
     (MIXED, ("sequential impulses",)),
-    (MIXED, ("accuracy", "many", "modes", "energy", "massless", "leapfrog", "generalised-alpha", "explicit")),
+    (MIXED, ("accuracy", "many", "modes", "energy", "massless", "leapfrog", "generalised-alpha")),
     (FeSettings(elements=4), ("static", "modes", "central-difference")),
     (FeSettings(elements=4, element="reissner"), ("static", "modes", "central-difference")),
-    (CONSISTENT, ("static", "modes", "energy", "generalised-alpha", "explicit")),
+    (CONSISTENT, ("static", "modes")),
 )
 
 

@@ -21,9 +21,16 @@ from studies.answers.reference import NoReference, Reference
 from studies.answers.settings import SplineSettings
 from studies.cases.problem import read_case
 from studies.commands.answer import NOT_CONVERGED
-from studies.commands.parser import Parser, counts
-from studies.convergence import design
-from studies.convergence.sweep import FINEST, QUANTITIES, element_sweep, reaching, spline_sweep, with_orders
+from studies.commands.parser import Parser, add_case, counts
+from studies.convergence.sweep import (
+    FINEST,
+    QUANTITIES,
+    drawn,
+    element_sweep,
+    reaching,
+    spline_sweep,
+    with_orders,
+)
 from studies.errors import BadInput
 from studies.record import style
 from studies.record.files import require_writable_folder, write_whole
@@ -37,7 +44,7 @@ ACCURACIES = (1e-3, 1e-4, 1e-6)
 
 def add_arguments(parser: Parser) -> None:
     """Declare the arguments of the command."""
-    parser.add_argument("case", metavar="CASE.toml", help="the design of a pivot")
+    add_case(parser, "the design of a pivot")
     parser.add_argument(
         "--control-points",
         type=counts(4),
@@ -102,7 +109,7 @@ def main(arguments: argparse.Namespace) -> int:
         splines = with_orders(spline_sweep(problem, settings, limit, bar), "control_points")
     print("\n".join(_report(splines, elements, limit)))
     with style.applied():
-        figure = style.rendered(design.draw(splines, elements, limit))
+        figure = style.rendered(drawn(splines, elements, limit))
     contents = {"control_points.csv": as_csv(splines), "elements.csv": as_csv(elements)}
     contents |= {f"convergence.{kind}": content for kind, content in figure.items()}
     for name, content in contents.items():

@@ -7,25 +7,18 @@ study that was never run.
 """
 
 import argparse
-from pathlib import Path
 
-from studies.commands.parser import Parser
+from studies.commands.parser import Parser, add_results, add_studies
 from studies.errors import BadInput
 from studies.record import style
-from studies.record.store import RESULTS, Store
-from studies.registry import module_of, selected
+from studies.record.store import Store
+from studies.registry import selected, study_of
 
 
 def add_arguments(parser: Parser) -> None:
     """Declare the arguments of the command."""
-    parser.add_argument("names", nargs="+", metavar="NAME", help="studies, groups, or all; `list` names them")
-    parser.add_argument(
-        "--results",
-        type=Path,
-        default=RESULTS,
-        metavar="FOLDER",
-        help="where tables and figures are, default results/",
-    )
+    add_studies(parser)
+    add_results(parser)
 
 
 def main(arguments: argparse.Namespace) -> int:
@@ -39,5 +32,5 @@ def main(arguments: argparse.Namespace) -> int:
                 f"{name}: got no stored tables, expected those of `python -m studies run {name}`"
             ) from None
         with style.applied():
-            store.save_figures(name, module_of(name).draw(tables))
+            store.save_figures(name, study_of(name).draw(tables))
     return 0

@@ -8,7 +8,7 @@ A study may also be called by its last part, its group, or as one of "all". Exit
 import argparse
 
 from studies.commands.parser import Parser
-from studies.registry import STUDIES
+from studies.registry import STUDIES, question_of
 
 
 def add_arguments(parser: Parser) -> None:
@@ -18,6 +18,6 @@ def add_arguments(parser: Parser) -> None:
 def main(arguments: argparse.Namespace) -> int:
     """Print one line a study; return the exit code."""
     width = max(map(len, STUDIES))
-    for name, (_, text) in STUDIES.items():
-        print(f"{name:{width}}  {text}")
+    for name in STUDIES:
+        print(f"{name:{width}}  {question_of(name)}")
     return 0

@@ -4,7 +4,7 @@ import argparse
 
 from studies.answers.settings import FeSettings, Settings, SplineSettings
 from studies.cases.design import Design, read_design
-from studies.commands.parser import Parser, not_negative
+from studies.commands.parser import Parser, add_case, not_negative
 from studies.errors import BadInput
 
 MODELS = ("spline", "fe", "fe-shear")
@@ -24,13 +24,16 @@ FE_OPTIONS = ("elements",)
 
 def add_model_arguments(parser: Parser) -> None:
     """Declare the case, the model and the options of either discretisation."""
-    parser.add_argument("case", metavar="CASE.toml", help="the design, such as studies/cases/*.toml")
+    add_case(parser, "the design, such as studies/cases/*.toml")
     add_effects_argument(parser)
     parser.add_argument(
         "--model", choices=MODELS, required=True, help="spline, corotational or shear-deformable FE"
     )
     parser.add_argument(
-        "--control-points", type=int, metavar="N", help="control points a strip (spline; default 6)"
+        "--control-points",
+        type=int,
+        metavar="N",
+        help="control points a strip (spline; default: as many as the accuracy takes, 6 of a motion)",
     )
     parser.add_argument(
         "--axial-modes", type=int, metavar="M", help="axial-force modes a strip (spline; default N - 2)"

@@ -20,13 +20,14 @@ from typing import Any
 import numpy as np
 
 from studies.answers.adapters import answer_modes
-from studies.answers.spectrum import Array, Spectrum
+from studies.answers.spectrum import Spectrum
 from studies.cases.keys import ROTATION
-from studies.commands.answer import add_json_argument, deliver, described, ending, require_target
+from studies.commands.answer import add_json_argument, deliver, described, ending, estimated, require_target
 from studies.commands.columns import plain, significant, table
 from studies.commands.model import add_model_arguments, chosen_design, chosen_settings
-from studies.commands.parser import Parser, degrees, whole_number
+from studies.commands.parser import Parser, degrees, positive, whole_number
 from studies.errors import BadInput
+from studies.kinds import Array
 
 #: Of displacement and rotation at unit modal mass; and what is round-off of the largest of all modes.
 SHAPE_UNITS, NOISE = ("kg^-0.5", "kg^-0.5", "kg^-0.5/m"), 1e-7
@@ -45,6 +46,13 @@ def add_arguments(parser: Parser) -> None:
     parser.add_argument(
         "--count", type=whole_number(1), default=10, metavar="C", help="number of modes, default 10"
     )
+    parser.add_argument(
+        "--accuracy",
+        type=positive,
+        metavar="A",
+        help="wanted relative error of the frequencies: raises the control points "
+        "(spline; default 1e-4, or none with --control-points)",
+    )
     add_json_argument(parser)
 
 
@@ -58,7 +66,10 @@ def main(arguments: argparse.Namespace) -> int:
     except ValueError as error:
         raise BadInput(f"--rotation-deg: {error}") from None
     require_target(arguments)
-    answer = answer_modes(design, settings, rotation=rotation, count=arguments.count, held=arguments.held)
+    if arguments.accuracy is not None and settings.model != "spline":
+        raise BadInput(f"--accuracy: got it with --model {settings.model}, expected --elements")
+    how = {"count": arguments.count, "held": arguments.held, "accuracy": arguments.accuracy}
+    answer = answer_modes(design, settings, rotation=rotation, **how)
     failure = None if answer.converged else f"at {arguments.rotation_deg:g} deg: {answer.message}"
     return deliver(arguments, as_document(answer), _readable(answer), failure=failure)
 
@@ -76,6 +87,7 @@ def as_document(answer: Spectrum) -> dict[str, Any]:
         "frequency_Hz": answer.frequency.tolist(),
         "body_shapes": answer.body_shapes.tolist(),
         "slide_frequency_Hz": answer.slide_frequency.tolist(),
+        **({} if answer.estimate is None else {"estimate": answer.estimate}),
         "wall_s": answer.wall_s,
     }
 
@@ -96,6 +108,7 @@ def _readable(answer: Spectrum) -> Iterator[str]:
             ),
         ]
     )
+    yield from estimated(answer.estimate)
     yield ending(answer.status, {}, answer.wall_s)
 
 

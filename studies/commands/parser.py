@@ -5,6 +5,7 @@ import difflib
 import math
 import re
 from collections.abc import Callable, Iterable
+from pathlib import Path
 from typing import Any, NoReturn
 
 from studies.errors import BadInput
@@ -26,6 +27,27 @@ class Parser(argparse.ArgumentParser):
                 f", expected {near[0]} (the nearest option)" if near else f", expected one of {options}"
             )
         raise BadInput(f"{self.prog.removeprefix('python -m studies ')}: {message}")
+
+
+def add_case(parser: Parser, what: str) -> None:
+    """Declare the case file, with what it is to the command."""
+    parser.add_argument("case", metavar="CASE.toml", help=what)
+
+
+def add_studies(parser: Parser) -> None:
+    """Declare the names of studies."""
+    parser.add_argument("names", nargs="+", metavar="NAME", help="studies, groups, or all; `list` names them")
+
+
+def add_results(parser: Parser) -> None:
+    """Declare the folder of results."""
+    parser.add_argument(
+        "--results",
+        type=Path,
+        default=Path(__file__).parents[2] / "results",
+        metavar="FOLDER",
+        help="where tables and figures are, default results/",
+    )
 
 
 def whole_number(low: int) -> Callable[[str], int]:

@@ -23,7 +23,7 @@ from studies.answers.reference import NoReference
 from studies.cases.keys import ROTATION
 from studies.cases.problem import Problem, read_case
 from studies.commands.answer import NOT_CONVERGED, add_json_argument, deliver, require_target
-from studies.commands.parser import Parser, degrees, positive, whole_number
+from studies.commands.parser import Parser, add_case, degrees, positive, whole_number
 from studies.design.evaluate import PathEnds, answers
 from studies.design.optimise import Outcome, best, numbered, search, starts
 from studies.design.task import OBJECTIVES, VARIABLES, Room, Task, variables_of
@@ -58,7 +58,7 @@ DIMENSIONS = ("length_m", "inclination_deg", "crossing_ratio", "thickness_m", "w
 
 def add_arguments(parser: Parser) -> None:
     """Declare the arguments of the command."""
-    parser.add_argument("case", metavar="CASE.toml", help="the pivot to start from and to compare with")
+    add_case(parser, "the pivot to start from and to compare with")
     parser.add_argument("--objective", choices=list(OBJECTIVES), required=True, help="what is to be least")
     parser.add_argument(
         "--rotation-deg", type=degrees, metavar="X", help="range to either side, in deg (default: the case's)"

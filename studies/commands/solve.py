@@ -5,12 +5,14 @@
     python -m studies solve studies/cases/four_bar_of_flexures.toml --model spline --effects=-gravity
 
 Of a pivot coordinates have their origin at A1, the ground clamp of strip 1; rotation is counter-clockwise.
-With --accuracy control points are added until the estimated error is below it; --control-points are the first
-that are tried. The arrays of the JSON run over the increments, the state of load factor 0 first, and effects
-are those that were assembled. Critical points that were passed, and what the model remarks on the path, stand
-below the table. A mechanism without a rotation follows the loads of its scene. Exit code 0:
-converged; 2: bad input; 3: not converged, and then the converged part of the path is reported with where and
-why it stopped.
+Control points of the spline are added until the estimated error of path, torque, stiffness, stress and
+section forces is below --accuracy, 1e-4 unless said otherwise; --control-points alone are just that number,
+and with --accuracy the first that are tried. Loads come on before the rotation, unless the case says
+order = "together"; load is their share. The arrays of the JSON run over the increments, the state of load
+factor 0 first, and effects are those that were assembled. Critical points that were passed, and what the
+model remarks on the path, stand below the table. A mechanism without a rotation follows the loads of its
+scene. Exit code 0: converged; 2: bad input; 3: not converged, and then the converged part of the path is
+reported with where and why it stopped.
 """
 
 import argparse
@@ -24,7 +26,6 @@ import numpy as np
 from studies.answers.adapters import answer_mechanism, answer_static
 from studies.answers.assembly import MechanismResponse
 from studies.answers.response import Response
-from studies.answers.settings import Settings
 from studies.cases.design import Design, flexural_scale
 from studies.cases.keys import INCREMENTS, ROTATION
 from studies.cases.mechanism import Mechanism
@@ -34,17 +35,35 @@ from studies.commands.answer import (
     deliver,
     described,
     ending,
+    estimated,
     number,
     passed,
     places,
     remarks,
     require_target,
 )
-from studies.commands.columns import ENERGY_FLOOR, FORCE_FLOOR, STRAIN_FLOOR, angle, plain, quantity, table
+from studies.commands.columns import (
+    ENERGY_FLOOR,
+    FORCE_FLOOR,
+    STRAIN_FLOOR,
+    Column,
+    angle,
+    plain,
+    quantity,
+    table,
+)
 from studies.commands.model import add_model_arguments, chosen_design, chosen_settings
 from studies.commands.parser import Parser, degrees, positive, whole_number
 from studies.errors import BadInput
 from studies.record.progress import Bar
+
+#: Effects whose share a table shows beside the rotation.
+LOADS = {"applied_force", "applied_moment", "tip_force", "driven_displacement"}
+
+
+def share(answer: Response | MechanismResponse) -> Column:
+    """Return the column of the share of the loads that acts."""
+    return plain("load", (f"{factor:.3f}" for factor in answer.load_factor))
 
 
 def add_arguments(parser: Parser) -> None:
@@ -67,8 +86,8 @@ def add_arguments(parser: Parser) -> None:
         "--accuracy",
         type=positive,
         metavar="A",
-        help="wanted relative error of trajectory and torque, e.g. 1e-4: raises the control points "
-        "(spline, pivots; default: none is asked for)",
+        help="wanted relative error of path, torque, stiffness, stress and section forces: raises the "
+        "control points (spline; default 1e-4, or none with --control-points)",
     )
     add_json_argument(parser)
 
@@ -77,17 +96,18 @@ def main(arguments: argparse.Namespace) -> int:
     """Solve and report; return the exit code."""
     design = _driven(chosen_design(arguments), arguments)
     settings = chosen_settings(arguments)
-    if arguments.accuracy is not None:
-        _require_accurate(design, settings)
+    if arguments.accuracy is not None and settings.model != "spline":
+        expected = "--elements: `python -m studies converge` refines the reference"
+        raise BadInput(f"--accuracy: got it with --model {settings.model}, expected {expected}")
     require_target(arguments)
     with Bar(f"solve {settings.model}") as bar:
+        how = {"repeat": arguments.repeat, "accuracy": arguments.accuracy}
         if isinstance(design, Problem):
-            how = {"repeat": arguments.repeat, "accuracy": arguments.accuracy}
             pivot = answer_static(design, settings, progress=bar, **how)
             document, lines = as_document(pivot), _readable(design, pivot)
             failure = None if pivot.converged else _stopped(design, pivot)
         else:
-            answer = answer_mechanism(design, settings, repeat=arguments.repeat, progress=bar)
+            answer = answer_mechanism(design, settings, progress=bar, **how)
             document, lines = mechanism_document(answer), _mechanism_table(design, answer)
             failure = None if answer.converged else answer.message
     return deliver(arguments, document, lines, failure=failure)
@@ -103,6 +123,7 @@ def as_document(answer: Response) -> dict[str, Any]:
         "model": answer.model,
         "settings": answer.settings,
         "effects": list(answer.effects),
+        "load_factor": answer.load_factor.tolist(),
         "rotation_rad": answer.rotation.tolist(),
         "com_x_m": answer.centre[:, 0].tolist(),
         "com_y_m": answer.centre[:, 1].tolist(),
@@ -133,6 +154,7 @@ def mechanism_document(answer: MechanismResponse) -> dict[str, Any]:
         "strain_energy_J": answer.strain_energy.tolist(),
         "gravity_energy_J": answer.gravity_energy.tolist(),
         "work_J": answer.work.tolist(),
+        **({} if answer.estimate is None else {"estimate": answer.estimate}),
         "counters": answer.counters,
         "wall_s": answer.wall_s,
     }
@@ -141,17 +163,9 @@ def mechanism_document(answer: MechanismResponse) -> dict[str, Any]:
 def _stopped(problem: Problem, answer: Response) -> str:
     """Return how far a path came, why it stopped, and what mends a discretisation that is too coarse."""
     last = math.degrees(answer.rotation[-1]) if len(answer.rotation) else 0.0
-    mend = "; --accuracy 1e-3 chooses the control points" if answer.resolution and not answer.estimate else ""
+    given = answer.resolution and not answer.estimate
+    mend = "; without --control-points their number is chosen" if given else ""
     return f"reached {last:.3f} of {math.degrees(problem.rotation):.3f} deg: {answer.message}{mend}"
-
-
-def _require_accurate(design: Design, settings: Settings) -> None:
-    """Raise BadInput unless the model can choose its own discretisation for the design."""
-    if settings.model != "spline":
-        expected = "--elements: `python -m studies converge` refines the reference"
-        raise BadInput(f"--accuracy: got it with --model {settings.model}, expected {expected}")
-    if not isinstance(design, Problem):
-        raise BadInput("--accuracy: got it for a mechanism, expected a pivot, or --control-points")
 
 
 def _driven(design: Design, arguments: argparse.Namespace) -> Design:
@@ -175,6 +189,7 @@ def _readable(problem: Problem, answer: Response) -> Iterator[str]:
     scale = flexural_scale(problem)
     yield from table(
         [
+            *([share(answer)] if LOADS & set(answer.effects) else []),
             angle(answer.rotation),
             *quantity("m", highest=-3, x=answer.centre[:, 0], y=answer.centre[:, 1]),
             *quantity("N m", floor=FORCE_FLOOR * scale, torque=answer.torque),
@@ -189,10 +204,7 @@ def _readable(problem: Problem, answer: Response) -> Iterator[str]:
             ),
         ]
     )
-    if answer.estimate is not None:
-        errors = (f"{name} {answer.estimate[name]:.1e}" for name in ("trajectory", "torque", "stiffness"))
-        tried = ", ".join(map(str, answer.estimate["trials"]))
-        yield f"estimated error: {', '.join(errors)}; control points tried: {tried}"
+    yield from estimated(answer.estimate)
     yield from remarks(answer)
     yield ending(answer.status, answer.counters, answer.wall_s)
 
@@ -201,7 +213,7 @@ def _mechanism_table(mechanism: Mechanism, answer: MechanismResponse) -> Iterato
     """Yield the lines of a short table: torque and energy, and the place of every body."""
     yield described(answer.model, answer.settings, answer.effects)
     scale = flexural_scale(mechanism)
-    columns = [plain("load", (f"{factor:.3f}" for factor in answer.load_factor))]
+    columns = [share(answer)]
     if np.isfinite(answer.torque).any():
         columns += quantity("N m", floor=FORCE_FLOOR * scale, torque=answer.torque)
     columns += quantity("J", floor=ENERGY_FLOOR * scale, energy=answer.strain_energy)
@@ -209,5 +221,6 @@ def _mechanism_table(mechanism: Mechanism, answer: MechanismResponse) -> Iterato
         columns += quantity("m", highest=-3, group=name, x=place[:, 0], y=place[:, 1])
         columns.append(angle(place[:, 2], group=name))
     yield from table(columns)
+    yield from estimated(answer.estimate)
     yield from remarks(answer)
     yield ending(answer.status, answer.counters, answer.wall_s)

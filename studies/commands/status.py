@@ -7,29 +7,22 @@ files was changed since. Exit code 0 whatever the states.
 """
 
 import argparse
-from pathlib import Path
 
-from studies.commands.parser import Parser
-from studies.record.store import RESULTS, Store
-from studies.registry import STUDIES, module_of
+from studies.commands.parser import Parser, add_results
+from studies.record.store import Store
+from studies.registry import STUDIES, study_of
 
 
 def add_arguments(parser: Parser) -> None:
     """Declare the arguments of the command."""
-    parser.add_argument(
-        "--results",
-        type=Path,
-        default=RESULTS,
-        metavar="FOLDER",
-        help="where tables and figures are, default results/",
-    )
+    add_results(parser)
 
 
 def main(arguments: argparse.Namespace) -> int:
     """Print one line a study; return the exit code."""
     store = Store(arguments.results)
     width = max(map(len, STUDIES))
-    for name, (module, _) in STUDIES.items():
-        state = store.state(name, module=module, cases=module_of(name).CASES)
+    for name, module in STUDIES.items():
+        state = store.state(name, module=module, cases=study_of(name).cases)
         print(f"{name:{width}}  {state.kind:7}  {state.reason}".rstrip())
     return 0

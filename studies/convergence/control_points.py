@@ -1,22 +1,18 @@
 """Convergence of the splines with their control points in every form: the locking map."""
 
-from collections.abc import Callable, Mapping
-
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 
-from studies.answers.reference import reference
 from studies.answers.settings import SplineSettings
 from studies.cases.problem import named_case
-from studies.convergence.sweep import QUANTITIES, reaching, spline_sweep
-from studies.paper.findings import Finding, percent, table
+from studies.convergence.sweep import QUANTITIES, reaching, spline_row
+from studies.engine.findings import Finding, Tables, percent
+from studies.engine.study import Part, Study
+from studies.paper.formulations import CASE, refined
 from studies.record.style import BASES, STRETCH, page, uncertain
-
-CASE = "cross_axis_pivot"
-CASES = (CASE,)
 
 COUNTS = range(4, 13)
 MEASURES = ("material", "spatial")
@@ -36,28 +32,12 @@ def settings() -> list[SplineSettings]:
     ]
 
 
-def compute(progress: Callable[[int, int], None]) -> dict[str, pd.DataFrame]:
-    """Return the map with errors against the refined FE, the reference's uncertainty, and the findings."""
-    problem = named_case(CASE)
-    limit = reference(problem)
-    rows = spline_sweep(problem, settings(), limit, progress)
-    uncertainty = pd.DataFrame(
-        [{"quantity": name, "uncertainty": limit.uncertainty[name]} for name in QUANTITIES]
-    )
-    return {"map": rows, "reference": uncertainty, "findings": table(_findings(rows))}
-
-
-def draw(tables: Mapping[str, pd.DataFrame]) -> dict[str, Figure]:
-    """Draw the errors over n for m = n - 2, and the map of the torque error over n and m."""
-    return {"control_points": _lines(tables), "locking_map": _maps(tables)}
-
-
 def default_modes(rows: pd.DataFrame) -> pd.DataFrame:
     """Return the rows of the default m = n - 2, and those of consistent stretch, which has no modes."""
     return rows[(rows["stretch"] == "consistent") | (rows["axial_modes"] == rows["control_points"] - 2)]
 
 
-def _lines(tables: Mapping[str, pd.DataFrame]) -> Figure:
+def _lines(tables: Tables) -> Figure:
     figure = page(9.5, 6.6)
     panels = figure.subplots(2, 2, sharex=True, sharey="row")
     rows, limits = default_modes(tables["map"]), tables["reference"]
@@ -79,7 +59,7 @@ def _lines(tables: Mapping[str, pd.DataFrame]) -> Figure:
     return figure
 
 
-def _maps(tables: Mapping[str, pd.DataFrame]) -> Figure:
+def _maps(tables: Tables) -> Figure:
     figure = page(9.5, 4.4)
     panels = figure.subplots(1, 2, sharey=True)
     rows = tables["map"].query("stretch == 'mixed' and measure == 'material'")
@@ -120,10 +100,10 @@ def _map(panel: Axes, rows: pd.DataFrame, norm: LogNorm) -> None:
     panel.set(xticks=list(COUNTS), yticks=list(modes))
 
 
-def _findings(rows: pd.DataFrame) -> list[Finding]:
+def _findings(tables: Tables) -> list[Finding]:
     """Return what the map says of locking and of the number of control points, from the default modes."""
     found = []
-    chosen = default_modes(rows).query("measure == 'material'")
+    chosen = default_modes(tables["map"]).query("measure == 'material'")
     for (basis, stretch), curve in chosen.groupby(["basis", "stretch"]):
         name = f"{BASES[str(basis)]}, {stretch} stretch"
         four = curve.query("control_points == 4").iloc[0]
@@ -149,3 +129,17 @@ def _findings(rows: pd.DataFrame) -> list[Finding]:
             )
         )
     return found
+
+
+STUDY = Study(
+    cases=(CASE,),
+    parts=(
+        Part(at=settings, ask=lambda each: {"map": spline_row(named_case(CASE), each, refined())}),
+        Part(
+            at=lambda: QUANTITIES,
+            ask=lambda name: {"reference": {"quantity": name, "uncertainty": refined().uncertainty[name]}},
+        ),
+    ),
+    claims=(_findings,),
+    figures={"control_points": _lines, "locking_map": _maps},
+)

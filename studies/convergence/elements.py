@@ -1,6 +1,6 @@
 """Convergence of the finite elements with their number: errors, observed orders, limit and uncertainty."""
 
-from collections.abc import Callable, Mapping
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -10,11 +10,10 @@ from matplotlib.figure import Figure
 from studies.answers.reference import Reference
 from studies.cases.problem import named_case
 from studies.convergence.sweep import QUANTITIES, element_sweep
-from studies.paper.findings import Finding, table
+from studies.engine.findings import Claim, Tables
+from studies.engine.study import Answer, Part, Study
+from studies.paper.formulations import CASE
 from studies.record.style import ELEMENTS, page
-
-CASE = "cross_axis_pivot"
-CASES = (CASE,)
 
 MESHES = (5, 10, 20, 40, 80, 160, 320)
 
@@ -22,23 +21,16 @@ MESHES = (5, 10, 20, 40, 80, 160, 320)
 ORDER, ALLOWANCE = 2.0, 0.1
 
 
-def compute(progress: Callable[[int, int], None]) -> dict[str, pd.DataFrame]:
-    """Return the errors of every mesh of both elements, the limits, and findings on order and accuracy."""
-    problem = named_case(CASE)
-    meshes, limits, found = [], [], []
-    for index, element in enumerate(ELEMENTS):
-        rows, limit = element_sweep(problem, MESHES, element)
-        progress(index + 1, len(ELEMENTS))
-        meshes.append(rows)
-        limits.append(_limits(element, limit))
-        found += _findings(element, rows)
-    return {"meshes": pd.concat(meshes), "limits": pd.concat(limits), "findings": table(found)}
+def refined(element: str) -> Answer:
+    """Return the errors of every mesh of an element, and the limits."""
+    rows, limit = element_sweep(named_case(CASE), MESHES, element)
+    return {"meshes": rows, "limits": _limits(element, limit)}
 
 
-def draw(tables: Mapping[str, pd.DataFrame]) -> dict[str, Figure]:
+def figure(tables: Tables) -> Figure:
     """Draw the errors over the number of elements, one panel a quantity."""
-    figure = page(9.5, 3.9)
-    panels = figure.subplots(1, len(QUANTITIES))
+    drawn = page(9.5, 3.9)
+    panels = drawn.subplots(1, len(QUANTITIES))
     for panel, quantity in zip(panels, QUANTITIES, strict=True):
         for element, look in ELEMENTS.items():
             rows = tables["meshes"][tables["meshes"]["element"] == element]
@@ -48,8 +40,8 @@ def draw(tables: Mapping[str, pd.DataFrame]) -> dict[str, Figure]:
         panel.set_xticks(MESHES, labels=[str(mesh) for mesh in MESHES], minor=False)
         panel.minorticks_off()
     handles, labels = panels[0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside lower center", ncols=3)
-    return {"elements": figure}
+    drawn.legend(handles, labels, loc="outside lower center", ncols=3)
+    return drawn
 
 
 def _second_order(panel: Axes, meshes: pd.DataFrame, column: str) -> None:
@@ -60,7 +52,7 @@ def _second_order(panel: Axes, meshes: pd.DataFrame, column: str) -> None:
     panel.loglog(counts, slope, ":", color="#444444", label="order 2")
 
 
-def _limits(element: str, limit: Reference) -> pd.DataFrame:
+def _limits(element: str, limit: Reference) -> list[dict[str, Any]]:
     """Return the end values in the limit of refinement with their relative uncertainty."""
     values = {
         "com_x_m": (limit.centre[-1, 0], "trajectory"),
@@ -68,42 +60,52 @@ def _limits(element: str, limit: Reference) -> pd.DataFrame:
         "torque_Nm": (limit.torque[-1], "torque"),
         "stiffness_Nm_per_rad": (limit.stiffness[-1], "stiffness"),
     }
-    return pd.DataFrame(
-        [
-            {
-                "element": element,
-                "quantity": quantity,
-                "limit": value,
-                "relative_uncertainty": limit.uncertainty[kind],
-            }
-            for quantity, (value, kind) in values.items()
-        ]
-    )
+    return [
+        {
+            "element": element,
+            "quantity": quantity,
+            "limit": value,
+            "relative_uncertainty": limit.uncertainty[kind],
+        }
+        for quantity, (value, kind) in values.items()
+    ]
 
 
-def _findings(element: str, rows: pd.DataFrame) -> list[Finding]:
-    """Return whether the order is 2, from the last meshes above round-off, and the error of 20."""
-    name = ELEMENTS[element].label
-    found = []
-    for quantity in QUANTITIES:
-        order = float(rows.query("elements == 160")[f"order_{quantity}"].iloc[0])
-        found.append(
-            Finding(
-                claim=f"The {quantity} of the finite elements converges with order 2",
-                formulation=name,
-                quantity="the distance of the observed order (80 to 160 elements) from 2, over 2,",
-                value=abs(order - ORDER) / ORDER,
-                holds=abs(order - ORDER) <= ALLOWANCE,
-            )
-        )
-        error = float(rows.query("elements == 20")[f"error_{quantity}"].iloc[0])
-        found.append(
-            Finding(
-                claim=f"Twenty elements a strip give the {quantity} to 1 %",
-                formulation=name,
-                quantity="the largest error of 20 elements over the path",
-                value=error,
-                holds=error <= 0.01,
-            )
-        )
-    return found
+def _at(tables: Tables, count: int) -> list[dict[str, Any]]:
+    """Return error and observed order of each quantity and element on one mesh."""
+    rows = tables["meshes"].query("elements == @count").to_dict("records")
+    return [
+        {
+            "name": ELEMENTS[row["element"]].label,
+            "of": name,
+            "error": row[f"error_{name}"],
+            "order": row[f"order_{name}"],
+        }
+        for row in rows
+        for name in QUANTITIES
+    ]
+
+
+STUDY = Study(
+    cases=(CASE,),
+    parts=(Part(at=lambda: ELEMENTS, ask=refined),),
+    claims=(
+        Claim(
+            claim="The {of} of the finite elements converges with order 2",
+            formulation="{name}",
+            quantity="the distance of the observed order (80 to 160 elements) from 2, over 2,",
+            rows=lambda tables: _at(tables, 160),  # the last mesh above round-off
+            value=lambda row: abs(row["order"] - ORDER) / ORDER,
+            holds=lambda row: abs(row["order"] - ORDER) <= ALLOWANCE,
+        ),
+        Claim(
+            claim="Twenty elements a strip give the {of} to 1 %",
+            formulation="{name}",
+            quantity="the largest error of 20 elements over the path",
+            rows=lambda tables: _at(tables, 20),
+            value="error",
+            most=0.01,
+        ),
+    ),
+    figures={"elements": figure},
+)

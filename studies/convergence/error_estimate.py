@@ -7,27 +7,25 @@ estimate over the true error: below one it is optimistic.
 """
 
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from functools import partial
 from typing import Any
 
 import numpy as np
-import pandas as pd
 from matplotlib.figure import Figure
+from scipy.stats import qmc
 
-from studies.answers.adapters import answer_release, answer_static
+from studies.answers.adapters import answer_modes, answer_release, answer_static
 from studies.answers.motion import Motion
 from studies.answers.response import Response
 from studies.answers.settings import SplineSettings
 from studies.answers.swing import sampled
 from studies.cases.problem import Problem, named_case
-from studies.convergence.designs import described, drawn, period
-from studies.paper import formulations
-from studies.paper.findings import Finding, table
+from studies.engine.findings import Finding, Tables
+from studies.engine.study import Part, Study
+from studies.paper.formulations import CASE
 from studies.record.style import BLACK, BLUE, GREEN, ORANGE, RED, page
-
-CASE = formulations.CASE
-CASES = (CASE,)
 
 SEED = 2013
 #: Static designs: how many, their bounds, and what is asked for [1].
@@ -62,29 +60,59 @@ MARGIN = 10.0
 QUANTITIES = {"trajectory": BLUE, "torque": ORANGE, "rotation": GREEN}
 
 
-def compute(progress: Callable[[int, int], None]) -> dict[str, pd.DataFrame]:
-    """Return a row a design, accuracy and quantity, what the search costs, and the findings."""
-    total = DESIGNS + SWINGS
-    case, rows = named_case(CASE), []
-    for number, problem in enumerate(drawn(case, BOUNDS, count=DESIGNS, seed=SEED)):
-        progress(number, total)
-        rows += list(_static_rows(number, problem))
-    for number, problem in enumerate(drawn(case, SWING_BOUNDS, count=SWINGS, seed=SEED)):
-        progress(DESIGNS + number, total)
-        rows += list(_swing_rows(number, problem))
-    progress(total, total)
-    estimates = pd.DataFrame(rows)
+def drawn(
+    problem: Problem, bounds: Mapping[str, tuple[float, float]], *, count: int, seed: int
+) -> list[Problem]:
+    """Return `count` pivots like `problem` whose values fill the bounds evenly: a Latin hypercube.
+
+    Args:
+        problem: gives what is not drawn: length, width of the section, material, body.
+        bounds: of "slenderness" (L over the depth of the section, drawn evenly in its logarithm),
+            "crossing_ratio" [1], "inclination" [rad] and "rotation" [rad].
+        count: of pivots [1].
+        seed: of the Latin hypercube.
+    """
+    names = ("slenderness", "crossing_ratio", "inclination", "rotation")
+    low, high = np.array([bounds[name] for name in names]).T
+    low[0], high[0] = math.log(low[0]), math.log(high[0])
+    points = qmc.scale(qmc.LatinHypercube(d=len(names), seed=seed).random(count), low, high)
+    width = problem.area / problem.depth
+    designs = []
+    for logarithm, crossing_ratio, inclination, rotation in points:
+        depth = problem.length / math.exp(logarithm)
+        designs.append(
+            replace(
+                problem,
+                area=width * depth,
+                second_moment_of_area=width * depth**3 / 12.0,
+                crossing_ratio=float(crossing_ratio),
+                inclination=float(inclination),
+                rotation=float(rotation),
+            )
+        )
+    return designs
+
+
+def period(problem: Problem) -> float:
+    """Return the period of the slowest small swing at rest [s]."""
+    return 1.0 / float(answer_modes(problem, SplineSettings(control_points=6), count=1).frequency[0])
+
+
+def described(number: int, problem: Problem) -> dict[str, float]:
+    """Return the columns that say which design a row is of."""
     return {
-        "estimates": estimates,
-        "timings": pd.DataFrame(_timings(case)),
-        "findings": table(_findings(estimates)),
+        "design": number,
+        "slenderness": problem.length / problem.depth,
+        "crossing_ratio": problem.crossing_ratio,
+        "inclination_rad": problem.inclination,
+        "rotation_rad": problem.rotation,
     }
 
 
-def draw(tables: Mapping[str, pd.DataFrame]) -> dict[str, Figure]:
+def figure(tables: Tables) -> Figure:
     """Draw the estimates against the true errors, and the true errors against what was asked for."""
-    figure = page(9.5, 4.6)
-    panels = dict(zip(("statics", "motion"), figure.subplots(1, 2), strict=True))
+    sheet = page(9.5, 4.6)
+    panels = dict(zip(("statics", "motion"), sheet.subplots(1, 2), strict=True))
     rows = tables["estimates"]
     for problem, panel in panels.items():
         these = rows[(rows["problem"] == problem) & rows["counts"]]
@@ -109,7 +137,7 @@ def draw(tables: Mapping[str, pd.DataFrame]) -> dict[str, Figure]:
         ha="right",
         fontsize=8,
     )
-    return {"error_estimate": figure}
+    return sheet
 
 
 def _static_rows(number: int, problem: Problem) -> Iterator[dict[str, Any]]:
@@ -181,24 +209,24 @@ def _rotation_error(motion: Motion, exact: Motion) -> float:
     return float(np.abs(motion.rotation - sampled(exact, motion.time).rotation).max())
 
 
-def _timings(problem: Problem) -> Iterator[dict[str, Any]]:
-    """Yield what a search costs over the plain path with the control points that it chose."""
-    for accuracy in ACCURACIES:
-        searched = answer_static(problem, SplineSettings(control_points=FIRST), accuracy=accuracy, repeat=9)
-        chosen = (searched.estimate or {})["control_points"]
-        plain = answer_static(problem, SplineSettings(control_points=chosen), repeat=9)
-        yield {
-            "accuracy": accuracy,
-            "control_points": chosen,
-            "search_wall_s": searched.wall_s,
-            "path_wall_s": plain.wall_s,
-            "time_ratio": searched.wall_s / plain.wall_s,
-        }
+def _timed(accuracy: float) -> dict[str, Any]:
+    """Return what a search costs over the plain path with the control points that it chose."""
+    problem = named_case(CASE)
+    searched = answer_static(problem, SplineSettings(control_points=FIRST), accuracy=accuracy, repeat=9)
+    chosen = (searched.estimate or {})["control_points"]
+    plain = answer_static(problem, SplineSettings(control_points=chosen), repeat=9)
+    return {
+        "accuracy": accuracy,
+        "control_points": chosen,
+        "search_wall_s": searched.wall_s,
+        "path_wall_s": plain.wall_s,
+        "time_ratio": searched.wall_s / plain.wall_s,
+    }
 
 
-def _findings(rows: pd.DataFrame) -> Iterator[Finding]:
+def _findings(tables: Tables) -> Iterator[Finding]:
     """Yield what the effectivities say, for statics and for motion."""
-    for problem, every in rows.groupby("problem"):
+    for problem, every in tables["estimates"].groupby("problem"):
         these = every[every["counts"]]
         by_design = these.groupby(["design", "accuracy"])["effectivity"]
         inside = (by_design.min() >= BAND[0]) & (by_design.max() <= BAND[1])
@@ -225,3 +253,21 @@ def _findings(rows: pd.DataFrame) -> Iterator[Finding]:
             holds=bool(met.all()),
             **common,
         )
+
+
+STUDY = Study(
+    cases=(CASE,),
+    parts=(
+        Part(
+            at=lambda: enumerate(drawn(named_case(CASE), BOUNDS, count=DESIGNS, seed=SEED)),
+            ask=lambda *design: {"estimates": _static_rows(*design)},
+        ),
+        Part(
+            at=lambda: enumerate(drawn(named_case(CASE), SWING_BOUNDS, count=SWINGS, seed=SEED)),
+            ask=lambda *design: {"estimates": _swing_rows(*design)},
+        ),
+        Part(at=lambda: ACCURACIES, ask=lambda each: {"timings": _timed(each)}, alone=True),
+    ),
+    claims=(_findings,),
+    figures={"error_estimate": figure},
+)

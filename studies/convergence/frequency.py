@@ -1,6 +1,6 @@
 """Frequency of the swing and of small motion against control points, elements, step and amplitude."""
 
-from collections.abc import Callable, Mapping
+from itertools import product
 
 import numpy as np
 import pandas as pd
@@ -9,12 +9,11 @@ from matplotlib.figure import Figure
 
 from studies.convergence import swing_sweep
 from studies.convergence.swing_sweep import INTEGRATORS, MODES
-from studies.paper import formulations, swings
-from studies.paper.findings import Finding, table
+from studies.engine.findings import Finding, Tables
+from studies.engine.study import Part, Study
+from studies.paper import swings
+from studies.paper.formulations import CASE
 from studies.record.style import BLACK, BLUE, LOOKS, ORANGE, page, uncertain
-
-CASE = formulations.CASE
-CASES = (CASE,)
 
 SPLINE, TWENTY = "n = 6", "FE, 20 elements"
 
@@ -26,39 +25,7 @@ LEFT = 0.05
 ALIKE = 1e-3
 
 
-def compute(progress: Callable[[int, int], None]) -> dict[str, pd.DataFrame]:
-    """Return one table a refinement, the linear modes, the backbone, the reference and the findings."""
-    parts: dict[str, Callable[[], pd.DataFrame]] = {
-        "elements": swing_sweep.elements,
-        "control_points": swing_sweep.control_points,
-        "steps": swing_sweep.steps,
-        "modes": swing_sweep.modes,
-        "backbone": swing_sweep.backbone,
-    }
-    tables = {}
-    for count, (name, sweep) in enumerate(parts.items()):
-        progress(count, len(parts))
-        tables[name] = sweep()
-    progress(len(parts), len(parts))
-    limit = swings.reference()
-    tables["reference"] = pd.DataFrame(
-        [
-            {
-                "quantity": "frequency",
-                "frequency_Hz": limit.frequency,
-                "uncertainty": limit.frequency_uncertainty,
-            }
-        ]
-    )
-    return tables | {"findings": table(_findings(tables))}
-
-
-def draw(tables: Mapping[str, pd.DataFrame]) -> dict[str, Figure]:
-    """Draw the shifts over each refinement, and the frequency over the amplitude."""
-    return {"frequency": _shifts(tables), "backbone": _backbone(tables["backbone"])}
-
-
-def _shifts(tables: Mapping[str, pd.DataFrame]) -> Figure:
+def _shifts(tables: Tables) -> Figure:
     figure = page(9.5, 6.6)
     (points, meshes, steps), (point_modes, mesh_modes, key) = figure.subplots(2, 3)
     level = float(tables["reference"]["uncertainty"].iloc[0])
@@ -118,7 +85,8 @@ def _counts(panel: Axes, counts: "pd.Series[int]") -> None:
     panel.minorticks_off()
 
 
-def _backbone(rows: pd.DataFrame) -> Figure:
+def _backbone(tables: Tables) -> Figure:
+    rows = tables["backbone"]
     figure = page(9.5, 3.8)
     curve, difference = figure.subplots(1, 2)
     wide = rows.pivot(index="amplitude_rad", columns="formulation", values="frequency_Hz")
@@ -151,7 +119,7 @@ def _backbone(rows: pd.DataFrame) -> Figure:
     return figure
 
 
-def _findings(tables: Mapping[str, pd.DataFrame]) -> list[Finding]:
+def _findings(tables: Tables) -> list[Finding]:
     """Return whether the paper's explanation of its Fig 6 holds, what is due to locking, and agreement."""
     found = []
     for stretch in ("consistent", "mixed"):
@@ -186,11 +154,13 @@ def _findings(tables: Mapping[str, pd.DataFrame]) -> list[Finding]:
             holds=share > 0.5,
         )
     )
-    return found + _findings_of_small_motion(tables, float(four["mixed"]))
+    return found
 
 
-def _findings_of_small_motion(tables: Mapping[str, pd.DataFrame], shift: float) -> list[Finding]:
+def _findings_of_small_motion(tables: Tables) -> list[Finding]:
     """Return whether the modes at rest show the shift, and whether both models swing alike."""
+    four = tables["control_points"].query("control_points == 4 and stretch == 'mixed'")
+    shift = float(four["shift"].iloc[0])
     first = tables["modes"].query("model == 'spline' and mode == 1 and count == 4")["error"].iloc[0]
     wide = tables["backbone"].pivot(index="amplitude_rad", columns="formulation", values="frequency_Hz")
     apart = float((wide[SPLINE] / wide[TWENTY] - 1.0).abs().max())
@@ -210,3 +180,36 @@ def _findings_of_small_motion(tables: Mapping[str, pd.DataFrame], shift: float) 
             holds=apart <= ALIKE,
         ),
     ]
+
+
+def _reference() -> dict[str, float | str]:
+    limit = swings.reference()
+    return {
+        "quantity": "frequency",
+        "frequency_Hz": limit.frequency,
+        "uncertainty": limit.frequency_uncertainty,
+    }
+
+
+STUDY = Study(
+    cases=(CASE,),
+    parts=(
+        Part(
+            at=lambda: swing_sweep.FORMS,
+            ask=lambda *form: {"control_points": swing_sweep.of_control_points(*form)},
+        ),
+        Part(at=lambda: swing_sweep.ELEMENTS, ask=lambda count: {"elements": swing_sweep.of_elements(count)}),
+        Part(
+            at=lambda: product(INTEGRATORS, swing_sweep.STEPS),
+            ask=lambda *step: {"steps": swing_sweep.of_step(*step)},
+        ),
+        Part(ask=lambda: {"modes": swing_sweep.modes()}),
+        Part(
+            at=lambda: product(swing_sweep.BACKBONE, np.radians(swing_sweep.AMPLITUDES)),
+            ask=lambda *swing: {"backbone": swing_sweep.of_amplitude(*swing)},
+        ),
+        Part(ask=lambda: {"reference": _reference()}),
+    ),
+    claims=(_findings, _findings_of_small_motion),
+    figures={"frequency": _shifts, "backbone": _backbone},
+)

@@ -5,11 +5,11 @@ of these strains forbids it. Too little leaves the sliding slow, so that it take
 is locking again.
 """
 
-from collections.abc import Callable, Mapping
+from functools import partial
+from itertools import product
 from typing import Any
 
 import numpy as np
-import pandas as pd
 from matplotlib.figure import Figure
 
 from spline_model.pivot import SLIDE_STIFFNESS, swinging_slide_stiffness
@@ -19,12 +19,11 @@ from studies.answers.reference import errors
 from studies.answers.settings import SplineSettings
 from studies.cases.problem import named_case
 from studies.convergence.sweep import QUANTITIES
+from studies.engine.findings import Finding, Tables
+from studies.engine.study import Answer, Part, Study
 from studies.paper import formulations, swings
-from studies.paper.findings import Finding, table
+from studies.paper.formulations import CASE
 from studies.record.style import COUNT_COLOURS, page
-
-CASE = formulations.CASE
-CASES = (CASE,)
 
 #: Values in units of EI/L^2; EA is 3.5e3 of them for Table 1.
 VALUES = (1e-3, 0.1, 1.0, 3.0, 10.0, 30.0, 100.0, 300.0, 1000.0)
@@ -37,38 +36,22 @@ DURATION = 0.025
 NEAR = 3.0
 
 
-def compute(progress: Callable[[int, int], None]) -> dict[str, pd.DataFrame]:
-    """Return the errors of statics and of motion, one row a count and value, the defaults and findings."""
-    total = len(COUNTS) + len(MOVING_COUNTS)
-    statics, motions = [], []
-    for done, n in enumerate(COUNTS):
-        progress(done, total)
-        statics += [_static(n, value) for value in VALUES]
-    for done, n in enumerate(MOVING_COUNTS, start=len(COUNTS)):
-        progress(done, total)
-        motions += [_motion(n, value) for value in sorted({*VALUES, swinging_slide_stiffness(n)})]
-    progress(total, total)
-    static, motion = pd.DataFrame(statics), pd.DataFrame(motions)
-    chosen = pd.DataFrame(
-        [{"problem": "statics", "control_points": n, "slide_stiffness": SLIDE_STIFFNESS} for n in COUNTS]
-        + [
-            {"problem": "motion", "control_points": n, "slide_stiffness": swinging_slide_stiffness(n)}
-            for n in MOVING_COUNTS
-        ]
-    )
-    defaults = {
-        str(problem): rows.set_index("control_points")["slide_stiffness"]
-        for problem, rows in chosen.groupby("problem")
-    }
-    found = _findings(static, "error_torque", defaults["statics"], "torque on the path")
-    found += _findings(motion, "error_rotation_rad", defaults["motion"], "rotation in motion")
-    return {"statics": static, "motion": motion, "defaults": chosen, "findings": table(found)}
+def defaults() -> list[dict[str, Any]]:
+    """Return the models' own values."""
+    own = [("statics", n, SLIDE_STIFFNESS) for n in COUNTS]
+    own += [("motion", n, swinging_slide_stiffness(n)) for n in MOVING_COUNTS]
+    return [dict(zip(("problem", "control_points", "slide_stiffness"), each, strict=True)) for each in own]
 
 
-def draw(tables: Mapping[str, pd.DataFrame]) -> dict[str, Figure]:
+def moving() -> list[tuple[int, float]]:
+    """Return counts and values that are asked in motion: the default is among them."""
+    return [(n, each) for n in MOVING_COUNTS for each in sorted({*VALUES, swinging_slide_stiffness(n)})]
+
+
+def figure(tables: Tables) -> Figure:
     """Draw the errors of torque, stiffness and rotation in motion over the slide stiffness."""
-    figure = page(9.5, 4.4)
-    torque, stiffness, motion = figure.subplots(1, 3)
+    drawn = page(9.5, 4.4)
+    torque, stiffness, motion = drawn.subplots(1, 3)
     chosen = tables["defaults"].set_index(["problem", "control_points"])["slide_stiffness"]
     panels = (
         (torque, "statics", "error_torque", "largest error of the torque [1]"),
@@ -87,40 +70,42 @@ def draw(tables: Mapping[str, pd.DataFrame]) -> dict[str, Figure]:
     stiffness.set_title("Static path to 90°")
     motion.set_title(f"{1e3 * DURATION:g} ms after the release")
     torque.annotate("rings: the defaults", (0.03, 0.97), xycoords="axes fraction", va="top", fontsize=8)
-    figure.legend(*torque.get_legend_handles_labels(), loc="outside lower center", ncols=len(COUNTS))
-    return {"slide_stiffness": figure}
+    drawn.legend(*torque.get_legend_handles_labels(), loc="outside lower center", ncols=len(COUNTS))
+    return drawn
 
 
-def _static(n: int, value: float) -> dict[str, Any]:
+def _static(n: int, value: float) -> Answer:
     """Return the row of one static path: status and largest errors against the limit of the elements."""
     settings = SplineSettings(control_points=n, slide_stiffness=value)
     answer = answer_static(named_case(CASE), settings)
     row: dict[str, Any] = {"control_points": n, "slide_stiffness": value, "status": answer.status}
     found = errors(answer, formulations.refined()).largest() if answer.converged else {}
-    return row | {f"error_{name}": found.get(name, np.nan) for name in QUANTITIES}
+    return {"statics": row | {f"error_{name}": found.get(name, np.nan) for name in QUANTITIES}}
 
 
-def _motion(n: int, value: float) -> dict[str, Any]:
+def _motion(n: int, value: float) -> Answer:
     """Return the row of one motion: status, largest error of the rotation and shift of the frequency."""
     instants = swings.INSTANTS[swings.INSTANTS <= DURATION]
     exact = swings.reference().swing.rotation[: len(instants)]
     motion = swings.resolved(SplineSettings(control_points=n, slide_stiffness=value), duration=DURATION)
     shift = motion.frequency / swing_frequency(instants, exact).value - 1.0
-    return {
+    row = {
         "control_points": n,
         "slide_stiffness": value,
         "status": motion.status,
         "error_rotation_rad": swings.rotation_error(motion, exact, instants),
         "frequency_shift": shift if motion.converged else np.nan,
     }
+    return {"motion": row}
 
 
-def _findings(rows: pd.DataFrame, column: str, defaults: "pd.Series[float]", what: str) -> list[Finding]:
+def _findings(tables: Tables, problem: str, column: str, what: str) -> list[Finding]:
     """Return for each count whether the default is near the best of the values, which it names."""
-    found = []
+    found, rows = [], tables[problem]
+    own = tables["defaults"].query("problem == @problem").set_index("control_points")["slide_stiffness"]
     for n, curve in rows.groupby("control_points"):
         by_value = curve.set_index("slide_stiffness")[column].dropna()
-        best, default = float(by_value.index[int(by_value.argmin())]), float(defaults[n])
+        best, default = float(by_value.index[int(by_value.argmin())]), float(own[n])
         excess = float(by_value[default] / by_value[best])
         found.append(
             Finding(
@@ -132,3 +117,18 @@ def _findings(rows: pd.DataFrame, column: str, defaults: "pd.Series[float]", wha
             )
         )
     return found
+
+
+STUDY = Study(
+    cases=(CASE,),
+    parts=(
+        Part(at=lambda: product(COUNTS, VALUES), ask=_static),
+        Part(at=moving, ask=_motion),
+        Part(ask=lambda: {"defaults": defaults()}),
+    ),
+    claims=(
+        partial(_findings, problem="statics", column="error_torque", what="torque on the path"),
+        partial(_findings, problem="motion", column="error_rotation_rad", what="rotation in motion"),
+    ),
+    figures={"slide_stiffness": figure},
+)

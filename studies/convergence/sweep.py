@@ -1,10 +1,11 @@
 """Sweeps over refinement: one row a discretisation with its largest errors, failed ones included."""
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 import numpy as np
 import pandas as pd
+from matplotlib.figure import Figure
 
 from studies.answers.adapters import answer_static
 from studies.answers.metrics import observed_order
@@ -12,7 +13,9 @@ from studies.answers.reference import Reference, errors, limit_of
 from studies.answers.response import Response
 from studies.answers.settings import FeSettings, SplineSettings
 from studies.cases.problem import Problem
+from studies.kinds import Progress
 from studies.record.progress import silent
+from studies.record.style import LOOKS, page, uncertain
 
 QUANTITIES = ("trajectory", "torque", "stiffness")
 ERROR_COLUMNS = tuple(f"error_{name}" for name in QUANTITIES)
@@ -20,25 +23,27 @@ ERROR_COLUMNS = tuple(f"error_{name}" for name in QUANTITIES)
 #: Meshes above this one are answered but not extrapolated from: their stiffness carries too much round-off.
 FINEST = 160
 
-Progress = Callable[[int, int], None]
-
 
 def spline_sweep(
     problem: Problem, settings: Sequence[SplineSettings], against: Reference, progress: Progress = silent
 ) -> pd.DataFrame:
-    """Return one row for each of `settings`: what it is, how it ended, its errors, its work.
+    """Return the rows of `spline_row` for each of `settings`."""
+    rows = []
+    for count, setting in enumerate(settings):
+        progress(count, len(settings))
+        rows.append(spline_row(problem, setting, against))
+    progress(len(settings), len(settings))
+    return pd.DataFrame(rows)
+
+
+def spline_row(problem: Problem, setting: SplineSettings, against: Reference) -> dict[str, Any]:
+    """Return what a spline is, how it ended, its errors, its work.
 
     Columns: basis, measure, stretch, control_points, axial_modes (none for consistent stretch), status,
     reached_rad (end of the converged part of the path), error_trajectory, error_torque, error_stiffness
     (largest magnitudes over the path; empty when the path was not completed), newton_iterations, message.
     """
-    rows = []
-    for count, setting in enumerate(settings):
-        progress(count, len(settings))
-        answer = answer_static(problem, setting)
-        rows.append(_described(setting) | _outcome(answer, against))
-    progress(len(settings), len(settings))
-    return pd.DataFrame(rows)
+    return _described(setting) | _outcome(answer_static(problem, setting), against)
 
 
 def element_sweep(
@@ -92,12 +97,12 @@ def reaching(table: pd.DataFrame, count: str, accuracy: float) -> int | None:
 def _described(setting: SplineSettings) -> dict[str, Any]:
     modes = setting.axial_modes
     if modes is None and setting.stretch != "consistent":
-        modes = setting.control_points - 2
+        modes = setting.points - 2
     return {
         "basis": setting.basis,
         "measure": setting.measure,
         "stretch": setting.stretch,
-        "control_points": setting.control_points,
+        "control_points": setting.points,
         "axial_modes": modes,
     }
 
@@ -108,3 +113,29 @@ def _outcome(answer: Response, against: Reference) -> dict[str, Any]:
     if answer.converged:
         row |= {f"error_{name}": value for name, value in errors(answer, against).largest().items()}
     return row | {"newton_iterations": answer.counters["newton_iterations"], "message": answer.message}
+
+
+def drawn(splines: pd.DataFrame, elements: pd.DataFrame, limit: Reference) -> Figure:
+    """Draw the largest errors over the number of control points (above) and of elements (below).
+
+    Args:
+        splines, elements: rows of `spline_sweep` and `element_sweep`.
+        limit: the reference, for its uncertainty.
+    """
+    figure = page(9.5, 6.0)
+    panels = figure.subplots(2, len(QUANTITIES), sharey="col")
+    for column, quantity in enumerate(QUANTITIES):
+        above, below = panels[:, column]
+        above.semilogy(
+            splines["control_points"], splines[f"error_{quantity}"], "x-", color=LOOKS["n = 6"].colour
+        )
+        above.set(xlabel="control points a strip", ylabel=f"error of the {quantity} [1]")
+        below.loglog(elements["elements"], elements[f"error_{quantity}"], "s--", color="#000000")
+        below.set(xlabel="elements a strip", ylabel=f"error of the {quantity} [1]")
+        below.set_xticks(list(elements["elements"]), labels=[str(n) for n in elements["elements"]])
+        below.minorticks_off()
+        for panel in (above, below):
+            uncertain(panel, limit.uncertainty[quantity])
+    panels[0, 0].set_title("spline")
+    panels[1, 0].set_title("finite elements")
+    return figure

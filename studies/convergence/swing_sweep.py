@@ -2,10 +2,8 @@
 
 import dataclasses
 import math
+from functools import cache
 from typing import Any
-
-import numpy as np
-import pandas as pd
 
 from studies.answers.adapters import answer_modes, answer_static
 from studies.answers.metrics import extrapolate, quasi_static_frequency
@@ -20,6 +18,8 @@ from studies.paper.formulations import CASE, FE, SETTINGS
 COUNTS = tuple(swings.STEPS)
 #: Beyond this count the consistent form, whose axial waves are faster, needs shorter steps; nor does it lock.
 MOST_CONSISTENT = 7
+#: Stretch forms with their counts.
+FORMS = [("mixed", n) for n in COUNTS] + [("consistent", n) for n in COUNTS if n <= MOST_CONSISTENT]
 ELEMENTS = (5, 10, *MESHES[:1], 20, *MESHES[1:])
 STEPS = (2e-6, 5e-6, 1e-5, 2e-5, 5e-5, 1e-4, 2e-4, 5e-4)
 INTEGRATORS = {"energy": "energy-consistent", "generalised-alpha": "generalised-α"}
@@ -29,56 +29,43 @@ AMPLITUDES = (2, 5, 10, 20, 30, 45, 60, 75, 90)
 MODES = 5
 MODE_MESHES = (5, 10, 20, 40, 80)
 
-#: Step of the backbone's swings [s]: the rotation is off by less than 2e-4 rad.
-BACKBONE_STEP = 3e-6
+#: Options of the backbone's swings; at this step [s] the rotation is off by less than 2e-4 rad.
+BACKBONE: dict[str, dict[str, Any]] = {FE: {}, "n = 6": {"integrator": "explicit", "step": 3e-6}}
 
 
-def control_points() -> pd.DataFrame:
-    """Return one row a stretch form and count: the swing's frequency, its shift and the one statics implies.
+def of_control_points(stretch: str, n: int) -> dict[str, Any]:
+    """Return the row of a stretch form and count: the swing's frequency, its shift, what statics implies.
 
     Columns: stretch, control_points, status, frequency_Hz, shift (of the frequency, against the limit of the
     finite elements), shift_from_statics (of the quasi-static frequency against that of the finest elements),
     error_rotation_rad (largest over the motion).
     """
-    finest = static_frequency(answer_static(named_case(CASE), FeSettings(elements=160)))
-    rows = []
-    for stretch, most in (("mixed", COUNTS[-1]), ("consistent", MOST_CONSISTENT)):
-        for n in COUNTS[: COUNTS.index(most) + 1]:
-            settings = SplineSettings(control_points=n, stretch=stretch)
-            motion = swings.resolved(settings)
-            implied = static_frequency(answer_static(named_case(CASE), _as_in(motion, settings)))
-            row = {"stretch": stretch, "control_points": n} | _outcome(motion)
-            rows.append(row | {"shift_from_statics": implied / finest - 1.0})
-    return pd.DataFrame(rows)
+    settings = SplineSettings(control_points=n, stretch=stretch)
+    motion = swings.resolved(settings)
+    implied = static_frequency(answer_static(named_case(CASE), _as_in(motion, settings)))
+    row = {"stretch": stretch, "control_points": n} | _outcome(motion)
+    return row | {"shift_from_statics": implied / _finest_static_frequency() - 1.0}
 
 
-def elements() -> pd.DataFrame:
-    """Return one row a mesh of the explicit finite elements; columns as of `control_points`."""
+def of_elements(count: int) -> dict[str, Any]:
+    """Return the row of a mesh of the explicit finite elements; columns as of `of_control_points`."""
     levels = {int(level.settings["elements"]): level for level in swings.reference().levels}
-    rows = []
-    for count in ELEMENTS:
-        motion = levels[count] if count in levels else swings.released(FeSettings(elements=count))
-        rows.append({"elements": count} | _outcome(motion))
-    return pd.DataFrame(rows)
+    motion = levels[count] if count in levels else swings.released(FeSettings(elements=count))
+    return {"elements": count} | _outcome(motion)
 
 
-def steps() -> pd.DataFrame:
-    """Return one row an implicit integrator and step, held against the resolved motion of the same spline.
+def of_step(integrator: str, step: float) -> dict[str, Any]:
+    """Return the row of an implicit integrator and step, against the resolved motion of the same spline.
 
     Columns: integrator, step_s, status, frequency_Hz, shift, error_rotation_rad, energy_error.
     """
     settings = SplineSettings(control_points=6)
-    exact = swings.resolved(settings)
-    rows = []
-    for integrator in INTEGRATORS:
-        for step in STEPS:
-            motion = swings.released(settings, integrator=integrator, step=step)
-            row = {"integrator": integrator, "step_s": step} | _outcome(motion, exact)
-            rows.append(row | {"energy_error": motion.energy_error})
-    return pd.DataFrame(rows)
+    motion = swings.released(settings, integrator=integrator, step=step)
+    row = {"integrator": integrator, "step_s": step} | _outcome(motion, swings.resolved(settings))
+    return row | {"energy_error": motion.energy_error}
 
 
-def modes() -> pd.DataFrame:
+def modes() -> list[dict[str, Any]]:
     """Return one row a model, count and linear mode at rest, against the limit of the finite elements.
 
     Columns: model, count, mode, frequency_Hz, limit_Hz, error (relative), uncertainty (of the limit).
@@ -105,35 +92,29 @@ def modes() -> pd.DataFrame:
                         "uncertainty": limit.uncertainty[mode] / limit.value[mode],
                     }
                 )
-    return pd.DataFrame(rows)
+    return rows
 
 
-def backbone() -> pd.DataFrame:
-    """Return one row a model and amplitude: the frequency of the swing, and that of its static path.
+def of_amplitude(name: str, amplitude: float) -> dict[str, Any]:
+    """Return the row of a model and amplitude: the frequency of the swing, and that of its static path.
 
     Columns: formulation, amplitude_rad, status, frequency_Hz, frequency_from_statics_Hz, first_mode_Hz.
     """
-    options: dict[str, dict[str, Any]] = {
-        FE: {},
-        "n = 6": {"integrator": "explicit", "step": BACKBONE_STEP},
+    problem = dataclasses.replace(named_case(CASE), rotation=float(amplitude))
+    motion = swings.released(SETTINGS[name], start=float(amplitude), **BACKBONE[name])
+    return {
+        "formulation": name,
+        "amplitude_rad": amplitude,
+        "status": motion.status,
+        "frequency_Hz": motion.frequency if motion.converged else math.nan,
+        "frequency_from_statics_Hz": static_frequency(answer_static(problem, SETTINGS[name])),
+        "first_mode_Hz": answer_modes(named_case(CASE), SETTINGS[name], count=1).frequency[0],
     }
-    rows = []
-    for name, chosen in options.items():
-        first = answer_modes(named_case(CASE), SETTINGS[name], count=1).frequency[0]
-        for amplitude in np.radians(AMPLITUDES):
-            problem = dataclasses.replace(named_case(CASE), rotation=float(amplitude))
-            motion = swings.released(SETTINGS[name], start=float(amplitude), **chosen)
-            rows.append(
-                {
-                    "formulation": name,
-                    "amplitude_rad": amplitude,
-                    "status": motion.status,
-                    "frequency_Hz": motion.frequency if motion.converged else math.nan,
-                    "frequency_from_statics_Hz": static_frequency(answer_static(problem, SETTINGS[name])),
-                    "first_mode_Hz": first,
-                }
-            )
-    return pd.DataFrame(rows)
+
+
+@cache
+def _finest_static_frequency() -> float:
+    return static_frequency(answer_static(named_case(CASE), FeSettings(elements=160)))
 
 
 def static_frequency(answer: Response) -> float:

@@ -3,13 +3,11 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import nnls
 
 from studies.design.programme import Programme
 from studies.design.task import CENTRE_SHIFT, VARIABLES
-
-Array = NDArray[np.float64]
+from studies.kinds import Array
 
 #: Margin below which a row is active [1].
 ACTIVE = 1e-6

@@ -3,15 +3,13 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from spline_model.sensitivity.solve import sensitivities
 from studies.answers.models import built, model_of, refusals
 from studies.answers.settings import SplineSettings
 from studies.cases.problem import Problem
 from studies.design.task import CENTRE_SHIFT, VARIABLES
-
-Array = NDArray[np.float64]
+from studies.kinds import Array
 
 #: Control points of the strips: an optimum's answers nearly cancel, and 8 miss the least variation by 8 %.
 CONTROL_POINTS = 10

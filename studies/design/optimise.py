@@ -1,10 +1,8 @@
 """Sizing from several starts: sequential quadratic programming with exact gradients."""
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import minimize
 from scipy.stats import qmc
 
@@ -13,8 +11,7 @@ from studies.design.conditions import Active, conditions
 from studies.design.evaluate import Answers, answers
 from studies.design.programme import Programme
 from studies.design.task import CENTRE_SHIFT, OBJECTIVES, Task, variables_of
-
-Array = NDArray[np.float64]
+from studies.kinds import Array, Progress
 
 MOST_ITERATIONS = 100
 #: Times that the optimiser is started again where it stopped short of an optimum.
@@ -105,7 +102,7 @@ def _run(programme: Programme, start: Array, at: Array, history: list[tuple[floa
     return _outcome(programme, start, found.x, str(found.message), np.array(history))
 
 
-def search(task: Task, begin: Array, progress: Callable[[int, int], None]) -> list[Outcome]:
+def search(task: Task, begin: Array, progress: Progress) -> list[Outcome]:
     """Optimise from scaled starts (K, 5); those without an answer are left out."""
     found = []
     for done, start in enumerate(begin):

@@ -11,12 +11,10 @@ to what they are held against: the start's objective, the wanted stiffness, the 
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
 from studies.design.evaluate import FIBRES, Answers, PathEnds, answers
 from studies.design.task import CENTRE_SHIFT, OBJECTIVES, Task
-
-Array = NDArray[np.float64]
+from studies.kinds import Array
 
 #: Stands for every row of a design without an answer: far outside, so that a line search comes back.
 OUTSIDE = -1e3

@@ -1,105 +1,98 @@
 """Two pivots sized anew: least centre shift, least variation of stiffness, and their trade."""
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from functools import cache, partial
 from typing import Any
 
 import numpy as np
 import pandas as pd
-from matplotlib.figure import Figure
 
+from spline_model.pivot import cross_axis_pivot
+from spline_model.sensitivity.parameters import KEYWORDS
+from spline_model.sensitivity.solve import sensitivities
+from spline_model.statics import solve_statics
 from studies.answers.response import Response
 from studies.cases.problem import Problem, named_case
 from studies.design import figures, questions
-from studies.design.cost import timings
 from studies.design.evaluate import Answers, answers
 from studies.design.optimise import Outcome, best, numbered, search, starts
 from studies.design.questions import BASELINES, QUESTIONS, SPRING_STEEL, STARTS, TABLE_ONE, TRADE
 from studies.design.task import CENTRE_SHIFT, OBJECTIVES, VARIATION, Task, variables_of
 from studies.design.verify import Measured, by_elements, gradient_error, of_spline
+from studies.engine.study import Answer, Part, Study
 from studies.record.progress import silent
+from studies.record.timing import measure
 
-CASES = tuple(BASELINES.values())
-
+#: Control points of what is timed, and how often it is.
+TIMED, REPEAT = (6, 8, 10), 21
 UNITS = ("length_m", "inclination_rad", "crossing_ratio", "thickness_m", "width_m")
 
 
-def compute(progress: Callable[[int, int], None]) -> dict[str, pd.DataFrame]:
-    """Return the designs found, how they were searched for, and what the finite elements say of them.
-
-    Tables: designs (a row a question and baseline: variables, objectives, factor); curves (a row a design,
-    model and rotation); shapes (finite-element stations at rest and at the end); starts (a row a start:
-    where it led); history (a row an iteration); active (constraints that hold each optimum, and what they
-    cost); checks (splines against finite elements, gradients against differences); trade (a row a limit of
-    the variation); timings (sensitivities beside their path).
-    """
-    baselines = {name: questions.baseline(name) for name in BASELINES}
-    own = {name: answers(problem) for name, problem in baselines.items()}
-    total = len(QUESTIONS) * STARTS + len(TRADE)
-    found: dict[str, tuple[Task, list[Outcome]]] = {}
-    for i, (name, question) in enumerate(QUESTIONS.items()):
-        task = questions.task(baselines[question.baseline], own[question.baseline], question)
-        found[name] = task, search(task, starts(task, STARTS), _part(progress, i * STARTS, total))
-    optima = {name: _required(name, best(outcomes)) for name, (_, outcomes) in found.items()}
-    designs = {name: (baselines[name], own[name]) for name in BASELINES} | {
-        name: (each.problem, each.answers) for name, each in optima.items()
-    }
-    elements = {name: by_elements(problem) for name, (problem, _) in designs.items()}
-    ends = [optima[name] for name in questions.WIDE]
-    table_one = baselines[TABLE_ONE], own[TABLE_ONE]
-    trade = _trade(*table_one, ends, _part(progress, total - len(TRADE), total))
-    progress(total, total)
-    return {
-        "designs": pd.DataFrame([_design(name, *each, own) for name, each in designs.items()]),
-        "curves": pd.concat(
-            [_curve(name, "spline", of_spline(each)) for name, (_, each) in designs.items()]
-            + [_curve(name, "FE", measured) for name, (measured, _) in elements.items()]
-        ),
-        "shapes": pd.concat([_shapes(name, response) for name, (_, response) in elements.items()]),
-        "starts": pd.DataFrame([row for name, each in found.items() for row in _starts(name, *each)]),
-        "history": pd.DataFrame([row for name, (_, each) in found.items() for row in _history(name, each)]),
-        "active": pd.DataFrame([row for name, each in optima.items() for row in _active(name, each)]),
-        "checks": pd.DataFrame(
-            [row for name, (_, each) in designs.items() for row in _checks(name, each, elements[name][0])]
-            + [_gradient(name, found[name][0], each) for name, each in optima.items()]
-        ),
-        "trade": pd.DataFrame(trade),
-        "timings": pd.DataFrame(timings(named_case(BASELINES[TABLE_ONE]))),
-    }
+@cache
+def _baseline(name: str) -> tuple[Problem, Answers]:
+    problem = questions.baseline(name)
+    return problem, answers(problem)
 
 
-def draw(tables: Mapping[str, pd.DataFrame]) -> dict[str, Figure]:
-    """Draw the designs to scale with their answers, and how they were found."""
-    return {
-        "sizing": figures.designs(tables, TABLE_ONE),
-        "sizing_spring_steel": figures.designs(tables, SPRING_STEEL),
-        "sizing_search": figures.search(tables, TABLE_ONE),
-    }
+@cache
+def _found(name: str) -> tuple[Task, list[Outcome]]:
+    """Return what a question asks and where its starts have led."""
+    question = QUESTIONS[name]
+    task = questions.task(*_baseline(question.baseline), question)
+    return task, search(task, starts(task, STARTS), silent)
 
 
-def _part(progress: Callable[[int, int], None], before: int, total: int) -> Callable[[int, int], None]:
-    """Return the progress of a part that comes after ``before`` of ``total``."""
-    return lambda done, _: progress(before + done, total)
-
-
-def _required(name: str, outcome: Outcome | None) -> Outcome:
+def _optimum(name: str) -> Outcome:
+    outcome = best(_found(name)[1])
     if outcome is None:
         raise RuntimeError(f"{name}: no start has led to an optimum")
     return outcome
 
 
-def _trade(
-    start: Problem, own: Answers, ends: Sequence[Outcome], progress: Callable[[int, int], None]
-) -> list[dict[str, Any]]:
+def searched(name: str) -> Answer:
+    """Return a question's optimum and how it was found.
+
+    Tables: starts (a row a start: where it led); history (a row an iteration); active (constraints that hold
+    the optimum, and what they cost); the others as of `described`.
+    """
+    task, outcomes = _found(name)
+    optimum = _optimum(name)
+    given = described(name, optimum.problem, optimum.answers)
+    return {
+        **given,
+        "checks": [*given["checks"], _gradient(name, task, optimum)],
+        "starts": _starts(name, task, outcomes),
+        "history": _history(name, outcomes),
+        "active": _active(name, optimum),
+    }
+
+
+def described(name: str, problem: Problem, found: Answers) -> dict[str, Any]:
+    """Return a design and what the finite elements say of it.
+
+    Tables: designs (variables, objectives, factor); curves (a row a model and rotation); shapes
+    (finite-element stations at rest and at the end); checks (splines against finite elements, gradients
+    against differences).
+    """
+    measured, response = by_elements(problem)
+    curves = [_curve(name, "spline", of_spline(found)), _curve(name, "FE", measured)]
+    return {
+        "designs": _design(name, problem, found),
+        "curves": pd.concat(curves),
+        "shapes": _shapes(name, response),
+        "checks": _checks(name, found, measured),
+    }
+
+
+def _trade() -> list[dict[str, Any]]:
     """Return the least centre shift at each limit of the variation, each begun at the one before.
 
-    ends: the optima of both objectives, between which the trade lies; it begins at the last one too.
+    It lies between the optima of both objectives, and begins at the last one too.
     """
     rows: list[dict[str, Any]] = []
-    begin = [each.at[:5] for each in ends]
+    begin = [_optimum(name).at[:5] for name in questions.WIDE]
     for limit in TRADE:
-        progress(len(rows), len(TRADE))
-        task = questions.task(start, own, QUESTIONS[questions.WIDE[0]], variation=limit)
+        task = questions.task(*_baseline(TABLE_ONE), QUESTIONS[questions.WIDE[0]], variation=limit)
         found = best(search(task, np.array(begin), silent))
         rows.append(_trade_row(limit, found))
         begin = begin[:2] if found is None else [*begin[:2], found.at[:5]]
@@ -118,10 +111,10 @@ def _trade_row(limit: float, found: Outcome | None) -> dict[str, Any]:
     }
 
 
-def _design(name: str, problem: Problem, found: Answers, own: Mapping[str, Answers]) -> dict[str, Any]:
+def _design(name: str, problem: Problem, found: Answers) -> dict[str, Any]:
     """Return a design's variables and objectives; factors are the baseline's objective over the design's."""
     baseline = name if name in BASELINES else QUESTIONS[name].baseline
-    measured = of_spline(found)
+    own, measured = _baseline(baseline)[1], of_spline(found)
     reach = float(np.interp(questions.ALLOWABLE, measured.stress, measured.rotation))
     return {
         "design": name,
@@ -131,10 +124,7 @@ def _design(name: str, problem: Problem, found: Answers, own: Mapping[str, Answe
         "largest_stress_Pa": float(measured.stress.max()),
         "centre_shift_m": found.largest(CENTRE_SHIFT),
         "variation": found.largest(VARIATION),
-        **{
-            f"factor_{key.replace('-', '_')}": own[baseline].largest(key) / found.largest(key)
-            for key in OBJECTIVES
-        },
+        **{f"factor_{key.replace('-', '_')}": own.largest(key) / found.largest(key) for key in OBJECTIVES},
         "range_at_500MPa_rad": reach,
     }
 
@@ -242,3 +232,41 @@ def _gradient(name: str, task: Task, outcome: Outcome) -> dict[str, Any]:
         "reference": math.nan,
         "error": gradient_error(task, outcome.problem),
     }
+
+
+def timed(count: int) -> Answer:
+    """Return the shortest times of a path and of all its sensitivities with so many control points [s].
+
+    `ratio` is the latter over the former; by central differences it would be two paths a parameter,
+    `paths_by_differences`, for a fraction of the digits.
+    """
+    problem = named_case(BASELINES[TABLE_ONE])
+    pivot = cross_axis_pivot(**problem.pivot_parameters(), control_points=count)
+    keywords: dict[str, Any] = {"rotation": problem.rotation, "increments": problem.increments}
+    path = measure(partial(solve_statics, pivot, **keywords), repeat=REPEAT)
+    exact = measure(partial(sensitivities, pivot, path.result), repeat=REPEAT)
+    row = {
+        "control_points": count,
+        "parameters": len(KEYWORDS),
+        "path_s": min(path.seconds),
+        "sensitivities_s": min(exact.seconds),
+        "ratio": min(exact.seconds) / min(path.seconds),
+        "paths_by_differences": 2 * len(KEYWORDS),
+    }
+    return {"timings": row}
+
+
+STUDY = Study(
+    cases=tuple(BASELINES.values()),
+    parts=(
+        Part(at=lambda: BASELINES, ask=lambda name: described(name, *_baseline(name))),
+        Part(at=lambda: QUESTIONS, ask=searched),
+        Part(ask=lambda: {"trade": _trade()}),
+        Part(at=lambda: TIMED, ask=timed, alone=True),
+    ),
+    figures={
+        "sizing": lambda tables: figures.designs(tables, TABLE_ONE),
+        "sizing_spring_steel": lambda tables: figures.designs(tables, SPRING_STEEL),
+        "sizing_search": lambda tables: figures.search(tables, TABLE_ONE),
+    },
+)

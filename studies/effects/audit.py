@@ -1,6 +1,6 @@
 """Audit of a design: what each effect of its scene is worth, and the cheapest scene within a tolerance."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations
 
@@ -10,6 +10,7 @@ from studies.answers.settings import SplineSettings
 from studies.cases.design import Design
 from studies.effects.outcome import Answer, Outcome, Run, Unanswered, answered, outcome, run_of, timed
 from studies.effects.variants import Variant, beside, full_scene, without
+from studies.kinds import Progress
 from studies.record.progress import silent
 
 #: Timed rounds of all scenes, one after the other; and of the cheapest against the full one.
@@ -20,8 +21,6 @@ SLOW = 3.0
 SAME_TIME = 0.1
 #: Effects that are tried in all combinations; of more the least important go in every one of them.
 MOST_COMBINED = 4
-
-Progress = Callable[[int, int], None]
 
 
 @dataclass(frozen=True, kw_only=True)

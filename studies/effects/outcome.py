@@ -5,7 +5,6 @@ from dataclasses import dataclass, replace
 from typing import TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 
 from studies.answers.adapters import answer_mechanism, answer_modes, answer_release, answer_static
 from studies.answers.assembly import MechanismResponse
@@ -18,8 +17,7 @@ from studies.cases.problem import Problem
 from studies.effects.size import Size, size_of
 from studies.effects.variants import Variant
 from studies.errors import BadInput
-
-Array = NDArray[np.float64]
+from studies.kinds import Array
 
 #: Duration of the motion and its steps, in swings of the first mode of the full scene. With so many steps
 #: the frequency of Table 1's swing is within 1e-4 of the limit.

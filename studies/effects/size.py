@@ -5,10 +5,10 @@ from dataclasses import dataclass
 
 from spline_model.compile import compile_scene
 from spline_model.dynamics import highest_frequency
-from spline_model.integrators.explicit import STABILITY_LIMIT
-from spline_model.integrators.motion import set_in_motion
 from spline_model.mechanism import Mechanism
 from spline_model.modes import linear_modes, static_state
+from spline_model.motion.explicit import stability_limit
+from spline_model.motion.start import set_in_motion
 from studies.answers.adapters import spline_mechanism
 from studies.answers.models import model_of, refusals
 from studies.answers.settings import SplineSettings
@@ -52,5 +52,5 @@ def size_of(design: Design, settings: SplineSettings) -> Size:
         unknowns=system.layout.size,
         degrees_of_freedom=len(modes),
         highest_frequency=highest / (2.0 * math.pi),
-        explicit_step=STABILITY_LIMIT / highest,
+        explicit_step=stability_limit("explicit", motion) / highest,
     )

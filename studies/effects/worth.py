@@ -1,12 +1,9 @@
 """What each effect is worth for four designs, and what inextensible and massless strips save."""
 
-from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
-import pandas as pd
-from matplotlib.figure import Figure
 
 from studies.answers.adapters import answer_modes
 from studies.answers.settings import SplineSettings
@@ -16,18 +13,16 @@ from studies.effects.audit import Audit, audit
 from studies.effects.outcome import Outcome
 from studies.effects.size import size_of
 from studies.effects.variants import Variant, without
-from studies.paper.findings import Finding, table
+from studies.engine.findings import Claim, Finding, Tables
+from studies.engine.study import Answer, Part, Study
 
 CASE = "cross_axis_pivot"
-CASES = (CASE,)
 
 SETTINGS = SplineSettings(control_points=6)
 TOLERANCE = 1e-3
 
 #: Control points for which the highest frequency is taken with and without stretching.
 COUNTS = range(4, 9)
-#: Up to this count leaving out stretching must at least double the explicit step.
-DOUBLED = 6
 #: Mass of the body, and with it its moment of inertia, over that of Table 1.
 MASSES = np.geomspace(0.03, 30.0, 13)
 
@@ -47,39 +42,14 @@ def designs() -> dict[str, Problem]:
     }
 
 
-def compute(progress: Callable[[int, int], None]) -> dict[str, pd.DataFrame]:
-    """Return the worth of the effects, the times, the cheapest scenes, both savings and the findings, those
-    of time apart.
-
-    Tables: worth (a row a design and scene: changes, size, or why there is no answer); timings (time of the
-    full scene over the scene's); cheapest (a row a design); steps (highest frequency and explicit step with
-    and without stretching); mass_ratio (shift of the first mode by massless strips).
-    """
-    chosen = designs()
-    audits = {}
-    for done, (name, problem) in enumerate(chosen.items()):
-        progress(done, len(chosen) + 1)
-        audits[name] = audit(problem, SETTINGS, TOLERANCE)
-    progress(len(chosen), len(chosen) + 1)
-    tables = {
-        "worth": pd.DataFrame([_row(name, row) for name, each in audits.items() for row in each.rows]),
-        "timings": pd.DataFrame([row for name, each in audits.items() for row in _times(name, each)]),
-        "cheapest": pd.DataFrame([_cheapest(name, each) for name, each in audits.items()]),
-        "steps": pd.DataFrame([row for n in COUNTS for row in _steps(n)]),
-        "mass_ratio": pd.DataFrame([_massless(float(factor)) for factor in MASSES]),
-    }
-    progress(len(chosen) + 1, len(chosen) + 1)
-    return tables | {
-        "findings": table(_findings(tables)),
-        "findings_of_time": table(_findings_of_time(tables)),
-    }
-
-
-def draw(tables: Mapping[str, pd.DataFrame]) -> dict[str, Figure]:
-    """Draw the worth of every effect for every design, and both savings."""
+def audited(name: str) -> Answer:
+    """Return the worth of a design's effects (a row a scene: changes, size, or why there is no answer), the
+    times (of the full scene over the scene's) and the cheapest scene."""
+    found = audit(designs()[name], SETTINGS, TOLERANCE)
     return {
-        "effects_worth": figures.worth(tables, list(designs()), TOLERANCE),
-        "effects_savings": figures.savings(tables),
+        "worth": [_row(name, row) for row in found.rows],
+        "timings": _times(name, found),
+        "cheapest": _cheapest(name, found),
     }
 
 
@@ -174,23 +144,7 @@ def _massless(factor: float) -> dict[str, Any]:
     }
 
 
-def _findings(tables: Mapping[str, pd.DataFrame]) -> list[Finding]:
-    """Return which effects matter where, and whether the two simplifications save what they promise."""
-    found = []
-    for row in tables["worth"].query("status == 'converged'").to_dict("records"):
-        found.append(
-            Finding(
-                claim=f"The answer is within {TOLERANCE:g} without it",
-                formulation=f"{row['design']}, {row['scene']}",
-                quantity="the largest change of path, torque, frequencies and loss",
-                value=row["largest"],
-                holds=row["largest"] <= TOLERANCE,
-            )
-        )
-    return found + _savings(tables)
-
-
-def _findings_of_time(tables: Mapping[str, pd.DataFrame]) -> list[Finding]:
+def _findings_of_time(tables: Tables) -> list[Finding]:
     """Return whether the cheapest scenes and the simpler strips take less time: these differ run by run."""
     times = tables["timings"].set_index(["design", "scene"])["time_ratio"].to_dict()
     asked = [
@@ -218,30 +172,58 @@ def _findings_of_time(tables: Mapping[str, pd.DataFrame]) -> list[Finding]:
     ]
 
 
-def _savings(tables: Mapping[str, pd.DataFrame]) -> list[Finding]:
-    """Return what the two simplifications save in steps, and what massless strips cost in frequency."""
-    found = []
+def _gains(tables: Tables) -> list[dict[str, Any]]:
+    """Return how many times longer the explicit step is without stretching, a row a count."""
     wide = tables["steps"].pivot(index="control_points", columns="stretching", values="explicit_step_s")
-    for n, row in wide.iterrows():
-        gain = float(row["no"] / row["yes"])
-        found.append(
-            Finding(
-                claim="Without stretching the largest stable explicit step is at least twice as long",
-                formulation=f"n = {n}",
-                quantity="the explicit step without over that with stretching",
-                value=gain,
-                holds=gain >= 2.0,
-            )
-        )
+    return [{"n": n, "gain": float(row["no"] / row["yes"])} for n, row in wide.iterrows()]
+
+
+def _exponent(tables: Tables) -> list[dict[str, Any]]:
+    """Return how far the exponent of the shift by massless strips over the mass ratio is from one."""
     shift = tables["mass_ratio"].sort_values("mass_ratio")
-    order = float(np.polyfit(np.log(shift["mass_ratio"]), np.log(shift["shift"].abs()), 1)[0])
-    found.append(
-        Finding(
+    order = np.polyfit(np.log(shift["mass_ratio"]), np.log(shift["shift"].abs()), 1)[0]
+    return [{"distance": abs(float(order) - 1.0)}]
+
+
+STUDY = Study(
+    cases=(CASE,),
+    parts=(
+        Part(at=designs, ask=audited, alone=True),
+        # highest frequency and explicit step with and without stretching
+        Part(at=lambda: COUNTS, ask=lambda n: {"steps": _steps(n)}),
+        # shift of the first mode by massless strips
+        Part(at=lambda: MASSES, ask=lambda factor: {"mass_ratio": _massless(float(factor))}),
+    ),
+    claims=(
+        Claim(
+            claim=f"The answer is within {TOLERANCE:g} without it",
+            formulation="{design}, {scene}",
+            quantity="the largest change of path, torque, frequencies and loss",
+            rows=lambda tables: tables["worth"].query("status == 'converged'"),
+            value="largest",
+            most=TOLERANCE,
+        ),
+        Claim(
+            claim="Without stretching the largest stable explicit step is at least twice as long",
+            formulation="n = {n}",
+            quantity="the explicit step without over that with stretching",
+            rows=_gains,
+            value="gain",
+            least=2.0,
+        ),
+        Claim(
             claim="The frequency shift by massless strips goes with the mass ratio",
             formulation="Table 1 with bodies of other masses",
             quantity="the distance of the observed exponent from 1",
-            value=abs(order - 1.0),
-            holds=abs(order - 1.0) <= 0.1,
-        )
-    )
-    return found
+            rows=_exponent,
+            value="distance",
+            most=0.1,
+        ),
+    ),
+    claims_of_time=(_findings_of_time,),
+    varying=("cheapest",),
+    figures={
+        "effects_worth": lambda tables: figures.worth(tables, list(designs()), TOLERANCE),
+        "effects_savings": figures.savings,
+    },
+)

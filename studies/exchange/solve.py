@@ -1,21 +1,20 @@
 """Solve a design by either model for the fields along its strips: static path, motion or natural modes."""
 
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 
-from studies.answers.fields import Array, Fields, blocks_of, parts_of, strip_arrays
-from studies.answers.models import built, effects_of, model_of, refusals
+from studies.answers.fields import Fields, blocks_of, parts_of, strip_arrays
+from studies.answers.models import as_solved, built, effects_of, is_given, model_of, refusals
 from studies.answers.moving import state_of
 from studies.answers.response import assembled
 from studies.answers.settings import Settings
 from studies.cases.design import Design
 from studies.cases.problem import Problem
+from studies.kinds import Array, Progress
 
 #: Arrays of the design, not of its states.
 GIVEN = ("arc_length", "rest_shape", "rest_bodies")
-Progress = Callable[[int, int], None]
 
 
 class NoState(ValueError):
@@ -30,21 +29,21 @@ def static_fields(design: Design, settings: Settings, *, progress: Progress | No
     """
     model = model_of(settings)
     asked, keywords = built(model, design, settings, moving=False)
-    how: dict[str, Any] = {"increments": design.increments, "raise_on_failure": False, "progress": progress}
+    how: dict[str, Any] = {"increments": design.increments, "order": design.order, "progress": progress}
+    how["raise_on_failure"] = False
     with refusals(model, settings):
         if isinstance(design, Problem):
             result = model.statics.solve_statics(asked, rotation=design.rotation, **how)
-            values = result.rotation / design.rotation
         else:
             drive = {"body": design.body, "rotation": design.rotation}
             result = model.statics.solve_mechanism(asked, **drive, **how)
-            values = result.load_factor
+    asked, keywords = as_solved(model, design, settings, result, moving=False)
     return Fields(
         **_identity("static", design, settings, keywords),
         **_ended(result),
         effects=assembled(effects_of(asked)),
         series="load_factor",
-        values=np.asarray(values),
+        values=np.asarray(result.load_factor),
         torque=None if np.isnan(result.torque).all() else np.asarray(result.torque),
         **strip_arrays(model.static_fields(asked, result.states)),
     )
@@ -101,7 +100,7 @@ def mode_fields(design: Design, settings: Settings, *, count: int, held: bool) -
         NoState: statics does not reach the rotation.
     """
     model = model_of(settings)
-    asked, keywords = built(model, design, settings, moving=True)
+    asked, keywords = built(model, design, settings, moving=is_given(settings))
     body = "body" if isinstance(design, Problem) else design.body
     about = state_of(design, design.rotation, held=held)
     with refusals(model, settings):
@@ -109,6 +108,7 @@ def mode_fields(design: Design, settings: Settings, *, count: int, held: bool) -
             result = model.modes.natural_frequencies(asked, rotation=about, count=count, held=held, body=body)
         except model.errors.ConvergenceError as error:
             raise NoState(f"statics does not reach the state: {error}") from None
+    asked, keywords = as_solved(model, design, settings, result, moving=True)
     count = len(result.frequency)
     still = strip_arrays(model.static_fields(asked, np.asarray(result.state)[None]))
     moving = {name: np.repeat(array, count, axis=0) for name, array in still.items() if name not in GIVEN}

@@ -8,9 +8,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from studies.answers.fields import Array, Fields
+from studies.answers.fields import Fields
 from studies.cases.mechanism import GROUND
 from studies.exchange.vtk import mode_scale
+from studies.kinds import Array
 from studies.record import style
 from studies.record.style import BLACK, BLUE, GREEN
 

@@ -15,8 +15,9 @@ import meshio
 import numpy as np
 from numpy.typing import NDArray
 
-from studies.answers.fields import Array, Fields
+from studies.answers.fields import Fields
 from studies.cases.mechanism import GROUND
+from studies.kinds import Array
 
 Indices = NDArray[np.int64]
 

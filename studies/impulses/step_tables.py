@@ -2,19 +2,21 @@
 
 import math
 import time
-from collections.abc import Callable
+from collections.abc import Iterator
+from functools import cache
+from itertools import product
 from typing import Any
 
 import numpy as np
-import pandas as pd
 from scipy.interpolate import CubicSpline
 
 from spline_model.dynamics import Trajectory, solve_release
 from spline_model.impulses.convergence import contraction, sweep_errors
 from spline_model.sequential_impulse import impulse_solver, solve_impulses, stability_limit
-from studies.answers.metrics import Array
 from studies.answers.settings import SplineSettings
+from studies.engine.study import Answer
 from studies.impulses.designs import GROUPS, START, designs, pivot
+from studies.kinds import Array
 from studies.record.timing import measure
 
 FORMS = ("printed", "stable")
@@ -43,120 +45,114 @@ PICTURES = 100
 STEPS_A_PICTURE = 4
 
 
-def steps(progress: Callable[[], None]) -> tuple[pd.DataFrame, pd.DataFrame]:
-    """Return a row a design, form and step after the release from 90 degrees, and the times apart.
+def steps() -> Iterator[tuple[str, str, float]]:
+    """Yield designs, forms and steps."""
+    for design in designs():
+        own = stability_limit(pivot(design))
+        yield from ((design, "printed", part * own) for part in FRACTIONS)
+        yield from ((design, "stable", step) for step in STEPS if step >= SHORTEST[design])
+
+
+def released(design: str, form: str, step: float) -> Answer:
+    """Return the motion after the release from 90 degrees, and its times apart.
 
     Columns: status, error_rotation_rad (largest, against the explicit integrator on the same spline), drift
     (largest gap of the clamps over the length), energy_change and energy_gain (at the end, and largest, over
     the start), steps, solves, limited_steps (whose velocity was reduced so that no energy is gained),
     stopped_s; times: step_us (of one step), motion_s.
     """
-    rows, times = [], []
-    for design in designs():
-        limit = stability_limit(pivot(design))
-        # half the step that its stability allows: of order four
-        exact = solve_release(
-            pivot(design),
-            start=START,
-            duration=DURATION[design],
-            integrator="explicit",
-            records=2000,
-            check=False,
-        )
-        chosen = {
-            "printed": [part * limit for part in FRACTIONS],
-            "stable": [h for h in STEPS if h >= SHORTEST[design]],
-        }
-        for form in FORMS:
-            for step in chosen[form]:
-                key = {"design": design, "form": form, "step_s": step}
-                run = _released(design, form, step)
-                rows.append(key | _quality(run, exact, designs()[design].length))
-                times.append(key | _time(design, form, step, run))
-            progress()
-    return pd.DataFrame(rows), pd.DataFrame(times)
+    run = solve_impulses(
+        pivot(design), start=START, duration=DURATION[design], step=step, form=form, records=RECORDS
+    )
+    key = {"design": design, "form": form, "step_s": step}
+    quality = _quality(run, _exact(design), designs()[design].length)
+    return {"steps": key | quality, "timings": key | _time(design, form, step, run)}
 
 
-def limits(progress: Callable[[], None]) -> pd.DataFrame:
-    """Return a row a design, group of modes and way of the impulses: the printed form's measured limit.
+@cache
+def _exact(design: str) -> Trajectory:
+    # half the step that its stability allows: of order four
+    return solve_release(
+        pivot(design),
+        start=START,
+        duration=DURATION[design],
+        integrator="explicit",
+        records=2000,
+        check=False,
+    )
+
+
+def limits() -> Iterator[tuple[str, str, int | None]]:
+    """Yield designs, groups of modes and ways of the impulses."""
+    for design, group in product(designs(), GROUPS):
+        for count in LIMITED_SWEEPS if group == "axial" else LIMITED_SWEEPS[:1]:
+            yield design, group, count
+
+
+def limit(design: str, group: str, count: int | None) -> Answer:
+    """Return the printed form's measured limit.
 
     Columns: sweeps (0 for the direct solution), predicted_s = 2 / omega of the highest frequency at rest,
     measured_s, ratio.
     """
-    rows = []
-    for design in designs():
-        for group, settings in GROUPS.items():
-            for sweeps in LIMITED_SWEEPS if group == "axial" else LIMITED_SWEEPS[:1]:
-                predicted = stability_limit(pivot(design, settings))
-                ratio = _measured_limit(design, settings, predicted, sweeps)
-                rows.append(
-                    {
-                        "design": design,
-                        "group": group,
-                        "sweeps": sweeps or 0,
-                        "predicted_s": predicted,
-                        "measured_s": ratio * predicted,
-                        "ratio": ratio,
-                    }
-                )
-        progress()
-    return pd.DataFrame(rows)
+    predicted = stability_limit(pivot(design, GROUPS[group]))
+    ratio = _measured_limit(design, GROUPS[group], predicted, count)
+    row = {"design": design, "group": group, "sweeps": count or 0, "predicted_s": predicted}
+    return {"limits": row | {"measured_s": ratio * predicted, "ratio": ratio}}
 
 
-def sweeps(progress: Callable[[], None]) -> tuple[pd.DataFrame, pd.DataFrame]:
-    """Return the error of the velocity after each sweep, and the factor a sweep leaves, against the step.
+def sweeps() -> Iterator[tuple[str, str, float]]:
+    """Yield forms, impulses that are swept, and steps."""
+    own = stability_limit(pivot("Table 1"))
+    for form, impulses in product(FORMS, ("constraints", "strips")):
+        for step in [0.5 * own] if form == "printed" else [0.5 * own, *STEPS[2:]]:
+            yield form, impulses, step
+
+
+def swept(form: str, impulses: str, step: float) -> Answer:
+    """Return the error of the velocity after each sweep, and the factor a sweep leaves.
 
     Both for the first linear system of a step from the released state of Table 1, n = 6, against its direct
     solution. Columns: form, impulses, step_s, sweep, error; contraction.
     """
     chosen = pivot("Table 1")
-    limit = stability_limit(chosen)
-    errors, factors = [], []
-    for form in FORMS:
-        direct = impulse_solver(chosen, form=form)
-        state = direct.start(START)
-        for impulses in ("constraints", "strips"):
-            swept = impulse_solver(chosen, form=form, impulses=impulses)
-            for step in [0.5 * limit] if form == "printed" else [0.5 * limit, *STEPS[2:]]:
-                found = sweep_errors(direct, swept, state, step, SWEEPS)
-                key = {"form": form, "impulses": impulses, "step_s": step}
-                errors += [key | {"sweep": k, "error": e} for k, e in enumerate(found, start=1)]
-                factors.append(key | {"contraction": contraction(found)})
-        progress()
-    return pd.DataFrame(errors), pd.DataFrame(factors)
+    direct = impulse_solver(chosen, form=form)
+    found = sweep_errors(
+        direct, impulse_solver(chosen, form=form, impulses=impulses), direct.start(START), step, SWEEPS
+    )
+    key = {"form": form, "impulses": impulses, "step_s": step}
+    return {
+        "sweeps": [key | {"sweep": k, "error": e} for k, e in enumerate(found, start=1)],
+        "contraction": key | {"contraction": contraction(found)},
+    }
 
 
-def pictures(progress: Callable[[], None]) -> tuple[pd.DataFrame, pd.DataFrame]:
+def pictures() -> Iterator[tuple[str, int, float]]:
+    """Yield designs, control points and steps."""
+    for design, n in product(designs(), COUNTS):
+        for step in (PAPER_STEP, 1e-3, 2e-4) if design == "Table 1" else (PAPER_STEP,):
+            yield design, n, step
+
+
+def watched(design: str, n: int, step: float) -> Answer:
     """Return the work of the four stable steps of a picture after a release, and their times apart.
 
     Columns: solves_median, solves_95, solves_most; times: cpu_median_ms, cpu_95_ms, of the
     processor, since other programs' share of a core is not the solver's.
     """
-    rows, times = [], []
-    for design in designs():
-        for n in COUNTS:
-            for step in (PAPER_STEP, 1e-3, 2e-4) if design == "Table 1" else (PAPER_STEP,):
-                solves, seconds = _watched(design, n, step)
-                key = {"design": design, "control_points": n, "step_s": step}
-                rows.append(
-                    key
-                    | {
-                        "pictures": len(solves),
-                        "solves_median": np.median(solves),
-                        "solves_95": np.percentile(solves, 95),
-                        "solves_most": np.max(solves),
-                    }
-                )
-                median, high = 1e3 * np.percentile(seconds, (50, 95))
-                times.append(key | {"cpu_median_ms": median, "cpu_95_ms": high})
-        progress()
-    return pd.DataFrame(rows), pd.DataFrame(times)
-
-
-def _released(design: str, form: str, step: float) -> Trajectory:
-    return solve_impulses(
-        pivot(design), start=START, duration=DURATION[design], step=step, form=form, records=RECORDS
-    )
+    solves, seconds = _watched(design, n, step)
+    key = {"design": design, "control_points": n, "step_s": step}
+    counts = {
+        "pictures": len(solves),
+        "solves_median": np.median(solves),
+        "solves_95": np.percentile(solves, 95),
+        "solves_most": np.max(solves),
+    }
+    median, high = 1e3 * np.percentile(seconds, (50, 95))
+    return {
+        "pictures": key | counts,
+        "timings_of_pictures": key | {"cpu_median_ms": median, "cpu_95_ms": high},
+    }
 
 
 def _quality(run: Trajectory, exact: Trajectory, length: float) -> dict[str, Any]:

@@ -1,6 +1,5 @@
 """Fig 3 of the paper: snapshots of the pivot, both models superposed, and the distance of their strips."""
 
-from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
@@ -10,15 +9,14 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from scipy.interpolate import CubicSpline
 
-from studies.answers.metrics import Array
 from studies.answers.response import Response
 from studies.cases.problem import named_case
+from studies.engine.findings import Finding, Tables
+from studies.engine.study import Answer, Part, Study
+from studies.kinds import Array
 from studies.paper import formulations
-from studies.paper.findings import Finding, table
-from studies.paper.formulations import FE, LOCKING_FREE, PAPER, REFINED
+from studies.paper.formulations import CASE, FE, LOCKING_FREE, PAPER, REFINED, SETTINGS
 from studies.record.style import BLACK, LOOKS, page
-
-CASES = (formulations.CASE,)
 
 #: Parts of the path at which the pivot is drawn.
 SNAPSHOTS = (0.0, 0.25, 0.5, 0.75, 1.0)
@@ -27,39 +25,32 @@ DRAWN = (PAPER, LOCKING_FREE, REFINED)
 #: In the snapshots the finite elements are points over the splines' lines, so that both can be seen.
 NODES: dict[str, Any] = {"color": BLACK, "linestyle": "", "marker": "o", "markersize": 2.6}
 
-CLAIM = "Conclusion: four control points approximate negligibly (shape within 1 % of the length)"
 BOUND = 0.01
 
 
-def compute(progress: Callable[[int, int], None]) -> dict[str, pd.DataFrame]:
-    """Return the strips' shapes at the snapshots, and their distance to the finest elements on the way."""
-    answers, limit = formulations.answers(progress)
-    length = named_case(formulations.CASE).length
-    shapes = [_snapshots(REFINED, limit.finest)]
-    distances, found = [], []
-    for name, answer in answers.items():
-        shapes.append(_snapshots(name, answer))
-        distance = _distance(answer, limit.finest) / length
-        distances.append(
-            pd.DataFrame({"formulation": name, "rotation_rad": answer.rotation, "distance": distance})
-        )
-        if name != FE:
-            found.append(
-                Finding(
-                    claim=CLAIM,
-                    formulation=name,
-                    quantity="the largest distance across the reference curve, over the length,",
-                    value=float(distance.max()),
-                    holds=bool(answer.converged and distance.max() < BOUND),
-                )
-            )
-    return {"shapes": pd.concat(shapes), "distances": pd.concat(distances), "findings": table(found)}
+def compared(name: str) -> Answer:
+    """Return a formulation's shapes at the snapshots, and their distance to the finest elements."""
+    answer = formulations.answer(name)
+    distance = _distance(answer, formulations.refined().finest) / named_case(CASE).length
+    found = Finding(
+        claim="Conclusion: four control points approximate negligibly (shape within 1 % of the length)",
+        formulation=name,
+        quantity="the largest distance across the reference curve, over the length,",
+        value=float(distance.max()),
+        holds=bool(answer.converged and distance.max() < BOUND),
+    )
+    rows = {"formulation": name, "rotation_rad": answer.rotation, "distance": distance}
+    return {
+        "shapes": _snapshots(name, answer),
+        "distances": pd.DataFrame(rows),
+        "findings": [] if name == FE else [found],
+    }
 
 
-def draw(tables: Mapping[str, pd.DataFrame]) -> dict[str, Figure]:
+def figure(tables: Tables) -> Figure:
     """Draw the snapshots in a row and the distance of the strips over the rotation below."""
-    figure = page(9.5, 5.8)
-    panels = figure.subplot_mosaic([list("abcde"), ["error"] * 5], height_ratios=(1.0, 1.2))
+    drawn = page(9.5, 5.8)
+    panels = drawn.subplot_mosaic([list("abcde"), ["error"] * 5], height_ratios=(1.0, 1.2))
     shapes = tables["shapes"]
     for label, rotation in zip("abcde", sorted(shapes["rotation_rad"].unique()), strict=True):
         _draw_pivot(panels[label], shapes[shapes["rotation_rad"] == rotation])
@@ -75,8 +66,8 @@ def draw(tables: Mapping[str, pd.DataFrame]) -> dict[str, Figure]:
     panel.set_title("Distance of the strips to those of the refined finite elements")
     handles, labels = panel.get_legend_handles_labels()
     points = Line2D([], [], **NODES)
-    figure.legend([points, *handles], [LOOKS[REFINED].label, *labels], loc="outside lower center", ncols=4)
-    return {"fig03_snapshots": figure}
+    drawn.legend([points, *handles], [LOOKS[REFINED].label, *labels], loc="outside lower center", ncols=4)
+    return drawn
 
 
 def _draw_pivot(panel: Axes, shapes: pd.DataFrame) -> None:
@@ -99,7 +90,7 @@ def _draw_pivot(panel: Axes, shapes: pd.DataFrame) -> None:
 
 def _snapshots(name: str, answer: Response) -> pd.DataFrame:
     """Return the strips' shapes at the snapshots that the path reached."""
-    steps = named_case(formulations.CASE).increments
+    steps = named_case(CASE).increments
     rows = []
     for part in SNAPSHOTS:
         state = round(part * steps)
@@ -130,3 +121,13 @@ def _distance(answer: Response, finest: Response) -> Array:
     gap, along = answer.shape - curve(answer.stations), curve(answer.stations, 1)
     across = (along[..., 0] * gap[..., 1] - along[..., 1] * gap[..., 0]) / np.linalg.norm(along, axis=-1)
     return np.asarray(np.abs(across).max(axis=(1, 2)))
+
+
+STUDY = Study(
+    cases=(CASE,),
+    parts=(
+        Part(ask=lambda: {"shapes": _snapshots(REFINED, formulations.refined().finest)}),
+        Part(at=lambda: SETTINGS, ask=compared),
+    ),
+    figures={"fig03_snapshots": figure},
+)

@@ -1,66 +1,50 @@
 """Fig 4 of the paper: the path of the body's centre of mass, and how far each formulation is off it."""
 
-from collections.abc import Callable, Mapping
-
 import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
 from studies.answers.metrics import trajectory_error
 from studies.answers.reference import errors
-from studies.paper import findings, formulations
-from studies.paper.formulations import FE, REFINED
+from studies.engine.findings import Claim, Tables
+from studies.engine.study import Answer, Part, Study
+from studies.paper import formulations
+from studies.paper.formulations import CASE, FE, REFINED, SETTINGS
 from studies.record.style import LOOKS, page, uncertain
 
-CASES = (formulations.CASE,)
-
-CLAIM = "Fig 4: the two trajectories differ by less than 1 % at the end of the movement"
 BOUND = 0.01
 
 
-def compute(progress: Callable[[int, int], None]) -> dict[str, pd.DataFrame]:
-    """Return the paths with errors against the refined FE, a summary, and findings against 20 elements."""
-    answers, limit = formulations.answers(progress)
-    paths = [_path(REFINED, limit.rotation, limit.centre, np.zeros(len(limit.rotation)))]
-    summary, found = [], []
-    for name, answer in answers.items():
-        error = errors(answer, limit).trajectory
-        difference = trajectory_error(answer.centre, answers[FE].centre)
-        paths.append(_path(name, answer.rotation, answer.centre, error))
-        summary.append(
-            {
-                "formulation": name,
-                "meaning": formulations.MEANING[name],
-                "status": answer.status,
-                "error_end": error[-1],
-                "error_largest": error.max(),
-                "difference_to_fe20_end": difference[-1],
-                "centre_shift_end_m": float(np.linalg.norm(answer.centre_shift[-1])),
-            }
-        )
-        if name != FE:
-            found.append(
-                findings.Finding(
-                    claim=CLAIM,
-                    formulation=name,
-                    quantity="the difference to 20 elements at the end, over the centre's displacement,",
-                    value=float(difference[-1]),
-                    holds=bool(answer.converged and difference[-1] < BOUND),
-                )
-            )
-    uncertainty = pd.DataFrame([{"quantity": "trajectory", "uncertainty": limit.uncertainty["trajectory"]}])
+def compared(name: str) -> Answer:
+    """Return a formulation's path, its error against the refined elements, and a summary."""
+    answer, limit = formulations.answer(name), formulations.refined()
+    error = errors(answer, limit).trajectory
+    difference = trajectory_error(answer.centre, formulations.answer(FE).centre)
+    summary = {
+        "formulation": name,
+        "meaning": formulations.MEANING[name],
+        "status": answer.status,
+        "error_end": error[-1],
+        "error_largest": error.max(),
+        "difference_to_fe20_end": difference[-1],
+        "centre_shift_end_m": float(np.linalg.norm(answer.centre_shift[-1])),
+    }
+    return {"paths": _path(name, answer.rotation, answer.centre, error), "summary": summary}
+
+
+def refined() -> Answer:
+    """Return the reference: its path and its uncertainty."""
+    limit = formulations.refined()
     return {
-        "paths": pd.concat(paths),
-        "summary": pd.DataFrame(summary),
-        "findings": findings.table(found),
-        "reference": uncertainty,
+        "paths": _path(REFINED, limit.rotation, limit.centre, np.zeros(len(limit.rotation))),
+        "reference": {"quantity": "trajectory", "uncertainty": limit.uncertainty["trajectory"]},
     }
 
 
-def draw(tables: Mapping[str, pd.DataFrame]) -> dict[str, Figure]:
+def figure(tables: Tables) -> Figure:
     """Draw the paths beside their errors over the rotation."""
-    figure = page(9.5, 5.6)
-    panels = figure.subplot_mosaic([["path", "error"], ["end", "error"]])
+    drawn = page(9.5, 5.6)
+    panels = drawn.subplot_mosaic([["path", "error"], ["end", "error"]])
     plane, end, panel = panels["path"], panels["end"], panels["error"]
     for name, look in LOOKS.items():
         path = tables["paths"].query("formulation == @name")
@@ -75,7 +59,7 @@ def draw(tables: Mapping[str, pd.DataFrame]) -> dict[str, Figure]:
     last = 1e3 * tables["paths"].query("formulation == @REFINED")[["com_x_m", "com_y_m"]].to_numpy()[-1]
     end.set(xlim=last[0] + np.array([-0.8, 2.2]), ylim=last[1] + np.array([-0.3, 1.4]))
     end.set_title("Its end, enlarged")
-    figure.legend(*plane.get_legend_handles_labels(), loc="outside lower center", ncols=4)
+    drawn.legend(*plane.get_legend_handles_labels(), loc="outside lower center", ncols=4)
     uncertain(panel, tables["reference"]["uncertainty"].max())
     panel.axhline(BOUND, color="#444444", linewidth=0.8)
     panel.annotate("the paper's 1 %", (2.0, BOUND), xytext=(0, 3), textcoords="offset points", fontsize=8)
@@ -83,7 +67,7 @@ def draw(tables: Mapping[str, pd.DataFrame]) -> dict[str, Figure]:
         xlabel="rotation [deg]", ylabel="distance to the refined path / travel [1]", xticks=range(0, 91, 15)
     )
     panel.set_title("Error of the path")
-    return {"fig04_trajectory": figure}
+    return drawn
 
 
 def _path(name: str, rotation: np.ndarray, centre: np.ndarray, error: np.ndarray) -> pd.DataFrame:
@@ -96,3 +80,20 @@ def _path(name: str, rotation: np.ndarray, centre: np.ndarray, error: np.ndarray
             "error_trajectory": error,
         }
     )
+
+
+STUDY = Study(
+    cases=(CASE,),
+    parts=(Part(ask=refined), Part(at=lambda: SETTINGS, ask=compared)),
+    claims=(
+        Claim(
+            claim="Fig 4: the two trajectories differ by less than 1 % at the end of the movement",
+            formulation="{formulation}",
+            quantity="the difference to 20 elements at the end, over the centre's displacement,",
+            rows=lambda tables: tables["summary"].query("formulation != @FE"),
+            value="difference_to_fe20_end",
+            holds=lambda row: row["status"] == "converged" and row["difference_to_fe20_end"] < BOUND,
+        ),
+    ),
+    figures={"fig04_trajectory": figure},
+)

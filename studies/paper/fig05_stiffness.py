@@ -1,22 +1,19 @@
 """Fig 5 of the paper: stiffness against rotation, the torque it belongs to, and the errors of both."""
 
-from collections.abc import Callable, Mapping
-from typing import Any
-
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from studies.answers.metrics import relative_error
-from studies.answers.reference import errors
+from studies.answers.reference import Reference, errors
 from studies.answers.response import Response
-from studies.paper import findings, formulations
-from studies.paper.findings import Finding
-from studies.paper.formulations import FE, REFINED
+from studies.engine.findings import Finding, Tables
+from studies.engine.study import Answer, Part, Study
+from studies.kinds import Array
+from studies.paper import formulations
+from studies.paper.formulations import CASE, FE, REFINED, SETTINGS
 from studies.record.style import LOOKS, page, uncertain
-
-CASES = (formulations.CASE,)
 
 #: "Negligible" is read as the width of a line in a printed plot, about this part of the full scale.
 NEGLIGIBLE = 0.03
@@ -25,51 +22,45 @@ SAME_STIFFNESS = "Fig 5: the differences are negligible (stiffness within 3 % at
 STIFFER = "Fig 5: the spline overestimates the stiffness (at the end of the movement)"
 
 
-def compute(progress: Callable[[int, int], None]) -> dict[str, pd.DataFrame]:
-    """Return torque and stiffness with their errors, a summary at 45 and 90 degrees, and the findings."""
-    answers, limit = formulations.answers(progress)
-    nothing = np.zeros(len(limit.rotation))
-    curves = [_curve(REFINED, limit.rotation, limit.torque, limit.stiffness, nothing, nothing)]
-    summary: list[dict[str, Any]] = []
-    found: list[Finding] = []
-    for name, answer in answers.items():
-        error = errors(answer, limit)
-        curves.append(
-            _curve(name, answer.rotation, answer.torque, answer.stiffness, error.torque, error.stiffness)
-        )
-        half = len(limit.rotation) // 2
-        summary.append(
-            {
-                "formulation": name,
-                "meaning": formulations.MEANING[name],
-                "status": answer.status,
-                "error_torque_half": error.torque[half] if half < len(error.torque) else np.nan,
-                "error_torque_end": error.torque[-1],
-                "error_torque_largest": float(np.abs(error.torque).max()),
-                "error_stiffness_end": error.stiffness[-1],
-                "error_stiffness_largest": float(np.abs(error.stiffness).max()),
-                "axial_energy_end_J": answer.axial_energy[-1],
-                "bending_energy_end_J": answer.bending_energy[-1],
-                "max_stress_end_Pa": answer.max_stress[-1],
-            }
-        )
-        if name != FE:
-            found += _findings(name, answer, answers[FE])
-    uncertainty = [
-        {"quantity": name, "uncertainty": limit.uncertainty[name]} for name in ("torque", "stiffness")
-    ]
+def compared(name: str) -> Answer:
+    """Return torque and stiffness of a formulation with their errors, its summary and the findings."""
+    answer, limit = formulations.answer(name), formulations.refined()
+    error = errors(answer, limit)
+    half = len(limit.rotation) // 2
+    summary = {
+        "formulation": name,
+        "meaning": formulations.MEANING[name],
+        "status": answer.status,
+        "error_torque_half": error.torque[half] if half < len(error.torque) else np.nan,
+        "error_torque_end": error.torque[-1],
+        "error_torque_largest": float(np.abs(error.torque).max()),
+        "error_stiffness_end": error.stiffness[-1],
+        "error_stiffness_largest": float(np.abs(error.stiffness).max()),
+        "axial_energy_end_J": answer.axial_energy[-1],
+        "bending_energy_end_J": answer.bending_energy[-1],
+        "max_stress_end_Pa": answer.max_stress[-1],
+    }
     return {
-        "curves": pd.concat(curves),
-        "summary": pd.DataFrame(summary),
-        "findings": findings.table(found),
-        "reference": pd.DataFrame(uncertainty),
+        "curves": _curve(name, answer, error.torque, error.stiffness),
+        "summary": summary,
+        "findings": [] if name == FE else _findings(name, answer, formulations.answer(FE)),
     }
 
 
-def draw(tables: Mapping[str, pd.DataFrame]) -> dict[str, Figure]:
+def refined() -> Answer:
+    """Return the reference: its curves and its uncertainties."""
+    limit = formulations.refined()
+    nothing = np.zeros(len(limit.rotation))
+    uncertainties = [
+        {"quantity": name, "uncertainty": limit.uncertainty[name]} for name in ("torque", "stiffness")
+    ]
+    return {"curves": _curve(REFINED, limit, nothing, nothing), "reference": uncertainties}
+
+
+def figure(tables: Tables) -> Figure:
     """Draw torque and stiffness above their errors over the rotation."""
-    figure = page(9.0, 7.0)
-    panels = figure.subplots(2, 2, sharex=True)
+    drawn = page(9.0, 7.0)
+    panels = drawn.subplots(2, 2, sharex=True)
     for column, (quantity, unit) in enumerate((("torque", "Nm"), ("stiffness", "Nm_per_rad"))):
         above, below = panels[:, column]
         for name, look in LOOKS.items():
@@ -85,8 +76,8 @@ def draw(tables: Mapping[str, pd.DataFrame]) -> dict[str, Figure]:
     panels[0, 1].set(ylabel="stiffness dT/dθ [N m / rad]")
     panels[1, 0].set(ylabel="|error of the torque| [1]")
     panels[1, 1].set(ylabel="|error of the stiffness| [1]")
-    figure.legend(*panels[0, 0].get_legend_handles_labels(), loc="outside upper center", ncols=4)
-    return {"fig05_stiffness": figure}
+    drawn.legend(*panels[0, 0].get_legend_handles_labels(), loc="outside upper center", ncols=4)
+    return drawn
 
 
 def _annotate(above: Axes, below: Axes, curves: pd.DataFrame, column: str) -> None:
@@ -137,20 +128,22 @@ def _findings(name: str, answer: Response, against: Response) -> list[Finding]:
 
 
 def _curve(
-    name: str,
-    rotation: np.ndarray,
-    torque: np.ndarray,
-    stiffness: np.ndarray,
-    torque_error: np.ndarray,
-    stiffness_error: np.ndarray,
+    name: str, path: Response | Reference, torque_error: Array, stiffness_error: Array
 ) -> pd.DataFrame:
     return pd.DataFrame(
         {
             "formulation": name,
-            "rotation_rad": rotation,
-            "torque_Nm": torque,
-            "stiffness_Nm_per_rad": stiffness,
+            "rotation_rad": path.rotation,
+            "torque_Nm": path.torque,
+            "stiffness_Nm_per_rad": path.stiffness,
             "error_torque": torque_error,
             "error_stiffness": stiffness_error,
         }
     )
+
+
+STUDY = Study(
+    cases=(CASE,),
+    parts=(Part(ask=refined), Part(at=lambda: SETTINGS, ask=compared)),
+    figures={"fig05_stiffness": figure},
+)

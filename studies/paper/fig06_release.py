@@ -1,6 +1,5 @@
 """Fig 6 of the paper: the motion of the body's centre after the release from 90 degrees, and its errors."""
 
-from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
@@ -8,16 +7,14 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from studies.answers.metrics import Array
 from studies.answers.motion import Motion
 from studies.answers.settings import SplineSettings
 from studies.answers.swing import Swing, SwingReference, sampled
-from studies.paper import formulations, swings
-from studies.paper.findings import Finding, table
-from studies.paper.formulations import FE, LOCKING_FREE, MEANING, PAPER, REFINED, SETTINGS
+from studies.engine.findings import Finding, Tables
+from studies.engine.study import Answer, Part, Study
+from studies.paper import swings
+from studies.paper.formulations import CASE, FE, LOCKING_FREE, MEANING, PAPER, REFINED, SETTINGS
 from studies.record.style import CHECK, LOOKS, page, uncertain
-
-CASES = (formulations.CASE,)
 
 #: Formulations of Fig 6, and the refined spline that the reference, which it shares nothing with, is held to.
 SPLINES = (PAPER, LOCKING_FREE, "n = 6")
@@ -25,8 +22,6 @@ REFINED_SPLINE = "n = 10"
 
 #: "Slightly different" is read as a tenth of what the centre travels.
 SLIGHT = 0.1
-ALIKE = "Fig 6: the two time histories are slightly different (within 10 % of the travel over 0.05 s)"
-FASTER = "Fig 6: the spline swings at a higher frequency than 20 finite elements"
 
 #: Every so many of the common instants is stored: some sixty a swing.
 STORED = 2
@@ -38,30 +33,35 @@ QUANTITIES = (
 )
 
 
-def compute(progress: Callable[[int, int], None]) -> dict[str, pd.DataFrame]:
-    """Return the motions with their differences to the limit of refinement, a summary and the findings."""
-    limit = swings.reference()
-    names = (*SPLINES, FE, REFINED_SPLINE)
-    motions = {}
-    for count, name in enumerate(names, start=1):
-        motions[name] = _motion(name)
-        progress(count, len(names))
-    traces = [_trace(REFINED, limit.swing, limit.swing)]
-    traces += [
-        _trace(name, sampled(motion, swings.INSTANTS), limit.swing) for name, motion in motions.items()
-    ]
+def compared(name: str) -> Answer:
+    """Return a motion with its differences to the limit of refinement, its summary and the findings."""
+    motion, limit = _motion(name), swings.reference()
     return {
-        "motions": pd.concat(traces),
-        "summary": pd.DataFrame([_summary(name, motion, limit) for name, motion in motions.items()]),
-        "reference": _uncertainty(limit),
-        "findings": table(_findings(motions)),
+        "motions": _trace(name, sampled(motion, swings.INSTANTS), limit.swing),
+        "summary": _summary(name, motion, limit),
+        "findings": _findings(name, motion, _motion(FE)) if name in SPLINES else [],
     }
 
 
-def draw(tables: Mapping[str, pd.DataFrame]) -> dict[str, Figure]:
+def refined() -> Answer:
+    """Return the limit of refinement and its uncertainties: in rad, in m, relative for the frequency."""
+    limit = swings.reference()
+    largest = {
+        "rotation_rad": float(limit.uncertainty.max()),
+        "com_x_m": float(limit.centre_uncertainty[:, 0].max()),
+        "com_y_m": float(limit.centre_uncertainty[:, 1].max()),
+        "frequency": limit.frequency_uncertainty,
+    }
+    return {
+        "motions": _trace(REFINED, limit.swing, limit.swing),
+        "reference": [{"quantity": name, "uncertainty": value} for name, value in largest.items()],
+    }
+
+
+def figure(tables: Tables) -> Figure:
     """Draw rotation, x and y over time beside their differences to the reference, and the energy below."""
-    figure = page(8.8, 8.0)
-    panels = figure.subplots(4, 2, sharex=True)
+    drawn = page(8.8, 8.0)
+    panels = drawn.subplots(4, 2, sharex=True)
     motions = tables["motions"]
     level = tables["reference"].set_index("quantity")["uncertainty"]
     for (value, error), (column, label, scale) in zip(panels, QUANTITIES, strict=False):
@@ -83,10 +83,10 @@ def draw(tables: Mapping[str, pd.DataFrame]) -> dict[str, Figure]:
     handles, labels = panels[0, 1].get_legend_handles_labels()
     refined = panels[0, 0].get_legend_handles_labels()
     first = refined[1].index(LOOKS[REFINED].label)
-    figure.legend(
+    drawn.legend(
         [refined[0][first], *handles], [refined[1][first], *labels], loc="outside lower center", ncols=3
     )
-    return {"fig06_release": figure}
+    return drawn
 
 
 def _energies(value: Axes, error: Axes, motions: pd.DataFrame) -> None:
@@ -152,45 +152,33 @@ def _summary(name: str, motion: Motion, limit: SwingReference) -> dict[str, Any]
     }
 
 
-def _uncertainty(limit: SwingReference) -> pd.DataFrame:
-    """Return the largest uncertainties of the reference: in rad, in m, and relative for the frequency."""
-    largest = {
-        "rotation_rad": float(limit.uncertainty.max()),
-        "com_x_m": float(limit.centre_uncertainty[:, 0].max()),
-        "com_y_m": float(limit.centre_uncertainty[:, 1].max()),
-        "frequency": limit.frequency_uncertainty,
-    }
-    return pd.DataFrame([{"quantity": name, "uncertainty": value} for name, value in largest.items()])
+def _findings(name: str, motion: Motion, elements: Motion) -> list[Finding]:
+    """Return the claims of Fig 6 held against a spline, compared with 20 elements as there."""
+    twenty = sampled(elements, swings.INSTANTS).centre
+    distance = np.linalg.norm(sampled(motion, swings.INSTANTS).centre - twenty, axis=1).max()
+    distance /= np.linalg.norm(np.ptp(twenty, axis=0))  # the diagonal of the rectangle that the path fills
+    shift = motion.frequency / elements.frequency - 1.0
+    return [
+        Finding(
+            claim="Fig 6: the two time histories are slightly different "
+            "(within 10 % of the travel over 0.05 s)",
+            formulation=name,
+            quantity="the largest distance to the centre of 20 finite elements, over its travel,",
+            value=float(distance),
+            holds=bool(motion.converged and distance < SLIGHT),
+        ),
+        Finding(
+            claim="Fig 6: the spline swings at a higher frequency than 20 finite elements",
+            formulation=name,
+            quantity="the signed difference of the frequency to 20 finite elements",
+            value=shift,
+            holds=motion.converged and shift > 0.0,
+        ),
+    ]
 
 
-def _findings(motions: Mapping[str, Motion]) -> list[Finding]:
-    """Return the claims of Fig 6 held against each spline, compared with 20 elements as there."""
-    twenty = sampled(motions[FE], swings.INSTANTS).centre
-    travel = _travel(twenty)
-    found = []
-    for name in SPLINES:
-        motion = motions[name]
-        distance = np.linalg.norm(sampled(motion, swings.INSTANTS).centre - twenty, axis=1).max() / travel
-        shift = motion.frequency / motions[FE].frequency - 1.0
-        found += [
-            Finding(
-                claim=ALIKE,
-                formulation=name,
-                quantity="the largest distance to the centre of 20 finite elements, over its travel,",
-                value=float(distance),
-                holds=bool(motion.converged and distance < SLIGHT),
-            ),
-            Finding(
-                claim=FASTER,
-                formulation=name,
-                quantity="the signed difference of the frequency to 20 finite elements",
-                value=shift,
-                holds=motion.converged and shift > 0.0,
-            ),
-        ]
-    return found
-
-
-def _travel(centre: Array) -> float:
-    """Return the diagonal of the rectangle that the path fills [m]."""
-    return float(np.linalg.norm(np.ptp(centre, axis=0)))
+STUDY = Study(
+    cases=(CASE,),
+    parts=(Part(ask=refined), Part(at=lambda: (*SPLINES, FE, REFINED_SPLINE), ask=compared)),
+    figures={"fig06_release": figure},
+)

@@ -1,15 +1,13 @@
-"""Fig 7: the interactive environment with the demo film in a browser: three snapshots, frame rate and solve
-time.
+"""Fig 7 of the paper: the interactive environment in a browser, its frame rate and solve time.
 
-The paper drives its pivot at 25 pictures a second. What is measured here depends on the machine and on what
-else it
-does; the snapshots are the page's own canvas.
+The demo film drives it; the paper drives its pivot at 25 pictures a second. What is measured here depends on
+the machine and on what else it does; the snapshots are the page's own canvas.
 """
 
 import base64
 import io
 import time
-from collections.abc import Callable, Hashable, Iterator
+from collections.abc import Hashable, Iterator
 from typing import Any
 
 import numpy as np
@@ -18,13 +16,13 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from PIL import Image
 
+from studies.engine.findings import Tables
+from studies.engine.study import Answer, Part, Study
 from studies.interactive.film.demo import rotation
 from studies.interactive.pivot.presets import PRESETS, STEPS_A_FRAME
 from studies.interactive.session.session import Session
 from studies.record import style
 from studies.record.extras import absent, lacking
-
-CASES = ("polymer_pivot", "cross_axis_pivot")
 
 #: The paper's pictures a second.
 PAPER_RATE = 25.0
@@ -51,8 +49,8 @@ def missing() -> str:
     return "" if executable() else f"it needs a browser (no {NAMES[0]} on the PATH)"
 
 
-def compute(progress: Callable[[int, int], None]) -> dict[str, pd.DataFrame]:
-    """Return snapshots, frames as they were shown, and times of the solvers alone."""
+def browsed() -> Answer:
+    """Return snapshots, and the frames as they were shown."""
     from studies.interactive.film.demo import demo_film
     from studies.interactive.warm_up import warm_up
     from studies.interactive.web.browser import Browser
@@ -63,19 +61,14 @@ def compute(progress: Callable[[int, int], None]) -> dict[str, pd.DataFrame]:
     warm_up()  # no picture waits for a compiler
     source = FilmSource(demo_film())
     shots = source.shots()
-    for k in range(WATCHED):  # draw the film before it is timed
+    for _ in range(WATCHED):  # draw the film before it is timed
         next(shots)
-        progress(k + 1, 3 * WATCHED)
     with Hosted(Settings(camera="film", source=lambda: source)) as hosted, Browser() as browser:
         browser.open(hosted.server.address)
         browser.wait("window.studio?.drawn ? true : false", 60.0)
         snapshots = list(_snapshots(browser))
         browser.wait(f"studio.state.seq >= {WATCHED}", 120.0)
-        frames = pd.DataFrame(browser.ask(FRAMES))
-    progress(2 * WATCHED, 3 * WATCHED)
-    alone = pd.DataFrame([row for preset in PRESETS for row in _alone(preset)])
-    progress(3 * WATCHED, 3 * WATCHED)
-    return {"snapshots": pd.DataFrame(snapshots), "frames_times": frames, "alone_times": alone}
+        return {"snapshots": snapshots, "frames_times": browser.ask(FRAMES)}
 
 
 #: Asks the page for the frames of the film that it showed.
@@ -164,7 +157,7 @@ def _alone(preset: str) -> Iterator[dict[str, Any]]:
             }
 
 
-def draw(tables: dict[str, pd.DataFrame]) -> dict[str, Figure]:
+def figure(tables: Tables) -> Figure:
     """Draw the snapshots above the times."""
     page = style.page(7.2, 5.0)
     grid = page.add_gridspec(2, 6, height_ratios=(1.15, 1.0))
@@ -172,7 +165,7 @@ def draw(tables: dict[str, pd.DataFrame]) -> dict[str, Figure]:
         _snapshot(page.add_subplot(grid[0, 2 * k : 2 * k + 2]), row, "abc"[k])
     _rate(page.add_subplot(grid[1, :3]), tables["frames_times"])
     _times(page.add_subplot(grid[1, 3:]), tables["frames_times"], tables["alone_times"])
-    return {"fig07_interactive": page}
+    return page
 
 
 def _snapshot(panel: Axes, row: dict[Hashable, Any], letter: str) -> None:
@@ -225,3 +218,15 @@ def _share(panel: Axes, times: pd.Series, label: str, colour: str, line: str) ->
     share = np.arange(1, len(ordered) + 1) / len(ordered)
     late = float(np.percentile(ordered, 95.0))
     panel.step(ordered, share, where="post", color=colour, linestyle=line, label=f"{label}: {late:.2g} ms")
+
+
+STUDY = Study(
+    cases=("polymer_pivot", "cross_axis_pivot"),
+    parts=(
+        Part(ask=browsed, alone=True),
+        Part(at=lambda: PRESETS, ask=lambda preset: {"alone_times": _alone(preset)}, alone=True),
+    ),
+    varying=("snapshots",),
+    figures={"fig07_interactive": figure},
+    missing=missing,
+)

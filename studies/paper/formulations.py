@@ -1,6 +1,5 @@
 """The formulations that the paper's figures compare, each with its settings and its fixed look."""
 
-from collections.abc import Callable
 from functools import cache
 
 from studies.answers.adapters import answer_static
@@ -41,7 +40,8 @@ MEANING: dict[str, str] = {
 
 
 @cache
-def _answer(name: str) -> Response:
+def answer(name: str) -> Response:
+    """Return the static path of a formulation, computed once however many figures ask."""
     return answer_static(named_case(CASE), SETTINGS[name])
 
 
@@ -49,16 +49,3 @@ def _answer(name: str) -> Response:
 def refined() -> Reference:
     """Return the limit of refinement of the case's static path."""
     return reference(named_case(CASE))
-
-
-def answers(progress: Callable[[int, int], None]) -> tuple[dict[str, Response], Reference]:
-    """Return the answer of every formulation and the reference, computed once however many figures ask."""
-    total = len(SETTINGS) + 1
-    found = {}
-    for count, name in enumerate(SETTINGS):
-        progress(count, total)
-        found[name] = _answer(name)
-    progress(len(SETTINGS), total)
-    limit = refined()
-    progress(total, total)
-    return found, limit

@@ -6,11 +6,11 @@ from typing import Any
 import numpy as np
 
 from studies.answers.adapters import answer_release
-from studies.answers.metrics import Array
 from studies.answers.motion import Motion
 from studies.answers.settings import Settings, SplineSettings
 from studies.answers.swing import RECORDS, SwingReference, sampled, swing_reference
 from studies.cases.problem import named_case
+from studies.kinds import Array
 from studies.paper.formulations import CASE
 
 #: Duration of the motion [s], and the instants at which swings are compared [s].
@@ -31,7 +31,7 @@ def released(settings: Settings, *, duration: float = DURATION, **options: Any) 
 
 def resolved(settings: SplineSettings, *, duration: float = DURATION) -> Motion:
     """Return the spline's motion at a step that no longer matters."""
-    step = STEPS[settings.control_points]
+    step = STEPS[settings.points]
     return released(settings, duration=duration, integrator="explicit", step=step)
 
 

@@ -83,6 +83,11 @@ class Store:
         record["figures"] = _hashes(contents)
         write_whole(self.data(study) / PROVENANCE, as_json(record))
 
+    def renew(self, study: str, *, module: str, cases: Iterable[str]) -> None:
+        """Note that the stored tables are those of the present source and cases."""
+        record = self.record(study) | {"inputs": provenance.inputs(module, cases)}
+        write_whole(self.data(study) / PROVENANCE, as_json(record))
+
     def record(self, study: str) -> dict[str, Any]:
         """Return the provenance of `study`; FileNotFoundError when it was never run."""
         record: dict[str, Any] = json.loads((self.data(study) / PROVENANCE).read_text(encoding="utf-8"))

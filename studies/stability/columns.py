@@ -3,6 +3,7 @@
 from studies.answers.settings import FeSettings, Settings, SplineSettings
 
 DEFAULT = "spline, default"
+SIX = "spline n = 6"
 PAPER = "spline n = 4, as the paper"
 PRINTED = "spline n = 4, printed forces"
 LOCKING_FREE = "spline n = 4, locking-free"
@@ -18,6 +19,10 @@ COLUMNS: dict[str, Settings] = {
     FE: FeSettings(),
 }
 
+#: Those of the families of paths, where the default takes as many control points as it needs: six beside it.
+#: Motions, arcs of frames and starts from guesses take six by default.
+PATHS: dict[str, Settings] = {**COLUMNS, SIX: SplineSettings(control_points=6)}
+
 #: Finer splines, for families in which the default reaches its end.
 EIGHT, TWELVE = "spline n = 8", "spline n = 12"
 FINER: dict[str, Settings] = {
@@ -29,7 +34,7 @@ GENERALISED_ALPHA = "spline, generalised-alpha"
 EXPLICIT = "spline, explicit"
 
 #: All columns, in the order of tables and figures.
-ORDER = (*COLUMNS, GENERALISED_ALPHA, EXPLICIT, *FINER)
+ORDER = (*PATHS, GENERALISED_ALPHA, EXPLICIT, *FINER)
 
 #: Columns that show the paper's own choices: what this suite has an answer say of its resolution does not
 #: count there, as the paper has no such check.

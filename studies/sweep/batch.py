@@ -4,18 +4,19 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 import numpy as np
+import pyarrow as pa
 from numpy.typing import NDArray
 
 from studies.answers.models import model_of
-from studies.answers.settings import SplineSettings
 from studies.cases import keys as case_keys
 from studies.cases.effects import DEFAULT, MOTION_ONLY
 from studies.cases.problem import PIVOT_PARAMETERS, Problem
 from studies.cases.rules import Pair
+from studies.kinds import Array
 from studies.sweep import points, quantities
 from studies.sweep.designs import keys
 from studies.sweep.designs.plan import Task
-from studies.sweep.quantities import Array, Paths
+from studies.sweep.quantities import Paths
 from studies.sweep.static import CONVERGED
 
 #: I / (A L^2) below which a strip is for the multiplier path, a hundredth above the kernel's own limit.
@@ -27,6 +28,39 @@ _KEYS = {f"{key.section}.{key.name}": key for key in case_keys.KEYS}
 _PARTS = {
     f"{name}.{part}" for name, key in _KEYS.items() if isinstance(key.rule, Pair) for part in keys.PARTS
 }
+
+
+def solve_chunk(task: Task, start: int, columns: Mapping[str, list[Any]]) -> pa.Table:
+    """Return the rows of the designs in `columns`, the first of which is point `start` of the sweep.
+
+    A row has the status "converged"; "not_converged": the model stopped, with why and where as the reason;
+    "refused": the model does not take the design; "failed": anything else went wrong. All but the first
+    have no quantities.
+    """
+    count = len(next(iter(columns.values())))
+    designs = [{key: column[i] for key, column in columns.items()} for i in range(count)]
+    found: Mapping[str, Any]
+    if task.batch:
+        status, reason, found = solve_batch(task, columns)
+    else:
+        status, reason, found = points.solve_each(task, designs)
+    names = {name: found[name] for name in task.quantities}
+    table = {
+        points.POINT: np.arange(start, start + count),
+        **columns,
+        points.STATUS: status,
+        points.REASON: reason,
+        **names,
+    }
+    whole = points.stored(task)
+    done = np.array([each == CONVERGED for each in status])
+    arrays = [
+        pa.array(values, type=pa.int64() if whole[name].whole else pa.float64(), mask=~done, from_pandas=True)
+        if name in whole
+        else pa.array(values)
+        for name, values in table.items()
+    ]
+    return pa.Table.from_arrays(arrays, names=list(table))
 
 
 def takes(task: Task) -> bool:
@@ -123,7 +157,8 @@ def _paths(
 
     turns, depth = given["rotation"], given["depth"]
     designs = {name: given[name] for name in PIVOT_PARAMETERS}
-    model = model_of(SplineSettings())
+    chosen = points.settings_of("spline", settings)
+    model = model_of(chosen)
     try:
         batch = solve_many(
             designs,
@@ -131,7 +166,7 @@ def _paths(
             increments=increments,
             section_depth=depth,
             threads=1,
-            **SplineSettings(**settings).keywords(),
+            **chosen.keywords(),
         )
     except model.errors.InvalidParameter:
         return np.zeros(len(turns), dtype=bool), {}

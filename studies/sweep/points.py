@@ -5,7 +5,6 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
-import pyarrow as pa
 
 from studies.answers.adapters import answer_modes, answer_release
 from studies.answers.settings import FeSettings, Settings, SplineSettings
@@ -22,35 +21,6 @@ from studies.sweep.static import CONVERGED, NOT_CONVERGED, static_answer
 REFUSED, FAILED = "refused", "failed"
 #: Columns beside keys and quantities.
 POINT, STATUS, REASON = "point", "status", "reason"
-
-
-def solve_chunk(task: Task, start: int, columns: Mapping[str, list[Any]]) -> pa.Table:
-    """Return the rows of the designs in `columns`, the first of which is point `start` of the sweep.
-
-    A row has the status "converged"; "not_converged": the model stopped, with why and where as the reason;
-    "refused": the model does not take the design; "failed": anything else went wrong. All but the first
-    have no quantities.
-    """
-    count = len(next(iter(columns.values())))
-    designs = [{key: column[i] for key, column in columns.items()} for i in range(count)]
-    found: Mapping[str, Any]
-    if task.batch:
-        from studies.sweep.batch import solve_batch
-
-        status, reason, found = solve_batch(task, columns)
-    else:
-        status, reason, found = solve_each(task, designs)
-    names = {name: found[name] for name in task.quantities}
-    table = {POINT: np.arange(start, start + count), **columns, STATUS: status, REASON: reason, **names}
-    whole = stored(task)
-    done = np.array([each == CONVERGED for each in status])
-    arrays = [
-        pa.array(values, type=pa.int64() if whole[name].whole else pa.float64(), mask=~done, from_pandas=True)
-        if name in whole
-        else pa.array(values)
-        for name, values in table.items()
-    ]
-    return pa.Table.from_arrays(arrays, names=list(table))
 
 
 def stored(task: Task) -> dict[str, Quantity]:
@@ -97,9 +67,9 @@ def design_of(task: Task, values: Mapping[str, Any]) -> Design:
 
 
 def settings_of(model: str, given: Mapping[str, Any]) -> Settings:
-    """Return the settings of a model."""
+    """Return the settings of a model; a spline of a sweep has 6 control points unless said otherwise."""
     if model == "spline":
-        return SplineSettings(**given)
+        return SplineSettings(**{"control_points": 6, **given})
     return FeSettings(element="reissner" if model == "fe-shear" else "corotational", **given)
 
 

@@ -12,8 +12,7 @@ from numpy.typing import NDArray
 
 from studies.answers.motion import Motion
 from studies.answers.spectrum import Spectrum
-
-Array = NDArray[np.float64]
+from studies.kinds import Array
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -1,7 +1,7 @@
 """Run a sweep: the chunks that are missing, on threads, processes or a cluster, then the table."""
 
 import os
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from concurrent.futures import FIRST_COMPLETED, CancelledError, Future, wait
 from contextlib import AbstractContextManager, ExitStack
 from pathlib import Path
@@ -9,14 +9,14 @@ from pathlib import Path
 import pyarrow as pa
 
 from studies.errors import BadInput
+from studies.kinds import Progress
 from studies.record.progress import silent
+from studies.sweep.batch import solve_chunk
 from studies.sweep.designs.plan import Plan
 from studies.sweep.designs.sample import Drawer
 from studies.sweep.parts import Folder
-from studies.sweep.points import solve_chunk
 from studies.sweep.workers.pool import Pool, processes, threads
 
-Progress = Callable[[int, int], None]
 #: Chunks a worker that are under way or waiting, so that none idles and no result piles up.
 AHEAD = 2
 

@@ -11,7 +11,8 @@ from studies.answers.settings import Settings
 from studies.cases.design import Design
 from studies.cases.mechanism import Mechanism
 from studies.cases.problem import Problem
-from studies.sweep.quantities import Array, Paths
+from studies.kinds import Array
+from studies.sweep.quantities import Paths
 
 CONVERGED, NOT_CONVERGED = "converged", "not_converged"
 
@@ -36,7 +37,8 @@ def static_answer(design: Design, settings: Settings, *, both_sides: bool) -> tu
 def _static_result(design: Design, settings: Settings) -> Any:
     model = model_of(settings)
     asked, _ = built(model, design, settings, moving=False)
-    how = {"rotation": design.rotation, "increments": design.increments, "raise_on_failure": False}
+    how = {"rotation": design.rotation, "increments": design.increments, "order": design.order}
+    how |= {"raise_on_failure": False}
     with refusals(model, settings):
         if isinstance(design, Problem):
             return model.statics.solve_statics(asked, **how)

@@ -1,7 +1,7 @@
 """The cheapest setting of every model that meets an error on one pivot, found by trying them all."""
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -11,14 +11,13 @@ from studies.answers.adapters import answer_modes
 from studies.answers.reference import NoReference
 from studies.answers.settings import SplineSettings
 from studies.cases.problem import Problem
+from studies.kinds import Progress
 from studies.record.progress import silent
 from studies.work_precision import moving_series, series
 from studies.work_precision.equal_error import coarsest, worst
 from studies.work_precision.limits import limit_of_theory
 from studies.work_precision.motions import at, motion_errors, moving
 from studies.work_precision.paths import path_errors
-
-Progress = Callable[[int, int], None]
 
 PATH_ERRORS = ("error_trajectory", "error_torque")
 MOTION_ERRORS = ("error_rotation", "error_frequency")
@@ -86,7 +85,7 @@ def advise_motion(problem: Problem, error: float, progress: Progress = silent) -
     Raises:
         NoReference: that spline's motion stops early.
     """
-    frequency = float(answer_modes(problem, SplineSettings(), count=1).frequency[0])
+    frequency = float(answer_modes(problem, SplineSettings(control_points=6), count=1).frequency[0])
     duration = PERIODS / frequency
     scale = 1.0 / frequency / PERIOD
     models = moving_series.own_series(scale)
@@ -121,11 +120,8 @@ def advise_motion(problem: Problem, error: float, progress: Progress = silent) -
 
 def _integrator(problem: Problem, duration: float) -> str:
     """Return the spline's most accurate integrator that the scene allows, by trying."""
-    for name in ("leapfrog", "explicit"):
-        trial = moving(SplineSettings(control_points=4), "trial", "", integrator=name)
-        if trial.solve(problem, 0.1 * duration).converged:
-            return name
-    return "energy"
+    trial = moving(SplineSettings(control_points=4), "trial", "", integrator="leapfrog")
+    return "leapfrog" if trial.solve(problem, 0.1 * duration).converged else "energy"
 
 
 def chosen(rows: pd.DataFrame, columns: Sequence[str], error: float) -> pd.DataFrame:

@@ -6,29 +6,26 @@ next coarser one: the explicit finite elements tend to the same motion, but reac
 steps alone, without the static path to the start, the median of repeats, on one thread.
 """
 
-from collections.abc import Callable, Mapping
+from functools import cache
 from typing import Any
 
 import numpy as np
 import pandas as pd
-from matplotlib.figure import Figure
 
 from studies.answers.frequency import swing_frequency
-from studies.answers.metrics import Array
 from studies.answers.settings import SplineSettings
 from studies.baselines.registry import missing
-from studies.cases.problem import Problem, named_case
-from studies.paper.findings import Finding, table
+from studies.cases.problem import named_case
+from studies.engine.findings import Finding, Tables
+from studies.engine.study import Answer, Part, Study
+from studies.kinds import Array
 from studies.work_precision import figures
 from studies.work_precision.equal_error import cheapest
 from studies.work_precision.motions import MovingMember, SolvedMotion, at, motion_errors, moving
 from studies.work_precision.moving_series import SPLINE, MovingSeries, other_series, own_series
 from studies.work_precision.static_findings import Ratio
 
-__all__ = ["CASES", "compute", "draw", "equal_error", "missing"]
-
 CASE = "cross_axis_pivot"
-CASES = (CASE,)
 
 DURATION = 0.05
 INSTANTS = np.linspace(0.0, DURATION, 501)
@@ -42,61 +39,46 @@ TARGETS = (1e-1, 2e-2, 1e-2, 5e-3, 2e-3, 1e-3)
 COMPARED = 1e-2
 
 
-def compute(progress: Callable[[int, int], None]) -> dict[str, pd.DataFrame]:
-    """Return errors, work and times of all settings, what is cheapest at equal error, and the findings.
-
-    Tables: errors, timings, reference, digits (cheapest by counted work), digits_of_time, findings and
-    findings_of_time.
-    """
-    problem, series = named_case(CASE), [*own_series(), *other_series()]
-    total = 2 + sum(len(each.members) for each in series)
-    rotation, reference = _reference(problem, lambda done: progress(done, total))
-    errors: list[dict[str, Any]] = []
-    times: list[dict[str, Any]] = []
-    for each in series:
-        for rank, member in enumerate(each.members):
-            progress(2 + len(errors), total)
-            motion = member.solve(problem, DURATION)
-            errors.append(_errors(each, member, rank, motion, rotation, reference))
-            times.append(_times(each, member, motion))
-    progress(total, total)
-    tables = {"errors": pd.DataFrame(errors), "timings": pd.DataFrame(times), "reference": reference}
-    tables |= equal_error(tables)
-    return tables | {
-        "findings": table(_findings(tables)),
-        "findings_of_time": table(_findings_of_time(tables)),
-    }
+def members() -> list[tuple[MovingSeries, int, MovingMember]]:
+    """Return every setting with its series and its rank there."""
+    return [
+        (series, rank, member)
+        for series in (*own_series(), *other_series())
+        for rank, member in enumerate(series.members)
+    ]
 
 
-def draw(tables: Mapping[str, pd.DataFrame]) -> dict[str, Figure]:
-    """Draw the work-precision diagram of the motion."""
-    return {"work_precision_dynamics": figures.dynamics(tables, MARGIN)}
-
-
-def equal_error(tables: Mapping[str, pd.DataFrame]) -> dict[str, pd.DataFrame]:
-    """Return the cheapest settings at equal error of the rotation, by work and by time."""
-    rows = tables["errors"].merge(tables["timings"], on=["series", "setting"])
-    asked: dict[str, Any] = {
-        "columns": ["error_rotation_rad"],
-        "rank": "rank",
-        "targets": TARGETS,
-        "baseline": SPLINE,
-    }
+def solved(series: MovingSeries, rank: int, member: MovingMember) -> Answer:
+    """Return errors, work and times of a setting."""
+    motion = member.solve(named_case(CASE), DURATION)
+    rotation, reference = _reference()
     return {
-        "digits": cheapest(rows, cost="flops", **asked),
-        "digits_of_time": cheapest(rows, cost="solve_s", **asked),
+        "errors": _errors(series, member, rank, motion, rotation, pd.DataFrame(reference)),
+        "timings": _times(series, member, motion),
     }
 
 
-def _reference(problem: Problem, progress: Callable[[int], None]) -> tuple[Array, pd.DataFrame]:
+def _cheapest(tables: Tables, cost: str) -> pd.DataFrame:
+    """Return the cheapest settings at equal error of the rotation."""
+    return cheapest(
+        tables["errors"].merge(tables["timings"], on=["series", "setting"]),
+        columns=["error_rotation_rad"],
+        cost=cost,
+        rank="rank",
+        targets=TARGETS,
+        baseline=SPLINE,
+    )
+
+
+@cache
+def _reference() -> tuple[Array, list[dict[str, Any]]]:
     """Return the rotation at the instants (T,) [rad] and how uncertain it and its frequency are."""
     rotations = []
-    for done, (n, step) in enumerate(REFERENCE.items()):
-        progress(done)
+    for n, step in REFERENCE.items():
         member = moving(
             SplineSettings(control_points=n), f"n = {n}", "reference", integrator="leapfrog", step=step
         )
-        rotations.append(at(member.solve(problem, DURATION), INSTANTS))
+        rotations.append(at(member.solve(named_case(CASE), DURATION), INSTANTS))
     coarse, fine = rotations
     frequencies = [swing_frequency(INSTANTS, rotation).value for rotation in rotations]
     source = " and ".join(f"n = {n} at {1e6 * step:g} µs" for n, step in REFERENCE.items())
@@ -104,8 +86,9 @@ def _reference(problem: Problem, progress: Callable[[int], None]) -> tuple[Array
         "rotation_rad": float(np.abs(fine - coarse).max()),
         "frequency": abs(frequencies[0] / frequencies[1] - 1.0),
     }
-    rows = [{"quantity": name, "uncertainty": value, "source": source} for name, value in values.items()]
-    return fine, pd.DataFrame(rows)
+    return fine, [
+        {"quantity": name, "uncertainty": value, "source": source} for name, value in values.items()
+    ]
 
 
 def _errors(
@@ -142,7 +125,7 @@ def _times(series: MovingSeries, member: MovingMember, motion: SolvedMotion) -> 
     }
 
 
-def _findings(tables: Mapping[str, pd.DataFrame]) -> list[Finding]:
+def _findings(tables: Tables) -> list[Finding]:
     """Return findings that do not depend on the machine."""
     found = _ratios(tables["digits"], "counted work")
     for row in tables["reference"].to_dict("records"):
@@ -160,7 +143,7 @@ def _findings(tables: Mapping[str, pd.DataFrame]) -> list[Finding]:
     return found
 
 
-def _findings_of_time(tables: Mapping[str, pd.DataFrame]) -> list[Finding]:
+def _findings_of_time(tables: Tables) -> list[Finding]:
     """Return findings of time: they differ from run to run and machine to machine."""
     found = _ratios(tables["digits_of_time"], "time")
     best = tables["digits_of_time"].query("series == @SPLINE and target == @COMPARED").iloc[0]
@@ -190,3 +173,20 @@ def _ratios(digits: pd.DataFrame, cost: str) -> list[Finding]:
         )
         for row in others[others["ratio"].notna()].to_dict("records")
     ]
+
+
+STUDY = Study(
+    cases=(CASE,),
+    parts=(
+        Part(ask=lambda: {"reference": _reference()[1]}, alone=True),
+        Part(at=members, ask=solved, alone=True),
+    ),
+    made={
+        "digits": lambda tables: _cheapest(tables, "flops"),
+        "digits_of_time": lambda tables: _cheapest(tables, "solve_s"),
+    },
+    claims=(_findings,),
+    claims_of_time=(_findings_of_time,),
+    figures={"work_precision_dynamics": lambda tables: figures.dynamics(tables, MARGIN)},
+    missing=missing,
+)

@@ -10,12 +10,12 @@ from scipy.interpolate import CubicSpline
 
 from studies.answers.adapters import answer_release
 from studies.answers.frequency import swing_frequency
-from studies.answers.metrics import Array
 from studies.answers.settings import Settings
 from studies.baselines.answer import BaselineFailed
 from studies.cases.problem import Problem
 from studies.errors import BadInput
-from studies.work_precision.answered import Answered, counted
+from studies.kinds import Array
+from studies.work_precision.paths import Answered, counted
 from studies.work_precision.work_of_motion import work_of_motion
 
 WORK = ("unknowns", "points", "steps", "evaluations", "factorisations", "flops")

@@ -1,19 +1,19 @@
 """Static paths of every model, ours and others', as what work-precision diagrams need of them."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from studies.answers.adapters import answer_static
-from studies.answers.metrics import Array, relative_error, trajectory_error
+from studies.answers.metrics import relative_error, trajectory_error
 from studies.answers.settings import Settings
 from studies.baselines.answer import BaselineFailed
 from studies.cases.problem import Problem
 from studies.errors import BadInput
-from studies.work_precision.answered import Answered, counted
+from studies.kinds import Array
 from studies.work_precision.work import work_of
 
 QUANTITIES = ("trajectory", "torque", "stiffness")
@@ -21,6 +21,38 @@ QUANTITIES = ("trajectory", "torque", "stiffness")
 WORK = ("unknowns", "points", "iterations", "factorisation_flops", "assembly_flops", "flops")
 #: Names of these in the counters of a baseline, where they differ.
 THEIRS = {"iterations": "newton_iterations"}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Answered:
+    """The answer of any model.
+
+    Attributes:
+        status: "converged" or how it ended; message: why and where or when it stopped.
+        solve_s: time of the increments or steps alone [s].
+        work: machine-neutral work by column, NaN where it is not known.
+    """
+
+    status: str
+    message: str
+    solve_s: float
+    work: Mapping[str, float]
+
+    @property
+    def converged(self) -> bool:
+        """Whether it was followed to its end."""
+        return self.status == "converged"
+
+
+def counted(
+    columns: Iterable[str], counters: Mapping[str, float], theirs: Mapping[str, str] | None = None
+) -> dict[str, float]:
+    """Return the columns of work from a model's counters, NaN of those that it does not count.
+
+    theirs: names of columns in the counters, where they differ.
+    """
+    names = theirs or {}
+    return {name: float(counters.get(names.get(name, name), math.nan)) for name in columns}
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Mapping
 
 import pandas as pd
 
-from studies.paper.findings import Finding
+from studies.engine.findings import Finding
 from studies.record.style import BASES
 from studies.work_precision.scaling import exponents
 from studies.work_precision.series import ELEMENTS, SPLINE

@@ -8,25 +8,26 @@ work is counted from sizes (see `work`).
 """
 
 import math
-from collections.abc import Callable, Mapping
+from functools import cache
 from typing import Any
 
+import numpy as np
 import pandas as pd
-from matplotlib.figure import Figure
 
+from studies.answers.adapters import answer_release
+from studies.answers.settings import FeSettings
 from studies.baselines.registry import missing
-from studies.cases.problem import Problem, named_case
-from studies.paper.findings import table
-from studies.work_precision import figures, language, scaling, static_findings
+from studies.cases.problem import named_case
+from studies.engine.findings import Tables
+from studies.engine.study import Answer, Part, Study
+from studies.work_precision import figures, scaling, static_findings
 from studies.work_precision.equal_error import cheapest
 from studies.work_precision.limits import THEORIES, Limit, limit_of_theory
 from studies.work_precision.paths import QUANTITIES, Member, SolvedPath, path_errors
-from studies.work_precision.series import SPLINE, Series, all_series
-
-__all__ = ["CASES", "compute", "draw", "equal_error", "missing"]
+from studies.work_precision.series import ELEMENTS, SPLINE, Series, all_series
+from studies.work_precision.work import ELEMENT_FORCES, STRIPS
 
 CASE = "cross_axis_pivot"
-CASES = (CASE,)
 
 #: An error is shown where it is this many times that of its reference.
 MARGIN = 10.0
@@ -34,62 +35,39 @@ ERRORS = ("error_trajectory", "error_torque")
 #: Errors at which models are compared.
 TARGETS = (1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8)
 
-
-def compute(progress: Callable[[int, int], None]) -> dict[str, pd.DataFrame]:
-    """Return errors, work and times of all settings, what is cheapest at equal error, and the findings.
-
-    Tables: errors (a row a setting: errors over the path and at its end, those of its reference, work);
-    timings (the same settings: solve_s, wall_s); reference; digits (cheapest by counted work at equal error);
-    digits_of_time; scaling and scaling_of_time (one Newton iteration over n); language (what the reference's
-    Python costs); findings and findings_of_time.
-    """
-    problem, series = named_case(CASE), all_series()
-    limits = {theory: limit_of_theory(problem, theory) for theory in THEORIES}
-    solved = []
-    for done, each in enumerate(series):
-        progress(done, len(series) + 1)
-        solved += [(each, member, member.solve(problem, each.repeat)) for member in each.members]
-    progress(len(series), len(series) + 1)
-    tables = {
-        "errors": pd.DataFrame([_errors(*one, limits) for one in solved]),
-        "timings": pd.DataFrame([_times(*one) for one in solved]),
-        "reference": _references(problem, limits),
-    }
-    tables |= scaling.tables(problem)
-    tables |= equal_error(tables)
-    tables["language"] = language.table(problem, tables)
-    progress(len(series) + 1, len(series) + 1)
-    return tables | {
-        "findings": table(static_findings.of_work(tables)),
-        "findings_of_time": table(static_findings.of_time(tables)),
-    }
+#: Elements of the compiled motion from which the speed of compiled elements is taken.
+COMPILED_ELEMENTS = 20
 
 
-def draw(tables: Mapping[str, pd.DataFrame]) -> dict[str, Figure]:
-    """Draw the work-precision diagram and the cost of one iteration over the control points."""
-    return {
-        "work_precision_statics": figures.statics(tables, MARGIN),
-        "work_precision_scaling": figures.scaling(tables),
-    }
+def members() -> list[tuple[Series, Member]]:
+    """Return every setting with its series."""
+    return [(series, member) for series in all_series() for member in series.members]
 
 
-def equal_error(tables: Mapping[str, pd.DataFrame]) -> dict[str, pd.DataFrame]:
-    """Return the cheapest settings at equal error, by work and by time."""
-    rows = joined(tables)
-    asked: dict[str, Any] = {"columns": ERRORS, "rank": "count", "targets": TARGETS, "baseline": SPLINE}
-    return {
-        "digits": cheapest(rows, cost="flops", **asked),
-        "digits_of_time": cheapest(rows, cost="solve_s", **asked),
-    }
+def solved(series: Series, member: Member) -> Answer:
+    """Return errors over the path and at its end, those of the reference, work, and times of a setting."""
+    path = member.solve(named_case(CASE), series.repeat)
+    return {"errors": _errors(series, member, path), "timings": _times(series, member, path)}
 
 
-def joined(tables: Mapping[str, pd.DataFrame]) -> pd.DataFrame:
+@cache
+def limit(theory: str) -> Limit:
+    """Return what settings of a theory are held against."""
+    return limit_of_theory(named_case(CASE), theory)
+
+
+def _cheapest(tables: Tables, cost: str) -> pd.DataFrame:
+    """Return the cheapest settings at equal error."""
+    return cheapest(joined(tables), columns=ERRORS, cost=cost, rank="count", targets=TARGETS, baseline=SPLINE)
+
+
+def joined(tables: Tables) -> pd.DataFrame:
     """Return errors, work and times of every setting in one table."""
     return tables["errors"].merge(tables["timings"], on=["series", "setting"])
 
 
-def _errors(series: Series, member: Member, path: SolvedPath, limits: Mapping[str, Limit]) -> dict[str, Any]:
-    limit = limits[series.theory]
+def _errors(series: Series, member: Member, path: SolvedPath) -> dict[str, Any]:
+    exact = limit(series.theory)
     return {
         "series": series.name,
         "family": "all",
@@ -97,8 +75,8 @@ def _errors(series: Series, member: Member, path: SolvedPath, limits: Mapping[st
         "count": member.count,
         "theory": series.theory,
         "status": path.status,
-        **path_errors(path, limit.path),
-        **{f"reference_{name}": limit.uncertainty[name] for name in QUANTITIES},
+        **path_errors(path, exact.path),
+        **{f"reference_{name}": exact.uncertainty[name] for name in QUANTITIES},
         **path.work,
         "message": path.message,
     }
@@ -114,19 +92,80 @@ def _times(series: Series, member: Member, path: SolvedPath) -> dict[str, Any]:
     }
 
 
-def _references(problem: Problem, limits: Mapping[str, Limit]) -> pd.DataFrame:
-    """Return each limit's end values, its uncertainty, and how far it is from the material one."""
-    rows = []
-    for theory, limit in limits.items():
-        apart = path_errors(limit.path, limits["material"].path)
-        for name in QUANTITIES:
-            rows.append(
-                {
-                    "theory": theory,
-                    "quantity": name,
-                    "uncertainty": limit.uncertainty[name],
-                    "distance_to_material": apart[f"error_{name}"] if theory != "material" else math.nan,
-                    "source": limit.source,
-                }
-            )
-    return pd.DataFrame(rows)
+def _reference(theory: str) -> list[dict[str, Any]]:
+    """Return a limit's uncertainty, and how far it is from the material one."""
+    found = limit(theory)
+    apart = path_errors(found.path, limit("material").path)
+    return [
+        {
+            "theory": theory,
+            "quantity": name,
+            "uncertainty": found.uncertainty[name],
+            "distance_to_material": apart[f"error_{name}"] if theory != "material" else math.nan,
+            "source": found.source,
+        }
+        for name in QUANTITIES
+    ]
+
+
+def _language(tables: Tables) -> pd.DataFrame:
+    """Return how much of the elements' time is the language: a row a setting of splines and elements.
+
+    A time is work over speed: seconds = operations / (operations a second). So the ratio of two times is
+    the ratio of their work, which is the method's, times the ratio of their speeds, which is the language's
+    and the machine's. Three speeds are measured in the same run:
+
+    - of the splines' compiled path, from its counted operations and its time;
+    - of the elements' path, which is Python around numpy and a sparse solver, in the same way;
+    - of the elements when compiled: their explicit motion evaluates the same element's forces in compiled
+      code.
+
+    The elements' path at the speed of their own compiled loop is what they would take in a compiled language;
+    the fixed cost of calls, which has no operations, is language too.
+
+    Columns: series, setting, flops, solve_s, flops_per_s, compiled_s (time at the speed of compiled elements;
+    for splines their own), python_share (what is left of the time; 0 for splines).
+    """
+    rows = tables["errors"].merge(tables["timings"], on=["series", "setting"])
+    rows = rows[rows["series"].isin([SPLINE, ELEMENTS])]
+    found = rows[["series", "setting", "flops", "solve_s"]].copy()
+    found["flops_per_s"] = found["flops"] / found["solve_s"]
+    own = found["series"] == SPLINE
+    found["compiled_s"] = np.where(own, found["solve_s"], found["flops"] / _compiled_speed())
+    found["python_share"] = 1.0 - found["compiled_s"] / found["solve_s"]
+    return found
+
+
+def _compiled_speed() -> float:
+    """Return the operations a second of the elements' compiled loop [1/s].
+
+    The loop also moves the nodes, which is not counted: the speed is a little more than what is returned.
+    """
+    motion = answer_release(
+        named_case(CASE), FeSettings(elements=COMPILED_ELEMENTS), duration=2e-3, records=10, repeat=5
+    )
+    elements = motion.counters["force_evaluations"] * STRIPS * COMPILED_ELEMENTS
+    return elements * ELEMENT_FORCES / motion.solve_s
+
+
+STUDY = Study(
+    cases=(CASE,),
+    parts=(
+        Part(at=lambda: THEORIES, ask=lambda theory: {"reference": _reference(theory)}),
+        Part(at=members, ask=solved, alone=True),
+        Part(at=scaling.points, ask=scaling.iteration, alone=True),
+    ),
+    made={
+        "digits": lambda tables: _cheapest(tables, "flops"),
+        "digits_of_time": lambda tables: _cheapest(tables, "solve_s"),
+        "language": _language,
+    },
+    claims=(static_findings.of_work,),
+    claims_of_time=(static_findings.of_time,),
+    varying=("language",),
+    figures={
+        "work_precision_statics": lambda tables: figures.statics(tables, MARGIN),
+        "work_precision_scaling": figures.scaling,
+    },
+    missing=missing,
+)

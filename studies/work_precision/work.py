@@ -28,8 +28,6 @@ from studies.answers.settings import FeSettings, Settings, SplineSettings
 STRIPS = 2
 #: Operations of one element (see above): its forces and energy, and its tangent beside them.
 ELEMENT_FORCES, ELEMENT_TANGENT = 71, 39
-#: Least operations of any element's symmetric tangent: one for each of its 21 entries.
-LEAST_TANGENT = 21
 #: Operations of one Gauss point that depend neither on the control points nor on the axial forces.
 POINT = 157
 #: The sparse LU of a long B-spline: from so many unknowns on, and operations and entries of it for each.
@@ -100,17 +98,17 @@ def recovery_flops(own: int, modes: int) -> int:
 
 def _modes(settings: SplineSettings) -> int:
     """Return axial forces and slide modes of a strip; none where stretching is by quadrature."""
-    return 0 if settings.stretch == "consistent" else settings.control_points - 1
+    return 0 if settings.stretch == "consistent" else settings.points - 1
 
 
 def _points(settings: SplineSettings) -> int:
     """Return the Gauss points of a strip."""
-    degree = settings.control_points - 1 if settings.basis == "bezier" else 3
-    return (settings.gauss_points or degree + 3) * (settings.control_points - degree)
+    degree = settings.points - 1 if settings.basis == "bezier" else 3
+    return (settings.gauss_points or degree + 3) * (settings.points - degree)
 
 
 def _condensed(settings: SplineSettings, counters: Mapping[str, int]) -> Work:
-    n, modes, points = settings.control_points, _modes(settings), _points(settings)
+    n, modes, points = settings.points, _modes(settings), _points(settings)
     own = 2 * n - 6
     assembly = STRIPS * assembly_flops(points, n - 1, modes)
     factorisation = STRIPS * condensation_flops(own, modes)
@@ -127,7 +125,7 @@ def _condensed(settings: SplineSettings, counters: Mapping[str, int]) -> Work:
 
 
 def _bordered(settings: SplineSettings, counters: Mapping[str, int]) -> Work:
-    n, modes, points = settings.control_points, _modes(settings), _points(settings)
+    n, modes, points = settings.points, _modes(settings), _points(settings)
     bezier = settings.basis == "bezier"
     # a hat basis has two modes at a point, and the slide mode reaches everywhere
     at_point = modes if bezier or not modes else min(modes, 3)

@@ -1,6 +1,6 @@
 """Work of a motion that does not depend on machine or language, counted as in `work`.
 
-- spline, leapfrog: every evaluation takes the forces of the strips in control points (`strip_force`) and
+- spline, leapfrog: every evaluation takes the forces of the strips in control points (`add_forces`) and
   multiplies those of the inner ones with the constant inverse of their mass; what is done for the tips and
   the body does not grow with the size and is left out;
 - spline, implicit: every Newton iteration assembles residual and tangent of the bordered system and takes a
@@ -27,9 +27,9 @@ def work_of_motion(settings: Settings, counters: Mapping[str, int]) -> dict[str,
 
 
 def strip_force_flops(control_points: int) -> int:
-    """Return the operations of `strip_force` for a Bezier strip with n + 2 Gauss points."""
-    points = control_points + 2
-    return points * (16 * (control_points - 1) + 2 * points + 30)
+    """Return the operations of `add_forces` for a Bezier strip, n + 2 Gauss points, n - 1 axial forces."""
+    points, modes = control_points + 2, control_points - 1
+    return points * (16 * control_points + 4 * modes + 40) + modes
 
 
 def _of_elements(settings: FeSettings, counters: Mapping[str, int]) -> dict[str, Any]:
@@ -45,7 +45,7 @@ def _of_elements(settings: FeSettings, counters: Mapping[str, int]) -> dict[str,
 
 
 def _explicit(settings: SplineSettings, counters: Mapping[str, int]) -> dict[str, Any]:
-    n, evaluations = settings.control_points, counters["evaluations"]
+    n, evaluations = settings.points, counters["evaluations"]
     inner = 4 * (n - 3) * (n - 1)
     return {
         "unknowns": STRIPS * (2 * n - 6) + 3,
@@ -58,7 +58,7 @@ def _explicit(settings: SplineSettings, counters: Mapping[str, int]) -> dict[str
 
 
 def _implicit(settings: SplineSettings, counters: Mapping[str, int]) -> dict[str, Any]:
-    n, factorisations = settings.control_points, counters["factorisations"]
+    n, factorisations = settings.points, counters["factorisations"]
     modes, points = n - 1, n + 2
     size = STRIPS * (2 * n + modes + 6) + 3
     evaluations = factorisations + counters["steps"]

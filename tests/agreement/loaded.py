@@ -80,6 +80,7 @@ def pivot(effects: Effects, rotation: float = ROTATION, increments: int = INCREM
         centre_offset=CROSSING if "driven_displacement" in effects.names else ECCENTRIC,
         rotation=rotation,
         increments=increments,
+        order="together",
         effects=effects,
     )
 
@@ -104,6 +105,7 @@ def whiskered(effects: Effects, rotation: float | None = ROTATION, increments: i
         body="body",
         rotation=rotation,
         increments=increments,
+        order="together",
         effects=effects,
     )
 
@@ -120,7 +122,7 @@ def solution(asked: Design, settings: Settings) -> tuple[Any, Any]:
     """Return the model's own answer for the static path, and its fields along the strips."""
     model = model_of(settings)
     given, _ = built(model, asked, settings, moving=False)
-    how = {"rotation": asked.rotation, "increments": asked.increments}
+    how = {"rotation": asked.rotation, "increments": asked.increments, "order": asked.order}
     if isinstance(asked, Problem):
         found = model.statics.solve_statics(given, **how)
     else:

@@ -74,7 +74,7 @@ def test_a_dead_moment_changes_no_frequency(settings):
     """Requirement: a constant moment is taken by the drive and leaves the modes as they are."""
     loads = frequencies(loaded.design("applied_moment", -ROTATION), settings)
     none = frequencies(loaded.pivot(loaded.scene(), -ROTATION), settings)
-    assert loads[0] == pytest.approx(none[0], rel=1e-6)
+    assert loads[0] == pytest.approx(none[0], rel=1e-12)
 
 
 @pytest.mark.parametrize("effect", ["applied_force", LED])

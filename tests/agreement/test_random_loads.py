@@ -34,7 +34,7 @@ def path(model, seed, degrees, **discretisation):
     pivot = model.pivot.cross_axis_pivot(
         **TABLE_ONE, effects=("bending", "stretching", *loads), parameters=loads, **discretisation
     )
-    return model.statics.solve_statics(pivot, rotation=math.radians(degrees), increments=3)
+    return model.statics.solve_statics(pivot, rotation=math.radians(degrees), increments=3, order="together")
 
 
 def differences(quantity, control_points=8):

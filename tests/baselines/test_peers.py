@@ -174,7 +174,7 @@ def test_what_is_not_installed_is_said_in_one_line(name, monkeypatch):
     with pytest.raises(BadInput, match=rf"^{name}: not installed: python -m pip install '\.\[peers\]'$"):
         installed_module(name)
     asked = [Variant(module=module, group="x", theory="y", settings={"elements": n}) for n in (1, 2)]
-    rows, times = tried(asked, None, ["worst"], lambda done: None)
+    rows, times = tried(asked, None, ["worst"])
     assert [(row["status"], row["model"]) for row in rows] == [("not installed", name)]
     assert math.isnan(rows[0]["worst"])
     assert times == []
@@ -188,7 +188,7 @@ def test_study_runs_without_other_codes(monkeypatch):
         monkeypatch.setattr(module, "installed", lambda: False)
     monkeypatch.setattr(peer_statics, "REPEAT", 1)
     limits, theories = peer_statics.limits(CASE)
-    rows, times = peer_statics.compared(CASE, limits, lambda done: None)
+    rows, times = peer_statics.compared(CASE, limits)
     assert [row["what"] for row in theories] == ["uncertainty", "uncertainty", "difference of the theories"]
     assert {row["status"] for row in rows} == {"converged", "not installed"}
     found = ratios(pd.DataFrame(rows), pd.DataFrame(times), "worst", [1e-3])
@@ -202,7 +202,7 @@ def test_failed_variant_keeps_its_row():
     def fails(variant):
         raise BaselineFailed("stopped at 0.1 rad")
 
-    rows, times = tried(variants.static_variants()[:1], fails, ["worst"], lambda done: None)
+    rows, times = tried(variants.static_variants()[:1], fails, ["worst"])
     assert (rows[0]["status"], rows[0]["reason"]) == ("failed", "stopped at 0.1 rad")
     assert math.isnan(rows[0]["worst"])
     assert times == []

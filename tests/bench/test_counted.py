@@ -18,13 +18,13 @@ from spline_model.reduced.model import at_rest
 from spline_model.reduced.solve import run
 from spline_model.statics import solve_statics
 from studies.record.source import ROOT
-from tests.table_one import TABLE_ONE
+from tests.table_one import SIX
 
 FIRST_SOLVE = """
 from spline_model.pivot import cross_axis_pivot
 from spline_model.statics import solve_statics
-from tests.table_one import TABLE_ONE
-solve_statics(cross_axis_pivot(**TABLE_ONE), rotation=1.5)
+from tests.table_one import SIX
+solve_statics(cross_axis_pivot(**SIX), rotation=1.5)
 """
 
 
@@ -48,7 +48,7 @@ def test_parts_are_all_of_a_solve(monkeypatch):
     their sum is all that passed between the first and the last."""
     readings = itertools.count()
     monkeypatch.setattr(laps, "perf_counter", lambda: float(next(readings)))
-    seconds = solve_statics(cross_axis_pivot(**TABLE_ONE), rotation=math.pi / 2).seconds
+    seconds = solve_statics(cross_axis_pivot(**SIX), rotation=math.pi / 2).seconds
     assert set(seconds) == {"compile", "solve", "recover"}
     assert all(part >= 1.0 for part in seconds.values())
     assert sum(seconds.values()) == pytest.approx(next(readings) - 1.0, abs=1e-9)
@@ -56,7 +56,7 @@ def test_parts_are_all_of_a_solve(monkeypatch):
 
 def test_memory_does_not_grow_with_the_increments():
     """Requirement: apart from its answer a path of 2000 increments needs what one of 20 does."""
-    work = Elements.of(compile_scene(cross_axis_pivot(**TABLE_ONE).driven(math.pi / 2)))
+    work = Elements.of(compile_scene(cross_axis_pivot(**SIX).driven(math.pi / 2)))
     start = at_rest(work.model)
 
     def beyond_the_answer(increments):

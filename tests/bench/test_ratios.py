@@ -11,7 +11,7 @@ from spline_model.statics import solve_statics
 from studies.record.source import ROOT
 from tests.bench.test_counted import FIRST_SOLVE
 from tests.bench.test_speed import DESIGNS, INCREMENTS, QUARTER_TURN, designs
-from tests.table_one import TABLE_ONE
+from tests.table_one import SIX
 
 LIBRARIES = "import numpy, numba, scipy.interpolate, scipy.linalg, scipy.sparse.linalg"
 
@@ -34,7 +34,7 @@ def run(script):
 
 def test_a_batch_costs_a_fraction_of_single_solves():
     """Requirement: in a batch a path takes less than a third of a single solve, set-up included."""
-    pivot = cross_axis_pivot(**TABLE_ONE)
+    pivot = cross_axis_pivot(**SIX)
     single = best(lambda: solve_statics(pivot, rotation=QUARTER_TURN, increments=INCREMENTS))
     batch = best(lambda: solve_many(designs(), rotation=QUARTER_TURN, increments=INCREMENTS, threads=1))
     assert batch / DESIGNS < single / 3.0
@@ -42,7 +42,7 @@ def test_a_batch_costs_a_fraction_of_single_solves():
 
 def test_parts_are_most_of_a_solve():
     """Requirement: what tables, path and recovery take is more than half of the whole solve."""
-    pivot = cross_axis_pivot(**TABLE_ONE)
+    pivot = cross_axis_pivot(**SIX)
     solve_statics(pivot, rotation=QUARTER_TURN)
     begin = perf_counter()
     seconds = solve_statics(pivot, rotation=QUARTER_TURN).seconds

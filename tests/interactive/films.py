@@ -23,7 +23,7 @@ def truth(k: int) -> tuple[float, float, float]:
     either side."""
     pivot = build(PRESETS["polymer"].values())
     angle = math.radians(50) * math.sin(2 * math.pi * k / PERIOD)
-    x, y, turn = Placing.of(pivot).marker(HeldPivot(pivot.mechanism).turn(angle).pose)
+    x, y, turn = Placing.of(pivot).marker(HeldPivot(pivot).turn(angle).pose)
     return float(x), float(y), float(turn)
 
 

@@ -24,10 +24,10 @@ def test_table_one_is_the_case_of_the_paper():
     solver."""
     from spline_model.pivot import cross_axis_pivot
     from spline_model.statics import solve_statics
-    from tests.table_one import TABLE_ONE
+    from tests.table_one import SIX
 
     state = turned(session("table-1"), 20, 40)
-    path = solve_statics(cross_axis_pivot(**TABLE_ONE), rotation=math.radians(40))
+    path = solve_statics(cross_axis_pivot(**SIX), rotation=math.radians(40))
     assert abs(state["force"][2] / path.torque[-1] - 1) < 2e-6
     assert abs(state["stiffness"] / path.stiffness[-1] - 1) < 2e-5
     assert np.abs(np.array(state["pose"][:2]) - path.centre[-1]).max() < 1e-7
@@ -37,10 +37,10 @@ def test_stress_is_that_of_the_section_forces():
     """Requirement: the largest stress is |N|/A + |M| h/(2 I) of the model's section forces."""
     from spline_model.pivot import cross_axis_pivot
     from spline_model.statics import solve_statics
-    from tests.table_one import TABLE_ONE
+    from tests.table_one import SIX, TABLE_ONE
 
     state = turned(session("table-1"), 15, 30)
-    path = solve_statics(cross_axis_pivot(**TABLE_ONE), rotation=math.radians(30))
+    path = solve_statics(cross_axis_pivot(**SIX), rotation=math.radians(30))
     half = math.sqrt(3 * TABLE_ONE["second_moment_of_area"] / TABLE_ONE["area"])
     bending = np.abs(path.bending_moment[-1]) * half / TABLE_ONE["second_moment_of_area"]
     stress = bending + np.abs(path.axial_force[-1]) / TABLE_ONE["area"]

@@ -50,7 +50,7 @@ def exact(
     design: Mapping[str, Any], parameters: tuple[str, ...], rotation: float, grid: Mapping[str, Any]
 ) -> Sensitivities:
     """Exact derivatives along the path to a rotation [rad]."""
-    pivot = cross_axis_pivot(**design, **grid)
+    pivot = cross_axis_pivot(**{"control_points": 6} | dict(design) | dict(grid))
     path = solve_statics(pivot, rotation=rotation, increments=6)
     return sensitivities(pivot, path, parameters=parameters, stations=STATIONS)
 
@@ -68,7 +68,7 @@ def value_of(design: Mapping[str, Any], name: str) -> float:
     """A design's parameter, or side of its section [m]."""
     if name in design:
         return float(design[name])
-    strip = cross_axis_pivot(**design).mechanism.design.strips[0]
+    strip = cross_axis_pivot(**design).design.strips[0]
     return float(getattr(Section.of(strip), name))
 
 

@@ -3,7 +3,7 @@
 from spline_model.effects.registry import DEFAULT_EFFECTS, REGISTRY
 from spline_model.mechanism import StripDesign, mechanism
 from spline_model.pivot import cross_axis_pivot
-from tests.table_one import TABLE_ONE
+from tests.table_one import SIX
 
 #: Parameters with which each registered effect is tried; a new effect without its own is tried without.
 PARAMETERS = {
@@ -22,7 +22,7 @@ EXTRA = [name for name in REGISTRY if name not in (*DEFAULT_EFFECTS, "inextensib
 
 def scene_with(*names, parameters=None, **settings):
     """Table 1 with a free strip on its body, whose scene holds the default effects and the named ones."""
-    pivot = cross_axis_pivot(**TABLE_ONE).mechanism.design
+    pivot = cross_axis_pivot(**SIX).design
     strips = list(pivot.strips)
     if "tip_force" in names:
         strips.append(
@@ -44,5 +44,5 @@ def scene_with(*names, parameters=None, **settings):
         bodies=pivot.bodies,
         effects=effects + names,
         parameters={name: given[name] for name in names if name in given},
-        **settings,
+        **({"control_points": 6} | settings),
     )

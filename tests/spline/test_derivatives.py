@@ -7,7 +7,7 @@ from spline_model.compile import compile_scene
 from spline_model.kernels.assemble import assemble
 from spline_model.pivot import cross_axis_pivot
 from tests import gates
-from tests.table_one import TABLE_ONE
+from tests.table_one import SIX
 
 FORMS = {
     "material mixed": {},
@@ -24,7 +24,7 @@ class Operator:
     """The assembled operator in dimensionless unknowns around a crooked state."""
 
     def __init__(self, settings):
-        pivot = cross_axis_pivot(**(TABLE_ONE | settings))
+        pivot = cross_axis_pivot(**(SIX | settings))
         self.system = compile_scene(pivot.driven(0.8))
         generator = np.random.default_rng(7)
         self.unit, self.energy_unit = self.system.scales.unit, self.system.scales.energy

@@ -6,7 +6,7 @@ import pytest
 from spline_model.pivot import cross_axis_pivot
 from tests import gates
 from tests.spline.steps import Step
-from tests.table_one import TABLE_ONE
+from tests.table_one import SIX
 
 FORMS = {
     "mixed": {},
@@ -20,7 +20,7 @@ FORMS = {
 
 def step_of(form):
     """A step of Table 1."""
-    return Step(cross_axis_pivot(**(TABLE_ONE | FORMS[form])).released())
+    return Step(cross_axis_pivot(**(SIX | FORMS[form])).released())
 
 
 def energy_identity(form, at_the_end=False):

@@ -7,7 +7,7 @@ from spline_model.compile import compile_scene
 from spline_model.dynamics import solve_motion
 from spline_model.effects import DrivenRotation
 from spline_model.effects.registry import DEFAULT_EFFECTS
-from spline_model.integrators.motion import set_in_motion
+from spline_model.motion.start import set_in_motion
 from spline_model.pivot import cross_axis_pivot, swinging_slide_stiffness
 from spline_model.statics import solve_mechanism
 from tests import gates
@@ -74,7 +74,7 @@ def test_work_in_motion_is_the_change_of_energy_and_the_loss():
 
 def test_motion_balance_has_teeth(monkeypatch):
     """Requirement: a Newton that stops early shows in the balance."""
-    from spline_model.integrators import energy_consistent
+    from spline_model.motion import energy_consistent
 
     monkeypatch.setattr(energy_consistent, "TOLERANCE", gates.teeth("spline_motion_balance")["tolerance"])
     with pytest.raises(AssertionError, match="x the gate"):
@@ -99,7 +99,7 @@ def test_each_effect_has_a_consistent_step(name):
 def test_zero_equals_absent(name):
     """Requirement: an effect with zero coefficients gives the answer of a scene without it."""
     plain = solve_mechanism(scene_with(), rotation=1.0, increments=8)
-    zero = solve_mechanism(scene_with(name, parameters=ZERO), rotation=1.0, increments=8)
+    zero = solve_mechanism(scene_with(name, parameters=ZERO), rotation=1.0, increments=8, order="together")
     assert np.abs(zero.torque - plain.torque).max() <= 1e-14 * np.abs(plain.torque).max()
     run, same = (
         solve_motion(scene, start=1.0, duration=0.002)
@@ -128,7 +128,7 @@ def frame_difference(turned_by=0.7):
         solve_motion(
             cross_axis_pivot(
                 **TABLE_ONE, orientation=angle, effects=DEFAULT_EFFECTS + names, parameters=parameters
-            ).mechanism,
+            ),
             start=1.2,
             duration=0.02,
         )

@@ -35,7 +35,7 @@ def states(model, shares):
         act(share, preload, bodies, strips)
         counters = np.zeros(3, dtype=np.int64)
         assert newton(y, 0.0, bodies, strips, model.shape, local, space, TOLERANCE, counters) == 0
-        energy = space.out[[BENDING, AXIAL, DEAD]].sum() + share * preload.fallen
+        energy = space.out[[BENDING, AXIAL, DEAD]].sum() + share * preload.hung[1]
         slope, bend = swell(y, share, preload, bodies, strips, model.shape, local, space)
         yield y.copy(), energy, slope, bend, space.rate.copy()
 

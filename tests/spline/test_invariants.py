@@ -8,14 +8,14 @@ import pytest
 from spline_model.pivot import cross_axis_pivot
 from spline_model.statics import solve_statics
 from tests import gates
-from tests.table_one import TABLE_ONE
+from tests.table_one import SIX, TABLE_ONE
 
 QUARTER = math.pi / 2
 
 
 def solved(rotation=QUARTER, increments=20, method="condensed", **settings):
     """Static solution of Table 1 with settings."""
-    pivot = cross_axis_pivot(**(TABLE_ONE | settings))
+    pivot = cross_axis_pivot(**(SIX | settings))
     return solve_statics(pivot, rotation=rotation, increments=increments, method=method)
 
 

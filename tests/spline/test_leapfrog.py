@@ -1,4 +1,4 @@
-"""The compiled leapfrog: order, energy, agreement with Runge-Kutta's steps on the full matrices."""
+"""The explicit schemes: orders, energy, agreement of leapfrog and Runge-Kutta, scenes of all kinds."""
 
 import math
 from functools import cache
@@ -9,14 +9,9 @@ import pytest
 from spline_model.compile import compile_scene
 from spline_model.dynamics import solve_release
 from spline_model.errors import InvalidParameter
-from spline_model.fast.acceleration import accelerate
-from spline_model.fast.leapfrog import leap
-from spline_model.fast.release import coordinates, reduced
-from spline_model.fast.release import swing as swing_of_mechanism
-from spline_model.fast.swing import swing_space
-from spline_model.integrators.motion import set_in_motion
-from spline_model.kernels.record import POSITION, VELOCITY, record
 from spline_model.modes import linear_modes
+from spline_model.motion.explicit import flight
+from spline_model.motion.start import set_in_motion
 from spline_model.pivot import cross_axis_pivot, swinging_slide_stiffness
 from spline_model.solution import Status
 from tests import gates
@@ -50,7 +45,7 @@ def difference_to_runge_kutta(step):
 
 
 def test_leapfrog_agrees_with_runge_kutta():
-    """Requirement: the condensed kernels and the full matrices tend to one trajectory."""
+    """Requirement: leapfrog and Runge-Kutta tend to one trajectory."""
     gates.check("spline_leapfrog_agrees", difference_to_runge_kutta(1e-6))
 
 
@@ -65,23 +60,19 @@ def test_agreement_gate_has_teeth():
 
 def phase_error(omega_h, mode=14, periods=400):
     """Phase that a small wave of the highest mode gains over its linear one, in parts of it."""
-    mechanism = pivot().mechanism
+    mechanism = pivot()
     system = compile_scene(mechanism.released())
     motion = set_in_motion(system)
     squares, shapes, _ = linear_modes(system, system.rest, motion.mass)
     omega, shape, count = math.sqrt(squares[mode]), shapes[:, mode], len(motion.mass)
-    constants = swing_of_mechanism(mechanism, system, motion)
     z = system.rest.copy()
     z[:count] += 1e-7 / np.abs(shape).max() * shape
-    space = swing_space(constants)
-    r, w = reduced(mechanism, system, constants.frame, z, np.zeros(count))
-    acceleration = np.zeros_like(r)
-    accelerate(r, w, constants, space, acceleration)
     steps = math.ceil(2 * math.pi * periods / omega_h)
-    assert leap(r, w, acceleration, omega_h / omega, steps, constants, space)
-    q, v = coordinates(mechanism, system, constants.frame, r[None], w[None])
+    start = flight(system, motion, z, np.zeros(count), 1, "leapfrog")
+    assert start.fly(omega_h / omega, steps) == 1
+    (z,), (v,), _ = start.shown(motion, 1)
     weighted = motion.mass @ shape
-    phase = math.atan2(-weighted @ v[0] / omega, weighted @ (q[0] - system.rest[:count]))
+    phase = math.atan2(-weighted @ v / omega, weighted @ (z - system.rest)[:count])
     gained = (phase - steps * omega_h + math.pi) % (2 * math.pi) - math.pi
     return abs(gained) / (steps * omega_h)
 
@@ -112,15 +103,9 @@ def test_energy_does_not_drift():
 
 def test_clamps_hold_by_construction():
     """Requirement: positions and rates satisfy the full system's clamps to round-off."""
-    mechanism = pivot().mechanism
-    system = compile_scene(mechanism.released())
-    motion = set_in_motion(system)
     run = swing(4e-6)
-    row = np.empty(7)
-    for z, v in zip(run.states, run.velocities, strict=True):
-        record(z, v, motion, np.empty(len(motion.rigidity)), np.zeros(2), row)
-        assert row[POSITION] < 1e-16
-        assert row[VELOCITY] < 1e-12
+    assert run.constraint_residual.max() < 1e-16
+    assert run.velocity_residual.max() < 1e-12
 
 
 def test_motion_goes_on_where_it_stopped():
@@ -146,11 +131,56 @@ def test_default_step_is_stable_and_a_long_one_says_so():
     "more",
     [
         {"stretch": "consistent"},
-        {"basis": "bspline"},
+        {"stretch": "consistent", "measure": "spatial"},
+        {"stretch": "inextensible"},
+        {"basis": "bspline", "control_points": 8},
         {"effects": ("bending", "stretching", "strip_inertia", "body_inertia", "gravity")},
     ],
+    ids=["consistent", "spatial", "inextensible", "B-spline", "gravity"],
 )
-def test_other_scenes_are_refused(more):
-    """Requirement: what the reduced coordinates do not hold is refused by name."""
-    with pytest.raises(InvalidParameter, match="integrator: got 'leapfrog'"):
-        swing(1e-6, duration=1e-5, **more)
+def test_all_free_scenes_move(more):
+    """Requirement: leapfrog and Runge-Kutta tend to one trajectory in every basis, measure and axial form."""
+    pair = [
+        solve_release(
+            cross_axis_pivot(**TABLE_ONE, **more),
+            start=1.0,
+            duration=2e-4,
+            step=1e-6,
+            integrator=name,
+            check=False,
+        ).rotation
+        for name in ("leapfrog", "explicit")
+    ]
+    gates.check("spline_leapfrog_agrees", np.abs(pair[0] - pair[1]).max())
+
+
+def energy_of_inextensible(step=None):
+    """Largest change of the energy of strips that cannot stretch, over it, in Runge-Kutta steps."""
+    stiff = cross_axis_pivot(**TABLE_ONE, control_points=6, stretch="inextensible")
+    run = solve_release(stiff, duration=0.01, start=1.0, step=step, integrator="explicit", check=False)
+    assert run.status is Status.CONVERGED
+    energy = run.kinetic_energy + run.strain_energy
+    return np.abs(energy / energy[0] - 1.0).max()
+
+
+def test_inextensible_strips_keep_energy_in_explicit_steps():
+    """Requirement: strips that cannot stretch move on their own steps, and the forces in them do no work."""
+    gates.check("spline_inextensible_explicit_energy", energy_of_inextensible())
+
+
+def test_inextensible_gate_has_teeth():
+    """Requirement: a step near the longest stable one fails it."""
+    with pytest.raises(AssertionError, match="x the gate"):
+        gates.check(
+            "spline_inextensible_explicit_energy",
+            energy_of_inextensible(gates.teeth("spline_inextensible_explicit_energy")["step"]),
+        )
+
+
+@pytest.mark.parametrize("integrator", ["leapfrog", "explicit"])
+def test_damping_is_refused(integrator):
+    """Requirement: a scene whose steps are not free is refused by name."""
+    effects = ("bending", "stretching", "strip_inertia", "body_inertia", "strip_damping")
+    damped = pivot(effects=effects, parameters={"strip_damping": {"relaxation_time": 1e-6}})
+    with pytest.raises(InvalidParameter, match=f"integrator: got '{integrator}'"):
+        solve_release(damped, duration=1e-5, step=1e-6, integrator=integrator, start=0.1)

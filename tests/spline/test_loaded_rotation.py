@@ -37,8 +37,9 @@ def loaded(parameters, **settings):
 
 
 def turned(parameters, degrees, **how):
-    """The loaded pivot's path to a rotation [deg]."""
-    return solve_statics(loaded(parameters), rotation=math.radians(degrees), **({"increments": 5} | how))
+    """The loaded pivot's path to a rotation [deg], its loads growing with it."""
+    how = {"increments": 5, "order": "together"} | how
+    return solve_statics(loaded(parameters), rotation=math.radians(degrees), **how)
 
 
 @pytest.mark.parametrize("degrees", DEGREES)
@@ -56,7 +57,7 @@ def test_stiffness_of_table_1_under_a_dead_moment():
     """Requirement: Table 1 under 100 N m has 505.5 N m/rad at rest and 569.5 at 30 deg."""
     made = loaded(LOADS["moment"])
     pivot = solve_statics(made, rotation=math.radians(30))
-    body = solve_mechanism(made.mechanism, rotation=math.radians(30))
+    body = solve_mechanism(made, rotation=math.radians(30))
     for answer in (pivot, body):
         assert abs(answer.stiffness[0] - 505.45) < 0.05
         assert abs(answer.stiffness[-1] - 569.51) < 0.05
@@ -89,7 +90,7 @@ def quotient_error(name, degrees, step=1e-4):
         solve_statics(made, rotation=angle + shift, increments=3) for shift in (0.0, -step, step)
     )
     quotient = (more.torque[-1] - less.torque[-1]) / (2 * step)
-    other = solve_mechanism(made.mechanism, rotation=angle, increments=3)
+    other = solve_mechanism(made, rotation=angle, increments=3)
     assert abs(other.stiffness[-1] / here.stiffness[-1] - 1) < 1e-9
     return abs(here.stiffness[-1] / quotient - 1)
 
@@ -112,7 +113,7 @@ def test_loaded_stiffness_gate_has_teeth():
 def test_a_path_through_both_sides_carries_the_load_with_its_sign(name):
     """Requirement: through rest and back, loads go with |rotation| over the largest; work is energy."""
     legs = [math.radians(d) for d in (20.0, -30.0, 10.0)]
-    path = solve_statics(loaded(LOADS[name]), rotation=legs, increments=3)
+    path = solve_statics(loaded(LOADS[name]), rotation=legs, increments=3, order="together")
     assert np.allclose(path.load_factor, np.abs(path.rotation) / math.radians(30))
     direct = turned(LOADS[name], -30.0)
     row = int(np.argmin(path.rotation))
@@ -137,7 +138,7 @@ def test_accuracy_and_guesses_have_the_sign_of_the_load():
     made, rotation = loaded(LOADS["force"]), math.radians(-30)
     accurate = solve_statics(made, rotation=rotation, accuracy=1e-3)
     guessed = solve_from(made, rotation=rotation, guess=right.states[-1])
-    path = solve_path(made.mechanism, rotation, 5)
+    path = solve_path(made, rotation, 5)
     assert abs(accurate.torque[-1] / right.torque[-1] - 1) < 1e-2
     assert abs(guessed.torque[-1] / right.torque[-1] - 1) < 1e-9
     assert np.abs(path.states[-1] - right.states[-1]).max() < 1e-9 * np.abs(right.states[-1]).max()
@@ -149,7 +150,7 @@ def test_a_held_pivot_is_loaded():
     made = loaded(LOADS["moment"])
     answers = (
         solve_statics(made, rotation=0.0, increments=4),
-        solve_mechanism(made.mechanism, rotation=0.0, increments=4),
+        solve_mechanism(made, rotation=0.0, increments=4),
     )
     for answer in answers:
         assert np.allclose(answer.load_factor, [0.0, 0.25, 0.5, 0.75, 1.0])
@@ -178,7 +179,7 @@ def test_a_held_pivot_tips_where_its_own_stiffness_vanishes():
         assert f"force {5e4 * point.load_factor:.4g} N" in answer.message
         factors.append(point.load_factor)
     assert max(factors) - min(factors) < 1e-4
-    free = solve_mechanism(made.mechanism, increments=10, raise_on_failure=False)
+    free = solve_mechanism(made, increments=10, raise_on_failure=False)
     assert abs(free.critical_points[0].load_factor - factors[0]) < 1e-4
 
 
@@ -195,5 +196,52 @@ def test_a_loaded_path_that_stops_says_where():
     """Requirement: a path that stops says so in degrees and newtons, with the share that it reached."""
     made = loaded({"applied_force": {"force": (0.0, -3e6)}})
     with pytest.raises(ConvergenceError, match=r"stopped between .*rotation -.* deg, force .* N") as caught:
-        solve_statics(made, rotation=math.radians(-5), increments=5)
+        solve_statics(made, rotation=math.radians(-5), increments=5, order="together")
     assert 0 < caught.value.load_factor < 1
+
+
+def first(name, degrees, **how):
+    """The path under loads that come on before the rotation [deg]."""
+    return solve_statics(loaded(LOADS[name]), rotation=np.radians(degrees), **({"increments": 4} | how))
+
+
+@pytest.mark.parametrize("name", [name for name in LOADS if name != "led"])
+def test_loads_come_on_first_and_stay(name):
+    """Requirement: the body is held while loads grow; they are in full on the rotation, whatever its sign."""
+    path = first(name, [20.0, -30.0])
+    assert np.allclose(path.load_factor, np.minimum(np.arange(13) / 4, 1.0))
+    assert np.allclose(np.degrees(path.rotation[4:]), [*np.linspace(0, 20, 5), *np.linspace(20, -30, 5)[1:]])
+    assert not path.rotation[:4].any()
+    for row, degrees in ((8, 20.0), (12, -30.0)):
+        direct = turned(LOADS[name], degrees)
+        for quantity in ("torque", "stiffness"):
+            assert abs(getattr(path, quantity)[row] / getattr(direct, quantity)[-1] - 1) < 1e-8
+    energy = path.bending_energy + path.axial_energy + path.gravity_energy
+    assert np.abs(path.work - (energy - energy[0])).max() < 1e-3 * energy.max()
+
+
+def test_loads_first_by_both_methods_and_for_any_mechanism():
+    """Requirement: the paper's bordered system and the mechanism of one body have the same path."""
+    path, other = first("all", -25.0), first("all", -25.0, method="multipliers")
+    body = solve_mechanism(loaded(LOADS["all"]), rotation=math.radians(-25.0), increments=4)
+    for same in (other, body):
+        assert np.allclose(same.torque, path.torque, rtol=0, atol=1e-9 * np.abs(path.torque).max())
+        assert np.array_equal(same.load_factor, path.load_factor)
+
+
+def test_loads_that_came_on_stay_when_a_path_goes_on():
+    """Requirement: a start with its loads in full is turned on, without loading it again."""
+    start = first("force", 10.0)
+    onward = first("force", -20.0, start=start)
+    assert (onward.load_factor == 1.0).all()
+    assert onward.torque[-1] == pytest.approx(first("force", -20.0).torque[-1], rel=1e-9)
+
+
+def test_a_limit_under_steady_loads_is_told_in_degrees_and_newtons():
+    """Requirement: on the rotation a critical point is told by it and the loads, not by a load factor."""
+    made = loaded(LOADS["force"], inclination=0.96, crossing_ratio=0.22, control_points=14)
+    path = solve_statics(made, rotation=math.radians(-184.0), increments=20)
+    assert path.critical_points
+    assert all(point.load_factor == 1.0 for point in path.critical_points)
+    assert "limit point at rotation" in path.message
+    assert "force 5831 N" in path.message

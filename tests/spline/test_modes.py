@@ -14,7 +14,7 @@ from spline_model.modes import linear_modes, natural_frequencies
 from spline_model.pivot import cross_axis_pivot
 from tests import gates
 from tests.spline.scenes import LENGTH, RIGIDITY, swinging
-from tests.table_one import TABLE_ONE
+from tests.table_one import SIX, TABLE_ONE
 
 
 def roots(equation, count):
@@ -98,7 +98,7 @@ def test_published_roots():
 
 def test_modes_about_a_bent_state():
     """Requirement: held or released, about rest and about 90 deg, modes come sorted and with shapes."""
-    pivot = cross_axis_pivot(**TABLE_ONE)
+    pivot = cross_axis_pivot(**SIX)
     rest, bent = natural_frequencies(pivot), natural_frequencies(pivot, rotation=math.pi / 2)
     held = natural_frequencies(pivot, rotation=math.pi / 2, held=True)
     for modes in (rest, bent, held):
@@ -121,7 +121,7 @@ def test_modes_about_a_bent_state():
 )
 def test_modes_of_elements_are_those_under_constraints(keywords, monkeypatch):
     """Requirement: clamps that hold by construction or as constraints give the same modes to 1e-9."""
-    pivot = cross_axis_pivot(**TABLE_ONE, **keywords)
+    pivot = cross_axis_pivot(**SIX | keywords)
     found = natural_frequencies(pivot, rotation=0.7, count=6)
     monkeypatch.setattr("spline_model.modes.reduced", lambda *_, **__: None)
     other = natural_frequencies(pivot, rotation=0.7, count=6)
@@ -144,4 +144,4 @@ def test_slide_modes_are_named_not_counted():
 def test_no_modes_asked_for_is_refused():
     """Requirement: a count below one is refused."""
     with pytest.raises(InvalidParameter, match="count: got 0"):
-        natural_frequencies(cross_axis_pivot(**TABLE_ONE), count=0)
+        natural_frequencies(cross_axis_pivot(**SIX), count=0)

@@ -10,10 +10,10 @@ from spline_model.content import CARRIED, energy_content
 from spline_model.dynamics import solve_motion, solve_release
 from spline_model.effects import DrivenRotation
 from spline_model.errors import InvalidParameter
-from spline_model.integrators import energy_consistent
-from spline_model.integrators.monitor import energy_gain, first_gain
-from spline_model.integrators.motion import initial_acceleration, set_in_motion
 from spline_model.modes import static_state
+from spline_model.motion import energy_consistent
+from spline_model.motion.records import energy_gain, first_gain
+from spline_model.motion.start import initial_acceleration, set_in_motion
 from spline_model.pivot import cross_axis_pivot, swinging_slide_stiffness
 from tests import gates
 from tests.table_one import TABLE_ONE
@@ -27,13 +27,16 @@ def pivot(control_points=4, **settings):
     return cross_axis_pivot(**TABLE_ONE, control_points=control_points, slide_stiffness=slide, **settings)
 
 
-def jump_error(step, factor=1.0):
-    """Error of the rotation after a moment that sets in between two steps, against a fine grid."""
-    times = ((0.0, 0.0), (1.0003e-3, 0.0), (1.0003e-3 + 1e-9, 1.0))
+#: A moment that sets in between two steps, and one that grows all the time.
+SUDDEN, GROWING = ((0.0, 0.0), (1.0003e-3, 0.0), (1.0003e-3 + 1e-9, 1.0)), ((0.0, 0.0), (4e-3, 1.0))
+
+
+def jump_error(step, history=SUDDEN):
+    """Error of the rotation after a moment with a history, against a fine grid."""
     loaded = pivot(
         effects=(*EFFECTS, "applied_moment"),
-        parameters={"applied_moment": {"moment": 50.0 * factor, "history": times}},
-    ).mechanism
+        parameters={"applied_moment": {"moment": 50.0, "history": history}},
+    )
 
     def end(h):
         return solve_motion(loaded, duration=4e-3, step=h, records=1).rotation[-1]
@@ -41,9 +44,10 @@ def jump_error(step, factor=1.0):
     return abs(end(step) / end(2e-6) - 1.0)
 
 
-def test_a_sudden_load_keeps_the_order():
-    """Requirement: a moment that sets in between two steps is met at its time: the error falls as h^2."""
-    coarse, fine = jump_error(2e-4), jump_error(5e-5)
+@pytest.mark.parametrize("history", [SUDDEN, GROWING], ids=["sudden", "growing"])
+def test_a_load_in_time_keeps_the_order(history):
+    """Requirement: a moment that sets in between two steps, or grows, leaves an error that falls as h^2."""
+    coarse, fine = (jump_error(step, history) for step in (2e-4, 5e-5))
     assert math.log(coarse / fine, 4.0) > 2 - 0.3, (coarse, fine)
     gates.check("spline_sudden_load", fine)
 
@@ -58,7 +62,7 @@ def test_a_drive_off_the_grid_ends_where_it_should():
     """Requirement: a drive that begins, turns and ends between steps is followed, and the books close."""
     corners = ((0.00203, 0.0), (0.00307, 0.2), (0.00411, -0.1))
     drive = DrivenRotation(body="body", angle=1.0, history=corners, held=(0.00203, 0.00411))
-    run = solve_motion(pivot().mechanism, drive=drive, duration=6e-3, step=5e-5)
+    run = solve_motion(pivot(), drive=drive, duration=6e-3, step=5e-5)
     assert not run.message
     inside = (run.time > 0.00204) & (run.time < 0.0041)
     wanted = np.interp(run.time[inside], *zip(*corners, strict=True))
@@ -71,11 +75,11 @@ def test_a_motion_goes_on_where_another_ended():
     """Requirement: two halves, one after the other, are the whole run, work and clock included."""
     whole = solve_release(pivot(), start=1.0, duration=4e-3, step=5e-5)
     half = solve_release(pivot(), start=1.0, duration=2e-3, step=5e-5)
-    rest = solve_motion(pivot().mechanism, after=half, duration=2e-3, step=5e-5)
+    rest = solve_motion(pivot(), after=half, duration=2e-3, step=5e-5)
     assert rest.time[0] == pytest.approx(half.time[-1]) and rest.time[-1] == pytest.approx(whole.time[-1])
     assert abs(rest.rotation[-1] - whole.rotation[-1]) < 1e-11
     with pytest.raises(InvalidParameter, match="after: got 'a motion of another mechanism'"):
-        solve_motion(pivot(control_points=5).mechanism, after=half, duration=1e-3)
+        solve_motion(pivot(control_points=5), after=half, duration=1e-3)
 
 
 def test_the_monitor_stops_a_run_that_gains_energy(monkeypatch):
@@ -132,7 +136,7 @@ def test_energy_content_adds_up_and_names_the_mode():
     released = pivot(6)
     system = compile_scene(released.released())
     motion = set_in_motion(system)
-    start = static_state(released.mechanism, math.pi / 2)[: system.layout.size]
+    start = static_state(released, math.pi / 2)[: system.layout.size]
     v = np.zeros(system.layout.coordinate_count)
     acceleration, z = initial_acceleration(system, motion, start, v)
     content = energy_content(system, motion, z, v, acceleration)

@@ -16,7 +16,7 @@ from spline_model.newton import Workspace
 from spline_model.pivot import cross_axis_pivot
 from spline_model.statics import solve_mechanism
 from tests.spline.effect_scenes import scene_with
-from tests.table_one import TABLE_ONE
+from tests.table_one import SIX, TABLE_ONE
 
 
 @pytest.mark.parametrize(
@@ -43,7 +43,7 @@ def test_a_motion_without_inertia_is_refused():
     """Requirement: dynamics without any inertia says which effects would give it some."""
     pivot = cross_axis_pivot(**TABLE_ONE, effects=("bending", "stretching"))
     with pytest.raises(InvalidParameter, match="strip_inertia, section_rotary_inertia, body_inertia"):
-        solve_motion(pivot.mechanism, start=0.5)
+        solve_motion(pivot, start=0.5)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -75,14 +75,14 @@ def test_a_new_effect_is_one_class_and_one_line(monkeypatch):
     """Requirement: an effect added by the recipe of CONTRIBUTING works in statics, modes and motion."""
     monkeypatch.setitem(registry.REGISTRY, "ground_spring", ground_spring)
     names = (*DEFAULT_EFFECTS, "ground_spring")
-    pivot = cross_axis_pivot(**TABLE_ONE, effects=names, parameters={"ground_spring": {"stiffness": 1e5}})
+    pivot = cross_axis_pivot(**SIX, effects=names, parameters={"ground_spring": {"stiffness": 1e5}})
     plain = solve_mechanism(scene_with(), rotation=1.0)
-    sprung = solve_mechanism(pivot.mechanism, rotation=1.0)
+    sprung = solve_mechanism(pivot, rotation=1.0)
     assert sprung.torque[-1] > 1.05 * plain.torque[-1]
     assert natural_frequencies(pivot).frequency[0] >= natural_frequencies(scene_with()).frequency[0]
-    run = solve_motion(pivot.mechanism, start=1.0, duration=0.002, integrator="generalised-alpha")
+    run = solve_motion(pivot, start=1.0, duration=0.002, integrator="generalised-alpha")
     assert run.status.value == "converged"
     with pytest.raises(InvalidParameter, match="generalised-alpha"):
-        solve_motion(pivot.mechanism, start=1.0, duration=0.002)
+        solve_motion(pivot, start=1.0, duration=0.002)
     work = Workspace.of(compile_scene(pivot.scene))
     assert work.system.open_potentials[0].stiffness == 1e5

@@ -9,14 +9,14 @@ from spline_model.errors import ConvergenceError, InvalidParameter
 from spline_model.pivot import cross_axis_pivot
 from spline_model.statics import solve_statics
 from tests import gates
-from tests.table_one import TABLE_ONE
+from tests.table_one import SIX, TABLE_ONE
 
 QUARTER = math.pi / 2
 
 
 def solved(rotation=QUARTER, increments=20, **settings):
     """Static solution of Table 1 with settings."""
-    return solve_statics(cross_axis_pivot(**(TABLE_ONE | settings)), rotation=rotation, increments=increments)
+    return solve_statics(cross_axis_pivot(**(SIX | settings)), rotation=rotation, increments=increments)
 
 
 def increment_dependence(increments=(1, 2, 5, 200), **settings):
@@ -70,7 +70,7 @@ def test_progress_counts_to_the_end():
     """Requirement: the progress callable sees every increment."""
     seen = []
     solve_statics(
-        cross_axis_pivot(**TABLE_ONE),
+        cross_axis_pivot(**SIX),
         rotation=0.5,
         increments=4,
         progress=lambda done, total: seen.append((done, total)),
@@ -98,11 +98,11 @@ def test_progress_counts_to_the_end():
 def test_invalid_parameters_are_one_line(change, line):
     """Requirement: a parameter outside its range is refused with name, value and expectation."""
     with pytest.raises(InvalidParameter, match=line):
-        cross_axis_pivot(**(TABLE_ONE | change))
+        cross_axis_pivot(**(SIX | change))
 
 
 @pytest.mark.parametrize("change", [{"rotation": math.inf}, {"rotation": 0.0}, {"increments": 0}], ids=str)
 def test_invalid_paths_are_refused(change):
     """Requirement: a path without length, end or increments is refused."""
     with pytest.raises(InvalidParameter):
-        solve_statics(cross_axis_pivot(**TABLE_ONE), **({"rotation": 1.0, "increments": 5} | change))
+        solve_statics(cross_axis_pivot(**SIX), **({"rotation": 1.0, "increments": 5} | change))

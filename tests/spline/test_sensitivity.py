@@ -19,7 +19,7 @@ from tests.spline.differences import (
     random_design,
     value_of,
 )
-from tests.table_one import TABLE_ONE
+from tests.table_one import SIX, TABLE_ONE
 
 #: Quantities of shape alone, and what does not move with a parameter.
 SHAPES = ("centre", "body_shift", "centre_shift")
@@ -171,7 +171,7 @@ def test_the_gate_of_closed_forms_has_teeth():
 
 def test_values_are_those_of_the_path():
     """Stiffness, stress and centre shift are the path's own, and either method of solving gives the same."""
-    pivot = cross_axis_pivot(**TABLE_ONE | {"crossing_ratio": 0.4})
+    pivot = cross_axis_pivot(**SIX | {"crossing_ratio": 0.4})
     path = solve_statics(pivot, rotation=1.2, increments=8)
     found = sensitivities(pivot, path, parameters=PARAMETERS)
     np.testing.assert_allclose(found.stiffness.value, path.stiffness, rtol=1e-9)
@@ -224,7 +224,7 @@ def test_mirrored_rotation():
 
 def test_one_factorisation_a_state_and_one_back_substitution_a_parameter():
     """Work is counted: a factorisation a state, a back-substitution a parameter and one for the rate."""
-    pivot = cross_axis_pivot(**TABLE_ONE)
+    pivot = cross_axis_pivot(**SIX)
     path = solve_statics(pivot, rotation=1.2, increments=8)
     assert sensitivities(pivot, path).counters == {"factorisations": 9, "back_substitutions": 9 * 7}
     more = sensitivities(pivot, path, parameters=PARAMETERS)
@@ -251,7 +251,7 @@ def test_one_factorisation_a_state_and_one_back_substitution_a_parameter():
 )
 def test_refuses_what_it_does_not_know(keywords, parameters, message):
     """Unknown parameters and forces without a potential are refused in one line."""
-    pivot = cross_axis_pivot(**TABLE_ONE, **keywords)
+    pivot = cross_axis_pivot(**SIX | keywords)
     path = solve_statics(pivot, rotation=0.3, increments=2)
     with pytest.raises(InvalidParameter, match=re.escape(message)):
         sensitivities(pivot, path, parameters=parameters)
@@ -259,7 +259,7 @@ def test_refuses_what_it_does_not_know(keywords, parameters, message):
 
 def test_refuses_the_path_of_another_pivot():
     """States of another design, or of another discretisation, are refused."""
-    path = solve_statics(cross_axis_pivot(**TABLE_ONE), rotation=0.3, increments=2)
+    path = solve_statics(cross_axis_pivot(**SIX), rotation=0.3, increments=2)
     with pytest.raises(InvalidParameter, match="solution: got 'state 0 with residual"):
         sensitivities(cross_axis_pivot(**TABLE_ONE | {"length": 0.09}), path)
     with pytest.raises(InvalidParameter, match="unknowns', expected a solution of this pivot with"):

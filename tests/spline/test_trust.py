@@ -22,14 +22,14 @@ from spline_model.reduced.path import is_work, work_of
 from spline_model.statics import solve_from, solve_mechanism, solve_path, solve_statics
 from tests import gates
 from tests.spline.frames import opposed
-from tests.table_one import TABLE_ONE
+from tests.table_one import SIX, TABLE_ONE
 
 METHODS = ("condensed", "multipliers")
 
 
 def to(degrees, *, increments=36, method="condensed", **settings):
     """Table 1 driven to a rotation [deg]; a stopped path is returned."""
-    pivot = cross_axis_pivot(**(TABLE_ONE | settings))
+    pivot = cross_axis_pivot(**(SIX | settings))
     return solve_statics(
         pivot,
         rotation=math.radians(degrees),
@@ -82,7 +82,7 @@ def hysteresis(increments=(1, 2, 5, 20, 200), **back):
     worst = 0.0
     for count in increments:
         path = to(90, increments=count)
-        pivot = cross_axis_pivot(**(TABLE_ONE | back))
+        pivot = cross_axis_pivot(**(SIX | back))
         both = solve_statics(pivot, rotation=[math.pi / 2, 0.0], increments=count)
         there, returned = slice(0, count + 1), slice(count, None)
         torque = np.abs(both.torque[returned][::-1] - path.torque[there]).max() / path.torque.max()
@@ -147,7 +147,7 @@ def _reordered(z, layout, order):
 def test_bad_starts_recover(name, control_points):
     """Requirement: from any guess the primary state is found, by it or from rest, and it is said which."""
     pivot = cross_axis_pivot(**TABLE_ONE, control_points=control_points)
-    right = solve_path(pivot.mechanism, 1.2)
+    right = solve_path(pivot, 1.2)
     layout = compile_scene(pivot.driven(1.2)).layout
     guess = GUESSES[name](right.states[-1], layout, np.random.default_rng(3))
     with np.errstate(all="ignore"):
@@ -165,7 +165,7 @@ def test_wrong_branches_near_the_right_one_are_not_believed():
     pivot = cross_axis_pivot(**TABLE_ONE, control_points=6)
     system = compile_scene(pivot.driven(2.5))
     layout, work = system.layout, Workspace.of(system)
-    right, rng = solve_path(pivot.mechanism, 2.5).states[-1], np.random.default_rng(1)
+    right, rng = solve_path(pivot, 2.5).states[-1], np.random.default_rng(1)
     others = []
     with np.errstate(all="ignore"):
         for _ in range(100):
@@ -182,7 +182,7 @@ def test_wrong_branches_near_the_right_one_are_not_believed():
 def test_a_pivot_wound_up_the_other_way_round_is_not_believed():
     """Requirement: the same pose reached by a turn less passes every local check, and is not believed."""
     pivot = cross_axis_pivot(**TABLE_ONE, control_points=16, gauss_points=32)
-    wound = solve_path(pivot.mechanism, 0.3 - 2 * math.pi, 72).states[-1].copy()
+    wound = solve_path(pivot, 0.3 - 2 * math.pi, 72).states[-1].copy()
     system = compile_scene(pivot.driven(0.3))
     wound[system.layout.body("body").stop - 1] += 2 * math.pi
     work = Workspace.of(system)
@@ -194,7 +194,7 @@ def test_a_pivot_wound_up_the_other_way_round_is_not_believed():
 
 def test_a_start_that_is_no_state_is_refused():
     """Requirement: a path does not start from what is no equilibrium, and says what was expected."""
-    pivot = cross_axis_pivot(**TABLE_ONE)
+    pivot = cross_axis_pivot(**SIX)
     first = solve_statics(pivot, rotation=0.5, increments=5)
     other = cross_axis_pivot(**TABLE_ONE, control_points=7)
     with pytest.raises(InvalidParameter, match=r"start: .*expected finite unknowns of shape"):

@@ -5,7 +5,7 @@ from functools import cache
 import numpy as np
 import pytest
 
-from studies.record.progress import silent
+from studies.engine.answer import answered
 from studies.stability.columns import DEFAULT, FE, PAPER, TWELVE
 from studies.stability.frames.curves import OTHER, PRIMARY
 from studies.stability.statics import buckling
@@ -17,7 +17,7 @@ pytestmark = pytest.mark.slow
 @cache
 def tables():
     """Return the tables of the study, computed once."""
-    return buckling.compute(silent)
+    return answered(buckling.STUDY)
 
 
 def on(branch, model):

@@ -5,9 +5,9 @@ from functools import cache
 import numpy as np
 import pytest
 
-from studies.record.progress import silent
-from studies.registry import STUDIES, module_of
-from studies.stability.columns import COLUMNS, DEFAULT, GENERALISED_ALPHA, PAPER
+from studies.engine.answer import answered
+from studies.registry import STUDIES, study_of
+from studies.stability.columns import DEFAULT, GENERALISED_ALPHA, PAPER, PATHS, SIX
 from studies.stability.motion import long_run, step_size
 from studies.stability.statics import rotation, slenderness
 from tests import gates
@@ -21,7 +21,7 @@ FAMILIES = [name for name in STUDIES if name.startswith("stability/") and name !
 @cache
 def tables(family):
     """Return the tables of a family, computed once."""
-    return module_of(family).compute(silent)
+    return answered(study_of(family))
 
 
 @pytest.mark.parametrize("family", FAMILIES)
@@ -55,14 +55,14 @@ def test_the_paper_s_choices_are_seen_to_be_wrong():
 
 def slender_error(slenderness_):
     """Largest difference of torque to the inextensible strip, at one slenderness."""
-    table = slenderness.limit_table(COLUMNS[DEFAULT], (slenderness_,))
+    table = slenderness.limit_table(PATHS[SIX], (slenderness_,))
     return float(table["error"].iloc[0])
 
 
 def test_slender_strips_tend_to_inextensible_ones():
     """Requirement: at L/h = 1000 the torque is that of inextensible strips, and the work stays the same."""
     gates.check("stability_slender", slender_error(1000.0))
-    table = slenderness.limit_table(COLUMNS[DEFAULT])
+    table = slenderness.limit_table(PATHS[SIX])
     iterations = table["iterations"]
     assert iterations.max() <= 1.2 * iterations.min()
     assert table["constant"].max() / table["constant"].min() < 1.01  # the error goes with (L/h)^-2
@@ -74,14 +74,14 @@ def test_slender_gates_have_teeth():
     with pytest.raises(AssertionError, match="x the gate"):
         gates.check("stability_slender", slender_error(gates.teeth("stability_slender")["slenderness"]))
     thick = gates.teeth("stability_slender_digits")["slenderness"]
-    table = slenderness.limit_table(COLUMNS[DEFAULT], (thick,))
+    table = slenderness.limit_table(PATHS[SIX], (thick,))
     with pytest.raises(AssertionError, match="x the gate"):
         gates.check("stability_slender_digits", table["lost_digits"].max())
 
 
 def increments_error(settings=None):
     """Largest change of torque by the number of increments, and between there and back."""
-    rows = rotation.increments(DEFAULT) if settings is None else rotation.increments(settings)
+    rows = rotation.increments(SIX) if settings is None else rotation.increments(settings)
     return max(max(row["torque_change"], row["hysteresis"]) for row in rows)
 
 
@@ -152,7 +152,7 @@ def test_long_run_keeps_energy(tmp_path):
 
 def test_long_run_gate_has_teeth(tmp_path, monkeypatch):
     """Requirement: a Newton that stops early drifts."""
-    from spline_model.integrators import energy_consistent
+    from spline_model.motion import energy_consistent
 
     monkeypatch.setattr(energy_consistent, "TOLERANCE", gates.teeth("stability_long_run")["tolerance"])
     with pytest.raises(AssertionError, match="x the gate"):

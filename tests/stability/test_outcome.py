@@ -10,7 +10,7 @@ from studies.errors import BadInput
 from studies.paper import formulations
 from studies.record.store import Store
 from studies.stability import columns, maps
-from studies.stability.counts import counted
+from studies.stability.family import counted
 from studies.stability.outcome import OUTCOMES, Found, judged
 from studies.stability.summary import lines
 

@@ -87,6 +87,14 @@ def test_extreme_fibre_strain_is_the_larger_of_the_two_fibres():
     assert dataclasses.replace(TABLE_1, section_depth=0.004).depth == 0.004
 
 
+def test_largest_stress_is_that_of_all_strips_and_sections():
+    """The largest stress of a state is found wherever it stands: any strip, any section."""
+    answer = answer_static(dataclasses.replace(TABLE_1, rotation=0.1, increments=2), FeSettings(elements=2))
+    stress = np.ones_like(answer.extreme_fibre_stress)
+    stress[1, 0, 2], stress[2, 1, 0] = 3.0, 5.0
+    assert dataclasses.replace(answer, extreme_fibre_stress=stress).max_stress.tolist() == [1.0, 3.0, 5.0]
+
+
 def test_problem_checks_its_values_wherever_they_come_from():
     """A Problem made in code is held to the ranges of a case file."""
     with pytest.raises(CaseError, match=r"strip.crossing_ratio: got 1.5, expected a number between 0 and 1"):

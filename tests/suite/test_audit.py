@@ -56,7 +56,7 @@ def swing_of(effects, audited):
     """The motion of Table 1 with these effects, as the audit asks it."""
     problem = dataclasses.replace(named_case("cross_axis_pivot"), effects=Effects(names=tuple(effects)))
     run = {"duration": audited["duration_s"], "step": audited["step_s"]}
-    return problem, answer_release(problem, SplineSettings(), **run)
+    return problem, answer_release(problem, SplineSettings(control_points=6), **run)
 
 
 @pytest.mark.slow
@@ -65,13 +65,13 @@ def test_cheapest_scene_is_within_the_tolerance(audited):
     best = audited["cheapest"]
     assert tuple(audited["full"]["effects"]) == FULL
     (full, swing), (least, other) = (swing_of(each["effects"], audited) for each in (audited["full"], best))
-    one, two = (answer_static(problem, SplineSettings()) for problem in (full, least))
+    one, two = (answer_static(problem, SplineSettings(control_points=6)) for problem in (full, least))
     changes = {
         "trajectory": float(trajectory_error(two.centre, one.centre).max()),
         "torque": float(np.abs(two.torque - one.torque).max() / np.abs(one.torque).max()),
         "swing_frequency": other.frequency / swing.frequency - 1.0,
-        "first_mode": answer_modes(least, SplineSettings(), count=1).frequency[0]
-        / answer_modes(full, SplineSettings(), count=1).frequency[0]
+        "first_mode": answer_modes(least, SplineSettings(control_points=6), count=1).frequency[0]
+        / answer_modes(full, SplineSettings(control_points=6), count=1).frequency[0]
         - 1.0,
     }
     assert max(abs(change) for change in changes.values()) <= TOLERANCE
@@ -244,7 +244,7 @@ def test_weight_that_makes_a_design_unstable_is_a_finding(monkeypatch):
     monkeypatch.setattr(outcome, "SWINGS", 0.05)
     monkeypatch.setattr(module, "ROUNDS", 1)
     monkeypatch.setattr(module, "DUELS", 1)
-    found = module.audit(named_design("polymer_pivot"), SplineSettings(), 1e-3)
+    found = module.audit(named_design("polymer_pivot"), SplineSettings(control_points=6), 1e-3)
     assert "gravity" not in found.full.variant.effects.names
     row = found.rows[-1]
     assert (row.variant.label, row.status) == ("with gravity", "unstable")

@@ -58,7 +58,10 @@ def test_every_change_is_measured(change, monkeypatch):
     given = {each.name: getattr(ANSWER, each.name) for each in fields(Answer)}
     monkeypatch.setattr(outcome, "answered", lambda *_: Answer(**(given | CHANGED[change])))
     monkeypatch.setattr(outcome, "size_of", lambda *_: SIZE)
-    design, run = named_case("cross_axis_pivot"), Run(settings=SplineSettings(), duration=1.0, step=1.0)
+    design, run = (
+        named_case("cross_axis_pivot"),
+        Run(settings=SplineSettings(control_points=6), duration=1.0, step=1.0),
+    )
     found = outcome.outcome(Variant(dropped=(), effects=design.effects), design, run, ANSWER)
     assert {name: getattr(found, name) for name in CHANGED} == pytest.approx(
         {name: 0.1 if name == change else 0.0 for name in CHANGED}

@@ -7,10 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from studies.commands import run
 from studies.record.source import ROOT
 from studies.record.store import RESULTS
-from studies.registry import module_of
+from studies.registry import study_of
 
 #: Studies that hold the suite against the other codes.
 BESIDE_PEERS = ("baselines/peers", "work_precision/statics", "work_precision/dynamics")
@@ -51,6 +50,6 @@ def test_one_code_is_not_enough(study, monkeypatch):
     for module in (exudyn_ancf, exudyn_exact):
         monkeypatch.setattr(module, "installed", lambda: True)
     monkeypatch.setattr(openseespy_frame, "installed", lambda: False)
-    assert run.missing(module_of(study)) == "it needs openseespy: python -m pip install '.[peers]'"
+    assert study_of(study).missing() == "it needs openseespy: python -m pip install '.[peers]'"
     monkeypatch.setattr(openseespy_frame, "installed", lambda: True)
-    assert run.missing(module_of(study)) == ""
+    assert study_of(study).missing() == ""

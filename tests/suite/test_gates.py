@@ -130,3 +130,21 @@ def test_check_passes_and_names_unknown_gates(sound_gate):
     assert gates.teeth("sound") == {"elements": 5}
     with pytest.raises(KeyError, match="there are: sound"):
         gates.check("unsound", 1e-6)
+
+
+#: Folders whose tests hold accuracies to gates alone, and what a literal limit looks like: an identity to
+#: round-off, or to what a solver's tolerance leaves, is no accuracy.
+HELD = ("agreement", "fe")
+LITERAL = re.compile(r"(?:<=?|rel=|abs=|tol=) *-?\d*\.?\d*e-0?[1-7]\b")
+#: Solutions of one model that stand for the same state, to the tolerance of its paths and motions.
+SAME = {"test_loads_release.py": 2, "test_watched_paths.py": 1}
+
+
+def test_accuracies_of_the_models_are_gates():
+    """No test of the elements or of both models' agreement has an accuracy limit beside `gates.toml`."""
+    found = {
+        path.name: len(LITERAL.findall(path.read_text(encoding="utf-8")))
+        for folder in HELD
+        for path in sorted((ROOT / "tests" / folder).glob("test_*.py"))
+    }
+    assert {name: count for name, count in found.items() if count} == SAME

@@ -26,7 +26,7 @@ PARSED = {
     "readme": "rewrites README.md; tests/suite/test_digits.py and others call it on a copy",
 }
 #: What an example is run with beside its own words, so that it writes nowhere but here.
-BESIDE = {"run": ["--results", "results"], "draw": ["--results", "results"]}
+BESIDE = {name: ["--results", "results"] for name in ("run", "draw", "verify")}
 
 NUMBERS = (float, positive, not_negative, degrees, degrees_list)
 UNIT = re.compile(r"\bin (s|deg|rad|m|mm|MPa|N m/rad|EI/L\^2)\b|\brelative\b|\bin s or rad\b")
@@ -124,7 +124,7 @@ def test_example_runs(words, tmp_path, monkeypatch, capsys):
     """An example of a help runs as it is written, on a design of one's own as on those of the suite."""
     name, *rest = words.split()
     arguments = parser_of(name).parse_args(rest)
-    if name in ("run", "draw"):
+    if name in ("run", "draw", "verify"):
         assert selected(arguments.names)
     if why_parsed(words):
         return

@@ -26,7 +26,7 @@ CALLS = {
     "spline statics": (spline_model.statics.solve_statics, SPLINE, {"rotation": 0.1, "increments": 1}),
     "spline mechanism": (
         spline_model.statics.solve_mechanism,
-        SPLINE.mechanism,
+        SPLINE,
         {"rotation": 0.1, "increments": 1},
     ),
     "spline release": (

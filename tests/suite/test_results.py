@@ -1,35 +1,36 @@
 """The committed results are fresh, can be drawn again, reproduce, and are what README.md says."""
 
 import importlib.metadata
-import inspect
+import shutil
 
 import numpy as np
 import pandas as pd
 import pytest
 
+from studies.__main__ import main
 from studies.commands import readme
+from studies.engine.answer import answered
 from studies.errors import BadInput
 from studies.paper import formulations
 from studies.record import provenance, style
-from studies.record.progress import silent
 from studies.record.source import ROOT
-from studies.record.store import Store, as_csv
-from studies.registry import STUDIES, module_of
+from studies.record.store import Store, as_csv, as_json
+from studies.registry import STUDIES, study_of
 
 
 @pytest.mark.parametrize("name", STUDIES)
-def test_study_has_its_two_functions_and_its_cases(name):
-    """A study module offers compute(progress), draw(tables) and the cases it reads."""
-    module = module_of(name)
-    assert list(inspect.signature(module.compute).parameters) == ["progress"]
-    assert list(inspect.signature(module.draw).parameters) == ["tables"]
-    assert all((ROOT / "studies" / "cases" / f"{case}.toml").is_file() for case in module.CASES)
+def test_study_declares_its_figures_and_its_cases(name):
+    """What a study declares is what is stored of it: figures, and cases that are there."""
+    study, record = study_of(name), Store().record(name)
+    assert {file.rpartition(".")[0] for file in record["figures"]} == set(study.figures)
+    assert list(study.cases) == list(record["inputs"]["cases"])
+    assert all((ROOT / "studies" / "cases" / f"{case}.toml").is_file() for case in study.cases)
 
 
 @pytest.mark.parametrize("name", STUDIES)
 def test_stored_result_is_fresh(name):
     """No committed result was made by other code or from another case than those of today."""
-    state = Store().state(name, module=STUDIES[name][0], cases=module_of(name).CASES)
+    state = Store().state(name, module=STUDIES[name], cases=study_of(name).cases)
     assert (state.kind, state.reason) == ("fresh", "")
 
 
@@ -43,7 +44,7 @@ def test_stored_tables_draw_the_stored_figures(name):
         if record["versions"][library] != importlib.metadata.version(library):
             pytest.skip(f"drawn with {library} {record['versions'][library]}")
     with style.applied():
-        figures = module_of(name).draw(store.load_tables(name))
+        figures = study_of(name).draw(store.load_tables(name))
     drawn = {f"{title}.svg": provenance.sha256(style.vector(page)) for title, page in figures.items()}
     assert drawn == {file: digest for file, digest in record["figures"].items() if file.endswith(".svg")}
 
@@ -58,9 +59,7 @@ def test_stored_paths_reproduce():
     """Computed again, the paths of Fig 4 are those stored, to the digits that round-off leaves."""
     name = "paper/fig04_trajectory"
     stored = Store().load_tables(name)["paths"]
-    computed = (
-        module_of(name).compute(silent)["paths"].sort_values(list(stored.columns)).reset_index(drop=True)
-    )
+    computed = answered(study_of(name))["paths"].sort_values(list(stored.columns)).reset_index(drop=True)
     assert list(computed["formulation"]) == list(stored["formulation"])
     for column in ("rotation_rad", "com_x_m", "com_y_m"):
         np.testing.assert_allclose(computed[column], stored[column], rtol=0.0, atol=1e-10)
@@ -117,3 +116,29 @@ def test_stored_tables_are_tidy():
         for name, table in Store().load_tables(study).items():
             stored = (Store().data(study) / f"{name}.csv").read_bytes()
             assert as_csv(pd.DataFrame(table)) == stored, f"{study}/{name}"
+
+
+@pytest.mark.slow
+def test_a_study_that_comes_out_equal_is_fresh_again(tmp_path, capsys):
+    """Where code was changed and every table comes out as stored, the result stands; with another it is
+    named and stays stale."""
+    name = "convergence/elements"
+    store, module = Store(tmp_path), STUDIES[name]
+    shutil.copytree(Store().data(name), store.data(name))
+    shutil.copytree(Store().figures, store.figures)
+    cases = study_of(name).cases
+
+    def changed(**given):
+        record = store.record(name) | given
+        (store.data(name) / "provenance.json").write_bytes(as_json(record))
+
+    words = ["verify", name, "--results", str(tmp_path), "--processes", "1"]
+    old = {"cases": store.record(name)["inputs"]["cases"], "source_sha256": "of other code"}
+    changed(inputs=old)
+    assert main(words) == 0
+    assert store.state(name, module=module, cases=cases).kind == "fresh"
+    table = store.data(name) / "limits.csv"
+    table.write_bytes(table.read_bytes().replace(b"corotational", b"corotated", 1))
+    assert main(words) == 1
+    assert capsys.readouterr().err.endswith("convergence/elements: differs: limits\n")
+    assert store.state(name, module=module, cases=cases).kind == "stale"

@@ -9,15 +9,19 @@ from fe_reference import law
 from fe_reference.pivot import cross_axis_pivot as element_pivot
 from fe_reference.structure import structure_of
 from spline_model.compile import compile_scene
-from spline_model.fast import strip_force
-from spline_model.fast.frame import Grid, grid_of, mode_count
+from spline_model.motion import forces
+from spline_model.motion.arrays import Flexures
+from spline_model.motion.grid import Grid, grid_of
+from spline_model.motion.mechanism import moving
+from spline_model.motion.start import set_in_motion
 from spline_model.newton import Workspace
 from spline_model.path import follow
-from spline_model.pivot import cross_axis_pivot
+from spline_model.pivot import cross_axis_pivot, swinging_slide_stiffness
 from spline_model.reduced.model import reduced
 from spline_model.sparse import LEAST_SIZE
 from spline_model.strip import condense as strip_condense
 from spline_model.strip import points
+from spline_model.strip.element import POINTS
 from studies.answers.adapters import answer_release, answer_static
 from studies.answers.settings import FeSettings, SplineSettings
 from studies.cases.problem import named_case
@@ -47,22 +51,14 @@ def test_operations_of_the_condensed_spline(monkeypatch, n):
     monkeypatch.setattr(strip_condense, "eliminate", strip_condense.eliminate.py_func)
     modes, own = strips.compliance.shape[1], 2 * n - 6
     curve = np.column_stack((np.linspace(0.0, 1.0, n), 0.01 * np.sin(np.arange(n))))
-    done = operations(
-        points.assemble_points.py_func,
-        *map(counting, (curve.ravel(), np.ones(modes))),
-        n - 1,
-        *map(counting, (shape.d1, shape.d2, shape.weight)),
-        *map(counting, (strips.speed[0], strips.curvature[0], strips.rigidity[0])),
-        0.0,
-        Counted(0.0),
-        counting(strips.modes[0]),
-        strips.split,
-        *map(counting, (strips.compliance[0], strips.dead[0])),
-        strips.measure,
-        *map(counting, (local.gradient[0], local.hessian[0], local.coupling[0])),
-        *map(counting, (local.gap[0], local.gram[0], local.moment[0], np.zeros(5))),
-    )
-    assert done == work.assembly_flops(len(shape.weight), n - 1, modes)
+    counted = {name: counting(getattr(strips, name)) for name in ("along", "compliance", "numbers")}
+    shape = shape._replace(tables=counting(shape.tables), rule=counting(shape.rule))
+    local = local._replace(**{name: counting(getattr(local, name)) for name in ("nodal", "axial", "moment")})
+    local.nodal[0, POINTS] = counting(curve.ravel())
+    ones, out = counting(np.ones(modes)), counting(np.zeros(5))
+    evaluate = points.evaluate_points.py_func
+    done = operations(evaluate, 0, ones, n - 1, shape, strips._replace(**counted), local, out)
+    assert done == work.assembly_flops(shape.rule.shape[1], n - 1, modes)
 
     size = own + 3
     gain, gap = counting(np.ones(modes)), counting(np.ones(modes))
@@ -108,7 +104,7 @@ def test_sizes_are_those_of_the_models(settings):
         return
     pivot = cross_axis_pivot(**TABLE_ONE, **settings.keywords())
     if settings.basis == "bezier":
-        own, modes = 2 * 7 - 6, mode_count(pivot.mechanism.design)
+        own, modes = 2 * 7 - 6, reduced(compile_scene(pivot.driven(1.0))).strips.compliance.shape[1]
         assert found.unknowns == 2 + 2 * (own + modes)
     else:
         system = compile_scene(pivot.driven(1.0))
@@ -132,16 +128,22 @@ def test_operations_of_the_sparse_factorisation(n):
 @pytest.mark.parametrize("n", [4, 7])
 def test_operations_of_a_strip_in_motion(monkeypatch, n):
     """The forces of a strip without tangent take as many operations as the formula says."""
-    design = cross_axis_pivot(**TABLE_ONE, control_points=n).mechanism.design
-    grid, count = grid_of(design), n + 2
-    monkeypatch.setattr(strip_force, "evaluate_points", strip_force.evaluate_points.py_func)
-    monkeypatch.setattr(strip_force, "math", SimpleNamespace(sqrt=lambda value: value.sqrt()))
-    x, y = (counting(np.ones((1, n)) * values) for values in (np.linspace(0.0, 1.0, n), 0.01))
-    room = [counting(np.zeros(shape)) for shape in ((4, count), count, (1, n), (1, n))]
-    axial = counting(np.ones((1, count, count)))
-    table = Grid(*(counting(array) for array in grid))
-    done = operations(strip_force.strip_force.py_func, 0, x, y, table, axial, *room)
-    assert len(grid.weight) == count
+    slide = swinging_slide_stiffness(n)
+    pivot = cross_axis_pivot(**TABLE_ONE, control_points=n, slide_stiffness=slide)
+    system = compile_scene(pivot.released())
+    strips = moving(system, set_in_motion(system)).strips
+    for name in ("bending_law", "stretching_law"):
+        monkeypatch.setattr(forces, name, getattr(forces, name).py_func)
+    monkeypatch.setattr(forces, "math", SimpleNamespace(sqrt=lambda value: value.sqrt()))
+
+    def counted(table, kind):
+        floats = {k: counting(v) for k, v in table._asdict().items() if np.asarray(v).dtype.kind == "f"}
+        return kind(**(table._asdict() | floats))
+
+    points = counting(np.array([np.linspace(0.0, 1.0, n), np.full(n, 0.01)]))
+    room = counting(np.zeros((10, n + 2))), counting(np.zeros(n - 1)), counting(np.zeros((2, n)))
+    given = counted(strips, Flexures), counted(grid_of(strips), Grid)
+    done = operations(forces.add_forces.py_func, 0, 0, *given, points, *room)
     assert done == strip_force_flops(n)
 
 

@@ -10,7 +10,7 @@ import pytest
 
 from studies.record.files import OutputError
 from studies.sweep import parts, run
-from studies.sweep.points import solve_chunk
+from studies.sweep.batch import solve_chunk
 from studies.sweep.run import SweepError, local_pool, sweep
 from tests.sweep.sweeps import GRID, RANDOM, plan
 

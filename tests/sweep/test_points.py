@@ -23,7 +23,7 @@ def rows(asked: Plan, start=0, stop=None):
     """Return the rows of points of a sweep."""
     stop = asked.sample.points if stop is None else stop
     columns = Drawer(asked.sample).rows(start, stop)
-    return points.solve_chunk(asked.task, start, columns).to_pandas()
+    return batch.solve_chunk(asked.task, start, columns).to_pandas()
 
 
 def single(row, **settings):
@@ -38,7 +38,7 @@ def single(row, **settings):
         second_moment_of_area=case.area / case.depth * depth**3 / 12.0,
         rotation=math.pi / 4,
     )
-    return answer_static(design, SplineSettings(**settings))
+    return answer_static(design, SplineSettings(**{"control_points": 6, **settings}))
 
 
 def error_of_batch(**settings):
@@ -151,11 +151,13 @@ def test_elements_modes_and_releases_are_the_models_own():
     assert found["stress_max_Pa"][1] == answer.max_stress.max()
     assert np.isnan(found["moment_defect"]).all()
     found = rows(plan(head.format("spline", 'analysis = { kind = "modes", count = 2, rotation_deg = 10 }')))
-    modes = answer_modes(heavy, SplineSettings(), rotation=math.radians(10), count=2)
+    modes = answer_modes(heavy, SplineSettings(control_points=6), rotation=math.radians(10), count=2)
     assert found["frequency_2_Hz"][1] == modes.frequency[1]
     short = 'analysis = { kind = "release", duration_s = 0.02 }\nset.drive.rotation_deg = 10'
     found = rows(plan(head.format("spline", short)))
-    motion = answer_release(replace(heavy, rotation=math.radians(10)), SplineSettings(), duration=0.02)
+    motion = answer_release(
+        replace(heavy, rotation=math.radians(10)), SplineSettings(control_points=6), duration=0.02
+    )
     assert found["frequency_Hz"][1] == motion.frequency
     assert found["rotation_min_rad"][1] == motion.rotation.min()
 
@@ -175,7 +177,7 @@ def test_a_mechanism_is_swept_by_its_parts():
         for strip in design.strips
     )
     turned = replace(design, strips=strips, rotation=math.radians(5), increments=2)
-    answer = answer_mechanism(turned, SplineSettings())
+    answer = answer_mechanism(turned, SplineSettings(control_points=6))
     assert found["torque_Nm"][2] == answer.torque[-1]
     assert found["rocker_rotation_rad"][2] == answer.bodies["rocker"][-1, 2]
     assert found["coupler_y_m"][3] - found["coupler_y_m"][2] == pytest.approx(0.02, rel=0.2)

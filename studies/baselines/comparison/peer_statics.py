@@ -1,13 +1,12 @@
 """Static paths of the spline and of other codes: errors against the limit of each one's theory, and times."""
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from studies.answers.adapters import answer_static
-from studies.answers.metrics import Array, relative_error, trajectory_error
+from studies.answers.metrics import relative_error, trajectory_error
 from studies.answers.reference import MESHES, limit_of
 from studies.answers.settings import FeSettings
 from studies.baselines import spline
@@ -20,6 +19,7 @@ from studies.baselines.comparison.variants import (
 )
 from studies.baselines.peers import exudyn_ancf, exudyn_exact, openseespy_frame
 from studies.cases.problem import Problem
+from studies.kinds import Array
 
 #: Control points of the limit without shear, and those whose difference is its uncertainty.
 REFINED, CHECK = 14, 12
@@ -90,7 +90,7 @@ def limits(problem: Problem) -> tuple[dict[str, Limit], list[dict[str, Any]]]:
 
 
 def compared(
-    problem: Problem, against: dict[str, Limit], progress: Callable[[int], None]
+    problem: Problem, against: dict[str, Limit]
 ) -> tuple[list[dict[str, Any]], list[dict[str, Any]]]:
     """Return errors and work, and times, a row a variant."""
     turns = rotations(problem)
@@ -99,7 +99,7 @@ def compared(
         path = variant.module.static_path(problem, turns, repeat=REPEAT, **variant.settings)
         return against[variant.theory].errors(path.centre, path.torque) | dict(path.work), path.solve_s
 
-    return tried(static_variants(), solve, ERRORS, progress)
+    return tried(static_variants(), solve, ERRORS)
 
 
 def _row(what: str, theory: str, errors: dict[str, float]) -> dict[str, Any]:

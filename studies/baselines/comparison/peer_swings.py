@@ -1,6 +1,6 @@
 """Swings of the spline and of other codes: errors against the limit of each one's theory, and times."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -8,7 +8,6 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 
 from studies.answers.adapters import answer_release
-from studies.answers.metrics import Array
 from studies.answers.settings import FeSettings, SplineSettings
 from studies.answers.swing import RECORDS, limit_of, sampled
 from studies.baselines.answer import BaselineMotion
@@ -20,6 +19,7 @@ from studies.baselines.comparison.variants import (
     tried,
 )
 from studies.cases.problem import Problem
+from studies.kinds import Array
 from studies.paper import swings
 
 #: Control points of the limit without shear, and those whose difference is its uncertainty.
@@ -65,7 +65,6 @@ def compared(
     problem: Problem,
     against: dict[str, Array],
     uncertainty: Mapping[str, float],
-    progress: Callable[[int], None],
 ) -> tuple[list[dict[str, Any]], list[dict[str, Any]]]:
     """Return errors with the uncertainty of their limit and work, and times, a row a variant."""
 
@@ -83,7 +82,7 @@ def compared(
         errors = {"rotation_rad": apart, "uncertainty_rad": unsure, "step_s": variant.settings["step"]}
         return errors | work, motion.solve_s
 
-    return tried(release_variants(), solve, ERRORS, progress)
+    return tried(release_variants(), solve, ERRORS)
 
 
 def at_instants(motion: BaselineMotion) -> Array:

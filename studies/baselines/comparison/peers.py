@@ -6,24 +6,21 @@ apart, and how far the codes' finest answers are from the limits, stands in the 
 """
 
 import importlib.metadata
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from typing import Any
 
 import pandas as pd
-from matplotlib.figure import Figure
 
 from studies.baselines.comparison import peer_figures, peer_statics, peer_swings
 from studies.baselines.comparison.ratios import kept, ratios
-from studies.baselines.comparison.variants import EXUDYN, PASSES, release_variants, static_variants
+from studies.baselines.comparison.variants import EXUDYN
 from studies.baselines.peers import exudyn_ancf, openseespy_frame
 from studies.baselines.registry import HINT, missing
 from studies.cases.problem import named_case
-from studies.paper.findings import Finding, table
-
-__all__ = ["CASES", "compute", "draw", "missing"]
+from studies.engine.findings import Claim, Tables, records
+from studies.engine.study import Answer, Part, Study
 
 CASE = "cross_axis_pivot"
-CASES = (CASE,)
 
 #: Errors at which times are compared: of the path [1], and of the swing [rad].
 LEVELS = (1e-2, 1e-3, 2e-4, 1e-5, 1e-6)
@@ -33,55 +30,33 @@ AIMS = {2e-4: 50.0, 1e-6: 100.0}
 SWING_AIMS = {5e-3: 20.0}
 
 
-def compute(progress: Callable[[int, int], None]) -> dict[str, pd.DataFrame]:
-    """Return codes, theories, errors, times, ratios and findings, each for the path and for the swing.
+def paths() -> Answer:
+    """Return theories, errors and times of the static path."""
+    limits, theories = peer_statics.limits(named_case(CASE))
+    rows, times = peer_statics.compared(named_case(CASE), limits)
+    return {"theories": theories, "statics": rows, "statics_timings": times}
 
-    What differs run by run stands in the tables of times: timings, ratios, findings_of_time.
-    """
-    problem = named_case(CASE)
-    first, second = PASSES * len(static_variants()), PASSES * len(release_variants())
-    total = first + second + 1
-    limits, theories = peer_statics.limits(problem)
-    paths, times = _tables(peer_statics.compared(problem, limits, lambda done: progress(done, total)))
-    motion_limits, swing_theories = peer_swings.limits(problem)
-    uncertainty = {row["theory"]: row["rotation_rad"] for row in swing_theories if row["theory"]}
-    motions, swing_times = _tables(
-        peer_swings.compared(problem, motion_limits, uncertainty, lambda done: progress(first + done, total))
+
+def motions() -> Answer:
+    """Return theories, errors and times of the swing."""
+    limits, theories = peer_swings.limits(named_case(CASE))
+    uncertainty = {row["theory"]: row["rotation_rad"] for row in theories if row["theory"]}
+    rows, times = peer_swings.compared(named_case(CASE), limits, uncertainty)
+    return {"swing_theories": theories, "swings": rows, "swings_timings": times}
+
+
+def _path_ratios(tables: Tables) -> pd.DataFrame:
+    return ratios(tables["statics"], tables["statics_timings"], "worst", LEVELS)
+
+
+def _swing_ratios(tables: Tables) -> pd.DataFrame:
+    asked = {"reached": tables["swings"], "and kept at finer steps": kept(tables["swings"], "rotation_rad")}
+    return pd.concat(
+        ratios(rows, tables["swings_timings"], "rotation_rad", SWING_LEVELS, unsure="uncertainty_rad").assign(
+            criterion=name
+        )
+        for name, rows in asked.items()
     )
-    progress(total, total)
-    static = ratios(paths, times, "worst", LEVELS)
-    swing = ratios(motions, swing_times, "rotation_rad", SWING_LEVELS, unsure="uncertainty_rad")
-    steady = ratios(
-        kept(motions, "rotation_rad"), swing_times, "rotation_rad", SWING_LEVELS, unsure="uncertainty_rad"
-    )
-    return {
-        "codes": pd.DataFrame(_codes()),
-        "theories": pd.DataFrame(theories),
-        "statics": paths,
-        "statics_timings": times,
-        "statics_ratios": static,
-        "swing_theories": pd.DataFrame(swing_theories),
-        "swings": motions,
-        "swings_timings": swing_times,
-        "swings_ratios": pd.concat(
-            [swing.assign(criterion="reached"), steady.assign(criterion="and kept at finer steps")]
-        ),
-        "findings_of_time": table(
-            [*_findings(static, AIMS, "static path"), *_findings(swing, SWING_AIMS, "free swing of 0.05 s")]
-        ),
-    }
-
-
-def draw(tables: Mapping[str, pd.DataFrame]) -> dict[str, Figure]:
-    """Draw error against time, of the path and of the swing."""
-    return {"peers": peer_figures.work_precision(tables)}
-
-
-def _tables(
-    found: tuple[list[dict[str, Any]], list[dict[str, Any]]],
-) -> tuple[pd.DataFrame, pd.DataFrame]:
-    rows, times = found
-    return pd.DataFrame(rows), pd.DataFrame(times, columns=["model", "variant", "solve_s"])
 
 
 def _codes() -> list[dict[str, str]]:
@@ -100,19 +75,38 @@ def _codes() -> list[dict[str, str]]:
     return rows
 
 
-def _findings(table_of_ratios: pd.DataFrame, aims: Mapping[float, float], task: str) -> list[Finding]:
-    """Return whether the spline is as much faster than Exudyn as it was to be."""
-    found = []
-    for row in table_of_ratios[table_of_ratios["group"] == EXUDYN].to_dict("records"):
-        aim = aims.get(float(row["level"]))
-        if aim is not None:
-            found.append(
-                Finding(
-                    claim=f"The spline is at least {aim:g} x faster than the fastest Exudyn at equal error",
-                    formulation=f"{task}, errors of {row['level']:g}",
-                    quantity="the time of Exudyn over the spline's",
-                    value=float(row["ratio"]),
-                    holds=bool(row["ratio"] >= aim),
-                )
-            )
-    return found
+def _wanted(task: str, rows: pd.DataFrame, aims: Mapping[float, float]) -> list[dict[str, Any]]:
+    """Return the ratios to Exudyn that were aimed at."""
+    found = rows[(rows["group"] == EXUDYN) & rows["level"].isin(list(aims))]
+    return [{**row, "task": task, "aim": aims[row["level"]]} for row in records(found)]
+
+
+STUDY = Study(
+    cases=(CASE,),
+    parts=(
+        Part(ask=lambda: {"codes": _codes()}),
+        Part(ask=paths, alone=True),
+        Part(ask=motions, alone=True),
+    ),
+    made={"statics_ratios": _path_ratios, "swings_ratios": _swing_ratios},
+    claims_of_time=(
+        Claim(
+            claim="The spline is at least {aim:g} x faster than the fastest Exudyn at equal error",
+            formulation="{task}, errors of {level:g}",
+            quantity="the time of Exudyn over the spline's",
+            rows=lambda tables: [
+                *_wanted("static path", tables["statics_ratios"], AIMS),
+                *_wanted(
+                    "free swing of 0.05 s",
+                    tables["swings_ratios"].query("criterion == 'reached'"),
+                    SWING_AIMS,
+                ),
+            ],
+            value="ratio",
+            holds=lambda row: row["ratio"] >= row["aim"],
+        ),
+    ),
+    varying=("statics_ratios", "swings_ratios"),
+    figures={"peers": peer_figures.work_precision},
+    missing=missing,
+)

@@ -4,29 +4,27 @@ The four-bar's link length and spring are fitted to the small-angle limit: its p
 not found.
 """
 
-from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass, replace
 from types import ModuleType
 from typing import Any
 
 import numpy as np
-import pandas as pd
-from matplotlib.figure import Figure
 
 from studies.answers.adapters import answer_release, answer_static
 from studies.answers.frequency import swing_frequency
-from studies.answers.metrics import Array, relative_error, trajectory_error
+from studies.answers.metrics import relative_error, trajectory_error
 from studies.answers.response import Response
 from studies.answers.settings import SplineSettings
 from studies.baselines import four_bar, linear_pivot, pin_joint, spline
 from studies.baselines.answer import BaselinePath
 from studies.baselines.comparison import surrogate_figures
 from studies.cases.problem import Problem, named_case
+from studies.engine.findings import Claim, Tables
+from studies.engine.study import Answer, Part, Study
+from studies.kinds import Array
 from studies.paper import formulations, swings
-from studies.paper.findings import Finding, table
 
 CASE = "cross_axis_pivot"
-CASES = (CASE,)
 
 SURROGATES: dict[str, ModuleType] = {
     linear_pivot.MODEL: linear_pivot,
@@ -64,41 +62,9 @@ class Row:
     stiffness: float
 
 
-def compute(progress: Callable[[int, int], None]) -> dict[str, pd.DataFrame]:
-    """Return errors over the path, the angles at which they pass the levels, swings and timings.
-
-    Tables: errors (a row a model and degree); thresholds (a row a model, quantity and level); swings (a row a
-    model and amplitude); motion (after the release from the end of the path); reference (its uncertainty);
-    parameters; findings; timings.
-    """
+def paths() -> Answer:
+    """Return errors over the path (a row a model and degree), the reference's uncertainty and the times."""
     problem = named_case(CASE)
-    errors, uncertainty, timings = _statics(problem)
-    progress(1, len(AMPLITUDES) + 2)
-    motion, accuracy, times = _release(problem)
-    progress(2, len(AMPLITUDES) + 2)
-    rows = []
-    for done, part in enumerate(AMPLITUDES):
-        rows += _swings(problem, float(part) * problem.rotation)
-        progress(done + 3, len(AMPLITUDES) + 2)
-    thresholds = pd.DataFrame(_thresholds(errors))
-    return {
-        "errors": errors,
-        "thresholds": thresholds,
-        "swings": pd.DataFrame(rows),
-        "motion": motion,
-        "reference": pd.DataFrame([*uncertainty, *accuracy]),
-        "parameters": pd.DataFrame(_parameters(problem)),
-        "findings": table(_findings(errors)),
-        "timings": pd.DataFrame([*timings, *times]),
-    }
-
-
-def draw(tables: Mapping[str, pd.DataFrame]) -> dict[str, Figure]:
-    """Draw the errors over the rotation, the frequencies' over the amplitude, and the motion."""
-    return {"surrogates": surrogate_figures.errors(tables, LEVELS)}
-
-
-def _statics(problem: Problem) -> tuple[pd.DataFrame, list[dict[str, Any]], list[dict[str, Any]]]:
     turns = np.linspace(0.0, problem.rotation, STATES)
     limit = spline.static_path(problem, turns, control_points=REFINED)
     paths = {name: each.static_path(problem, turns, repeat=9) for name, each in SURROGATES.items()}
@@ -116,7 +82,7 @@ def _statics(problem: Problem) -> tuple[pd.DataFrame, list[dict[str, Any]], list
         {"model": name, "task": f"path of {STATES - 1} increments", "solve_s": path.solve_s}
         for name, path in paths.items()
     ]
-    return pd.DataFrame(map(asdict, rows)), uncertainty, timings
+    return {"errors": map(asdict, rows), "reference": uncertainty, "timings": timings}
 
 
 def _rows(name: str, path: BaselinePath | Response, limit: BaselinePath) -> list[Row]:
@@ -134,10 +100,10 @@ def _rows(name: str, path: BaselinePath | Response, limit: BaselinePath) -> list
     ]
 
 
-def _thresholds(errors: pd.DataFrame) -> list[dict[str, Any]]:
+def _thresholds(tables: Tables) -> list[dict[str, Any]]:
     """Return the smallest rotation from which each error is above each level, by linear interpolation."""
     found = []
-    for name, rows in errors.groupby("model", sort=False):
+    for name, rows in tables["errors"].groupby("model", sort=False):
         for quantity in QUANTITIES:
             for level in LEVELS:
                 angle = first_above(rows["rotation_rad"].to_numpy(), rows[quantity].abs().to_numpy(), level)
@@ -170,8 +136,9 @@ def first_above(rotation: Array, error: Array, level: float) -> float:
     return float(rotation[before] + part * (rotation[after] - rotation[before]))
 
 
-def _release(problem: Problem) -> tuple[pd.DataFrame, list[dict[str, Any]], list[dict[str, Any]]]:
+def released() -> Answer:
     """Return the motions from the end of the path, the reference's uncertainty and the times."""
+    problem = named_case(CASE)
     limit = swings.sampled(swings.resolved(SplineSettings(control_points=10)), swings.INSTANTS)
     check = swings.sampled(swings.resolved(SWING), swings.INSTANTS)
     rows = [
@@ -189,11 +156,14 @@ def _release(problem: Problem) -> tuple[pd.DataFrame, list[dict[str, Any]], list
         task = f"swing of {DURATION:g} s in {motion.work['steps']} steps"
         times.append({"model": name, "task": task, "solve_s": motion.solve_s})
     apart = float(np.abs(check.rotation - limit.rotation).max())
-    return pd.DataFrame(rows), [{"quantity": "rotation", "unit": "rad", "uncertainty": apart}], times
+    uncertainty = {"quantity": "rotation", "unit": "rad", "uncertainty": apart}
+    return {"motion": rows, "reference": uncertainty, "timings": times}
 
 
-def _swings(problem: Problem, amplitude: float) -> list[dict[str, Any]]:
-    """Return the frequencies of the swing of one amplitude [rad]."""
+def swung(part: float) -> Answer:
+    """Return the frequencies of the swing of one amplitude, over the end of the path."""
+    problem = named_case(CASE)
+    amplitude = float(part) * problem.rotation
     options: dict[str, Any] = {"start": amplitude, "duration": DURATION}
     limit = answer_release(
         problem, SWING, **options, integrator="generalised-alpha", step=SWING_STEP
@@ -211,7 +181,7 @@ def _swings(problem: Problem, amplitude: float) -> list[dict[str, Any]]:
                 "shift": frequency / limit - 1.0,
             }
         )
-    return rows
+    return {"swings": rows}
 
 
 def _parameters(problem: Problem) -> list[dict[str, Any]]:
@@ -248,21 +218,35 @@ def _parameter(model: str, name: str, value: float, origin: str) -> dict[str, An
     return {"model": model, "parameter": name, "value": value, "origin": origin}
 
 
-def _findings(errors: pd.DataFrame) -> list[Finding]:
-    """Return whether a spline is more accurate than the best surrogate, by the largest error of the path."""
-    largest = errors.set_index("model")[list(QUANTITIES)].abs().groupby("model").max().T
-    found = []
-    for name in SPLINES:
-        for quantity in QUANTITIES:
-            best = float(largest[list(SURROGATES)].min(axis=1)[quantity])
-            ratio = float(largest[name][quantity]) / best
-            found.append(
-                Finding(
-                    claim="Dynamic splines are more accurate than pseudo-rigid-body models",
-                    formulation=name,
-                    quantity=f"the largest error of the {quantity} over the best surrogate's",
-                    value=ratio,
-                    holds=ratio < 1.0,
-                )
-            )
-    return found
+def _over_the_best(tables: Tables) -> list[dict[str, Any]]:
+    """Return the largest error of each spline and quantity over that of the best surrogate."""
+    largest = tables["errors"].set_index("model")[list(QUANTITIES)].abs().groupby("model").max().T
+    best = largest[list(SURROGATES)].min(axis=1)
+    return [
+        {"model": name, "of": quantity, "ratio": largest[name][quantity] / best[quantity]}
+        for name in SPLINES
+        for quantity in QUANTITIES
+    ]
+
+
+STUDY = Study(
+    cases=(CASE,),
+    parts=(
+        Part(ask=paths, alone=True),
+        Part(ask=released, alone=True),
+        Part(at=lambda: AMPLITUDES, ask=swung),
+        Part(ask=lambda: {"parameters": _parameters(named_case(CASE))}),
+    ),
+    made={"thresholds": _thresholds},
+    claims=(
+        Claim(
+            claim="Dynamic splines are more accurate than pseudo-rigid-body models",
+            formulation="{model}",
+            quantity="the largest error of the {of} over the best surrogate's",
+            rows=_over_the_best,
+            value="ratio",
+            holds=lambda row: row["ratio"] < 1.0,
+        ),
+    ),
+    figures={"surrogates": lambda tables: surrogate_figures.errors(tables, LEVELS)},
+)

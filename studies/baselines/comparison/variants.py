@@ -124,7 +124,6 @@ def tried(
     variants: Sequence[Variant],
     solve: Callable[[Variant], tuple[dict[str, Any], float]],
     errors: Iterable[str],
-    progress: Callable[[int], None],
 ) -> tuple[list[dict[str, Any]], list[dict[str, Any]]]:
     """Return the rows of the physics, and those of the times, the best of `PASSES` through all variants.
 
@@ -135,8 +134,7 @@ def tried(
     rows: list[dict[str, Any]] = []
     solved: list[Variant] = []
     seconds: dict[Variant, float] = {}
-    for done, variant in enumerate(variants):
-        progress(done)
+    for variant in variants:
         row: dict[str, Any] = {"model": variant.model, "group": variant.group, "variant": variant.label}
         row |= {"theory": variant.theory, "reason": ""}
         if not variant.module.installed():
@@ -150,9 +148,8 @@ def tried(
             continue
         rows.append(row | {"status": "converged"} | outcome)
         solved.append(variant)
-    for again in range(1, PASSES):
-        for done, variant in enumerate(solved):
-            progress(again * len(variants) + done)
+    for _ in range(1, PASSES):
+        for variant in solved:
             seconds[variant] = min(seconds[variant], solve(variant)[1])
     times = [{"model": v.model, "variant": v.label, "solve_s": seconds[v]} for v in solved]
     return rows, times

@@ -18,10 +18,11 @@ from typing import Any
 
 import numpy as np
 
-from studies.baselines.answer import Array, checked_choice, checked_count
+from studies.baselines.answer import checked_choice, checked_count
 from studies.baselines.peers.exudyn_code import Code
 from studies.baselines.peers.exudyn_system import System, hold, installed, system_of
 from studies.cases.problem import Problem
+from studies.kinds import Array
 
 __all__ = ["installed", "release", "static_path"]
 

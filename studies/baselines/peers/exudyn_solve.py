@@ -22,7 +22,6 @@ from typing import Any
 import numpy as np
 
 from studies.baselines.answer import (
-    Array,
     BaselineFailed,
     BaselineMotion,
     BaselinePath,
@@ -32,6 +31,7 @@ from studies.baselines.answer import (
     median_seconds,
 )
 from studies.baselines.peers.exudyn_system import System
+from studies.kinds import Array
 
 #: Coordinates from which on the sparse solver is the faster one.
 SPARSE_FROM = 120

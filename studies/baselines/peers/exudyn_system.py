@@ -15,9 +15,9 @@ from typing import Any
 
 import numpy as np
 
-from studies.baselines.answer import Array
 from studies.baselines.geometry import geometry_of
 from studies.cases.problem import Problem
+from studies.kinds import Array
 
 
 @dataclass(frozen=True, kw_only=True)

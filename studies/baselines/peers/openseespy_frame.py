@@ -27,7 +27,6 @@ from typing import Any
 import numpy as np
 
 from studies.baselines.answer import (
-    Array,
     BaselineFailed,
     BaselineMotion,
     BaselinePath,
@@ -39,6 +38,7 @@ from studies.baselines.answer import (
 from studies.baselines.geometry import geometry_of
 from studies.cases.problem import Problem
 from studies.errors import BadInput
+from studies.kinds import Array
 
 MODEL = "openseespy frame"
 #: Stiffness of the links that stand for the body, over the strips': 1e4 still moves the torque by 6e-5.

@@ -23,7 +23,7 @@ def demo_film(optics: Optics | None = None, samples: int = 3) -> Film:
     """Return the demo film with its truth: the body follows the pivot's own path, the hand pushes nothing
     else."""
     pivot = build(PRESETS["polymer"].values())
-    placing, solver = Placing.of(pivot), HeldPivot(pivot.mechanism)
+    placing, solver = Placing.of(pivot), HeldPivot(pivot)
     poses = [placing.marker(solver.turn(rotation(k)).pose) for k in range(FRAMES)]
 
     def scene(k: int) -> tuple[list[Marker], tuple[Finger, ...]]:

@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 
 from studies.interactive.pivot.placing import SIDE
 from studies.interactive.tracking.calibration import Camera
+from studies.kinds import Array
 
-Array = NDArray[np.float64]
 Picture = NDArray[np.uint8]
 
 #: Bits of a marker's side with its black border, and the white margin around it in bits.

@@ -6,12 +6,10 @@ from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.polynomial import legendre
-from numpy.typing import NDArray
 
 from spline_model.basis import bezier
 from spline_model.pivot import Pivot, cross_axis_pivot
-
-Array = NDArray[np.float64]
+from studies.kinds import Array
 
 #: Control points a strip: 5e-4 of the torque and 12 micrometres at 90 degrees, below what a camera tells.
 CONTROL_POINTS = 6

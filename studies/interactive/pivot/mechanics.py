@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from spline_model.content import STEPS_PER_PERIOD
 from spline_model.held import HeldPivot, HeldState
@@ -14,8 +13,7 @@ from spline_model.modes import natural_frequencies
 from studies.interactive.pivot.design import Reader, Reading, build, free_stiffness, free_turn, pole
 from studies.interactive.pivot.motion import MOTIONS, Motion, released
 from studies.interactive.pivot.presets import STEP
-
-Array = NDArray[np.float64]
+from studies.kinds import Array
 
 #: Time over which strips follow the hand's velocity at a release [s]: short enough that no pose leaves its
 #: branch.
@@ -67,7 +65,7 @@ class Mechanics:
         self.values = dict(values)
         self.pivot = build(values)
         self.step = STEP * values["time_scale"]
-        self._held = HeldPivot(self.pivot.mechanism)
+        self._held = HeldPivot(self.pivot)
         self._system = released(self.pivot)
         self._reader = Reader.of(values)
         self._motion: Motion | None = None
@@ -126,7 +124,7 @@ class Mechanics:
     @cached_property
     def _free_path(self) -> tuple[Array, Array]:
         """Rotations (A,) and centres (A, 2) of the body that a moment alone turns."""
-        solver, half = HeldPivot(self.pivot.mechanism), np.linspace(0.0, REACH, 21)
+        solver, half = HeldPivot(self.pivot), np.linspace(0.0, REACH, 21)
         found: dict[float, Array] = {}
         for side in (1.0, -1.0):
             solver.reset()

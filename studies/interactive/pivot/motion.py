@@ -5,18 +5,16 @@ from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
 from spline_model.compile import System, compile_scene
 from spline_model.impulses.solver import Run
-from spline_model.integrators.energy_consistent import Stepper
-from spline_model.integrators.motion import initial_acceleration, set_in_motion
 from spline_model.kernels.record import DISSIPATED, KINETIC, STRAIN
+from spline_model.motion.energy_consistent import Stepper
+from spline_model.motion.start import initial_acceleration, set_in_motion
 from spline_model.motion.step import HALVED, NEWTON
 from spline_model.pivot import BODY, STRIPS, Pivot
 from spline_model.sequential_impulse import impulse_solver
-
-Array = NDArray[np.float64]
+from studies.kinds import Array
 
 #: Least part of a step before the motion is given up: work stays bounded.
 SMALLEST_PART = 2.0**-6

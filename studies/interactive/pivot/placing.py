@@ -4,12 +4,10 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from spline_model.pivot import Pivot
 from studies.interactive.pivot.design import wrapped
-
-Array = NDArray[np.float64]
+from studies.kinds import Array
 
 #: Distance of each marker's centre from the clamped plate it is glued to [m], as on the printed sheet.
 STANDOFF = 0.045

@@ -4,9 +4,8 @@ import math
 from collections import deque
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from studies.kinds import Array
 
 #: A camera's pose that lies farther from the last one, for each frame's time since, waits for a second one
 #: that agrees [m, rad, s].

@@ -9,7 +9,6 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from studies.errors import BadInput
 from studies.interactive.pivot import presets
@@ -23,8 +22,7 @@ from studies.interactive.session.clock import Clock
 from studies.interactive.session.fields import choice, mapping, number, three, words
 from studies.interactive.session.hand import Hand
 from studies.interactive.session.view import Warnings, shown
-
-Array = NDArray[np.float64]
+from studies.kinds import Array
 
 #: Farthest a pose may lie from rest: shift over the strips' length, and turn [rad].
 FARTHEST_SHIFT, FARTHEST_TURN = 2.0, 3.5

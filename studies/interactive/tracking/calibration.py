@@ -6,11 +6,9 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from studies.errors import BadInput
-
-Array = NDArray[np.float64]
+from studies.kinds import Array
 
 
 @dataclass(frozen=True, kw_only=True)

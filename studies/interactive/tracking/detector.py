@@ -7,12 +7,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from studies.kinds import Array
+
 # a picture of more pixels than this is refused before it is decoded; read when cv2 is first imported
 os.environ.setdefault("OPENCV_IO_MAX_IMAGE_PIXELS", str(1 << 22))
 
 import cv2
 
-Array = NDArray[np.float64]
 Picture = NDArray[np.uint8]
 
 #: Pictures wider than this are found on a quarter of their size, others on half of it.

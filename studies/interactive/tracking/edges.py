@@ -7,8 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from studies.interactive.tracking.profiles import edge
-
-Array = NDArray[np.float64]
+from studies.kinds import Array
 
 #: Half length of the profiles in successive passes [px], and the share of the side that keeps them inside the
 #: black border.

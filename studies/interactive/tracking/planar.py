@@ -9,12 +9,10 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from studies.interactive.tracking.calibration import Camera
 from studies.interactive.tracking.profiles import INSET
-
-Array = NDArray[np.float64]
+from studies.kinds import Array
 
 #: Corners of a square of side 1 in its own frame (x right, y up), in the detector's order: from the upper
 #: left on, clockwise as seen from the front.

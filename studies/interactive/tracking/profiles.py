@@ -12,7 +12,8 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from studies.kinds import Array
+
 Picture = NDArray[np.uint8]
 
 #: Profiles an edge, and where along it: the ends are left to the neighbouring edges.

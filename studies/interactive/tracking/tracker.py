@@ -5,14 +5,12 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from studies.interactive.pivot.placing import SIDE
 from studies.interactive.tracking import edges, planar
 from studies.interactive.tracking.calibration import Camera
 from studies.interactive.tracking.detector import Detector, Picture, Squares
-
-Array = NDArray[np.float64]
+from studies.kinds import Array
 
 #: Residuals of the fit [px] from which it is doubted, and refused.
 DOUBT_PX, REFUSE_PX = 0.12, 0.25

@@ -11,9 +11,9 @@ from spline_model.estimate import resolution
 from spline_model.statics import solve_loads
 from studies.answers.models import built, model_of
 from studies.answers.settings import SplineSettings
+from studies.kinds import Array
 from studies.stability.frames.designs import Frame
 
-Array = NDArray[np.float64]
 HERE = (0.0, 0.0)
 
 

@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
+from studies.kinds import Array
 from studies.stability.columns import COLUMNS, DEFAULT, EIGHT, FE, FINER, PAPER, TWELVE
 from studies.stability.frames import elastica
 from studies.stability.frames.arcs import Arc
@@ -25,8 +25,6 @@ from studies.stability.frames.questions import (
     pushed,
     turned,
 )
-
-Array = NDArray[np.float64]
 
 ELASTICA, PRINT = "elastica", "published"
 DRAWN = (PAPER, DEFAULT, TWELVE, FE)

@@ -3,10 +3,9 @@
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.special import ellipe, ellipk
 
-Array = NDArray[np.float64]
+from studies.kinds import Array
 
 #: Euler load of a cantilever [EI/L^2].
 EULER = math.pi**2 / 4.0

@@ -2,14 +2,12 @@
 
 import math
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 from typing import Any
 
 import numpy as np
-import pandas as pd
-from matplotlib.figure import Figure
 
 from spline_model.dynamics import Trajectory, solve_motion
 from spline_model.effects import DrivenRotation
@@ -17,15 +15,14 @@ from studies.answers.adapters import answer_mechanism, answer_static, spline_mec
 from studies.answers.models import built, model_of
 from studies.answers.settings import Settings, SplineSettings
 from studies.cases.problem import Problem, named_case
+from studies.engine.study import Answer, Part
 from studies.stability import maps
 from studies.stability.columns import CHECK, COLUMNS, DEFAULT, LOCKING_FREE, PAPER, UNCHECKED
-from studies.stability.counts import counted
-from studies.stability.outcome import Found, judged
+from studies.stability.family import CASE, Task, family, names, outcome_of
+from studies.stability.outcome import Found
 from studies.stability.statics.geometry import as_mechanism
-from studies.stability.statics.paths import TOLERANCE, found, traced
-
-CASE = "cross_axis_pivot"
-CASES = (CASE,)
+from studies.stability.statics.paths import TOLERANCE, traced
+from studies.stability.statics.paths import found as compared
 
 #: Reversals, and releases with as many catches: of the default, and of the other columns.
 EVENTS = {DEFAULT: 1000, LOCKING_FREE: 100, PAPER: 100}
@@ -46,53 +43,40 @@ QUIET = 1e-6
 INSTANT = 1e-9
 
 
-def compute(progress: Callable[[int, int], None]) -> dict[str, pd.DataFrame]:
-    """Return outcomes, counts, and timings (a row a case and model)."""
-    rows: list[dict[str, Any]] = []
-    times: list[dict[str, Any]] = []
-    tasks = [*_motions(), *_jumps()]
-    for done, (case, model, attempt, tolerance) in enumerate(tasks):
-        progress(done, len(tasks))
-        begin = time.perf_counter()
-        rows.append({"case": case, "model": model, **judged(attempt, tolerance).row()})
-        times.append({"case": case, "model": model, "wall_s": time.perf_counter() - begin})
-    progress(len(tasks), len(tasks))
-    table = pd.DataFrame(rows)
-    return {"outcomes": table, "counts": counted(table), "timings": pd.DataFrame(times)}
+def timed(case: str, model: str, attempt: Callable[[], Found], tolerance: float) -> Answer:
+    """Return how one task ends and how long that takes."""
+    begin = time.perf_counter()
+    outcome = outcome_of(case, model, attempt, tolerance)
+    return {**outcome, "timings": {"case": case, "model": model, "wall_s": time.perf_counter() - begin}}
 
 
-def draw(tables: Mapping[str, pd.DataFrame]) -> dict[str, Figure]:
-    """Draw every event by every model."""
-    names = list(dict.fromkeys(case for case, *_ in [*_motions(), *_jumps()]))
-    title = f"Sudden events: {EVENTS[DEFAULT]} a motion for the default, {EVENTS[PAPER]} for the others"
-    return {"stability_events": maps.listed(tables["outcomes"], names, title=title)}
-
-
-Task = tuple[str, str, Callable[[], Found], float]
+def tasks() -> list[Task]:
+    """Return case, model, what is asked, and the tolerance."""
+    return [*_motions(), *_jumps()]
 
 
 def _motions() -> list[Task]:
-    tasks: list[Task] = []
+    found: list[Task] = []
     for model, count in EVENTS.items():
-        tasks.append(("drive reversed again and again", model, partial(reversals, model, count), BOOKS))
-        tasks.append(("let go and caught again and again", model, partial(catches, model, count), BOOKS))
-        tasks.append(("target jumps by 60° in a motion", model, partial(jump_in_motion, model), BOOKS))
-    return tasks
+        found.append(("drive reversed again and again", model, partial(reversals, model, count), BOOKS))
+        found.append(("let go and caught again and again", model, partial(catches, model, count), BOOKS))
+        found.append(("target jumps by 60° in a motion", model, partial(jump_in_motion, model), BOOKS))
+    return found
 
 
 def _jumps() -> list[Task]:
-    tasks: list[Task] = []
+    found: list[Task] = []
     for model, settings in COLUMNS.items():
         checked = model not in UNCHECKED
         for degrees in JUMPS:
             name = f"target jumps from rest to {degrees:g}°"
-            tasks.append((name, model, partial(jump, settings, degrees, checked), TOLERANCE))
+            found.append((name, model, partial(jump, settings, degrees, checked), TOLERANCE))
         name = f"target jumps between 60° and -60°, {ROUNDS} times"
-        tasks.append((name, model, partial(jumping, settings), TOLERANCE))
+        found.append((name, model, partial(jumping, settings), TOLERANCE))
         for millimetres in ((0.0, 20.0), (20.0, 0.0), (-20.0, 0.0)):
             name = "target jumps by {:g}, {:g} mm".format(*millimetres)
-            tasks.append((name, model, partial(displaced, settings, millimetres, checked), TOLERANCE))
-    return tasks
+            found.append((name, model, partial(displaced, settings, millimetres, checked), TOLERANCE))
+    return found
 
 
 def mechanism_of(model: str) -> Any:
@@ -168,7 +152,7 @@ def jump(settings: Settings, degrees: float, checked: bool) -> Found:
     design = replace(named_case(CASE), rotation=math.radians(degrees), increments=1)
     many = traced(replace(design, increments=36), CHECK)
     reference = replace(many, at=many.at[[0, -1]], torque=many.torque[[0, -1]], centre=many.centre[[0, -1]])
-    return _bounded(found(traced(design, settings), reference, checked=checked), 1)
+    return _bounded(compared(traced(design, settings), reference, checked=checked), 1)
 
 
 def jumping(settings: Settings) -> Found:
@@ -225,3 +209,16 @@ def _bounded(answer: Found, jumps: int) -> Found:
     if work > MOST_ITERATIONS * jumps:
         return replace(answer, fault=f"{work} Newton iterations for {jumps} jumps")
     return answer
+
+
+STUDY = family(
+    Part(at=tasks, ask=timed, alone=True),
+    figures={
+        "stability_events": lambda tables: maps.listed(
+            tables["outcomes"],
+            names(tasks()),
+            title=f"Sudden events: {EVENTS[DEFAULT]} a motion for the default, "
+            f"{EVENTS[PAPER]} for the others",
+        )
+    },
+)

@@ -4,7 +4,6 @@ import math
 import pickle
 import re
 import resource
-from collections.abc import Callable, Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -17,14 +16,13 @@ from spline_model.dynamics import Trajectory, solve_motion
 from studies.answers.adapters import spline_mechanism
 from studies.answers.settings import SplineSettings
 from studies.cases.problem import named_case
+from studies.engine.findings import Tables
+from studies.engine.study import Answer, Part
 from studies.record.source import ROOT, source_hash
 from studies.record.style import BLUE, ORANGE, RED, SKY, page
 from studies.stability.columns import COLUMNS, DEFAULT, LOCKING_FREE, PAPER
-from studies.stability.counts import counted
+from studies.stability.family import CASE, family
 from studies.stability.outcome import Found, judged
-
-CASE = "cross_axis_pivot"
-CASES = (CASE,)
 
 STEP, START_DEG = 5e-5, 30.0
 #: Steps of a piece, after which the state is kept so that an interrupted run goes on from there, and pieces
@@ -41,34 +39,20 @@ COLOURS = {DEFAULT: BLUE, LOCKING_FREE: SKY, PAPER: RED}
 KEPT = ROOT / ".cache" / "long_run"
 
 
-def compute(progress: Callable[[int, int], None]) -> dict[str, pd.DataFrame]:
-    """Return outcomes, counts, drift (a row a piece) and timings_memory (memory after each piece)."""
-    drift: list[dict[str, Any]] = []
-    memory: list[dict[str, Any]] = []
-    total, done = sum(PIECES.values()), 0
-    for model, pieces in PIECES.items():
-        run = Run(model)
-        while run.pieces < pieces and not run.message:
-            progress(done + run.pieces, total)
-            run.go_on()
-        done += pieces
-        drift += run.rows[:pieces]
-        memory += run.memory[:pieces]
-    progress(total, total)
-    table = pd.DataFrame(drift)
-    outcomes = pd.DataFrame([judgement(model, table[table["model"] == model]) for model in PIECES])
-    return {
-        "outcomes": outcomes,
-        "counts": counted(outcomes),
-        "drift": table,
-        "timings_memory": pd.DataFrame(memory),
-    }
+def pieces(model: str, count: int) -> Answer:
+    """Return the drift of a column over so many pieces, the memory after each, and its outcome."""
+    run = Run(model)
+    while run.pieces < count and not run.message:
+        run.go_on()
+    drift = run.rows[:count]
+    outcome = judgement(model, pd.DataFrame(drift))
+    return {"outcomes": outcome, "drift": drift, "timings_memory": run.memory[:count]}
 
 
-def draw(tables: Mapping[str, pd.DataFrame]) -> dict[str, Figure]:
+def figure(tables: Tables) -> Figure:
     """Draw energy, constraint residual and memory against the number of steps."""
-    figure = page(9.6, 3.1)
-    panels = figure.subplots(1, 3)
+    drawn = page(9.6, 3.1)
+    panels = drawn.subplots(1, 3)
     for model, colour in COLOURS.items():
         mine = tables["drift"].query("model == @model").sort_values("steps")
         panels[0].loglog(mine["steps"], mine["energy_change"].clip(1e-16), color=colour, label=model)
@@ -81,8 +65,8 @@ def draw(tables: Mapping[str, pd.DataFrame]) -> dict[str, Figure]:
     panels[1].set(ylabel="constraint residual of a piece [m]", xlabel="steps [1]", ylim=(1e-18, 1e-14))
     panels[2].set(ylabel="largest memory of the process [MB]", xlabel="steps [1]")
     panels[2].set_ylim(bottom=0.0)
-    figure.suptitle(f"Free swing of Table 1 from {START_DEG:g}° in steps of {STEP:g} s, without damping")
-    return {"stability_long_run": figure}
+    drawn.suptitle(f"Free swing of Table 1 from {START_DEG:g}° in steps of {STEP:g} s, without damping")
+    return drawn
 
 
 class Run:
@@ -180,3 +164,9 @@ def _last_record(piece: Trajectory) -> Trajectory:
         )
     }
     return replace(piece, bodies={name: place[-1:] for name, place in piece.bodies.items()}, **arrays)
+
+
+STUDY = family(
+    Part(at=PIECES.items, ask=pieces, alone=True),
+    figures={"stability_long_run": figure},
+)

@@ -1,20 +1,18 @@
 """Ratios: bodies a million times lighter and heavier, massless and heavy strips, one strip far stiffer."""
 
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import Any
-
-import pandas as pd
-from matplotlib.figure import Figure
 
 from studies.answers.adapters import answer_modes, answer_release
 from studies.cases.design import Design
 from studies.cases.mechanism import Mechanism, Strip
 from studies.cases.problem import Problem, named_case
+from studies.engine.study import Answer, Part
 from studies.stability import maps
 from studies.stability.columns import EXPLICIT, FE
-from studies.stability.counts import counted
+from studies.stability.family import CASE, family
 from studies.stability.motion.swings import (
     INDEPENDENT,
     REFINED,
@@ -26,9 +24,6 @@ from studies.stability.motion.swings import (
 )
 from studies.stability.outcome import RIGHT
 from studies.stability.statics.geometry import as_mechanism
-
-CASE = "cross_axis_pivot"
-CASES = (CASE,)
 
 #: Factors on mass and moment of inertia of Table 1's body, and on the flexural rigidity of one strip.
 FACTORS = (1e-6, 1e-4, 1e-2, 1.0, 1e2, 1e4, 1e6)
@@ -50,30 +45,6 @@ class Ratio:
     kind: str
     factor: float
     design: Design
-
-
-def compute(progress: Callable[[int, int], None]) -> dict[str, pd.DataFrame]:
-    """Return outcomes (with the gain of energy), references and counts."""
-    outcomes: list[dict[str, Any]] = []
-    references = []
-    chosen = list(cases())
-    for done, case in enumerate(chosen):
-        progress(done, len(chosen))
-        rows, reference = _case(case)
-        outcomes += rows
-        references.append(reference)
-    progress(len(chosen), len(chosen))
-    table = pd.DataFrame(outcomes)
-    return {"outcomes": table, "references": pd.DataFrame(references), "counts": counted(table)}
-
-
-def draw(tables: Mapping[str, pd.DataFrame]) -> dict[str, Figure]:
-    """Draw every case by every model."""
-    names = [case.name for case in cases()]
-    title = (
-        f"Release from {START_DEG:g}°, one period in {STEPS} steps: rotation within 5 %, no gain of energy"
-    )
-    return {"stability_ratios": maps.listed(tables["outcomes"], names, title=title)}
 
 
 def cases() -> Iterator[Ratio]:
@@ -107,7 +78,8 @@ def stiffer(given: Problem, factor: float) -> Mechanism:
     return replace(cross, strips=tuple(strips))
 
 
-def _case(case: Ratio) -> tuple[list[dict[str, Any]], dict[str, Any]]:
+def outcomes_of(case: Ratio) -> Answer:
+    """Return the outcomes of a design, with the gain of energy, and its reference."""
     start = math.radians(START_DEG)
     period = 1.0 / float(answer_modes(case.design, REFINED, count=1).frequency[0])
     asked: dict[str, Any] = {"start": start, "duration": period}
@@ -127,10 +99,18 @@ def _case(case: Ratio) -> tuple[list[dict[str, Any]], dict[str, Any]]:
         gap = rotation_error(other, reference)
     refinement = rotation_error(coarser, reference)
     settled = reference.converged and refinement < TOLERANCE / 2.0 and gap <= TOLERANCE
-    return rows, {
-        "case": case.name,
-        "period_s": period,
-        "refinement": refinement,
-        "independent": gap,
-        "settled": "yes" if settled else "no",
-    }
+    known = {"case": case.name, "period_s": period, "refinement": refinement, "independent": gap}
+    return {"outcomes": rows, "references": {**known, "settled": "yes" if settled else "no"}}
+
+
+STUDY = family(
+    Part(at=cases, ask=outcomes_of),
+    figures={
+        "stability_ratios": lambda tables: maps.listed(
+            tables["outcomes"],
+            [case.name for case in cases()],
+            title=f"Release from {START_DEG:g}°, one period in {STEPS} steps: rotation within 5 %, "
+            "no gain of energy",
+        )
+    },
+)

@@ -1,9 +1,9 @@
 """Steps from 1e-7 to 1e-2 s: no gain of energy, second order, and a warning where a step is too long."""
 
 import math
-from collections.abc import Callable, Mapping
-from itertools import pairwise
-from typing import Any
+from collections.abc import Mapping
+from functools import cache
+from itertools import pairwise, product
 
 import numpy as np
 import pandas as pd
@@ -13,10 +13,11 @@ from studies.answers.adapters import answer_release
 from studies.answers.metrics import observed_order
 from studies.answers.motion import Motion
 from studies.cases.problem import named_case
+from studies.engine.study import Answer, Part
 from studies.record.style import BLACK, BLUE, ORANGE, RED, page
 from studies.stability import maps
 from studies.stability.columns import COLUMNS, DEFAULT
-from studies.stability.counts import counted
+from studies.stability.family import CASE, family
 from studies.stability.motion.swings import (
     SWINGING,
     TOLERANCE,
@@ -25,9 +26,6 @@ from studies.stability.motion.swings import (
     refined_swing,
     rotation_error,
 )
-
-CASE = "cross_axis_pivot"
-CASES = (CASE,)
 
 STEPS = (1e-7, 1e-6, 1e-5, 5e-5, 1e-4, 2e-4, 5e-4, 1e-3, 2e-3, 5e-3, 1e-2)
 STARTS = (10, 45, 90, 135)
@@ -41,65 +39,37 @@ ORDER_STEPS = (8e-4, 4e-4, 2e-4, 1e-4, 5e-5, 2.5e-5, 1.25e-5, 6.25e-6, 3.125e-6)
 LIMIT_STEP, ORDER_DURATION = 5e-7, 0.004
 
 
-def compute(progress: Callable[[int, int], None]) -> dict[str, pd.DataFrame]:
-    """Return outcomes (with the gain of energy), references, counts and order (error against step)."""
-    problem = named_case(CASE)
-    outcomes: list[dict[str, Any]] = []
-    references = []
-    total = len(STARTS) * len(STEPS)
-    for i, degrees in enumerate(STARTS):
-        start = math.radians(degrees)
-        reference = refined_swing(problem, start=start, duration=SWING)
-        coarser = refined_swing(problem, start=start, duration=SWING, step=5e-6)
-        other = independent_swing(problem, start=start, duration=SWING)
-        references.append(
-            {
-                "case": f"from {degrees} deg",
-                "refinement": rotation_error(coarser, reference),
-                "independent": rotation_error(other, reference),
-                "settled": "yes" if rotation_error(other, reference) < TOLERANCE / 5.0 else "no",
-            }
-        )
-        for k, step in enumerate(STEPS):
-            progress(i * len(STEPS) + k, total)
-            outcomes += _rows(problem, degrees, step, reference)
-    progress(total, total)
+@cache
+def reference(degrees: float) -> Motion:
+    """Return the refined swing from a rotation."""
+    return refined_swing(named_case(CASE), start=math.radians(degrees), duration=SWING)
+
+
+def settled(degrees: float) -> Answer:
+    """Return how far a coarser and an independent swing are from the reference."""
+    known = {"start": math.radians(degrees), "duration": SWING}
+    coarser = refined_swing(named_case(CASE), **known, step=5e-6)
+    gap = rotation_error(independent_swing(named_case(CASE), **known), reference(degrees))
     return {
-        "outcomes": pd.DataFrame(outcomes),
-        "references": pd.DataFrame(references),
-        "counts": counted(pd.DataFrame(outcomes)),
-        "order": order_table(),
+        "references": {
+            "case": f"from {degrees} deg",
+            "refinement": rotation_error(coarser, reference(degrees)),
+            "independent": gap,
+            "settled": "yes" if gap < TOLERANCE / 5.0 else "no",
+        }
     }
 
 
-def draw(tables: Mapping[str, pd.DataFrame]) -> dict[str, Figure]:
-    """Draw the map over step and rotation at the release, and error and energy against the step."""
-    return {
-        "stability_step_size": maps.outcome_map(
-            tables["outcomes"],
-            title="Release of Table 1: rotation of the first swing within 5 %, no gain of energy",
-            xlabel="step [s]",
-            ylabel="rotation at the release [deg]",
-            xscale="log",
-            xlim=(5e-8, 2e-2),
-            ylim=(0.0, 145.0),
-            xticks={1e-7: "1e-7", 1e-5: "1e-5", 1e-3: "1e-3"},
-            yticks=list(STARTS),
-        ),
-        "stability_step_order": _order_figure(tables),
-    }
-
-
-def _rows(problem: Any, degrees: float, step: float, reference: Motion) -> list[dict[str, Any]]:
-    steps = min(max(round(SWING / step), FEWEST), MOST)
+def outcomes_of(degrees: float, step: float) -> Answer:
+    """Return the outcomes of all models at a step, with the gain of energy."""
+    duration = min(max(round(SWING / step), FEWEST), MOST) * step
+    known = {"start": math.radians(degrees), "duration": duration, "step": step}
     rows = []
     for name in SWINGING:
-        verdict, gain = judged_swing(
-            name, problem, reference, start=math.radians(degrees), duration=steps * step, step=step
-        )
+        verdict, gain = judged_swing(name, named_case(CASE), reference(degrees), **known)
         place = {"case": f"from {degrees} deg, {step:g} s", "x": step, "y": degrees, "model": name}
         rows.append({**place, **verdict.row(), "energy_gain": gain})
-    return rows
+    return {"outcomes": rows}
 
 
 def order_table() -> pd.DataFrame:
@@ -142,3 +112,24 @@ def _order_figure(tables: Mapping[str, pd.DataFrame]) -> Figure:
     right.set(xlabel="step [s]", ylabel="gain of energy over that of the start [1]", ylim=(1e-17, 1e-6))
     right.legend(loc="upper left", ncols=2)
     return figure
+
+
+STUDY = family(
+    Part(at=lambda: STARTS, ask=settled),
+    Part(at=lambda: product(STARTS, STEPS), ask=outcomes_of),
+    Part(ask=lambda: {"order": order_table()}),
+    figures={
+        "stability_step_size": lambda tables: maps.outcome_map(
+            tables["outcomes"],
+            title="Release of Table 1: rotation of the first swing within 5 %, no gain of energy",
+            xlabel="step [s]",
+            ylabel="rotation at the release [deg]",
+            xscale="log",
+            xlim=(5e-8, 2e-2),
+            ylim=(0.0, 145.0),
+            xticks={1e-7: "1e-7", 1e-5: "1e-5", 1e-3: "1e-3"},
+            yticks=list(STARTS),
+        ),
+        "stability_step_order": _order_figure,
+    },
+)

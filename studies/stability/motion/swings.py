@@ -6,7 +6,6 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
 from studies.answers.adapters import answer_release
@@ -24,8 +23,6 @@ from studies.stability.columns import (
     UNCHECKED,
 )
 from studies.stability.outcome import Found, Verdict, judged
-
-Array = NDArray[np.float64]
 
 #: Largest error of the rotation that counts as right, over the rotation at the start [1]. A step of a
 #: twentieth of the swing's period errs by 0.03 after one swing; an answer off by more shows another motion.

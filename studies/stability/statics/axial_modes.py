@@ -1,23 +1,18 @@
 """Too few and too many axial modes, and too few Gauss points: singular ones are refused, with the reason."""
 
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from functools import partial
-
-import pandas as pd
-from matplotlib.figure import Figure
+from functools import cache, partial
 
 from studies.answers.settings import SplineSettings
 from studies.cases.problem import Problem, named_case
+from studies.engine.study import Answer, Part
 from studies.stability import maps
 from studies.stability.columns import DEFAULT, FE, INDEPENDENT, PAPER, REFINED
-from studies.stability.counts import counted
+from studies.stability.family import CASE, family
 from studies.stability.outcome import judged
-from studies.stability.statics.paths import TOLERANCE, attempted, distance, traced
-
-CASE = "cross_axis_pivot"
-CASES = (CASE,)
+from studies.stability.statics.paths import TOLERANCE, Traced, attempted, distance, traced
 
 COUNTS = (4, 5, 6, 8, 10)
 ROTATION_DEG = 45.0
@@ -40,41 +35,28 @@ class Setting:
     settings: SplineSettings
 
 
-def compute(progress: Callable[[int, int], None]) -> dict[str, pd.DataFrame]:
-    """Return outcomes (a row a discretisation), references (one row) and counts."""
-    design: Problem = replace(named_case(CASE), rotation=math.radians(ROTATION_DEG))
-    reference = traced(design, REFINED)
-    gap = distance(traced(design, INDEPENDENT), reference)
-    rows = []
-    chosen = list(settings())
-    for done, each in enumerate(chosen):
-        progress(done, len(chosen))
-        attempt = partial(attempted, design, each.settings, reference, checked=each.model != PAPER)
-        verdict = judged(attempt, TOLERANCE)
-        place = {"panel": each.panel, "model": each.model, "x": each.count, "y": each.other}
-        rows.append({**place, **verdict.row()})
-    progress(len(chosen), len(chosen))
-    table = pd.DataFrame(rows)
+@cache
+def reference() -> Traced:
+    """Return the refined path that all are held against."""
+    return traced(_design(), REFINED)
+
+
+def outcome(each: Setting) -> Answer:
+    """Return how one discretisation ends."""
+    attempt = partial(attempted, _design(), each.settings, reference(), checked=each.model != PAPER)
+    place = {"panel": each.panel, "model": each.model, "x": each.count, "y": each.other}
+    return {"outcomes": {**place, **judged(attempt, TOLERANCE).row()}}
+
+
+def independent() -> Answer:
+    """Return how far finite elements are from the reference."""
+    gap = distance(traced(_design(), INDEPENDENT), reference())
     settled = "yes" if gap <= TOLERANCE / 5.0 else "no"
-    references = pd.DataFrame([{"case": CASE, "model": FE, "independent": gap, "settled": settled}])
-    return {"outcomes": table, "references": references, "counts": counted(table)}
+    return {"references": {"case": CASE, "model": FE, "independent": gap, "settled": settled}}
 
 
-def draw(tables: Mapping[str, pd.DataFrame]) -> dict[str, Figure]:
-    """Draw the maps over control points and modes or Gauss points."""
-    return {
-        "stability_axial_modes": maps.outcome_map(
-            tables["outcomes"],
-            panels_by="panel",
-            order=PANELS,
-            title=f"Table 1 driven to {ROTATION_DEG:g}°: torque and path within 5 % of the refined answer",
-            xlabel="control points [1]",
-            ylabel="axial modes, Gauss points [1]",
-            xlim=(3.0, 11.0),
-            ylim=(0.0, 13.0),
-            xticks=list(COUNTS),
-        )
-    }
+def _design() -> Problem:
+    return replace(named_case(CASE), rotation=math.radians(ROTATION_DEG))
 
 
 def settings() -> Iterator[Setting]:
@@ -91,3 +73,22 @@ def settings() -> Iterator[Setting]:
             yield Setting(panel=POINTS, model=DEFAULT, count=n, other=points, settings=few)
             paper = replace(few, stretch="consistent", measure="spatial")
             yield Setting(panel=PAPER_POINTS, model=PAPER, count=n, other=points, settings=paper)
+
+
+STUDY = family(
+    Part(at=settings, ask=outcome),
+    Part(ask=independent),
+    figures={
+        "stability_axial_modes": lambda tables: maps.outcome_map(
+            tables["outcomes"],
+            panels_by="panel",
+            order=PANELS,
+            title=f"Table 1 driven to {ROTATION_DEG:g}°: torque and path within 5 % of the refined answer",
+            xlabel="control points [1]",
+            ylabel="axial modes, Gauss points [1]",
+            xlim=(3.0, 11.0),
+            ylim=(0.0, 13.0),
+            xticks=list(COUNTS),
+        )
+    },
+)

@@ -1,30 +1,27 @@
 """Bad starts: crumpled, reversed, coincident and other wrong guesses lead to the right state, or nowhere."""
 
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import replace
 from functools import partial
+from itertools import product
 from typing import Any
 
 import numpy as np
-import pandas as pd
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
 from spline_model.pivot import Pivot
 from spline_model.statics import solve_from, solve_statics
 from studies.answers.models import built, model_of
 from studies.answers.settings import SplineSettings
 from studies.cases.problem import named_case
+from studies.engine.findings import Tables
+from studies.engine.study import Answer, Part
+from studies.kinds import Array
 from studies.stability import maps
-from studies.stability.columns import COLUMNS, DEFAULT, LOCKING_FREE, PAPER
-from studies.stability.counts import counted
+from studies.stability.columns import DEFAULT, LOCKING_FREE, PAPER, PATHS, SIX
+from studies.stability.family import CASE, family
 from studies.stability.outcome import Found, judged
-
-Array = NDArray[np.float64]
-
-CASE = "cross_axis_pivot"
-CASES = (CASE,)
 
 ASKED = (DEFAULT, LOCKING_FREE, PAPER)
 ROTATIONS = (45, 90, 120)
@@ -34,39 +31,26 @@ TOLERANCE = 1e-7
 SIZES, SEEDS = (1e-3, 1e-2, 0.1, 1.0, 10.0), 3
 
 
-def compute(progress: Callable[[int, int], None]) -> dict[str, pd.DataFrame]:
-    """Return outcomes (a row a guess, rotation and model) and counts."""
-    rows: list[dict[str, Any]] = []
-    for i, model in enumerate(ASKED):
-        for k, degrees in enumerate(ROTATIONS):
-            progress(i * len(ROTATIONS) + k, len(ASKED) * len(ROTATIONS))
-            rows += _rows(model, degrees)
-    progress(len(ASKED) * len(ROTATIONS), len(ASKED) * len(ROTATIONS))
-    table = pd.DataFrame(rows)
-    return {"outcomes": table, "counts": counted(table)}
-
-
-def draw(tables: Mapping[str, pd.DataFrame]) -> dict[str, Figure]:
+def figure(tables: Tables) -> Figure:
     """Draw the map over the kinds of guess and the rotation."""
     outcomes = tables["outcomes"]
-    kinds = list(dict.fromkeys(outcomes["guess"]))
-    place = {kind: i for i, kind in enumerate(sorted(kinds, reverse=True))}
-    return {
-        "stability_bad_starts": maps.outcome_map(
-            outcomes.assign(y=outcomes["guess"].map(place)),
-            title="A state of Table 1 from a bad guess: that of the path from rest, or a refusal",
-            xlabel="rotation [deg]",
-            ylabel="guess",
-            xlim=(30.0, 135.0),
-            ylim=(-0.7, len(kinds) - 0.3),
-            xticks=list(ROTATIONS),
-            yticks={i: kind for kind, i in place.items()},
-        )
-    }
+    kinds = sorted(dict.fromkeys(outcomes["guess"]), reverse=True)
+    place = {kind: i for i, kind in enumerate(kinds)}
+    return maps.outcome_map(
+        outcomes.assign(y=outcomes["guess"].map(place)),
+        title="A state of Table 1 from a bad guess: that of the path from rest, or a refusal",
+        xlabel="rotation [deg]",
+        ylabel="guess",
+        xlim=(30.0, 135.0),
+        ylim=(-0.7, len(kinds) - 0.3),
+        xticks=list(ROTATIONS),
+        yticks=dict(enumerate(kinds)),
+    )
 
 
-def _rows(model: str, degrees: float) -> list[dict[str, Any]]:
-    settings = COLUMNS[model]
+def outcomes_of(model: str, degrees: float) -> Answer:
+    """Return the outcomes of one model's guesses at a rotation."""
+    settings = PATHS[SIX if model == DEFAULT else model]
     given = replace(named_case(CASE), rotation=math.radians(degrees))
     pivot, _ = built(model_of(settings), given, settings, moving=False)
     path = solve_statics(pivot, rotation=given.rotation, raise_on_failure=False)
@@ -77,7 +61,7 @@ def _rows(model: str, degrees: float) -> list[dict[str, Any]]:
         rows.append(
             {"case": f"{name}, {degrees} deg", "guess": name, "x": degrees, "model": model} | verdict.row()
         )
-    return rows
+    return {"outcomes": rows}
 
 
 def _recovered(pivot: Pivot, rotation: float, guess: Array, path: Any) -> Found:
@@ -92,7 +76,7 @@ def guesses(pivot: Pivot, settings: Any, rotation: float) -> Iterator[tuple[str,
     assert isinstance(settings, SplineSettings)
     good = solve_statics(pivot, rotation=rotation, raise_on_failure=False).states[-1]
     length = float(np.linalg.norm(pivot.clamp_points[0, 1] - pivot.clamp_points[0, 0]))
-    points = 2 * 2 * settings.control_points  # of both strips, x and y
+    points = 2 * 2 * settings.points  # of both strips, x and y
     for size in SIZES:
         for seed in range(SEEDS):
             bent = good.copy()
@@ -114,3 +98,9 @@ def guesses(pivot: Pivot, settings: Any, rotation: float) -> Iterator[tuple[str,
     wound[points + 2] += 2.0 * math.pi
     yield "body wound once more", wound
     yield "no numbers", np.full_like(good, np.nan)
+
+
+STUDY = family(
+    Part(at=lambda: product(ASKED, ROTATIONS), ask=outcomes_of),
+    figures={"stability_bad_starts": figure},
+)

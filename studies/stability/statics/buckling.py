@@ -6,50 +6,22 @@ no stability to be asked of them.
 """
 
 import math
-from collections.abc import Callable, Mapping
 from functools import partial
-from typing import Any
-
-import pandas as pd
-from matplotlib.figure import Figure
 
 from studies.answers.settings import Settings
+from studies.engine.study import Answer, Part
 from studies.stability.columns import CHECK, COLUMNS, FE, FINER, INDEPENDENT, REFINED, UNCHECKED
-from studies.stability.counts import counted
-from studies.stability.frames import curves as curves_of
+from studies.stability.family import family
+from studies.stability.frames import curves
 from studies.stability.frames import figure as figure_of
 from studies.stability.frames.arcs import Arc
-from studies.stability.frames.designs import CASE
 from studies.stability.frames.questions import BucklingCase, answer, cases
 from studies.stability.outcome import Found, judged
 from studies.stability.statics.paths import TOLERANCE
 
-CASES = (CASE,)
 
-
-def compute(progress: Callable[[int, int], None]) -> dict[str, pd.DataFrame]:
-    """Return outcomes (a row a case and model), references, counts, curves, critical points and branches."""
-    outcomes, references = [], []
-    chosen = list(cases())
-    for done, case in enumerate(chosen):
-        progress(done, len(chosen) + 1)
-        rows, reference = _case(case)
-        outcomes += rows
-        references.append(reference)
-    progress(len(chosen), len(chosen) + 1)
-    curves = curves_of.tables()
-    progress(len(chosen) + 1, len(chosen) + 1)
-    table = pd.DataFrame(outcomes)
-    return {"outcomes": table, "references": pd.DataFrame(references), "counts": counted(table), **curves}
-
-
-def draw(tables: Mapping[str, pd.DataFrame]) -> dict[str, Figure]:
-    """Draw load against deflection of the four."""
-    return {"stability_buckling": figure_of.figure(tables)}
-
-
-def _case(case: BucklingCase) -> tuple[list[dict[str, Any]], dict[str, Any]]:
-    """Return the rows of all models, and that of the reference: in closed form, or the refined spline."""
+def outcomes_of(case: BucklingCase) -> Answer:
+    """Return the outcomes of all models, and the reference: in closed form, or the refined spline."""
     refined = case.value(answer(case, REFINED))
     reference = refined if math.isnan(case.exact) else case.exact
     spread = max(difference(case.value(answer(case, CHECK)), refined), difference(refined, reference))
@@ -65,7 +37,8 @@ def _case(case: BucklingCase) -> tuple[list[dict[str, Any]], dict[str, Any]]:
         found = values[0] if values else math.nan
         load = case.frame.load
         rows.append({**place, "model": model, "load": load, "found": found, **known, **verdict.row()})
-    return rows, {**place, "model": FE, "refinement": spread, "independent": gap, "settled": settled, **known}
+    reached = {"model": FE, "refinement": spread, "independent": gap, "settled": settled}
+    return {"outcomes": rows, "references": {**place, **reached, **known}}
 
 
 def difference(found: float, reference: float) -> float:
@@ -93,3 +66,10 @@ def _compared(arc: Arc, error: float, *, checked: bool) -> Found:
         states_limit=bool(warning) or not arc.reached,
         counters=arc.counters,
     )
+
+
+STUDY = family(
+    Part(at=cases, ask=outcomes_of),
+    Part(ask=curves.tables),
+    figures={"stability_buckling": figure_of.figure},
+)

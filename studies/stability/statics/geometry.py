@@ -1,20 +1,15 @@
 """Geometry: crossing ratios and inclinations to their ends, parallel, unequal and curved strips."""
 
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import replace
-
-import pandas as pd
-from matplotlib.figure import Figure
 
 from studies.cases.mechanism import Body, Mechanism, Strip
 from studies.cases.problem import Problem, named_case
+from studies.engine.study import Part
 from studies.stability import maps
-from studies.stability.counts import counted
-from studies.stability.statics.paths import StaticCase, answered
-
-CASE = "cross_axis_pivot"
-CASES = (CASE,)
+from studies.stability.family import CASE, family
+from studies.stability.statics.paths import StaticCase, outcomes_of
 
 #: Distance of the crossing from the ground end over L, and angle of the strips to the ground [deg].
 RATIOS = (0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95)
@@ -22,34 +17,6 @@ INCLINATIONS = (10, 20, 30, 45, 60, 70, 80)
 
 #: Rotations of pairs of strips that are no symmetric cross [deg]: half of what the pivot is driven to.
 OTHER_ROTATION = 45.0
-
-
-def compute(progress: Callable[[int, int], None]) -> dict[str, pd.DataFrame]:
-    """Return outcomes (a row a design and model), references (a row a design) and counts (a row a model)."""
-    tables = answered([*grid(), *others()], progress)
-    return {**tables, "counts": counted(tables["outcomes"])}
-
-
-def draw(tables: Mapping[str, pd.DataFrame]) -> dict[str, Figure]:
-    """Draw the map over crossing ratio and inclination, and the list of the other designs."""
-    outcomes = tables["outcomes"]
-    grid_rows = outcomes["case"].str.startswith("cross")
-    names = [case.name for case in others()]
-    return {
-        "stability_geometry": maps.outcome_map(
-            outcomes[grid_rows],
-            title="Driven to 90° in 20 increments: torque and path within 5 % of the refined answer",
-            xlabel="crossing ratio [1]",
-            ylabel="inclination of the strips [deg]",
-            xlim=(0.0, 1.0),
-            ylim=(0.0, 90.0),
-            xticks=[0.0, 0.5, 1.0],
-            yticks=list(INCLINATIONS),
-        ),
-        "stability_other_geometry": maps.listed(
-            outcomes[~grid_rows], names, title=f"Other pairs of strips, driven to {OTHER_ROTATION:g}°"
-        ),
-    }
 
 
 def grid() -> Iterator[StaticCase]:
@@ -158,3 +125,25 @@ def _thicker(strip: Strip, factor: float) -> Strip:
         area=strip.area * factor ** (1.0 / 3.0),
         second_moment_of_area=strip.second_moment_of_area * factor,
     )
+
+
+STUDY = family(
+    Part(at=lambda: [*grid(), *others()], ask=outcomes_of),
+    figures={
+        "stability_geometry": lambda tables: maps.outcome_map(
+            tables["outcomes"][tables["outcomes"]["case"].str.startswith("cross")],
+            title="Driven to 90° in 20 increments: torque and path within 5 % of the refined answer",
+            xlabel="crossing ratio [1]",
+            ylabel="inclination of the strips [deg]",
+            xlim=(0.0, 1.0),
+            ylim=(0.0, 90.0),
+            xticks=[0.0, 0.5, 1.0],
+            yticks=list(INCLINATIONS),
+        ),
+        "stability_other_geometry": lambda tables: maps.listed(
+            tables["outcomes"][~tables["outcomes"]["case"].str.startswith("cross")],
+            [case.name for case in others()],
+            title=f"Other pairs of strips, driven to {OTHER_ROTATION:g}°",
+        ),
+    },
+)

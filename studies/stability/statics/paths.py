@@ -1,25 +1,22 @@
 """Static paths of hard designs: the answer of each model against a refined and an independent one."""
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import partial
-from typing import Any
 
 import numpy as np
-import pandas as pd
-from numpy.typing import NDArray
 
 from studies.answers.adapters import answer_mechanism, answer_static
 from studies.answers.settings import FeSettings, Settings
 from studies.cases.design import Design
 from studies.cases.problem import Problem
-from studies.stability.columns import CHECK, COLUMNS, FE, REFINED, UNCHECKED
+from studies.engine.study import Answer
+from studies.kinds import Array
+from studies.stability.columns import CHECK, FE, PATHS, REFINED, UNCHECKED
 from studies.stability.outcome import Found, judged
 
-Array = NDArray[np.float64]
-
 #: Largest distance of a path that counts as right [1], over the largest torque and displacement. The error of
-#: the spline's default grows to 0.03 at a half turn; another branch is off by more than 0.1.
+#: six control points grows to 0.03 at a half turn; another branch is off by more than 0.1.
 TOLERANCE = 0.05
 #: Finer elements, asked where those of the column do not confirm the refined spline.
 ARBITER = FeSettings(elements=80)
@@ -31,7 +28,7 @@ class StaticCase:
 
     Attributes:
         x, y: place on the map, in the units of the family's axes.
-        settings: settings of columns for this case, in place of those in `COLUMNS`.
+        settings: settings of columns for this case, in place of those in `PATHS`.
         refined, check: of the reference.
     """
 
@@ -103,29 +100,17 @@ def distance(path: Traced, reference: Traced) -> float:
     return float(max(torque / np.abs(reference.torque).max(), place / travel if travel > 0.0 else place))
 
 
-def answered(cases: Iterable[StaticCase], progress: Callable[[int, int], None]) -> dict[str, pd.DataFrame]:
-    """Return the tables of a family of paths: `outcomes`, a row a case and model, and `references`.
+def outcomes_of(case: StaticCase) -> Answer:
+    """Return the outcomes of a case, a row a model, and the row of its reference.
 
     A reference is settled where refinement moves it by less than a fifth of the tolerance and elements agree
     with it within the tolerance.
     """
-    outcomes, references = [], []
-    chosen = list(cases)
-    for done, case in enumerate(chosen):
-        progress(done, len(chosen))
-        rows, reference = _case(case)
-        outcomes += rows
-        references.append(reference)
-    progress(len(chosen), len(chosen))
-    return {"outcomes": pd.DataFrame(outcomes), "references": pd.DataFrame(references)}
-
-
-def _case(case: StaticCase) -> tuple[list[dict[str, Any]], dict[str, Any]]:
     reference = traced(case.design, case.refined)
     spread = distance(traced(case.design, case.check), reference)
     place = {"case": case.name, "x": case.x, "y": case.y}
     rows, gap = [], float("inf")
-    for model, settings in COLUMNS.items():
+    for model, settings in PATHS.items():
         chosen = case.settings.get(model, settings)
         attempt = partial(attempted, case.design, chosen, reference, checked=model not in UNCHECKED)
         verdict = judged(attempt, TOLERANCE)
@@ -135,7 +120,8 @@ def _case(case: StaticCase) -> tuple[list[dict[str, Any]], dict[str, Any]]:
     if not gap <= TOLERANCE:
         gap = distance(traced(case.design, ARBITER), reference)
     settled = reference.reached and spread <= TOLERANCE / 5.0 and gap <= TOLERANCE
-    return rows, {**place, "refinement": spread, "independent": gap, "settled": "yes" if settled else "no"}
+    known = {**place, "refinement": spread, "independent": gap, "settled": "yes" if settled else "no"}
+    return {"outcomes": rows, "references": known}
 
 
 def attempted(design: Design, settings: Settings, reference: Traced, *, checked: bool) -> Found:

@@ -1,7 +1,7 @@
 """Rotation to a half turn and beyond, in any number of increments, there and back."""
 
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -13,52 +13,19 @@ from studies.answers.adapters import answer_static
 from studies.answers.models import built, model_of
 from studies.answers.settings import Settings, SplineSettings
 from studies.cases.problem import Problem, named_case
+from studies.engine.study import Part
 from studies.record.style import BLACK, BLUE, GREY, ORANGE, page
 from studies.stability import maps
-from studies.stability.columns import COLUMNS, DEFAULT, FE, REFINED
-from studies.stability.counts import counted
-from studies.stability.statics.paths import StaticCase, answered
-
-CASE = "cross_axis_pivot"
-CASES = (CASE,)
+from studies.stability.columns import FE, PATHS, REFINED, SIX
+from studies.stability.family import CASE, family
+from studies.stability.statics.paths import StaticCase, outcomes_of
 
 ROTATIONS = (-180, -90, 90, 135, 150, 165, 180, 200, 220, 240, 260)
 INCREMENTS = (1, 2, 5, 20, 200)
 #: A reference at these rotations needs more points than at a quarter turn.
 FAR, FAR_CHECK = SplineSettings(control_points=16), SplineSettings(control_points=14)
 #: Columns whose answers to other increments are compared with one another.
-COMPARED = (DEFAULT, FE)
-
-
-def compute(progress: Callable[[int, int], None]) -> dict[str, pd.DataFrame]:
-    """Return outcomes, references, counts, increments (the same path in any number of them, and back again)
-    and critical (the critical points that the refined spline finds on its way)."""
-    tables = answered(cases(), progress)
-    return {
-        **tables,
-        "counts": counted(tables["outcomes"]),
-        "increments": pd.DataFrame([row for model in COMPARED for row in increments(model)]),
-        "critical": critical(),
-    }
-
-
-def draw(tables: Mapping[str, pd.DataFrame]) -> dict[str, Figure]:
-    """Draw the map over rotation and increments, and the torque of the path with what differs."""
-    places = {math.log10(count): f"{count}" for count in INCREMENTS}
-    outcomes = tables["outcomes"].assign(y=np.log10(tables["outcomes"]["y"]))
-    return {
-        "stability_rotation": maps.outcome_map(
-            outcomes,
-            title="Table 1 driven through a rotation: torque and path within 5 % of the refined answer",
-            xlabel="rotation [deg]",
-            ylabel="increments [1]",
-            xlim=(-200.0, 280.0),
-            ylim=(-0.3, 2.6),
-            xticks=[-180, -90, 0, 90, 180],
-            yticks=places,
-        ),
-        "stability_increments": _increments_figure(tables),
-    }
+COMPARED = (SIX, FE)
 
 
 def cases() -> Iterator[StaticCase]:
@@ -81,7 +48,7 @@ def cases() -> Iterator[StaticCase]:
 def increments(model: str) -> list[dict[str, Any]]:
     """Return, for every number of increments, how far the torque at 90 degrees is from that of 20, and how
     far a path there and back ends from where it was: of the torque at each rotation, and at rest."""
-    settings = COLUMNS[model]
+    settings = PATHS[model]
     given = named_case(CASE)
     torque = answer_static(given, settings).torque[-1]
     rows = []
@@ -107,7 +74,7 @@ def _there_and_back(given: Problem, settings: Settings, count: int) -> Any:
     return np.asarray(model.statics.solve_statics(pivot, rotation=legs, increments=count).torque)
 
 
-def critical() -> pd.DataFrame:
+def critical() -> list[dict[str, Any]]:
     """Return the critical points on the refined spline's path to the last rotation, or one row that says
     that there are none."""
     given = replace(named_case(CASE), rotation=math.radians(ROTATIONS[-1]), increments=52)
@@ -123,13 +90,13 @@ def critical() -> pd.DataFrame:
     ]
     reached = math.degrees(path.rotation[-1])
     end = {"kind": f"end: {path.message or 'reached'}", "rotation_deg": reached, "inertia": path.inertia[-1]}
-    return pd.DataFrame([*rows, end])
+    return [*rows, end]
 
 
 def _increments_figure(tables: Mapping[str, pd.DataFrame]) -> Figure:
     figure = page(4.6, 3.2)
     panel = figure.subplots()
-    for model, colour in ((DEFAULT, BLUE), (FE, BLACK)):
+    for model, colour in ((SIX, BLUE), (FE, BLACK)):
         mine = tables["increments"].query("model == @model").sort_values("increments")
         for column, line, label in (
             ("torque_change", "o-", "torque at 90°"),
@@ -143,3 +110,25 @@ def _increments_figure(tables: Mapping[str, pd.DataFrame]) -> Figure:
     panel.set(xlabel="increments [1]", ylabel="difference of torque [1]", ylim=(1e-17, 1e-6))
     panel.legend(loc="center left", fontsize=7)
     return figure
+
+
+STUDY = family(
+    Part(at=cases, ask=outcomes_of),
+    # the same path in any number of increments, and back again
+    Part(at=lambda: COMPARED, ask=lambda model: {"increments": increments(model)}),
+    # the critical points that the refined spline finds on its way
+    Part(ask=lambda: {"critical": critical()}),
+    figures={
+        "stability_rotation": lambda tables: maps.outcome_map(
+            tables["outcomes"].assign(y=np.log10(tables["outcomes"]["y"])),
+            title="Table 1 driven through a rotation: torque and path within 5 % of the refined answer",
+            xlabel="rotation [deg]",
+            ylabel="increments [1]",
+            xlim=(-200.0, 280.0),
+            ylim=(-0.3, 2.6),
+            xticks=[-180, -90, 0, 90, 180],
+            yticks={math.log10(count): f"{count}" for count in INCREMENTS},
+        ),
+        "stability_increments": _increments_figure,
+    },
+)

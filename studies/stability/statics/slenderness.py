@@ -1,7 +1,7 @@
 """Slenderness L/h from 10 to 1e5 and strips that cannot stretch: errors, iterations and digits."""
 
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -13,14 +13,12 @@ from studies.answers.adapters import answer_static
 from studies.answers.response import Response
 from studies.answers.settings import SplineSettings
 from studies.cases.problem import Problem, named_case
+from studies.engine.study import Part
 from studies.record.style import BLACK, BLUE, GREY, ORANGE, page
 from studies.stability import maps
-from studies.stability.columns import CHECK, COLUMNS, DEFAULT, LOCKING_FREE, REFINED
-from studies.stability.counts import counted
-from studies.stability.statics.paths import StaticCase, answered
-
-CASE = "cross_axis_pivot"
-CASES = (CASE,)
+from studies.stability.columns import CHECK, DEFAULT, LOCKING_FREE, PATHS, REFINED, SIX
+from studies.stability.family import CASE, family
+from studies.stability.statics.paths import StaticCase, outcomes_of
 
 #: L/h of a rectangular section of Table 1's flexural rigidity.
 SLENDERNESS = (10.0, 17.0, 30.0, 100.0, 300.0, 1e3, 3e3, 1e4, 3e4, 1e5)
@@ -29,31 +27,6 @@ INEXTENSIBLE = 1e6
 ROTATIONS = (10, 45, 90, 135)
 #: Factor between neighbouring designs, between which no digits may be lost.
 NEIGHBOUR = 1.001
-
-
-def compute(progress: Callable[[int, int], None]) -> dict[str, pd.DataFrame]:
-    """Return outcomes, references, counts, and limit: the default's approach to the inextensible strip."""
-    tables = answered(cases(), progress)
-    return {**tables, "counts": counted(tables["outcomes"]), "limit": limit_table(COLUMNS[DEFAULT])}
-
-
-def draw(tables: Mapping[str, pd.DataFrame]) -> dict[str, Figure]:
-    """Draw the map over slenderness and rotation, and the default's approach to the limit."""
-    places = {10.0: "10", 1e3: "1e3", 1e5: "1e5", INEXTENSIBLE: "∞"}
-    return {
-        "stability_slenderness": maps.outcome_map(
-            tables["outcomes"],
-            title="Driven in 20 increments: torque and path within 5 % of the refined answer",
-            xlabel="slenderness L/h [1]",
-            ylabel="rotation [deg]",
-            xscale="log",
-            xlim=(5.0, 2.0 * INEXTENSIBLE),
-            ylim=(0.0, 145.0),
-            xticks=places,
-            yticks=list(ROTATIONS),
-        ),
-        "stability_slenderness_limit": _limit_figure(tables["limit"]),
-    }
 
 
 def cases() -> Iterator[StaticCase]:
@@ -65,8 +38,8 @@ def cases() -> Iterator[StaticCase]:
             yield StaticCase(name=name, x=slenderness, y=degrees, design=design, settings={})
         rigid: dict[str, Any] = {
             name: inextensible(settings)
-            for name in (DEFAULT, LOCKING_FREE)
-            if isinstance(settings := COLUMNS[name], SplineSettings)
+            for name in (DEFAULT, LOCKING_FREE, SIX)
+            if isinstance(settings := PATHS[name], SplineSettings)
         }
         yield StaticCase(
             name=f"inextensible, {degrees} deg",
@@ -122,7 +95,8 @@ def _gap(one: Response, other: Response) -> float:
     return float(np.abs(one.torque - other.torque).max() / np.abs(other.torque).max())
 
 
-def _limit_figure(limit: pd.DataFrame) -> Figure:
+def _limit_figure(tables: Mapping[str, pd.DataFrame]) -> Figure:
+    limit = tables["limit"]
     figure = page(7.4, 3.1)
     left, right = figure.subplots(1, 2)
     left.loglog(limit["slenderness"], limit["error"], "o-", color=BLUE, label="to the inextensible strip")
@@ -130,10 +104,31 @@ def _limit_figure(limit: pd.DataFrame) -> Figure:
         limit["slenderness"], limit["lost_digits"], "s--", color=ORANGE, label="beyond the law, neighbours"
     )
     left.axhline(1e-9, color=GREY, linewidth=0.9, linestyle=":")
-    left.set(xlabel="slenderness L/h [1]", ylabel="difference of torque [1]", title="Spline, default, 90°")
+    left.set(xlabel="slenderness L/h [1]", ylabel="difference of torque [1]", title="Spline n = 6, 90°")
     left.legend(loc="upper right")
     right.semilogx(limit["slenderness"], limit["iterations"], "o-", color=BLUE, label="extensible")
     right.axhline(limit["iterations_inextensible"].iloc[0], color=BLACK, linestyle="--", label="inextensible")
     right.set(xlabel="slenderness L/h [1]", ylabel="Newton iterations of the path [1]", ylim=(0.0, 30.0))
     right.legend(loc="lower right")
     return figure
+
+
+STUDY = family(
+    Part(at=cases, ask=outcomes_of),
+    # the approach of six control points to the inextensible strip
+    Part(ask=lambda: {"limit": limit_table(PATHS[SIX])}),
+    figures={
+        "stability_slenderness": lambda tables: maps.outcome_map(
+            tables["outcomes"],
+            title="Driven in 20 increments: torque and path within 5 % of the refined answer",
+            xlabel="slenderness L/h [1]",
+            ylabel="rotation [deg]",
+            xscale="log",
+            xlim=(5.0, 2.0 * INEXTENSIBLE),
+            ylim=(0.0, 145.0),
+            xticks={10.0: "10", 1e3: "1e3", 1e5: "1e5", INEXTENSIBLE: "∞"},
+            yticks=list(ROTATIONS),
+        ),
+        "stability_slenderness_limit": _limit_figure,
+    },
+)

@@ -4,14 +4,12 @@ import json
 import os
 import subprocess
 import sys
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import replace
 from functools import cache, partial
 from typing import Any
 
 import numpy as np
-import pandas as pd
-from matplotlib.figure import Figure
 
 from spline_model.batch import solve_many
 from studies.answers.adapters import answer_mechanism, answer_modes, answer_release
@@ -19,15 +17,15 @@ from studies.answers.settings import FeSettings, Settings
 from studies.cases.design import named_design
 from studies.cases.mechanism import Mechanism
 from studies.cases.problem import named_case
+from studies.engine.study import Part
 from studies.record.source import ROOT
 from studies.stability import maps
 from studies.stability.columns import COLUMNS, DEFAULT, FE, LOCKING_FREE, PAPER
-from studies.stability.counts import counted
-from studies.stability.outcome import Found, judged
+from studies.stability.family import CASE, Task, family, names, outcome_of
+from studies.stability.outcome import Found
 from studies.stability.statics.geometry import as_mechanism
 
-CASE, LINKAGE = "cross_axis_pivot", "four_bar_of_flexures"
-CASES = (CASE, LINKAGE)
+LINKAGE = "four_bar_of_flexures"
 
 #: Largest relative difference that is none [1]; of frequencies, whose lowest loses the digits by which the
 #: square of the highest exceeds its own: seven, for the linkage.
@@ -37,47 +35,25 @@ FREQUENCY, MODES = "frequency_", ": modes"
 ASKED = (DEFAULT, LOCKING_FREE, PAPER, FE)
 STEPS, STEP = 20, 5e-5
 THREADS = (1, 2, 4)
+REORDERED = {"second strip first, pivot": CASE, "strips and bodies reversed, linkage": LINKAGE}
 VARIABLES = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
 
 
-def compute(progress: Callable[[int, int], None]) -> dict[str, pd.DataFrame]:
-    """Return outcomes (a row a case and model) and counts."""
-    rows = []
-    chosen = tasks()
-    for done, (case, model, attempt) in enumerate(chosen):
-        progress(done, len(chosen))
-        tolerance = FREQUENCY_TOLERANCE if case.endswith(MODES) else TOLERANCE
-        rows.append({"case": case, "model": model, **judged(attempt, tolerance).row()})
-    progress(len(chosen), len(chosen))
-    table = pd.DataFrame(rows)
-    return {"outcomes": table, "counts": counted(table)}
-
-
-def draw(tables: Mapping[str, pd.DataFrame]) -> dict[str, Figure]:
-    """Draw every case by every model."""
-    names = list(dict.fromkeys(case for case, *_ in tasks()))
-    title = f"The same torque, path and motion to {TOLERANCE:g}, the same modes to {FREQUENCY_TOLERANCE:g}"
-    return {"stability_environment": maps.listed(tables["outcomes"], names, title=title)}
-
-
-def tasks() -> list[tuple[str, str, Callable[[], Found]]]:
-    """Return case, model and what is asked."""
-    chosen: list[tuple[str, str, Callable[[], Found]]] = []
+def tasks() -> list[Task]:
+    """Return case, model, what is asked, and the tolerance."""
+    chosen: list[Task] = []
     for model in ASKED:
         settings = COLUMNS[model]
         for modes in (False, True):
-            end = MODES if modes else ""
+            end, limit = (MODES, FREQUENCY_TOLERANCE) if modes else ("", TOLERANCE)
             chosen += [
-                (f"second strip first, pivot{end}", model, partial(reordered, CASE, settings, modes)),
-                (
-                    f"strips and bodies reversed, linkage{end}",
-                    model,
-                    partial(reordered, LINKAGE, settings, modes),
-                ),
+                (f"{what}{end}", model, partial(reordered, case, settings, modes), limit)
+                for what, case in REORDERED.items()
             ]
-        chosen.append((f"{THREADS[-1]} threads", model, partial(threaded, model, THREADS[-1])))
-    chosen.append(("not compiled", DEFAULT, partial(uncompiled, DEFAULT)))
-    chosen += [(f"batch on {count} threads", DEFAULT, partial(batched, count)) for count in THREADS[1:]]
+        chosen.append((f"{THREADS[-1]} threads", model, partial(threaded, model, THREADS[-1]), TOLERANCE))
+    chosen.append(("not compiled", DEFAULT, partial(uncompiled, DEFAULT), TOLERANCE))
+    for count in THREADS[1:]:
+        chosen.append((f"batch on {count} threads", DEFAULT, partial(batched, count), TOLERANCE))
     return chosen
 
 
@@ -169,6 +145,19 @@ def main(model: str, increments: str) -> None:
     given = as_mechanism(named_case(CASE), 90.0)
     print(json.dumps(answers(given, COLUMNS[model], increments=int(increments))))
 
+
+STUDY = family(
+    Part(at=tasks, ask=outcome_of, alone=True),
+    cases=(CASE, LINKAGE),
+    figures={
+        "stability_environment": lambda tables: maps.listed(
+            tables["outcomes"],
+            names(tasks()),
+            title=f"The same torque, path and motion to {TOLERANCE:g}, "
+            f"the same modes to {FREQUENCY_TOLERANCE:g}",
+        )
+    },
+)
 
 if __name__ == "__main__":
     main(*sys.argv[1:])

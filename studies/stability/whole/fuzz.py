@@ -1,26 +1,21 @@
 """Random designs and command sequences: each is answered rightly, refused, or called bad input."""
 
 import math
-from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
 
 import numpy as np
-import pandas as pd
-from matplotlib.figure import Figure
 
 from studies.answers.adapters import answer_release
 from studies.answers.models import built, model_of, refusals
 from studies.answers.settings import Settings, SplineSettings
 from studies.cases.problem import Problem, named_case
+from studies.engine.study import Answer, Part
 from studies.stability import maps
 from studies.stability.columns import DEFAULT
-from studies.stability.counts import counted
+from studies.stability.family import CASE, family
 from studies.stability.outcome import Found, judged
-
-CASE = "cross_axis_pivot"
-CASES = (CASE,)
 
 EXAMPLES, SEED = 400, 20260101
 #: Largest error of torque at the ends of the legs, over the largest of them, that is right [1]: the distance
@@ -80,43 +75,22 @@ class Example:
         )
 
 
-def compute(progress: Callable[[int, int], None]) -> dict[str, pd.DataFrame]:
-    """Return outcomes (a row an example) and counts."""
+def examples() -> list[tuple[int, Example]]:
+    """Return the random examples with their numbers, the same every time."""
     generator = np.random.default_rng(SEED)
-    rows = []
-    for number in range(EXAMPLES):
-        progress(number, EXAMPLES)
-        example = drawn(generator)
-        verdict = judged(partial(asked, example), TOLERANCE)
-        place = {
-            "case": f"example {number:03d}",
-            "kind": example.kind,
-            "model": DEFAULT,
-            "x": math.degrees(max(example.targets, key=abs)),
-            "y": example.slenderness,
-        }
-        rows.append({**place, **verdict.row()})
-    progress(EXAMPLES, EXAMPLES)
-    table = pd.DataFrame(rows)
-    return {"outcomes": table, "counts": counted(table)}
+    return [(number, drawn(generator)) for number in range(EXAMPLES)]
 
 
-def draw(tables: Mapping[str, pd.DataFrame]) -> dict[str, Figure]:
-    """Draw the map over the largest rotation and the slenderness, paths and motions apart."""
-    return {
-        "stability_fuzz": maps.outcome_map(
-            tables["outcomes"],
-            panels_by="kind",
-            order=(STATIC, MOTION),
-            title="Random designs and commands, spline",
-            xlabel="largest rotation [deg]",
-            ylabel="slenderness L/h [1]",
-            yscale="log",
-            xlim=(-210.0, 210.0),
-            ylim=(3.0, 2e4),
-            xticks=[-180, -90, 0, 90, 180],
-        )
+def outcome(number: int, example: Example) -> Answer:
+    """Return how one example ends."""
+    place = {
+        "case": f"example {number:03d}",
+        "kind": example.kind,
+        "model": DEFAULT,
+        "x": math.degrees(max(example.targets, key=abs)),
+        "y": example.slenderness,
     }
+    return {"outcomes": {**place, **judged(partial(asked, example), TOLERANCE).row()}}
 
 
 def drawn(generator: np.random.Generator) -> Example:
@@ -162,7 +136,7 @@ def _path(example: Example, settings: SplineSettings) -> Found:
     stored = np.abs(path.bending_energy + path.axial_energy).max()
     if not np.isfinite(path.torque).all():
         return Found(error=math.inf, fault="the torque is not a finite number")
-    refined = replace(settings, control_points=max(REFINED, settings.control_points + 3))
+    refined = replace(settings, control_points=max(REFINED, settings.points + 3))
     reference = _legs(example, refined, max(REFINED_INCREMENTS, example.increments))
     known = _ends(reference.rotation, example)
     both = min(len(ends), len(known))
@@ -229,3 +203,22 @@ def _motion(example: Example, settings: SplineSettings) -> Found:
         fault=next((fault for fault, holds in faults.items() if holds), ""),
         counters=motion.counters,
     )
+
+
+STUDY = family(
+    Part(at=examples, ask=outcome),
+    figures={
+        "stability_fuzz": lambda tables: maps.outcome_map(
+            tables["outcomes"],
+            panels_by="kind",
+            order=(STATIC, MOTION),
+            title="Random designs and commands, spline",
+            xlabel="largest rotation [deg]",
+            ylabel="slenderness L/h [1]",
+            yscale="log",
+            xlim=(-210.0, 210.0),
+            ylim=(3.0, 2e4),
+            xticks=[-180, -90, 0, 90, 180],
+        )
+    },
+)

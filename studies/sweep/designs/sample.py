@@ -8,9 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.stats import qmc
 
+from studies.kinds import Array
 from studies.sweep.designs.plan import Axis, Sample
 
-Array = NDArray[np.float64]
 Columns = dict[str, list[Any]]
 
 

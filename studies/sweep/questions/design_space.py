@@ -7,17 +7,17 @@ little stress. Which designs no other one betters, where Table 1 lies among them
 
 import math
 import tempfile
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pandas as pd
-from matplotlib.figure import Figure
 
-from studies.answers.metrics import Array
 from studies.cases.problem import named_case
-from studies.paper.findings import Finding, table
+from studies.engine.findings import Finding
+from studies.engine.study import Answer, Part, Study
+from studies.kinds import Array
 from studies.sweep.designs.read import plan_of
 from studies.sweep.points import CONVERGED
 from studies.sweep.questions import space_figure
@@ -25,7 +25,6 @@ from studies.sweep.questions.pareto import dominating, not_dominated
 from studies.sweep.run import sweep
 
 CASE = "cross_axis_pivot"
-CASES = (CASE,)
 
 #: The sample, as in examples/design_space.toml.
 SPACE: dict[str, Any] = {
@@ -64,29 +63,21 @@ QUANTITIES = {
 """What is wanted: large (-1) or small (1)."""
 
 
-def compute(progress: Callable[[int, int], None]) -> dict[str, pd.DataFrame]:
-    """Return the sample with the front, maps, ratios around Wittrick's, chosen designs by elements, findings.
+def swept() -> Answer:
+    """Return the sample with the front, maps, ratios around Wittrick's, and chosen designs by elements.
 
     Tables: designs (a row a point; front: "yes" for one that is not bettered); map (a grid at one
-    slenderness); ratios (shift, stress and stiffness against the crossing ratio); checks (designs of the
-    front by both models); findings.
+    slenderness); ratios (shift, stress and stiffness against the crossing ratio); checks and comparison
+    (designs of the front by both models); findings, from all digits.
     """
     designs = _rows(SPACE)
-    progress(1, 4)
     costs = _costs(designs)
     designs["front"] = np.where(not_dominated(costs), "yes", "no")
-    maps = _rows(_grid(MAP_RATIOS, MAP_INCLINATIONS))
     ratios = pd.concat([_rows(_line(angle)) for angle in INCLINATIONS], ignore_index=True)
-    progress(2, 4)
     checks, comparison = _checks(designs, costs)
-    tables = {"designs": designs, "map": maps, "ratios": ratios, "checks": checks, "comparison": comparison}
-    progress(4, 4)
-    return {name: rounded(rows) for name, rows in tables.items()} | {"findings": table(_findings(tables))}
-
-
-def draw(tables: Mapping[str, pd.DataFrame]) -> dict[str, Figure]:
-    """Draw what the designs trade for what, and the maps."""
-    return {"design_space": space_figure.space(tables)}
+    tables = {"designs": designs, "ratios": ratios, "checks": checks, "comparison": comparison}
+    tables["map"] = _rows(_grid(MAP_RATIOS, MAP_INCLINATIONS))
+    return {name: rounded(rows) for name, rows in tables.items()} | {"findings": _findings(tables)}
 
 
 def rounded(rows: pd.DataFrame) -> pd.DataFrame:
@@ -233,3 +224,10 @@ def _of_wittrick(ratios: pd.DataFrame, inclination: float) -> list[Finding]:
         Finding(claim=claim, formulation=where, quantity=quantity, value=value, holds=bool(holds))
         for claim, quantity, value, holds in asked
     ]
+
+
+STUDY = Study(
+    cases=(CASE,),
+    parts=(Part(ask=swept, alone=True),),
+    figures={"design_space": space_figure.space},
+)

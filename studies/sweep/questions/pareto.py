@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from studies.kinds import Array
 
 
 def not_dominated(costs: Array) -> NDArray[np.bool_]:

@@ -7,8 +7,9 @@ larger machines.
 import os
 import tempfile
 import time
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator
 from contextlib import contextmanager, nullcontext
+from itertools import product
 from pathlib import Path
 from typing import Any
 
@@ -17,7 +18,8 @@ import pandas as pd
 import pyarrow.parquet as pq
 from matplotlib.figure import Figure
 
-from studies.paper.findings import Finding, table
+from studies.engine.findings import Finding, Tables
+from studies.engine.study import Answer, Part, Study
 from studies.record.extras import absent, lacking
 from studies.record.style import BLUE, GREEN, ORANGE, page
 from studies.sweep.designs.read import plan_of
@@ -26,8 +28,6 @@ from studies.sweep.run import sweep
 from studies.sweep.workers.cluster import cluster
 from studies.sweep.workers.loopback import loopback
 from studies.sweep.workers.pool import Pool, processes, threads
-
-CASES = ("cross_axis_pivot",)
 
 KINDS = {"threads": "threads", "processes": "processes", "dask": "Dask workers on loopback"}
 ONE_WORKER = "Dask worker on loopback"
@@ -48,40 +48,30 @@ def missing() -> str:
     return lacking("cluster", absent(["distributed"]))
 
 
-def compute(progress: Callable[[int, int], None]) -> dict[str, pd.DataFrame]:
-    """Return the work of the sweeps, their times, and findings of these.
+def timed(kind: str, count: int) -> Answer:
+    """Return the times of so many workers of a kind, from drawing to the written table.
 
-    Tables: work (a row a size: chunks, Newton iterations, which no machine changes); timings (a row a kind of
-    worker, count and size: the least time of repeated sweeps, from drawing to the written table, without
-    starting the workers); timings_of_chunks (the same designs in more and more chunks); findings_of_time.
+    Tables: timings (a row a size: the least time of repeated sweeps, without starting the workers);
+    timings_of_chunks (the same designs in more and more chunks, by one worker).
     """
-    runs = [(kind, count) for kind in KINDS for count in WORKERS]
+    row = {"workers": kind, "count": count, "cores": os.cpu_count()}
     timings, cuts = [], []
-    for done, (kind, count) in enumerate(runs):
-        progress(done, len(runs) + 1)
-        with pool_of(kind, count) as pool:
-            _timed(pool, 64 * count, chunk=32)  # loads the kernels in every worker
-            for size, repeats in SIZES.items():
-                if size < LARGEST or (count == max(WORKERS) and kind != "processes"):
-                    seconds = min(_timed(pool, size) for _ in range(repeats))
-                    timings.append(_row(kind, count) | {"designs": size, "wall_s": seconds})
-            if count == 1:
-                for chunks in CHUNKS:
-                    seconds = min(_timed(pool, CUT, chunk=CUT // chunks) for _ in range(2))
-                    cuts.append(_row(kind, count) | {"chunks": chunks, "wall_s": seconds})
-    progress(len(runs), len(runs) + 1)
-    tables = {
-        "work": pd.DataFrame([_work(size) for size in SIZES if size < LARGEST]),
-        "timings": pd.DataFrame(timings),
-        "timings_of_chunks": pd.DataFrame(cuts),
-    }
-    return tables | {"findings_of_time": table(_findings(tables))}
+    with pool_of(kind, count) as pool:
+        _timed(pool, 64 * count, chunk=32)  # loads the kernels in every worker
+        for size, repeats in SIZES.items():
+            if size < LARGEST or (count == max(WORKERS) and kind != "processes"):
+                seconds = min(_timed(pool, size) for _ in range(repeats))
+                timings.append(row | {"designs": size, "wall_s": seconds})
+        for chunks in CHUNKS if count == 1 else ():
+            seconds = min(_timed(pool, CUT, chunk=CUT // chunks) for _ in range(2))
+            cuts.append(row | {"chunks": chunks, "wall_s": seconds})
+    return {"timings": timings, "timings_of_chunks": cuts}
 
 
-def draw(tables: Mapping[str, pd.DataFrame]) -> dict[str, Figure]:
+def figure(tables: Tables) -> Figure:
     """Draw designs a second against the size of the sweep, and the time against the number of chunks."""
-    figure = page(9.5, 4.4)
-    rate, cost = figure.subplots(1, 2)
+    drawn = page(9.5, 4.4)
+    rate, cost = drawn.subplots(1, 2)
     colours = dict(zip(KINDS, (BLUE, ORANGE, GREEN), strict=True))
     timings, cuts = tables["timings"], tables["timings_of_chunks"]
     for kind, count in [(kind, count) for kind in KINDS for count in WORKERS]:
@@ -99,9 +89,9 @@ def draw(tables: Mapping[str, pd.DataFrame]) -> dict[str, Figure]:
         cost.semilogx(mine["chunks"], mine["wall_s"], color=colour, marker="o", label=label)
     cost.set(xlabel="chunks [1]", ylabel="time [s]", ylim=(0.0, None))
     cost.set_title(f"The same {CUT} designs in more chunks")
-    figure.legend(*rate.get_legend_handles_labels(), loc="outside lower left", ncols=3)
+    drawn.legend(*rate.get_legend_handles_labels(), loc="outside lower left", ncols=3)
     cost.legend(loc="upper left")
-    return {"sweep_throughput": figure}
+    return drawn
 
 
 def chunk_cost(cuts: pd.DataFrame, kind: str) -> float:
@@ -138,12 +128,8 @@ def _timed(pool: Pool, designs: int, *, chunk: int | None = None) -> float:
         return time.perf_counter() - start
 
 
-def _row(kind: str, count: int) -> dict[str, Any]:
-    return {"workers": kind, "count": count, "cores": os.cpu_count()}
-
-
 def _work(designs: int) -> dict[str, Any]:
-    """Return what a sweep of that size is made of."""
+    """Return what a sweep of that size is made of, which no machine changes."""
     plan = plan_of("throughput", content(designs), Path())
     with tempfile.TemporaryDirectory() as folder:
         sweep(plan, Path(folder) / "sweep")
@@ -156,7 +142,7 @@ def _work(designs: int) -> dict[str, Any]:
     }
 
 
-def _findings(tables: Mapping[str, pd.DataFrame]) -> list[Finding]:
+def _findings(tables: Tables) -> list[Finding]:
     """Return what more workers bring, and whether the wanted time is met."""
     times = tables["timings"].set_index(["workers", "count", "designs"])["wall_s"].to_dict()
     cores = tables["timings"]["cores"].iloc[0]
@@ -199,3 +185,19 @@ def _findings(tables: Mapping[str, pd.DataFrame]) -> list[Finding]:
 def _named(kind: str, count: int) -> str:
     label = KINDS[kind]
     return label if count > 1 else {"threads": "thread", "processes": "process"}.get(kind, ONE_WORKER)
+
+
+STUDY = Study(
+    cases=("cross_axis_pivot",),
+    parts=(
+        Part(at=lambda: product(KINDS, WORKERS), ask=timed, alone=True),
+        Part(
+            at=lambda: [size for size in SIZES if size < LARGEST],
+            ask=lambda size: {"work": _work(size)},
+            alone=True,
+        ),
+    ),
+    claims_of_time=(_findings,),
+    figures={"sweep_throughput": figure},
+    missing=missing,
+)

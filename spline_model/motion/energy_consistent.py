@@ -1,0 +1,245 @@
+"""The default integrator: a discrete-gradient scheme that cannot create energy.
+
+    D^T (M (v1 - v0) / h + D V(q0, q1)) = 0,   (v0 + v1) / 2 = (q1 - q0) / h = D dy / h
+
+T + V is the same before and after a step of any size, up to the residual of Newton's method,
+and so are the momenta of a free scene. Clamps hold by construction: D moves control points and
+bodies by their own coordinates y (``spline_model.motion.strip``). Second order; implicit; a step
+whose Newton fails, or that turns an end tangent backwards, is halved; one in which a drive or a
+load changes abruptly is cut there.
+Source: Gonzalez, Time integration and discrete Hamiltonian systems, J Nonlinear Sci 6 (1996)
+449; for constraints, Betsch, The discrete null space method, CMAME 194 (2005) 5159.
+"""
+
+from __future__ import annotations
+
+import math
+from itertools import pairwise
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from spline_model.compile import System
+from spline_model.kernels.motion import Motion
+from spline_model.motion.events import SAME, catch, drives_at, event_times, from_here
+from spline_model.motion.mechanism import moving
+from spline_model.motion.records import MOST_GAIN, first_gain, rows_of
+from spline_model.motion.run import MOST_HALVED, MOST_HALVED_A_STEP, advance, run, store
+from spline_model.motion.start import Array, Records, require_compiled
+from spline_model.motion.step import FACTORISATIONS, FOLDED, HALVED, NEWTON, STEPS, WHOLE
+
+TOLERANCE = 1e-11
+"""Residual of a step, in EI/L^2, EI/L, L and rad; the energy of a step is exact to this."""
+SMALLEST_STEP = 2.0**-14
+"""Least fraction of a step before the run is given up."""
+WATCHED = 4096
+"""Steps after which the energy is looked at, at the latest."""
+
+
+def integrate(
+    system: System,
+    motion: Motion,
+    z: Array,
+    v: Array,
+    acceleration: Array,
+    *,
+    step: float,
+    steps: int,
+    every: int,
+) -> Records:
+    """Take ``steps`` steps from (z, v), recording every ``every``-th one.
+
+    Drives begin and end at their times and start from where the body is; a body that is caught
+    changes its velocity at once, and what that costs counts as dissipated. A run whose balance
+    of energies gains more than ``MOST_GAIN`` is stopped at the last good record.
+    """
+    return carry(Stepper(system, motion, z, v, acceleration), z, step, steps, every)
+
+
+def carry(stepper: Moves, z: Array, step: float, steps: int, every: int) -> Records:
+    """The records of a stepper that starts from z (N,)."""
+    mover = _Mover(stepper, z, step, steps, every)
+    for begin, end in pairwise((0.0, *event_times(stepper.motion, steps * step, step), steps * step)):
+        mover.switch(begin, min(end - begin, step))
+        if not mover.go_to(end):
+            break
+    kept = mover.kept
+    return Records(
+        time=np.arange(0.0, kept) * (step * every),
+        states=mover.states[:kept],
+        velocities=mover.rates[:kept],
+        rows=mover.rows[:kept],
+        message=mover.message,
+        counters=counts(stepper.counters),
+    )
+
+
+class Moves(Protocol):
+    """What a run asks of a stepper: see ``Stepper``."""
+
+    motion: Motion
+    counters: NDArray[np.int64]
+    most_gain: float
+
+    def advance(self, time: float, duration: float, smallest: float) -> float:
+        """Move on by ``duration`` [s] in one step or parts of it; returns the time done."""
+
+    def run(self, step: float, begin: int, end: int, every: int) -> tuple[int, tuple[Array, Array, Array]]:
+        """Take whole steps; returns the next one's number, and what ``look`` gives at the records."""
+
+    def look(self) -> tuple[Array, Array, Array]:
+        """Unknowns (R, N), velocities (R, Q) and rows (R, 7)."""
+
+    def switch(self, time: float, span: float) -> None:
+        """Let drives begin, change or end at a time [s]."""
+
+
+class Stepper:
+    """A scene in motion that the scheme advances; active (D,) is 1 for each drive that holds."""
+
+    most_gain = MOST_GAIN
+    """Gain of energy over the run's at which it is stopped."""
+
+    def __init__(self, system: System, motion: Motion, z: Array, v: Array, acceleration: Array) -> None:
+        require_compiled(system, "energy")
+        self.motion, self._model = motion, moving(system, motion)
+        self._state, self._work = self._model.arrays(z, v, acceleration)
+        self.counters = np.zeros(6, dtype=np.int64)
+        self.active = np.zeros(motion.tables.drives.row.size, dtype=np.int64)
+
+    def advance(self, time: float, duration: float, smallest: float) -> float:
+        """Advance by a step of ``duration``, halved at need down to ``smallest`` of it; the time done."""
+        return float(
+            advance(
+                time, duration, duration, duration * smallest, self.active, self._state, self._model.strips,
+                self._model.masses, TOLERANCE, self._work, self.counters,
+            )
+        )  # fmt: skip
+
+    def run(self, step: float, begin: int, end: int, every: int) -> tuple[int, tuple[Array, Array, Array]]:
+        """Take the steps ``begin`` ... ``end`` - 1; the next step's number, and records as of ``look``."""
+        records = np.zeros((end // every - begin // every, self._model.width))
+        done = int(
+            run(
+                step, begin, end, every, step * SMALLEST_STEP, self.active, self._state, self._model.strips,
+                self._model.masses, TOLERANCE, self._work, self.counters, records,
+            )
+        )  # fmt: skip
+        return done, self._shown(records[: done // every - begin // every])
+
+    def look(self) -> tuple[Array, Array, Array]:
+        """Unknowns (1, N), velocities (1, Q) and row (1, 7) of the present state."""
+        record = np.zeros((1, self._model.width))
+        store(self._state, self._model.strips, self._model.masses, self._work, record[0])
+        return self._shown(record)
+
+    def _shown(self, records: Array) -> tuple[Array, Array, Array]:
+        z, v, energies = self._model.unknowns(records)
+        return z, v, rows_of(self.motion, z, v, energies)
+
+    def switch(self, time: float, span: float) -> None:
+        """Let drives begin, change or end at ``time``; they then hold for at least ``span`` [s]."""
+        before, self.active = self.active, drives_at(self.motion, time + 0.5 * span)
+        if not self.active.any():
+            return
+        (z,), (v,), _ = self.look()
+        self.motion = from_here(self.motion, z, self.active, before, time)
+        self._model = self._model.with_drives(self.motion)
+        v, lost = catch(self.motion, z, v, self.active, time, span)
+        self._model.set_velocity(self._state, v)
+        if (self.active > before).any():
+            self._state.totals[1] += lost / self._model.energy
+        else:  # a drive that changes its own rate does work
+            self._state.totals[0] -= lost / self._model.energy
+
+    def kept(self) -> list[Array]:
+        """Copies of the state's arrays, for ``take_back``."""
+        return [array.copy() for array in self._state]
+
+    def take_back(self, kept: list[Array]) -> None:
+        """Return to a state that was kept."""
+        for array, value in zip(self._state, kept, strict=True):
+            array[:] = value
+
+
+class _Mover:
+    """A run and its records on a uniform grid."""
+
+    def __init__(self, stepper: Moves, z: Array, step: float, steps: int, every: int) -> None:
+        count = steps // every + 1
+        self.stepper, self.step, self.every = stepper, step, every
+        self.states = np.zeros((count, z.size))
+        self.rates, self.rows = np.zeros((count, len(stepper.motion.mass))), np.zeros((count, 7))
+        self.time, self.kept, self.message = 0.0, 0, ""
+        self.first = z
+
+    def switch(self, time: float, span: float) -> None:
+        """As of the stepper; the first record has the drives that hold from the start on."""
+        self.stepper.switch(time, span)
+        if time == 0.0:
+            self._keep(0, self.stepper.look())
+            self.states[0] = self.first
+
+    def go_to(self, end: float) -> bool:
+        """Move on to the time ``end`` [s]; False, with the reason, where that fails."""
+        close = SAME * self.step
+        while end - self.time > close:
+            number = math.floor((self.time + close) / self.step)
+            last = math.floor((end + close) / self.step)
+            if abs(self.time - number * self.step) <= close and last > number:
+                watched = max(1, WATCHED // self.every) * self.every
+                done = self._whole_steps(number, min(last, number + watched - number % self.every))
+            else:
+                done = self._part_of_step(min(end, (number + 1) * self.step), number + 1)
+            if not done:
+                return False
+        return True
+
+    def _whole_steps(self, begin: int, end: int) -> bool:
+        done, records = self.stepper.run(self.step, begin, end, self.every)
+        self._keep(begin // self.every + 1, records)
+        self.time = done * self.step
+        return self._is_good(done == end)
+
+    def _part_of_step(self, target: float, number: int) -> bool:
+        """Advance to ``target``, at most to the end of the step before grid point ``number``."""
+        span = target - self.time
+        done = self.stepper.advance(self.time, span, SMALLEST_STEP)
+        if done == span:
+            at_grid = abs(target - number * self.step) <= SAME * self.step
+            self.time = number * self.step if at_grid else target
+            if at_grid and number % self.every == 0:
+                self._keep(number // self.every, self.stepper.look())
+        return self._is_good(done == span)
+
+    def _keep(self, place: int, records: tuple[Array, Array, Array]) -> None:
+        self.kept = place + len(records[0])
+        for kept, new in zip((self.states, self.rates, self.rows), records, strict=True):
+            kept[place : self.kept] = new
+
+    def _is_good(self, solved: bool) -> bool:
+        """Whether the run may go on: its steps were solved, and its energy did not grow."""
+        most = self.stepper.most_gain
+        good = first_gain(self.rows[: self.kept], self.stepper.motion.energy, most)
+        if good < self.kept:
+            at = good * self.every * self.step
+            self.message = f"stopped at {at:.6g} s: the energy grows by more than {most:g} of itself"
+            self.kept = good
+        elif not solved:
+            counters = self.stepper.counters
+            reason = "a strip folds; take a shorter step" if counters[FOLDED] else "Newton fails at any step"
+            if counters[HALVED] > MOST_HALVED + MOST_HALVED_A_STEP * counters[WHOLE]:
+                reason = "steps are halved too often; take a shorter one"
+            self.message = f"stopped at {self.time:.6g} s: {reason}"
+        return not self.message
+
+
+def counts(counters: NDArray[np.int64]) -> dict[str, int]:
+    """Counters of a run by name."""
+    return {
+        "steps": int(counters[STEPS]),
+        "halved_steps": int(counters[HALVED]),
+        "newton_iterations": int(counters[NEWTON]),
+        "factorisations": int(counters[FACTORISATIONS]),
+    }

@@ -1,0 +1,102 @@
+"""The elastic force of one strip, without tangent: what an explicit time step asks for.
+
+Axial forces follow at each mode from its strain over its compliance. Of a strip that cannot stretch they
+are unknown, and what a mode of them asks of the accelerations of the control points,
+
+    sum b A = -rest,   b = int mode t dC' / dP,   rest = int mode (|dC'/dt|^2 - (t . dC'/dt)^2) / |C'|
+                                                         + 2 O (its strain's rate) + O^2 (its strain),
+
+keeps its strain at zero: the last two let what round-off and the step leave of it die out (Baumgarte,
+CMAME 1 (1972) 1).
+"""
+
+from __future__ import annotations
+
+import math
+
+from spline_model.strip.compiled import part
+from spline_model.strip.laws import bending_law, stretching_law
+
+X1, Y1, X2, Y2, SPEED, STRETCH, G0, G1, G2, G3 = range(10)
+"""Rows of what is known at the Gauss points: C', C'', |C'|, the stretch that axial forces see, and the
+derivatives of the energy in C' and C''. Inner loops only read: a store in them costs a check for aliases."""
+
+
+@part()
+def add_forces(s, tied, strips, grid, points, at, axial, force):
+    """Fill the gradient (2, n) of a strip's energy in its control points, dead load included.
+
+    at (10, G): see above; axial (K,): the first ``tied`` of them are not known and left out.
+    """
+    count, gauss, width = strips.compliance.shape[1], strips.weight.size, strips.d1.shape[1]
+    measure, strain, stretching = strips.measure, strips.strain[s], strips.stretching[s]
+    for p in range(gauss):
+        x1 = y1 = x2 = y2 = 0.0
+        begin = strips.first[p]
+        for i in range(width):
+            u, q, x, y = strips.d1[p, i], strips.d2[p, i], points[0, begin + i], points[1, begin + i]
+            x1 += u * x
+            y1 += u * y
+            x2 += q * x
+            y2 += q * y
+        v = math.sqrt(x1 * x1 + y1 * y1)
+        at[X1, p], at[Y1, p], at[X2, p], at[Y2, p], at[SPEED, p] = x1, y1, x2, y2, v
+        at[STRETCH, p] = strips.weight[p] * (v - (1.0 + strain) * strips.speed[s, p])
+    for k in range(tied, count):
+        total = 0.0
+        for p in range(gauss):
+            total += grid.modes[s, k, p] * at[STRETCH, p]
+        axial[k] = total * grid.stiffness[s, k]
+    for p in range(gauss):
+        x1, y1, x2, y2, v = at[X1, p], at[Y1, p], at[X2, p], at[Y2, p], at[SPEED, p]
+        weight, inverse = strips.weight[p], 1.0 / v
+        r = inverse * inverse
+        phi = (x1 * y2 - y1 * x2) * r
+        _, m, _, _, f, _ = bending_law(
+            phi, v, strips.speed[s, p], strips.curvature[s, p], strips.rigidity[s, p], measure
+        )
+        for k in range(tied, count):
+            f += strips.modes[s, p, k] * axial[k]
+        if stretching > 0.0:
+            f += stretching_law(v, strips.speed[s, p], strain, stretching, measure)[1]
+        bend, pull = weight * m * r, weight * f * inverse
+        at[G0, p] = bend * (y2 - 2.0 * phi * x1) + pull * x1
+        at[G1, p] = pull * y1 - bend * (x2 + 2.0 * phi * y1)
+        at[G2, p], at[G3, p] = -bend * y1, bend * x1
+    for i in range(points.shape[1]):
+        fx, fy = -strips.dead[s, 0, i], -strips.dead[s, 1, i]
+        for p in range(grid.begin[i], grid.end[i]):
+            fx += grid.d1[i, p] * at[G0, p] + grid.d2[i, p] * at[G2, p]
+            fy += grid.d1[i, p] * at[G1, p] + grid.d2[i, p] * at[G3, p]
+        force[0, i], force[1, i] = fx, fy
+
+
+@part()
+def add_ties(s, tied, sharpness, strips, grid, speed, at, rows, rest):
+    """Rows (K, 2, n) and rests (K,) of what the ``tied`` axial forces keep; at: as left by ``add_forces``.
+
+    speed (2, n): velocities of the control points; sharpness: O [1/s].
+    """
+    for p in range(strips.weight.size):
+        ux = uy = 0.0
+        begin = strips.first[p]
+        for i in range(strips.d1.shape[1]):
+            ux += strips.d1[p, i] * speed[0, begin + i]
+            uy += strips.d1[p, i] * speed[1, begin + i]
+        inverse, weight = 1.0 / at[SPEED, p], strips.weight[p]
+        tx, ty = at[X1, p] * inverse, at[Y1, p] * inverse
+        along, across = tx * ux + ty * uy, tx * uy - ty * ux
+        at[G0, p], at[G1, p] = weight * tx, weight * ty
+        at[G2, p] = weight * (across * across * inverse + 2.0 * sharpness * along)
+        at[G2, p] += sharpness * sharpness * at[STRETCH, p]
+    for k in range(tied):
+        rest[k] = 0.0
+        for p in range(strips.weight.size):
+            rest[k] += grid.modes[s, k, p] * at[G2, p]
+        for i in range(speed.shape[1]):
+            x = y = 0.0
+            for p in range(grid.begin[i], grid.end[i]):
+                u = grid.d1[i, p] * grid.modes[s, k, p]
+                x += u * at[G0, p]
+                y += u * at[G1, p]
+            rows[k, 0, i], rows[k, 1, i] = x, y

@@ -1,0 +1,133 @@
+"""Designs by the numbers that tell them from one another."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from spline_model.compile import compile_scene
+from spline_model.errors import InvalidParameter
+from spline_model.mechanism import Mechanism
+from spline_model.pivot import cross_axis_pivot
+from spline_model.preload import is_preloaded
+from spline_model.reduced.designs import Given
+from spline_model.sensitivity.parameters import CENTRES, MATERIAL, POINTS, SECTION, Section
+
+Array = NDArray[np.float64]
+
+POSITIVE = ("length", "area", "second_moment_of_area", "youngs_modulus")
+"""Columns that statics reads and that must be above zero; the others are checked on the first design."""
+
+
+def pivots(
+    designs: Mapping[str, ArrayLike] | Sequence[Mapping[str, Any]], discretisation: Mapping[str, Any]
+) -> tuple[Mechanism, Given]:
+    """A pivot of unit length and rigidity, so that no design's answer depends on another one, and the
+    numbers of many by the keywords of ``cross_axis_pivot``; refused under loads, which these do not scale.
+    """
+    columns = _columns(designs)
+    first = {name: _plain(column[0]) for name, column in columns.items()}
+    system = compile_scene(cross_axis_pivot(**first, **discretisation).driven(1.0))
+    if is_preloaded(system) or system.loads.value.any():
+        expected = "no loads on pivots by their keywords: a mechanism and its values"
+        raise InvalidParameter("discretisation", dict(discretisation), expected)
+    unit: dict[str, Any] = dict.fromkeys(
+        ("length", "second_moment_of_area", "youngs_modulus", "density"), 1.0
+    )
+    unit |= {"area": 1e3, "poisson_ratio": 0.3, "body_mass": 1.0, "body_moment_of_inertia": 1.0}
+    unit |= {"inclination": np.pi / 4, "crossing_ratio": 0.5}
+    return cross_axis_pivot(**unit, **discretisation), _pivots(columns)
+
+
+def varied(mechanism: Mechanism, values: Mapping[str, ArrayLike], count: int = 1) -> Given:
+    """Designs of a mechanism whose numbers are replaced by ``values``, by the names of the parameters."""
+    design = mechanism.design
+    strips, bodies = [s.name for s in design.strips], [b.name for b in design.bodies]
+    columns = {name: np.atleast_1d(np.asarray(value, dtype=float)) for name, value in values.items()}
+    count = max([count, *(len(column) for column in columns.values())])
+    one, sides = Given.of(design), np.array([(s.thickness, s.width) for s in map(Section.of, design.strips)])
+    given = one.rows(np.zeros(count, dtype=np.int64))
+    side = np.repeat(sides[None], count, axis=0)
+    for name in values:
+        column = one_each(name, columns[name], count)
+        owner, _, field = name.rpartition(".")
+        mine = [i for i, strip in enumerate(strips) if owner in ("", strip)]
+        if field in (*MATERIAL, *SECTION) and mine:
+            refuse({name: column}, name, column > 0.0, "a finite number > 0")
+            part, names = (side, SECTION) if field in SECTION else (given.section, MATERIAL)
+            part[:, mine, names.index(field)] = column[:, None]
+            if field in SECTION:
+                h, b = np.moveaxis(side[:, mine], -1, 0)
+                given.section[:, mine, 0], given.section[:, mine, 1] = b * h, b * h**3 / 12.0
+        elif field in POINTS and owner in strips and design.strips[mine[0]].rise == 0.0:
+            end, axis = divmod(POINTS.index(field), 2)
+            given.ends[:, mine[0], end, axis] = column
+        elif field in CENTRES and owner in bodies:
+            given.centres[:, bodies.index(owner), CENTRES.index(field)] = column
+        else:
+            one_of = f"STRIP.{', STRIP.'.join(POINTS)} of a straight strip or BODY.{', BODY.'.join(CENTRES)}"
+            raise InvalidParameter("values", name, f"one of {', '.join((*MATERIAL, *SECTION))}, {one_of}")
+    return given
+
+
+def _columns(designs: Mapping[str, ArrayLike] | Sequence[Mapping[str, Any]]) -> dict[str, Array]:
+    """Designs as columns of equal length, pairs with a second axis."""
+    if not isinstance(designs, Mapping):
+        designs = {name: np.array([design[name] for design in designs]) for name in designs[0]}
+    pairs = {name: 1 + (name == "centre_offset") for name in designs}
+    values = {name: np.asarray(value, dtype=float) for name, value in designs.items()}
+    count = max((len(v) for name, v in values.items() if v.ndim >= pairs[name]), default=1)
+    shape = {name: (count, 2) if pairs[name] == 2 else (count,) for name in values}
+    return {name: np.broadcast_to(value, shape[name]) for name, value in values.items()}
+
+
+def _plain(value: Any) -> Any:
+    return tuple(float(part) for part in value) if np.ndim(value) else float(value)
+
+
+def _pivots(columns: Mapping[str, Array]) -> Given:
+    """Pivots by their keywords."""
+    c = columns
+    for name in POSITIVE:
+        refuse(c, name, c[name] > 0, "a finite number > 0")
+    refuse(c, "inclination", (c["inclination"] > 0) & (c["inclination"] < np.pi / 2), "0 to pi/2")
+    refuse(c, "crossing_ratio", (c["crossing_ratio"] > 0) & (c["crossing_ratio"] < 1), "0 to 1")
+    length, count = c["length"], len(c["length"])
+    turn = np.broadcast_to(c.get("orientation", np.zeros(1)), (count,))
+    offset = np.broadcast_to(c.get("centre_offset", np.zeros((1, 2))), (count, 2))
+    cos, sin = np.cos(c["inclination"]), np.sin(c["inclination"])
+    axis = np.stack((np.stack((cos, sin), -1), np.stack((-cos, sin), -1)), axis=1) * length[:, None, None]
+    root = np.zeros((count, 2, 2))
+    root[:, 1, 0] = 2 * c["crossing_ratio"] * cos * length
+    tip = root + axis
+    centre = tip.mean(axis=1) + offset
+    matrix = np.moveaxis(np.array([[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]]), -1, 0)
+    arm = np.einsum("dij,dsj->dsi", matrix, tip - centre[:, None])
+    axis, root = (np.einsum("dij,dsj->dsi", matrix, part) for part in (axis, root))
+    centre = root[:, 0] + axis[:, 0] - arm[:, 0]
+    section = np.stack([c[name] for name in ("area", "second_moment_of_area", "youngs_modulus")], axis=-1)
+    return Given(
+        ends=np.stack((root, root + axis), axis=2),
+        centres=centre[:, None],
+        section=np.repeat(section[:, None], 2, axis=1),
+    )
+
+
+def refuse(columns: Mapping[str, Array], name: str, good: NDArray[np.bool_], expected: str) -> None:
+    """Refuse the first design whose number is not good, or not finite."""
+    bad = np.flatnonzero(~(good & np.isfinite(columns[name])))
+    if bad.size:
+        raise InvalidParameter(f"design {bad[0]}: {name}", float(columns[name][bad[0]]), expected)
+
+
+def one_each(name: str, given: ArrayLike, count: int, above: float = -np.inf) -> Array:
+    """A number for all designs, (1,), or one for each, (D,)."""
+    values = np.atleast_1d(np.asarray(given, dtype=float))
+    if values.shape not in ((1,), (count,)):
+        raise InvalidParameter(name, values.shape, f"a number or an array of {count}, one a design")
+    bound = "" if above == -np.inf else f" > {above:g}"
+    refuse({name: values}, name, values > above, f"a finite number{bound}")
+    return values

@@ -1,0 +1,1 @@
+"""Engine: what a study declares, and what answers it."""

@@ -1,0 +1,129 @@
+"""An accuracy is asked for: meshes are refined to their limit, whose error is below the estimate."""
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from fe_reference import (
+    ConvergenceError,
+    InvalidParameter,
+    Model,
+    natural_frequencies,
+    solve_loads,
+    solve_mechanism,
+    solve_motion,
+    solve_release,
+    solve_statics,
+)
+from fe_reference.mechanism import StripDesign, mechanism
+from fe_reference.model import ELEMENTS
+from fe_reference.refined import finer
+from tests.fe.cases import pivot
+from tests.fe.scenes import SECTION, four_bar
+
+
+def apart(found: Any, exact: Any, name: str) -> float:
+    """Return the largest difference of a quantity, in parts of its largest value."""
+    one, two = (np.asarray(getattr(each, name)) for each in (found, exact))
+    return float(np.abs(one - two).max() / np.abs(two).max())
+
+
+@pytest.mark.parametrize("element", ELEMENTS)
+def test_the_limit_of_a_path_is_within_its_estimate(element: str) -> None:
+    """Torque, stiffness, energy and largest stress err by less than estimated, which is what was asked."""
+    coarse, exact = (
+        solve_statics(pivot(elements=4, element=element), rotation=1.0, increments=5, accuracy=accuracy)
+        for accuracy in (1e-3, 1e-7)
+    )
+    assert coarse.estimate is not None and exact.estimate is not None
+    assert coarse.estimate.largest <= coarse.estimate.accuracy
+    assert exact.estimate.meshes[: len(coarse.estimate.meshes)] == coarse.estimate.meshes
+    for name in ("torque", "stiffness", "strain_energy", "largest_stress"):
+        assert 0.0 < apart(coarse, exact, name) < coarse.estimate.errors[name]
+    assert coarse.shape.shape == exact.shape.shape == (6, 2, 5, 2)
+    assert apart(coarse, exact, "bending_moment") < coarse.estimate.largest
+    assert coarse.stations == pytest.approx([0.0, 0.25, 0.5, 0.75, 1.0], rel=1e-14)
+
+
+def test_the_limit_of_a_mechanism_under_loads() -> None:
+    """A four-bar of curved strips under all its loads and drives has one limit from either mesh."""
+    limits = [
+        solve_mechanism(four_bar(elements=n), body="crank", rotation=0.1, increments=4, accuracy=1e-5)
+        for n in (6, 8)
+    ]
+    assert apart(*limits, "torque") < sum(each.estimate.errors["torque"] for each in limits)
+    pulled = solve_loads(pivot(elements=4), moment=100.0, increments=4, accuracy=1e-4)
+    assert pulled.torque[-1] == pytest.approx(100.0, rel=1e-9)
+
+
+def test_largest_stress_is_that_of_the_outer_fibres() -> None:
+    """N/A and M d/(2 I) of a rectangle add up, and the largest of all strips and nodes counts."""
+    solution = solve_statics(pivot(elements=4), rotation=0.3, increments=2)
+    section = pivot().strips[0].section
+    depth = np.sqrt(12.0 * section.second_moment_of_area / section.area)
+    axial, bending = np.abs(solution.axial_force), np.abs(solution.bending_moment)
+    stress = axial / section.area + bending * depth / (2.0 * section.second_moment_of_area)
+    assert solution.largest_stress == pytest.approx(stress.max(axis=(1, 2)), rel=1e-12)
+    assert solution.columns()["largest_stress_Pa"] is solution.largest_stress
+
+
+def test_frequencies_have_a_limit() -> None:
+    """The first frequencies about a bent state err by less than estimated."""
+    coarse, exact = (
+        natural_frequencies(pivot(elements=6), rotation=0.5, count=3, accuracy=accuracy)
+        for accuracy in (1e-3, 1e-7)
+    )
+    assert coarse.estimate is not None
+    errors = np.abs(coarse.frequency / exact.frequency - 1.0)
+    assert np.all(errors < list(coarse.estimate.errors.values()))
+    with pytest.raises(ConvergenceError, match=r"accuracy 1e-14 is not reached with up to \d+ elements"):
+        natural_frequencies(pivot(elements=6), rotation=0.5, count=3, accuracy=1e-14)
+
+
+def test_a_motion_has_a_limit() -> None:
+    """A release errs by less than estimated, at equal instants on all meshes."""
+    coarse, fine = (
+        solve_release(pivot(elements=n), start=0.5, duration=4e-4, samples=8, accuracy=1e-3) for n in (3, 6)
+    )
+    assert coarse.time == pytest.approx(np.linspace(0.0, 4e-4, 9), rel=1e-12)
+    assert coarse.estimate is not None
+    assert coarse.estimate.errors["rotation"] == coarse.rotation_error
+    assert np.abs(coarse.rotation - fine.rotation).max() < coarse.estimate.errors["rotation"]
+    assert coarse.shape.shape == (9, 2, 4, 2)
+
+
+def test_what_an_accuracy_does_not_go_with_is_refused() -> None:
+    """An accuracy is a positive number, beside no step and no other integrator; one line says so."""
+    with pytest.raises(InvalidParameter, match=r"accuracy: got 0.0, expected a number above 0"):
+        solve_statics(pivot(), rotation=0.1, accuracy=0.0)
+    for options in ({"step": 1e-6}, {"integrator": "generalised-alpha"}):
+        with pytest.raises(InvalidParameter, match=r"got 0.1, expected central-difference by its own step"):
+            solve_motion(pivot(), start=0.1, duration=1e-3, accuracy=0.1, **options)
+
+
+def test_an_accuracy_out_of_reach_is_told() -> None:
+    """What round-off does not let reach is the best answer with its estimate, and not converged."""
+    asked = {"rotation": 0.5, "increments": 2, "accuracy": 1e-13}
+    best = solve_statics(pivot(elements=4), raise_on_failure=False, **asked)
+    assert best.status.value == "not_converged"
+    assert "ask for no less" in best.message
+    assert best.estimate is not None and best.estimate.largest > best.estimate.accuracy
+    with pytest.raises(ConvergenceError, match="is not reached"):
+        solve_statics(pivot(elements=4), **asked)
+    stopped = solve_loads(pivot(elements=2), force=(0.0, -1e6), accuracy=1e-3, raise_on_failure=False)
+    assert stopped.status.value == "not_converged" and stopped.estimate is None
+
+
+@pytest.mark.parametrize("rise", [0.0, 0.03, -0.1])
+def test_finer_meshes_of_arcs_lie_on_the_arc(rise: float) -> None:
+    """Twice the elements of a straight or curved strip are those it is made of when asked for as many."""
+
+    def made(elements: int) -> Model:
+        strip = StripDesign(name="arc", start=(0.1, 0.2), end=(0.3, 0.1), tip=None, rise=rise, **SECTION)
+        return mechanism(strips=[strip], elements=elements)
+
+    twice, wanted = finer(made(3)).strips[0], made(6).strips[0]
+    assert twice.nodes == pytest.approx(wanted.nodes, abs=1e-14)
+    assert replace(twice, nodes=wanted.nodes).length == pytest.approx(wanted.length, rel=1e-14)

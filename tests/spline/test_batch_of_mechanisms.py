@@ -1,0 +1,87 @@
+"""Many designs of one mechanism at once."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from spline_model.batch import solve_many
+from spline_model.errors import InvalidParameter
+from spline_model.mechanism import Mechanism, mechanism
+from spline_model.proportional import solve_mechanism
+from studies.answers.models import built, model_of
+from studies.answers.settings import SplineSettings
+from studies.cases.design import named_design
+from tests import gates
+
+VALUES = {
+    "thickness": np.array([3e-4, 2e-4, 1.5e-2]),  # the last: thick, so that no axial force stays outside
+    "rocker_ground.youngs_modulus": np.array([206e9, 190e9, 206e9]),
+    "crank_coupler.end_y": np.array([0.1, 0.102, 0.1]),
+    "coupler.centre_x": np.array([0.05, 0.05, 0.06]),
+}
+
+
+def linkage() -> Mechanism:
+    """The four-bar linkage of flexures, under its weight."""
+    settings = SplineSettings(control_points=6)
+    found: Mechanism = built(
+        model_of(settings), named_design("four_bar_of_flexures"), settings, moving=False
+    )[0]
+    return found
+
+
+def rebuilt(given: Mechanism, i: int) -> Mechanism:
+    """One of the designs, typed anew."""
+    strips = []
+    for strip in given.design.strips:
+        width = strip.area / np.sqrt(12.0 * strip.second_moment_of_area / strip.area)
+        h = VALUES["thickness"][i]
+        new = replace(strip, area=width * h, second_moment_of_area=width * h**3 / 12.0)
+        if strip.name == "rocker_ground":
+            new = replace(new, youngs_modulus=VALUES["rocker_ground.youngs_modulus"][i])
+        if strip.name == "crank_coupler":
+            new = replace(new, end=(strip.end[0], VALUES["crank_coupler.end_y"][i]))
+        strips.append(new)
+    bodies = [
+        replace(b, centre=(VALUES["coupler.centre_x"][i], b.centre[1])) if b.name == "coupler" else b
+        for b in given.design.bodies
+    ]
+    return mechanism(
+        strips=strips, bodies=bodies, effects=given.effects, parameters=given.parameters, control_points=6
+    )
+
+
+def batch_error(factor: float) -> float:
+    """Largest error of torque and stiffness of the designs, with their thickness times a factor."""
+    given, turns, errors = linkage(), [0.3, -0.2, 0.1], []
+    values = VALUES | {"thickness": factor * VALUES["thickness"]}
+    batch = solve_many(given, values, body="crank", rotation=turns, increments=3)
+    assert batch.converged.all()
+    for i, turn in enumerate(turns):
+        path = solve_mechanism(rebuilt(given, i), body="crank", rotation=turn, increments=3)
+        errors.append(np.abs(batch.torque[i] - path.torque).max() / np.abs(path.torque).max())
+        errors.append(np.abs(batch.stiffness[i] / path.stiffness - 1.0).max())
+    return float(max(errors))
+
+
+def test_a_batch_of_mechanisms_equals_single_solves():
+    """Requirement: a mechanism over its numbers, weight included, gives the answers of single solves."""
+    gates.check("spline_batch_mechanism", batch_error(1.0))
+
+
+def test_mechanism_batch_gate_has_teeth():
+    """Requirement: designs of another thickness do not pass."""
+    with pytest.raises(AssertionError, match="x the gate"):
+        gates.check("spline_batch_mechanism", batch_error(gates.teeth("spline_batch_mechanism")["thickness"]))
+
+
+def test_numbers_of_a_batch_are_refused_by_name():
+    """Requirement: an unknown number of a mechanism, and one out of its range, are named in one line."""
+    given = linkage()
+    with pytest.raises(InvalidParameter, match=r"values: got 'crank\.length', expected one of area"):
+        solve_many(given, {"crank.length": 1.0}, body="crank", rotation=0.1)
+    with pytest.raises(
+        InvalidParameter, match=r"design 1: thickness: got -1\.0, expected a finite number > 0"
+    ):
+        solve_many(given, {"thickness": [1e-4, -1.0]}, body="crank", rotation=0.1)

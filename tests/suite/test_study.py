@@ -1,0 +1,97 @@
+"""The engine of studies: tables, findings, points beside each other, and on from where it was interrupted."""
+
+import pandas as pd
+import pytest
+
+from studies.engine.answer import Kept, answered, processes
+from studies.engine.findings import Claim, Finding
+from studies.engine.study import Part, Study
+
+ASKED: list[int] = []
+
+
+def squared(number):
+    """A row and its neighbour in a table of its own; 3 has no answer."""
+    ASKED.append(number)
+    if number == 3:
+        raise ArithmeticError("three")
+    return {"squares": {"number": number, "square": number**2}, "next": [{"number": number + 1}]}
+
+
+def study(numbers=(1, 2), **given):
+    """Squares, with what follows from them."""
+    return Study(cases=(), parts=(Part(at=lambda: numbers, ask=squared),), figures={}, **given)
+
+
+STUDY = study(numbers=(1, 2, 4))
+
+
+def test_tables_follow_from_rows_and_from_tables():
+    """Rows of all points stand below each other, and what follows sees the tables before it."""
+    tables = answered(study(made={"sum": lambda tables: [{"sum": tables["squares"]["square"].sum()}]}))
+    assert list(tables) == ["squares", "next", "sum"]
+    assert tables["squares"].to_dict("list") == {"number": [1, 2], "square": [1, 4]}
+    assert tables["sum"]["sum"].item() == 5
+
+
+def test_tuples_are_taken_apart_and_tables_are_taken_whole():
+    """A point of several values is asked by its values; a table may be given in place of rows."""
+    part = Part(
+        at=lambda: [(1, "a"), (2, "b")], ask=lambda n, name: {"t": pd.DataFrame({"n": n, "s": [name, name]})}
+    )
+    tables = answered(Study(cases=(), parts=(part,), figures={}))
+    assert tables["t"]["s"].tolist() == ["a", "a", "b", "b"]
+
+
+def test_claims_are_held_against_rows():
+    """A claim is a finding a row, with columns in its words; what the parts found stands beside them."""
+    own = Finding(claim="c", formulation="f", quantity="q", value=1.0, holds=True)
+    claim = Claim(
+        claim="At most two",
+        formulation="number {number}",
+        quantity="{number:.1f} squared",
+        rows=lambda tables: tables["squares"],
+        value="square",
+        most=2.0,
+    )
+    declared = Study(
+        cases=(),
+        parts=(*study().parts, Part(ask=lambda: {"findings": [own]})),
+        claims=(claim,),
+        figures={},
+    )
+    found = answered(declared)["findings"]
+    assert found["formulation"].tolist() == ["f", "number 1", "number 2"]
+    assert found["holds"].tolist() == ["yes", "yes", "no"]
+    assert found["quantity"].iloc[2] == "2.0 squared"
+    assert "findings" not in answered(study())
+
+
+def test_progress_is_told_of_every_point():
+    """The number of points that are done grows to that of all."""
+    told = []
+    answered(study(), lambda *done: told.append(done))
+    assert told == [(0, 2), (1, 2), (2, 2)]
+
+
+def test_an_interrupted_study_goes_on_where_it_was(tmp_path):
+    """Points that were answered are not asked again, and a last answer that was cut off is."""
+    kept = Kept(tmp_path / "kept.pickle")
+    with pytest.raises(ArithmeticError):
+        answered(study(numbers=(1, 2, 3)), kept=kept)
+    file = tmp_path / "kept.pickle"
+    file.write_bytes(file.read_bytes()[:-5])
+    ASKED.clear()
+    assert len(answered(study(numbers=(1, 2, 4)), kept=kept)["squares"]) == 3
+    assert ASKED == [2, 4]
+    kept.forget()
+    assert not kept.read()
+
+
+@pytest.mark.slow
+def test_processes_give_the_same_tables():
+    """Points answered beside each other stand where they do one after the other."""
+    with processes(2) as pool:
+        beside = answered(STUDY, pool=pool, module=__name__)
+    for name, table in answered(STUDY).items():
+        pd.testing.assert_frame_equal(beside[name], table)
