@@ -29,7 +29,7 @@ figures: $(STAMP)  ## compute the paper's figures and the convergence studies an
 	$(BIN)/python -m studies run paper convergence
 	$(BIN)/python -m studies readme
 
-results: $(STAMP)  ## compute all studies anew (25 minutes), refresh the README
+results: $(STAMP)  ## compute all studies anew (10 minutes), refresh the README
 	$(BIN)/python -m studies run all
 	$(BIN)/python -m studies readme
 
