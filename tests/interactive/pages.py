@@ -30,6 +30,15 @@ def load(browser, server):
     return time.monotonic() - begin
 
 
+#: Makes the copy of a picture late by more than two frames of the camera, as a busy machine does.
+LATE = """
+const copied = window.createImageBitmap.bind(window);
+window.createImageBitmap = async (...words) => {
+  const picture = await copied(...words);
+  await new Promise((done) => setTimeout(done, 100));
+  return picture;
+};
+"""
 #: Counts the sockets that a page opens.
 COUNT_SOCKETS = """
 window.sockets = 0;

@@ -24,7 +24,7 @@ from studies.interactive.web.hosting import Hosted
 from studies.interactive.web.server import Settings
 from studies.interactive.web.sources import FilmSource
 from tests.interactive.films import both, film, true_corners, truth
-from tests.interactive.pages import BODY, WATCH, load
+from tests.interactive.pages import BODY, LATE, WATCH, load
 
 pytestmark = [
     pytest.mark.slow,
@@ -56,10 +56,14 @@ def places(image, colour, within=30.0):
     return np.column_stack((columns + 0.5, rows + 0.5))
 
 
-def test_film_as_camera(camera):
+@pytest.mark.parametrize(("late", "least"), [(False, 8.0), (True, 2.0)], ids=["as it is", "late copies"])
+def test_film_as_camera(camera, late, least):
     """Requirement: the page's camera drives the pivot: first state within 5 s, at least 8 Hz here, every
-    pose that is given within 0.12 degrees and 0.20 mm of the truth of the picture it is shown with."""
+    pose that is given within 0.12 degrees and 0.20 mm of the truth of the picture it is shown with, on a
+    machine that copies a picture late too (then at least 2 Hz)."""
     with Hosted(Settings(camera="browser")) as hosted, Browser(film=camera) as browser:
+        if late:
+            browser.call("Page.addScriptToEvaluateOnNewDocument", source=LATE)
         assert load(browser, hosted.server) <= 5.0
         browser.wait("studio.state.sight?.state === 'found'", 20.0)
         browser.ask(WATCH)
@@ -69,11 +73,12 @@ def test_film_as_camera(camera):
         rate = len(seen) / (time.monotonic() - begin)
         assert browser.ask("studio.errors") == []
         assert browser.console == []
-    assert rate >= 8.0
+    assert rate >= least
     good = [
         row for row in seen if row["sight"] == "found" and not set(row["codes"]) & {"jump", "no-equilibrium"}
     ]
-    assert len(good) >= 0.8 * len(seen)
+    assert late or len(good) >= 0.8 * len(seen)  # between late pictures the marker turns far
+    assert good
     gaps = np.array([np.array(row["marker"]) - truth(row["number"]) for row in good])
     assert np.degrees(np.abs(gaps[:, 2])).max() <= 0.12
     assert 1e3 * np.hypot(gaps[:, 0], gaps[:, 1]).max() <= 0.20

@@ -36,7 +36,7 @@ export class Camera {
   stop() {
     for (const track of this.stream?.getTracks() ?? []) track.stop();
     this.stream = null;
-    for (const picture of this.waiting.values()) picture.close();
+    for (const picture of this.waiting.values()) picture?.close();
     this.waiting.clear();
   }
 
@@ -55,10 +55,14 @@ export class Camera {
     const { videoWidth: width, videoHeight: height } = this.video;
     if (this.waiting.size >= IN_FLIGHT || !this.socket.ready || !width) return;
     const seq = (this.seq = (this.seq + 1) % 2 ** 32);
+    this.waiting.set(seq, null); // its place is taken before the copy is made
+    // one copy is shown and sent: meanwhile the camera goes on, and the next picture is drawn
+    const picture = await createImageBitmap(this.video);
+    if (!this.waiting.has(seq)) return picture.close();
+    this.waiting.set(seq, picture);
     this.canvas.width = width;
     this.canvas.height = height;
-    this.canvas.getContext("2d", { alpha: false }).drawImage(this.video, 0, 0);
-    this.waiting.set(seq, await createImageBitmap(this.canvas));
+    this.canvas.getContext("2d", { alpha: false }).drawImage(picture, 0, 0, width, height);
     const blob = await new Promise((done) => this.canvas.toBlob(done, "image/jpeg", QUALITY));
     const body = new Uint8Array(await blob.arrayBuffer());
     const message = new Uint8Array(20 + body.length);
@@ -77,6 +81,6 @@ export class Camera {
   }
 
   answered(seq) {
-    for (const [number, picture] of this.waiting) if (number < seq) { picture.close(); this.waiting.delete(number); }
+    for (const [number, picture] of this.waiting) if (number < seq) { picture?.close(); this.waiting.delete(number); }
   }
 }
