@@ -1,9 +1,11 @@
 """Run a sweep: the chunks that are missing, on threads, processes or a cluster, then the table."""
 
 import os
-from collections.abc import Iterator
+import signal
+import threading
+from collections.abc import Callable, Iterator
 from concurrent.futures import FIRST_COMPLETED, CancelledError, Future, wait
-from contextlib import AbstractContextManager, ExitStack
+from contextlib import AbstractContextManager, ExitStack, contextmanager
 from pathlib import Path
 
 import pyarrow as pa
@@ -19,6 +21,8 @@ from studies.sweep.workers.pool import Pool, processes, threads
 
 #: Chunks a worker that are under way or waiting, so that none idles and no result piles up.
 AHEAD = 2
+#: How often an interruption is looked for while nothing comes [s].
+PATIENCE = 0.1
 
 
 class SweepError(BadInput):
@@ -56,7 +60,8 @@ def sweep(
         stack.enter_context(folder.held())
         missing = folder.missing()
         if missing and workers is not None:
-            solved = _solve(plan, folder, missing, workers, progress)
+            interrupted = stack.enter_context(_interruptions())
+            solved = _solve(plan, folder, missing, workers, progress, interrupted)
         folder.finish(csv=csv)
     return solved
 
@@ -67,20 +72,57 @@ def local_pool(plan: Plan, workers: int | None = None) -> AbstractContextManager
     return threads(count) if plan.task.batch else processes(count)
 
 
-def _solve(plan: Plan, folder: Folder, missing: list[int], pool: Pool, progress: Progress) -> int:
+@contextmanager
+def _interruptions() -> Iterator[Callable[[], None]]:
+    """Yield a check that raises KeyboardInterrupt where one came; the second one of a user is not held back.
+
+    Raised in the middle of `wait`, it would leave locks of the futures taken, and the workers at them for
+    ever.
+    """
+    came = threading.Event()
+    if threading.current_thread() is not threading.main_thread():
+        yield lambda: None  # interruptions reach the main thread alone
+        return
+    before = signal.getsignal(signal.SIGINT)
+
+    def note(*_: object) -> None:
+        came.set()
+        signal.signal(signal.SIGINT, before)
+
+    def check() -> None:
+        if came.is_set():
+            raise KeyboardInterrupt
+
+    signal.signal(signal.SIGINT, note)
+    try:
+        yield check
+    finally:
+        signal.signal(signal.SIGINT, before)
+
+
+def _solve(
+    plan: Plan,
+    folder: Folder,
+    missing: list[int],
+    pool: Pool,
+    progress: Progress,
+    interrupted: Callable[[], None],
+) -> int:
     """Solve and keep the missing chunks; returns the number of their points."""
     sizes = {number: plan.span(number)[1] - plan.span(number)[0] for number in missing}
     total = plan.sample.points
     done = total - sum(sizes.values())
     progress(done, total)
-    for number, table in _tables(plan, missing, pool):
+    for number, table in _tables(plan, missing, pool, interrupted):
         folder.write(number, table)
         done += sizes[number]
         progress(done, total)
     return sum(sizes.values())
 
 
-def _tables(plan: Plan, missing: list[int], pool: Pool) -> Iterator[tuple[int, pa.Table]]:
+def _tables(
+    plan: Plan, missing: list[int], pool: Pool, interrupted: Callable[[], None]
+) -> Iterator[tuple[int, pa.Table]]:
     """Yield number and rows of the chunks as they are solved, a bounded number of them under way."""
     drawer, waiting = Drawer(plan.sample), iter(missing)
     pending: dict[Future[pa.Table], int] = {}
@@ -92,7 +134,8 @@ def _tables(plan: Plan, missing: list[int], pool: Pool) -> Iterator[tuple[int, p
                 pending[pool.executor.submit(solve_chunk, plan.task, start, rows)] = number
             if not pending:
                 return
-            done = wait(pending, return_when=FIRST_COMPLETED).done
+            done = wait(pending, timeout=PATIENCE, return_when=FIRST_COMPLETED).done
+            interrupted()  # it ends processes too: what they leave is no failure of theirs
             for future in sorted(done, key=pending.__getitem__):
                 number = pending.pop(future)
                 yield number, _result(plan, number, future)

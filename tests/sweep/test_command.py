@@ -146,6 +146,33 @@ def test_interrupted_command_says_how_to_go_on(kind, tmp_path):
     assert (out / "designs.parquet").read_bytes() == (tmp_path / "one" / "designs.parquet").read_bytes()
 
 
+#: A sweep that is interrupted where the waiting thread has just taken the lock of a future at work.
+AT_A_LOCK = """
+import os, signal, sys
+from concurrent.futures import _base
+from studies.__main__ import main
+left = [signal.SIGINT]
+def enter(locks):
+    for future in locks.futures:
+        future._condition.acquire()
+        if left and future._state == _base.RUNNING:
+            os.kill(os.getpid(), left.pop())
+_base._AcquireFutures.__enter__ = enter
+sys.exit(main(["sweep", *sys.argv[1:]]))
+"""
+
+
+@pytest.mark.slow
+def test_an_interruption_leaves_no_lock_taken(tmp_path):
+    """Requirement: Ctrl-C ends the command wherever it meets it: in the middle of waiting for the threads."""
+    path = tmp_path / "designs.toml"
+    path.write_text(RANDOM.replace("points = 200", "points = 4000"))
+    words = [sys.executable, "-c", AT_A_LOCK, str(path), "--out", str(tmp_path / "out")]
+    done = subprocess.run(words, cwd=ROOT, capture_output=True, text=True, timeout=120)
+    assert done.returncode == 130
+    assert done.stderr.splitlines()[-1].startswith("studies: interrupted")
+
+
 @pytest.mark.slow
 def test_a_killed_command_goes_on(tmp_path):
     """Requirement: also a run that was killed outright is gone on with."""
