@@ -186,3 +186,11 @@ class SlideModes:
 
 
 AxialModes = LegendreModes | HatModes | SlideModes
+
+
+def all_modes(modes: AxialModes, u: Array) -> Array:
+    """Values of all axial modes at points u, those without support among them, (len(u), count)."""
+    first, shown = modes.evaluate(np.asarray(u))
+    full = np.zeros((len(u), modes.count))
+    np.put_along_axis(full, first[:, None] + np.arange(shown.shape[1]), shown, axis=1)
+    return full

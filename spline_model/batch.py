@@ -5,13 +5,14 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from spline_model.compile import compile_scene
+from spline_model.design import Discretisation
 from spline_model.effects import Bending, MixedStretching
 from spline_model.errors import InvalidParameter, require_count
 from spline_model.mechanism import Mechanism
@@ -89,19 +90,23 @@ def solve_many(
     number. Raises InvalidParameter with the number of a bad design.
     """
     require_count("increments", increments, 1)
-    discretisation: dict[str, Any] = {
-        "control_points": control_points,
-        "axial_modes": axial_modes,
-        "basis": basis,
-        "measure": measure,
-        "stretch": stretch,
-        "gauss_points": gauss_points,
-        "slide_stiffness": slide_stiffness,
-    }
+    grid = Discretisation(
+        control_points=control_points,
+        axial_modes=axial_modes,
+        basis=basis,
+        measure=measure,
+        stretch=stretch,
+        gauss_points=gauss_points,
+        slide_stiffness=slide_stiffness,
+    )
     if isinstance(designs, Mechanism):
+        if grid != Discretisation():
+            raise InvalidParameter("discretisation", grid, "none beside a mechanism, which has its own")
         base, given = designs, varied(designs, values or {}, np.size(rotation))
     else:
-        base, given = pivots(designs, discretisation)
+        if values is not None:
+            raise InvalidParameter("values", list(values), "none beside columns of pivots, which hold them")
+        base, given = pivots(designs, asdict(grid))
     count = len(given.ends)
     turned = np.broadcast_to(one_each("rotation", rotation, count), (count,))
     depth = np.zeros(0)

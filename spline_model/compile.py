@@ -78,7 +78,7 @@ class System:
 
     @cached_property
     def weight(self) -> Array:
-        """Generalised force of gravity (Q,) [N]; empty where no effect names gravity."""
+        """Generalised force of gravity and steady loads (Q,) [N, N m]; empty where no effect names any."""
         return self._table("weight", lambda s: build.weight(s.scene, s.layout))
 
     @cached_property

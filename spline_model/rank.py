@@ -7,7 +7,7 @@ from functools import cache
 import numpy as np
 from numpy.typing import NDArray
 
-from spline_model.basis import AxialModes, HatModes, LegendreModes, SlideModes, SplineBasis
+from spline_model.basis import AxialModes, HatModes, LegendreModes, SlideModes, SplineBasis, all_modes
 
 Array = NDArray[np.float64]
 
@@ -41,7 +41,7 @@ def singular(basis: SplineBasis, points: int, axial: LegendreModes | HatModes | 
     modes: list[AxialModes] = [axial]
     if slides and axial.count < shapes:
         modes.append(SlideModes(basis=basis, axial=axial))
-    forces = np.concatenate([_values(part, u) for part in modes], axis=1) * np.sqrt(weight)[:, None]
+    forces = np.concatenate([all_modes(part, u) for part in modes], axis=1) * np.sqrt(weight)[:, None]
     # orthonormal strains: of Bernstein's the highest polynomial is 2^-n
     rank = _rank(np.linalg.qr(strains)[0].T @ forces)
     if rank < forces.shape[1]:
@@ -51,14 +51,6 @@ def singular(basis: SplineBasis, points: int, axial: LegendreModes | HatModes | 
         free = f"{rank} axial modes leave {shapes - rank} of {shapes} strains free"
         return f"{free}, along which control points slide: use slide_stiffness > 0 or more axial_modes"
     return ""
-
-
-def _values(modes: AxialModes, u: Array) -> Array:
-    """Values of all modes at u, (len(u), count)."""
-    first, values = modes.evaluate(u)
-    full = np.zeros((len(u), modes.count))
-    np.put_along_axis(full, first[:, None] + np.arange(values.shape[1]), values, axis=1)
-    return full
 
 
 def _rank(matrix: Array) -> int:

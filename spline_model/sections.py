@@ -8,7 +8,7 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from spline_model.basis import AxialModes, SplineBasis
+from spline_model.basis import AxialModes, SplineBasis, all_modes
 from spline_model.compile import System
 from spline_model.continuation.resolution import areas_of, balance, weight_of
 from spline_model.effects import Clamp, MixedStretching, Stretching, StripGravity
@@ -129,11 +129,7 @@ def _areas_at(basis: SplineBasis, stations: bytes) -> Array:
 @lru_cache(maxsize=64)
 def _modes_at(modes: AxialModes, stations: bytes) -> Array:
     """All axial modes at stations (K, P); kept."""
-    u = np.frombuffer(stations)
-    first, shown = modes.evaluate(u)
-    full = np.zeros((len(u), modes.count))
-    np.put_along_axis(full, first[:, None] + np.arange(shown.shape[1]), shown, axis=1)
-    return np.ascontiguousarray(full.T)
+    return np.ascontiguousarray(all_modes(modes, np.frombuffer(stations)).T)
 
 
 def clamp_reactions(system: System, states: Array, strip: str, end: str) -> Array:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import Enum
 from typing import TYPE_CHECKING
@@ -153,8 +154,39 @@ class MotionEstimate:
     runs: int
 
 
+class Tabulated:
+    """An answer with a ``status`` whose ``columns`` make a table and, their last row, its line."""
+
+    status: Status
+
+    def columns(self) -> dict[str, Array]:
+        """What is one number in every row, by names with units."""
+        raise NotImplementedError
+
+    def to_frame(self) -> pd.DataFrame:
+        """The columns as a table."""
+        import pandas as pd
+
+        return pd.DataFrame(self.columns())
+
+    def __repr__(self) -> str:
+        columns = self.columns()
+        rows = len(next(iter(columns.values())))
+        told = ", ".join(f"{name} = {values[-1]:.6g}" for name, values in columns.items())
+        return f"<{type(self).__name__} {self.status.value}, {rows} rows, the last one: {told}>"
+
+
+def body_columns(bodies: Mapping[str, Array]) -> dict[str, Array]:
+    """Columns of x, y, theta (S, 3) of bodies, named after them where there are several."""
+    return {
+        part if len(bodies) == 1 else f"{name}_{part}": place[:, k]
+        for name, place in bodies.items()
+        for k, part in enumerate(("x_m", "y_m", "rotation_rad"))
+    }
+
+
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
-class StaticSolution:
+class StaticSolution(Tabulated):
     """Answer of a mechanism, a pivot or any other; S states, G strips, P stations.
 
     load_factor (S,) share of the loads that acts; bodies: x, y, theta (S, 3) by name [m, m, rad]; driven:
@@ -228,29 +260,13 @@ class StaticSolution:
 
     def columns(self) -> dict[str, Array]:
         """What is one number in every state, by names with units."""
-        moved = {
-            f"{name}_{part}": place[:, k]
-            for name, place in self.bodies.items()
-            for k, part in enumerate(("x_m", "y_m", "rotation_rad"))
-        }
         energies = ("bending_energy", "axial_energy", "gravity_energy", "work")
         return {
             "load_factor": self.load_factor,
-            **moved,
+            **body_columns(self.bodies),
             "torque_Nm": self.torque,
             "stiffness_Nm_per_rad": self.stiffness,
             **{f"{name}_J": getattr(self, name) for name in energies},
             "inertia": self.inertia,
             "moment_defect": self.moment_defect,
         }
-
-    def to_frame(self) -> pd.DataFrame:
-        """The columns as a table, a row a state."""
-        import pandas as pd
-
-        return pd.DataFrame(self.columns())
-
-    def __repr__(self) -> str:
-        ends = {name: values[-1] for name, values in self.columns().items()}
-        told = ", ".join(f"{name} = {value:.6g}" for name, value in ends.items())
-        return f"<StaticSolution {self.status.value}, {len(self.load_factor)} states, the last one: {told}>"

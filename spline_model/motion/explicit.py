@@ -124,12 +124,11 @@ def show(r, w, grid, strips, masses, room, state):
 
 
 @kernel()
-def run(scheme, h, every, r, w, push, grid, strips, masses, room, state, work, records):
-    """Fill the rows of the records, ``every`` steps apart; returns the rows filled.
+def run(scheme, stages, h, every, r, w, push, grid, strips, masses, room, state, work, records):
+    """Fill the rows of the records, ``every`` steps of that many stages apart; returns the rows filled.
 
     A state that diverges or is no strip's ends the run.
     """
-    stages = (1 if grid.outer else 2) if scheme == LEAPFROG else 4
     for row in range(records.shape[0]):
         for step in range(every):
             for stage in range(-1 if scheme == LEAPFROG and row + step == 0 else 0, stages):
@@ -161,12 +160,17 @@ class Flight(NamedTuple):
     work: Scratch
     records: Array
 
+    @property
+    def stages(self) -> int:
+        """Evaluations of the accelerations in a step."""
+        return (1 if self.grid.outer else 2) if self.scheme == LEAPFROG else 4
+
     def fly(self, step: float, every: int) -> int:
         """Fill the records, ``every`` steps apart, in compiled code; returns the rows filled."""
         model = self.model
         return int(
             run(
-                self.scheme, step, every, self.r, self.w, self.push, self.grid, model.strips,
+                self.scheme, self.stages, step, every, self.r, self.w, self.push, self.grid, model.strips,
                 model.masses, self.room, self.state, self.work, self.records,
             )
         )  # fmt: skip
@@ -232,7 +236,7 @@ def integrate(
         velocities=np.concatenate((v[None], rates))[:kept],
         rows=rows[:kept],
         message=message,
-        counters={"steps": done, "evaluations": (2 if integrator == "leapfrog" else 4) * done},
+        counters={"steps": done, "evaluations": start.stages * done},
     )
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,16 +13,13 @@ from spline_model.compile import System
 from spline_model.kernels.record import DISSIPATED, KINETIC, POSITION, STRAIN, VELOCITY, WEIGHT, WORK
 from spline_model.laps import Laps
 from spline_model.motion.start import Records
-from spline_model.solution import MotionEstimate, Status
-
-if TYPE_CHECKING:
-    import pandas as pd
+from spline_model.solution import MotionEstimate, Status, Tabulated, body_columns
 
 Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
-class Trajectory:
+class Trajectory(Tabulated):
     """A motion; T records, the start first.
 
     time (T,) [s]; bodies: x, y, theta (T, 3) by name [m, m, rad]; body: the one that rotation
@@ -71,24 +68,12 @@ class Trajectory:
 
     def columns(self) -> dict[str, Array]:
         """What is one number at every instant, by names with units."""
-        moved = {
-            f"{name}_{part}": place[:, k]
-            for name, place in self.bodies.items()
-            for k, part in enumerate(("x_m", "y_m", "rotation_rad"))
-        }
         energies = ("kinetic_energy", "strain_energy", "gravity_energy", "work", "dissipated")
-        return {"time_s": self.time, **moved, **{f"{name}_J": getattr(self, name) for name in energies}}
-
-    def to_frame(self) -> pd.DataFrame:
-        """The columns as a table, a row an instant."""
-        import pandas as pd
-
-        return pd.DataFrame(self.columns())
-
-    def __repr__(self) -> str:
-        ends = {name: values[-1] for name, values in self.columns().items()}
-        told = ", ".join(f"{name} = {value:.6g}" for name, value in ends.items())
-        return f"<Trajectory {self.status.value}, {len(self.time)} instants, the last one: {told}>"
+        return {
+            "time_s": self.time,
+            **body_columns(self.bodies),
+            **{f"{name}_J": getattr(self, name) for name in energies},
+        }
 
 
 def trajectory_of(

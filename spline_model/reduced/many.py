@@ -8,9 +8,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from spline_model.basis import all_modes
 from spline_model.effects import MixedStretching
 from spline_model.reduced.equilibrium import ITERATIONS
-from spline_model.reduced.model import Reduced, values_at
+from spline_model.reduced.model import Reduced
 from spline_model.reduced.path import follow
 from spline_model.strip.compiled import copy, kernel
 from spline_model.strip.element import CURVATURE, MODES, ON_POINTS, POINTS, SPEED, place_points
@@ -34,7 +35,7 @@ def stations_of(model: Reduced, stations: Array) -> Stations:
     """Tables at the stations u in [0, 1], with working arrays of their own."""
     scene, order = model.system.scene, model.shape.order
     basis, mine = scene.strips[0].basis, scene.strips[0].name
-    parts = [values_at(e.modes, stations) for e in scene.of(MixedStretching) if e.strip == mine]
+    parts = [all_modes(e.modes, stations) for e in scene.of(MixedStretching) if e.strip == mine]
     modes = np.column_stack(parts) if parts else np.zeros((len(stations), 0))
     d1, d2 = (np.ascontiguousarray(basis.evaluate(stations, k)[:, order].T) for k in (1, 2))
     axial = np.ascontiguousarray((modes @ model.to_modes[0]).T)

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import BSpline
 
-from spline_model.basis import AxialModes, SlideModes, SplineBasis
+from spline_model.basis import AxialModes, SlideModes, SplineBasis, all_modes
 from spline_model.compile import System
 from spline_model.effects import Bending, MixedStretching, Stretching, StripGravity
 from spline_model.effects.elastic import MEASURES
@@ -218,14 +218,6 @@ def len_modes(parts: list[MixedStretching], *, slide: bool) -> int:
     return sum(e.modes.count for e in parts if isinstance(e.modes, SlideModes) == slide)
 
 
-def values_at(modes: AxialModes, u: Array) -> Array:
-    """All axial modes at points u, (len(u), count)."""
-    first, shown = modes.evaluate(np.asarray(u))
-    full = np.zeros((len(u), modes.count))
-    np.put_along_axis(full, first[:, None] + np.arange(shown.shape[1]), shown, axis=1)
-    return full
-
-
 @lru_cache(maxsize=64)
 def orthonormal_modes(
     parts: tuple[AxialModes, ...], basis: SplineBasis, points: int, speed: bytes
@@ -235,7 +227,7 @@ def orthonormal_modes(
     weight = weight * np.frombuffer(speed)
     values, back = np.zeros((len(u), 0)), np.zeros((0, 0))
     for modes in parts:
-        full, to_part = values_at(modes, u), np.eye(modes.count)
+        full, to_part = all_modes(modes, u), np.eye(modes.count)
         if not isinstance(modes, SlideModes):  # the mean first
             to_part[:, 0] = np.linalg.lstsq(full, np.ones(len(u)), rcond=None)[0]
             full = full @ to_part

@@ -15,8 +15,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from spline_model.basis import all_modes
 from spline_model.effects import Bending, MixedStretching
-from spline_model.reduced.model import Reduced, values_at
+from spline_model.reduced.model import Reduced
 from spline_model.sensitivity.varied import Varied
 from spline_model.strip import laws
 
@@ -234,7 +235,7 @@ class Elements:
             force = varied.stretching * (curve.speed / speed - 1.0 - strips.strain[:, None, None])
         if len(self.axial):
             parts = [e.modes for e in scene.of(MixedStretching) if e.strip == scene.strips[0].name]
-            shown = np.column_stack([values_at(modes, stations) for modes in parts]) @ model.to_modes
+            shown = np.column_stack([all_modes(modes, stations) for modes in parts]) @ model.to_modes
             force = force + _times_each(shown, self.axial)
         mean = force * (model.energy / model.length / varied.area)
         return np.stack((mean - side, mean + side)).transpose(3, 4, 2, 1, 0)

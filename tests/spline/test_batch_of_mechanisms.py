@@ -13,6 +13,7 @@ from studies.answers.models import built, model_of
 from studies.answers.settings import SplineSettings
 from studies.cases.design import named_design
 from tests import gates
+from tests.table_one import TABLE_ONE
 
 VALUES = {
     "thickness": np.array([3e-4, 2e-4, 1.5e-2]),  # the last: thick, so that no axial force stays outside
@@ -85,3 +86,11 @@ def test_numbers_of_a_batch_are_refused_by_name():
         InvalidParameter, match=r"design 1: thickness: got -1\.0, expected a finite number > 0"
     ):
         solve_many(given, {"thickness": [1e-4, -1.0]}, body="crank", rotation=0.1)
+
+
+def test_what_a_batch_does_not_read_is_refused():
+    """Requirement: a discretisation beside a mechanism, and values beside columns, are named, not ignored."""
+    with pytest.raises(InvalidParameter, match="none beside a mechanism, which has its own"):
+        solve_many(linkage(), VALUES, body="crank", rotation=0.1, control_points=12)
+    with pytest.raises(InvalidParameter, match="none beside columns of pivots"):
+        solve_many(TABLE_ONE, {"thickness": [1e-3]}, rotation=0.1)

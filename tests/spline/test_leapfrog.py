@@ -168,6 +168,18 @@ def test_inextensible_strips_keep_energy_in_explicit_steps():
     gates.check("spline_inextensible_explicit_energy", energy_of_inextensible())
 
 
+def test_work_of_a_run_is_what_was_evaluated():
+    """Requirement: two evaluations a leapfrog step, one of inextensible strips, four of Runge-Kutta."""
+    for stretch, integrator, stages in (
+        ("mixed", "leapfrog", 2),
+        ("inextensible", "leapfrog", 1),
+        ("inextensible", "explicit", 4),
+    ):
+        made = cross_axis_pivot(**TABLE_ONE, control_points=6, stretch=stretch)
+        counters = solve_release(made, duration=2e-4, integrator=integrator, check=False).counters
+        assert counters["evaluations"] == stages * counters["steps"] > 0
+
+
 def test_inextensible_gate_has_teeth():
     """Requirement: a step near the longest stable one fails it."""
     with pytest.raises(AssertionError, match="x the gate"):
