@@ -42,7 +42,7 @@ interactive: $(EXTRA)  ## drive the pivot by camera or mouse in the browser; ARG
 $(EXTRA): $(STAMP) requirements-interactive.lock
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check -r requirements-interactive.lock
 	@echo "compiling the kernels of the interactive environment, once ..."
-	$(BIN)/python -c "from studies.interactive.warm_up import warm_up; warm_up()"
+	$(BIN)/python -c "from studies.interactive.web.server import warm_up; warm_up()"
 	@touch $@
 
 test: $(STAMP)  ## run the quick tests

@@ -20,7 +20,7 @@ copyright = "the authors; MIT licence"
 release = version = PROJECT["version"]
 
 extensions = ["myst_parser", "sphinx.ext.autodoc"]
-exclude_patterns = ["_build"]
+exclude_patterns = ["_build", "README.md"]
 myst_heading_anchors = 3
 
 autodoc_default_options = {"members": True, "ignore-module-all": True, "member-order": "bysource"}

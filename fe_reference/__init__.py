@@ -3,8 +3,10 @@
 Data flow one way, and so do the imports:
 
     effects -> model (pivot, mechanism) -> mesh -> structure (law, matrix) -> control -> path -> statics
-    structure -> mass, loads -> actions -> explicit, implicit -> dynamics; statics -> modes; all -> solution
+    structure -> mass, loads -> drives, actions -> motion -> explicit, implicit -> dynamics
+    statics -> modes; all -> solution
     solution -> refined (meshes to a wanted accuracy) -> statics, modes, dynamics
+    plate: one strip as a plate, which says what all beams leave out; it shares nothing with the rest
 
 What is scikit-fem's, and what is not: the mesh of the strips, the basis of three linear fields on it, the
 numbering of its degrees of freedom and the pattern of the assembled matrices are scikit-fem's. The energies
@@ -14,13 +16,15 @@ forms, integrated and assembled by scikit-fem, give the same energy, forces and 
 rest; a test holds both elements to that.
 """
 
+from .drives import DrivenRotation
 from .dynamics import solve_motion, solve_release
 from .effects import DEFAULT_EFFECTS
 from .errors import ConvergenceError, InvalidParameter
 from .mechanism import BodyDesign, StripDesign
-from .model import Body, Model, Section, Strip, straight_strip
+from .model import Body, Model, Section, Strip
 from .modes import Modes, natural_frequencies
 from .pivot import cross_axis_pivot
+from .plate import PlateFactors, plate_factors
 from .section_forces import StripFields, strip_fields
 from .solution import CriticalPoint, ErrorEstimate, StaticSolution, Status
 from .statics import solve_loads, solve_mechanism, solve_statics
@@ -32,10 +36,12 @@ __all__ = [
     "BodyDesign",
     "ConvergenceError",
     "CriticalPoint",
+    "DrivenRotation",
     "ErrorEstimate",
     "InvalidParameter",
     "Model",
     "Modes",
+    "PlateFactors",
     "Section",
     "StaticSolution",
     "Status",
@@ -45,11 +51,11 @@ __all__ = [
     "Trajectory",
     "cross_axis_pivot",
     "natural_frequencies",
+    "plate_factors",
     "solve_loads",
     "solve_mechanism",
     "solve_motion",
     "solve_release",
     "solve_statics",
-    "straight_strip",
     "strip_fields",
 ]

@@ -231,8 +231,8 @@ def advance(
     """Make `steps` steps of the central difference scheme in place: v is half a step behind u.
 
     v += h a(u, v), u += h v for the free nodes (`compliance` (nodes, 3) is 1/mass there, else 0) and the
-    bodies; dampers act at the velocities before the step. `totals` gathers the work of the loads, exactly
-    that of the scheme, and what the dampers take [J].
+    bodies, whose rows of zero are led; dampers act at the velocities before the step. `totals` gathers the
+    work of loads and drives, exactly that of the scheme, and what the dampers take [J].
     """
     _, _, _, attached, carrier, offsets, _, _ = given
     viscous = len(dissipative[0]) > 0 or len(dissipative[1]) > 0
@@ -241,6 +241,10 @@ def advance(
             carry_velocity(bodies, bodies_v, attached, carrier, offsets, v)
         at = time + n * step
         _, power, loss = act(given, dissipative, histories, arrays, u, v, bodies, bodies_v, at)
+        for b in range(len(bodies)):
+            for k in range(3):
+                if body_compliance[b, k] == 0.0:
+                    totals[0] += step * arrays[1][b, k] * bodies_v[b, k]
         _move(compliance, arrays[0], step, v, u)
         _move(body_compliance, arrays[1], step, bodies_v, bodies)
         totals[0] += 0.5 * step * (power + load_power(histories[0], arrays[5], v, bodies_v))

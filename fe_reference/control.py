@@ -136,19 +136,21 @@ def spans(
     body: int | None = None,
     rotations: Sequence[float] | None = None,
     displacement: Sequence[float] | None = None,
+    led: int | None = None,
     load: Array | None = None,
     watched: int | None = None,
     first: bool = False,
 ) -> list[Control]:
     """Return the spans of a path on which a body is led through `rotations` [rad], one leg each.
 
-    The displacement [m] of the body's centre and the load grow with the load factor over all legs, or
-    `first`: in a leg of their own before the rotation, and then they stay.
+    The displacement [m] of the centre of that body, or of the `led` one, and the load grow with the load
+    factor over all legs, or `first`: in a leg of their own before the rotation, and then they stay.
     """
     ends = [0.0, *rotations] if rotations is not None else [0.0, 0.0]
     ends = [0.0, *ends] if first else ends
     at = structure.body_slice(0 if body is None else body).start
-    held = [] if displacement is None else [at, at + 1]
+    centre = structure.body_slice(led).start if led is not None else at
+    held = [] if displacement is None else [centre, centre + 1]
     held += [at + 2] if rotations is not None else []
     legs = len(ends) - 1
 

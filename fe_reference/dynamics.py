@@ -1,6 +1,7 @@
 """Motion of a model after its drives are removed, or from the shape at rest."""
 
 from dataclasses import dataclass, replace
+from functools import cache
 from math import ceil
 from typing import Any
 
@@ -8,7 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .companion import with_companion
-from .effects import DEFAULT_EFFECTS, needs_inertia, read_effects
+from .drives import DrivenRotation, drive_spans
+from .effects import DEFAULT_EFFECTS, DrivenDisplacement, needs_inertia, read_effects
 from .errors import ConvergenceError, InvalidParameter, choice, count, finite, positive, within
 from .explicit import Explicit, critical_step
 from .implicit import Implicit
@@ -16,21 +18,18 @@ from .loads import start_load
 from .mass import about_mass_centre, carried_over
 from .model import Model
 from .modes import natural_frequencies
-from .motion import Progress, Samples, sampling
+from .motion import Progress, Samples, course, sampling
 from .refined import limit_of_motions
-from .solution import Status
+from .solution import Status, Stopwatch
 from .statics import settled_state
-from .stopwatch import Stopwatch
 from .structure import Structure, structure_of
 from .trajectory import Trajectory, trajectory
 
 Array = NDArray[np.float64]
 INTEGRATORS = ("central-difference", "generalised-alpha")
-#: Default of the implicit step: so many in the first period of small motion. The strips swing fifty times as
-#: fast as the body and act back on it, so that the period of the body alone says little.
+#: Default of the implicit step: so many in the first period of small motion; strips are fifty times as fast.
 STEPS_PER_PERIOD = 6000
-#: Most steps of one run unless more are allowed, some 25 s with 20 elements, and most numbers kept of it
-#: (8 bytes each): beyond, the request is a slip.
+#: Most steps of one run unless more are allowed, some 25 s with 20 elements, and most numbers kept of it.
 MOST_STEPS = 20_000_000
 MOST_NUMBERS = 200_000_000
 
@@ -59,7 +58,9 @@ class Run:
         positive("safety", self.safety, "1")
         within("spectral_radius", self.spectral_radius, 0.0, 1.0 + 1e-12, "1")
         if self.accuracy is not None and (self.step is not None or self.integrator != INTEGRATORS[0]):
-            raise InvalidParameter("accuracy", self.accuracy, f"{INTEGRATORS[0]} by its own step beside it")
+            raise InvalidParameter(
+                "accuracy", self.accuracy, f"no step beside it, and the integrator {INTEGRATORS[0]}"
+            )
 
 
 def solve_release(pivot: Model, *, start: float | None, duration: float, **options: Any) -> Trajectory:
@@ -73,6 +74,7 @@ def solve_motion(
     *,
     start: float | None = None,
     body: str | None = None,
+    drive: DrivenRotation | None = None,
     settled: bool = True,
     duration: float,
     step: float | None = None,
@@ -90,9 +92,10 @@ def solve_motion(
     """Let a mechanism go at rest from a static state, and follow the motion of all its bodies.
 
     The start is in static equilibrium: with the rotation of a body driven to `start`, gravity, natural
-    strains and the driven displacement in full, and every load at its value times its history at t = 0
-    (without a history: in full). Then both drives let go; loads go on as value times history(t), constant
-    before its first and after its last time.
+    strains in full, and every load and the driven displacement at its value times its history at t = 0
+    (without a history: in full). Then the rotation lets go, and so does a driven displacement without a
+    history; one with a history goes on leading. Loads go on as value times history(t), constant before its
+    first and after its last time.
 
     Args:
         mechanism: strips, bodies and effects; both elements and both integrators go together. Masses are
@@ -100,6 +103,7 @@ def solve_motion(
         start: rotation at which a body is held until the start [rad]; None: none is held, and under loads
             without a history the mechanism stands still.
         body: name of the held body; None: the only one.
+        drive: a rotation that is held or driven in a part of the motion, if any.
         settled: whether the start is in equilibrium; if not it is the shape at rest, where gravity, natural
             strains and loads act at once.
         duration: [s].
@@ -145,7 +149,7 @@ def solve_motion(
         raise InvalidParameter("settled", settled, "True for a start at a held rotation [1]")
 
     def solve(model: Model) -> Trajectory:
-        return _moved(model, start, body, settled, increments, run)
+        return _moved(model, start, body, drive, settled, increments, run)
 
     motion = solve(mechanism) if accuracy is None else limit_of_motions(mechanism, accuracy, solve)
     if motion.status is not Status.CONVERGED and raise_on_failure:
@@ -157,28 +161,41 @@ def solve_motion(
         )
     if accuracy is not None or not check or not settled:
         return motion
-    return checked(mechanism, motion, start=start, body=body)
+    return checked(mechanism, motion, start=start, body=body, drive=drive)
 
 
 def _moved(
-    model: Model, start: float | None, body: str | None, settled: bool, increments: int, run: Run
+    model: Model,
+    start: float | None,
+    body: str | None,
+    drive: DrivenRotation | None,
+    settled: bool,
+    increments: int,
+    run: Run,
 ) -> Trajectory:
     """Return the motion of a model, however it ended."""
     watch = Stopwatch()
     rest = np.zeros(structure_of(model).size)
     y, remark = _start(model, start, body, increments) if settled else (rest, "")
     watch.stop("start")
-    structure, samples, settings = _integrate(model, y, run, watch)
+    structure, samples, settings = _integrate(model, y, drive, run, watch)
     begin: dict[str, float | str] = {} if start is None else {"start_rad": start}
     samples.remarks += [remark] if remark else []
     return trajectory(structure, samples, begin | settings, watch)
 
 
-def checked(model: Model, motion: Trajectory, *, start: float | None, body: str | None = None) -> Trajectory:
+def checked(
+    model: Model,
+    motion: Trajectory,
+    *,
+    start: float | None,
+    body: str | None = None,
+    drive: DrivenRotation | None = None,
+) -> Trajectory:
     """Return a motion with its `rotation_error` and `resolution`, by a companion of fewer elements.
 
     Args:
-        model, start, body: as of the motion, which began in equilibrium.
+        model, start, body, drive: as of the motion, which began in equilibrium.
     """
     names = ("integrator", "spectral_radius")
     settings: dict[str, Any] = {name: motion.settings[name] for name in names if name in motion.settings}
@@ -186,7 +203,7 @@ def checked(model: Model, motion: Trajectory, *, start: float | None, body: str 
         return motion
 
     def run(chosen: Model, **more: Any) -> Trajectory:
-        return solve_motion(chosen, start=start, body=body, check=False, **settings, **more)
+        return solve_motion(chosen, start=start, body=body, drive=drive, check=False, **settings, **more)
 
     return with_companion(model, motion, body, run)
 
@@ -195,34 +212,48 @@ def _start(model: Model, rotation: float | None, body: str | None, increments: i
     """Return the coordinates of the start about the bodies' centres, and what is to be said of them."""
     needs_inertia(model.effects)
     load = start_load(structure_of(model))
+    led = model.effects.find(DrivenDisplacement)
+    if led is not None:
+        model = replace(model, effects=model.effects.changed("driven_displacement", led.at(0.0)))
     y, remark = settled_state(model, rotation, body, count("increments", increments), load)
     return y, f"the way to the start: {remark}" if remark else ""
 
 
 def _integrate(
-    model: Model, y: Array, run: Run, watch: Stopwatch
+    model: Model, y: Array, drive: DrivenRotation | None, run: Run, watch: Stopwatch
 ) -> tuple[Structure, Samples, dict[str, float | str]]:
     """Integrate from rest at y; return the structure the samples belong to, the samples and the settings."""
     needs_inertia(model.effects)
-    structure, bodies = about_mass_centre(structure_of(model))
-    y = carried_over(structure_of(model), y, structure)
-    scheme: Explicit | Implicit
-    choices: dict[str, float]
-    if run.integrator == "central-difference":
-        scheme = Explicit(structure, bodies)
-        limit = min(critical_step(structure, bodies, state) for state in (y, np.zeros_like(y)))
+    own = structure_of(model)
+    explicit = run.integrator == INTEGRATORS[0]
+
+    @cache
+    def scheme_of(led: tuple[int, ...]) -> Explicit | Implicit:
+        about = about_mass_centre(own, led)
+        return Explicit(*about) if explicit else Implicit(*about, run.spectral_radius)
+
+    home = scheme_of(()).structure
+    choices: dict[str, float] = {"spectral_radius": run.spectral_radius}
+    longest = run.duration
+    if explicit:
+        schemes = [scheme_of(span.led) for span in drive_spans(model, drive, run.duration)]
+        limit = min(
+            critical_step(scheme.structure, scheme.bodies, carried_over(own, state, scheme.structure))
+            for scheme in {scheme_of(()), *schemes}
+            for state in (y, np.zeros_like(y))
+        )
         choices, longest = {"critical_step_s": limit, "safety": run.safety}, run.safety * limit
-    else:
-        scheme, choices = Implicit(structure, bodies, run.spectral_radius), {}
-        choices["spectral_radius"] = run.spectral_radius
-        longest = run.duration if run.step is not None else 1.0 / (STEPS_PER_PERIOD * _first_frequency(model))
+    elif run.step is None:
+        longest = 1.0 / (STEPS_PER_PERIOD * _first_frequency(model))
     h, steps = _steps(run, longest)
     _affordable(model, run, h, steps, y.size)
+    spans = drive_spans(model, drive, steps * h)
     watch.stop("compile")
-    motion = scheme.run(y, np.zeros_like(y), h, sampling(steps, run.samples), run.progress)
+    began = carried_over(own, y, home), np.zeros_like(y)
+    motion = course(scheme_of, spans, *began, h, sampling(steps, run.samples), run.progress)
     watch.stop("solve")
     settings: dict[str, float | str] = {"integrator": run.integrator, "duration_s": run.duration, "step_s": h}
-    return structure, motion, settings | choices
+    return home, motion, settings | choices
 
 
 def _first_frequency(model: Model) -> float:

@@ -83,7 +83,7 @@ class AppliedForce(Effect):
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "force", pair("force", self.force, "N"))
-        object.__setattr__(self, "history", _history(self.history))
+        object.__setattr__(self, "history", read_history(self.history))
 
     def turned(self, turn: Array) -> Self:
         """Return the same effect with its force turned by the matrix `turn` (2, 2)."""
@@ -100,7 +100,7 @@ class AppliedMoment(Effect):
 
     def __post_init__(self) -> None:
         finite("moment", self.moment, "N m")
-        object.__setattr__(self, "history", _history(self.history))
+        object.__setattr__(self, "history", read_history(self.history))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -113,7 +113,7 @@ class TipForce(Effect):
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "force", pair("force", self.force, "N"))
-        object.__setattr__(self, "history", _history(self.history))
+        object.__setattr__(self, "history", read_history(self.history))
 
     def turned(self, turn: Array) -> Self:
         """Return the same effect with its force turned by the matrix `turn` (2, 2)."""
@@ -122,12 +122,25 @@ class TipForce(Effect):
 
 @dataclass(frozen=True, kw_only=True)
 class DrivenDisplacement(Effect):
-    """Displacement (d_x, d_y) [m] that the centre of the driven body is led to, times the load factor."""
+    """Displacement (d_x, d_y) [m] that the centre of a body is led to, times the load factor.
+
+    body: None for the one whose rotation is driven, or the only one. In a motion it lets go at the start, or
+    with a history goes on leading, times that.
+    """
 
     displacement: Pair
+    body: str | None = None
+    history: History | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "displacement", pair("displacement", self.displacement, "m"))
+        if self.history is not None:
+            object.__setattr__(self, "history", read_history(self.history))
+
+    def at(self, time: float) -> Self:
+        """Return the same effect with the displacement that it has at an instant [s]."""
+        part = 1.0 if self.history is None else factor_of(self.history, time)
+        return replace(self, displacement=(part * self.displacement[0], part * self.displacement[1]))
 
     def turned(self, turn: Array) -> Self:
         """Return the same effect with its displacement turned by the matrix `turn` (2, 2)."""
@@ -189,6 +202,10 @@ class Effects:
         """Return the effect of this class, or None if it is not named."""
         return next((each for each in self.named.values() if isinstance(each, kind)), None)
 
+    def changed(self, name: str, effect: Effect) -> "Effects":
+        """Return the effects with another one of this name."""
+        return Effects(named={**self.named, name: effect})
+
     def turned(self, turn: Array) -> "Effects":
         """Return the effects of a scene turned as a whole by the matrix `turn` (2, 2)."""
         return Effects(named={name: each.turned(turn) for name, each in self.named.items()})
@@ -249,10 +266,15 @@ def _turned(turn: Array, vector: Pair) -> Pair:
     return x, y
 
 
-def _history(history: Sequence[Sequence[float]]) -> History:
+def read_history(history: Sequence[Sequence[float]]) -> History:
     """Return the pairs of instant [s] and factor [1] that a piecewise linear history passes through."""
     points = tuple(pair("history", point, "s, 1") for point in history)
     times = [time for time, _ in points]
     if not points or any(b <= a for a, b in pairwise(times)):
         raise InvalidParameter("history", history, "pairs of ascending instants [s] and factors [1]")
     return points
+
+
+def factor_of(history: History, time: float) -> float:
+    """Return the factor at an instant [s]: constant before the first and after the last."""
+    return float(np.interp(time, *np.transpose(history)))

@@ -16,11 +16,12 @@ ch. 6.
 import numpy as np
 from numpy.typing import NDArray
 
-from .actions import Actions, Resistance, advance
+from .actions import Actions, advance
+from .drives import Leg
 from .errors import InvalidParameter
 from .law import TANGENT
 from .mass import RigidBodies, lumped_diagonal, lumped_elements
-from .motion import FLOOR, Energy, Progress, Samples
+from .motion import BLOW_UP, Keep, Samples
 from .structure import Structure
 
 Array = NDArray[np.float64]
@@ -56,8 +57,10 @@ class Explicit:
         InvalidParameter: a coordinate without inertia, which no explicit step can follow.
     """
 
+    blow_up = BLOW_UP
+
     def __init__(self, structure: Structure, bodies: RigidBodies) -> None:
-        self.structure = structure
+        self.structure, self.bodies = structure, bodies
         self.actions = Actions(structure)
         self.mass = lumped_diagonal(structure, bodies)
         if not np.all(self.mass > 0.0):
@@ -68,45 +71,39 @@ class Explicit:
             )
         self.compliance = np.zeros((structure.strips * structure.stations, 3))
         self.compliance[structure.free_nodes] = 1.0 / self.mass[: structure.first_body].reshape(-1, 3)
-        self.body_compliance = 1.0 / self.mass[structure.first_body :].reshape(-1, 3)
-        self.totals = np.zeros(2)
 
-    def run(self, y: Array, v: Array, step: float, chunks: list[int], progress: Progress | None) -> Samples:
-        """Integrate from coordinates y and velocities v over chunks of steps; keep a sample after each."""
-        s, actions, done = self.structure, self.actions, 0
-        samples = Samples(floor=FLOOR * s.moment_unit)
-        first = self.actions.resist(y, v, 0.0)
-        self.totals[:] = 0.0
-        samples.keep(0.0, y, v, self._energy(y, v, step, first, first))
-        late = v + 0.5 * step * first.force / self.mass  # half a step before the start
+    def go(
+        self, leg: Leg, y: Array, v: Array, held: NDArray[np.bool_], samples: Samples, keep: Keep
+    ) -> tuple[Array, Array] | None:
+        """Go through a leg from coordinates y and velocities v, the held ones led at theirs."""
+        s, actions, h, done = self.structure, self.actions, leg.step, 0
+        inverse = np.where(held, 0.0, 1.0 / self.mass)
+        first, before, totals = actions.resist(y, v, leg.time), samples.books.copy(), np.zeros(2)
+        late = v + 0.5 * h * inverse * first.force  # half a step before the start
         nodal_v, bodies = np.zeros((s.strips * s.stations, 3)), y[s.first_body :].reshape(-1, 3).copy()
         nodal_v[s.free_nodes] = late[: s.first_body].reshape(-1, 3)
         state = (s.displacement(y), nodal_v, bodies, late[s.first_body :].reshape(-1, 3).copy())
-        for number, steps in enumerate(chunks, start=1):
+        masses = (self.compliance, inverse[s.first_body :].reshape(-1, 3))
+        for steps in leg.chunks:
             tables = (actions.given, actions.dissipative, actions.histories, actions.arrays)
-            masses = (self.compliance, self.body_compliance)
-            advance(*tables, *masses, *state, self.totals, done * step, step, steps)
+            advance(*tables, *masses, *state, totals, leg.time + done * h, h, steps)
             done += steps
-            now, late = (
+            time = leg.time + done * h
+            y, late = (
                 np.concatenate([nodes[s.free_nodes].ravel(), carried.ravel()])
                 for nodes, carried in (state[::2], state[1::2])
             )
-            acting = actions.resist(now, late, done * step)
-            now_v = late - 0.5 * step * acting.force / self.mass
-            energy = self._energy(now, now_v, step, first, acting)
-            if not samples.keep(done * step, now, now_v, energy):
-                break
-            if progress is not None:
-                progress(number, len(chunks))
-        samples.counters.update(steps=done, force_evaluations=done + len(samples.time))
-        return samples
+            acting = actions.resist(y, late, time)
+            v = late - 0.5 * h * inverse * acting.force
+            # what the loop gathered is brought from mid-step to the sample
+            given = acting.load_power - first.load_power + float((acting.force - first.force)[held] @ v[held])
+            samples.books[:] = before + totals
+            samples.books += 0.5 * h * given, h * (acting.loss_power - first.loss_power)
+            samples.counters.update(steps=steps, force_evaluations=steps + 1)
+            if leg.kept and not keep(time, y, v, acting):
+                return None
+        return y, v
 
-    def _energy(self, y: Array, v: Array, step: float, first: Resistance, now: Resistance) -> Energy:
-        """Return the energies of a sample; what the loop gathered is brought from mid-step to the sample."""
-        return Energy(
-            kinetic=0.5 * float(self.mass @ v**2),
-            strain=now.strain,
-            gravity=now.gravity,
-            work=float(self.totals[0]) + 0.5 * step * (now.load_power - first.load_power),
-            dissipated=float(self.totals[1]) + step * (now.loss_power - first.loss_power),
-        )
+    def remarks(self, samples: Samples, step: float) -> list[str]:
+        """Return what the step leaves unresolved: nothing, as it is stable."""
+        return []

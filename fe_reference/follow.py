@@ -1,13 +1,21 @@
-"""From a request (what is driven, what is loaded) to the states of a path."""
+"""From a request (what is driven, what is loaded) to the states of a path.
+
+Where a path ends for want of an equilibrium, the limit point beyond its last state is looked for.
+"""
 
 from collections.abc import Callable, Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
+from .arc_length import Place, Walk, bisect
 from .control import Control
-from .limit import limit_point
+from .critical import bodies_stand, point
+from .matrix import Singular
 from .path import Path
+from .solution import CriticalPoint
 
+Array = NDArray[np.float64]
 Progress = Callable[[int, int], None]
 COUNTERS = (
     "increments",
@@ -64,3 +72,47 @@ def _settled(control: Control, increments: int) -> Path:
     path.begin(before.states[-1].y if reached else None)
     path.message, path.failures, path.critical = before.message, before.failures, before.critical
     return path
+
+
+#: First and longest step of the search, in strip lengths and rad, and how many there may be.
+FIRST, LONGEST, MOST = 1e-3, 0.05, 60
+#: A limit point is what stopped the path if it lies within this part of it.
+NEAR = 1e-2
+
+
+def limit_point(path: Path, toward: float) -> CriticalPoint | None:
+    """Return the limit point that a path ran into on its way to a parameter, or None if there is none.
+
+    The path is followed in its arc length from the last good state until the parameter turns back.
+    """
+    last = path.last
+    walk = Walk(control=path.control, counters=path.counters)
+    along = (np.zeros_like(last.y), toward - last.parameter)
+    try:
+        balance = path.control.balance(last.y, last.parameter)
+        here = walk.place(last.y, last.parameter, balance, path.control.factors(balance), along)
+    except Singular:
+        return None
+    length, bend = FIRST, np.zeros_like(last.y)
+    for _ in range(MOST):
+        there, _ = walk.step(here, length, bend)
+        if there is None:
+            length /= 2.0
+            continue
+        if there.slope * here.slope < 0.0:
+            return _turned(walk, here, length, bend)
+        if abs(there.parameter - last.parameter) > NEAR:
+            return None
+        bend, here = (there.rate - here.rate) / length, there
+        length = min(1.5 * length, LONGEST)
+    return None
+
+
+def _turned(walk: Walk, here: Place, length: float, bend: Array) -> CriticalPoint:
+    """Return the limit point within a step; the path goes on there along its tangent, at the same load."""
+    at, control = bisect(walk, here, length, bend, lambda place: place.slope * here.slope > 0.0), walk.control
+    driven = control.watched is not None and control.watched in control.held
+    kind = "turning point" if driven else "limit point"
+    strips = bodies_stand(control, at.rate)
+    what = "the strips buckle" if strips else "the strips give way with the body"
+    return point(control, kind, at.y, at.parameter, at.negative + 1, f"{kind}: {what}")

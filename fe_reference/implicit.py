@@ -21,9 +21,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .actions import Actions, Resistance
+from .drives import Leg
 from .mass import RigidBodies, lumped_diagonal
 from .matrix import Factors, Singular
-from .motion import FLOOR, Energy, Progress, Samples
+from .motion import Keep, Samples
 from .structure import Structure
 
 Array = NDArray[np.float64]
@@ -47,7 +48,6 @@ class Instant:
 
     Attributes:
         time [s]. y, v, a (size,): coordinates, velocities, accelerations. acting: what resists there.
-        work, dissipated: by loads and dampers so far [J].
     """
 
     time: float
@@ -55,16 +55,16 @@ class Instant:
     v: Array
     a: Array
     acting: Resistance
-    work: float = 0.0
-    dissipated: float = 0.0
 
 
 class Implicit:
     """The scheme at a spectral radius, for a structure reduced about the centres of mass of its `bodies`."""
 
+    blow_up = GAIN
+
     def __init__(self, structure: Structure, bodies: RigidBodies, spectral_radius: float) -> None:
         r = spectral_radius
-        self.structure = structure
+        self.structure, self.bodies = structure, bodies
         self.mass = lumped_diagonal(structure, bodies)
         self.am, self.af = (2.0 * r - 1.0) / (r + 1.0), r / (r + 1.0)
         self.gamma = 0.5 - self.am + self.af
@@ -74,12 +74,13 @@ class Implicit:
         self.actions = Actions(structure)
         self._factor: Factors | None = None
         self._factor_step = 0.0
+        self._held = np.zeros(structure.size, dtype=bool)
 
-    def start(self, y: Array, v: Array) -> Instant:
-        """Return the initial instant with its consistent acceleration, zero where there is no inertia."""
-        acting, inert = self.actions.resist(y, v, 0.0), self.mass > 0.0
+    def start(self, time: float, y: Array, v: Array) -> Instant:
+        """Return an initial instant with its consistent acceleration, zero where there is no inertia."""
+        acting, inert = self.actions.resist(y, v, time), (self.mass > 0.0) & ~self._held
         a = np.where(inert, -acting.force / np.where(inert, self.mass, 1.0), 0.0)
-        return Instant(time=0.0, y=y, v=v, a=a, acting=acting)
+        return Instant(time=time, y=y, v=v, a=a, acting=acting)
 
     def step(self, now: Instant, h: float, samples: Samples, depth: int = 0) -> Instant | None:
         """Return the instant after h [s], in halved steps where needed; None if those fail too."""
@@ -105,10 +106,11 @@ class Implicit:
             y, v = coasting + reach * a, drifting + self.gamma * h * a
             acting = self.actions.resist(y, v, time)
             residual = (1.0 - self.am) * mass * a + (1.0 - self.af) * acting.force + held
+            residual[self._held] = 0.0
             norms.append(float(np.abs(residual / scale).max()))
             samples.counters["force_evaluations"] += 1
             if norms[-1] <= self.tolerance:
-                return _accounted(now, Instant(time=time, y=y, v=v, a=a, acting=acting))
+                return Instant(time=time, y=y, v=v, a=a, acting=acting)
             if not np.isfinite(norms[-1]):
                 break
             samples.counters["iterations"] += 1
@@ -133,40 +135,41 @@ class Implicit:
             tangent.data += self.gamma / (self.beta * h) * self.actions.damping_matrix(y).data
         tangent.data *= 1.0 - self.af
         tangent.data[tangent.pattern.diagonal] += (1.0 - self.am) / (self.beta * h**2) * self.mass
-        self._factor, self._factor_step = tangent.factors(np.zeros(len(y), dtype=bool)), h
+        self._factor, self._factor_step = tangent.factors(self._held), h
         samples.counters["factorisations"] += 1
         return self._factor
 
-    def run(self, y: Array, v: Array, step: float, chunks: list[int], progress: Progress | None) -> Samples:
-        """Integrate from coordinates y and velocities v over chunks of steps; keep a sample after each."""
-        samples = Samples(floor=FLOOR * self.structure.moment_unit, blow_up=GAIN)
-        now, done, content = self.start(y, v), 0, np.zeros(2)
-        self._keep(samples, now, 0.0)
-        for number, steps in enumerate(chunks, start=1):
+    def go(
+        self, leg: Leg, y: Array, v: Array, held: NDArray[np.bool_], samples: Samples, keep: Keep
+    ) -> tuple[Array, Array] | None:
+        """Go through a leg from coordinates y and velocities v, the held ones led at theirs."""
+        if (held != self._held).any():
+            self._held, self._factor = held, None
+        now, done = self.start(leg.time, y, v), 0
+        for steps in leg.chunks:
             for _ in range(steps):
-                after = self.step(now, step, samples)
+                after = self.step(now, leg.step, samples)
                 if after is None:
-                    samples.message = f"no solution of the step of {step:.3g} s at {done * step:.6g} s"
-                    return samples
-                now, done = after, done + 1
-                content += self.mass @ now.a**2, self.mass @ now.v**2
+                    samples.message = f"no solution of the step of {leg.step:.3g} s at {now.time:.6g} s"
+                    return None
+                powers = np.array([self._powers(at) for at in (now, after)])
+                samples.books += 0.5 * leg.step * powers.sum(axis=0)
+                samples.content += self.mass @ after.a**2, self.mass @ after.v**2
                 samples.counters["steps"] += 1
-            if not self._keep(samples, now, done * step):
-                break
-            if progress is not None:
-                progress(number, len(chunks))
-        samples.remarks += _unresolved(step, content, samples.lost())
-        return samples
+                done += 1
+                now = replace(after, time=leg.time + done * leg.step)
+            if leg.kept and not keep(now.time, now.y, now.v, now.acting):
+                return None
+        return now.y, now.v
 
-    def _keep(self, samples: Samples, now: Instant, time: float) -> bool:
-        energy = Energy(
-            kinetic=0.5 * float(self.mass @ now.v**2),
-            strain=now.acting.strain,
-            gravity=now.acting.gravity,
-            work=now.work,
-            dissipated=now.dissipated,
-        )
-        return samples.keep(time, now.y, now.v, energy)
+    def _powers(self, at: Instant) -> tuple[float, float]:
+        """Return the power of loads and drives, and of the dampers [W]."""
+        led = float(at.acting.force[self._held] @ at.v[self._held])
+        return at.acting.load_power + led, at.acting.loss_power
+
+    def remarks(self, samples: Samples, step: float) -> list[str]:
+        """Return what the step [s] leaves unresolved."""
+        return _unresolved(step, samples.content, samples.lost())
 
 
 def _unresolved(step: float, content: Array, lost: float) -> list[str]:
@@ -183,11 +186,3 @@ def _unresolved(step: float, content: Array, lost: float) -> list[str]:
     if lost > LOST:
         remarks.append(f"the scheme damped {lost:.1%} of the energy away: take shorter steps")
     return remarks
-
-
-def _accounted(before: Instant, after: Instant) -> Instant:
-    """Return `after` with the work of loads and dampers in the step, by the trapezoidal rule."""
-    half = 0.5 * (after.time - before.time)
-    work = before.work + half * (before.acting.load_power + after.acting.load_power)
-    lost = before.dissipated + half * (before.acting.loss_power + after.acting.loss_power)
-    return replace(after, work=work, dissipated=lost)

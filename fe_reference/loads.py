@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from .effects import AppliedForce, AppliedMoment, History, TipForce
+from .effects import AppliedForce, AppliedMoment, History, TipForce, factor_of
 from .law import kernel
 from .structure import Structure
 
@@ -27,11 +27,6 @@ class Pull:
     target: int
     row: Array
     history: History = ((0.0, 1.0),)
-
-    @property
-    def first(self) -> float:
-        """Its factor at the start of a motion."""
-        return float(np.interp(0.0, *np.transpose(self.history)))
 
 
 def applied(structure: Structure) -> list[Pull]:
@@ -84,7 +79,7 @@ def full_load(structure: Structure, *more: Pull) -> Array | None:
 def start_load(structure: Structure) -> Array | None:
     """Return the loads as they are at the start of a motion; None if none is named."""
     pulls = applied(structure)
-    return load_vector(structure, pulls, [pull.first for pull in pulls]) if pulls else None
+    return load_vector(structure, pulls, [factor_of(pull.history, 0.0) for pull in pulls]) if pulls else None
 
 
 def load_tables(pulls: Sequence[Pull]) -> tuple[Indices, Array, Indices, Array, Array]:

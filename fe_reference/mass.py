@@ -21,7 +21,8 @@ Source of the scaled diagonal: E. Hinton, T. Rock, O. C. Zienkiewicz, Earthquake
 245-249.
 """
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -41,7 +42,7 @@ class RigidBodies:
 
     Attributes:
         mass (B,) [kg]; centre of mass of the whole at rest (B, 2) [m]; moment_of_inertia (B,) about that
-        centre [kg m^2].
+        centre, or the point that its structure is reduced about [kg m^2].
     """
 
     mass: Array
@@ -93,24 +94,35 @@ def rigid_bodies(structure: Structure) -> RigidBodies:
     return RigidBodies(mass=total, centre=centre, moment_of_inertia=inertia)
 
 
-def about_mass_centre(structure: Structure) -> tuple[Structure, RigidBodies]:
+def about_mass_centre(structure: Structure, led: Sequence[int] = ()) -> tuple[Structure, RigidBodies]:
     """Return the same structure reduced about the centres of mass of the bodies with their attached masses.
 
     There the lumped mass matrix is diagonal and constant: no coupling of translation and rotation, hence no
-    centrifugal terms in the equations of motion, which are exact.
+    centrifugal terms in the equations of motion, which are exact. Bodies whose centre is `led` are reduced
+    about that: at a constant velocity of it their moment of inertia about it is all that is left.
     """
     bodies = rigid_bodies(structure)
-    return Structure(structure.model, bodies.centre), bodies
+    points = bodies.centre.copy()
+    for body in led:
+        points[body] = structure.model.bodies[body].centre
+    steiner = bodies.mass * np.sum((bodies.centre - points) ** 2, axis=1)
+    bodies = replace(bodies, moment_of_inertia=bodies.moment_of_inertia + steiner)
+    return Structure(structure.model, points), bodies
 
 
-def carried_over(before: Structure, y: Array, after: Structure) -> Array:
-    """Return coordinates y of one structure in another that is reduced about other points of the bodies."""
-    moved = y.copy()
+def carried_over(before: Structure, y: Array, after: Structure, v: Array | None = None) -> Array:
+    """Return coordinates y of one structure in another that is reduced about other points of the bodies.
+
+    With velocities v return those instead.
+    """
+    moved = y.copy() if v is None else v.copy()
     for k in range(len(before.points)):
         at, offset = before.body_slice(k), after.points[k] - before.points[k]
         sine, less = np.sin(y[at][2]), 2.0 * np.sin(0.5 * y[at][2]) ** 2
-        moved[at.start] += -less * offset[0] - sine * offset[1]
-        moved[at.start + 1] += sine * offset[0] - less * offset[1]
+        across = np.array([-less * offset[0] - sine * offset[1], sine * offset[0] - less * offset[1]])
+        if v is not None:
+            across = v[at][2] * np.array([-across[1] - offset[1], across[0] + offset[0]])
+        moved[at.start : at.start + 2] += across
     return moved
 
 

@@ -7,10 +7,10 @@ radians.
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from .effects import AppliedForce, AppliedMoment, DrivenDisplacement, Effects, TipForce
-from .errors import InvalidParameter, choice, count, not_negative, positive, within
+from .errors import InvalidParameter, choice, not_negative, positive, within
 
 Array = NDArray[np.float64]
 ELEMENTS = ("corotational", "reissner")
@@ -108,23 +108,6 @@ class Strip:
         return float(np.linalg.norm(np.diff(self.nodes, axis=0), axis=1).sum())
 
 
-def straight_strip(
-    start: ArrayLike,
-    end: ArrayLike,
-    *,
-    section: Section,
-    elements: int,
-    root: int = GROUND,
-    tip: int = 0,
-    name: str = "strip",
-) -> Strip:
-    """Return a strip of `elements` equal elements between two points (2,) [m]."""
-    fraction = np.linspace(0.0, 1.0, count("elements", elements) + 1)[:, None]
-    first, last = np.asarray(start, dtype=float), np.asarray(end, dtype=float)
-    nodes = first + fraction * (last - first)
-    return Strip(section=section, nodes=nodes, root=root, tip=tip, name=name)
-
-
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Body:
     """A rigid body: centre of mass at rest (2,) [m], mass [kg], inertia about the centre [kg m^2], name.
@@ -186,8 +169,11 @@ class Model:
         tip = self.effects.find(TipForce)
         if tip is not None and self.strips[self.strip_index(tip.strip)].tip != FREE:
             raise InvalidParameter("tip_force", tip.strip, "a strip whose tip is free [name]")
-        if self.effects.find(DrivenDisplacement) is not None and not self.bodies:
+        led = self.effects.find(DrivenDisplacement)
+        if led is not None and not self.bodies:
             raise InvalidParameter("driven_displacement", "no bodies", "a body to lead [name]")
+        if led is not None and led.body is not None:
+            self.body_index(led.body)
 
     @property
     def strip_names(self) -> tuple[str, ...]:

@@ -9,7 +9,7 @@ from scipy.linalg import eigh
 from scipy.sparse import csc_matrix
 from scipy.sparse.linalg import eigsh, splu
 
-from .effects import needs_inertia
+from .effects import DrivenDisplacement, needs_inertia
 from .errors import ConvergenceError, InvalidParameter, choice
 from .errors import count as at_least_one
 from .mass import MASSES, mass_matrix
@@ -61,8 +61,8 @@ def natural_frequencies(
     """Return the modes about a static state: free vibrations of what a release from it lets go of.
 
     The state is in equilibrium with the rotation driven, and with the driven displacement, gravity, natural
-    strains and all loads in full. Free are then the rotation, unless it is held, and the driven displacement:
-    what drove them acts on as it is.
+    strains and all loads in full. Free are then the rotation, unless it is held, and a driven displacement
+    without a history: what drove them acts on as it is.
 
     Args:
         pivot: the model.
@@ -120,8 +120,7 @@ def _modes(
     """Return the modes of one mesh."""
     structure = structure_of(pivot)
     y = static_state(pivot, rotation, body, increments)
-    turn = structure.turns[pivot.body_index(body)] if held else -1
-    kept = np.flatnonzero(np.arange(structure.size) != turn)
+    kept = np.flatnonzero(~_held(structure, body, held))
     stiffness = structure.evaluate(y).tangent.sparse()[:, kept][kept].tocsc()
     inertia = mass_matrix(structure, y, kind).sparse()[:, kept][kept].tocsc()
     values, vectors = _lowest(structure, stiffness, inertia, count)
@@ -137,6 +136,18 @@ def _modes(
         body_shapes=full[:, structure.first_body :],
         state=y,
     )
+
+
+def _held(structure: Structure, body: str | None, turn: bool) -> NDArray[np.bool_]:
+    """Return which coordinates a release does not let go (size,): what is led on, and a held turn."""
+    held, model = np.zeros(structure.size, dtype=bool), structure.model
+    if turn:
+        held[structure.turns[model.body_index(body)]] = True
+    led = model.effects.find(DrivenDisplacement)
+    if led is not None and led.history is not None:
+        place = structure.body_slice(model.body_index(led.body if led.body is not None else body))
+        held[place.start : place.start + 2] = True
+    return held
 
 
 def _lowest(

@@ -5,9 +5,10 @@ from typing import Any
 
 import numpy as np
 
-from .effects import DEFAULT_EFFECTS, read_effects
+from .effects import DEFAULT_EFFECTS
 from .errors import InvalidParameter, finite, positive, within
-from .model import Body, Model, Section, straight_strip
+from .mechanism import BodyDesign, StripDesign, mechanism
+from .model import Model
 
 
 def cross_axis_pivot(
@@ -53,20 +54,31 @@ def cross_axis_pivot(
     if len(centre_offset) != 2:
         raise InvalidParameter("centre_offset", centre_offset, "two coordinates [m]")
     offset = np.array([finite("centre_offset", part, "m") for part in centre_offset])
-    section = Section(
-        area=area,
-        second_moment_of_area=second_moment_of_area,
-        youngs_modulus=youngs_modulus,
-        poisson_ratio=poisson_ratio,
-        density=density,
-    )
     run, rise = span * np.cos(angle), span * np.sin(angle)
     ground = np.array([[0.0, 0.0], [2.0 * ratio * run, 0.0]])
     ends = ground + np.array([[run, rise], [-run, rise]])
-    strips = tuple(
-        straight_strip(a, b, section=section, elements=elements, name=f"strip_{number}")
-        for number, (a, b) in enumerate(zip(ground, ends, strict=True), start=1)
+    given: dict[str, Any] = {
+        "area": area,
+        "second_moment_of_area": second_moment_of_area,
+        "youngs_modulus": youngs_modulus,
+        "poisson_ratio": poisson_ratio,
+        "density": density,
+    }
+    body = BodyDesign(
+        name="body",
+        centre=ends.mean(axis=0) + offset,
+        mass=body_mass,
+        moment_of_inertia=body_moment_of_inertia,
     )
-    body = Body(centre=ends.mean(axis=0) + offset, mass=body_mass, moment_of_inertia=body_moment_of_inertia)
-    named = read_effects(effects, parameters or {})
-    return Model(strips=strips, bodies=(body,), element=element, effects=named)
+    strips = [
+        StripDesign(name=f"strip_{number}", start=a, end=b, tip=body.name, **given)
+        for number, (a, b) in enumerate(zip(ground, ends, strict=True), start=1)
+    ]
+    return mechanism(
+        strips=strips,
+        bodies=[body],
+        effects=effects,
+        parameters=parameters,
+        elements=elements,
+        element=element,
+    )

@@ -69,7 +69,6 @@ def strip_fields(model: Model, states: Array, ends: Array | None = None) -> Stri
     natural, elements = model.effects.find(PreStrain) or PreStrain(), structure.elements
     bending = elements.flexural_rigidity.reshape(rows)[:, :1]
     turning = np.diff(angle, axis=1) / elements.length.reshape(rows)
-    moved = [body_motion(structure, y, k) for k in range(len(model.bodies))]
     rest = np.array([strip.nodes for strip in model.strips])
     return StripFields(
         arc_length=structure.basis.mesh.p[0].reshape(grid),
@@ -83,7 +82,7 @@ def strip_fields(model: Model, states: Array, ends: Array | None = None) -> Stri
         bending_moment=moment,
         reactions=np.stack([-beyond[:, :, 0], beyond[:, :, -1]], axis=2),
         rest_bodies=np.array([body.centre for body in model.bodies]).reshape(-1, 2),
-        bodies=np.array(moved).reshape(-1, many, 3).swapaxes(0, 1),
+        bodies=body_places(structure, y),
     )
 
 
@@ -125,21 +124,8 @@ def midpoints(values: Array) -> Array:
     return np.concatenate([first, 0.5 * (values[..., 1:] + values[..., :-1]), last], axis=-1)
 
 
-def body_motion(structure: Structure, y: Array, body: int) -> Array:
-    """Return the place of a body's centre and its turn (S, 3) [m, rad] for coordinates (S, size)."""
-    place = y[:, structure.body_slice(body)]
-    c, s = np.cos(place[:, 2]), np.sin(place[:, 2])
-    x0, y0 = structure.model.bodies[body].centre - structure.points[body]
-    moved = structure.points[body] + place[:, :2] + np.stack([c * x0 - s * y0, s * x0 + c * y0], axis=1)
-    return np.concatenate([moved, place[:, 2:]], axis=1)
-
-
-def body_rates(structure: Structure, y: Array, v: Array, body: int) -> Array:
-    """Return the rates of a body's centre and turn (T, 3) [m/s, rad/s] at coordinates and rates (T, size)."""
-    at = structure.body_slice(body)
-    theta, rates = y[:, at][:, 2], v[:, at].copy()
-    c, s = np.cos(theta), np.sin(theta)
-    x0, y0 = structure.model.bodies[body].centre - structure.points[body]
-    rates[:, 0] -= rates[:, 2] * (s * x0 + c * y0)
-    rates[:, 1] += rates[:, 2] * (c * x0 - s * y0)
-    return rates
+def body_places(structure: Structure, y: Array) -> Array:
+    """Return places of the bodies (S, B, 3) [m, rad] for coordinates (S, size) about their centres."""
+    places = y[:, structure.first_body :].reshape(len(y), -1, 3).copy()
+    places[..., :2] += structure.points
+    return places

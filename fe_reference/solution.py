@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import StrEnum
+from time import perf_counter
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -51,8 +52,51 @@ class CriticalPoint:
     text: str
 
 
+class Stopwatch:
+    """Seconds by part: "compile" (structure and spans), "solve" (the path or motion alone), "recover" (fields
+    of the solved states).
+    """
+
+    def __init__(self) -> None:
+        self.seconds: dict[str, float] = {}
+        self.since = perf_counter()
+
+    def stop(self, part: str) -> dict[str, float]:
+        """Book what passed since the last stop to a part and return all parts so far [s]."""
+        now = perf_counter()
+        self.seconds[part] = self.seconds.get(part, 0.0) + now - self.since
+        self.since = now
+        return self.seconds
+
+
+class Answer:
+    """What solutions and trajectories have alike: places of the bodies by name, and columns of one number."""
+
+    bodies: Mapping[str, Array]
+
+    @property
+    def rotation(self) -> Array:
+        """Turn of the only body (S,) [rad]."""
+        return only(self.bodies)[:, 2]
+
+    @property
+    def centre(self) -> Array:
+        """Centre of mass of the only body (S, 2) [m]."""
+        return only(self.bodies)[:, :2]
+
+    def columns(self) -> dict[str, Array]:
+        """Return what is one number in every state, by names with units."""
+        raise NotImplementedError
+
+    def to_frame(self) -> "pd.DataFrame":
+        """Return the columns as a table, a row a state."""
+        import pandas as pd
+
+        return pd.DataFrame(self.columns())
+
+
 @dataclass(frozen=True, kw_only=True, eq=False)
-class StaticSolution:
+class StaticSolution(Answer):
     """Converged states of a static path, the unloaded one first: S states, G strips, P nodes a strip.
 
     Attributes:
@@ -77,7 +121,7 @@ class StaticSolution:
         effects: names of the effects of the scene.
         counters: increments, halvings, newton_iterations, evaluations, factorisations, and
             settling_increments: of the way to the first state. history: residual norms of the increments.
-        seconds: by part, see `fe_reference.stopwatch`.
+        seconds: by part, see `Stopwatch`.
         estimate: of the error, where an accuracy was asked for: then all arrays but `states` and `inertia`
             are limits of meshes, at the nodes of the coarsest.
     """
@@ -114,16 +158,6 @@ class StaticSolution:
         """Sum of the three parts (S,) [J]."""
         return self.bending_energy + self.axial_energy + self.shear_energy
 
-    @property
-    def rotation(self) -> Array:
-        """Turn of the only body (S,) [rad]."""
-        return only(self.bodies)[:, 2]
-
-    @property
-    def centre(self) -> Array:
-        """Centre of mass of the only body (S, 2) [m]."""
-        return only(self.bodies)[:, :2]
-
     def columns(self) -> dict[str, Array]:
         """Return what is one number in every state, by names with units: the columns of a frame."""
         return {
@@ -135,12 +169,6 @@ class StaticSolution:
             "largest_stress_Pa": self.largest_stress,
             "inertia": self.inertia,
         }
-
-    def to_frame(self) -> "pd.DataFrame":
-        """Return the columns as a table, a row a state."""
-        import pandas as pd
-
-        return pd.DataFrame(self.columns())
 
 
 ENERGIES = ("bending_energy", "axial_energy", "shear_energy", "gravity_energy", "work")

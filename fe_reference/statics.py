@@ -16,8 +16,7 @@ from .model import Model
 from .path import Path
 from .refined import limit_of_paths
 from .section_forces import outer_stress, strip_fields
-from .solution import StaticSolution, Status
-from .stopwatch import Stopwatch
+from .solution import StaticSolution, Status, Stopwatch
 from .structure import structure_of
 
 Array = NDArray[np.float64]
@@ -183,8 +182,8 @@ def _solved(
 ) -> StaticSolution:
     """Follow the path through the rotations [rad], one leg each; the load is by default that of the scene."""
     clock, steps, structure = Stopwatch(), count("increments", increments), structure_of(model)
-    led = _displacement(model, displacement)
-    driven = rotations is not None or led is not None
+    led, place = _displacement(model, displacement)
+    driven = rotations is not None or (led is not None and place is None)
     which = model.body_index(body) if driven or watch or body is not None else None
     watched = which is not None and (watch or rotations is not None)
     acting = full_load(structure) if load is None else load
@@ -195,6 +194,7 @@ def _solved(
         body=which,
         rotations=rotations,
         displacement=led,
+        led=place,
         load=acting,
         first=first,
         watched=int(structure.turns[which]) if watched else None,
@@ -213,14 +213,16 @@ def _solved(
     return solution
 
 
-def _displacement(model: Model, given: Sequence[float] | None) -> tuple[float, float] | None:
-    """Return the displacement that is asked for or named [m]."""
+def _displacement(
+    model: Model, given: Sequence[float] | None
+) -> tuple[tuple[float, float] | None, int | None]:
+    """Return the displacement that is asked for or named [m], and the body that is named with it."""
     named = model.effects.find(DrivenDisplacement)
-    if given is None:
-        return None if named is None else named.displacement
-    if named is not None:
+    if given is not None and named is not None:
         raise InvalidParameter("displacement", given, "none beside the effect driven_displacement [m]")
-    return pair("displacement", given, "m")
+    if named is None:
+        return (None if given is None else pair("displacement", given, "m")), None
+    return named.displacement, None if named.body is None else model.body_index(named.body)
 
 
 def _packed(path: Path, controls: Sequence[Control], steps: int, clock: Stopwatch) -> StaticSolution:

@@ -3,26 +3,22 @@
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from .mass import carried_over
 from .motion import Samples
-from .section_forces import body_motion, body_rates
-from .solution import ErrorEstimate, Status, body_columns, only
-from .stopwatch import Stopwatch
+from .section_forces import body_places
+from .solution import Answer, ErrorEstimate, Status, Stopwatch, body_columns
 from .structure import Structure, structure_of
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Trajectory:
+class Trajectory(Answer):
     """A motion at T sampled instants, the start first; G strips, P nodes a strip.
 
     Attributes:
@@ -38,7 +34,7 @@ class Trajectory:
         counters: steps, force_evaluations; implicit also iterations, factorisations, halvings.
         history: residual norms of implicit steps.
         settings: integrator, step_s, critical_step_s (explicit), start_rad and what else defines the run.
-        seconds: by part (`fe_reference.stopwatch`), "start" the static state that is let go.
+        seconds: by part (`Stopwatch`), "start" the static state that is let go.
         resolution: empty, or what elements and steps leave unresolved; rotation_error: estimated error of the
             rotation by a companion with fewer elements, or by the meshes of an accuracy [rad], nan without.
         estimate: of the error, where an accuracy was asked for: then all but `states` are limits of meshes,
@@ -69,16 +65,6 @@ class Trajectory:
     estimate: ErrorEstimate | None = None
 
     @property
-    def rotation(self) -> Array:
-        """Turn of the only body (T,) [rad]."""
-        return only(self.bodies)[:, 2]
-
-    @property
-    def centre(self) -> Array:
-        """Centre of mass of the only body (T, 2) [m]."""
-        return only(self.bodies)[:, :2]
-
-    @property
     def energy_error(self) -> float:
         """Largest deviation of kinetic + strain + gravity energy - work + dissipated from its start [1].
 
@@ -100,12 +86,6 @@ class Trajectory:
             **{f"{name}_J": getattr(self, name) for name in ENERGIES},
         }
 
-    def to_frame(self) -> "pd.DataFrame":
-        """Return the columns as a table, a row an instant."""
-        import pandas as pd
-
-        return pd.DataFrame(self.columns())
-
 
 ENERGIES = ("kinetic_energy", "strain_energy", "gravity_energy", "work", "dissipated")
 
@@ -117,19 +97,22 @@ def trajectory(
     y, v, model = np.array(motion.y), np.array(motion.v), structure.model
     nodes = np.array([strip.nodes for strip in model.strips])
     moved = np.array([structure.displacement(each)[:, :2] for each in motion.y])
-    own = structure_of(model)
+    # the motion is reduced about other points of the bodies than the model's own structure
+    own, pairs = structure_of(model), zip(y, v, strict=True)
+    states = np.array([carried_over(structure, each, own) for each in y])
+    places = body_places(own, states)
+    rates = np.array([carried_over(structure, at, own, rate)[own.first_body :] for at, rate in pairs])
     energies: dict[str, Any] = {name: motion.energies(name.removesuffix("_energy")) for name in ENERGIES}
     status = Status.CONVERGED if not motion.message else Status.NOT_CONVERGED
     return Trajectory(
         status=Status.UNSTABLE if motion.unstable else status,
         message=motion.message,
         time=np.array(motion.time),
-        bodies={name: body_motion(structure, y, k) for k, name in enumerate(model.body_names)},
-        rates={name: body_rates(structure, y, v, k) for k, name in enumerate(model.body_names)},
+        bodies={name: places[:, k] for k, name in enumerate(model.body_names)},
+        rates={name: rates[:, 3 * k : 3 * k + 3] for k, name in enumerate(model.body_names)},
         **energies,
         shape=nodes + moved.reshape(-1, *nodes.shape),
-        # the motion may be reduced about other points of the bodies than the model's own structure
-        states=np.array([carried_over(structure, each, own) for each in motion.y]),
+        states=states,
         effects=model.effects.names,
         counters=dict(motion.counters),
         history=tuple(motion.history),

@@ -1,14 +1,14 @@
 """Facts, sentences that hold, and tables: what the text may quote, and where each of them comes from."""
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from report.errors import ReportError
-from report.forms import Form
-from report.pick import Pick
-from report.results import Results
+import pandas as pd
+
+from report.forms import Form, text
+from report.results import Pick, ReportError, Results
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -16,42 +16,13 @@ class Fact:
     """A number of the text.
 
     Attributes:
-        study, table: where it is stored.
-        pick: how it is selected there; form: how it is written.
-    """
-
-    study: str
-    table: str
-    pick: Pick
-    form: Form
-
-    def value(self, results: Results) -> Any:
-        """Return the value; LookupError when the table does not have it."""
-        return self.pick(results.table(self.study, self.table))
-
-    def source(self) -> str:
-        """Return where the value comes from, for messages."""
-        return f"{self.study}/{self.table}"
-
-
-@dataclass(frozen=True, kw_only=True)
-class Derived:
-    """A number made of several tables, or of a case, the gates or the versions.
-
-    Attributes:
-        made: the value from all results; form: how it is written.
+        made: the value from all results; LookupError when a table does not have what it is made of.
+        form: how it is written. source: where the value comes from, for messages.
     """
 
     made: Callable[[Results], Any]
     form: Form
-
-    def value(self, results: Results) -> Any:
-        """Return the value; LookupError when a table does not have what it is made of."""
-        return self.made(results)
-
-    def source(self) -> str:
-        """Return where the value comes from, for messages."""
-        return "several tables"
+    source: str = "several tables"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -74,33 +45,51 @@ class Holds:
 Cell = str | dict[str, str]
 
 
-@dataclass(frozen=True, kw_only=True)
-class Listing:
-    """A table of the report: made from all results as a heading and rows of cells."""
-
-    made: Callable[[Results], tuple[list[str], list[list[Cell]]]]
+Rows = list[list[Cell]]
+#: A table of the report: its heading and rows of cells, one for each part of the heading.
+Table = tuple[list[str], Rows]
+#: Heading -> the column below it, and how its values are written.
+Shown = dict[str, tuple[str, Form]]
 
 
 def fact(study: str, table: str, pick: Pick, form: Form) -> Fact:
     """Return a fact from one table."""
-    return Fact(study=study, table=table, pick=pick, form=form)
+    return Fact(made=lambda results: pick(results.table(study, table)), form=form, source=f"{study}/{table}")
 
 
-def written(name: str, given: Fact | Derived, results: Results) -> str:
+def columns(rows: pd.DataFrame, shown: Shown) -> Table:
+    """Return a table with a row for each of `rows`."""
+    cells = ([form(row[name]) for name, form in shown.values()] for row in rows.to_dict("records"))
+    return list(shown), [list(each) for each in cells]
+
+
+def unmet(results: Results, tables: Iterable[tuple[str, str]], form: Form, measured: str) -> Table:
+    """Return the findings that do not hold, of (study, table) each, or that there are none."""
+    found = pd.concat([results.table(*each).query("holds == 'no'") for each in tables])
+    shown = {
+        "claim that does not hold": ("claim", text),
+        "for": ("formulation", text),
+        measured: ("value", form),
+    }
+    head, rows = columns(found, {**shown, measured: ("value", form)})
+    return head, rows or [["none", "–", "–"]]
+
+
+def written(name: str, given: Fact, results: Results) -> str:
     """Return the text of a fact.
 
     Raises:
         ReportError: the value is not there, or not a finite number.
     """
     try:
-        value = given.value(results)
+        value = given.made(results)
         if not isinstance(value, str) and not math.isfinite(float(value)):
             raise ValueError(f"{value} is no number to write")
         return given.form(value)
     except (LookupError, TypeError, ValueError) as error:
         if isinstance(error, ReportError):
             raise
-        raise ReportError(f"fact {name}: {error} ({given.source()})") from None
+        raise ReportError(f"fact {name}: {error} ({given.source})") from None
 
 
 def held(name: str, condition: Holds, results: Results) -> dict[str, Any]:
@@ -116,14 +105,14 @@ def held(name: str, condition: Holds, results: Results) -> dict[str, Any]:
     return {"holds": answer, "words": condition.words, "timed": condition.timed}
 
 
-def listed(name: str, listing: Listing, results: Results) -> Mapping[str, Any]:
+def listed(name: str, listing: Callable[[Results], Table], results: Results) -> Mapping[str, Any]:
     """Return a table as heading and rows.
 
     Raises:
         ReportError: a row of another length than the heading, no row, or something that is not there.
     """
     try:
-        head, rows = listing.made(results)
+        head, rows = listing(results)
     except (LookupError, TypeError) as error:
         raise ReportError(f"table {name}: {error}") from None
     if not rows or any(len(row) != len(head) for row in rows):

@@ -20,8 +20,9 @@ from numpy.typing import NDArray
 
 from spline_model.design import swinging_slide_stiffness
 from spline_model.errors import InvalidParameter
+from spline_model.estimate import MotionEstimate
 from spline_model.mechanism import Mechanism
-from spline_model.solution import MotionEstimate, Status
+from spline_model.solution import Status
 
 if TYPE_CHECKING:
     from spline_model.motion.trajectory import Trajectory

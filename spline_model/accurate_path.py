@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 
 from spline_model.accuracy import search
 from spline_model.design import Design, StripDesign
-from spline_model.solution import ErrorEstimate, StaticSolution, Status
+from spline_model.estimate import ErrorEstimate
+from spline_model.solution import StaticSolution, Status
 
 Array = NDArray[np.float64]
 

@@ -227,6 +227,6 @@ class _Share:
             model.local(),
             working_space(bodies, model.size),
             TOLERANCE,
-            empty_answer(len(factors), model.size, len(bodies.rest), held),
+            empty_answer(len(factors), model.size, held),
             results,
         )

@@ -51,9 +51,8 @@ def left_the_branch(unit: Array, previous: Array, predicted: Array, corrected: A
 
 
 def _slowest_speed(system: System, z: Array) -> float:
-    table = system.bending
-    if table.first.size == 0:
+    table = system.points
+    if table.place.shape[0] == 0:
         return np.inf
-    columns = table.first[:, None] + 2 * np.minimum(np.arange(table.d1.shape[1]), table.width[:, None] - 1)
-    x, y = (np.einsum("pa,pa->p", table.d1, z[columns + i]) for i in range(2))
+    x, y, _, _ = table.derivatives(z)
     return float((np.hypot(x, y) / table.speed).min())

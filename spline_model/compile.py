@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -11,16 +12,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spline_model import tables as build
-from spline_model.effects import Bending, MixedStretching, Stretching
+from spline_model.effects import Bending, Clamp, DrivenDisplacement, MixedStretching
 from spline_model.effects.base import Constraint, OpenPotential
-from spline_model.kernels.assemble import Tables
-from spline_model.kernels.axial_force import AxialForceTable
-from spline_model.kernels.bending import BendingTable
-from spline_model.kernels.drives import DriveTable, LoadTable
-from spline_model.kernels.stretching import StretchingTable
 from spline_model.layout import Layout
-from spline_model.scales import Scales, scene_scales
+from spline_model.quadrature import PointTable, point_table
 from spline_model.scene import Scene
+from spline_model.tables import DriveTable, LoadTable, Tables
 
 Array = NDArray[np.float64]
 Table = TypeVar("Table")
@@ -47,24 +44,9 @@ class System:
         return replace(self, changed={**self.changed, **changed})
 
     @cached_property
-    def bending(self) -> BendingTable:
-        """Gauss points of bending."""
-        return self._table("bending", lambda s: build.bending_table(s.scene, s.layout, s.scene.of(Bending)))
-
-    @cached_property
-    def stretching(self) -> StretchingTable:
-        """Gauss points of stretching by quadrature."""
-        return self._table(
-            "stretching", lambda s: build.stretching_table(s.scene, s.layout, s.scene.of(Stretching))
-        )
-
-    @cached_property
-    def axial_force(self) -> AxialForceTable:
-        """Gauss points of mixed stretching."""
-        mixed = self.scene.of(MixedStretching)
-        return self._table(
-            "axial_force", lambda s: build.axial_force_table(s.scene, s.layout, mixed, range(len(mixed)))
-        )
+    def points(self) -> PointTable:
+        """Gauss points of bending and stretching."""
+        return self._table("points", lambda s: point_table(s.scene, s.layout))
 
     @cached_property
     def drives(self) -> DriveTable:
@@ -83,11 +65,9 @@ class System:
 
     @cached_property
     def tables(self) -> Tables:
-        """The flat operator tables that the kernels of the bordered system walk."""
+        """All tables, which the bordered form and the motions walk."""
         return Tables(
-            bending=self.bending,
-            stretching=self.stretching,
-            axial_force=self.axial_force,
+            points=self.points,
             clamps=self._table("clamps", lambda s: build.clamp_table(s.scene, s.layout)),
             drives=self.drives,
             loads=self.loads,
@@ -112,15 +92,6 @@ class System:
         for body in self.scene.bodies:
             rest[self.layout.body(body.name)][:2] = body.centre
         return rest
-
-    @cached_property
-    def rest_curvature(self) -> Array:
-        """Curvature at rest at the points of bending (P,) [1/m]."""
-        bending = self.scene.of(Bending)
-        if not any(effect.natural_curvature for effect in bending):
-            return self.bending.curvature
-        straight = [replace(effect, natural_curvature=0.0) for effect in bending]
-        return build.bending_table(self.scene, self.layout, straight).curvature
 
 
 def compile_scene(scene: Scene) -> System:
@@ -153,3 +124,47 @@ def make_layout(scene: Scene) -> Layout:
         coordinate_count=coordinates,
         size=at,
     )
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Scales:
+    """Length L and energy EI / L of a scene.
+
+    Scaled by ``unit / energy`` a force row is in EI/L^2, a moment row in EI/L, a
+    compatibility or constraint row in L or rad: no tolerance changes its meaning with the
+    size, the material or the slenderness of a design.
+    """
+
+    scene: Scene
+    layout: Layout
+    length: float
+    energy: float
+
+    @cached_property
+    def unit(self) -> NDArray[np.float64]:
+        """The unit of each unknown (N,)."""
+        force, moment = self.energy / self.length, self.energy
+        unit = np.full(self.layout.size, self.length)
+        for start in self.layout.bodies.values():
+            unit[start + 2] = 1.0
+        for start, count in self.layout.modes:
+            unit[start : start + count] = force
+        for constraint, (row, count) in zip(self.scene.of(Constraint), self.layout.multipliers, strict=True):
+            if isinstance(constraint, Clamp):
+                unit[row : row + count] = (force, force, moment)
+            else:
+                unit[row : row + count] = force if isinstance(constraint, DrivenDisplacement) else moment
+        return unit
+
+
+def scene_scales(scene: Scene, layout: Layout) -> Scales:
+    """Scales from the longest strip and the largest flexural rigidity."""
+    length = max(_arc_length(strip.control_points) for strip in scene.strips)
+    rigidity = max((e.flexural_rigidity for e in scene.of(Bending)), default=1.0)
+    return Scales(scene=scene, layout=layout, length=length, energy=rigidity / length)
+
+
+def _arc_length(control_points: NDArray[np.float64]) -> float:
+    """Length of the control polygon: the arc length of a straight strip, an upper bound of a curved one."""
+    points = control_points.tolist()
+    return sum(map(math.dist, points[:-1], points[1:]))

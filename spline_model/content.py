@@ -9,13 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.basis import SlideModes
+from spline_model.bordered import assemble
 from spline_model.compile import System, compile_scene
 from spline_model.effects import MixedStretching
-from spline_model.kernels.assemble import assemble
-from spline_model.kernels.motion import Motion
-from spline_model.kernels.stretching import add_stretching
 from spline_model.modes import SLIDE_SHARE, linear_modes
-from spline_model.motion.start import initial_acceleration, set_in_motion
+from spline_model.motion.start import Motion, initial_acceleration, set_in_motion
+from spline_model.quadrature import RIGIDITY
 from spline_model.scene import Scene
 
 Array = NDArray[np.float64]
@@ -91,29 +90,35 @@ def resolution(content: list[Content], swing: float, step: float) -> str:
     )
 
 
-def unresolved(scene: Scene, z: Array, v: Array, step: float) -> str:
-    """What a step [s] leaves unresolved of the modes that carry the energy of a start (z, v).
+def unresolved(
+    scene: Scene, system: System, motion: Motion, start: tuple[Array, Array, Array], step: float
+) -> str:
+    """What a step [s] leaves unresolved of the modes that carry the energy of a start z, v, acceleration.
 
     The scene is that in motion, without the drives that z may have multipliers of: they let go.
     """
-    free = compile_scene(scene)
-    motion, size = set_in_motion(free), free.layout.size
-    start = np.zeros(size)
-    start[: min(size, len(z))] = z[:size]
-    acceleration, start = initial_acceleration(free, motion, start, v)
-    lowest = linear_modes(free, free.rest, motion.mass)[0][0]
+    z, v, acceleration = start
+    if system.scene is not scene:
+        system = compile_scene(scene)
+        motion, size = set_in_motion(system), system.layout.size
+        free = np.zeros(size)
+        free[: min(size, len(z))] = z[:size]
+        acceleration, z = initial_acceleration(system, motion, free, v)
+    lowest = linear_modes(system, system.rest, motion.mass)[0][0]
     swing = math.sqrt(max(lowest, 0.0)) / (2 * math.pi)
-    return resolution(energy_content(free, motion, start, v, acceleration), swing, step)
+    return resolution(energy_content(system, motion, z, v, acceleration), swing, step)
 
 
 def _stretching_share(system: System, z: Array, shapes: Array, squares: Array) -> Array:
     """Share of each mode's strain energy in stretching, (F,)."""
     layout = system.layout
     count, size = layout.coordinate_count, layout.size
-    gradient, hessian = np.zeros(size), np.zeros((size, size))
-    add_stretching(z, system.stretching, gradient, hessian)
+    gradient, hessian, free, points = np.zeros(size), np.zeros((size, size)), z.copy(), system.points
+    free[count:] = 0.0  # the stiffness of stretching alone, no force's
+    limp = points._replace(numbers=points.numbers.copy())
+    limp.numbers[:, RIGIDITY] = 0.0
+    assemble(free, limp, system.tables.clamps, gradient, hessian, np.empty((5, 4)))
     stiffness = hessian[:count, :count].copy()
-    assemble(z, system.tables, 0.0, gradient, hessian)
     for i, effect in enumerate(system.scene.of(MixedStretching)):
         if effect.axial_compliance > 0 and not isinstance(effect.modes, SlideModes):
             at = layout.axial_modes(i)

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from spline_model.basis import HatModes, LegendreModes, SplineBasis, bezier, cubic_bspline
+from spline_model.basis import HatModes, LegendreModes, SplineBasis, bezier, cubic_bspline, singular
 from spline_model.effects.constraints import GROUND
 from spline_model.effects.elastic import MEASURES
 from spline_model.errors import (
@@ -21,7 +21,6 @@ from spline_model.errors import (
     require_not_negative,
     require_positive,
 )
-from spline_model.rank import singular
 
 BASES = ("bezier", "bspline")
 STRETCH_FORMS = ("mixed", "consistent", "inextensible")
@@ -59,7 +58,7 @@ class Discretisation:
     primary branch to a half turn where n - 1 points lose it; slide_stiffness of the strains
     that the axial modes do not see, in EI/L^2, 0 for none, default SLIDE_STIFFNESS in statics
     and ``swinging_slide_stiffness`` in motions and modes (``Mechanism.in_motion``). What makes
-    the tangent of a straight strip singular is refused with the reason (``spline_model.rank``).
+    the tangent of a straight strip singular is refused with the reason (``spline_model.basis.singular``).
     """
 
     control_points: int | None = None

@@ -13,23 +13,23 @@ from spline_model.compile import System, compile_scene
 from spline_model.content import unresolved
 from spline_model.effects import DrivenRotation
 from spline_model.errors import InvalidParameter, require_choice, require_finite, require_positive
-from spline_model.kernels.motion import Motion
 from spline_model.laps import Laps
 from spline_model.mechanism import Mechanism
 from spline_model.modes import linear_modes, static_state
-from spline_model.motion.dispatch import INTEGRATORS, integrate, require_options
-from spline_model.motion.explicit import require_explicit, stability_limit
-from spline_model.motion.start import initial_acceleration, set_in_motion
-from spline_model.motion.steps import (
+from spline_model.motion.dispatch import (
     EXPLICIT_STEPS,
+    INTEGRATORS,
     STEP,
     count_steps,
     default_step,
     highest_frequency,
+    integrate,
+    require_options,
 )
-from spline_model.motion.trajectory import Trajectory, trajectory_of
+from spline_model.motion.explicit import require_explicit, stability_limit
+from spline_model.motion.start import Motion, initial_acceleration, set_in_motion
+from spline_model.motion.trajectory import Trajectory, counted_on, last_state, later, trajectory_of
 from spline_model.pivot import Pivot
-from spline_model.restart import counted_on, last_state, later
 from spline_model.solution import Status
 
 __all__ = [
@@ -155,7 +155,7 @@ def solve_motion(
         effects=mechanism.effects,
         body=body,
         settings={"integrator": ran, "step_s": step, **options},
-        resolution=unresolved(scene, z, v, step),
+        resolution=unresolved(scene, system, motion, began, step),
         laps=laps,
     )
     if after is not None:

@@ -9,7 +9,7 @@ class Laps:
     """A stopwatch: each lap adds the time since the one before to the part it names.
 
     Parts of a solve: "compile" (tables and arrays from the design), "solve" (the path or the
-    motion alone), "recover" (multipliers, shapes, section forces of the solved states).
+    motion alone), "recover" (the answer from its states; what it is along the strips is made when asked for).
     """
 
     def __init__(self) -> None:

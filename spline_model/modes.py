@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from functools import cache
+from functools import cache, lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,19 +12,19 @@ from scipy.linalg import eigh, null_space
 
 from spline_model.accuracy import search, wanted
 from spline_model.basis import SlideModes
+from spline_model.bordered import evaluate
 from spline_model.compile import System, compile_scene, make_layout
 from spline_model.effects import DrivenDisplacement, DrivenRotation, MixedStretching
 from spline_model.effects.base import Constraint, Load
 from spline_model.errors import ConvergenceError, InvalidParameter, require_count, require_finite
+from spline_model.estimate import FrequencyEstimate
 from spline_model.mass import mass_matrix
 from spline_model.mechanism import Mechanism
-from spline_model.operator import evaluate
 from spline_model.path import follow
 from spline_model.pivot import Pivot
 from spline_model.proportional import solve_mechanism, solve_path
 from spline_model.reduced.model import Reduced, from_unknowns, reduced
 from spline_model.reduced.whole import coordinates_by, whole_tangents
-from spline_model.solution import FrequencyEstimate
 from spline_model.static_answers import STATIONS
 
 Array = NDArray[np.float64]
@@ -32,8 +32,6 @@ Array = NDArray[np.float64]
 SLIDE_SHARE = 0.5
 """A mode with more of its strain energy than this in the slide stiffness is one of the control
 points' sliding along the strip: a number of the discretisation, not of the pivot."""
-
-
 NEARLY_NONE = 1e-3
 """Part of the highest frequency below which errors are related to that part: where stability is lost."""
 MASSLESS = 1e-13
@@ -197,10 +195,17 @@ def linear_modes(system: System, z: Array, mass: Array) -> tuple[Array, Array, A
 
     K and M in the coordinates of the strips' elements that are free, in which clamps hold by
     construction; axial forces are condensed, and what inextensible strips ask for is a constraint on
-    whose null space the problem is solved.
+    whose null space the problem is solved. The last answers are kept: a motion asks twice.
     """
     if not np.any(mass):
         raise InvalidParameter("effects", "no inertia", "strip or body inertia for a natural mode")
+    return _linear_modes(system, z.tobytes(), mass.tobytes())
+
+
+@lru_cache(maxsize=4)
+def _linear_modes(system: System, state: bytes, inertias: bytes) -> tuple[Array, Array, Array]:
+    z, count = np.frombuffer(state).copy(), system.layout.coordinate_count
+    mass = np.frombuffer(inertias).reshape(count, count)
     model = reduced(system, longest=math.inf)
     stiffness, slide, rows, by = _bordered(system, z) if model is None else _on_elements(model, z)
     norms = np.linalg.norm(rows, axis=1, keepdims=True)

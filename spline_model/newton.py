@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import get_lapack_funcs
 
+from spline_model.bordered import evaluate
 from spline_model.compile import System
-from spline_model.operator import evaluate
 from spline_model.sparse import Pattern, pattern_of
 
 Array = NDArray[np.float64]
@@ -24,7 +24,6 @@ FLOOR = 1e-8
 (it grows with EA L^2 / EI in the paper's stretch form); above it, that is a failure."""
 MOST_ITERATIONS = 15
 """From a tangent predictor Newton takes two to four; more than this is a wrong start."""
-STANDS_STILL = "the centreline stands still where its curvature is asked for"
 
 
 @dataclass(kw_only=True)
@@ -93,11 +92,7 @@ class Workspace:
         """
         self.counters.residual_evaluations += 1
         self.counters.tangent_evaluations += 1
-        try:
-            return evaluate(self.system, z, load_factor, self.gradient, self.hessian)
-        except ZeroDivisionError:
-            self.gradient[:] = np.nan
-            return np.nan, np.nan
+        return evaluate(self.system, z, load_factor, self.gradient, self.hessian)
 
     def norm(self) -> float:
         """Largest entry of the dimensionless residual."""
@@ -124,11 +119,7 @@ def solve(work: Workspace, start: Array, load_factor: float) -> Newton:
     z = start.copy()
     norms: list[float] = []
     for iteration in range(MOST_ITERATIONS + 1):
-        try:
-            energies = work.evaluate(z, load_factor)
-        except ZeroDivisionError:
-            nothing = (float("nan"), float("nan"))
-            return Newton(z=z, energies=nothing, norms=tuple(norms), reason=STANDS_STILL)
+        energies = work.evaluate(z, load_factor)
         norms.append(work.norm())
         if not np.isfinite(norms[-1]):
             return Newton(z=z, energies=energies, norms=tuple(norms), reason="the residual is not finite")

@@ -3,23 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from functools import partial
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.compile import System
-from spline_model.continuation.branch import BRANCHES
 from spline_model.continuation.follower import Follower
 from spline_model.continuation.point import Point, stand
 from spline_model.continuation.start import equilibrium, first_point
-from spline_model.continuation.watch import Watch
+from spline_model.continuation.watch import BRANCHES, Watch
 from spline_model.errors import require_choice
 from spline_model.preload import is_preloaded
 from spline_model.reduced.elements import Elements, followed
 from spline_model.reduced.model import at_rest
 from spline_model.reduced.solve import grown, run
 from spline_model.reduced.states import by_state
-from spline_model.solution import Path
+from spline_model.solution import Later, Path, joined
 
 Array = NDArray[np.float64]
 
@@ -60,13 +61,13 @@ def follow(
 class _Track:
     """The states of a path: on the elements compiled while nothing happens, in steps where something does.
 
-    pieces: rows by state, and z (S, N) of these; waiting: points that are not rows yet, with ``done`` of
+    pieces: rows by state, and their z (S, N); waiting: points that are not rows yet, with ``done`` of
     each; given: unknowns (N,) of the first state, where they were given and are an equilibrium.
     """
 
     def __init__(self, watch: Watch, factors: Array, progress: Progress | None) -> None:
         self.watch, self.work, self.factors, self.progress = watch, watch.work, factors, progress
-        self.pieces: list[tuple[dict[str, Array], Array]] = []
+        self.pieces: list[tuple[dict[str, Any], Later]] = []
         self.waiting: list[tuple[Point, float]] = []
         self.states, self.done = 0, 0.0
         self.follower: Follower | None = None
@@ -94,6 +95,8 @@ class _Track:
 
     def advance(self) -> str:
         """One increment in steps, and on the elements on from there; returns why it failed, or nothing."""
+        if self.watch.first is None:
+            self.watch.first = (float(self.factors[0]), self._z()[0])
         if self.follower is None:
             self.follower = Follower(self.watch, self._point(self.states - 1), ())
         follower, known, before = self.follower, len(self.follower.points), self.done - self.follower.done[-1]
@@ -119,7 +122,7 @@ class _Track:
         self._flush()
         answer = answer.rows(slice(known, count))
         rows = by_state(work.model, factors[known:count], answer._replace(done=answer.done + self.done))
-        self.pieces.append((rows, work.z(answer.y, answer.reaction)))
+        self.pieces.append((rows, Later(partial(work.z, answer.y, answer.reaction))))
         self.done += float(answer.done[-1])
         work.counters.increments += count - 1
         self._count(count - known)
@@ -134,27 +137,26 @@ class _Track:
 
     def _count(self, more: int) -> None:
         """More states, those of the increments told to the progress."""
-        for state in range(self.states, self.states + more):
-            if self.progress is not None and state > 0:
+        if self.progress is not None:
+            for state in range(max(self.states, 1), self.states + more):
                 self.progress(state, len(self.factors) - 1)
         self.states += more
-        if self.watch.first is None:
-            self.watch.first = (float(self.factors[0]), self._z()[0])
 
     def _flush(self) -> None:
         if self.waiting:
             points, done = zip(*self.waiting, strict=True)
-            self.pieces.append((self.work.rows(points, done), np.array([p.z for p in points])))
+            self.pieces.append((self.work.rows(points, done), Later(np.array([p.z for p in points]).copy)))
             self.waiting.clear()
 
     def _z(self) -> Array:
         """z of all states (S, N)."""
         self._flush()
-        return np.concatenate([z for _, z in self.pieces])
+        return joined([z for _, z in self.pieces])
 
     def _rows(self, name: str) -> Array:
         """What a ``Path`` has by state, of that name."""
-        return np.concatenate([rows[name] for rows, _ in self.pieces])[: self.states]
+        parts = [rows[name] for rows, _ in self.pieces]
+        return (parts[0] if len(parts) == 1 else np.concatenate(parts))[: self.states]
 
     def _point(self, state: int) -> Point:
         """A state as a point to go on from."""
@@ -164,8 +166,22 @@ class _Track:
     def path(self, message: str) -> Path:
         """What was followed, told what it is watched for."""
         self._flush()
-        rows = {name: self._rows(name) for name in self.pieces[0][0]}
+        names = self.pieces[0][0].keys() - {"unknowns"}
+        rows: dict[str, Any] = {name: self._rows(name) for name in names}
+        pieces = [rows["unknowns"] for rows, _ in self.pieces]
+        rows["unknowns"] = Later(partial(_states, pieces, self.states, self.given))
         if self.given is not None:
-            rows["states"][0] = self.given
+            system = self.work.system
+            rows["reactions"][0] = self.given[system.drives.row]
+            for i, start in enumerate(system.layout.bodies.values()):
+                rows["bodies"][0, 3 * i : 3 * i + 3] = self.given[start : start + 3]
         history = [*self.history, *([] if self.follower is None else self.follower.history)]
         return self.watch.path(rows, message, [norms for norms in history if norms])
+
+
+def _states(pieces: Sequence[Later], count: int, given: Array | None) -> Array:
+    """The unknowns of the first ``count`` states of several pieces, the very first as it was given."""
+    states = joined(pieces)[:count]
+    if given is not None:
+        states[0] = given
+    return states

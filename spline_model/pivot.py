@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import cmath
 import math
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -134,12 +135,12 @@ def cross_axis_pivot(
     if not 0 < crossing_ratio < 1:
         raise InvalidParameter("crossing_ratio", crossing_ratio, "a number between 0 and 1")
     points = _clamps_at_rest(length, inclination, crossing_ratio, orientation)
-    centre = points[:, 1].mean(axis=0) + _rotation(orientation) @ np.asarray(centre_offset, dtype=float)
+    centre = (points[0][1] + points[1][1]) / 2.0 + cmath.rect(1.0, orientation) * complex(*centre_offset)
     strips = [
         StripDesign(
             name=name,
-            start=tuple(points[i, 0]),
-            end=tuple(points[i, 1]),
+            start=(start.real, start.imag),
+            end=(end.real, end.imag),
             tip=BODY,
             area=area,
             second_moment_of_area=second_moment_of_area,
@@ -147,10 +148,13 @@ def cross_axis_pivot(
             poisson_ratio=poisson_ratio,
             density=density,
         )
-        for i, name in enumerate(STRIPS)
+        for name, (start, end) in zip(STRIPS, points, strict=True)
     ]
     body = BodyDesign(
-        name=BODY, centre=tuple(centre), mass=body_mass, moment_of_inertia=body_moment_of_inertia
+        name=BODY,
+        centre=(centre.real, centre.imag),
+        mass=body_mass,
+        moment_of_inertia=body_moment_of_inertia,
     )
     made = mechanism(
         strips=strips,
@@ -170,14 +174,10 @@ def cross_axis_pivot(
 
 def _clamps_at_rest(
     length: float, inclination: float, crossing_ratio: float, orientation: float
-) -> NDArray[np.float64]:
-    """Clamped points (2, 2, 2): strips from the ground to the body, crossing at r L."""
-    cos, sin = math.cos(inclination), math.sin(inclination)
-    tangents = np.array([[cos, sin], [-cos, sin]])
-    ground = np.array([[0.0, 0.0], [2 * crossing_ratio * length * cos, 0.0]])
-    points = np.stack((ground, ground + length * tangents), axis=1)
-    return points @ _rotation(orientation).T
-
-
-def _rotation(angle: float) -> NDArray[np.float64]:
-    return np.array([[math.cos(angle), -math.sin(angle)], [math.sin(angle), math.cos(angle)]])
+) -> list[tuple[complex, complex]]:
+    """Clamped points x + iy of each strip, from the ground to the body, crossing at r L."""
+    along = cmath.rect(length, inclination)
+    turn = cmath.rect(1.0, orientation)
+    roots = (0j, complex(2.0 * crossing_ratio * along.real))
+    tips = (roots[0] + along, roots[1] + complex(-along.real, along.imag))
+    return [(root * turn, tip * turn) for root, tip in zip(roots, tips, strict=True)]

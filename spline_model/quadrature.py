@@ -1,117 +1,151 @@
-"""The Gauss points of a set of strips, flattened into one table."""
+"""The Gauss points of a scene in one flat table."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import lru_cache
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from spline_model.basis import AxialModes, SplineBasis
+from spline_model.basis import SplineBasis
+from spline_model.effects import MEASURES, Bending, MixedStretching, Stretching, StripDamping
 from spline_model.layout import Layout
-from spline_model.scene import Strip
+from spline_model.scene import Scene, Strip
 
 Array = NDArray[np.float64]
+Indices = NDArray[np.int64]
+
+FIRST, WIDTH, MODE, MODES, MEASURE = range(5)
+"""Columns of ``PointTable.place``."""
+WEIGHT, SPEED, REST, CURVATURE, RIGIDITY, STRAIN, STRETCHING, COMPLIANCE, RELAXATION = range(9)
+"""Columns of ``PointTable.numbers``."""
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Points:
-    """One row a Gauss point; ``source`` (P,) says which of the listed strips it is on.
+class PointTable(NamedTuple):
+    """One row a Gauss point, P in all; those of bending come first, strip by strip.
 
-    first (P,) index in z of the support's first x; width (P,); d1, d2 (P, S); u, weight
-    (P,); speed (P,) |C0'| [m]; curvature (P,) d(theta)/ds0 at rest [1/m].
+    place (P, 5): index in z of the support's first x and its number of control points; index in z of the
+    first axial force that does not vanish there, and their number; code of the measure. basis (2, P, S):
+    first and second derivatives, S the widest support. modes (P, M): values of the axial forces' modes.
+    numbers (P, 9): Gauss weight; J0 [m]; curvature at rest and stress-free [1/m]; EI [N m^2]; natural
+    strain; EA of stretching by quadrature [N]; compliance 1/EA of the axial forces [1/N]; relaxation time
+    [s]. What does not act is zero.
     """
 
-    source: NDArray[np.int64]
-    u: Array
-    weight: Array
-    first: NDArray[np.int64]
-    width: NDArray[np.int64]
-    d1: Array
-    d2: Array
-    speed: Array
-    curvature: Array
+    place: Indices
+    basis: Array
+    modes: Array
+    numbers: Array
 
-    def spread(self, values: Sequence[float]) -> Array:
-        """One value a listed strip -> one value a point."""
-        return np.array(values, dtype=float)[self.source]
+    @property
+    def speed(self) -> Array:
+        """J0 (P,) [m]."""
+        return self.numbers[:, SPEED]
+
+    @property
+    def curvature(self) -> Array:
+        """Stress-free curvature (P,) [1/m]."""
+        return self.numbers[:, CURVATURE]
+
+    @property
+    def rigidity(self) -> Array:
+        """EI (P,) [N m^2]."""
+        return self.numbers[:, RIGIDITY]
+
+    def derivatives(self, z: Array) -> Array:
+        """x', y', x'', y'' at the unknowns z (N,), (4, P)."""
+        behind = np.minimum(np.arange(self.basis.shape[2]), self.place[:, WIDTH, None] - 1)
+        columns = self.place[:, FIRST, None] + 2 * behind
+        return np.array([np.einsum("pa,pa->p", d, z[columns + i]) for d in self.basis for i in range(2)])
+
+    def with_share(self, share: float) -> PointTable:
+        """The table with a share of the pre-strain."""
+        numbers = self.numbers.copy()
+        numbers[:, CURVATURE] = (1.0 - share) * numbers[:, REST] + share * numbers[:, CURVATURE]
+        numbers[:, STRAIN] *= share
+        return self._replace(numbers=numbers)
 
 
-def strip_points(strips: Sequence[tuple[Strip, int]], layout: Layout) -> Points:
-    """Points of the listed (strip, Gauss points a knot span) in one table; empty for none."""
-    widest = max((strip.basis.degree + 1 for strip, _ in strips), default=0)
-    parts = [_points_of(i, strip, count, layout, widest) for i, (strip, count) in enumerate(strips)]
-    empty = {
-        "source": np.zeros(0, dtype=np.int64),
-        "u": np.zeros(0),
-        "weight": np.zeros(0),
-        "first": np.zeros(0, dtype=np.int64),
-        "width": np.zeros(0, dtype=np.int64),
-        "d1": np.zeros((0, widest)),
-        "d2": np.zeros((0, widest)),
-        "speed": np.zeros(0),
-        "curvature": np.zeros(0),
-    }
-    return Points(
-        **{key: np.concatenate([none, *(part[key] for part in parts)]) for key, none in empty.items()}
-    )
+def point_table(scene: Scene, layout: Layout) -> PointTable:
+    """Gauss points of bending and stretching; those that two effects share stand there once.
+
+    The stress-free curvature is the one at rest and the natural one.
+    """
+    groups = _groups(scene, layout)
+    widest = max((scene.strip(e.strip).basis.degree + 1 for e, *_ in groups), default=0)
+    most = max((at.modes.width for _, at, _ in groups if isinstance(at, MixedStretching)), default=0)
+    parts = [_rows(scene, layout, *group, widest, most) for group in groups]
+    if not parts:
+        return PointTable(np.zeros((0, 5), np.int64), np.zeros((2, 0, 0)), np.zeros((0, 0)), np.zeros((0, 9)))
+    place, basis, modes, numbers = zip(*parts, strict=True)
+    joined = np.ascontiguousarray(np.concatenate(basis, axis=1))
+    return PointTable(np.concatenate(place), joined, np.concatenate(modes), np.concatenate(numbers))
+
+
+def _groups(scene: Scene, layout: Layout) -> list[tuple[Any, Any, int]]:
+    """Effects that act at the same points: bending or else stretching, stretching, its first axial force."""
+    groups: list[tuple[Any, Any, int]] = [(bending, None, 0) for bending in scene.of(Bending)]
+    axial: list[tuple[Stretching | MixedStretching, int]] = [(e, 0) for e in scene.of(Stretching)]
+    axial += [(e, at) for e, (at, _) in zip(scene.of(MixedStretching), layout.modes, strict=True)]
+    for effect, at in axial:
+        grid = effect.strip, effect.gauss_points, effect.measure
+        alone = [(e.strip, e.gauss_points, e.measure) if other is None else () for e, other, _ in groups]
+        if grid in alone:
+            found = alone.index(grid)
+            groups[found] = groups[found][0], effect, at
+        else:
+            groups.append((effect, effect, at))
+    return groups
+
+
+def _rows(
+    scene: Scene, layout: Layout, effect: Any, axial: Any, mode: int, widest: int, most: int
+) -> tuple[Indices, Array, Array, Array]:
+    """Rows of a group, as wide as the widest support and the most modes of the scene."""
+    strip = scene.strip(effect.strip)
+    weight, support, basis, _ = _tables(strip.basis, effect.gauss_points)
+    count, width = len(weight), basis.shape[2]
+    place, numbers = np.zeros((count, 5), dtype=np.int64), np.zeros((count, 9))
+    modes = np.zeros((count, most))
+    place[:, FIRST] = layout.strips[strip.name][0] + 2 * support
+    place[:, WIDTH], place[:, MEASURE] = width, MEASURES.index(effect.measure)
+    numbers[:, WEIGHT] = weight
+    numbers[:, SPEED], numbers[:, REST] = rest_of(strip, effect.gauss_points)
+    numbers[:, CURVATURE] = numbers[:, REST]
+    damping = {e.strip: e.relaxation_time for e in scene.of(StripDamping)}
+    numbers[:, RELAXATION] = damping.get(strip.name, 0.0)
+    if isinstance(effect, Bending):
+        numbers[:, CURVATURE] += effect.natural_curvature
+        numbers[:, RIGIDITY] = effect.flexural_rigidity
+    if axial is not None:
+        numbers[:, STRAIN] = axial.natural_strain
+    if isinstance(axial, Stretching):
+        numbers[:, STRETCHING] = axial.axial_rigidity
+    if isinstance(axial, MixedStretching):
+        numbers[:, COMPLIANCE] = axial.axial_compliance
+        first, values = axial.modes.evaluate(strip.basis.gauss_rule(axial.gauss_points)[0])
+        place[:, MODE], place[:, MODES] = mode + first, axial.modes.width
+        modes[:, : axial.modes.width] = values
+    return place, np.pad(basis, ((0, 0), (0, 0), (0, widest - width))), modes, numbers
 
 
 @lru_cache(maxsize=256)
-def _tables(
-    basis: SplineBasis, count: int
-) -> tuple[Array, Array, NDArray[np.int64], Array, Array, Array, Array]:
-    """u, weight, first of the support (P,), its d1, d2 (P, degree + 1), and of all functions (P, n); kept."""
+def _tables(basis: SplineBasis, count: int) -> tuple[Array, Indices, Array, Array]:
+    """Weights, first of the support (P,), its derivatives (2, P, degree + 1), of all (2, P, n); kept."""
     u, weight = basis.gauss_rule(count)
     support = basis.first_of_support(u)
     columns = support[:, None] + np.arange(basis.degree + 1)
-    first, second = basis.evaluate(u, 1), basis.evaluate(u, 2)
-    d1, d2 = (np.take_along_axis(values, columns, axis=1) for values in (first, second))
-    kept = (u, weight, support, d1, d2, first, second)
+    every = np.array([basis.evaluate(u, order) for order in (1, 2)])
+    kept = (weight, support, np.take_along_axis(every, columns[None], axis=2), every)
     for array in kept:
         array.setflags(write=False)
     return kept
-
-
-@lru_cache(maxsize=256)
-def modes_at(modes: AxialModes, basis: SplineBasis, count: int) -> tuple[NDArray[np.int64], Array]:
-    """First mode of the support and the values at the Gauss points, as ``modes.evaluate``; kept."""
-    kept = modes.evaluate(basis.gauss_rule(count)[0])
-    for array in kept:
-        array.setflags(write=False)
-    return kept
-
-
-def _points_of(source: int, strip: Strip, count: int, layout: Layout, widest: int) -> dict[str, NDArray]:
-    basis = strip.basis
-    u, weight, support, d1, d2, _, _ = _tables(basis, count)
-    speed, curvature = rest_of(strip, count)
-    return {
-        "source": np.full(len(u), source, dtype=np.int64),
-        "u": u,
-        "weight": weight,
-        "first": layout.strips[strip.name][0] + 2 * support,
-        "width": np.full(len(u), basis.degree + 1, dtype=np.int64),
-        "d1": _widened(d1, widest),
-        "d2": _widened(d2, widest),
-        "speed": speed,
-        "curvature": curvature,
-    }
 
 
 @lru_cache(maxsize=256)
 def rest_of(strip: Strip, count: int) -> tuple[Array, Array]:
-    """Speed and curvature (P,) at rest; kept, as several tables of a scene ask for them."""
-    first, second = _tables(strip.basis, count)[-2:]
-    tangent, bend = first @ strip.control_points, second @ strip.control_points
+    """Speed and curvature (P,) at rest, ``count`` Gauss points a knot span; kept."""
+    tangent, bend = _tables(strip.basis, count)[-1] @ strip.control_points
     speed = np.hypot(tangent[:, 0], tangent[:, 1])
     return speed, (tangent[:, 0] * bend[:, 1] - tangent[:, 1] * bend[:, 0]) / speed**3
-
-
-def _widened(values: Array, width: int) -> Array:
-    """Rows with zeros behind, as wide as the widest support of the scene."""
-    if values.shape[1] == width:
-        return values
-    return np.pad(values, ((0, 0), (0, width - values.shape[1])))

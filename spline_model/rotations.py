@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -19,13 +20,10 @@ from spline_model.effects.base import Load
 from spline_model.laps import Laps
 from spline_model.path import Progress, follow
 from spline_model.scene import Scene
-from spline_model.solution import Path, Status
+from spline_model.solution import BY_STATE, Later, Path, Status, joined
 from spline_model.tables import SIZED
 
 Array = NDArray[np.float64]
-
-BY_STATE = ("load_factor", "states", "rates", "stiffness", "energies", "work", "inertia", "moment_defect")
-
 
 LOADS_FIRST, TOGETHER = ORDERS = ("loads first", "together")
 
@@ -104,8 +102,7 @@ class Side:
 
 def largest_of(rotations: Array, origin: float = 0.0) -> float:
     """The rotation of largest size [rad], with its sign: there the loads act in full."""
-    every = np.append(rotations, origin)
-    return float(every[np.abs(every).argmax()])
+    return float(max(*rotations.tolist(), origin, key=abs))
 
 
 def factors_of(rotations: Array, largest: float) -> Array:
@@ -139,27 +136,29 @@ def follow_rotations(
     laps.lap("compile")
     for side in _sides(whole, factors, 0.0 if start is None else start[0]):
         system = whole if side.sign > 0.0 else compile_scene(driven(-largest))
+        start = start if path is None else (0.0, path.states[-1])
         aims = [side.sign * factor for factor in side.factors] + [0.0] * side.returns
         begin = None if start is None else (side.sign * start[0], start[1])
         told = None if progress is None else _later(progress, done, len(factors))
         part = follow(system, aims, told, start=begin, branch=branch, method=method)
         if part.critical_points:
             branch = "primary"  # the branch was left, or there was none to follow
-        part = replace(part, load_factor=side.sign * part.load_factor, rates=side.sign * part.rates)
+        if side.sign < 0.0:
+            part = replace(part, load_factor=-part.load_factor)
         path = part if path is None else _joined(path, part, back)
         if path.status is not Status.CONVERGED:
             break
-        start, done, back = (0.0, path.states[-1]), done + len(side.factors), side.returns
+        done, back = done + len(side.factors), side.returns
     laps.lap("solve")
     assert path is not None, "a path has at least one rotation"
     points = tuple(replace(point, load_factor=abs(point.load_factor)) for point in path.critical_points)
-    return whole, replace(path, critical_points=points)
+    return whole, replace(path, critical_points=points) if points else path
 
 
 def _sides(system: System, factors: Array, begin: float) -> list[Side]:
     """The factors by their side of rest, that of the start where they are zero; all at once without loads."""
     if not system.loads.value.any() and np.count_nonzero(system.drives.target) < 2:
-        return [Side(sign=1.0, factors=tuple(factors), returns=False)]
+        return [Side(sign=1.0, factors=tuple(factors.tolist()), returns=False)]
     signs = np.sign(np.append(begin, factors))
     for i in range(1, len(signs)):
         signs[i] = signs[i] or signs[i - 1]
@@ -168,7 +167,11 @@ def _sides(system: System, factors: Array, begin: float) -> list[Side]:
     cuts = np.flatnonzero(np.diff(signs[1:])) + 1
     parts = np.split(factors, cuts)
     sides = [
-        Side(sign=float(signs[1 + at]), factors=tuple(part), returns=bool(i < len(cuts) and part[-1] != 0.0))
+        Side(
+            sign=float(signs[1 + at]),
+            factors=tuple(part.tolist()),
+            returns=bool(i < len(cuts) and part[-1] != 0.0),
+        )
         for i, (at, part) in enumerate(zip(np.append(0, cuts), parts, strict=True))
     ]
     if signs[0] != signs[1]:  # begun on the other side
@@ -184,10 +187,10 @@ def _later(progress: Progress, done: int, total: int) -> Progress:
 def _joined(before: Path, after: Path, back: bool) -> Path:
     """Two parts of a path, the second begun where the first ends; back: at a rest that nobody asked for."""
     kept = len(before.work) - back
-    parts: dict[str, Any] = {
-        name: np.concatenate((getattr(before, name)[:kept], getattr(after, name)[1:])) for name in BY_STATE
-    }
+    both = before.rows(slice(kept)), after.rows(slice(1, None))
+    parts: dict[str, Any] = {name: np.concatenate([rows[name] for rows in both]) for name in BY_STATE}
     parts["work"][kept:] += before.work[-1]
+    parts["unknowns"] = Later(partial(joined, tuple(rows["unknowns"] for rows in both)))
     return replace(
         after,
         message="; ".join(dict.fromkeys(m for m in (before.message, after.message) if m)),

@@ -10,11 +10,11 @@ from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
 from spline_model.basis import SlideModes
+from spline_model.bordered import evaluate
 from spline_model.compile import System, compile_scene
 from spline_model.effects import GROUND, MixedStretching
 from spline_model.mechanism import Mechanism
 from spline_model.motion.start import axial_rigidity
-from spline_model.operator import evaluate
 from spline_model.sections import Sections, clamp_reactions, sections
 from spline_model.statics import STATIONS
 

@@ -72,21 +72,8 @@ def _alike(system: System, states: Array, strips: list[Strip], stations: Array, 
     rest_speed, rest_turning = speed[:, count:], turning[:, count:]
     x1, y1, speed, turning = x1[:, :count], y1[:, :count], speed[:, :count], turning[:, :count]
 
-    moment, force = np.zeros_like(speed), np.zeros((count, len(strips), len(stations)))
     pull = np.empty((2, len(stations), count, len(strips)))
     for g, strip in enumerate(strips):
-        bending = scene.bending_of(strip.name)
-        if bending is not None:
-            length = rest_speed[..., g] if bending.measure == "material" else speed[..., g]
-            strain = turning[..., g] / length - (rest_turning / rest_speed)[..., g]
-            moment[..., g] = bending.flexural_rigidity * (strain - bending.natural_curvature)
-        for consistent in scene.of(Stretching):
-            if consistent.strip == strip.name:
-                strain = speed[..., g] / rest_speed[..., g] - 1.0 - consistent.natural_strain
-                force[:, g] += consistent.axial_rigidity * strain.T
-        for i, mixed in enumerate(scene.of(MixedStretching)):
-            if mixed.strip == strip.name:
-                force[:, g] += states[:, layout.axial_modes(i)] @ _modes_at(mixed.modes, stations.tobytes())
         pull[..., g] = -clamp_reactions(system, states, strip.name, "start")[:, :2].T[:, None]
         for weight in scene.of(StripGravity):
             if weight.strip == strip.name:
@@ -95,22 +82,62 @@ def _alike(system: System, states: Array, strips: list[Strip], stations: Array, 
     shear = (pull[1] * x1 - pull[0] * y1) / speed
     if balanced:
         force = ((pull[0] * x1 + pull[1] * y1) / speed).transpose(1, 2, 0)
+        moment = _balanced_moments(system, states, strips, points[:, :, :count], stations)
+    else:
+        moment = np.zeros_like(speed)
         for g, strip in enumerate(strips):
-            reaction = clamp_reactions(system, states, strip.name, "start")
-            moment[..., g] = balance(
-                points[:, :, :count, g].transpose(2, 0, 1),
-                values[: len(stations)],
-                _areas_at(basis, stations.tobytes()),
-                stations,
-                reaction,
-                weight_of(system, strip.name),
-            ).T
+            bending = scene.bending_of(strip.name)
+            if bending is not None:
+                length = rest_speed[..., g] if bending.measure == "material" else speed[..., g]
+                strain = turning[..., g] / length - (rest_turning / rest_speed)[..., g]
+                moment[..., g] = bending.flexural_rigidity * (strain - bending.natural_curvature)
+        force = _axial_forces(system, states, strips, stations, speed / rest_speed)
     return Sections(
         shape=np.ascontiguousarray(curve[0, :, :, :count].transpose(2, 3, 0, 1)),
         axial_force=np.ascontiguousarray(force),
         bending_moment=np.ascontiguousarray(moment.transpose(1, 2, 0)),
         shear_force=np.ascontiguousarray(shear.transpose(1, 2, 0)),
     )
+
+
+def _balanced_moments(
+    system: System, states: Array, strips: list[Strip], points: Array, stations: Array
+) -> Array:
+    """Bending moments (P, S, G) by balance, of control points (n, 2, S, G)."""
+    basis = strips[0].basis
+    values, areas = (
+        _basis_at(basis, stations.tobytes())[: len(stations)],
+        _areas_at(basis, stations.tobytes()),
+    )
+    by_strip = [
+        balance(
+            points[..., g].transpose(2, 0, 1),
+            values,
+            areas,
+            stations,
+            clamp_reactions(system, states, strip.name, "start"),
+            weight_of(system, strip.name),
+        )
+        for g, strip in enumerate(strips)
+    ]
+    return np.array(by_strip).transpose(2, 1, 0)
+
+
+def _axial_forces(
+    system: System, states: Array, strips: list[Strip], stations: Array, stretch: Array
+) -> Array:
+    """Axial forces (S, G, P) by the law; stretch (P, S, G)."""
+    scene, force = system.scene, np.zeros((len(states), len(strips), len(stations)))
+    for g, strip in enumerate(strips):
+        for consistent in scene.of(Stretching):
+            if consistent.strip == strip.name:
+                strain = stretch[..., g] - 1.0 - consistent.natural_strain
+                force[:, g] += consistent.axial_rigidity * strain.T
+        for i, mixed in enumerate(scene.of(MixedStretching)):
+            if mixed.strip == strip.name:
+                axial = states[:, system.layout.axial_modes(i)]
+                force[:, g] += axial @ _modes_at(mixed.modes, stations.tobytes())
+    return force
 
 
 @lru_cache(maxsize=64)

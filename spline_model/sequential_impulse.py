@@ -29,15 +29,13 @@ from spline_model.compile import compile_scene
 from spline_model.content import STEPS_PER_PERIOD
 from spline_model.effects import DrivenDisplacement, DrivenRotation
 from spline_model.errors import InvalidParameter, require_positive
-from spline_model.impulses.run import Run
-from spline_model.impulses.solver import TOLERANCE, ImpulseSolver
-from spline_model.impulses.state import Outcome, State
+from spline_model.impulses.solver import TOLERANCE, ImpulseSolver, Outcome, Run, State
 from spline_model.laps import Laps
 from spline_model.mass import mass_matrix
 from spline_model.mechanism import Mechanism
 from spline_model.modes import linear_modes, static_state
+from spline_model.motion.dispatch import count_steps
 from spline_model.motion.events import catch, drives_at, event_times, from_here
-from spline_model.motion.steps import count_steps
 from spline_model.motion.trajectory import Trajectory, trajectory_of
 
 __all__ = ["ImpulseSolver", "Outcome", "State", "impulse_solver", "solve_impulses", "stability_limit"]

@@ -2,19 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from enum import Enum
-from typing import TYPE_CHECKING
+from functools import cached_property, partial
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.errors import InvalidParameter
-from spline_model.estimate import resolution
+from spline_model.estimate import ErrorEstimate, resolution
 
 if TYPE_CHECKING:
     import pandas as pd
+
+    from spline_model.static_answers import Along
 
 Array = NDArray[np.float64]
 
@@ -56,14 +59,26 @@ class CriticalPoint:
     inertia: int
 
 
+@dataclass(frozen=True, eq=False)
+class Later:
+    """An array that is made when it is first asked for."""
+
+    make: Callable[[], Array]
+
+    @cached_property
+    def array(self) -> Array:
+        """It."""
+        return self.make()
+
+
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Path:
     """An equilibrium path, S converged states, the unloaded one first.
 
-    load_factor (S,); states (S, N) unknowns z; rates (S, N) dz/d(load factor), from the
-    tangent; stiffness (S,) d(torque)/d(rotation) of a driven rotation at fixed loads, nan without
-    one [N m/rad]; energies (S, 2) bending and axial [J]; work (S,) of loads and drives since the
-    first state [J]; history: residual norms by increment.
+    load_factor (S,); bodies (S, 3 B): x, y, theta of each [m, rad]; reactions (S, D) of the drives, as
+    multipliers; unknowns: z (S, N) of all states; stiffness (S,) d(torque)/d(rotation) of a driven rotation
+    at fixed loads, nan without one [N m/rad]; energies (S, 2) bending and axial [J]; work (S,) of loads and
+    drives since the first state [J]; history: residual norms by increment.
     inertia (S,): negative eigenvalues of the reduced tangent with the drives held, 0 for a
     stable state, -1 where the printed forces have no potential; moment_defect (S,): what the
     strips' moments differ from balance by, relative (``continuation.resolution``);
@@ -73,8 +88,9 @@ class Path:
     status: Status
     message: str
     load_factor: Array
-    states: Array
-    rates: Array
+    bodies: Array
+    reactions: Array
+    unknowns: Later
     stiffness: Array
     energies: Array
     work: Array
@@ -84,74 +100,38 @@ class Path:
     counters: dict[str, int]
     history: tuple[tuple[float, ...], ...]
 
-
-ERRORS = ("trajectory", "torque", "stiffness", "section_forces", "stress")
-"""What an accuracy of a static path is about."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class ErrorEstimate:
-    """Estimated error of a static path that was solved to an ``accuracy``, all relative [1].
-
-    trajectory: largest error of a body's place over the largest displacement, and of its turn where that is
-    not driven; torque, stiffness, section_forces, stress (the largest over a strip of the rectangular section
-    that A and I imply): largest error over the largest magnitude on the path.
-    control_points that were chosen; trials: numbers of control points that were tried.
-    Leaves out what more control points do not mend: the theory's own simplifications.
-    """
-
-    accuracy: float
-    trajectory: float
-    torque: float
-    stiffness: float
-    section_forces: float
-    stress: float
-    control_points: int
-    trials: tuple[int, ...]
-
     @property
-    def largest(self) -> float:
-        """The largest of the errors, which ``accuracy`` is about."""
-        return max(float(getattr(self, name)) for name in ERRORS)
+    def states(self) -> Array:
+        """The unknowns z of all states (S, N)."""
+        return self.unknowns.array
 
-    @property
-    def remark(self) -> str:
-        """Empty, or what is more uncertain than the accuracy."""
-        missed = [name for name in ERRORS if not getattr(self, name) <= self.accuracy]
-        if not missed:
-            return ""
-        errors = ", ".join(f"{name.replace('_', ' ')} {getattr(self, name):.1e}" for name in missed)
-        return f"estimated error above {self.accuracy:g} with {self.control_points} control points: {errors}"
+    def rows(self, kept: slice) -> dict[str, Any]:
+        """What it has by state, of some of them."""
+        unknowns = self.unknowns
+        return {name: getattr(self, name)[kept] for name in BY_STATE} | {
+            "unknowns": Later(partial(_some, unknowns, kept))
+        }
 
 
-@dataclass(frozen=True, kw_only=True)
-class FrequencyEstimate:
-    """Estimated error of natural frequencies that were solved to an ``accuracy``, relative [1].
+BY_STATE = (
+    "load_factor",
+    "bodies",
+    "reactions",
+    "stiffness",
+    "energies",
+    "work",
+    "inertia",
+    "moment_defect",
+)
 
-    frequency: the largest of all modes; control_points and trials as of ``ErrorEstimate``.
-    """
 
-    accuracy: float
-    frequency: float
-    control_points: int
-    trials: tuple[int, ...]
+def _some(unknowns: Later, kept: slice) -> Array:
+    return unknowns.array[kept]
 
 
-@dataclass(frozen=True, kw_only=True)
-class MotionEstimate:
-    """Estimated error of the rotation of a motion that was solved to an ``accuracy`` [rad].
-
-    rotation: its largest error over the motion, of the steps (``time``) and of the control points
-    (``space``) together, which may cancel in part; control_points that were chosen; runs that
-    it took.
-    """
-
-    accuracy: float
-    rotation: float
-    time: float
-    space: float
-    control_points: int
-    runs: int
+def joined(parts: Sequence[Later]) -> Array:
+    """Rows of several arrays, one after another."""
+    return np.concatenate([part.array for part in parts])
 
 
 class Tabulated:
@@ -195,11 +175,12 @@ class StaticSolution(Tabulated):
     and driven displacements, from the tangent, of the driven rotation, nan without one;
     bending_energy, axial_energy (S,) [J];
     gravity_energy (S,) [J] against rest, work (S,) of drives and loads since the first state;
+    along: what is known along the strips, made when it is asked for: shape (S, G, P, 2) [m]; axial_force,
+    bending_moment, shear_force (S, G, P) [N, N m, N] at stations (P,), reference arc length over L, and
     clamp_reactions (S, G, 2, 3): force [N] and moment [N m] of the clamp at the root and at the tip of a
-    strip, zero at a free end; stations (P,) reference arc length over L;
-    shape (S, G, P, 2) [m]; axial_force, bending_moment, shear_force (S, G, P) [N, N m, N];
+    strip, zero at a free end; each is an attribute of the answer, too;
     effects: names of what was assembled;
-    inertia, moment_defect, critical_points and states as in ``Path``;
+    inertia, moment_defect, critical_points and states (S, N) as in ``Path``;
     seconds: by part, see ``spline_model.laps``; control_points: of a strip;
     estimate: of the error, where the control points were chosen for an accuracy.
     """
@@ -215,17 +196,11 @@ class StaticSolution(Tabulated):
     axial_energy: Array
     gravity_energy: Array
     work: Array
-    clamp_reactions: Array
-    stations: Array
-    shape: Array
-    axial_force: Array
-    bending_moment: Array
-    shear_force: Array
+    along: Along
     effects: tuple[str, ...]
     inertia: NDArray[np.int64]
     moment_defect: Array
     critical_points: tuple[CriticalPoint, ...]
-    states: Array
     counters: dict[str, int]
     history: tuple[tuple[float, ...], ...]
     seconds: dict[str, float]
@@ -241,6 +216,41 @@ class StaticSolution(Tabulated):
     def centre(self) -> Array:
         """Centre of the driven body, or of the only one (S, 2) [m]."""
         return self._watched[:, :2]
+
+    @property
+    def states(self) -> Array:
+        """The unknowns z of all states (S, N), to go on from."""
+        return self.along.unknowns.array
+
+    @property
+    def clamp_reactions(self) -> Array:
+        """Force [N] and moment [N m] of the clamps at root and tip of the strips (S, G, 2, 3)."""
+        return self.along.clamp_reactions
+
+    @property
+    def stations(self) -> Array:
+        """Where sections are recovered (P,), reference arc length over L."""
+        return self.along.stations
+
+    @property
+    def shape(self) -> Array:
+        """Points of the strips (S, G, P, 2) [m]."""
+        return self.along.sections.shape
+
+    @property
+    def axial_force(self) -> Array:
+        """N (S, G, P) [N]."""
+        return self.along.sections.axial_force
+
+    @property
+    def bending_moment(self) -> Array:
+        """M (S, G, P) [N m]."""
+        return self.along.sections.bending_moment
+
+    @property
+    def shear_force(self) -> Array:
+        """V (S, G, P) [N]."""
+        return self.along.sections.shear_force
 
     @property
     def shear_energy(self) -> Array:

@@ -15,9 +15,7 @@ from scipy.sparse import csc_matrix, diags_array
 from scipy.sparse.linalg import SuperLU, splu
 
 from spline_model.compile import System
-from spline_model.kernels.axial_force import AxialForceTable
-from spline_model.kernels.bending import BendingTable
-from spline_model.kernels.stretching import StretchingTable
+from spline_model.quadrature import FIRST, MODE, MODES, WIDTH
 
 Array = NDArray[np.float64]
 
@@ -100,28 +98,14 @@ def filled_entries(system: System) -> NDArray[np.bool_]:
     """Which entries of the tangent (N, N) the compiled tables can reach; potentials in Python not counted."""
     tables, size = system.tables, system.layout.size
     filled = np.zeros((size, size), dtype=np.bool_)
-    for block in (*_spans(tables.bending), *_spans(tables.stretching), *_mode_spans(tables.axial_force)):
+    spans = np.unique(tables.points.place[:, [FIRST, WIDTH, MODE, MODES]], axis=0)
+    for first, width, mode, modes in spans:
+        block = np.concatenate((np.arange(first, first + 2 * width), np.arange(mode, mode + modes)))
         filled[np.ix_(block, block)] = True
-    clamps, drives = tables.clamps, tables.drives
-    for end, inner, body, row in zip(clamps.end, clamps.inner, clamps.body, clamps.row, strict=True):
+    drives = tables.drives
+    for end, inner, body, row in tables.clamps.place:
         places = [end, end + 1, inner, inner + 1, *range(row, row + 3)]
         places += [] if body < 0 else range(body, body + 3)
         filled[np.ix_(places, places)] = True
     filled[drives.coordinate, drives.row] = filled[drives.row, drives.coordinate] = True
     return filled
-
-
-def _spans(table: BendingTable | StretchingTable) -> list[NDArray[np.int64]]:
-    """Coordinates that meet at some Gauss point, one array a knot span."""
-    pairs = sorted(set(zip(table.first.tolist(), table.width.tolist(), strict=True)))
-    return [np.arange(first, first + 2 * width) for first, width in pairs]
-
-
-def _mode_spans(table: AxialForceTable) -> list[NDArray[np.int64]]:
-    """The same with the axial forces that do not vanish there."""
-    names = ("first", "width", "mode_first", "mode_width")
-    spans = sorted(set(zip(*(getattr(table, name).tolist() for name in names), strict=True)))
-    return [
-        np.concatenate((np.arange(first, first + 2 * width), np.arange(mode, mode + modes)))
-        for first, width, mode, modes in spans
-    ]

@@ -136,12 +136,12 @@ def _is_loaded(pivot: Pivot) -> bool:
 def _rotations(rotation: float | Sequence[float], increments: int, origin: float, *, loaded: bool) -> Array:
     """The rotations of a path from ``origin`` [rad] on, each leg in ``increments``."""
     targets = finite_numbers("rotation", rotation, "rad")
-    stops = [origin, *targets]
-    largest, turns = max(abs(angle) for angle in stops), np.abs(np.diff(stops))
+    legs = list(pairwise([origin, *targets]))
+    largest = max(abs(origin), *map(abs, targets))
     still = largest == 0.0 and loaded
-    if (largest < LEAST_ROTATION and not still) or ((turns > 0.0) & (turns < LEAST_ROTATION)).any():
+    if (largest < LEAST_ROTATION and not still) or any(0.0 < abs(b - a) < LEAST_ROTATION for a, b in legs):
         raise InvalidParameter("rotation", rotation, "an angle other than zero [rad], or a load")
-    return np.concatenate([np.linspace(a, b, increments + 1)[1:] for a, b in pairwise(stops)])
+    return np.array([b - (b - a) * left / increments for a, b in legs for left in range(increments)[::-1]])
 
 
 def _along(

@@ -1,111 +1,141 @@
-"""One table a class of effect: from frozen values to the arrays that the kernels walk."""
+"""From frozen values to the flat tables that the paper's bordered form and the motions walk."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
+from itertools import accumulate
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.effects import (
     GROUND,
-    MEASURES,
     AppliedForce,
     AppliedMoment,
-    Bending,
     BodyGravity,
     Clamp,
     DrivenDisplacement,
     DrivenRotation,
-    MixedStretching,
-    Stretching,
     StripGravity,
     TipForce,
 )
 from spline_model.effects.base import Constraint, Load
 from spline_model.effects.history import STEADY, History
-from spline_model.kernels.axial_force import AxialForceTable
-from spline_model.kernels.bending import BendingTable
-from spline_model.kernels.clamps import ClampTable
-from spline_model.kernels.drives import DriveTable, LoadTable
-from spline_model.kernels.stretching import StretchingTable
 from spline_model.layout import Layout
-from spline_model.quadrature import Points, modes_at, strip_points
+from spline_model.quadrature import PointTable
 from spline_model.scene import Scene
 
 Array = NDArray[np.float64]
+Indices = NDArray[np.int64]
 Sized = AppliedForce | AppliedMoment | TipForce
 SIZED = (AppliedForce, AppliedMoment, TipForce)
 
-
-def bending_table(scene: Scene, layout: Layout, effects: Sequence[Bending]) -> BendingTable:
-    """Gauss points of bending effects; the stress-free curvature is the one at rest and the natural one."""
-    points = strip_points([(scene.strip(e.strip), e.gauss_points) for e in effects], layout)
-    return BendingTable(
-        first=points.first,
-        width=points.width,
-        d1=points.d1,
-        d2=points.d2,
-        weight=points.weight,
-        speed=points.speed,
-        curvature=points.curvature + points.spread([e.natural_curvature for e in effects]),
-        rigidity=points.spread([e.flexural_rigidity for e in effects]),
-        measure=_measures(points, effects),
-    )
+END, INNER, BODY, ROW = range(4)
+"""Columns of ``ClampTable.place``."""
+SIGN, ACROSS, ALONG, DIRECTION = range(4)
+"""Columns of ``ClampTable.numbers``."""
 
 
-def stretching_table(scene: Scene, layout: Layout, effects: Sequence[Stretching]) -> StretchingTable:
-    """Gauss points of stretching by quadrature."""
-    points = strip_points([(scene.strip(e.strip), e.gauss_points) for e in effects], layout)
-    return StretchingTable(
-        first=points.first,
-        width=points.width,
-        d1=points.d1,
-        weight=points.weight,
-        speed=points.speed,
-        strain=points.spread([e.natural_strain for e in effects]),
-        rigidity=points.spread([e.axial_rigidity for e in effects]),
-        measure=_measures(points, effects),
-    )
+class ClampTable(NamedTuple):
+    """One row a clamp, C in all.
+
+    place (C, 4): indices in z of x of the end's control point, of its neighbour and of the body, -1 for the
+    ground, and of the first of its three multipliers. numbers (C, 4): sign, +1 at the start of a strip and -1
+    at its end, so that sign * (inner - end) points along C'; clamped point from the body's centre [m];
+    angle of m at rest [rad].
+    """
+
+    place: Indices
+    numbers: Array
+
+    @property
+    def end(self) -> Indices:
+        """Place of the end's control point (C,)."""
+        return self.place[:, END]
+
+    @property
+    def inner(self) -> Indices:
+        """Place of its neighbour (C,)."""
+        return self.place[:, INNER]
+
+    @property
+    def body(self) -> Indices:
+        """Place of the body, or -1 (C,)."""
+        return self.place[:, BODY]
+
+    @property
+    def row(self) -> Indices:
+        """Place of the first multiplier (C,)."""
+        return self.place[:, ROW]
+
+    @property
+    def sign(self) -> Array:
+        """+1 at the start of a strip, -1 at its end (C,)."""
+        return self.numbers[:, SIGN]
+
+    @property
+    def point(self) -> Array:
+        """Clamped point from the body's centre (C, 2) [m]."""
+        return self.numbers[:, ACROSS:DIRECTION]
+
+    @property
+    def direction(self) -> Array:
+        """Angle of m at rest (C,) [rad]."""
+        return self.numbers[:, DIRECTION]
 
 
-def axial_force_table(
-    scene: Scene, layout: Layout, effects: Sequence[MixedStretching], places: Sequence[int]
-) -> AxialForceTable:
-    """Gauss points of mixed stretching; ``places`` are the effects' numbers in the scene."""
-    points = strip_points([(scene.strip(e.strip), e.gauss_points) for e in effects], layout)
-    values = np.zeros((len(points.u), max((e.modes.width for e in effects), default=0)))
-    first = np.zeros(len(points.u), dtype=np.int64)
-    width = np.zeros(len(points.u), dtype=np.int64)
-    for i, (effect, place) in enumerate(zip(effects, places, strict=True)):
-        mine = points.source == i
-        support, modes = modes_at(effect.modes, scene.strip(effect.strip).basis, effect.gauss_points)
-        values[mine, : effect.modes.width] = modes
-        first[mine] = layout.modes[place][0] + support
-        width[mine] = effect.modes.width
-    return AxialForceTable(
-        first=points.first,
-        width=points.width,
-        d1=points.d1,
-        weight=points.weight,
-        speed=points.speed,
-        strain=points.spread([e.natural_strain for e in effects]),
-        compliance=points.spread([e.axial_compliance for e in effects]),
-        mode_first=first,
-        mode_width=width,
-        modes=values,
-        measure=_measures(points, effects),
-    )
+class DriveTable(NamedTuple):
+    """One row a driven coordinate, D in all.
+
+    coordinate (D,) its index in z; origin (D,) its value at rest; target (D,) its change at
+    factor 1; row (D,) index of its multiplier; turns (D,) 1 for a rotation; first, pairs (D,)
+    its piece of times and factors (H,), the history in a motion; begin, until (D,) when it
+    holds [s].
+    """
+
+    coordinate: Indices
+    origin: Array
+    target: Array
+    row: Indices
+    turns: Indices
+    first: Indices
+    pairs: Indices
+    times: Array
+    factors: Array
+    begin: Array
+    until: Array
 
 
-def _measures(points: Points, effects: Sequence[Bending | Stretching | MixedStretching]) -> NDArray[np.int64]:
-    return points.spread([MEASURES.index(e.measure) for e in effects]).astype(np.int64)
+class LoadTable(NamedTuple):
+    """One row a generalised force, F in all.
+
+    coordinate (F,) its index in z; value (F,) at factor 1; turns (F,) 1 for a moment;
+    first, pairs (F,) its piece of times and factors (H,), the history in a motion.
+    """
+
+    coordinate: Indices
+    value: Array
+    turns: Indices
+    first: Indices
+    pairs: Indices
+    times: Array
+    factors: Array
+
+
+class Tables(NamedTuple):
+    """The tables of a scene; weight (Q,) or (0,) [N, N m]."""
+
+    points: PointTable
+    clamps: ClampTable
+    drives: DriveTable
+    loads: LoadTable
+    weight: Array
 
 
 def clamp_table(scene: Scene, layout: Layout) -> ClampTable:
     """The clamped strip ends."""
-    rows = []
+    places, numbers = [], []
     for i, clamp in enumerate(scene.of(Constraint)):
         if not isinstance(clamp, Clamp):
             continue
@@ -116,26 +146,13 @@ def clamp_table(scene: Scene, layout: Layout) -> ClampTable:
         sign = 1.0 if at_start else -1.0
         along = sign * (strip.control_points[inner] - strip.control_points[end])
         centre = np.zeros(2) if clamp.to == GROUND else scene.body(clamp.to).centre
-        rows.append(
-            (
-                start + 2 * end,
-                start + 2 * inner,
-                sign,
-                -1 if clamp.to == GROUND else layout.bodies[clamp.to],
-                strip.control_points[end] - centre,
-                np.arctan2(along[1], along[0]),
-                layout.multipliers[i][0],
-            )
-        )
-    end_, inner_, sign_, body, point, direction, row = zip(*rows, strict=True) if rows else ((),) * 7
+        body = -1 if clamp.to == GROUND else layout.bodies[clamp.to]
+        places.append((start + 2 * end, start + 2 * inner, body, layout.multipliers[i][0]))
+        point = strip.control_points[end] - centre
+        numbers.append((sign, *point, np.arctan2(along[1], along[0])))
     return ClampTable(
-        end=np.array(end_, dtype=np.int64),
-        inner=np.array(inner_, dtype=np.int64),
-        sign=np.array(sign_, dtype=float),
-        body=np.array(body, dtype=np.int64),
-        point=np.array(point, dtype=float).reshape(-1, 2),
-        direction=np.array(direction, dtype=float),
-        row=np.array(row, dtype=np.int64),
+        place=np.array(places, dtype=np.int64).reshape(-1, 4),
+        numbers=np.array(numbers, dtype=float).reshape(-1, 4),
     )
 
 
@@ -202,13 +219,13 @@ def _components(load: Sized, layout: Layout) -> list[tuple[int, float, int]]:
 
 def _histories(histories: Sequence[History]) -> dict[str, Any]:
     """Histories end to end: first and number of pairs of each, and all times and factors."""
-    counts = np.array([len(history) for history in histories], dtype=np.int64)
-    pairs = np.array([pair for history in histories for pair in history], dtype=float).reshape(-1, 2)
+    counts = [len(history) for history in histories]
+    pairs = [pair for history in histories for pair in history]
     return {
-        "first": np.concatenate(([0], np.cumsum(counts)))[:-1].astype(np.int64),
-        "pairs": counts,
-        "times": pairs[:, 0].copy(),
-        "factors": pairs[:, 1].copy(),
+        "first": np.array(list(accumulate(counts, initial=0))[:-1], dtype=np.int64),
+        "pairs": np.array(counts, dtype=np.int64),
+        "times": np.array([time for time, _ in pairs], dtype=float),
+        "factors": np.array([factor for _, factor in pairs], dtype=float),
     }
 
 

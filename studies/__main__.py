@@ -1,5 +1,6 @@
 """`python -m studies COMMAND ...`: find the command, import it, run it."""
 
+import inspect
 import os
 import sys
 from collections.abc import Sequence
@@ -11,7 +12,7 @@ for _variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
 
 from importlib import import_module  # noqa: E402
 
-from studies.commands.parser import Parser  # noqa: E402
+from studies.commands.parser import Command, Parser  # noqa: E402
 from studies.errors import BadInput  # noqa: E402
 from studies.record.kernels import forget_stale  # noqa: E402
 from studies.registry import COMMANDS  # noqa: E402
@@ -21,7 +22,7 @@ INTERRUPTED = 130
 #: What a shell reports of a command whose reader is gone: 128 and SIGPIPE.
 BROKEN_PIPE = 141
 #: What the overview shows: an example of one command.
-EXAMPLE = "solve studies/cases/cross_axis_pivot.toml --model spline --control-points 8"
+EXAMPLE = "solve cross_axis_pivot --control-points 8"
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -67,11 +68,16 @@ def _dispatch(words: list[str]) -> int:
     name = parser.parse_args(words[:1]).command
     if forget_stale():
         print("studies: the kernels' source has changed: they are compiled anew", file=sys.stderr)
-    module = import_module(COMMANDS[name][0])
-    command = Parser(prog=f"python -m studies {name}", description=module.__doc__)
-    module.add_arguments(command)
-    code: int = module.main(command.parse_args(words[1:]))
-    return code
+    command, parser = command_of(name)
+    return command.run(parser.parse_args(words[1:]))
+
+
+def command_of(name: str) -> tuple[Command, Parser]:
+    """Import a command; return it with its parser, which its own text or that of its module explains."""
+    place, _, function = COMMANDS[name][0].partition(":")
+    module = import_module(place)
+    command: Command = getattr(module, function or "main")
+    return command, command.parser(name, inspect.getdoc(command.run) if function else module.__doc__)
 
 
 def _overview() -> Parser:

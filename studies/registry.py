@@ -11,7 +11,7 @@ from studies.errors import BadInput
 if TYPE_CHECKING:  # a command that runs no study does not wait for tables and figures
     from studies.engine.study import Study
 
-#: Command -> (module with `add_arguments(parser)` and `main(arguments) -> exit code`, what it does).
+#: Command -> (module with `main`, or module:function, what it does).
 COMMANDS: dict[str, tuple[str, str]] = {
     "solve": ("studies.commands.solve", "drive a pivot through a rotation and report its path"),
     "release": ("studies.commands.release", "let go of a driven pivot and report its motion"),
@@ -29,12 +29,15 @@ COMMANDS: dict[str, tuple[str, str]] = {
         "studies.commands.interactive",
         "drive a pivot by camera or mouse and let it go, in the browser",
     ),
-    "markers": ("studies.commands.markers", "print the sheet with the two markers"),
+    "markers": ("studies.commands.interactive:markers", "print the sheet with the two markers"),
     "list": ("studies.commands.list_studies", "list the studies"),
-    "run": ("studies.commands.run", "compute and draw studies"),
-    "draw": ("studies.commands.draw", "redraw studies from their stored tables"),
-    "verify": ("studies.commands.verify", "compute stale studies anew, fresh where all comes out as stored"),
-    "status": ("studies.commands.status", "say which stored results are fresh, stale or missing"),
+    "run": ("studies.commands.results:run", "compute and draw studies"),
+    "draw": ("studies.commands.results:draw", "redraw studies from their stored tables"),
+    "verify": (
+        "studies.commands.results:verify",
+        "compute stale studies anew, fresh where all comes out as stored",
+    ),
+    "status": ("studies.commands.results:status", "say which stored results are fresh, stale or missing"),
     "compile": ("studies.commands.compile_kernels", "compile the kernels of both models, once"),
     "readme": (
         "studies.commands.readme",
@@ -54,6 +57,7 @@ STUDIES: dict[str, str] = {
     "convergence/frequency": "studies.convergence.frequency",
     "convergence/error_estimate": "studies.convergence.error_estimate",
     "convergence/slide_stiffness": "studies.convergence.slide_stiffness",
+    "model_form/plate": "studies.model_form.plate",
     "stability/rotation": "studies.stability.statics.rotation",
     "stability/slenderness": "studies.stability.statics.slenderness",
     "stability/geometry": "studies.stability.statics.geometry",
@@ -63,9 +67,9 @@ STUDIES: dict[str, str] = {
     "stability/ratios": "studies.stability.motion.ratios",
     "stability/axial_modes": "studies.stability.statics.axial_modes",
     "stability/bad_starts": "studies.stability.statics.bad_starts",
-    "stability/fuzz": "studies.stability.whole.fuzz",
+    "stability/fuzz": "studies.stability.fuzz",
     "stability/events": "studies.stability.motion.events",
-    "stability/environment": "studies.stability.whole.environment",
+    "stability/environment": "studies.stability.environment",
     "effects/worth": "studies.effects.worth",
     "design/sizing": "studies.design.sizing",
     "impulses/step_size": "studies.impulses.step_size",
@@ -73,8 +77,8 @@ STUDIES: dict[str, str] = {
     "baselines/peers": "studies.baselines.comparison.peers",
     "work_precision/statics": "studies.work_precision.statics",
     "work_precision/dynamics": "studies.work_precision.dynamics",
-    "sweep/design_space": "studies.sweep.questions.design_space",
-    "sweep/throughput": "studies.sweep.questions.throughput",
+    "sweep/design_space": "studies.sweep.design_space",
+    "sweep/throughput": "studies.sweep.throughput",
 }
 
 

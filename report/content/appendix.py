@@ -1,16 +1,46 @@
-"""Gates, provenance, machine and versions."""
+"""Gates, provenance, machine and versions, and what the suite does not show."""
 
 import hashlib
 import importlib.metadata
 import tomllib
 from typing import Any
 
-from report.facts import Cell, Derived, Fact, Listing
-from report.forms import count, power, seconds, short_hash, significant, times
-from report.gates import gates
-from report.results import Results
+from report.facts import Fact, Rows, Table, fact
+from report.forms import count, percent, power, seconds, short_hash, significant, times, unit
+from report.results import Results, at, gates, largest, where
 from studies.record.source import ROOT
 from studies.registry import STUDIES
+from studies.stability.family import DEFAULT
+
+
+def _unresolved(results: Results) -> int:
+    table = where(results.table("stability/step_size", "outcomes"), model=DEFAULT)
+    return int((table["outcome"] == "refused").sum())
+
+
+FACTS = {
+    "limits.stress": fact(
+        "paper/fig05_stiffness",
+        "summary",
+        largest("max_stress_end_Pa", formulation="FE, 20 elements"),
+        unit("GPa", 2, 1e-9),
+    ),
+    "limits.plate.constant": fact("model_form/plate", "paper", at("excess", kind="constant"), percent),
+    "limits.plate.linear": fact("model_form/plate", "paper", at("excess", kind="linear"), percent),
+    "limits.plate.ritz": fact("model_form/plate", "ritz", largest("difference"), power),
+    "limits.kept": fact(
+        "baselines/peers",
+        "swings_ratios",
+        lambda t: t[(t["criterion"] == "and kept at finer steps") & t["ratio"].isna()]["level"].max(),
+        unit("rad", 1),
+    ),
+    "limits.unresolved": Fact(made=_unresolved, form=count),
+    "limits.gates": Fact(made=lambda _: len(gates()), form=count),
+    "limits.designs": fact(
+        "convergence/error_estimate", "estimates", lambda t: t["design"].nunique(), significant
+    ),
+}
+
 
 #: Facts of the machine, with what they are called here.
 LABELS = {
@@ -22,8 +52,8 @@ LABELS = {
 }
 
 
-def _gates(results: Results) -> tuple[list[str], list[list[Cell]]]:
-    rows: list[list[Cell]] = [
+def _gates(results: Results) -> Table:
+    rows: Rows = [
         [
             _breakable(name),
             power(gate["limit"]),
@@ -42,8 +72,8 @@ def _breakable(name: str) -> str:
     return name.replace("_", "_\u200b")
 
 
-def _provenance(results: Results) -> tuple[list[str], list[list[Cell]]]:
-    rows: list[list[Cell]] = []
+def _provenance(results: Results) -> Table:
+    rows: Rows = []
     for study in STUDIES:
         record = results.record(study)
         rows.append(
@@ -68,19 +98,19 @@ def _all_tables(record: Any) -> str:
     return hashlib.sha256("".join(record["tables"].values()).encode()).hexdigest()
 
 
-def _machine(results: Results) -> tuple[list[str], list[list[Cell]]]:
+def _machine(results: Results) -> Table:
     """Return the machines that results were computed on, each fact with all its values."""
     records = [results.record(study) for study in STUDIES]
-    rows: list[list[Cell]] = []
+    rows: Rows = []
     for name, label in LABELS.items():
         rows.append([label, _values(record["machine"][name] for record in records)])
     return ["machine", "of the results"], rows
 
 
-def _versions(results: Results) -> tuple[list[str], list[list[Cell]]]:
+def _versions(results: Results) -> Table:
     records = [results.record(study) for study in STUDIES]
     names = sorted({name for record in records for name in record["versions"]})
-    rows: list[list[Cell]] = [
+    rows: Rows = [
         [name, _values(record["versions"][name] for record in records if name in record["versions"])]
         for name in names
     ]
@@ -97,24 +127,24 @@ def _values(found: Any) -> str:
     return ", ".join(dict.fromkeys(str(value) for value in found))
 
 
-def _ratio(pick: Any) -> Derived:
-    return Derived(made=lambda _: pick(g["limit"] / g["measured"] for g in gates().values()), form=times)
+def _ratio(pick: Any) -> Fact:
+    return Fact(made=lambda _: pick(g["limit"] / g["measured"] for g in gates().values()), form=times)
 
 
 def _version(results: Results) -> str:
     return str(tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]["version"])
 
 
-FACTS: dict[str, Fact | Derived] = {
-    "gates.count": Derived(made=lambda _: len(gates()), form=count),
+FACTS |= {
+    "gates.count": Fact(made=lambda _: len(gates()), form=count),
     "gates.loosest": _ratio(max),
     "gates.tightest": _ratio(min),
-    "studies.count": Derived(made=lambda _: len(STUDIES), form=count),
-    "suite.version": Derived(made=_version, form=str),
+    "studies.count": Fact(made=lambda _: len(STUDIES), form=count),
+    "suite.version": Fact(made=_version, form=str),
 }
 LISTINGS = {
-    "gates": Listing(made=_gates),
-    "provenance": Listing(made=_provenance),
-    "machine": Listing(made=_machine),
-    "versions": Listing(made=_versions),
+    "gates": _gates,
+    "provenance": _provenance,
+    "machine": _machine,
+    "versions": _versions,
 }

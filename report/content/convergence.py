@@ -4,10 +4,9 @@ from itertools import pairwise
 
 import pandas as pd
 
-from report.facts import Cell, Derived, Fact, Holds, Listing, fact
+from report.facts import Cell, Fact, Holds, Table, fact
 from report.forms import Form, count, percent, power, signed_percent, significant, times, unit
-from report.pick import at, largest, least, where
-from report.results import Results
+from report.results import Results, at, largest, least, where
 from studies.record.style import COUNT_COLOURS, GREY, RED
 
 POINTS, MESHES = "convergence/control_points", "convergence/elements"
@@ -22,19 +21,19 @@ PAPER = {"basis": "bezier", "measure": "spatial", "stretch": "consistent"}
 DEFAULT = {"basis": "bezier", "measure": "material", "stretch": "mixed"}
 
 
-def default_rows(table: pd.DataFrame) -> pd.DataFrame:
+def _default_rows(table: pd.DataFrame) -> pd.DataFrame:
     """Return the rows of the locking-free default, two axial modes fewer than control points."""
     rows = where(table, **DEFAULT)
     return rows[rows["axial_modes"] == rows["control_points"] - 2]
 
 
 def _default(n: int, column: str, form: Form) -> Fact:
-    return fact(POINTS, "map", lambda table: at(column, control_points=n)(default_rows(table)), form)
+    return fact(POINTS, "map", lambda table: at(column, control_points=n)(_default_rows(table)), form)
 
 
 def _needed(table: pd.DataFrame, **equal: object) -> int:
     """Return from how many control points on trajectory and torque are right to 1e-4."""
-    rows = default_rows(table) if not equal else where(table, **equal)
+    rows = _default_rows(table) if not equal else where(table, **equal)
     good = rows[rows[["error_trajectory", "error_torque"]].abs().max(axis=1) <= 1e-4]
     return int(good["control_points"].min())
 
@@ -42,7 +41,7 @@ def _needed(table: pd.DataFrame, **equal: object) -> int:
 def _gain(results: Results) -> float:
     """Return the torque's error with one axial mode too many over that of the default, at its largest."""
     table = where(results.table(POINTS, "map"), **DEFAULT)
-    best = default_rows(table).set_index("control_points")["error_torque"].abs()
+    best = _default_rows(table).set_index("control_points")["error_torque"].abs()
     more = table[table["axial_modes"] == table["control_points"] - 1]
     ratio = more.set_index("control_points")["error_torque"].abs() / best
     return float(ratio.max())
@@ -67,7 +66,7 @@ def _worst_slide(results: Results) -> float:
 
 def _as_good_as_six(results: Results) -> int:
     """Return the least number of elements tried whose torque is as good as that of six control points."""
-    six = at("error_torque", control_points=6)(default_rows(results.table(POINTS, "map")))
+    six = at("error_torque", control_points=6)(_default_rows(results.table(POINTS, "map")))
     rows = where(results.table(MESHES, "meshes"), element="corotational")
     return int(rows.loc[rows["error_torque"].abs() <= abs(six), "elements"].min())
 
@@ -85,12 +84,12 @@ def _floor(column: str, **formulation: str) -> Fact:
     return fact(POINTS, "map", pick, percent)
 
 
-def _agreement(results: Results) -> tuple[list[str], list[list[Cell]]]:
+def _agreement(results: Results) -> Table:
     table = results.table(POINTS, "map")
     locked = where(table, control_points=4, **PAPER)
     rows = [_errors("spline n = 4, as the paper", RED, locked)]
     for n in COUNTS:
-        rows.append(_errors(f"spline n = {n}, locking-free", COUNT_COLOURS[n], default_rows(table), n))
+        rows.append(_errors(f"spline n = {n}, locking-free", COUNT_COLOURS[n], _default_rows(table), n))
     meshes = where(results.table(MESHES, "meshes"), element="corotational", elements=20)
     rows.append(_errors("FE, 20 elements", GREY, meshes))
     limits = results.table(POINTS, "reference").set_index("quantity")["uncertainty"]
@@ -103,7 +102,7 @@ def _errors(label: str, colour: str, rows: pd.DataFrame, n: int | None = None) -
     return [{"text": label, "colour": colour}, *(power(row[f"error_{name}"]) for name in QUANTITIES)]
 
 
-FACTS: dict[str, Fact | Derived] = {
+FACTS = {
     "map.free.torque": _default(4, "error_torque", percent),
     "map.six.torque": _default(6, "error_torque", power),
     "map.eight.torque": _default(8, "error_torque", power),
@@ -112,7 +111,7 @@ FACTS: dict[str, Fact | Derived] = {
     "map.needed.consistent": fact(
         POINTS, "map", lambda t: _needed(t, basis="bezier", measure="material", stretch="consistent"), count
     ),
-    "map.one-more": Derived(made=_gain, form=times),
+    "map.one-more": Fact(made=_gain, form=times),
     "map.spatial.trajectory": _floor("error_trajectory", measure="spatial", stretch="mixed"),
     "map.spatial.torque": _floor("error_torque", measure="spatial", stretch="mixed"),
     "map.inextensible.torque": _floor("error_torque", measure="material", stretch="inextensible"),
@@ -138,7 +137,7 @@ FACTS: dict[str, Fact | Derived] = {
     "elements.twenty.torque": fact(
         MESHES, "meshes", at("error_torque", element="corotational", elements=20), power
     ),
-    "elements.as-six": Derived(made=_as_good_as_six, form=count),
+    "elements.as-six": Fact(made=_as_good_as_six, form=count),
     "elements.largest.torque": fact(
         MESHES, "meshes", at("error_torque", element="corotational", elements=320), power
     ),
@@ -166,7 +165,7 @@ FACTS: dict[str, Fact | Derived] = {
         "Both models swing alike at every amplitude from 2 to 90 degrees", "n = 6", percent
     ),
     "slide.worst": fact(SLIDE, "findings", lambda t: t["value"].max(), times),
-    "slide.worst.error": Derived(made=_worst_slide, form=power),
+    "slide.worst.error": Fact(made=_worst_slide, form=power),
     "slide.failed": fact(SLIDE, "findings", lambda t: int((t["holds"] == "no").sum()), count),
     "slide.tried": fact(SLIDE, "findings", len, count),
     "estimate.statics": fact(
@@ -199,7 +198,7 @@ HOLDS = {
         test=lambda r: all(
             abs(fine) < abs(coarse) / 10.0
             for coarse, fine in pairwise(
-                at("error_torque", control_points=n)(default_rows(r.table(POINTS, "map")))
+                at("error_torque", control_points=n)(_default_rows(r.table(POINTS, "map")))
                 for n in (4, 6, 8, 12)
             )
         ),
@@ -207,7 +206,7 @@ HOLDS = {
     "map.bspline-slower": Holds(
         words="with twelve control points the B-spline is a hundred times farther off than the Bézier curve",
         test=lambda r: (
-            abs(FACTS["map.bspline.torque"].value(r)) > 100.0 * abs(FACTS["map.twelve.torque"].value(r))
+            abs(FACTS["map.bspline.torque"].made(r)) > 100.0 * abs(FACTS["map.twelve.torque"].made(r))
         ),
     ),
     "map.one-more-worse": Holds(
@@ -244,4 +243,4 @@ HOLDS = {
         test=lambda r: (r.table(ESTIMATE, "findings")["holds"] == "yes").all(),
     ),
 }
-LISTINGS = {"agreement": Listing(made=_agreement)}
+LISTINGS = {"agreement": _agreement}

@@ -1,26 +1,24 @@
 """What accuracy costs in time and in counted work."""
 
+from functools import partial
 from typing import Any
 
 import pandas as pd
 
-from report.facts import Cell, Derived, Fact, Holds, Listing, fact
+from report.facts import Cell, Fact, Holds, Rows, Table, fact, unmet
 from report.forms import count, decade, percent, seconds, significant, times, unit
-from report.pick import absent, at, where
-from report.results import Results
-from studies.commands.digits import DYNAMICS, STATICS
+from report.results import Results, absent, at, where
+from studies.commands.tables import DYNAMICS, STATICS
 
 #: Error of the rotation that the text compares costs at [rad].
 SWING_ERROR = 0.01
 STATIC, MOVING = "work_precision/statics", "work_precision/dynamics"
 
 
-def _digits(
-    results: Results, study: str, labels: dict[str, str], suffix: str
-) -> tuple[list[str], list[list[Cell]]]:
+def _digits(results: Results, study: str, labels: dict[str, str], suffix: str) -> Table:
     table = results.table(study, "digits_of_time")
     solved = [name for name in labels if name in set(table["series"])]
-    rows: list[list[Cell]] = []
+    rows: Rows = []
     for target in sorted(set(table["target"]), reverse=True):
         found = table[table["target"] == target].set_index("series")
         cells: list[Cell] = [f"{decade(target) if not suffix else significant(target, 2)}{suffix}"]
@@ -35,6 +33,27 @@ def _cost(row: Any, first: bool) -> str:
         return "–"
     more = "" if first or absent(ratio) else f" ({times(ratio)})"
     return f"{row['setting']}: {seconds(time)}{more}"
+
+
+def _calls(results: Results) -> Table:
+    """Return whole calls and compiled parts of both models at equal error, and the ratio of each."""
+    digits, models = results.table(STATIC, "digits_of_time"), ("spline", "finite elements")
+    language, timings = (results.table(STATIC, name) for name in ("language", "timings"))
+    taken = language.merge(timings[["series", "setting", "wall_s"]], on=["series", "setting"])
+    rows: Rows = []
+    for target in sorted(set(digits["target"]), reverse=True):
+        chosen = digits[(digits["target"] == target) & digits["series"].isin(models)]
+        found = chosen.merge(taken, on=["series", "setting"]).set_index("series")
+        if len(found) < len(models):
+            continue
+        curve, beam = (found.loc[name] for name in models)
+        cells: list[Cell] = [decade(target), str(curve["setting"]), str(beam["setting"])]
+        for part in ("wall_s", "compiled_s"):
+            one, other = float(str(curve[part])), float(str(beam[part]))
+            cells += [seconds(one), f"{seconds(other)} ({times(other / one)})"]
+        rows.append(cells)
+    heads = ["whole call, spline", "elements", "compiled, spline", "elements"]
+    return ["error", "spline", "elements", *heads], rows
 
 
 def _cell(study: str, target: float, series: str, column: str = "solve_s") -> Fact:
@@ -60,11 +79,11 @@ def _speeds(results: Results) -> pd.DataFrame:
     return where(table, series="finite elements", setting="20 elements")
 
 
-FACTS: dict[str, Fact | Derived] = {
+FACTS = {
     "cost.path.coarse": _cell(STATIC, 1e-3, "spline"),
     "cost.path.fine": _cell(STATIC, 1e-6, "spline"),
     "cost.path.fe": _ratio(STATIC, 1e-3, "finite elements"),
-    "cost.swing.error": Derived(made=lambda _: SWING_ERROR, form=unit("rad")),
+    "cost.swing.error": Fact(made=lambda _: SWING_ERROR, form=unit("rad")),
     "cost.swing.spline": _cell(MOVING, SWING_ERROR, "spline"),
     "cost.swing.fe": _ratio(MOVING, SWING_ERROR, "finite elements"),
     "cost.swing.real-time": fact(
@@ -91,10 +110,10 @@ FACTS: dict[str, Fact | Derived] = {
         ].iloc[0],
         times,
     ),
-    "cost.python": Derived(made=lambda r: float(_speeds(r)["python_share"].iloc[0]), form=percent),
-    "cost.fe20": Derived(made=lambda r: float(_speeds(r)["solve_s"].iloc[0]), form=seconds),
-    "cost.fe20.compiled": Derived(made=lambda r: float(_speeds(r)["compiled_s"].iloc[0]), form=seconds),
-    "cost.claims.held": Derived(
+    "cost.python": Fact(made=lambda r: float(_speeds(r)["python_share"].iloc[0]), form=percent),
+    "cost.fe20": Fact(made=lambda r: float(_speeds(r)["solve_s"].iloc[0]), form=seconds),
+    "cost.fe20.compiled": Fact(made=lambda r: float(_speeds(r)["compiled_s"].iloc[0]), form=seconds),
+    "cost.claims.held": Fact(
         made=lambda r: sum(
             int((r.table(study, name)["holds"] == "yes").sum())
             for study in (STATIC, MOVING)
@@ -102,7 +121,7 @@ FACTS: dict[str, Fact | Derived] = {
         ),
         form=count,
     ),
-    "cost.claims.tried": Derived(
+    "cost.claims.tried": Fact(
         made=lambda r: sum(
             len(r.table(study, name))
             for study in (STATIC, MOVING)
@@ -113,16 +132,10 @@ FACTS: dict[str, Fact | Derived] = {
 }
 
 
-def _unmet(results: Results) -> tuple[list[str], list[list[Cell]]]:
+def _unmet(results: Results) -> Table:
     """Return the findings of both studies that do not hold."""
-    rows: list[list[Cell]] = []
-    for study in (STATIC, MOVING):
-        for name in ("findings", "findings_of_time"):
-            for row in results.table(study, name).query("holds == 'no'").to_dict("records"):
-                rows.append(
-                    [str(row["claim"]), str(row["formulation"]), f"{significant(float(row['value']), 3)}"]
-                )
-    return ["claim that does not hold", "for", "measured ratio"], rows or [["none", "–", "–"]]
+    tables = ((study, name) for study in (STATIC, MOVING) for name in ("findings", "findings_of_time"))
+    return unmet(results, tables, partial(significant, digits=3), "measured ratio")
 
 
 def _cheapest(results: Results) -> bool:
@@ -156,7 +169,8 @@ HOLDS = {
     ),
 }
 LISTINGS = {
-    "digits-path": Listing(made=lambda r: _digits(r, STATIC, STATICS, "")),
-    "digits-swing": Listing(made=lambda r: _digits(r, MOVING, DYNAMICS, "\u00a0rad")),
-    "cost-unmet": Listing(made=_unmet),
+    "digits-path": lambda r: _digits(r, STATIC, STATICS, ""),
+    "digits-swing": lambda r: _digits(r, MOVING, DYNAMICS, "\u00a0rad"),
+    "cost-calls": _calls,
+    "cost-unmet": _unmet,
 }

@@ -2,19 +2,18 @@
 
 import pandas as pd
 
-from report.facts import Cell, Derived, Fact, Holds, Listing, fact
+from report.facts import Fact, Holds, Rows, Table, fact
 from report.forms import count, percent, power, significant, times
-from report.pick import at, distinct, largest, least, where
-from report.results import Results
+from report.results import Results, at, distinct, largest, least, where
 
 WORTH = "effects/worth"
 QUANTITIES = ("trajectory", "torque", "swing_frequency", "first_mode")
 
 
-def _worth(results: Results) -> tuple[list[str], list[list[Cell]]]:
+def _worth(results: Results) -> Table:
     table = results.table(WORTH, "worth").query("status != 'refused'")
     designs = list(dict.fromkeys(table["design"]))
-    rows: list[list[Cell]] = []
+    rows: Rows = []
     order = table.groupby("scene")["largest"].max().sort_values(ascending=False).index
     for scene in order:
         found = where(table, scene=scene).set_index("design")["largest"]
@@ -22,8 +21,8 @@ def _worth(results: Results) -> tuple[list[str], list[list[Cell]]]:
     return ["left out", *designs], rows
 
 
-def _cheapest(results: Results) -> tuple[list[str], list[list[Cell]]]:
-    rows: list[list[Cell]] = [
+def _cheapest(results: Results) -> Table:
+    rows: Rows = [
         [str(row["design"]), str(row["scene"]), power(float(row["largest"]))]
         for row in results.table(WORTH, "cheapest").to_dict("records")
     ]
@@ -46,7 +45,7 @@ def _exponent_miss(results: Results) -> float:
     return float(table[table["claim"].str.startswith("The frequency shift by massless")]["value"].iloc[0])
 
 
-FACTS: dict[str, Fact | Derived] = {
+FACTS = {
     "effects.designs": fact(WORTH, "worth", distinct("design"), count),
     "effects.tolerance": fact(WORTH, "cheapest", largest("tolerance"), percent),
     "effects.inextensible": _change("Table 1", "inextensible strips"),
@@ -67,7 +66,7 @@ FACTS: dict[str, Fact | Derived] = {
         lambda t: t[t["claim"].str.startswith("Without stretching")]["value"].max(),
         times,
     ),
-    "effects.exponent": Derived(made=_exponent_miss, form=percent),
+    "effects.exponent": Fact(made=_exponent_miss, form=percent),
     "effects.ratio.least": fact(WORTH, "mass_ratio", least("mass_ratio"), significant),
     "effects.ratio.most": fact(WORTH, "mass_ratio", largest("mass_ratio"), significant),
 }
@@ -92,4 +91,4 @@ HOLDS = {
         timed=True,
     ),
 }
-LISTINGS = {"effects": Listing(made=_worth), "cheapest": Listing(made=_cheapest)}
+LISTINGS = {"effects": _worth, "cheapest": _cheapest}

@@ -1,9 +1,8 @@
 """Sequential impulses, the solver of the paper's section 4.1."""
 
-from report.facts import Cell, Derived, Fact, Holds, Listing, fact
+from report.facts import Fact, Holds, Rows, Table, fact
 from report.forms import percent, power, seconds, significant, times
-from report.pick import at, largest, where
-from report.results import Results
+from report.results import Results, at, largest, where
 
 IMPULSES = "impulses/step_size"
 #: Groups of modes in the order of their frequencies.
@@ -11,10 +10,10 @@ GROUPS = ("axial", "bending", "swing")
 PAPERS_STEP = "Section 4.1: h = 1/100 s"
 
 
-def _limits(results: Results) -> tuple[list[str], list[list[Cell]]]:
+def _limits(results: Results) -> Table:
     table = where(results.table(IMPULSES, "limits"), sweeps=0)
     over = where(results.table(IMPULSES, "findings"), claim=PAPERS_STEP).set_index("formulation")["value"]
-    rows: list[list[Cell]] = []
+    rows: Rows = []
     for design in dict.fromkeys(table["design"]):
         for group in GROUPS:
             row = where(table, design=design, group=group).iloc[0]
@@ -42,9 +41,9 @@ def _over(results: Results) -> float:
     )
 
 
-FACTS: dict[str, Fact | Derived] = {
+FACTS = {
     **{f"impulses.limit.{group}": _limit(group) for group in GROUPS},
-    "impulses.over": Derived(made=_over, form=times),
+    "impulses.over": Fact(made=_over, form=times),
     "impulses.one-sweep": fact(
         IMPULSES, "limits", at("ratio", design="Table 1", group="axial", sweeps=1), percent
     ),
@@ -90,4 +89,4 @@ HOLDS = {
         timed=True,
     ),
 }
-LISTINGS = {"impulse-limits": Listing(made=_limits)}
+LISTINGS = {"impulse-limits": _limits}

@@ -1,4 +1,4 @@
-"""Figs 3 to 7 of the paper."""
+"""Figs 3 to 7 of the paper, its claims, and what became of each."""
 
 from functools import partial
 from typing import Any
@@ -6,12 +6,64 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from report.facts import Cell, Derived, Fact, Holds, Listing, fact
+from report.facts import Cell, Fact, Holds, Rows, Shown, Table, columns, fact
 from report.forms import Form, count, percent, power, signed_percent, significant, unit
-from report.pick import at, largest, where
-from report.results import Results
+from report.results import Results, at, largest, where
 from studies.paper.formulations import FE, LOCKING_FREE, MEANING, PAPER
-from studies.record.style import LOOKS
+from studies.record.style import LOOKS, RED
+from studies.stability.maps import LOOKS as OUTCOME_LOOKS
+
+#: Formulations that the claims are held against.
+CLAIMED = ("n = 4, as the paper", "n = 4, locking-free", "n = 6")
+STUDIES_OF_CLAIMS = (
+    "paper/fig03_snapshots",
+    "paper/fig04_trajectory",
+    "paper/fig05_stiffness",
+    "paper/fig06_release",
+)
+#: Colours of a claim that holds and of one that does not: those of right and wrong in the maps.
+VERDICTS = {"yes": OUTCOME_LOOKS["right"][0], "no": RED}
+
+
+def findings(results: Results) -> pd.DataFrame:
+    """Return the findings on all claims of the paper's Figs 3 to 6."""
+    return pd.concat([results.table(study, "findings") for study in STUDIES_OF_CLAIMS])
+
+
+def _claims(results: Results) -> Table:
+    rows: Rows = []
+    for claim, some in findings(results).groupby("claim", sort=True):
+        verdicts = some.set_index("formulation")
+        cells: list[Cell] = [str(claim)]
+        for name in CLAIMED:
+            if name not in verdicts.index:
+                cells.append("–")
+                continue
+            row: Any = verdicts.loc[name]
+            cells.append(
+                {"text": f"{row['holds']} ({percent(row['value'])})", "colour": VERDICTS[str(row["holds"])]}
+            )
+        rows.append(cells)
+    return ["claim of the paper, as it is read", *(LOOKS[name].label for name in CLAIMED)], rows
+
+
+def _held(formulation: str) -> Fact:
+    def made(results: Results) -> int:
+        rows = where(findings(results), formulation=formulation)
+        return int((rows["holds"] == "yes").sum())
+
+    return Fact(made=made, form=count)
+
+
+FACTS = {
+    "claims.paper": _held(CLAIMED[0]),
+    "claims.locking-free": _held(CLAIMED[1]),
+    "claims.tried": Fact(
+        made=lambda results: int((findings(results)["formulation"] == CLAIMED[0]).sum()), form=count
+    ),
+}
+LISTINGS = {"claims": _claims}
+
 
 SIX = "n = 6"
 PRINTED = "n = 4, printed forces"
@@ -38,10 +90,10 @@ def _coloured(name: str) -> Cell:
     return {"text": LOOKS[name].label, "colour": LOOKS[name].colour}
 
 
-def _statics(results: Results) -> tuple[list[str], list[list[Cell]]]:
+def _statics(results: Results) -> Table:
     path: Any = results.table(TRAJECTORY, "summary").set_index("formulation")
     force: Any = results.table(STIFFNESS, "summary").set_index("formulation")
-    rows: list[list[Cell]] = [
+    rows: Rows = [
         [
             _coloured(name),
             MEANING[name],
@@ -56,25 +108,22 @@ def _statics(results: Results) -> tuple[list[str], list[list[Cell]]]:
     return head, rows
 
 
-def _release(results: Results) -> tuple[list[str], list[list[Cell]]]:
-    found = results.table(RELEASE, "summary").set_index("formulation")
-    rows: list[list[Cell]] = []
-    for name in (PAPER, LOCKING_FREE, SIX, "n = 10", FE):
-        row: Any = found.loc[name]
-        rows.append(
-            [
-                _coloured(name) if name in LOOKS else f"spline {name}",
-                unit("Hz", 5)(row["frequency_Hz"]),
-                signed_percent(row["frequency_shift"]),
-                unit("rad")(row["error_rotation_rad"]),
-                unit("mm", 2, 1e3)(row["error_centre_m"]),
-                power(row["energy_error"]),
-                str(row["integrator"]),
-                unit("µs", 2, 1e6)(row["step_s"]),
-            ]
-        )
-    head = ["formulation", "frequency", "shift", "rotation", "centre", "energy", "integrator", "step"]
-    return head, rows
+def _release(results: Results) -> Table:
+    found = results.table(RELEASE, "summary").set_index("formulation", drop=False)
+    shown: Shown = {
+        "formulation": ("formulation", str),
+        "frequency": ("frequency_Hz", unit("Hz", 5)),
+        "shift": ("frequency_shift", signed_percent),
+        "rotation": ("error_rotation_rad", unit("rad")),
+        "centre": ("error_centre_m", unit("mm", 2, 1e3)),
+        "energy": ("energy_error", power),
+        "integrator": ("integrator", str),
+        "step": ("step_s", unit("µs", 2, 1e6)),
+    }
+    names = [PAPER, LOCKING_FREE, SIX, "n = 10", FE]
+    head, rows = columns(found.loc[names], shown)
+    labels = (_coloured(name) if name in LOOKS else f"spline {name}" for name in names)
+    return head, [[label, *row[1:]] for label, row in zip(labels, rows, strict=True)]
 
 
 def _frames(table: pd.DataFrame) -> float:
@@ -96,12 +145,12 @@ def _alone(table: pd.DataFrame) -> float:
     return float(best.groupby(["preset", "work"]).quantile(0.95).max())
 
 
-def _share_of_energy(name: str) -> Derived:
+def _share_of_energy(name: str) -> Fact:
     def made(results: Results) -> float:
         row = where(results.table(STIFFNESS, "summary"), formulation=SHORT[name]).iloc[0]
         return float(row["axial_energy_end_J"] / (row["axial_energy_end_J"] + row["bending_energy_end_J"]))
 
-    return Derived(made=made, form=percent)
+    return Fact(made=made, form=percent)
 
 
 def _worst_rotation(results: Results) -> float:
@@ -115,7 +164,7 @@ def _value(results: Results, study: str, column: str, name: str) -> float:
     return float(at(column, formulation=name)(results.table(study, "summary")))
 
 
-FACTS: dict[str, Fact | Derived] = {
+FACTS |= {
     **{f"fig03.{name}": _distance(name) for name in ("paper", "free", "six", "fe")},
     **_of(TRAJECTORY, "difference_to_fe20_end", percent, "paper", "free", "six", "three"),
     **_of(STIFFNESS, "error_torque_largest", percent, "paper", "free", "three", "printed"),
@@ -129,7 +178,7 @@ FACTS: dict[str, Fact | Derived] = {
     **_of(RELEASE, "error_rotation_rad", unit("rad"), "free", "six", "fe"),
     "fig05.paper.axial-share": _share_of_energy("paper"),
     "fig05.free.axial-share": _share_of_energy("free"),
-    "fig05.paper.lost": Derived(made=_worst_rotation, form=lambda value: f"{significant(value, 3)}°"),
+    "fig05.paper.lost": Fact(made=_worst_rotation, form=lambda value: f"{significant(value, 3)}°"),
     "fig05.torque": fact(STIFFNESS, "curves", largest("torque_Nm", formulation="FE refined"), unit("N m", 4)),
     "fig05.paper.torque": fact(STIFFNESS, "curves", largest("torque_Nm", formulation=PAPER), unit("N m", 4)),
     "fig06.energy": fact(
@@ -223,4 +272,4 @@ HOLDS = {
         timed=True,
     ),
 }
-LISTINGS = {"statics": Listing(made=_statics), "release": Listing(made=_release)}
+LISTINGS |= {"statics": _statics, "release": _release}

@@ -8,10 +8,9 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from report.facts import Cell, Derived, Fact, Holds, Listing, fact
+from report.facts import Cell, Fact, Holds, Rows, Table, fact
 from report.forms import count, decade, percent, seconds, significant, times, unit
-from report.pick import absent, at, largest, where
-from report.results import Results
+from report.results import Results, absent, at, largest, where
 
 CODES, SURROGATES = "baselines/peers", "baselines/surrogates"
 #: Groups of the ratios, in the order of the table.
@@ -25,8 +24,8 @@ SIMPLE = {
 FOUR_POINTS = {"paper": "n = 4, as the paper", "free": "n = 4, locking-free"}
 
 
-def _ratios(results: Results) -> tuple[list[str], list[list[Cell]]]:
-    rows: list[list[Cell]] = []
+def _ratios(results: Results) -> Table:
+    rows: Rows = []
     tables = (("path to 90°", "statics_ratios", ""), ("swing", "swings_ratios", "\u00a0rad"))
     for task, name, unit_ in tables:
         table = results.table(CODES, name)
@@ -49,10 +48,10 @@ def _peer(found: pd.DataFrame, group: str) -> str:
     return f"{seconds(float(row['peer_s']))} ({times(float(row['ratio']))})"
 
 
-def _models(results: Results) -> tuple[list[str], list[list[Cell]]]:
+def _models(results: Results) -> Table:
     errors = results.table(SURROGATES, "errors")
     reached = results.table(SURROGATES, "thresholds")
-    rows: list[list[Cell]] = []
+    rows: Rows = []
     for model in (*SIMPLE, "n = 4, as the paper", "n = 4, locking-free", "n = 6"):
         mine = where(errors, model=model)
         cells: list[Cell] = [SIMPLE.get(model, f"spline {model}")]
@@ -100,12 +99,12 @@ def _degrees(value: float) -> str:
     return f"{significant(value, 2)}°"
 
 
-FACTS: dict[str, Fact | Derived] = {
+FACTS = {
     "peers.exudyn.version": fact(CODES, "codes", at("version", code="exudyn"), str),
     "peers.opensees.version": fact(CODES, "codes", at("version", code="openseespy"), str),
-    "peers.path.least": Derived(made=lambda r: _lowest(r, "statics_ratios", "Exudyn"), form=times),
+    "peers.path.least": Fact(made=lambda r: _lowest(r, "statics_ratios", "Exudyn"), form=times),
     "peers.path.most": fact(CODES, "statics_ratios", largest("ratio", group="Exudyn"), times),
-    "peers.swing.least": Derived(made=lambda r: _lowest(r, "swings_ratios", "Exudyn"), form=times),
+    "peers.swing.least": Fact(made=lambda r: _lowest(r, "swings_ratios", "Exudyn"), form=times),
     "peers.swing.most": fact(CODES, "swings_ratios", largest("ratio", group="Exudyn"), times),
     "peers.wanted.tried": fact(CODES, "findings_of_time", len, lambda v: str(int(v))),
     "peers.wanted.path": fact(
@@ -118,9 +117,9 @@ FACTS: dict[str, Fact | Derived] = {
     "surrogates.free.torque": fact(
         SURROGATES, "errors", largest("torque", model="n = 4, locking-free"), percent
     ),
-    "surrogates.states": Derived(made=lambda r: len(_path_errors(r)), form=count),
+    "surrogates.states": Fact(made=lambda r: len(_path_errors(r)), form=count),
     **{
-        f"surrogates.path.{name}.{what}": Derived(made=partial(_picked, pick, model), form=form)
+        f"surrogates.path.{name}.{what}": Fact(made=partial(_picked, pick, model), form=form)
         for name, model in FOUR_POINTS.items()
         for what, pick, form in (("nearer", len, count), ("from", min, _degrees), ("to", max, _degrees))
     },
@@ -178,4 +177,4 @@ HOLDS = {
         ),
     ),
 }
-LISTINGS = {"peer-ratios": Listing(made=_ratios), "surrogates": Listing(made=_models)}
+LISTINGS = {"peer-ratios": _ratios, "surrogates": _models}

@@ -11,13 +11,12 @@ from numpy.typing import NDArray
 
 from spline_model.compile import System
 from spline_model.continuation.balance import done_by_load_factor
-from spline_model.continuation.branch import BRANCHES
 from spline_model.continuation.corrector import Corrected, correct
 from spline_model.continuation.followed import Followed
+from spline_model.continuation.follower import KNOWN_STATES, hermite_extrapolation
 from spline_model.continuation.point import Point, directed, stand
-from spline_model.continuation.predict import KNOWN_STATES, hermite_extrapolation
 from spline_model.continuation.start import first_point
-from spline_model.continuation.watch import Watch
+from spline_model.continuation.watch import BRANCHES, Watch
 from spline_model.errors import require_choice
 from spline_model.reduced.elements import followed
 from spline_model.solution import Path

@@ -5,16 +5,18 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from spline_model import checks
+from spline_model.bordered import evaluate, open_energy
 from spline_model.compile import System
 from spline_model.continuation.followed import Energies, Followed
 from spline_model.continuation.point import Point, driven_row
 from spline_model.continuation.resolution import Resolution
-from spline_model.operator import evaluate, open_energy
+from spline_model.solution import Later
 
 Array = NDArray[np.float64]
 
@@ -82,14 +84,16 @@ class Bordered(Followed):
         """The same."""
         return direction
 
-    def rows(self, points: Sequence[Point], done: Sequence[float]) -> dict[str, Array]:
+    def rows(self, points: Sequence[Point], done: Sequence[float]) -> dict[str, Any]:
         """What a ``Path`` has by state."""
-        rates, slopes = (np.array([getattr(p, name) for p in points]) for name in ("rate", "slope"))
         states, factors = (np.array([getattr(p, name) for p in points]) for name in ("z", "load_factor"))
+        layout, drives = self.system.layout, self.system.drives
+        begin = layout.coordinate_count - 3 * len(layout.bodies)
         return {
             "load_factor": factors,
-            "states": states,
-            "rates": rates / slopes[:, None],
+            "bodies": states[:, begin : layout.coordinate_count],
+            "reactions": states[:, drives.row],
+            "unknowns": Later(states.copy),
             "stiffness": np.array([p.stiffness for p in points]),
             "energies": np.array([p.energies for p in points]),
             "done": np.array(done),
@@ -100,10 +104,4 @@ class Bordered(Followed):
 
 def partial(system: System, share: float) -> System:
     """The system with a share of weight and pre-strain."""
-    curvature = system.rest_curvature + share * (system.bending.curvature - system.rest_curvature)
-    return system.with_tables(
-        bending=system.bending._replace(curvature=curvature),
-        stretching=system.stretching._replace(strain=share * system.stretching.strain),
-        axial_force=system.axial_force._replace(strain=share * system.axial_force.strain),
-        weight=share * system.weight,
-    )
+    return system.with_tables(points=system.points.with_share(share), weight=share * system.weight)

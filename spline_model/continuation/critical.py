@@ -7,12 +7,12 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.linalg import eigh, null_space
 
 from spline_model.compile import System
 from spline_model.continuation.corrector import correct
 from spline_model.continuation.followed import Followed
 from spline_model.continuation.point import NOT_TRACKED, Point, directed, stand
-from spline_model.continuation.reduced import reduced_tangent
 from spline_model.effects import DrivenRotation
 from spline_model.effects.base import Constraint
 from spline_model.solution import CriticalPoint
@@ -196,3 +196,34 @@ def _hermite(
     """Hermite's cubic between two values with slopes on the unit interval."""
     value = a * ((1 + 2 * t) * (1 - t) ** 2) + b * (t**2 * (3 - 2 * t))
     return np.asarray(value + slope_a * (t * (1 - t) ** 2) - slope_b * (t**2 * (1 - t)))
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class ReducedTangent:
+    """stiffness (F, F) on the free directions (Q, F), which are orthonormal, all dimensionless (EI/L)."""
+
+    stiffness: Array
+    free: Array
+
+    def eigenpair(self, number: int) -> tuple[float, Array]:
+        """The eigenvalue of that number from the lowest, 0 on, and its direction (Q,)."""
+        values, vectors = eigh(self.stiffness, subset_by_index=(number, number))
+        return float(values[0]), np.asarray(self.free @ vectors[:, 0])
+
+
+def reduced_tangent(work: Followed) -> ReducedTangent:
+    """The reduced tangent at the state that ``work`` was last evaluated at.
+
+    Forces with a compliance are condensed; those of clamps, drives and inextensible strips are constraints.
+    """
+    hessian = work.hessian * (work.unit[:, None] * work.unit / work.energy)
+    count = work.count
+    rows, between = hessian[count:, :count], hessian[count:, count:]
+    soft = np.diag(between) != 0.0
+    stiffness = hessian[:count, :count] + rows[soft].T @ np.linalg.solve(
+        -between[np.ix_(soft, soft)], rows[soft]
+    )
+    constraints = rows[~soft]
+    norms = np.linalg.norm(constraints, axis=1, keepdims=True)
+    free = null_space(constraints / norms) if len(constraints) else np.eye(count)
+    return ReducedTangent(stiffness=free.T @ stiffness @ free, free=free)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from abc import abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Self
+from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -76,7 +76,7 @@ class Followed(Workspace):
         """Change (Q,) of the scene's coordinates, dimensionless, with that of the ``count`` coordinates."""
 
     @abstractmethod
-    def rows(self, points: Sequence[Point], done: Sequence[float]) -> dict[str, Array]:
+    def rows(self, points: Sequence[Point], done: Sequence[float]) -> dict[str, Any]:
         """What a ``Path`` has by state; done (S,): int P_lambda d(lambda) to each of the points."""
 
     def room(self) -> Self:

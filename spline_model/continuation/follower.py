@@ -3,18 +3,20 @@
 from __future__ import annotations
 
 from collections import deque
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.continuation.balance import done_by_load_factor
 from spline_model.continuation.point import Point, stand
-from spline_model.continuation.predict import KNOWN_STATES, hermite_extrapolation
 from spline_model.continuation.watch import Watch
 from spline_model.newton import Newton, solve
 
 Array = NDArray[np.float64]
 
+KNOWN_STATES = 3
+"""States that the predictor looks back on."""
 SMALLEST_STEP = 2.0**-14
 """Least fraction of an increment before the path is given up."""
 
@@ -98,3 +100,24 @@ class Follower:
         if len(known) > 1 and abs(load_factor - at) > 2 * abs(at - known[-2].load_factor):
             known = known[-1:]
         return hermite_extrapolation([(p.load_factor, p.z, p.rate) for p in known], load_factor)
+
+
+def hermite_extrapolation(known: Sequence[tuple[float, Array, Array]], at: float) -> Array:
+    """The polynomial through (place, value, slope) triples, evaluated at a place, values (N,).
+
+    Newton's divided differences with every node doubled: degree 2 k - 1 for k triples. Three
+    of them halve the Newton iterations of a smooth path against two.
+    """
+    nodes = [place for place, _, _ in known for _ in range(2)]
+    table = [value for _, value, _ in known for _ in range(2)]
+    result, weight = table[0], 1.0
+    for order in range(1, len(nodes)):
+        weight = weight * (at - nodes[order - 1])
+        table = [
+            known[i // 2][2]
+            if nodes[i + order] == nodes[i]
+            else (table[i + 1] - table[i]) / (nodes[i + order] - nodes[i])
+            for i in range(len(nodes) - order)
+        ]
+        result = result + weight * table[0]
+    return np.asarray(result)

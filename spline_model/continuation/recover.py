@@ -54,6 +54,5 @@ def _is_rest(system: System, z: Array) -> bool:
 
 def _only(path: Path, place: int, message: str) -> Path:
     """One state of a path."""
-    one = [place % len(path.states)]
-    names = ("load_factor", "states", "rates", "stiffness", "energies", "work", "inertia", "moment_defect")
-    return replace(path, message=message, **{name: getattr(path, name)[one] for name in names})
+    at = place % len(path.work)
+    return replace(path, message=message, **path.rows(slice(at, at + 1)))

@@ -13,6 +13,7 @@ from spline_model.basis import SplineBasis
 from spline_model.compile import System
 from spline_model.effects import Bending, Clamp, StripGravity
 from spline_model.effects.base import Constraint
+from spline_model.quadrature import MEASURE, WEIGHT
 
 Array = NDArray[np.float64]
 
@@ -27,7 +28,7 @@ SMALLEST_MOMENT = 1e-2
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class _Span:
-    """One strip's rows of the bending table: where its points, its root and its weight stand.
+    """One strip's rows of the table of points: where its points, its root and its weight stand.
 
     values (G, n) basis and areas (G, n) its integrals from the root, at the Gauss points;
     clamp: the multipliers at its root; load (2,) weight per du [N].
@@ -53,24 +54,16 @@ class Resolution:
 
     def __init__(self, system: System) -> None:
         self.system = system
-        table = system.bending
-        self.columns = table.first[:, None] + 2 * np.minimum(
-            np.arange(table.d1.shape[1]), table.width[:, None] - 1
-        )
-        self.length = table.weight * table.speed
+        self.length = system.points.numbers[:, WEIGHT] * system.points.speed
         self.spans = tuple(_spans(system))
 
     def defect(self, z: Array, share: float = 1.0) -> float:
         """Root of the energy of the moment defect over the bending energy; share: of the preload."""
-        rest = self.system.rest_curvature
-        table = self.system.bending
-        x1, y1, x2, y2 = (
-            np.einsum("pa,pa->p", d, z[self.columns + i]) for d in (table.d1, table.d2) for i in range(2)
-        )
+        table = self.system.points if share == 1.0 else self.system.points.with_share(share)
+        x1, y1, x2, y2 = table.derivatives(z)
         square = x1**2 + y1**2
-        speed = np.where(table.measure == 0, table.speed, np.sqrt(square))
-        stress_free = rest + share * (table.curvature - rest)
-        moment = table.rigidity * ((x1 * y2 - y1 * x2) / square / speed - stress_free)
+        speed = np.where(table.place[:, MEASURE] == 0, table.speed, np.sqrt(square))
+        moment = table.rigidity * ((x1 * y2 - y1 * x2) / square / speed - table.curvature)
         wrong, stored = 0.0, SMALLEST_MOMENT**2 * self.system.scales.energy
         for span in self.spans:
             ds = self.length[span.rows] / table.rigidity[span.rows]
@@ -91,10 +84,12 @@ def balance(points: Array, values: Array, areas: Array, u: Array, reaction: Arra
     (..., 3) of the clamp there; load (2,): weight per du [N].
     """
     here = values @ points
-    arm, weighed = here - points[..., :1, :], u[:, None] * here - areas @ points
-    by_weight = weighed[..., 0] * load[1] - weighed[..., 1] * load[0]
-    x, y, moment = np.moveaxis(reaction, -1, 0)[..., None]
-    return np.asarray(arm[..., 0] * y - arm[..., 1] * x - moment + by_weight)
+    arm, (x, y, moment) = here - points[..., :1, :], np.moveaxis(reaction, -1, 0)[..., None]
+    held = arm[..., 0] * y - arm[..., 1] * x - moment
+    if load.any():
+        weighed = u[:, None] * here - areas @ points
+        held += weighed[..., 0] * load[1] - weighed[..., 1] * load[0]
+    return np.asarray(held)
 
 
 def _spans(system: System) -> list[_Span]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,17 +12,22 @@ from numpy.typing import NDArray
 from spline_model.checks import left_the_branch
 from spline_model.compile import System
 from spline_model.continuation.balance import jumped
-from spline_model.continuation.branch import leave
-from spline_model.continuation.critical import BIFURCATION, Crossing, between
+from spline_model.continuation.corrector import correct
+from spline_model.continuation.critical import BIFURCATION, Bracket, Crossing, between, corrected
 from spline_model.continuation.followed import Followed
-from spline_model.continuation.integration import UNCONFIRMED, Finer
-from spline_model.continuation.point import Point, directed
+from spline_model.continuation.point import Point, directed, stand
 from spline_model.continuation.remark import Place, left, remark
 from spline_model.solution import CriticalPoint, Path, Status
 
 Array = NDArray[np.float64]
 
-
+BRANCHES = ("primary", "follow")
+AMPLITUDES = (0.1, 0.03, 0.01)
+"""How far from the bifurcation the branch is entered, in lengths of a strip or rad: large, because
+close to it Newton has two solutions to choose from."""
+UNCONFIRMED = "a {kind} that is not found with twice the Gauss points (use more gauss_points)"
+LARGEST_CHANGE = 0.02
+"""Largest relative change of stiffness with twice the Gauss points of a state that is kept."""
 NO_CROSSING = "the stability changes in a jump, the state lies on another branch"
 STEEP = 5.0
 """Rate of a path over its mean rate so far from which on it ends at a limit point, where it is infinite."""
@@ -106,7 +112,7 @@ class Watch:
         unstable = remark(self.work.system, self.place, () if self.note else self.critical, inertia)
         return "; ".join(part for part in (self.before, self.note, unstable) if part)
 
-    def path(self, rows: dict[str, Array], message: str, history: Sequence[tuple[float, ...]]) -> Path:
+    def path(self, rows: dict[str, Any], message: str, history: Sequence[tuple[float, ...]]) -> Path:
         """The result: what was followed, by state; why it ended early, if it did."""
         told = message or self.remark(int(rows["inertia"][-1]))
         counters = dict(vars(self.work.counters))
@@ -116,16 +122,17 @@ class Watch:
 
 def path_of(
     system: System,
-    rows: dict[str, Array],
+    rows: dict[str, Any],
     message: str,
     counters: dict[str, int],
     critical: tuple[CriticalPoint, ...] = (),
     history: tuple[tuple[float, ...], ...] = (),
 ) -> Path:
     """A converged path of rows by state, ``done`` among them: int P_lambda d(lambda) from the first [J]."""
-    loads = system.loads
-    moved = (rows["states"] - system.rest)[:, loads.coordinate] @ loads.value
-    work = rows["load_factor"] * moved + rows["done"]
+    loads, work = system.loads, rows["done"]
+    if loads.value.size:
+        moved = (rows["unknowns"].array - system.rest)[:, loads.coordinate] @ loads.value
+        work = rows["load_factor"] * moved + work
     return Path(
         status=Status.CONVERGED,
         message=message,
@@ -133,5 +140,55 @@ def path_of(
         critical_points=critical,
         counters=counters,
         history=history,
-        **{name: values for name, values in rows.items() if name != "done"},  # type: ignore[arg-type]
+        **{name: values for name, values in rows.items() if name != "done"},
     )
+
+
+def leave(work: Followed, crossing: Crossing) -> Point | None:
+    """A state on the other branch, at an amplitude of the critical mode; None if none was found.
+
+    Newton with the amplitude held and the load factor free, so that the primary branch, on
+    which the mode has no part, is no solution.
+    """
+    count = work.count
+    normal = np.zeros(len(crossing.z))
+    normal[:count] = crossing.mode
+    for amplitude in AMPLITUDES:
+        z = crossing.z.copy()
+        z[:count] += amplitude * work.unit[:count] * crossing.mode
+        found = correct(work, z, crossing.told.load_factor, normal, 0.0)
+        if found.reason or work.refuse(found.z) or work.unresolved(found.z, found.load_factor):
+            continue
+        try:
+            return stand(work, found.z, found.load_factor, found.energies)
+        except np.linalg.LinAlgError:
+            continue
+    return None
+
+
+class Finer:
+    """A system with twice the Gauss points: its unknowns are the same ones.
+
+    Too few points do not see a bend between them. The tangent then loses its stiffness there
+    while all else still looks sound, and ends in a critical point that the strips do not have.
+    """
+
+    def __init__(self, work: Followed) -> None:
+        self.work = work.finer()
+
+    def confirms(self, work: Followed, before: Point, after: Point, step: float) -> bool:
+        """Whether a critical point lies between two states here as well."""
+        plane = Bracket(work=work, before=before, after=after, step=step).plane()
+        ends = [corrected(self.work, p.z, p.load_factor, *plane) for p in (before, after)]
+        if ends[0] is None or ends[1] is None:
+            return False
+        return bool(between(self.work, ends[0], ends[1], step))
+
+    def agrees(self, point: Point) -> bool:
+        """Whether a state keeps its stiffness, the rate of what does work on the load factor."""
+        normal = 0.0 * point.z
+        other = corrected(self.work, point.z, point.load_factor, normal, 1.0)
+        if other is None:
+            return False
+        change = abs(other.conjugate_rate * point.slope - point.conjugate_rate)
+        return change <= LARGEST_CHANGE * abs(other.conjugate_rate * point.slope)

@@ -50,6 +50,8 @@ class DrivenRotation(Constraint):
 
     def __post_init__(self) -> None:
         require_finite("angle", self.angle, "rad")
+        if not self.held[0] < self.held[1]:
+            raise InvalidParameter("held", self.held, "two instants, the first before the second [s]")
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

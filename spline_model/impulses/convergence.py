@@ -5,13 +5,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from spline_model.impulses.advance import EULER, predict
 from spline_model.impulses.forces import fill_drag
-from spline_model.impulses.run import Run
-from spline_model.impulses.solver import ImpulseSolver
-from spline_model.impulses.space import Options
-from spline_model.impulses.stable import solve_step
-from spline_model.impulses.state import State
+from spline_model.impulses.printed import printed_advance
+from spline_model.impulses.solver import ImpulseSolver, Run, State
+from spline_model.impulses.stable import EULER, predict, solve_step
 
 Array = NDArray[np.float64]
 
@@ -39,15 +36,13 @@ def contraction(errors: Array, floor: float = 1e-10) -> float:
 
 def _velocity(solver: ImpulseSolver, state: State, h: float, sweeps: int) -> Array:
     """The velocity (Q,) after that many sweeps of the first linear system of a step."""
-    options = Options(sweeps, 1, np.finfo(float).tiny, 1.0)
-    run, motion, space = Run(solver, state), solver.motion, solver.space
-    active = np.zeros(len(motion.tables.drives.row), dtype=np.int64)
+    moving, space = Run(solver, state).moving, solver.space
+    tiny = float(np.finfo(float).tiny)
+    problem = solver.problem._replace(sweeps=sweeps, iterations=1, tolerance=tiny, least_part=1.0)
     if solver.form == "printed":
-        solver.options, kept = options, solver.options
-        run.go(0, 1, h, state.time, 1, active, motion)
-        solver.options = kept
-        return run.moving.v.copy()
-    span, lag = predict(run.moving, h, EULER, motion.turns, space)
-    fill_drag(state.z, motion, space.drag)
-    solve_step(span, lag, state.time + h, active, motion, solver.blocks, options, space, run.moving.counters)
+        printed_advance(moving, state.time, h, problem, space)
+        return moving.v.copy()
+    span, lag = predict(moving, h, EULER, problem.turns, space)
+    fill_drag(state.z, problem, space)
+    solve_step(span, lag, state.time + h, problem, space, moving.counters)
     return space.v.copy()

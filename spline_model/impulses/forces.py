@@ -1,112 +1,193 @@
-"""Gradient and Hessian of what acts on the strips and bodies at an instant."""
+"""What acts on strips and bodies at an instant, their energies, and what a step adds up."""
 
 from __future__ import annotations
 
 import math
 
-from numba import njit
+from spline_model.bordered import assemble, derivatives
+from spline_model.effects.history import factor_at
+from spline_model.impulses.arrays import ACTIVE, BEGIN, COORDINATE, DRIVE, ORIGIN, PAIRS, SIZE
+from spline_model.quadrature import (
+    CURVATURE,
+    FIRST,
+    MEASURE,
+    MODE,
+    MODES,
+    RELAXATION,
+    RIGIDITY,
+    SPEED,
+    STRAIN,
+    STRETCHING,
+    WEIGHT,
+    WIDTH,
+)
+from spline_model.strip.compiled import called, kernel, once
+from spline_model.strip.laws import MATERIAL, SPATIAL, bending_law, stretching_law
 
-from spline_model.kernels.axial_force import add_axial_force
-from spline_model.kernels.bending import add_bending
-from spline_model.kernels.clamps import subtract_clamps
-from spline_model.kernels.curve import derivatives, tangent
-from spline_model.kernels.drives import factor_at, subtract_weight
-from spline_model.kernels.stretching import add_stretching
+
+@kernel()
+def factor(a, time, problem):
+    """The factor of a load or drive at an instant [s]."""
+    acting, history = problem.acting[a], problem.history
+    return factor_at(time, acting[BEGIN], acting[PAIRS], history[0], history[1])
 
 
-@njit(cache=True, nogil=True)
-def fill(z, tables, time, active, gradient, hessian):
-    """Fill gradient (N,) and hessian (N, N) of V - lambda psi - f q at z (N,) and ``time``.
+@kernel()
+def fill(z, problem, time, space):
+    """Fill the gradient (N,) and the matrix (N, N) of V - lambda psi - f q at z (N,) and ``time``.
 
-    active (D,) is 1 for the drives that hold; the others have lambda = 0. In the rows of the
-    multipliers the gradient is - psi, and the Hessian - psi_q.
+    Drives that do not hold have lambda = 0. In the rows of the multipliers the gradient is - psi, and the
+    Hessian - psi_q. Returns the least v / J0.
     """
-    gradient[:] = 0.0
-    hessian[:] = 0.0
-    add_bending(z, tables.bending, gradient, hessian)
-    add_stretching(z, tables.stretching, gradient, hessian)
-    add_axial_force(z, tables.axial_force, gradient, hessian)
-    subtract_clamps(z, tables.clamps, gradient, hessian)
-    subtract_weight(tables.weight, gradient)
-    loads = tables.loads
-    for f in range(loads.coordinate.size):
-        factor = factor_at(time, loads.first[f], loads.pairs[f], loads.times, loads.factors)
-        gradient[loads.coordinate[f]] -= factor * loads.value[f]
-    drives = tables.drives
-    for d in range(drives.coordinate.size):
-        i, row = drives.coordinate[d], drives.row[d]
-        if active[d] == 0:
-            gradient[row] = -z[row]
-            hessian[row, row] = -1.0
+    gradient, matrix = space.gradient, space.matrix
+    _, _, slowest = assemble(z, problem.points, problem.clamps, gradient, matrix, space.work)
+    for i in range(problem.weight.size):
+        gradient[i] -= problem.weight[i]
+    for a in range(problem.acting.shape[0]):
+        acting, sizes = problem.acting[a], problem.sizes[a]
+        i, size = acting[COORDINATE], factor(a, time, problem) * sizes[SIZE]
+        if acting[DRIVE] < 0:
+            gradient[i] -= size
             continue
-        factor = factor_at(time, drives.first[d], drives.pairs[d], drives.times, drives.factors)
-        gradient[row] = drives.origin[d] + factor * drives.target[d] - z[i]
+        row = problem.rows[acting[DRIVE], 0]
+        if acting[ACTIVE] == 0:
+            gradient[row] = -z[row]
+            matrix[row, row] = -1.0
+            continue
+        gradient[row] = sizes[ORIGIN] + size - z[i]
         gradient[i] -= z[row]
-        hessian[row, i] = hessian[i, row] = -1.0
+        matrix[row, i] = -1.0
+        matrix[i, row] = -1.0
+    return slowest
 
 
-@njit(cache=True, nogil=True)
-def axial_rates(z, v, table, start, rates):
-    """Fill rates (M,) of the axial modes' strains, int d(eps)/dt P_k ds0, at z with velocity v (Q,)."""
-    rates[:] = 0.0
-    for p in range(table.first.size):
-        first, d1 = table.first[p], table.d1[p]
-        x, y = tangent(z, first, table.width[p], d1)
-        vx, vy = tangent(v, first, table.width[p], d1)
-        rate = table.weight[p] * (x * vx + y * vy) / math.hypot(x, y)
-        for k in range(table.mode_width[p]):
-            rates[table.mode_first[p] - start + k] += table.modes[p, k] * rate
+@once()
+def held(problem):
+    """Whether any drive holds."""
+    for a in range(problem.acting.shape[0]):
+        if problem.acting[a, DRIVE] >= 0 and problem.acting[a, ACTIVE] == 1:
+            return True
+    return False
 
 
-@njit(cache=True, nogil=True)
-def fill_drag(z, motion, drag):
-    """Fill drag (Q, Q): the coordinates' own, and the Kelvin-Voigt damping of bending and stretching at z."""
-    drag[:] = 0.0
-    for i in range(motion.drag.shape[0]):
-        for j in range(motion.drag.shape[0]):
-            drag[i, j] = motion.drag[i, j]
-    add_bending_damping(z, motion.bending_damping, drag)
-    add_stretching_damping(z, motion.stretching_damping, drag)
+@kernel()
+def axial_strains(z, v, rates, problem, strains):
+    """Fill strains (M,) = int eps P_k ds0 of every axial mode at z, or with the rate of eps at velocity v."""
+    points = problem.points
+    for k in range(strains.size):
+        strains[k] = 0.0
+    for p in range(points.place.shape[0]):
+        place, numbers = points.place[p], points.numbers[p]
+        first, width, d1, d2 = place[FIRST], place[WIDTH], points.basis[0, p], points.basis[1, p]
+        x, y, _, _ = derivatives(z, first, width, d1, d2)
+        length = math.hypot(x, y)
+        if rates:
+            vx, vy, _, _ = derivatives(v, first, width, d1, d2)
+            gap = (x * vx + y * vy) / length
+        else:
+            gap = length - (1.0 + numbers[STRAIN]) * numbers[SPEED]
+        for k in range(place[MODES]):
+            strains[place[MODE] - v.size + k] += numbers[WEIGHT] * points.modes[p, k] * gap
 
 
-@njit(cache=True, nogil=True)
-def add_bending_damping(z, table, drag):
-    """Add the Kelvin-Voigt damping of bending at z to drag (Q, Q): int beta EI (db/dq)^T (db/dq) W du."""
-    for p in range(table.first.size):
-        first, d1, d2 = table.first[p], table.d1[p], table.d2[p]
-        x1, y1, x2, y2 = derivatives(z, first, table.width[p], d1, d2)
-        s = x1 * x1 + y1 * y1
-        w = table.speed[p] if table.measure[p] == 0 else math.sqrt(s)
-        power = 2.0 if table.measure[p] == 0 else 3.0
-        c = (x1 * y2 - y1 * x2) * power / s
-        scale = 1.0 / (s * w)
-        g0, g1, g2, g3 = scale * (y2 - c * x1), scale * (-x2 - c * y1), -scale * y1, scale * x1
-        weight = table.weight[p] * table.rigidity[p] * w
-        for a in range(table.width[p]):
-            row = first + 2 * a
-            ax, ay = weight * (d1[a] * g0 + d2[a] * g2), weight * (d1[a] * g1 + d2[a] * g3)
-            for b in range(table.width[p]):
-                column = first + 2 * b
-                bx, by = d1[b] * g0 + d2[b] * g2, d1[b] * g1 + d2[b] * g3
-                drag[row, column] += ax * bx
-                drag[row, column + 1] += ax * by
-                drag[row + 1, column] += ay * bx
-                drag[row + 1, column + 1] += ay * by
+@kernel()
+def strain_energy(z, v, problem, space):
+    """Strain energy [J] at z (N,), the axial forces being those that the strains give."""
+    points, strains, energy = problem.points, space.strains, 0.0
+    for p in range(points.place.shape[0]):
+        place, numbers = points.place[p], points.numbers[p]
+        x1, y1, x2, y2 = derivatives(z, place[FIRST], place[WIDTH], points.basis[0, p], points.basis[1, p])
+        s, speed, law = x1 * x1 + y1 * y1, numbers[SPEED], min(place[MEASURE], SPATIAL)
+        length, phi = math.sqrt(s), (x1 * y2 - y1 * x2) / s
+        bent = bending_law(phi, length, speed, numbers[CURVATURE], numbers[RIGIDITY], law)[0]
+        stretched = stretching_law(length, speed, numbers[STRAIN], numbers[STRETCHING], law)[0]
+        energy += numbers[WEIGHT] * (bent + stretched)
+    axial_strains(z, v, False, problem, strains)
+    for k in range(strains.size):
+        for j in range(strains.size):
+            energy += 0.5 * strains[k] * problem.rigidity[k, j] * strains[j]
+    return energy
 
 
-@njit(cache=True, nogil=True)
-def add_stretching_damping(z, table, drag):
-    """Add that of stretching by quadrature: int beta EA (d(eps)/dq)^T (d(eps)/dq) W du."""
-    for p in range(table.first.size):
-        first, d1 = table.first[p], table.d1[p]
-        x, y = tangent(z, first, table.width[p], d1)
-        length, speed = math.hypot(x, y), table.speed[p]
-        w = speed if table.measure[p] == 0 else length
-        along = (x / length, y / length)
-        weight = table.weight[p] * table.rigidity[p] * w / (speed * speed)
-        for a in range(table.width[p]):
-            for b in range(table.width[p]):
-                for i in range(2):
-                    for j in range(2):
-                        share = weight * d1[a] * d1[b] * along[i] * along[j]
-                        drag[first + 2 * a + i, first + 2 * b + j] += share
+@once()
+def potential(z, v, problem, space):
+    """Strain energy and potential of the weight [J] at z (N,)."""
+    energy = strain_energy(z, v, problem, space)
+    for i in range(problem.weight.size):
+        energy -= problem.weight[i] * z[i]
+    return energy
+
+
+@kernel()
+def kinetic(v, mass):
+    """Kinetic energy [J] of velocities v (Q,)."""
+    energy = 0.0
+    for i in range(v.size):
+        for j in range(v.size):
+            energy += 0.5 * v[i] * mass[i, j] * v[j]
+    return energy
+
+
+@kernel()
+def fill_drag(z, problem, space):
+    """Fill the drag (Q, Q): the coordinates' own, and the strips' Kelvin-Voigt damping at z.
+
+    int beta EI (db/dq)^T (db/dq) W du of bending, and so with the strain and EA of stretching by quadrature.
+    """
+    drag, points, g = space.drag, problem.points, space.work[0]
+    for i in range(drag.shape[0]):
+        for j in range(drag.shape[0]):
+            drag[i, j] = problem.drag[i, j]
+    for p in range(points.place.shape[0]):
+        place, numbers = points.place[p], points.numbers[p]
+        if numbers[RELAXATION] == 0.0:
+            continue
+        first, width, d1, d2 = place[FIRST], place[WIDTH], points.basis[0, p], points.basis[1, p]
+        x1, y1, x2, y2 = derivatives(z, first, width, d1, d2)
+        s, material = x1 * x1 + y1 * y1, place[MEASURE] == MATERIAL
+        v = math.sqrt(s)
+        w, turning = numbers[SPEED] if material else v, (2.0 if material else 3.0) * (x1 * y2 - y1 * x2) / s
+        weight = numbers[WEIGHT] * numbers[RELAXATION] * w
+        g[0], g[1] = (y2 - turning * x1) / (s * w), (-x2 - turning * y1) / (s * w)
+        g[2], g[3] = -y1 / (s * w), x1 / (s * w)
+        add_square(drag, first, width, d1, d2, weight * numbers[RIGIDITY], g)
+        if numbers[STRETCHING] > 0.0:
+            g[0], g[1], g[2], g[3] = x1 / (v * numbers[SPEED]), y1 / (v * numbers[SPEED]), 0.0, 0.0
+            add_square(drag, first, width, d1, d2, weight * numbers[STRETCHING], g)
+
+
+@called()
+def add_square(matrix, first, width, d1, d2, weight, g):
+    """Add weight (dp/dq)^T g g^T (dp/dq), p = (x', y', x'', y'') and g (4,)."""
+    for a in range(2 * width):
+        mine = weight * (d1[a // 2] * g[a % 2] + d2[a // 2] * g[2 + a % 2])
+        for b in range(2 * width):
+            matrix[first + a, first + b] += mine * (d1[b // 2] * g[b % 2] + d2[b // 2] * g[2 + b % 2])
+
+
+@kernel()
+def external_work(z0, z1, problem, time):
+    """Work [J] from z0 to z1 of the loads at ``time`` and of the drives' multipliers in z1."""
+    work = 0.0
+    for a in range(problem.acting.shape[0]):
+        acting = problem.acting[a]
+        i = acting[COORDINATE]
+        if acting[DRIVE] < 0:
+            work += factor(a, time, problem) * problem.sizes[a, SIZE] * (z1[i] - z0[i])
+        elif acting[ACTIVE] == 1:
+            work += z1[problem.rows[acting[DRIVE], 0]] * (z1[i] - z0[i])
+    return work
+
+
+@kernel()
+def damped(z, v, h, problem, space):
+    """Energy [J] that damping takes in a step of length h with the velocity v and ``space.drag``."""
+    lost, rates = 0.0, space.strains
+    for i in range(v.size):
+        for j in range(v.size):
+            lost += h * v[i] * space.drag[i, j] * v[j]
+    axial_strains(z, v, True, problem, rates)
+    for k in range(rates.size):
+        for j in range(rates.size):
+            lost += h * problem.relaxation[k] * rates[k] * problem.rigidity[k, j] * rates[j]
+    return lost

@@ -10,76 +10,95 @@ system. Nothing corrects positions, so that the constraints drift.
 
 from __future__ import annotations
 
-from numba import njit
+from spline_model.impulses.arrays import ACTIVE, DRIVE, ENERGY, RESIDUAL, SIZE, SOLVES, STEPS, SWEEPS
+from spline_model.impulses.forces import (
+    axial_strains,
+    damped,
+    external_work,
+    factor,
+    fill,
+    fill_drag,
+    kinetic,
+)
+from spline_model.impulses.linear import apply_impulses, free_update, prepare
+from spline_model.strip.compiled import copy, once
 
-from spline_model.impulses.forces import axial_rates, fill, fill_drag
-from spline_model.impulses.solve import apply_impulses, free_update, prepare
-from spline_model.impulses.totals import SOLVES, STEPS, SWEEPS, damped, external_work
-from spline_model.kernels.drives import factor_at
-from spline_model.kernels.energy import axial_strains
+MOST_ENERGY = 100.0
+"""A run whose kinetic energy exceeds this times the energy at its start is unstable; below the limit
+symplectic Euler lets the energy swing by a factor 1 / (1 - omega h / 2)."""
+FROM_REST = 1e-6
+"""Energy in EI/L that a run may reach from rest."""
 
 
-@njit(cache=True, nogil=True, inline="always")
-def printed_step(moving, time, h, active, motion, blocks, options, space):
+@once()
+def printed_advance(moving, time, h, problem, space):
+    """Advance by one step; False, with the state as it was, if it is unstable."""
+    z, v, status = moving.z, moving.v, moving.status
+    work = abs(moving.totals[0])
+    copy(v, moving.earlier[1])
+    for i in range(v.size):
+        moving.earlier[0, i] = z[i]
+    gap = printed_step(moving, time, h, problem, space)
+    if not kinetic(v, problem.mass) <= MOST_ENERGY * (status[ENERGY] + work + FROM_REST * problem.energy):
+        for i in range(z.size):
+            z[i] = moving.earlier[0, i] if i < v.size else 0.0
+        copy(moving.earlier[1], v)
+        return False
+    status[RESIDUAL] = max(status[RESIDUAL], gap)
+    return True
+
+
+@once()
+def printed_step(moving, time, h, problem, space):
     """Advance by h; returns the largest gap, dimensionless, that the last impulses found.
 
     ``moving.z`` is left with the axial forces of q0 and the constraint forces P / h.
     """
-    z, v, matrix, x = moving.z, moving.v, space.matrix, space.x
-    count = v.size
-    explicit_axial_forces(z, v, motion, blocks, space)
-    fill(z, motion.tables, time, active, space.gradient, matrix)
-    fill_drag(z, motion, space.drag)
-    for i in range(count):
+    z, v, x = moving.z, moving.v, space.x
+    explicit_axial_forces(z, v, problem, space)
+    fill(z, problem, time, space)
+    fill_drag(z, problem, space)
+    for i in range(v.size):
         push = space.gradient[i]
-        for j in range(count):
+        for j in range(v.size):
             push += space.drag[i, j] * v[j]
-            matrix[i, j] = motion.mass[i, j]
+            space.matrix[i, j] = problem.mass[i, j]
         x[i] = -h * push
-    prepare(blocks, matrix, space.schur)
-    free_update(blocks, matrix, x)
-    for i in range(count):
+    prepare(problem, space.matrix, space.schur)
+    free_update(problem, space.matrix, x)
+    for i in range(v.size):
         x[i] += v[i]
-    driven_rates(motion.tables.drives, blocks, active, time, h, space.gap)
-    space.mu[:] = 0.0
-    done, gap = apply_impulses(blocks, matrix, space, x, options.sweeps, options.tolerance / h)
-    space.z[:] = z
-    moving.totals[1] += damped(z, v, h, motion, blocks.relaxation, space)
-    for i in range(count):
+    for r in range(space.mu.size):
+        space.gap[r] = space.mu[r] = 0.0
+    for a in range(problem.acting.shape[0]):  # psi_t: the mean rate of the active drives over the step
+        acting = problem.acting[a]
+        if acting[DRIVE] >= 0 and acting[ACTIVE] == 1:
+            change = factor(a, time + h, problem) - factor(a, time, problem)
+            space.gap[acting[DRIVE]] = change * problem.sizes[a, SIZE] / h
+    done, gap = apply_impulses(problem, space, x, problem.tolerance / h)
+    copy(z, space.z)
+    moving.totals[1] += damped(z, v, h, problem, space)
+    for i in range(v.size):
         v[i] = x[i]
         z[i] += h * v[i]
-    for r in range(blocks.row.size):
-        z[blocks.row[r]] = space.mu[r] / h
-    moving.totals[0] += external_work(space.z, z, motion.tables, active, time)
+    for r in range(space.mu.size):
+        z[problem.rows[r, 0]] = space.mu[r] / h
+    moving.totals[0] += external_work(space.z, z, problem, time)
     moving.counters[STEPS] += 1
     moving.counters[SOLVES] += 1
     moving.counters[SWEEPS] += done
     return gap * h
 
 
-@njit(cache=True, nogil=True)
-def explicit_axial_forces(z, v, motion, blocks, space):
+@once()
+def explicit_axial_forces(z, v, problem, space):
     """Set the axial forces of extensible strips in z, a = C^-1 (eps + beta d(eps)/dt), and no others."""
-    count, strains, table = v.size, space.strains, motion.tables.axial_force
-    z[count:] = 0.0
-    for damping in range(2 if motion.axial_relaxation.size > 0 else 1):
-        if damping == 0:
-            axial_strains(z, table, count, strains)
-        else:
-            axial_rates(z, v, table, count, strains)
+    strains = space.strains
+    for i in range(v.size, z.size):
+        z[i] = 0.0
+    for rates in (False, True):
+        axial_strains(z, v, rates, problem, strains)
         for k in range(strains.size):
-            share = strains[k] if damping == 0 else blocks.relaxation[k] * strains[k]
+            share = problem.relaxation[k] * strains[k] if rates else strains[k]
             for j in range(strains.size):
-                z[count + j] += motion.rigidity[j, k] * share
-
-
-@njit(cache=True, nogil=True)
-def driven_rates(drives, blocks, active, time, h, gap):
-    """Fill gap (R,) with psi_t: the mean rate of the active drives over the step, else 0."""
-    gap[:] = 0.0
-    for d in range(drives.row.size):
-        if active[d] == 1:
-            first, pairs = drives.first[d], drives.pairs[d]
-            before = factor_at(time, first, pairs, drives.times, drives.factors)
-            after = factor_at(time + h, first, pairs, drives.times, drives.factors)
-            gap[blocks.drive[d]] = (after - before) * drives.target[d] / h
+                z[v.size + j] += problem.rigidity[j, k] * share

@@ -3,31 +3,83 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.compile import System
 from spline_model.errors import InvalidParameter, require_choice, require_count, require_positive
-from spline_model.impulses.blocks import IMPULSES, make_blocks
-from spline_model.impulses.run import Run
-from spline_model.impulses.space import Options, make_space
-from spline_model.impulses.state import Outcome, State
-from spline_model.kernels.motion import Motion
+from spline_model.impulses.arrays import (
+    COUNTS,
+    ENERGY,
+    IMPULSES,
+    RESIDUAL,
+    Moving,
+    make_problem,
+    make_space,
+    with_drives,
+)
+from spline_model.impulses.forces import strain_energy
+from spline_model.impulses.printed import printed_advance
+from spline_model.impulses.stable import stable_advance
 from spline_model.mechanism import Mechanism
 from spline_model.modes import static_state
-from spline_model.motion.start import require_compiled, set_in_motion
+from spline_model.motion.records import KINETIC, POSITION, STRAIN, VELOCITY, WEIGHT, rows_of
+from spline_model.motion.start import Motion, Records, require_compiled, set_in_motion
+from spline_model.strip.compiled import copy, kernel, once
 
 Array = NDArray[np.float64]
+Indices = NDArray[np.int64]
 
 FORMS = ("printed", "stable")
+COUNTERS = ("steps", "solves", "sweeps", "halved_steps", "limited_steps")
 TOLERANCE = 1e-9
 """Residual of a stable step, and gap that sweeps close, in EI/L^2, EI/L, L and rad."""
-ITERATIONS = 12
-"""Most Newton iterations of a stable step before it is halved."""
-LEAST_FRACTION = 2.0**-6
-"""Least part of a step before it is refused: bounds the time that a step may take."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class State:
+    """Where a motion is. A step leaves it as it is and returns another.
+
+    z (N,) unknowns: coordinates, axial forces, multipliers; v (Q,) velocities; earlier (2, Q) coordinates
+    and velocities of the step before, which count if ``known`` is 1 and not if it is 0;
+    time [s]; held: whether a pose was imposed in the step that led here.
+    """
+
+    z: Array
+    v: Array
+    earlier: Array
+    known: int
+    time: float
+    held: bool
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Outcome:
+    """What steps led to.
+
+    state: after the last step that was taken; taken, asked: numbers of steps; kinetic, strain and
+    gravity energy [J]; constraint_residual [m], velocity_residual [m/s]; residual: the largest
+    that a step left in its equations, or an impulse before the last had to close [1];
+    counters: steps (halves count), solves, sweeps, halved_steps, limited_steps.
+    """
+
+    state: State
+    taken: int
+    asked: int
+    kinetic_energy: float
+    strain_energy: float
+    gravity_energy: float
+    constraint_residual: float
+    velocity_residual: float
+    residual: float
+    counters: dict[str, int]
+
+    @property
+    def complete(self) -> bool:
+        """Whether all steps were taken; if not, the state is the last good one."""
+        return self.taken == self.asked
 
 
 class ImpulseSolver:
@@ -53,10 +105,11 @@ class ImpulseSolver:
         require_count("sweeps", sweeps, 1)
         require_compiled(system, "sequential impulses")
         self.mechanism, self.system, self.form = mechanism, system, form
-        self.motion = set_in_motion(system)
-        self.blocks = make_blocks(system, self.motion, soft=form == "stable", impulses=impulses)
-        self.space = make_space(system, self.blocks)
-        self.options = Options(sweeps, ITERATIONS, float(tolerance), LEAST_FRACTION)
+        self.motion, soft = set_in_motion(system), form == "stable"
+        self.problem = make_problem(
+            system, self.motion, soft=soft, impulses=impulses, sweeps=sweeps, tolerance=tolerance
+        )
+        self.space = make_space(self.problem)
 
     def start(self, rotation: float | None = None, body: str | None = None) -> State:
         """The static state at the rotation [rad] of a body, or undriven: where the paper's releases start.
@@ -83,15 +136,8 @@ class ImpulseSolver:
         same = min(len(given), layout.size)
         unknowns[:same] = given[:same]
         unknowns[self.motion.tables.drives.row] = 0.0
-        return State(
-            z=unknowns,
-            v=speed,
-            earlier_q=unknowns[:count].copy(),
-            earlier_v=speed.copy(),
-            known=0,
-            time=0.0,
-            held=False,
-        )
+        earlier = np.array((unknowns[:count], speed))
+        return State(z=unknowns, v=speed, earlier=earlier, known=0, time=0.0, held=False)
 
     def step(self, state: State, h: float, count: int = 1, pose: Array | None = None) -> Outcome:
         """Take ``count`` steps of length h [s].
@@ -125,6 +171,118 @@ class ImpulseSolver:
             factors=np.array([0.0, 1.0]),
         )
         return self.motion._replace(tables=tables._replace(drives=way))
+
+
+class Run:
+    """The arrays of a run from a state, and what it records."""
+
+    def __init__(self, solver: ImpulseSolver, state: State, records: int = 1) -> None:
+        self.solver, size, count = solver, state.z.size, state.v.size
+        self.moving = Moving(
+            z=state.z.copy(),
+            v=state.v.copy(),
+            earlier=state.earlier.copy(),
+            status=np.array([state.known, 0.0, 0.0]),
+            counters=np.zeros(len(COUNTERS), dtype=np.int64),
+            totals=np.zeros(2),
+            states=np.zeros((records + 1, size)),
+            rates=np.zeros((records + 1, count)),
+            energies=np.zeros((records + 1, 3)),
+        )
+        self.moving.status[ENERGY] = self._energy()
+
+    def go(
+        self, first: int, last: int, h: float, time: float, every: int, active: Indices, motion: Motion
+    ) -> int:
+        """Take the steps first ... last - 1; returns the number of the first that was not taken."""
+        solver = self.solver
+        problem = with_drives(solver.problem, motion, active)
+        stable = solver.form == "stable"
+        return int(advance(self.moving, time, h, first, last, every, stable, problem, solver.space))
+
+    def _energy(self) -> float:
+        (z, v), problem = self.moving[:2], self.solver.problem
+        strain = strain_energy(z, v, problem, self.solver.space)
+        return float(0.5 * v @ problem.mass @ v + strain - problem.weight @ z[: v.size])
+
+    def change(self, v: Array, lost: float) -> None:
+        """Give the run other velocities, which takes the energy ``lost`` [J]: it starts anew from here."""
+        moving = self.moving
+        moving.v[:] = v
+        moving.totals[1] += lost
+        moving.status[COUNTS] = 0.0
+        moving.status[ENERGY] = self._energy()
+
+    def keep_start(self) -> None:
+        """Record where the run stands as its start."""
+        moving, solver = self.moving, self.solver
+        moving.states[0], moving.rates[0] = moving.z, moving.v
+        moving.energies[0] = strain_energy(moving.z, moving.v, solver.problem, solver.space), *moving.totals
+
+    def records(self, spacing: float, kept: int, message: str) -> Records:
+        """The first ``kept`` records, ``spacing`` [s] apart; message: why the run stopped, if it did."""
+        states, rates, energies = (kinds[:kept] for kinds in self.moving[-3:])
+        return Records(
+            time=np.arange(0.0, kept) * spacing,
+            states=states,
+            velocities=rates,
+            rows=rows_of(self.solver.motion, states, rates, energies),
+            message=message,
+            counters=self._counters(),
+        )
+
+    def outcome(self, taken: int, asked: int, time: float, held: bool) -> Outcome:
+        """Where the run stands, for who asked for steps."""
+        moving, solver = self.moving, self.solver
+        strain = strain_energy(moving.z, moving.v, solver.problem, solver.space)
+        energies = np.array([[strain, *moving.totals]])
+        row = rows_of(solver.motion, moving.z[None], moving.v[None], energies)[0]
+        known = int(moving.status[COUNTS])
+        weight, rest = solver.system.weight, solver.system.rest
+        return Outcome(
+            state=State(z=moving.z, v=moving.v, earlier=moving.earlier, known=known, time=time, held=held),
+            taken=taken,
+            asked=asked,
+            kinetic_energy=float(row[KINETIC]),
+            strain_energy=float(row[STRAIN]),
+            gravity_energy=float(row[WEIGHT] + weight @ rest[: weight.size]),
+            constraint_residual=float(row[POSITION]),
+            velocity_residual=float(row[VELOCITY]),
+            residual=float(moving.status[RESIDUAL]),
+            counters=self._counters(),
+        )
+
+    def _counters(self) -> dict[str, int]:
+        return dict(zip(COUNTERS, self.moving.counters.tolist(), strict=True))
+
+
+@kernel()
+def advance(moving, time, h, first, last, every, stable, problem, space):
+    """Take the steps ``first`` ... ``last`` - 1 of length h, step 0 being at ``time`` [s].
+
+    Returns the number of the first step that was not taken; ``moving`` stands at its begin. Every
+    ``every``-th step's end is recorded.
+    """
+    for k in range(first, last):
+        now = time + k * h
+        if stable:
+            done = stable_advance(moving, now, h, problem, space)
+        else:
+            done = printed_advance(moving, now, h, problem, space)
+        if not done:
+            return k
+        if (k + 1) % every == 0:
+            keep(moving, (k + 1) // every, problem, space)
+    return last
+
+
+@once()
+def keep(moving, r, problem, space):
+    """Record where a motion stands as the r-th record."""
+    copy(moving.z, moving.states[r])
+    copy(moving.v, moving.rates[r])
+    moving.energies[r, 0] = strain_energy(moving.z, moving.v, problem, space)
+    copy(moving.totals, moving.energies[r, 1:])
 
 
 def _require_numbers(name: str, values: Array, least: int, most: float, unit: str) -> None:

@@ -13,76 +13,170 @@ of soft constraints, so that no stiffness EA stands in the update.
 
 from __future__ import annotations
 
-from numba import njit
+from spline_model.impulses.arrays import COUNTS, ENERGY, HALVED, LIMITED, RESIDUAL, SOLVES, STEPS, SWEEPS
+from spline_model.impulses.forces import damped, external_work, fill, fill_drag, held, kinetic, potential
+from spline_model.impulses.linear import apply_impulses, free_update, prepare, row_times
+from spline_model.strip.compiled import copy, once
 
-from spline_model.impulses.forces import fill
-from spline_model.impulses.solve import apply_impulses, free_update, prepare, row_times
-from spline_model.impulses.totals import SOLVES, SWEEPS
-
+EULER, START, BACKWARD = range(3)
+"""Rules of a step: implicit Euler (q1 = q0 + h v1); the start (q1 = q0 + h (v0 + v1) / 2), which
+loses less; backward differences of second order from the two states before."""
 MOST_TURN = 0.5
 """Largest rotation of a body in one iteration [rad]."""
+MOST_REACH = 0.3
+"""Largest rotation that the first guess of a step takes from the velocity [rad]."""
+SLACK = 1e-14
+"""Gain of energy in EI/L that is round-off."""
+SLOWEST = 0.1
+"""Least |C'| over its value at rest: with less the curve is folded."""
 
 
-@njit(cache=True, nogil=True)
-def solve_step(span, lag, time, active, motion, blocks, options, space, counters):
-    """Solve the step in space.z (N,) and space.v (Q,) from the guess there; returns the residual.
+@once()
+def stable_advance(moving, time, duration, problem, space):
+    """Advance by one step, or by halves of implicit Euler where that fails; False if none is solved."""
+    status = moving.status
+    driven = held(problem)
+    done, step = 0.0, duration
+    while duration - done > 1e-9 * duration:
+        step = min(step, duration - done)
+        rule = EULER
+        if step == duration:
+            rule = BACKWARD if status[COUNTS] == 1.0 else (EULER if driven else START)
+        if try_step(moving, time + done, step, rule, driven, problem, space):
+            done += step
+            step *= 2.0
+            continue
+        moving.counters[HALVED] += 1
+        status[COUNTS] = 0.0
+        step *= 0.5
+        if step < problem.least_part * duration:
+            return False
+    status[COUNTS] = 1.0 if step == 2.0 * duration else 0.0
+    return True
+
+
+@once()
+def try_step(moving, time, h, rule, driven, problem, space):
+    """Take one step by a rule; False, with the state as it was, if it is not solved or gains energy."""
+    z, v, status = moving.z, moving.v, moving.status
+    span, lag = predict(moving, h, rule, problem.turns, space)
+    fill_drag(z, problem, space)
+    residual, slowest = solve_step(span, lag, time + h, problem, space, moving.counters)
+    if not residual <= 1e3 * problem.tolerance or not slowest > SLOWEST:
+        return False
+    work = external_work(z, space.z, problem, time + h)
+    moves, stored = kinetic(space.v, problem.mass), potential(space.z, v, problem, space)
+    if problem.grounded == 1 and not driven:
+        # velocities scaled by one factor fulfil constraints at rest as they did before
+        allowed = status[ENERGY] + work
+        if moves + stored > allowed + SLACK * problem.energy:
+            if stored > allowed:
+                return False
+            share = ((allowed - stored) / moves) ** 0.5
+            for i in range(v.size):
+                space.v[i] *= share
+            moving.counters[LIMITED] += 1
+            moves = allowed - stored
+    status[ENERGY] = moves + stored
+    moving.totals[0] += work
+    moving.totals[1] += damped(space.z, space.v, h, problem, space)
+    for i in range(v.size):
+        moving.earlier[0, i], moving.earlier[1, i] = z[i], v[i]
+    copy(space.v, v)
+    copy(space.z, z)
+    status[COUNTS] = 1.0
+    status[RESIDUAL] = max(status[RESIDUAL], residual)
+    moving.counters[STEPS] += 1
+    return True
+
+
+@once()
+def predict(moving, h, rule, turns, space):
+    """Fill the rule's start values and the first guess in ``space``; returns the spans s and r [s]."""
+    z, v, count = moving.z, moving.v, moving.v.size
+    span = lag = h
+    for i in range(count):
+        space.base[i], space.drift[i] = z[i], v[i]
+        if rule == START:
+            space.base[i] += 0.5 * h * v[i]
+        elif rule == BACKWARD:
+            space.base[i] = (4.0 * z[i] - moving.earlier[0, i]) / 3.0
+            space.drift[i] = (4.0 * v[i] - moving.earlier[1, i]) / 3.0
+    if rule == START:
+        span = 0.5 * h
+    elif rule == BACKWARD:
+        span = lag = 2.0 * h / 3.0
+    reach = h
+    for k in range(turns.size):
+        if abs(v[turns[k]]) * reach > MOST_REACH:
+            reach = MOST_REACH / abs(v[turns[k]])
+    copy(z, space.z)
+    for i in range(count):
+        space.v[i] = (z[i] + reach * v[i] - space.base[i]) / span
+    return span, lag
+
+
+@once()
+def solve_step(span, lag, time, problem, space, counters):
+    """Solve the step in space.z (N,) and space.v (Q,) from the guess there: residual and least v / J0.
 
     span s and lag r [s]; space.base and space.drift hold q~ and v~, space.drag D. The residual
     is in EI/L^2, EI/L, L and rad; far above the tolerance if the iterations were not enough.
     """
     z, v, x, matrix, gradient = space.z, space.v, space.x, space.matrix, space.gradient
-    tolerance = options.tolerance
+    tolerance, rows, turns = problem.tolerance, problem.rows, problem.turns
     before = norm = 1e300
-    for _ in range(options.iterations):
+    slowest = 0.0
+    for _ in range(problem.iterations):
         for i in range(v.size):
             z[i] = space.base[i] + span * v[i]
-        fill(z, motion.tables, time, active, gradient, matrix)
-        relax(v, span, blocks, v.size, gradient, matrix)
-        add_inertia(v, span, lag, motion.mass, space)
-        norm = largest_residual(gradient, motion.unit, motion.energy)
+        slowest = fill(z, problem, time, space)
+        relax(v, span, problem, gradient, matrix)
+        add_inertia(v, span, lag, problem.mass, space)
+        norm = largest_residual(gradient, problem.unit)
         if norm <= tolerance or (norm <= 1e3 * tolerance and norm > 0.5 * before) or not norm < 1e12:
-            return norm
+            break
         before = norm
-        prepare(blocks, matrix, space.schur)
+        prepare(problem, matrix, space.schur)
         for i in range(v.size):
             x[i] = -gradient[i]
-        free_update(blocks, matrix, x)
-        for r in range(blocks.row.size):
-            space.gap[r] = gradient[blocks.row[r]]
+        free_update(problem, matrix, x)
+        for r in range(rows.shape[0]):
+            space.gap[r] = gradient[rows[r, 0]]
             space.mu[r] = 0.0
-        done, _ = apply_impulses(blocks, matrix, space, x, options.sweeps, tolerance)
+        done, _ = apply_impulses(problem, space, x, tolerance)
         counters[SOLVES] += 1
         counters[SWEEPS] += done
         share = 1.0
-        for turn in motion.turns:
-            if abs(x[turn]) * share > MOST_TURN:
-                share = MOST_TURN / abs(x[turn])
+        for k in range(turns.size):
+            if abs(x[turns[k]]) * share > MOST_TURN:
+                share = MOST_TURN / abs(x[turns[k]])
         for i in range(v.size):
             v[i] += share * x[i] / span
-        for r in range(blocks.row.size):
-            z[blocks.row[r]] += share * space.mu[r]
-    return norm
+        for r in range(rows.shape[0]):
+            z[rows[r, 0]] += share * space.mu[r]
+    return norm, slowest
 
 
-@njit(cache=True, nogil=True)
-def relax(v, span, blocks, count, gradient, matrix):
+@once()
+def relax(v, span, problem, gradient, matrix):
     """Turn the compatibility of damped axial forces into eps + beta d(eps)/dt - C a, over 1 + beta / s.
 
     Divided so, it keeps its Jacobian (to the first order in the velocity), and the compliance is
     less: a soft constraint with a damper.
     """
-    modes = blocks.relaxation.size
-    for r in range(blocks.row.size):
-        row = blocks.row[r]
-        if row < count + modes and blocks.relaxation[row - count] > 0.0:
-            beta = blocks.relaxation[row - count]
+    count, modes = v.size, problem.relaxation.size
+    for r in range(problem.rows.shape[0]):
+        row = problem.rows[r, 0]
+        if row < count + modes and problem.relaxation[row - count] > 0.0:
+            beta = problem.relaxation[row - count]
             less = 1.0 / (1.0 + beta / span)
-            gradient[row] = less * (gradient[row] + beta * row_times(blocks, matrix, r, v))
+            gradient[row] = less * (gradient[row] + beta * row_times(problem, matrix, r, v))
             for k in range(count, count + modes):
                 matrix[row, k] *= less
 
 
-@njit(cache=True, nogil=True)
+@once()
 def add_inertia(v, span, lag, mass, space):
     """Add M (v - v~) / r + D v to the gradient and its derivative in q to the matrix."""
     count, over = v.size, 1.0 / (span * lag)
@@ -94,12 +188,12 @@ def add_inertia(v, span, lag, mass, space):
         space.gradient[i] += push
 
 
-@njit(cache=True, nogil=True)
-def largest_residual(gradient, unit, energy):
+@once()
+def largest_residual(gradient, unit):
     """Largest entry, dimensionless; infinite if one is not a number."""
     norm = 0.0
     for i in range(gradient.size):
-        value = abs(gradient[i]) * unit[i] / energy
+        value = abs(gradient[i]) * unit[i]
         if not value < 1e300:
             return 1e300
         norm = max(norm, value)

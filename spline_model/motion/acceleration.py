@@ -8,7 +8,8 @@ B: its inner points i follow from its four end points p = (1, n - 2, n - 1, 0),
     A_i = -B_ii^-1 f_i - W A_p,   W = B_ii^-1 B_ip,   (B_pp - B_pi W) A_p = -(f_p - W^T f_i),
 
 whose accelerations are A_p = T (s_A'', s_B'', bodies'') + what the rates make of them. s_A, s_B and the axial
-forces of strips that cannot stretch are eliminated, and the bodies' small system remains.
+forces of strips that cannot stretch are eliminated, and the bodies' small system remains. The rows of such
+forces come with the inner points eliminated, and times a root of B_ii^-1 in them (``Grid.ties``).
 """
 
 from __future__ import annotations
@@ -164,7 +165,7 @@ def strip_system(s, tied, grid, strips, room):
     n, force, follow, drift = strips.mass.shape[1], room.force[s], grid.follow[s], room.drift[s]
     tip, root, m = strips.tips[s] >= 0, strips.roots[s] >= 0, grid.ends[s]
     first, g, h, c = 2 + max(tied - 1, 0), room.g[s], room.h[s], room.covector
-    ends, lever, line = room.ends[s], room.lever[s], room.line
+    ends, lever, line, inner = room.ends[s], room.lever[s], room.line, room.inner
     outer = 2 + 3 * tip + 3 * root
     mass_of_ends(m, ends, lever, tip, root, first, h)
     for k in range(2):
@@ -175,27 +176,30 @@ def strip_system(s, tied, grid, strips, room):
     to_ends(c, ends, lever, tip, root, line)
     for i in range(outer):
         g[i if i < 2 else first + i - 2] = line[i]
+    if tied > 0:
+        for k in range(2):
+            for i in range(n - 4):
+                inner[k, i] = 0.0
+                for j in range(n - 4):
+                    inner[k, i] += grid.white[s, i, j] * force[k, j + 2]
     for a in range(tied):
         row, mine = room.rows[s, a], (first + outer - 2 if a == 0 else a + 1)
         left = -room.rest[a]
         for k in range(2):
-            for i in range(n - 4):
-                for j in range(n - 4):
-                    left += row[k, i + 2] * grid.inverse[s, i, j] * force[k, j + 2]
-            gather_ends(row[k], follow, c[k])
             for p in range(4):
-                left -= c[k, p] * drift[k, p]
+                left -= row[k, p] * drift[k, p]
+            for i in range(n - 4):
+                left += row[k, i + 4] * inner[k, i]
         g[mine] = left
-        to_ends(c, ends, lever, tip, root, line)
+        to_ends(row, ends, lever, tip, root, line)
         for i in range(outer):
             place = i if i < 2 else first + i - 2
             h[min(place, mine), max(place, mine)] = line[i]
         for b in range(a, tied):
             other, total = (first + outer - 2 if b == 0 else b + 1), 0.0
             for k in range(2):
-                for i in range(n - 4):
-                    for j in range(n - 4):
-                        total -= row[k, i + 2] * grid.inverse[s, i, j] * room.rows[s, b, k, j + 2]
+                for i in range(4, n):
+                    total -= row[k, i] * room.rows[s, b, k, i]
             h[min(mine, other), max(mine, other)] = total
     return first + outer - 2 + (1 if tied > 0 else 0)
 
@@ -224,7 +228,7 @@ def follow_ends(s, at, tied, size, poses, grid, strips, room, push):
     for a in range(1, tied):
         room.axial[s, a] = y[a + 1]
     push[last], push[last + 1] = y[0], y[1]
-    c, lever, ends = room.covector, room.lever[s], room.ends[s]
+    c, lever, ends, pull = room.covector, room.lever[s], room.ends[s], room.inner
     for i in range(2):
         c[i, INNER_ROOT] = drift[i, INNER_ROOT] + y[0] * ends[0, 2 + i]
         c[i, INNER_TIP] = drift[i, INNER_TIP] + y[1] * ends[1, 2 + i]
@@ -237,13 +241,14 @@ def follow_ends(s, at, tied, size, poses, grid, strips, room, push):
             shift, spin = push[3 * strips.roots[s] + i], push[3 * strips.roots[s] + 2]
             c[i, INNER_ROOT] += shift + spin * lever[4 + i]
             c[i, ROOT] += shift + spin * lever[6 + i]
-        for a in range(tied):
-            for j in range(2, n - 2):
-                force[i, j] += room.axial[s, a] * room.rows[s, a, i, j]
+        for q in range(n - 4):
+            pull[i, q] = 0.0
+            for a in range(tied):
+                pull[i, q] += room.axial[s, a] * room.rows[s, a, i, q + 4]
         for j in range(n - 4):
             total = 0.0
             for q in range(n - 4):
-                total -= grid.inverse[s, j, q] * force[i, q + 2]
+                total -= grid.inverse[s, j, q] * force[i, q + 2] + grid.white[s, q, j] * pull[i, q]
             for p in range(4):
                 total -= grid.follow[s, p, j] * c[i, p]
             push[at + 2 * j + i] = total

@@ -10,11 +10,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from spline_model.compile import System
+from spline_model.motion.start import Motion
+
 Array = NDArray[np.float64]
 Places = NDArray[np.int64]
-
-KNOWN = 4
-"""States before that the next one of massless strips is extrapolated from."""
 
 
 class Flexures(NamedTuple):
@@ -81,6 +81,53 @@ class Masses(NamedTuple):
     drive_pairs: Places
     drive_times: Array
     drive_factors: Array
+
+
+def masses_of(system: System, motion: Motion, poses: int) -> Masses:
+    """The bodies and what acts on them; poses: the number of their coordinates."""
+    scene, layout, tables = system.scene, system.layout, system.tables
+    length, energy, loads, drives = (
+        system.scales.length,
+        system.scales.energy,
+        system.tables.loads,
+        system.tables.drives,
+    )
+    unit = np.tile([length, length, 1.0], poses // 3)
+    inertia, drag, weight = (np.zeros(poses) for _ in range(3))
+    body_at: dict[int, int] = {}
+    strip_at: dict[int, int] = {}
+    place: dict[int, int] = {}
+    for i, body in enumerate(scene.bodies):
+        at, mine = layout.body(body.name), slice(3 * i, 3 * i + 3)
+        inertia[mine] = np.diag(motion.mass)[at]
+        drag[mine] = np.diag(motion.drag)[at] if motion.drag.size else 0.0
+        weight[mine] = tables.weight[at] if tables.weight.size else 0.0
+        body_at |= {at.start + k: 3 * i + k for k in range(3)}
+    for s, strip in enumerate(scene.strips):
+        start, n = layout.strips[strip.name]
+        strip_at |= {start + k: s for k in range(2 * n)}
+        place |= {start + 2 * i + k: k * n + i for i in range(n) for k in range(2)}
+    turning = np.where(drives.turns == 1, 1.0, length)
+    return Masses(
+        inertia=inertia * unit**2 / energy,
+        drag=drag * unit**2 / energy,
+        weight=weight * unit / energy,
+        load_body=np.array([body_at.get(int(c), -1) for c in loads.coordinate], dtype=np.int64),
+        load_strip=np.array([strip_at.get(int(c), -1) for c in loads.coordinate], dtype=np.int64),
+        load_place=np.array([place.get(int(c), -1) for c in loads.coordinate], dtype=np.int64),
+        load_value=loads.value * np.where(loads.turns == 1, 1.0, length) / energy,
+        load_first=loads.first,
+        load_pairs=loads.pairs,
+        load_times=loads.times,
+        load_factors=loads.factors,
+        drive_at=np.array([body_at[int(c)] for c in drives.coordinate], dtype=np.int64),
+        drive_origin=drives.origin / turning,
+        drive_target=drives.target / turning,
+        drive_first=drives.first,
+        drive_pairs=drives.pairs,
+        drive_times=drives.times,
+        drive_factors=drives.factors,
+    )
 
 
 class State(NamedTuple):
@@ -214,16 +261,13 @@ def scratch_of(strips: Flexures, masses: Masses) -> Scratch:
 class Poses(NamedTuple):
     """State of the bodies, Q coordinates and Q' with the axial forces beside them, and working arrays.
 
-    y (Y,) with the strips' coordinates; rate (Q,) velocities; known (3, Y) the states before, newest first,
-    and last (2,) their distance [s] and number; energy (2,) W and the next one; pull, next (Q',) reactions
-    g, slope (Q',) derivative of the gap; totals (2,) work and losses; trial (Y,), dx, load (Q,); system
-    (Q', Q'), x, free (Q',).
+    y (Y,) with the strips' coordinates; rate (Q,) velocities; energy (2,) W and the next one; pull, next
+    (Q',) reactions g, slope (Q',) derivative of the gap; totals (2,) work and losses; trial (Y,), dx, load
+    (Q,); system (Q', Q'), x, free (Q',).
     """
 
     y: Array
     rate: Array
-    known: Array
-    last: Array
     energy: Array
     pull: Array
     next: Array
@@ -242,8 +286,6 @@ def poses_of(y: Array, rate: Array, all_bodies: int) -> Poses:
     return Poses(
         y=y,
         rate=rate,
-        known=np.zeros((KNOWN, len(y))),
-        last=np.zeros(2),
         energy=np.zeros(2),
         pull=np.zeros(all_bodies),
         next=np.zeros(all_bodies),

@@ -11,12 +11,11 @@ from __future__ import annotations
 import numpy as np
 from scipy.linalg import get_lapack_funcs
 
+from spline_model.bordered import evaluate, open_energy
+from spline_model.checks import refuse
 from spline_model.compile import System
-from spline_model.kernels.motion import Motion
-from spline_model.kernels.record import STRAIN, forward, record
-from spline_model.motion.records import MOST_GAIN_OF_OTHERS, first_gain
-from spline_model.motion.start import Array, Records
-from spline_model.operator import evaluate, open_energy
+from spline_model.motion.records import MOST_GAIN_OF_OTHERS, first_gain, rows_of
+from spline_model.motion.start import Array, Motion, Records
 
 (gesv,) = get_lapack_funcs(("gesv",))  # without the checks and warnings of scipy.linalg.solve
 
@@ -36,6 +35,7 @@ class Stepper:
         self.acceleration, self.pseudo = acceleration.copy(), acceleration.copy()
         size = len(z)
         self.gradient, self.hessian = np.empty(size), np.empty((size, size))
+        self.energies = evaluate(system, self.z, 1.0, self.gradient, self.hessian)
         self.counters = {"steps": 0, "halved_steps": 0, "newton_iterations": 0, "factorisations": 0}
 
     def advance(self, duration: float, step: float) -> bool:
@@ -62,13 +62,17 @@ class Stepper:
         v = self.v + h * ((1 - self.gamma) * self.pseudo + self.gamma * pseudo)
         rate = (1 - self.alpha_m) / (self.beta * h**2 * (1 - self.alpha_f))
         for _ in range(MOST_ITERATIONS):
-            evaluate(self.system, z, 1.0, self.gradient, self.hessian)
+            energies = evaluate(self.system, z, 1.0, self.gradient, self.hessian)
             self.gradient[:count] += motion.mass @ acceleration
             norm = np.abs(self.gradient * motion.unit).max() / motion.energy
             if not np.isfinite(norm):
                 return False
             if norm <= TOLERANCE:
-                return self._accept(z, v, acceleration, pseudo)
+                if refuse(self.system, z):
+                    return False
+                self.z, self.v, self.acceleration, self.pseudo = z, v, acceleration, pseudo
+                self.energies = energies
+                return True
             self.hessian[:count, :count] += rate * motion.mass
             change = self._solve()
             if change is None:
@@ -87,20 +91,16 @@ class Stepper:
         _, _, change, failed = gesv(matrix, self.gradient * unit / energy)
         return None if failed else np.asarray(-unit * change)
 
-    def _accept(self, z: Array, v: Array, acceleration: Array, pseudo: Array) -> bool:
-        if not forward(z, self.motion.tables):
-            return False
-        self.z, self.v, self.acceleration, self.pseudo = z, v, acceleration, pseudo
-        return True
+    def row(self) -> Array:
+        """The record of the present state (7,); the axial forces are those that its strains give."""
+        strain = sum(self.energies) + open_energy(self.system, self.z)
+        rows = rows_of(self.motion, self.z[None], self.v[None], np.array([[strain, 0.0, 0.0]]))
+        return np.asarray(rows[0])
 
 
 def carry(stepper: Stepper, step: float, steps: int, every: int) -> Records:
     """Take ``steps`` steps, recording every ``every``-th one."""
-    system, motion, z, v = stepper.system, stepper.motion, stepper.z, stepper.v
-    strains, totals = np.empty(len(motion.rigidity)), np.zeros(2)
-    states, rates, rows, message = [z], [v], [np.empty(7)], ""
-    record(z, v, motion, strains, totals, rows[0])
-    rows[0][STRAIN] += open_energy(system, z)
+    states, rates, rows, message = [stepper.z], [stepper.v], [stepper.row()], ""
     for k in range(1, steps + 1):
         if not stepper.advance(step, step):
             message = f"stopped at {(k - 1) * step:.6g} s: Newton fails at any step"
@@ -108,10 +108,8 @@ def carry(stepper: Stepper, step: float, steps: int, every: int) -> Records:
         if k % every == 0:
             states.append(stepper.z)
             rates.append(stepper.v)
-            rows.append(np.empty(7))
-            record(stepper.z, stepper.v, motion, strains, totals, rows[-1])
-            rows[-1][STRAIN] += open_energy(system, stepper.z)
-            if first_gain(np.array((rows[0], rows[-1])), motion.energy, MOST_GAIN_OF_OTHERS) < 2:
+            rows.append(stepper.row())
+            if first_gain(np.array((rows[0], rows[-1])), stepper.motion.energy, MOST_GAIN_OF_OTHERS) < 2:
                 message = f"stopped at {k * step:.6g} s: the energy grows; take a shorter step"
                 states, rates, rows = states[:-1], rates[:-1], rows[:-1]
                 break

@@ -21,12 +21,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.compile import System
-from spline_model.kernels.motion import Motion
 from spline_model.motion.events import SAME, catch, drives_at, event_times, from_here
 from spline_model.motion.mechanism import moving
 from spline_model.motion.records import MOST_GAIN, first_gain, rows_of
-from spline_model.motion.run import MOST_HALVED, MOST_HALVED_A_STEP, advance, run, store
-from spline_model.motion.start import Array, Records, require_compiled
+from spline_model.motion.run import MOST_HALVED, MOST_HALVED_A_STEP, run, store
+from spline_model.motion.start import Array, Motion, Records, require_compiled
 from spline_model.motion.step import FACTORISATIONS, FOLDED, HALVED, NEWTON, STEPS, WHOLE
 
 TOLERANCE = 1e-11
@@ -110,23 +109,23 @@ class Stepper:
 
     def advance(self, time: float, duration: float, smallest: float) -> float:
         """Advance by a step of ``duration``, halved at need down to ``smallest`` of it; the time done."""
-        return float(
-            advance(
-                time, duration, duration, duration * smallest, self.active, self._state, self._model.strips,
-                self._model.masses, TOLERANCE, self._work, self.counters,
-            )
-        )  # fmt: skip
+        return duration * self._run(time, duration, 0, 1, 2, duration * smallest)[0]
 
     def run(self, step: float, begin: int, end: int, every: int) -> tuple[int, tuple[Array, Array, Array]]:
         """Take the steps ``begin`` ... ``end`` - 1; the next step's number, and records as of ``look``."""
-        records = np.zeros((end // every - begin // every, self._model.width))
-        done = int(
-            run(
-                step, begin, end, every, step * SMALLEST_STEP, self.active, self._state, self._model.strips,
-                self._model.masses, TOLERANCE, self._work, self.counters, records,
-            )
-        )  # fmt: skip
+        done, records = self._run(0.0, step, begin, end, every, step * SMALLEST_STEP)
         return done, self._shown(records[: done // every - begin // every])
+
+    def _run(
+        self, time: float, step: float, begin: int, end: int, every: int, smallest: float
+    ) -> tuple[int, Array]:
+        """The next step's number, and records."""
+        records = np.zeros((end // every - begin // every, self._model.width))
+        done = run(
+            time, step, begin, end, every, smallest, self.active, self._state, self._model.strips,
+            self._model.masses, TOLERANCE, self._work, self.counters, records,
+        )  # fmt: skip
+        return int(done), records
 
     def look(self) -> tuple[Array, Array, Array]:
         """Unknowns (1, N), velocities (1, Q) and row (1, 7) of the present state."""

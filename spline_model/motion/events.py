@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from spline_model.kernels.assemble import assemble
-from spline_model.kernels.drives import factor_at
-from spline_model.kernels.motion import Motion
+from spline_model.bordered import assemble
+from spline_model.effects.history import factor_at
+from spline_model.motion.start import Motion
 
 Array = NDArray[np.float64]
 
@@ -63,9 +63,10 @@ def catch(
         return v, 0.0
     size, count = z.size, v.size
     gradient, hessian = np.empty(size), np.empty((size, size))
-    assemble(z, motion.tables, 0.0, gradient, hessian)
-    clamps = motion.tables.clamps
+    points, clamps = motion.tables.points, motion.tables.clamps
+    assemble(z, points, clamps, gradient, hessian, np.empty((5, 4)))
     rows = np.concatenate([clamps.row + i for i in range(3)] + [drives.row[held]]).astype(int)
+    hessian[drives.row, drives.coordinate] = -1.0
     jacobian = -hessian[rows][:, :count]
     rate = np.zeros(len(rows))
     for i, d in enumerate(held):

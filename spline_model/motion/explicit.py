@@ -29,15 +29,13 @@ from numpy.typing import NDArray
 
 from spline_model.compile import System
 from spline_model.errors import InvalidParameter
-from spline_model.kernels.motion import Motion
-from spline_model.kernels.record import STRAIN
 from spline_model.motion.acceleration import accelerate, move, place
 from spline_model.motion.arrays import Scratch, State
 from spline_model.motion.grid import Grid, Room, grid_of, room_of
 from spline_model.motion.mechanism import Moving, moving
-from spline_model.motion.records import MOST_GAIN_OF_OTHERS, first_gain, rows_of
+from spline_model.motion.records import MOST_GAIN_OF_OTHERS, STRAIN, first_gain, rows_of
 from spline_model.motion.run import SLOWEST_SPEED, store
-from spline_model.motion.start import Records, require_compiled, require_conservative
+from spline_model.motion.start import Motion, Records, require_compiled, require_conservative
 from spline_model.motion.strip import curve_at
 from spline_model.strip.compiled import kernel, part
 

@@ -75,6 +75,9 @@ def add_forces(s, tied, strips, grid, points, at, axial, force):
 def add_ties(s, tied, sharpness, strips, grid, speed, at, rows, rest):
     """Rows (K, 2, n) and rests (K,) of what the ``tied`` axial forces keep; at: as left by ``add_forces``.
 
+    The rows are those b of the four end points with the inner ones eliminated, and a root of B_ii^-1 times
+    those of the inner ones.
+
     speed (2, n): velocities of the control points; sharpness: O [1/s].
     """
     for p in range(strips.weight.size):
@@ -95,8 +98,7 @@ def add_ties(s, tied, sharpness, strips, grid, speed, at, rows, rest):
             rest[k] += grid.modes[s, k, p] * at[G2, p]
         for i in range(speed.shape[1]):
             x = y = 0.0
-            for p in range(grid.begin[i], grid.end[i]):
-                u = grid.d1[i, p] * grid.modes[s, k, p]
-                x += u * at[G0, p]
-                y += u * at[G1, p]
+            for p in range(strips.weight.size):
+                x += grid.ties[s, k, i, p] * at[G0, p]
+                y += grid.ties[s, k, i, p] * at[G1, p]
             rows[k, 0, i], rows[k, 1, i] = x, y

@@ -25,11 +25,10 @@ from numpy.typing import NDArray
 
 from spline_model.compile import System
 from spline_model.errors import InvalidParameter
-from spline_model.kernels.motion import Motion
 from spline_model.motion import bordered, energy_consistent
 from spline_model.motion.records import MOST_GAIN_OF_OTHERS
 from spline_model.motion.run import MOST_HALVED, MOST_HALVED_A_STEP, clamp_forces, forward, set_points, store
-from spline_model.motion.start import Records, require_conservative
+from spline_model.motion.start import Motion, Records, require_conservative
 from spline_model.motion.step import (
     FACTORISATIONS,
     FOLDED,
@@ -41,7 +40,7 @@ from spline_model.motion.step import (
     guess_step,
     improve,
 )
-from spline_model.strip.compiled import copy, kernel, part
+from spline_model.strip.compiled import called, copy, kernel, part
 
 Array = NDArray[np.float64]
 
@@ -92,7 +91,7 @@ def gather(of_bodies, of_points, out):
                 at += 1
 
 
-@kernel()
+@called()
 def spread(source, of_bodies, of_points):
     """The other way round."""
     n, at = of_points.shape[2], of_bodies.size

@@ -20,10 +20,11 @@ class Grid(NamedTuple):
     """Constants of S strips.
 
     d1, d2 (n, G) derivatives of the basis, not zero from begin to end (n,); modes (S, K, G) and stiffness
-    (S, K) of the axial forces; inverse (S, n - 4, n - 4) B_ii^-1, follow (S, 4, n - 4) W^T, ends (S, 4, 4)
-    the end points' mass; frames (S, 2, 4) point and s-direction of root and tip in the frame of their body or
-    the ground; tied (S,) leading axial forces that hold the length; outer: 1 with any, the first of which
-    stays with the bodies.
+    (S, K) of the axial forces; inverse (S, n - 4, n - 4) B_ii^-1, white its root C^T, C C^T = B_ii^-1; follow
+    (S, 4, n - 4) W^T, ends (S, 4, 4) the end points' mass; ties (S, K, n, G) d1 times the modes, of the end
+    points less W^T of the inner ones, and C^T of these; frames (S, 2, 4) point and s-direction of root and
+    tip in the frame of their body or the ground; tied (S,) leading axial forces that hold the length; outer:
+    1 with any, the first of which stays with the bodies.
     """
 
     d1: Array
@@ -33,8 +34,10 @@ class Grid(NamedTuple):
     modes: Array
     stiffness: Array
     inverse: Array
+    white: Array
     follow: Array
     ends: Array
+    ties: Array
     frames: Array
     tied: Places
     outer: int
@@ -44,8 +47,8 @@ class Room(NamedTuple):
     """Working arrays: x, u, push (R,) where accelerations are asked for, rates and the accelerations;
     mean, dr, dw (R,) of a step; turns (B, 2) cosine and sine; points, speed, force (S, 2, n); ends (S, 2, 4)
     arm and s-direction, lever (S, 8) how inner and outer points of tip and root turn; drift (S, 2, 4);
-    at (10, G); axial (S, K), rows (S, K, 2, n), rest (K,); covector (2, 4), line (8,); g (S, E), h (S, E, E),
-    y (E,) of a strip; tangent (Q', Q'), load (Q',) of the bodies.
+    at (10, G); axial (S, K), rows (S, K, 2, n), rest (K,); covector (2, 4), line (8,), inner (2, n);
+    g (S, E), h (S, E, E), y (E,) of a strip; tangent (Q', Q'), load (Q',) of the bodies.
     """
 
     x: Array
@@ -67,6 +70,7 @@ class Room(NamedTuple):
     rest: Array
     covector: Array
     line: Array
+    inner: Array
     g: Array
     h: Array
     y: Array
@@ -85,6 +89,10 @@ def grid_of(strips: Flexures) -> Grid:
     inverse = np.array([np.linalg.inv(b[np.ix_(inner, inner)]) for b in strips.mass])
     across = strips.mass[:, inner[:, None], ends]
     follow = inverse @ across
+    white = np.linalg.cholesky(inverse).transpose(0, 2, 1)
+    stretch = strips.modes.transpose(0, 2, 1)[:, :, None] * d1
+    at_ends = stretch[:, :, ends] - np.einsum("sip,skig->skpg", follow, stretch[:, :, inner])
+    whitened = np.einsum("sij,skjg->skig", white, stretch[:, :, inner])
     frames = np.zeros((len(strips.roots), 2, 4))
     for e, (frame, reach) in enumerate(
         ((strips.root, strips.reach[:, 0]), (strips.tip, -strips.reach[:, 1]))
@@ -100,8 +108,10 @@ def grid_of(strips: Flexures) -> Grid:
         modes=np.ascontiguousarray(strips.modes.transpose(0, 2, 1)),
         stiffness=1.0 / np.where(strips.compliance > 0.0, strips.compliance, np.inf),
         inverse=np.ascontiguousarray(inverse),
+        white=np.ascontiguousarray(white),
         follow=np.ascontiguousarray(follow.transpose(0, 2, 1)),
         ends=np.ascontiguousarray(strips.mass[:, ends[:, None], ends] - across.transpose(0, 2, 1) @ follow),
+        ties=np.concatenate((at_ends, whitened), axis=2),
         frames=frames,
         tied=tied,
         outer=int(tied.any()),
@@ -125,6 +135,7 @@ def room_of(strips: Flexures, masses: Masses, grid: Grid) -> Room:
         rest=np.zeros(k),
         covector=np.zeros((2, 4)),
         line=np.zeros(8),
+        inner=np.zeros((2, n)),
         g=np.zeros((s, element)),
         h=np.zeros((s, element, element)),
         y=np.zeros(element),

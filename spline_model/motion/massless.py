@@ -6,14 +6,16 @@
 with g the strips' reactions, so that the energy is the same before and after a step of any size.
 Poses and strips are solved for together, the strips condensed as in statics
 (``spline_model.reduced.assembly``); coordinates without mass, of free strip ends, are in equilibrium
-at the step's end. Source of the discrete gradient: Gonzalez, J Nonlinear Sci 6 (1996) 449.
+at the step's end. A step begins along the last tangent, renews it there, and goes on with gradients alone
+(``spline_model.motion.gradients``) while the residual shrinks.
+Source of the discrete gradient: Gonzalez, J Nonlinear Sci 6 (1996) 449.
 """
 
 from __future__ import annotations
 
 import math
 
-from spline_model.motion.arrays import KNOWN
+from spline_model.motion.gradients import take_gradients
 from spline_model.motion.run import MOST_HALVED, MOST_HALVED_A_STEP, SLOWEST_SPEED
 from spline_model.motion.step import (
     FACTORISATIONS,
@@ -42,15 +44,14 @@ from spline_model.strip.compiled import copy, kernel, part
 from spline_model.strip.element import LAST
 from spline_model.strip.laws import MATERIAL
 
-WEIGHTS = tuple((-1.0) ** k * math.comb(KNOWN + 1, k + 1) for k in range(KNOWN + 1))
-"""Of the present one and those before, in the next one."""
 ROUND_OFF = 1e-14
 """Part of the energy below which the gap between its change and the mean gradient's work is round-off: the
 gap goes with the third power of a step, and divided by the second it would drown a short one."""
-
-
 NEARLY = 1e-6
-"""Residual from which one more correction ends below round-off, so that nothing is evaluated behind it."""
+"""Residual from which one more correction ends below round-off, so that nothing is evaluated behind it; with
+an older tangent, if it shrinks fast enough for that."""
+POOR = 0.1
+"""Residual over the one before from which the tangent is renewed."""
 
 
 @part()
@@ -92,18 +93,31 @@ def solve(h, moving, poses, masses, bodies, strips, shape, local, space, toleran
 
     With bodies that move dx is their change, kept apart as their inertia would drown in its round-off.
     """
-    y, dx, free, x, count = poses.trial, poses.dx, poses.free, poses.x, 0
+    y, dx, free, x, count, fresh = poses.trial, poses.dx, poses.free, poses.x, 0, True
     force, move, rate = space.vectors[FORCE], space.vectors[MOVE], space.states[RATE]
     for i in range(bodies.load.size):
         if moving or i >= dx.size or masses.inertia[i] == 0.0:
             free[count] = i
             count += 1
-    before = math.inf
-    for _ in range(MOST_ITERATIONS):
-        norm = assemble(y, 0.0, bodies, strips, shape, local, space)
-        if not norm < 1e12:
-            return False
-        poses.energy[1] = stored(y, bodies, strips, shape, local, space)
+    for i in range(dx.size):
+        dx[i] = 0.0
+    copy(poses.y, y)
+    norm = before = math.inf
+    for trial in range(-1 if moving > 0.0 else 0, MOST_ITERATIONS):
+        if trial < 0:
+            copy(poses.pull, force)
+            norm, poses.energy[1] = 0.0, poses.energy[0]
+        else:
+            fresh = trial == 0 or moving == 0.0 or norm > POOR * before
+            before = norm if trial > 0 else math.inf
+            if fresh:
+                counters[FACTORISATIONS] += 1
+                norm = assemble(y, 0.0, bodies, strips, shape, local, space)
+            else:
+                norm = take_gradients(y, bodies, strips, shape, local, space)
+            if not norm < 1e12:
+                return False
+            poses.energy[1] = stored(y, bodies, strips, shape, local, space)
         metric, gap = 0.0, poses.energy[1] - poses.energy[0]
         for i in range(bodies.load.size):
             poses.next[i] = force[i]
@@ -141,13 +155,10 @@ def solve(h, moving, poses, masses, bodies, strips, shape, local, space, toleran
                     for c in range(count):
                         poses.system[r, c] += part_of_gap * poses.slope[free[c]]
             x[r] = -x[r]
-        if norm <= tolerance or (norm <= 1e3 * tolerance and norm > 0.5 * before):
+        if trial >= 0 and (norm <= tolerance or (norm <= 1e3 * tolerance and norm > 0.5 * before)):
             return True
         if not norm < 1e12 or not solve_rows(count, poses.system, x):
             return False
-        before = norm
-        counters[NEWTON] += 1
-        counters[FACTORISATIONS] += 1
         for i in range(bodies.load.size):
             move[i] = 0.0
         for r in range(count):
@@ -156,10 +167,14 @@ def solve(h, moving, poses, masses, bodies, strips, shape, local, space, toleran
             if i < dx.size:
                 dx[i] += x[r]
                 y[i] = poses.y[i] + dx[i]
-        move_strips(1.0, bodies, strips, shape, local, space, rate)
+        move_strips(1.0 if trial >= 0 else 0.0, bodies, strips, shape, local, space, rate)
         for i in range(dx.size, y.size):
             y[i] += rate[i]
-        if moving and norm <= NEARLY and strips.coupled == 0:
+        if trial < 0:
+            continue
+        counters[NEWTON] += 1
+        small = norm <= NEARLY and (fresh or norm * norm <= tolerance * before)
+        if moving and small and strips.coupled == 0:
             look_ahead(poses, strips, shape, local, space)
             return True
     return False
@@ -167,32 +182,10 @@ def solve(h, moving, poses, masses, bodies, strips, shape, local, space, toleran
 
 def settle(poses, masses, bodies, strips, shape, local, space, tolerance, counters):
     """Bring strips and massless coordinates into equilibrium at the bodies' poses; True if that converged."""
-    poses.dx[:], poses.trial[:] = 0.0, poses.y
     if not solve(1.0, 0.0, poses, masses, bodies, strips, shape, local, space, tolerance, counters):
         return False
     poses.y[:], poses.pull[:], poses.energy[0] = poses.trial, poses.next, poses.energy[1]
     return True
-
-
-@part()
-def guess(h, poses, masses):
-    """Extrapolate the last states where they are as far apart as the step; else the bodies alone move."""
-    y, known, trial = poses.y, poses.known, poses.trial
-    if poses.last[0] == h and poses.last[1] >= KNOWN:
-        for i in range(y.size):
-            total = WEIGHTS[0] * y[i]
-            for k in range(KNOWN):
-                total += WEIGHTS[k + 1] * known[k, i]
-            trial[i] = total
-    else:
-        copy(y, trial)
-        for i in range(poses.dx.size):
-            if masses.inertia[i] > 0.0:
-                pull = (poses.load[i] - poses.pull[i]) / masses.inertia[i]
-                trial[i] += h * (poses.rate[i] + 0.5 * h * pull)
-    for i in range(poses.dx.size):
-        poses.dx[i] = trial[i] - y[i]
-        trial[i] = y[i] + poses.dx[i]
 
 
 @part()
@@ -216,62 +209,43 @@ def accept(h, poses, masses):
         poses.totals[0] += poses.load[i] * change
         poses.totals[1] += masses.drag[i] * change * change / h
         poses.rate[i] = 2.0 * change / h - poses.rate[i] if masses.inertia[i] > 0.0 else 0.0
-    for k in range(KNOWN - 1, 0, -1):
-        copy(poses.known[k - 1], poses.known[k])
-    copy(poses.y, poses.known[0])
     copy(poses.trial, poses.y)
     copy(poses.next, poses.pull)
     poses.energy[0] = poses.energy[1]
-    poses.last[1] = poses.last[1] + 1.0 if poses.last[0] == h else 1.0
-    poses.last[0] = h
-
-
-@kernel()
-def advance(
-    time, duration, first_step, smallest, scene_bodies, poses, masses, bodies, strips, shape, local, space,
-    tolerance, counters,
-):  # fmt: skip
-    """Advance in place by ``duration``, halving steps whose Newton fails; returns the time done."""
-    done, step = 0.0, min(first_step, duration)
-    while duration - done > 1e-9 * duration:
-        step = min(step, duration - done)
-        for i in range(poses.load.size):
-            poses.load[i] = 0.0
-        for f in range(masses.load_value.size):
-            poses.load[masses.load_body[f]] += load_at(f, time + done + 0.5 * step, masses)
-        guess(step, poses, masses)
-        solved = solve(step, 1.0, poses, masses, bodies, strips, shape, local, space, tolerance, counters)
-        if not (solved and is_strip(poses, bodies, strips, shape, space, scene_bodies)):
-            counters[HALVED] += 1
-            counters[FOLDED] = 1 if solved else 0
-            step *= 0.5
-            if step < smallest or counters[HALVED] > MOST_HALVED + MOST_HALVED_A_STEP * counters[WHOLE]:
-                return done
-            continue
-        counters[STEPS] += 1
-        accept(step, poses, masses)
-        done += step
-        step = min(2.0 * step, first_step)
-    counters[WHOLE] += 1
-    return duration
 
 
 @kernel()
 def run(
-    step, begin, end, every, smallest, scene_bodies, poses, masses, bodies, strips, shape, local, space,
+    time, step, begin, end, every, smallest, scene_bodies, poses, masses, bodies, strips, shape, local, space,
     tolerance, counters, states, rates, books,
 ):  # fmt: skip
-    """Take the steps ``begin`` ... ``end`` - 1; returns the next step's number.
+    """Take the steps ``begin`` ... ``end`` - 1 after a time; returns the next step's number.
 
+    A step whose Newton fails is halved, down to ``smallest``, and doubles again after each success.
     states (R, Y), rates (R, Q) and books (R, 3) W, work and losses: at steps whose number ``every`` divides.
     """
     for k in range(begin, end):
-        done = advance(
-            k * step, step, step, smallest, scene_bodies, poses, masses, bodies, strips, shape, local, space,
-            tolerance, counters,
-        )  # fmt: skip
-        if done < step:
-            return k
+        done, h = 0.0, step
+        while step - done > 1e-9 * step:
+            now, h = time + k * step + done, min(h, step - done)
+            for i in range(poses.load.size):
+                poses.load[i] = 0.0
+            for f in range(masses.load_value.size):
+                poses.load[masses.load_body[f]] += load_at(f, now + 0.5 * h, masses)
+            solved = solve(h, 1.0, poses, masses, bodies, strips, shape, local, space, tolerance, counters)
+            if solved and is_strip(poses, bodies, strips, shape, space, scene_bodies):
+                accept(h, poses, masses)
+                counters[STEPS] += 1
+                done += h
+                h = min(2.0 * h, step)
+                continue
+            counters[HALVED] += 1
+            counters[FOLDED] = 1 if solved else 0
+            h *= 0.5
+            if h < smallest or counters[HALVED] > MOST_HALVED + MOST_HALVED_A_STEP * counters[WHOLE]:
+                return k
+            assemble(poses.y, 0.0, bodies, strips, shape, local, space)  # the tangent to begin along
+        counters[WHOLE] += 1
         if (k + 1) % every == 0:
             r = (k + 1) // every - begin // every - 1
             copy(poses.y, states[r])

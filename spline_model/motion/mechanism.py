@@ -15,12 +15,12 @@ from spline_model.effects import Bending, Clamp, MixedStretching, Stretching, St
 from spline_model.effects.base import Constraint
 from spline_model.effects.elastic import MEASURES
 from spline_model.errors import InvalidParameter
-from spline_model.kernels.motion import Motion
-from spline_model.motion.arrays import Flexures, Masses, Scratch, State, scratch_of, state_of
-from spline_model.motion.bodies import masses_of
+from spline_model.motion.arrays import Flexures, Masses, Scratch, State, masses_of, scratch_of, state_of
 from spline_model.motion.run import set_points
+from spline_model.motion.start import Motion
+from spline_model.reduced.axial import len_modes, natural_strain, orthonormal_modes
 from spline_model.reduced.ends import Ends, ends_of, frames_of
-from spline_model.reduced.model import GAIN, LEAST_COMPLIANCE, len_modes, natural_strain, orthonormal_modes
+from spline_model.reduced.model import GAIN, LEAST_COMPLIANCE
 
 Array = NDArray[np.float64]
 
@@ -177,13 +177,11 @@ def _strips(system: System, motion: Motion, ends: Ends) -> dict[str, Any]:
     gauss, n, count = len(grid["weight"]), basis.control_points, len(scene.strips)
     order = {e.strip: i for i, e in enumerate(scene.of(Bending))}
     rows = [slice(order[s.name] * gauss, (order[s.name] + 1) * gauss) for s in scene.strips]
-    speed = np.array([tables.bending.speed[r] for r in rows]) / length
+    speed = np.array([tables.points.speed[r] for r in rows]) / length
     mixed = [[e for e in scene.of(MixedStretching) if e.strip == s.name] for s in scene.strips]
     consistent = {e.strip: e for e in scene.of(Stretching)}
-    each = [
-        orthonormal_modes(tuple(e.modes for e in parts), basis, points, v.tobytes())
-        for parts, v in zip(mixed, speed, strict=True)
-    ]
+    parts = [tuple(e.modes for e in each) for each in mixed]
+    modes, to_modes = orthonormal_modes(parts, basis, points, speed)
     compliances = [[e.axial_compliance for e in parts for _ in range(e.modes.count)] for parts in mixed]
     c = np.array(compliances).reshape(count, -1) * energy / length
     small, split = c < LEAST_COMPLIANCE, len_modes(mixed[0], slide=False)
@@ -202,14 +200,14 @@ def _strips(system: System, motion: Motion, ends: Ends) -> dict[str, Any]:
         pairs=grid["pairs"],
         weight=grid["weight"],
         speed=speed,
-        curvature=np.array([tables.bending.curvature[r] for r in rows]) * length,
-        rigidity=np.array([tables.bending.rigidity[r] for r in rows]) / (energy * length),
+        curvature=np.array([tables.points.curvature[r] for r in rows]) * length,
+        rigidity=np.array([tables.points.rigidity[r] for r in rows]) / (energy * length),
         stretching=np.array([consistent[s].axial_rigidity if s in consistent else 0.0 for s in names])
         / (energy / length),
         strain=np.array(
             [natural_strain(parts, consistent.get(s)) for s, parts in zip(names, mixed, strict=True)]
         ),
-        modes=np.ascontiguousarray(np.array([values for values, _ in each]).reshape(count, gauss, -1)),
+        modes=modes,
         compliance=c,
         gain=np.where(small, GAIN, 1.0 / np.where(small, 1.0, c)),
         outer=outer,
@@ -231,7 +229,6 @@ def _strips(system: System, motion: Motion, ends: Ends) -> dict[str, Any]:
         / length,
         measure=min(1, MEASURES.index(scene.of(Bending)[0].measure)),  # printed forces: of the spatial energy
     )
-    to_modes = np.array([back for _, back in each]).reshape(count, c.shape[1], c.shape[1])
     return {"strips": strips, "to_modes": to_modes}
 
 

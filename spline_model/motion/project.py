@@ -6,10 +6,10 @@ those of the coordinates by T, so that the tangent is not symmetric.
 
 from __future__ import annotations
 
-from spline_model.strip.compiled import kernel, part
+from spline_model.strip.compiled import called, part
 
 
-@kernel()
+@called()
 def project(x, y, root, tip, roots, tips, out):
     """A covector of the control points in (w, tip, root) by the maps of both ends (8,)."""
     n = x.size
@@ -28,7 +28,7 @@ def project(x, y, root, tip, roots, tips, out):
         out[k + 2] = root[2] * x[1] + root[3] * y[1] + root[4] * x[0] + root[5] * y[0]
 
 
-@kernel()
+@called()
 def combine(row, inner, outer, half, n, m, size, h):
     """A row of h from those of ``half``: the inner point's by m[0:2], the outer one's by m[2:4]."""
     a, b, c, d = m[0], m[1], m[2], m[3]
@@ -37,7 +37,7 @@ def combine(row, inner, outer, half, n, m, size, h):
         h[row, j] = a * x[j] + b * y[j] + c * u[j] + d * v[j]
 
 
-@kernel()
+@called()
 def add_turning(row, turn, maps, ends, fx, fy, ox, oy, h):
     """(dD)^T times the forces f of the inner point and o of the outer one of an end that turns."""
     slope, s = maps[7], maps[6]
@@ -106,7 +106,7 @@ def to_reduced(s, strips, work):
     return size
 
 
-@kernel()
+@called()
 def combine_end(row, inner, outer, half, n, maps, size, h, m):
     """The three rows of an end that moves."""
     m[0], m[1], m[2], m[3] = 1.0, 0.0, 1.0, 0.0

@@ -6,14 +6,12 @@ import numpy as np
 
 from spline_model.compile import System
 from spline_model.errors import InvalidParameter
-from spline_model.kernels.motion import Motion
 from spline_model.motion import energy_consistent
-from spline_model.motion.arrays import poses_of
-from spline_model.motion.bodies import masses_of
+from spline_model.motion.arrays import masses_of, poses_of
 from spline_model.motion.energy_consistent import SMALLEST_STEP
-from spline_model.motion.massless import advance, run, settle
+from spline_model.motion.massless import run, settle
 from spline_model.motion.records import MOST_GAIN, rows_of
-from spline_model.motion.start import Array, Records
+from spline_model.motion.start import Array, Motion, Records
 from spline_model.reduced.assembly import working_space
 from spline_model.reduced.model import Reduced, from_unknowns, reduced
 from spline_model.reduced.states import unknowns_of
@@ -26,7 +24,7 @@ def integrate(
     system: System, motion: Motion, z: Array, v: Array, *, step: float, steps: int, every: int
 ) -> Records:
     """Take ``steps`` steps from z and the bodies' part of v, recording every ``every``-th one."""
-    if motion.bending_damping.first.size or motion.axial_relaxation.size:
+    if motion.damped:
         raise InvalidParameter(
             "effects", "strip_damping", "strip_inertia with it: massless strips have no rate"
         )
@@ -68,18 +66,22 @@ class Stepper:
 
     def advance(self, time: float, duration: float, smallest: float) -> float:
         """Advance by a step of ``duration``, halved at need down to ``smallest`` of it; the time done."""
-        bodies = len(self._model.system.scene.bodies)
-        return float(advance(time, duration, duration, duration * smallest, bodies, *self._given))
+        return duration * self._run(time, duration, 0, 1, 2, duration * smallest)[0]
 
     def run(self, step: float, begin: int, end: int, every: int) -> tuple[int, tuple[Array, Array, Array]]:
         """Take the steps ``begin`` ... ``end`` - 1; the next step's number, and records as of ``look``."""
-        count = end // every - begin // every
-        states, rates, books = (np.zeros((count, k)) for k in (self._model.size, len(self._poses.rate), 3))
-        bodies = len(self._model.system.scene.bodies)
-        smallest = step * SMALLEST_STEP
-        done = int(run(step, begin, end, every, smallest, bodies, *self._given, states, rates, books))
+        done, records = self._run(0.0, step, begin, end, every, step * SMALLEST_STEP)
         kept = done // every - begin // every
-        return done, self._shown(states[:kept], rates[:kept], books[:kept])
+        return done, self._shown(*(record[:kept] for record in records))
+
+    def _run(
+        self, time: float, step: float, begin: int, end: int, every: int, smallest: float
+    ) -> tuple[int, list[Array]]:
+        """The next step's number, and states, rates and books of the records."""
+        bodies, poses = len(self._model.system.scene.bodies), self._poses
+        count = end // every - begin // every
+        records = [np.zeros((count, k)) for k in (len(poses.y), len(poses.rate), 3)]
+        return int(run(time, step, begin, end, every, smallest, bodies, *self._given, *records)), records
 
     def look(self) -> tuple[Array, Array, Array]:
         """Unknowns (1, N), velocities (1, Q) and row (1, 7) of the present state."""

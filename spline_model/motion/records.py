@@ -5,11 +5,13 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from spline_model.kernels.motion import Motion
-from spline_model.kernels.record import DISSIPATED, KINETIC, POSITION, STRAIN, VELOCITY, WEIGHT, WORK
+from spline_model.motion.start import Motion
 
 Array = NDArray[np.float64]
 
+KINETIC, STRAIN, POSITION, VELOCITY, WEIGHT, WORK, DISSIPATED = range(7)
+"""Places of a record: kinetic and strain energy [J], largest constraint residual [m] and its rate
+[m/s], potential of the weight, work of loads and drives so far, energy dissipated so far [J]."""
 MOST_GAIN = 1e-6
 """Largest gain of an energy-consistent run over its energy: a million steps stay below."""
 MOST_GAIN_OF_OTHERS = 1e-2
@@ -52,7 +54,7 @@ def clamp_gaps(motion: Motion, c: int, z: Array, v: Array) -> tuple[Array, Array
 def energy_gain(rows: Array, unit: float) -> Array:
     """Gain of the balance T + V - work + dissipated at each record over the run's energy, (R,) [1].
 
-    rows (R, 7) as named in ``spline_model.kernels.record``; unit EI/L [J]. The energy is the
+    rows (R, 7) as named above; unit EI/L [J]. The energy is the
     largest of the balance's parts so far, so that the gain of a run that starts at rest, or
     about which the weight's arbitrary zero says nothing, has a scale.
     """

@@ -97,36 +97,6 @@ def accept(time, h, active, state, strips, masses, work):
 
 
 @kernel()
-def advance(time, duration, first_step, smallest, active, state, strips, masses, tolerance, work, counters):
-    """Advance the state in place by ``duration``, halving steps whose Newton fails; returns the time done.
-
-    The step doubles again after each success, up to ``first_step``.
-    """
-    for i in range(work.held.size):
-        work.held[i] = 0
-    for d in range(active.size):
-        if active[d] == 1:
-            work.held[masses.drive_at[d]] = 1
-    done, step = 0.0, min(first_step, duration)
-    while duration - done > 1e-9 * duration:
-        step = min(step, duration - done)
-        solved = newton(time + done, step, active, state, strips, masses, tolerance, work, counters)
-        if not (solved and forward(state, strips, masses, work)):
-            counters[HALVED] += 1
-            counters[FOLDED] = 1 if solved else 0
-            step *= 0.5
-            if step < smallest or counters[HALVED] > MOST_HALVED + MOST_HALVED_A_STEP * counters[WHOLE]:
-                return done
-            continue
-        counters[STEPS] += 1
-        accept(time + done, step, active, state, strips, masses, work)
-        done += step
-        step = min(2.0 * step, first_step)
-    counters[WHOLE] += 1
-    return duration
-
-
-@kernel()
 def set_points(state, strips, masses):
     """What a state's coordinates y make of its control points, end frames and curve."""
     n, modes = strips.mass.shape[1], strips.compliance.shape[1]
@@ -165,17 +135,36 @@ def store(state, strips, masses, work, row):
 
 
 @kernel()
-def run(step, begin, end, every, smallest, active, state, strips, masses, tolerance, work, counters, records):
-    """Take the steps ``begin`` ... ``end`` - 1, each of length ``step``; returns the next step's number.
+def run(
+    time, step, begin, end, every, smallest, active, state, strips, masses, tolerance, work, counters, records
+):
+    """Take the steps ``begin`` ... ``end`` - 1 after a time; returns the next step's number.
 
+    A step whose Newton fails is halved, down to ``smallest``, and doubles again after each success.
     records: filled at the ends of steps whose number ``every`` divides.
     """
+    for i in range(work.held.size):
+        work.held[i] = 0
+    for d in range(active.size):
+        if active[d] == 1:
+            work.held[masses.drive_at[d]] = 1
     for k in range(begin, end):
-        done = advance(
-            k * step, step, step, smallest, active, state, strips, masses, tolerance, work, counters
-        )
-        if done < step:
-            return k
+        done, h = 0.0, step
+        while step - done > 1e-9 * step:
+            now, h = time + k * step + done, min(h, step - done)
+            solved = newton(now, h, active, state, strips, masses, tolerance, work, counters)
+            if solved and forward(state, strips, masses, work):
+                accept(now, h, active, state, strips, masses, work)
+                counters[STEPS] += 1
+                done += h
+                h = min(2.0 * h, step)
+                continue
+            counters[HALVED] += 1
+            counters[FOLDED] = 1 if solved else 0
+            h *= 0.5
+            if h < smallest or counters[HALVED] > MOST_HALVED + MOST_HALVED_A_STEP * counters[WHOLE]:
+                return k
+        counters[WHOLE] += 1
         if (k + 1) % every == 0:
             store(state, strips, masses, work, records[(k + 1) // every - begin // every - 1])
     return end

@@ -2,25 +2,44 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
-from typing import Any
+from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from spline_model.bordered import evaluate
 from spline_model.compile import System
-from spline_model.effects import Bending, MixedStretching, Stretching, StripDamping
+from spline_model.effects import MixedStretching, StripDamping
 from spline_model.effects.base import Inertia
+from spline_model.effects.history import factor_at
 from spline_model.errors import InvalidParameter
-from spline_model.kernels.assemble import assemble
-from spline_model.kernels.drives import factor_at
-from spline_model.kernels.motion import Motion
 from spline_model.mass import drag_matrix, mass_matrix
-from spline_model.operator import evaluate
-from spline_model.quadrature import strip_points
-from spline_model.tables import bending_table, stretching_table
+from spline_model.tables import Tables
 
 Array = NDArray[np.float64]
+
+
+class Motion(NamedTuple):
+    """What does not change during a motion: N unknowns, Q coordinates, C clamps, M axial modes.
+
+    tables: of the scene; mass (Q, Q) [kg, kg m^2]; drag (Q, Q) or (0, 0) [N s/m, N m s]; damped: whether
+    strips have a relaxation time; relaxation (M,) that of the axial modes [s]; turns: places of the rotations
+    in q; chord (C,) length of each clamp's end chord at rest [m]; rigidity (M, M) inverse compliance of the
+    axial modes [N/m], zero where a strip is inextensible; unit (N,) and energy [J] make residuals
+    dimensionless.
+    """
+
+    tables: Tables
+    mass: Array
+    drag: Array
+    damped: bool
+    relaxation: Array
+    turns: NDArray[np.int64]
+    chord: Array
+    rigidity: Array
+    unit: Array
+    energy: float
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -28,7 +47,7 @@ class Records:
     """R records of a run, the start first.
 
     time (R,) [s]; states (R, N); velocities (R, Q); rows (R, 7) as named in
-    ``spline_model.kernels.record``; message: empty, or why the run stopped.
+    ``spline_model.motion.records``; message: empty, or why the run stopped.
     """
 
     time: Array
@@ -44,15 +63,18 @@ def set_in_motion(system: System) -> Motion:
     scene, layout, rest = system.scene, system.layout, system.rest
     if not scene.of(Inertia):
         raise InvalidParameter("effects", "no inertia", "strip_inertia and body_inertia for a motion")
-    if any(effect.measure != "material" for effect in system.scene.of(MixedStretching)):
+    if any(effect.measure != "material" for effect in scene.of(MixedStretching)):
         raise InvalidParameter("measure", "spatial", "material for the motion of mixed strips")
+    mixed = scene.of(MixedStretching)
+    times = {effect.strip: effect.relaxation_time for effect in scene.of(StripDamping)}
     clamps = system.tables.clamps
     chords = [rest[i : i + 2] - rest[e : e + 2] for e, i in zip(clamps.end, clamps.inner, strict=True)]
     return Motion(
         tables=system.tables,
         mass=mass_matrix(scene, layout),
         drag=drag_matrix(scene, layout),
-        **_damping(system),
+        damped=bool(scene.of(StripDamping)),
+        relaxation=np.array([times.get(e.strip, 0.0) for e in mixed for _ in range(e.modes.count)]),
         turns=np.array([start + 2 for start in layout.bodies.values()], dtype=np.int64),
         chord=np.array([np.hypot(*chord) for chord in chords]),
         rigidity=axial_rigidity(system),
@@ -61,36 +83,12 @@ def set_in_motion(system: System) -> Motion:
     )
 
 
-def _damping(system: System) -> dict[str, Any]:
-    """Tables of the strips' Kelvin-Voigt damping; empty for strips that have none."""
-    scene, layout = system.scene, system.layout
-    times = {effect.strip: effect.relaxation_time for effect in scene.of(StripDamping)}
-    bending = [
-        replace(e, flexural_rigidity=times[e.strip] * e.flexural_rigidity)
-        for e in scene.of(Bending)
-        if e.strip in times
-    ]
-    stretching = [
-        replace(e, axial_rigidity=times[e.strip] * e.axial_rigidity)
-        for e in scene.of(Stretching)
-        if e.strip in times
-    ]
-    mixed = scene.of(MixedStretching)
-    points = strip_points([(scene.strip(e.strip), e.gauss_points) for e in mixed], layout)
-    relaxation = points.spread([times.get(e.strip, 0.0) for e in mixed])
-    return {
-        "bending_damping": bending_table(scene, layout, bending),
-        "stretching_damping": stretching_table(scene, layout, stretching),
-        "axial_relaxation": relaxation if any(e.strip in times for e in mixed) else np.zeros(0),
-    }
-
-
 def axial_rigidity(system: System) -> Array:
     """Inverse of the axial modes' compliance matrix, (M, M) [N/m]; zero for inextensible strips."""
     start, end = system.layout.coordinate_count, system.layout.multiplier_start
     size = system.layout.size
     gradient, hessian = np.empty(size), np.empty((size, size))
-    assemble(system.rest, system.tables, 0.0, gradient, hessian)
+    evaluate(system, system.rest, 0.0, gradient, hessian)
     compliance = -hessian[start:end, start:end]
     rigidity = np.zeros_like(compliance)
     for (first, count), effect in zip(system.layout.modes, system.scene.of(MixedStretching), strict=True):
@@ -164,7 +162,6 @@ def require_compiled(system: System, name: str) -> None:
 
 def require_conservative(motion: Motion, name: str) -> None:
     """Refuse a scene with damping, drives or loads: only the energy-consistent scheme has them."""
-    damped = motion.drag.size + motion.bending_damping.first.size + motion.axial_relaxation.size
     others = motion.tables.drives.row.size + motion.tables.loads.coordinate.size
-    if damped + motion.stretching_damping.first.size + others:
+    if motion.drag.size or motion.damped or others:
         raise InvalidParameter("integrator", name, "energy (fixed step) for damping, loads and drives")

@@ -7,10 +7,10 @@ from __future__ import annotations
 
 import math
 
-from spline_model.kernels.drives import factor_at
+from spline_model.effects.history import factor_at
 from spline_model.motion.project import condense, to_reduced
 from spline_model.motion.strip import add_points, move_strip
-from spline_model.strip.compiled import kernel, part
+from spline_model.strip.compiled import called, part
 
 STEPS, HALVED, NEWTON, FACTORISATIONS, FOLDED, WHOLE = range(6)
 """Places of the counters of a run: STEPS with the parts of halved ones, WHOLE without; FOLDED is 1 if the
@@ -18,7 +18,7 @@ last refused step was solved, but no strip."""
 MOST_ITERATIONS = 20
 
 
-@kernel()
+@called()
 def cayley(c):
     """dphi / c for c = 2 tan(dphi / 2), and its derivative in c."""
     square = c * c
@@ -28,7 +28,7 @@ def cayley(c):
     return share, (1.0 / (1.0 + 0.25 * square) - share) / c
 
 
-@kernel()
+@called(no_cpython_wrapper=False)
 def prepare(time, h, state, strips, masses, work):
     """What does not change in a step: inertia, drag and loads on the control points, and loads on bodies."""
     n = strips.mass.shape[1]
@@ -52,7 +52,7 @@ def prepare(time, h, state, strips, masses, work):
             work.steady[masses.load_strip[f], place // n, place % n] -= value
 
 
-@kernel()
+@called()
 def load_at(f, time, masses):
     """Value of a load."""
     return masses.load_value[f] * factor_at(
@@ -60,7 +60,7 @@ def load_at(f, time, masses):
     )
 
 
-@kernel()
+@called()
 def place_of(i, tip, root, behind):
     """The bodies' unknown that a strip's i-th coordinate behind its own ones is."""
     if tip >= 0:
@@ -74,7 +74,7 @@ def place_of(i, tip, root, behind):
     return behind + i
 
 
-@kernel()
+@called(no_cpython_wrapper=False)
 def assemble(h, state, strips, masses, work):
     """Residual of the step dy, and its tangent at the bodies with the strips condensed; the largest residual.
 
@@ -132,7 +132,7 @@ def assemble(h, state, strips, masses, work):
     return norm
 
 
-@kernel()
+@called()
 def solve_rows(count, matrix, x):
     """Solve the leading (count, count) system in place, with partial pivoting; False if it is singular."""
     for i in range(count):
@@ -159,7 +159,7 @@ def solve_rows(count, matrix, x):
     return True
 
 
-@kernel()
+@called(no_cpython_wrapper=False)
 def improve(strips, masses, work):
     """Newton's correction of dy from the assembled step; False if the bodies' system is singular."""
     poses, n, modes = masses.inertia.size, strips.mass.shape[1], strips.compliance.shape[1]

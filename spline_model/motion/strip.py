@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import math
 
-from spline_model.strip.compiled import kernel, part
+from spline_model.strip.compiled import called, part
 from spline_model.strip.laws import MATERIAL
 from spline_model.strip.two_states import (
     bending_between,
@@ -25,7 +25,7 @@ from spline_model.strip.two_states import (
 )
 
 
-@kernel()
+@called()
 def end_frame(body, frame, reach, pose, out):
     """Arm from the body's centre and s-direction of a clamped end: out (4,)."""
     out[0] = out[1] = 0.0
@@ -37,7 +37,7 @@ def end_frame(body, frame, reach, pose, out):
     out[2], out[3] = reach * math.cos(angle + frame[2]), reach * math.sin(angle + frame[2])
 
 
-@kernel()
+@called()
 def move_end(body, end, inner, s0, ds, dy, e0, e1, points, move, maps):
     """Move an end and its inner point by D dy, and fill D and T of it.
 
@@ -87,7 +87,7 @@ def move_strip(s, at, state, strips, work):
             points[k, i] = state.points[s, k, i] + move[k, i]
 
 
-@kernel()
+@called()
 def place_strip(s, y, at, strips, points, ends):
     """Control points (2, n) and end frames (2, 4) of a strip in the state y."""
     n = strips.mass.shape[1]
@@ -105,7 +105,7 @@ def place_strip(s, y, at, strips, points, ends):
             points[k, i] = y[at + 2 * i - 4 + k]
 
 
-@kernel()
+@called()
 def curve_at(p, points, first, d1, d2, out):
     """C', C'' and |C'| at a Gauss point: out (5,)."""
     x1 = y1 = x2 = y2 = 0.0
@@ -119,7 +119,7 @@ def curve_at(p, points, first, d1, d2, out):
     out[0], out[1], out[2], out[3], out[4] = x1, y1, x2, y2, math.sqrt(x1 * x1 + y1 * y1)
 
 
-@kernel()
+@called()
 def add_products(begin, n, pairs, h0, h1, h2, h3, block):
     """Add one component's h (C', C'') to its block of the tangent, (n n,) by rows."""
     p0, p1, p2, p3 = pairs[0], pairs[1], pairs[2], pairs[3]

@@ -1,19 +1,21 @@
-"""A motion as an answer: the trajectory from the records of a run."""
+"""A motion as an answer: the trajectory from the records of a run, and going on where one ended."""
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.compile import System
-from spline_model.kernels.record import DISSIPATED, KINETIC, POSITION, STRAIN, VELOCITY, WEIGHT, WORK
+from spline_model.errors import InvalidParameter
+from spline_model.estimate import MotionEstimate
 from spline_model.laps import Laps
-from spline_model.motion.start import Records
-from spline_model.solution import MotionEstimate, Status, Tabulated, body_columns
+from spline_model.motion.records import DISSIPATED, KINETIC, POSITION, STRAIN, VELOCITY, WEIGHT, WORK
+from spline_model.motion.start import Motion, Records
+from spline_model.solution import Status, Tabulated, body_columns
 
 Array = NDArray[np.float64]
 
@@ -109,4 +111,33 @@ def trajectory_of(
         counters=run.counters,
         settings=settings,
         seconds=laps.lap("recover"),
+    )
+
+
+def last_state(before: Trajectory, system: System) -> tuple[Array, Array]:
+    """Unknowns (N,) and velocities (Q,) of the last record, for a system that may have other drives."""
+    layout = system.layout
+    known, count = layout.multiplier_start, layout.coordinate_count
+    if before.velocities.shape[1] != count or before.states.shape[1] < known:
+        raise InvalidParameter("after", "a motion of another mechanism", f"one of {count} coordinates")
+    z = np.zeros(layout.size)
+    z[:known] = before.states[-1, :known]
+    return z, before.velocities[-1].copy()
+
+
+def later(motion: Motion, time: float) -> Motion:
+    """The motion with its clock set to ``time`` [s]: histories and drives are that far on."""
+    drives, loads = motion.tables.drives, motion.tables.loads
+    drives = drives._replace(times=drives.times - time, begin=drives.begin - time, until=drives.until - time)
+    loads = loads._replace(times=loads.times - time)
+    return motion._replace(tables=motion.tables._replace(drives=drives, loads=loads))
+
+
+def counted_on(trajectory: Trajectory, before: Trajectory) -> Trajectory:
+    """The trajectory with time, work and losses counted on from the end of the one before."""
+    return replace(
+        trajectory,
+        time=trajectory.time + before.time[-1],
+        work=trajectory.work + before.work[-1],
+        dissipated=trajectory.dissipated + before.dissipated[-1],
     )

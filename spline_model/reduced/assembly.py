@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from spline_model.strip.compiled import kernel, part
+from spline_model.strip.compiled import called, kernel, part
 from spline_model.strip.condense import SINGULAR, condense, condense_coupled, recover
 from spline_model.strip.element import (
     BEYOND,
@@ -193,7 +193,7 @@ def assemble(y, load, bodies, strips, shape, local, space):
     return norm
 
 
-@kernel()
+@called()
 def factorise(free, tangent, factors, outer):
     """L D L^T of the free part of the bodies' tangent; returns its negative pivots, or SINGULAR.
 
@@ -216,7 +216,7 @@ def factorise(free, tangent, factors, outer):
     return negative
 
 
-@kernel()
+@called()
 def solve_free(factors, x):
     """Solve for the free coordinates in place: the right-hand side is the beginning of x, (F,)."""
     count = factors.shape[0]
@@ -241,7 +241,7 @@ def recovered(s, own, share, strips, local, change, dw, da):
     )  # fmt: skip
 
 
-@kernel()
+@called()
 def move_strips(share, bodies, strips, shape, local, space, out):
     """w and a of all strips for the bodies' change, MOVE of the vectors (Q,), into out (Y,)."""
     n, modes, poses = shape.order.size, strips.compliance.shape[1], bodies.rest.size
@@ -255,7 +255,7 @@ def move_strips(share, bodies, strips, shape, local, space, out):
         recovered(s, own, share, strips, local, ends, dw, da)
 
 
-@kernel()
+@called()
 def moment_defect(y, strips, shape, local):
     """Energy of what the strips' moments differ from balance by, twice, and twice their bending energy.
 
@@ -293,7 +293,7 @@ def moment_defect(y, strips, shape, local):
     return wrong, stored
 
 
-@kernel()
+@called()
 def root_of(wrong, stored, smallest):
     """The moment defect from the two energies."""
     return math.sqrt(wrong / (stored + smallest * smallest))

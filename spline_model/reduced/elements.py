@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
-from typing import Self
+from typing import Any, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -230,20 +230,17 @@ class Elements(Followed):
         there, back = (self.unknowns(z + way * step)[:count] for way in (1.0, -1.0))
         return np.asarray((there - back) / (2.0 * part * self.system.scales.unit[:count]))
 
-    def rows(self, points: Sequence[Point], done: Sequence[float]) -> dict[str, Array]:
+    def rows(self, points: Sequence[Point], done: Sequence[float]) -> dict[str, Any]:
         """What a ``Path`` has by state."""
-        z, rate, factor, slope, stiffness, energies, inertia = (
+        z, factor, stiffness, energies, inertia = (
             np.array([getattr(p, name) for p in points])
-            for name in ("z", "rate", "load_factor", "slope", "stiffness", "energies", "inertia")
+            for name in ("z", "load_factor", "stiffness", "energies", "inertia")
         )
-        rate = rate / slope[:, None]
-        size, bodies, held = self.model.size, len(self.model.bodies.rest), len(self.model.bodies.held)
-        answer = empty_answer(len(points), size, bodies, held)._replace(
+        size = self.model.size
+        answer = empty_answer(len(points), size, len(self.model.bodies.held))._replace(
             y=self.y(z),
             reaction=z[:, size:],
-            reaction_rate=rate[:, size:],
             stiffness=stiffness,
-            rate=rate[:, :bodies],
             energies=energies,
             done=np.array(done),
             inertia=inertia,

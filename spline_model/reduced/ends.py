@@ -23,7 +23,7 @@ class End:
     """An end of a strip: its body or GROUNDED, point there [m], direction at rest, row of its clamp or -1."""
 
     body: int
-    point: Array
+    point: tuple[float, float]
     direction: float
     row: int
 
@@ -36,24 +36,24 @@ def ends_of(system: System) -> Ends:
     """Both ends of all strips by (strip, end); a free end is a body of its own, behind the scene's."""
     scene, free = system.scene, len(system.scene.bodies)
     ends: Ends = {}
-    bodies = {body.name: (i, body.centre) for i, body in enumerate(scene.bodies)}
+    bodies = {body.name: (i, body.centre.tolist()) for i, body in enumerate(scene.bodies)}
     clamps: dict[tuple[str, str], tuple[str, int]] = {
         (c.strip, c.end): (c.to, system.layout.rows(i).start)
         for i, c in enumerate(scene.of(Constraint))
         if isinstance(c, Clamp)
     }
     for strip in scene.strips:
+        points = strip.control_points.tolist()
         for end, at, inner, sign in (("start", 0, 1, 1.0), ("end", -1, -2, -1.0)):
-            point = strip.control_points[at]
-            along = sign * (strip.control_points[inner] - point)
-            direction = math.atan2(along[1], along[0])
+            (x, y), (there_x, there_y) = points[at], points[inner]
+            direction = math.atan2(sign * (there_y - y), sign * (there_x - x))
             if (strip.name, end) not in clamps:
-                ends[strip.name, end] = End(body=free, point=np.zeros(2), direction=direction, row=-1)
+                ends[strip.name, end] = End(body=free, point=(0.0, 0.0), direction=direction, row=-1)
                 free += 1
                 continue
             to, row = clamps[strip.name, end]
-            body, centre = bodies.get(to, (GROUNDED, 0.0))
-            ends[strip.name, end] = End(body=body, point=point - centre, direction=direction, row=row)
+            body, (left, low) = bodies.get(to, (GROUNDED, (0.0, 0.0)))
+            ends[strip.name, end] = End(body=body, point=(x - left, y - low), direction=direction, row=row)
     return ends
 
 
@@ -61,7 +61,7 @@ def bodies_of(system: System, ends: Ends, outer: int) -> Bodies | None:
     """The bodies and what acts on them; None where a load acts on a clamped end."""
     scene, layout, loads, drives = system.scene, system.layout, system.loads, system.drives
     length, force = system.scales.length, system.scales.energy / system.scales.length
-    rest = [v for body in scene.bodies for v in (*(body.centre / length), 0.0)]
+    rest = [v for body in scene.bodies for v in (*(at / length for at in body.centre.tolist()), 0.0)]
     places = {
         layout.bodies[body.name] + k: 3 * i + k for i, body in enumerate(scene.bodies) for k in range(3)
     }
@@ -73,12 +73,11 @@ def bodies_of(system: System, ends: Ends, outer: int) -> Bodies | None:
                     places[at + k] = len(rest) + k
                 point = strip.control_points[0 if end == "start" else -1]
                 rest += [*(point / length), 0.0]
-    load, weight = np.zeros(len(rest)), np.zeros(len(rest))
-    unit = np.tile([force, force, force * length], len(rest) // 3)
-    for coordinate, value in zip(loads.coordinate, loads.value, strict=True):
-        if int(coordinate) not in places:
+    load, weight = np.zeros(len(rest) + outer), np.zeros(len(rest) + outer)
+    for coordinate, value in zip(loads.coordinate.tolist(), loads.value.tolist(), strict=True):
+        if coordinate not in places:
             return None
-        load[places[int(coordinate)]] += value
+        load[places[coordinate]] += value
     for coordinate, value in steady_loads(scene, layout):
         if coordinate not in places:
             return None
@@ -86,20 +85,22 @@ def bodies_of(system: System, ends: Ends, outer: int) -> Bodies | None:
     for gravity in scene.of(BodyGravity):
         at = places[layout.bodies[gravity.body]]
         weight[at : at + 2] += gravity.mass * np.asarray(gravity.acceleration)
-    held = np.array([places[int(c)] for c in drives.coordinate], dtype=np.int64)
-    if len(set(held.tolist())) != len(held):
+    for part in (load, weight):
+        part[: len(rest)] /= force
+        part[2 : len(rest) : 3] /= length
+    held, turns = [places[c] for c in drives.coordinate.tolist()], drives.turns.tolist()
+    if len(set(held)) != len(held):
         return None
-    turns = np.flatnonzero(drives.turns)
     return Bodies(
         rest=np.array(rest),
-        load=np.concatenate((load / unit, np.zeros(outer))),
-        weight=np.concatenate((weight / unit, np.zeros(outer))),
-        free=np.array([i for i in range(len(rest) + outer) if i not in set(held.tolist())], dtype=np.int64),
-        held=held,
-        driven=int(turns[0]) if len(turns) else -1,
+        load=load,
+        weight=weight,
+        free=np.array([i for i in range(len(rest) + outer) if i not in held], dtype=np.int64),
+        held=np.array(held, dtype=np.int64),
+        driven=turns.index(1) if 1 in turns else -1,
     )
 
 
 def frames_of(ends: list[End], length: float) -> Array:
     """Point over the length and direction of each end, (S, 3)."""
-    return np.array([[*(e.point / length), e.direction] for e in ends])
+    return np.array([(e.point[0] / length, e.point[1] / length, e.direction) for e in ends])

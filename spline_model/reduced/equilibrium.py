@@ -18,14 +18,18 @@ from spline_model.reduced.assembly import (
     move_strips,
     solve_free,
 )
-from spline_model.strip.compiled import kernel
+from spline_model.strip.compiled import called, kernel
 from spline_model.strip.condense import SINGULAR
 
 ITERATIONS, EVALUATIONS, HALVED = range(3)
 """Places of the counters."""
 MOST_ITERATIONS = 15
-NEARLY = 10.0
-"""Residual over the tolerance from which the last correction, which squares it, is enough."""
+NEARLY = 0.1
+(
+    "Residual over the tolerance from which the last correction is enough: it squares the residual, "
+    "but stiffness\n"
+    "is that of the state before it."
+)
 
 
 @kernel()
@@ -66,7 +70,7 @@ def newton(y, load, bodies, strips, shape, local, space, tolerance, counters):
     return -1
 
 
-@kernel()
+@called()
 def entry(matrix, i, j):
     """Entry of a symmetric matrix of which the upper triangle is filled."""
     return matrix[i, j] if i <= j else matrix[j, i]
@@ -108,7 +112,7 @@ def tangent(held_rate, load_rate, bodies, strips, shape, local, space):
     move_strips(0.0, bodies, strips, shape, local, space, rate)
 
 
-@kernel()
+@called()
 def stiffness_of(bodies, space):
     """Derivative of the driven rotation's torque in it, all else held or in equilibrium at fixed loads."""
     free, x = bodies.free, space.vectors[CHANGE]

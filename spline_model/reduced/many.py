@@ -13,7 +13,7 @@ from spline_model.effects import MixedStretching
 from spline_model.reduced.equilibrium import ITERATIONS
 from spline_model.reduced.model import Reduced
 from spline_model.reduced.path import follow
-from spline_model.strip.compiled import copy, kernel
+from spline_model.strip.compiled import called, copy, kernel
 from spline_model.strip.element import CURVATURE, MODES, ON_POINTS, POINTS, SPEED, place_points
 
 Array = NDArray[np.float64]
@@ -42,7 +42,7 @@ def stations_of(model: Reduced, stations: Array) -> Stations:
     return Stations(d1=d1, d2=d2, modes=axial, work=np.zeros((5, len(stations))))
 
 
-@kernel()
+@called()
 def take_design(i, designs, along, curved, preload, bodies, strips, route, local):
     """Put the i-th design's numbers where a path takes them from; along, curved: of the mechanism itself.
 
@@ -76,7 +76,7 @@ def take_design(i, designs, along, curved, preload, bodies, strips, route, local
     preload.hung[0], preload.hung[1] = hung, hung + fallen
 
 
-@kernel()
+@called()
 def largest_strain(y, poses, depth, along, strips, local, stations):
     """Largest |N / (EA)| + |M| d / (2 EI) over straight strips' stations; depth d of the sections over L.
 

@@ -10,19 +10,28 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import BSpline
 
-from spline_model.basis import AxialModes, SlideModes, SplineBasis, all_modes
+from spline_model.basis import SplineBasis
 from spline_model.compile import System
 from spline_model.effects import Bending, MixedStretching, Stretching, StripGravity
 from spline_model.effects.elastic import MEASURES
-from spline_model.quadrature import rest_of
 from spline_model.reduced.assembly import Bodies
-from spline_model.reduced.ends import Ends, bodies_of, ends_of, frames_of
-from spline_model.scene import Scene, Strip
+from spline_model.reduced.axial import len_modes, natural_strain, orthonormal_modes
+from spline_model.reduced.ends import End, Ends, bodies_of, ends_of, frames_of
+from spline_model.scene import Scene
 from spline_model.strip.element import (
     CURVATURE,
+    FIRST,
     MODES,
+    ON_POINTS,
+    PER_U,
+    REACH,
     RIGIDITY,
+    ROOT,
+    SECOND,
     SPEED,
+    STRAIN,
+    STRETCHING,
+    TIP,
     Local,
     Shape,
     Strips,
@@ -38,6 +47,7 @@ the strain's round-off over the compliance; beside w it follows from equilibrium
 GAIN = 100.0
 """Stiffness by which such a force is condensed all the same, exactly: of the order of the bending's, so
 that no digit is lost."""
+ELASTIC: tuple[type[Bending | MixedStretching | Stretching], ...] = (Bending, MixedStretching, Stretching)
 MOST_CONTROL_POINTS = 24
 """Longer B-splines are narrow bands, which the element's dense tangent does not use along a path."""
 
@@ -129,9 +139,7 @@ def reduced(system: System, *, longest: float = MOST_CONTROL_POINTS) -> Reduced 
 
 def _known(scene: Scene, system: System, longest: float) -> bool:
     bending = scene.of(Bending)
-    grids = {(e.gauss_points, e.measure) for e in bending}
-    grids |= {(e.gauss_points, e.measure) for e in scene.of(MixedStretching)}
-    grids |= {(e.gauss_points, e.measure) for e in scene.of(Stretching)}
+    grids = {(e.gauss_points, e.measure) for kind in ELASTIC for e in scene.of(kind)}
     bases = {strip.basis for strip in scene.strips}
     return (
         not system.open_potentials
@@ -160,44 +168,31 @@ def _strips(
 ) -> tuple[Strips, Array, Array]:
     """The strips' arrays, their curvature at rest (S, G), and the scene's axial forces from theirs."""
     scene, length, energy = system.scene, system.scales.length, system.scales.energy
-    bending = {e.strip: e for e in scene.of(Bending)}
-    bends = [bending[s.name] for s in scene.strips]
-    at_rest = [rest_of(strip, points) for strip in scene.strips]
-    speed = np.array([v for v, _ in at_rest]) / length
-    rest = np.array([k for _, k in at_rest]) * length
-    mixed = [[e for e in scene.of(MixedStretching) if e.strip == s.name] for s in scene.strips]
-    consistent = {e.strip: e for e in scene.of(Stretching)}
-    modes, to_modes = zip(
-        *(
-            orthonormal_modes(tuple(e.modes for e in parts), basis, points, v.tobytes())
-            for parts, v in zip(mixed, speed, strict=True)
-        ),
-        strict=True,
+    bending, consistent = {e.strip: e for e in scene.of(Bending)}, {e.strip: e for e in scene.of(Stretching)}
+    mixed: dict[str, list[MixedStretching]] = {strip.name: [] for strip in scene.strips}
+    for effect in scene.of(MixedStretching):
+        mixed[effect.strip].append(effect)
+    parts, bends = list(mixed.values()), [bending[name] for name in mixed]
+    speed, rest = _at_rest(shape, np.array([strip.control_points for strip in scene.strips]) / length)
+    modes, to_modes = orthonormal_modes(
+        [tuple(e.modes for e in each) for each in parts], basis, points, speed
     )
-    split = len_modes(mixed[0], slide=False)
+    split = len_modes(parts[0], slide=False)
     measure = MEASURES.index(bends[0].measure)
-    compliances = [[e.axial_compliance for e in parts for _ in range(e.modes.count)] for parts in mixed]
-    c = np.array(compliances) * (energy / length)
+    c = np.array([[e.axial_compliance for e in each for _ in range(e.modes.count)] for each in parts])
+    c *= energy / length
     small = c < LEAST_COMPLIANCE
     outer = int(small[:, :split].any())
     along = np.empty((*speed.shape, MODES + c.shape[1]))
     along[..., SPEED], along[..., MODES:] = speed, modes
     along[..., CURVATURE] = rest + np.array([[e.natural_curvature * length] for e in bends])
     along[..., RIGIDITY] = np.array([[e.flexural_rigidity / (energy * length)] for e in bends])
-    starts, tips = ([ends[s.name, end] for s in scene.strips] for end in ("start", "end"))
-    dead, per_u = _dead(system, shape)
-    axial = [
-        consistent[s.name].axial_rigidity * length / energy if s.name in consistent else 0.0
-        for s in scene.strips
-    ]
-    strain = [natural_strain(e, consistent.get(s.name)) for s, e in zip(scene.strips, mixed, strict=True)]
-    reach = np.array([[_reach(s, 1, 0), _reach(s, -1, -2)] for s in scene.strips]) / length
-    frames = (frames_of(each, length) for each in (starts, tips))
+    starts, tips = ([ends[name, end] for name in mixed] for end in ("start", "end"))
     strips = Strips(
         along=along,
         compliance=c,
         gain=np.where(small, GAIN, 1.0 / np.where(small, 1.0, c)),
-        numbers=np.column_stack((axial, strain, *frames, reach, per_u, dead)),
+        numbers=_numbers(system, shape, parts, consistent, starts, tips),
         roots=np.array([end.body for end in starts], dtype=np.int64),
         tips=np.array([end.body for end in tips], dtype=np.int64),
         split=split,
@@ -205,44 +200,40 @@ def _strips(
         outer=outer,
         measure=measure,
     )
-    return strips, rest, np.array(to_modes)
+    return strips, rest, to_modes
 
 
-def _reach(strip: Strip, a: int, b: int) -> float:
-    """Distance of two control points at rest [m]."""
-    return math.dist(strip.control_points[a], strip.control_points[b])
+def _at_rest(shape: Shape, control_points: Array) -> tuple[Array, Array]:
+    """Speed and curvature at rest (S, G) of strips of control points (S, n, 2)."""
+    curve = shape.tables[FIRST : SECOND + 1, None] @ control_points[:, shape.order]
+    (x1, x2), (y1, y2) = curve[..., 0], curve[..., 1]
+    speed = np.hypot(x1, y1)
+    return speed, (x1 * y2 - y1 * x2) / speed**3
 
 
-def len_modes(parts: list[MixedStretching], *, slide: bool) -> int:
-    """Number of axial forces of a strip that belong to the stretching, or to the sliding."""
-    return sum(e.modes.count for e in parts if isinstance(e.modes, SlideModes) == slide)
-
-
-@lru_cache(maxsize=64)
-def orthonormal_modes(
-    parts: tuple[AxialModes, ...], basis: SplineBasis, points: int, speed: bytes
-) -> tuple[Array, Array]:
-    """Modes (G, K) orthonormal along a strip of a speed (G,), and the scene's modes from them; kept."""
-    u, weight = basis.gauss_rule(points)
-    weight = weight * np.frombuffer(speed)
-    values, back = np.zeros((len(u), 0)), np.zeros((0, 0))
-    for modes in parts:
-        full, to_part = all_modes(modes, u), np.eye(modes.count)
-        if not isinstance(modes, SlideModes):  # the mean first
-            to_part[:, 0] = np.linalg.lstsq(full, np.ones(len(u)), rcond=None)[0]
-            full = full @ to_part
-        factor = np.linalg.cholesky(full.T @ (weight[:, None] * full))
-        values = np.column_stack((values, np.linalg.solve(factor, full.T).T))
-        k, m = len(back), modes.count
-        back = np.block([[back, np.zeros((k, m))], [np.zeros((m, k)), to_part @ np.linalg.inv(factor).T]])
-    return values, back
-
-
-def natural_strain(parts: list[MixedStretching], consistent: Stretching | None) -> float:
-    """Stress-free strain of a strip."""
-    if consistent is not None:
-        return consistent.natural_strain
-    return parts[0].natural_strain if parts else 0.0
+def _numbers(
+    system: System,
+    shape: Shape,
+    mixed: list[list[MixedStretching]],
+    consistent: dict[str, Stretching],
+    starts: list[End],
+    tips: list[End],
+) -> Array:
+    """The numbers of ``Strips``, (S, 12 + 2 n)."""
+    scene, length, energy = system.scene, system.scales.length, system.scales.energy
+    numbers = np.zeros((len(scene.strips), ON_POINTS + 2 * len(shape.order)))
+    for row, strip, parts in zip(numbers, scene.strips, mixed, strict=True):
+        stretching, points = consistent.get(strip.name), strip.control_points.tolist()
+        row[STRETCHING] = 0.0 if stretching is None else stretching.axial_rigidity * length / energy
+        row[STRAIN] = natural_strain(parts, stretching)
+        row[REACH:PER_U] = (
+            math.dist(points[1], points[0]) / length,
+            math.dist(points[-1], points[-2]) / length,
+        )
+    numbers[:, ROOT:TIP], numbers[:, TIP:REACH] = frames_of(starts, length), frames_of(tips, length)
+    if system.weight.size:
+        numbers[:, ON_POINTS:], numbers[:, PER_U:ON_POINTS] = _dead(system, shape)
+    return numbers
 
 
 def _dead(system: System, shape: Shape) -> tuple[Array, Array]:
@@ -253,8 +244,7 @@ def _dead(system: System, shape: Shape) -> tuple[Array, Array]:
     force = system.scales.energy / system.scales.length
     dead, per_u = np.zeros((len(scene.strips), 2 * len(shape.order))), np.zeros((len(scene.strips), 2))
     for s, strip in enumerate(scene.strips):
-        if weight.size:
-            dead[s] = weight[system.layout.strip(strip.name)].reshape(-1, 2)[shape.order].ravel() / force
+        dead[s] = weight[system.layout.strip(strip.name)].reshape(-1, 2)[shape.order].ravel() / force
         for effect in scene.of(StripGravity):
             if effect.strip == strip.name:
                 mass = effect.linear_density * float(strip.share_of_length().sum())

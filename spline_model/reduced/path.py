@@ -23,7 +23,6 @@ from spline_model.reduced.assembly import (
     PREDICTED,
     RATE,
     REACTION,
-    REACTION_RATE,
     SLOWEST,
     Y,
     moment_defect,
@@ -31,7 +30,7 @@ from spline_model.reduced.assembly import (
 )
 from spline_model.reduced.equilibrium import HALVED, conjugate, newton, stiffness_of, tangent
 from spline_model.reduced.preload import act, swell
-from spline_model.strip.compiled import copy, kernel, part
+from spline_model.strip.compiled import called, copy, kernel, part
 
 Array = NDArray[np.float64]
 
@@ -53,16 +52,14 @@ class Route(NamedTuple):
 
 
 class Answer(NamedTuple):
-    """S states: y (S, Y); reaction and its rate in the factor (S, D); stiffness (S,) of the driven rotation
-    at fixed loads; rate (S, 3 B) of the bodies; energies (S, 2) bending, axial; done (S,) the potential's
-    derivative integrated over the factor; inertia, defect (S,); counters (3,).
+    """S states: y (S, Y); reaction (S, D); stiffness (S,) of the driven rotation at fixed loads; energies
+    (S, 2) bending, axial; done (S,) the potential's derivative integrated over the factor; inertia, defect
+    (S,); counters (3,).
     """
 
     y: Array
     reaction: Array
-    reaction_rate: Array
     stiffness: Array
-    rate: Array
     energies: Array
     done: Array
     inertia: NDArray[np.int64]
@@ -75,14 +72,12 @@ class Answer(NamedTuple):
         return self._replace(**by_state)
 
 
-def empty_answer(states: int, size: int, bodies: int, held: int) -> Answer:
+def empty_answer(states: int, size: int, held: int) -> Answer:
     """Arrays for that many states."""
     return Answer(
         y=np.zeros((states, size)),
         reaction=np.zeros((states, held)),
-        reaction_rate=np.zeros((states, held)),
         stiffness=np.full(states, np.nan),
-        rate=np.zeros((states, bodies)),
         energies=np.zeros((states, 2)),
         done=np.zeros(states),
         inertia=np.zeros(states, dtype=np.int64),
@@ -91,7 +86,7 @@ def empty_answer(states: int, size: int, bodies: int, held: int) -> Answer:
     )
 
 
-@kernel()
+@called()
 def predict(t, known, at, states):
     """Hermite's polynomial through the last ``known`` states and rates at a factor t, into PREDICTED."""
     predicted = states[PREDICTED]
@@ -109,7 +104,7 @@ def predict(t, known, at, states):
             predicted[k] += by_value * states[i, k] + by_rate * states[KNOWN + i, k]
 
 
-@kernel()
+@called()
 def accepted(y, known, bodies, strips, shape, space):
     """Whether a solved state is the continuation of the last one, with end tangents forward and no fold."""
     if not space.out[SLOWEST] > SLOWEST_SPEED:
@@ -143,7 +138,7 @@ def is_work(gained, work, width, slope0, slope1, stored):
     return abs(gained - work) <= WORK_MISMATCH * scale + ROUND_OFF * (1.0 + stored)
 
 
-@kernel()
+@called()
 def remember(t, known, at, states):
     """Append Y and RATE to the known states, dropping the oldest; returns their number."""
     if known > 0 and t == at[known - 1]:
@@ -160,7 +155,7 @@ def remember(t, known, at, states):
     return known + 1
 
 
-@kernel()
+@called()
 def keep_last(known, at, states):
     """Forget all known states but the last."""
     at[0] = at[known - 1]
@@ -177,7 +172,7 @@ def follow(start, route, judged, preload, bodies, strips, shape, local, space, t
     sign than the one before, ends the path, unless it passes such points: what happens there is not for here.
     """
     states, out, counters, factors = space.states, space.out, answer.counters, route.factor
-    y, rate, predicted, known_at = states[Y], states[RATE], states[PREDICTED], out[FACTORS:]
+    y, predicted, known_at = states[Y], states[PREDICTED], out[FACTORS:]
     held, targets = bodies.held, route.target
     copy(start, y)
     copy(start, predicted)
@@ -252,9 +247,6 @@ def follow(start, route, judged, preload, bodies, strips, shape, local, space, t
         copy(y, answer.y[row])
         for d in range(held.size):
             answer.reaction[row, d] = space.vectors[REACTION, d]
-            answer.reaction_rate[row, d] = space.vectors[REACTION_RATE, d]
-        for i in range(bodies.rest.size):
-            answer.rate[row, i] = rate[i]
         answer.energies[row, 0], answer.energies[row, 1] = out[BENDING], out[AXIAL]
         answer.inertia[row], answer.defect[row], answer.done[row] = negative, defect, done
     return factors.size

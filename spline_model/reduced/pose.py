@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from spline_model.checks import SLOWEST_SPEED
 from spline_model.reduced.assembly import AXIAL, BENDING, SLOWEST, condensed, element_of, recovered
 from spline_model.reduced.equilibrium import EVALUATIONS, HALVED, ITERATIONS
-from spline_model.strip.compiled import copy, kernel
+from spline_model.strip.compiled import called, copy, kernel
 from spline_model.strip.condense import SINGULAR
 from spline_model.strip.element import LAST, ROOT, TIP, end_frame
 
@@ -119,7 +119,7 @@ def correct(s, at, own, y, strips, shape, local, room, tolerance, counters):
     return -1
 
 
-@kernel()
+@called()
 def energy_at(s, at, own, y, strips, shape, local, room):
     """Strain energy of a strip with its axial forces made to follow w; inf for a fold."""
     evaluate(s, at, y, strips, shape, local, room)
@@ -133,7 +133,7 @@ def energy_at(s, at, own, y, strips, shape, local, room):
     return energy
 
 
-@kernel()
+@called()
 def descend(s, at, own, y, strips, shape, local, room, tolerance, counters):
     """From any w downhill to a stable equilibrium: Newton with a shift on the diagonal that keeps it so."""
     for i in range(room.change.size):
@@ -225,7 +225,7 @@ def advance(y, pose, strips, shape, local, room, tolerance, counters):
     return True
 
 
-@kernel()
+@called()
 def parts_of(before, pose, strips, room):
     """Into how many parts the way from one set of poses to another is cut before it is tried."""
     longest = 0.0

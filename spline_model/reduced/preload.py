@@ -49,16 +49,16 @@ class Preload(NamedTuple):
 def preload_of(model: Reduced) -> Preload:
     """What the mechanism is preloaded by."""
     strips, bodies, system = model.strips, model.bodies, model.system
-    hung = 0.0
-    if strips.dead.any():
+    hung, (count, modes) = 0.0, strips.compliance.shape
+    if system.weight.size:
         points = np.array([s.control_points[model.shape.order].ravel() for s in system.scene.strips])
         hung = float((strips.dead * points).sum() / model.length)
     return Preload(
-        curvature=np.stack((model.rest, strips.curvature)),
+        curvature=np.array((model.rest, strips.curvature)),
         numbers=strips.numbers,
         bodies=bodies.weight,
         hung=np.array([hung, hung + float(bodies.weight[: len(bodies.rest)] @ bodies.rest)]),
-        change=np.hstack((np.zeros_like(strips.dead), np.zeros_like(strips.compliance))),
+        change=np.zeros((count, 2 * len(model.shape.order) + modes)),
         push=np.zeros(model.size),
         out=np.zeros(5),
     )

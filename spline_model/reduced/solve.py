@@ -40,7 +40,7 @@ def _run(
     swells: bool,
 ) -> Answer:
     model, count = work.model, work.counters
-    answer = empty_answer(len(factors), model.size, len(bodies.rest), len(bodies.held))
+    answer = empty_answer(len(factors), model.size, len(bodies.held))
     done = follow(
         start,
         Route(

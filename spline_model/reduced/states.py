@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -11,6 +12,7 @@ from spline_model.effects import Clamp, MixedStretching
 from spline_model.effects.base import Constraint
 from spline_model.reduced.model import Reduced
 from spline_model.reduced.path import Answer
+from spline_model.solution import Later
 from spline_model.strip.compiled import kernel
 from spline_model.strip.element import GRADIENT, POINTS, place_points
 from spline_model.strip.points import evaluate_points
@@ -47,24 +49,15 @@ def place_all(y, poses, shape, strips, local, out, points, forces):
 
 
 def by_state(model: Reduced, factors: Array, answer: Answer) -> dict[str, Any]:
-    """What a ``Path`` has by state, in the scene's unknowns and in SI units; factors (S,).
-
-    Of the rates those of bodies and drives are filled.
-    """
-    system, layout, drives = model.system, model.system.layout, model.system.drives
-    states = unknowns_of(model, answer.y, answer.reaction)
-    rates = np.zeros_like(states)
-    for i, body in enumerate(system.scene.bodies):
-        rates[:, layout.body(body.name)] = answer.rate[:, 3 * i : 3 * i + 3] * [
-            model.length,
-            model.length,
-            1.0,
-        ]
-    rates[:, drives.row] = answer.reaction_rate * (model.energy / model.drive_length)
+    """What a ``Path`` has by state, in the scene's unknowns and in SI units; factors (S,)."""
+    bodies = answer.y[:, : 3 * len(model.system.scene.bodies)].copy()
+    bodies[:, 0::3] *= model.length
+    bodies[:, 1::3] *= model.length
     return {
         "load_factor": factors,
-        "states": states,
-        "rates": rates,
+        "bodies": bodies,
+        "reactions": answer.reaction * (model.energy / model.drive_length),
+        "unknowns": Later(partial(unknowns_of, model, answer.y, answer.reaction)),
         "stiffness": answer.stiffness * model.energy,
         "energies": answer.energies * model.energy,
         "done": answer.done * model.energy,

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from spline_model.reduced.assembly import AXIAL, place_of
 from spline_model.reduced.model import Reduced
-from spline_model.strip.compiled import kernel
+from spline_model.strip.compiled import called, kernel
 from spline_model.strip.element import LAST, place_points, to_element
 from spline_model.strip.laws import MATERIAL
 from spline_model.strip.points import evaluate_points
@@ -38,7 +38,7 @@ def _assemble(y, poses, strips, shape, local, out, gradient, hessian):
             add_strip(s, at, at, at + own, y[row], strips, shape, local, out, gradient[row], hessian[row])
 
 
-@kernel()
+@called()
 def add_strip(s, at, first, axial, y, strips, shape, local, out, gradient, hessian):
     """Add strip s, with w and a from y[at] on, to gradient and tangent, where these are at first and axial.
 

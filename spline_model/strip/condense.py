@@ -13,7 +13,7 @@ Schur complement add up (Haynsworth 1968), and each a' has one negative pivot of
 
 from __future__ import annotations
 
-from spline_model.strip.compiled import kernel, part
+from spline_model.strip.compiled import called, part
 
 SINGULAR = -1000
 """What ``condense`` returns for a zero pivot."""
@@ -57,7 +57,7 @@ def eliminate(count, size, g, h):
     return negative
 
 
-@kernel()
+@called()
 def condense_coupled(own, size, coupled, outer, by_state, compliance, gain, g, h, b, e, gap, gram):
     """The same with ``coupled`` axial forces beside w, the first ``outer`` of them left with the ends.
 
@@ -98,7 +98,7 @@ def condense_coupled(own, size, coupled, outer, by_state, compliance, gain, g, h
     return negative if negative == SINGULAR else negative + outer - coupled
 
 
-@kernel()
+@called()
 def recover(own, size, share, coupled, outer, gain, g, h, b, gap, change, dw, da):
     """Changes of own coordinates (W,) and axial forces (K,) for a change of the ends' poses.
 

@@ -22,7 +22,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from spline_model.strip.compiled import kernel, part
+from spline_model.strip.compiled import called, part
 
 Array = NDArray[np.float64]
 GROUNDED = -1
@@ -185,7 +185,7 @@ def local_arrays(strips: int, control_points: int, modes: int, gauss_points: int
     )
 
 
-@kernel()
+@called()
 def end_frame(body, numbers, end, pose, out):
     """Point, direction and the body's centre of a clamped end: out (6,) = x, y, cos, sin, X, Y.
 
@@ -228,7 +228,7 @@ def place_points(s, w, pose, strips, local):
     ends[6], ends[7] = frame[5] - frame[1], frame[0] - frame[4]
 
 
-@kernel()
+@called()
 def to_ends(v, at, ends, tip, root, out, first, behind):
     """A covector's entries at P_1, P_(n-2), P_(n-1), P_0, from v[at] on, in (s_A, s_B) and the ends' poses.
 

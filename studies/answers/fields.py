@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 
+from studies.answers.response import Answered
 from studies.cases.design import Design
 from studies.cases.mechanism import GROUND
 from studies.cases.problem import Problem
@@ -39,12 +40,11 @@ class Block:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Fields:
+class Fields(Answered):
     """Fields of a static path, a motion or natural modes: S states, G strips, P stations, B bodies.
 
     Attributes:
         analysis: "static", "release" or "modes".
-        model, settings, status, message, effects: as in the other neutral answers.
         parts, blocks: the strips and bodies.
         driven: place of the body that is driven or let go among them; 0 where there is none.
         series: name of what runs over the states, "load_factor" [1], "time_s" [s] or "mode" [1].
@@ -61,11 +61,6 @@ class Fields:
     """
 
     analysis: str
-    model: str
-    settings: dict[str, Any]
-    status: str
-    message: str
-    effects: tuple[str, ...]
     parts: tuple[Part, ...]
     blocks: tuple[Block, ...]
     driven: int
@@ -87,11 +82,6 @@ class Fields:
     frequency: Array | None = None
     mode_shape: Array | None = None
     mode_bodies: Array | None = None
-
-    @property
-    def converged(self) -> bool:
-        """Whether all that was asked for was reached."""
-        return self.status == "converged"
 
     @property
     def displacement(self) -> Array:

@@ -21,6 +21,7 @@ class Model:
         release_options: keywords that every release takes.
         moving: discretisation keywords of a pivot in motion, from its settings, where they say nothing.
         all_shapes: whether modes hold the shapes of all bodies side by side, or of one.
+        drive: of a rotation in a motion.
         static_fields, moving_fields: fields along the strips from the design in the model and its states.
     """
 
@@ -34,6 +35,7 @@ class Model:
     release_options: dict[str, Any]
     moving: Callable[[Settings], dict[str, Any]]
     all_shapes: bool
+    drive: type
     static_fields: Callable[[Any, Any], Any]
     moving_fields: Callable[[Any, Any], Any]
 
@@ -41,6 +43,7 @@ class Model:
 def model_of(settings: Settings) -> Model:
     """Return the settings' model; the other one is not even imported."""
     if isinstance(settings, FeSettings):
+        import fe_reference.drives
         import fe_reference.dynamics
         import fe_reference.errors
         import fe_reference.mechanism
@@ -60,10 +63,12 @@ def model_of(settings: Settings) -> Model:
             release_options={"raise_on_failure": False},
             moving=lambda settings: {},
             all_shapes=True,
+            drive=fe_reference.drives.DrivenRotation,
             static_fields=fe_reference.section_forces.strip_fields,
             moving_fields=fe_reference.section_forces.strip_fields,
         )
     import spline_model.dynamics
+    import spline_model.effects
     import spline_model.errors
     import spline_model.mechanism
     import spline_model.modes
@@ -82,6 +87,7 @@ def model_of(settings: Settings) -> Model:
         release_options={},
         moving=_swinging_spline,
         all_shapes=False,
+        drive=spline_model.effects.DrivenRotation,
         static_fields=spline_model.section_forces.static_fields,
         moving_fields=spline_model.section_forces.moving_fields,
     )

@@ -3,12 +3,12 @@
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 
 from studies.answers.frequency import Frequency, swing_frequency
-from studies.answers.response import Result, estimate_of
+from studies.answers.response import Solved, chosen_by, estimate_of
 from studies.kinds import Array
 
 #: Arrays that a motion takes over from a model's trajectory as they are.
@@ -31,52 +31,24 @@ NOTHING_MOVES = (
 )
 
 
-class ReleaseResult(Result, Protocol):
-    """What the trajectory of either model offers; see `Motion` for the arrays."""
-
-    @property
-    def time(self) -> Array:
-        """Instants of the records, the start first [s]."""
-
-    @property
-    def settings(self) -> Mapping[str, Any]:
-        """Integrator and step of the run."""
-
-    @property
-    def kinetic_energy(self) -> Array:
-        """Of strips and bodies together [J]."""
-
-
 @dataclass(frozen=True, kw_only=True)
-class Motion:
+class Motion(Solved):
     """Motion of a design after its release at rest, T records, the start first.
 
     Attributes:
-        model: "spline", "fe" or "fe-shear".
         settings: discretisation keywords, integrator and step.
-        status: "converged", "not_converged" or "unstable"; `message` says when and why it stopped.
-        resolution: what step and discretisation leave unresolved; empty when they resolve the swing.
+        status: "converged", "not_converged" or "unstable".
         rotation_error: estimated error of the rotation, by a companion motion [rad]; NaN without one.
         time: (T,) [s]; empty when statics does not reach the start.
-        effects: names of what was assembled.
         bodies: (T, 3) by name: centre of mass x, y [m], rotation, counter-clockwise [rad]; a pivot's origin
             is A1.
         body: name of the one that swings: that was let go.
         kinetic_energy, strain_energy: (T,) of strips and bodies together [J].
         gravity_energy: (T,) against rest [J]; work, dissipated: (T,) by loads, and lost, since the start [J].
         constraint_residual: (T,) largest gap of clamps [m]; velocity_residual: (T,) its rate [m/s].
-        counters: work done, by kind.
         wall_s: time of the motion alone, without the static path to its start [s].
-        solve_s: of it, the steps alone [s].
-        estimate: as in `Response`.
     """
 
-    model: str
-    settings: dict[str, Any]
-    status: str
-    message: str
-    resolution: str
-    effects: tuple[str, ...]
     time: Array
     bodies: dict[str, Array]
     body: str
@@ -87,16 +59,7 @@ class Motion:
     dissipated: Array
     constraint_residual: Array
     velocity_residual: Array
-    counters: dict[str, int]
-    wall_s: float
-    solve_s: float
-    estimate: dict[str, Any] | None = None
     rotation_error: float = math.nan
-
-    @property
-    def converged(self) -> bool:
-        """Whether the motion was followed to its end."""
-        return self.status == "converged"
 
     @property
     def rotation(self) -> Array:
@@ -132,72 +95,53 @@ class Motion:
 
 
 def motion(
-    result: ReleaseResult,
-    *,
-    model: str,
-    settings: dict[str, Any],
-    effects: tuple[str, ...],
-    bodies: Mapping[str, Array],
-    body: str,
-    wall_s: float,
-    solve_s: float,
-    energy: float = 0.0,
+    result: Any, *, bodies: Mapping[str, Array], body: str, energy: float = 0.0, **identity: Any
 ) -> Motion:
     """Return the neutral form of a model's trajectory; only some say how well they resolve the swing.
 
-    `energy` is a scale of the design's [J]: a motion without a part of it stands still, and says so. With
-    none that is not asked.
+    Args:
+        bodies: their places by name; body: the one that swings.
+        energy: a scale of the design's [J]: a motion without a part of it stands still, and says so. With
+            none that is not asked.
+        identity: model, settings, effects and times.
     """
     exact, still = np.zeros(len(result.time)), _still(result, energy)
-    arrays = {name: getattr(result, name) for name in SHARED_ARRAYS}
+    arrays: dict[str, Any] = {name: getattr(result, name) for name in SHARED_ARRAYS}
     arrays |= {name: getattr(result, name, exact) for name in RESIDUALS}
+    arrays = {name: np.asarray(array, dtype=float) for name, array in arrays.items()}
+    identity["settings"] = identity["settings"] | dict(result.settings) | chosen_by(result)
     return Motion(
-        model=model,
-        settings=settings | dict(result.settings),
         status=str(result.status.value),
         message=result.message or (NOTHING_MOVES if still else ""),
         resolution="" if still else getattr(result, "resolution", ""),
-        effects=effects,
         bodies={name: np.asarray(place, dtype=float) for name, place in bodies.items()},
         body=body,
         counters=dict(result.counters),
-        wall_s=wall_s,
-        solve_s=solve_s,
         estimate=estimate_of(result),
         rotation_error=getattr(result, "rotation_error", math.nan),
-        **{name: np.asarray(array, dtype=float) for name, array in arrays.items()},
+        **identity,
+        **arrays,
     )
 
 
-def _still(result: ReleaseResult, energy: float) -> bool:
+def _still(result: Any, energy: float) -> bool:
     """Whether nothing moves: the start is in equilibrium, and what acts does not change."""
     kinetic = np.asarray(result.kinetic_energy)
     return len(kinetic) > 0 and energy > 0.0 and float(kinetic.max()) <= STILL * energy
 
 
-def no_motion(
-    message: str,
-    *,
-    model: str,
-    settings: dict[str, Any],
-    effects: tuple[str, ...],
-    names: list[str],
-    body: str,
-) -> Motion:
+def no_motion(message: str, *, names: list[str], body: str, **identity: Any) -> Motion:
     """Return the motion of bodies that statics does not bring to the start: without a record."""
+    nothing: dict[str, Any] = {name: np.zeros(0) for name in (*SHARED_ARRAYS, *RESIDUALS)}
     return Motion(
-        model=model,
-        settings=settings,
         status="not_converged",
         message=message,
         resolution="",
-        effects=effects,
         bodies={name: np.zeros((0, 3)) for name in names},
         body=body,
         counters={},
         wall_s=0.0,
         solve_s=0.0,
-        estimate=None,
-        rotation_error=math.nan,
-        **{name: np.zeros(0) for name in (*SHARED_ARRAYS, *RESIDUALS)},
+        **identity,
+        **nothing,
     )

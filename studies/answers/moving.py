@@ -1,6 +1,5 @@
 """Put a design in motion to either model: its release and its natural modes."""
 
-import math
 from collections.abc import Callable, Mapping
 from contextlib import suppress
 from typing import Any
@@ -11,7 +10,7 @@ from studies.answers.models import Model, built, effects_of, is_given, model_of,
 from studies.answers.motion import Motion, motion, no_motion
 from studies.answers.settings import Settings, SplineSettings
 from studies.answers.spectrum import Spectrum, no_spectrum, spectrum
-from studies.cases.design import Design
+from studies.cases.design import Design, flexural_scale
 from studies.cases.mechanism import Mechanism
 from studies.cases.problem import Problem
 from studies.errors import BadInput
@@ -38,9 +37,9 @@ def answer_release(
 ) -> Motion:
     """Let a design go at rest from a static state and follow the motion.
 
-    The start is in equilibrium with the body driven to a rotation, weight, pre-strain and driven
-    displacements in full, and every load at its value times its history at t = 0. Then the rotation is let
-    go, and driven displacements without a history; loads follow their histories.
+    The start is in equilibrium with the body driven to a rotation, weight and pre-strain in full, and every
+    load and driven displacement at its value times its history at t = 0. Then the rotation is let go, unless
+    the design leads it on, and driven displacements without a history; loads follow their histories.
 
     `wall_s` of the motion is the median time of `repeat` releases, less that of releases that are over after
     their first record: so the static path to the start, and what is set up, are left out. A short release
@@ -72,8 +71,11 @@ def answer_release(
     given = {name: value for name, value in options.items() if value is not None} | model.release_options
     if records is not None:
         given[model.records] = records
-    run = _release_of(model, design, asked)
+    identity = {"model": settings.model, "settings": keywords, "effects": effects_of(asked)}
     angle = design.rotation if start is None else start
+    with refusals(model, settings):
+        drive = drive_of(model, design)
+    run = _release_of(model, design, asked, drive)
 
     def release(**changes: Any) -> Any:
         return run(**({"start": angle, "duration": duration, "check": False} | given | changes))
@@ -87,25 +89,21 @@ def answer_release(
     except model.errors.ConvergenceError as error:
         return no_motion(
             f"statics does not reach the start: {error}",
-            model=settings.model,
-            settings=keywords,
-            effects=effects_of(asked),
             names=_body_names(design),
             body=body,
+            **identity,
         )
     result = timing.result
     if check:
-        result = model.dynamics.checked(asked, result, start=angle, body=_reported(design))
+        result = model.dynamics.checked(asked, result, start=angle, body=_reported(design), **drive)
     return motion(
         result,
-        model=settings.model,
-        settings=keywords,
-        effects=effects_of(asked),
         bodies=_places(result),
         body=body,
         wall_s=max(timing.median - _wall_of_start(release, timing.result, repeat), 0.0),
         solve_s=timing.median_part,
-        energy=_energy(design),
+        energy=flexural_scale(design),
+        **identity,
     )
 
 
@@ -130,7 +128,7 @@ def answer_modes(
         rotation: of the static state [rad]; None for 0 of a pivot, and for no driven rotation of a mechanism.
         count: of modes [1].
         held: whether the rotation is held; if not, the driving torque acts on as it is.
-        accuracy: wanted relative error of the frequencies [1], which the spline's control points are raised
+        accuracy: wanted relative error of the frequencies [1], which control points or elements are raised
             for; None for those of the settings.
 
     Raises:
@@ -169,16 +167,6 @@ def state_of(design: Design, rotation: float | None, *, held: bool) -> float | N
     return 0.0 if rotation is None and (held or isinstance(design, Problem)) else rotation
 
 
-def _energy(design: Design) -> float:
-    """Return EI/L of the stiffest strip [J]."""
-    if isinstance(design, Problem):
-        return design.youngs_modulus * design.second_moment_of_area / design.length
-    return max(
-        strip.youngs_modulus * strip.second_moment_of_area / math.dist(strip.start, strip.end)
-        for strip in design.strips
-    )
-
-
 def spline_mechanism(design: Design, settings: SplineSettings) -> Any:
     """Return the spline model's mechanism of a design, as it is in motion; errors as of `answer_release`."""
     asked, _ = built(model_of(settings), design, settings, moving=True)
@@ -202,17 +190,32 @@ def _wall_of_start(release: Callable[..., Any], result: Any, repeat: int) -> flo
     return measure(lambda: release(**brief), repeat=repeat, warm_up=0).median
 
 
-def _release_of(model: Model, design: Design, asked: Any) -> Callable[..., Any]:
+def drive_of(model: Model, design: Design) -> dict[str, Any]:
+    """Return the model's drive of a rotation that a motion goes on with, by its keyword; none if it lets go.
+
+    Raises:
+        BadInput: a mechanism without a rotation; InvalidParameter of the model.
+    """
+    given = {"history": design.history, "held": design.held}
+    given = {name: value for name, value in given.items() if value is not None}
+    if not given:
+        return {}
+    if design.rotation is None:
+        raise BadInput("drive.rotation_deg: got none, expected the rotation that a history or held_s leads")
+    return {"drive": model.drive(body=_reported(design), angle=design.rotation, **given)}
+
+
+def _release_of(model: Model, design: Design, asked: Any, drive: Mapping[str, Any]) -> Callable[..., Any]:
     """Return what releases the design in the model, by the keywords `start`, `duration` and options."""
     if isinstance(design, Problem):
 
         def release_pivot(**keywords: Any) -> Any:
-            return model.dynamics.solve_release(asked, **keywords)
+            return model.dynamics.solve_release(asked, **drive, **keywords)
 
         return release_pivot
 
     def release(start: float | None, **keywords: Any) -> Any:
-        return model.dynamics.solve_motion(asked, start=start, body=design.body, **keywords)
+        return model.dynamics.solve_motion(asked, start=start, body=design.body, **drive, **keywords)
 
     return release
 

@@ -1,8 +1,8 @@
-"""The neutral answer to a static problem: arrays that do not tell which model they came from."""
+"""The neutral answers to a static problem: arrays that do not tell which model they came from."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from dataclasses import asdict, dataclass
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 
@@ -10,16 +10,12 @@ from studies.cases.effects import MOTION_ONLY
 from studies.cases.problem import Problem
 from studies.kinds import Array
 
-#: Arrays that a response takes over from a model's solution as they are.
-SHARED_ARRAYS = (
+#: Arrays that an answer takes over from a model's solution as they are: of any path, of a pivot's, and of a
+#: mechanism's.
+OF_PATHS = ("load_factor", "torque", "stiffness", "bending_energy", "axial_energy")
+OF_PIVOTS = (
     "rotation",
-    "load_factor",
     "centre",
-    "torque",
-    "stiffness",
-    "bending_energy",
-    "axial_energy",
-    "shear_energy",
     "clamp_reactions",
     "stations",
     "shape",
@@ -27,34 +23,51 @@ SHARED_ARRAYS = (
     "bending_moment",
     "shear_force",
 )
+OF_MECHANISMS = ("gravity_energy", "work")
 
 
-class Result(Protocol):
-    """What every answer of either model says of how it came about."""
+@dataclass(frozen=True, kw_only=True)
+class Answered:
+    """What every answer says of how it came about.
 
-    @property
-    def status(self) -> Any:
-        """Enumeration of how the solve ended; its value is "converged" unless it stopped early."""
+    Attributes:
+        model: "spline", "fe" or "fe-shear".
+        settings: discretisation keywords, and what the model chose beside them.
+        effects: names of what was assembled.
+        status: "converged", or how it ended early; `message` says why and where or when, or what a path that
+            reached its end has passed.
+    """
 
-    @property
-    def message(self) -> str:
-        """Why and where or when the solve stopped; empty when it did not."""
-
-    @property
-    def counters(self) -> Mapping[str, int]:
-        """Work done, by kind."""
-
-    @property
-    def seconds(self) -> Mapping[str, float]:
-        """Time by part; "solve" is that of the path or of the steps alone."""
-
-
-class StaticResult(Result, Protocol):
-    """What the solution of either model offers; see `Response` for the arrays."""
+    model: str
+    settings: dict[str, Any]
+    effects: tuple[str, ...]
+    status: str
+    message: str
 
     @property
-    def history(self) -> tuple[tuple[float, ...], ...]:
-        """Residual norms of every increment."""
+    def converged(self) -> bool:
+        """Whether all that was asked for was reached."""
+        return self.status == "converged"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Solved(Answered):
+    """What every path and motion says beside that.
+
+    Attributes:
+        resolution: what too coarse a discretisation or step leaves uncertain; empty where it is resolved, and
+            of a model that cannot tell.
+        counters: work done, by kind.
+        wall_s: time of the answer, without import, compilation and set-up of the model [s].
+        solve_s: of it, the increments or steps alone [s].
+        estimate: what a model that was asked for an accuracy says of its error, by name; None otherwise.
+    """
+
+    resolution: str
+    counters: dict[str, int]
+    wall_s: float
+    solve_s: float
+    estimate: dict[str, Any] | None = None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -68,23 +81,38 @@ class Critical:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Response:
+class StaticAnswer(Solved):
+    """A static path of S converged states, that of load factor 0 first.
+
+    Attributes:
+        critical_points: in the order of the path.
+        load_factor: (S,) share of the loads that acts, of the rotation where there are none [1].
+        torque: (S,) driving torque [N m]; stiffness: (S,) its derivative from the tangent [N m / rad]; NaN
+            where nothing is driven.
+        bending_energy, axial_energy, shear_energy: (S,) of all strips [J]; zero without shear.
+    """
+
+    critical_points: tuple[Critical, ...] = ()
+    load_factor: Array
+    torque: Array
+    stiffness: Array
+    bending_energy: Array
+    axial_energy: Array
+    shear_energy: Array
+
+    @property
+    def strain_energy(self) -> Array:
+        """(S,) bending, axial and shear energy together [J]."""
+        return self.bending_energy + self.axial_energy + self.shear_energy
+
+
+@dataclass(frozen=True, kw_only=True)
+class Response(StaticAnswer):
     """Static answer over S converged states (the unloaded one first), G = 2 strips, P stations a strip.
 
     Attributes:
-        model: "spline", "fe" or "fe-shear".
-        settings: discretisation keywords.
-        status: "converged" or "not_converged"; `message` says why and where it stopped, or what a path that
-            reached its end has passed.
-        critical_points: in the order of the path.
-        resolution: how uncertain too coarse a discretisation makes the answer; empty where it is resolved,
-            and of a model that cannot tell.
         rotation: (S,) of the body, counter-clockwise [rad].
-        load_factor: (S,) share of the loads that acts, of the rotation where there are none [1].
         centre: (S, 2) centre of mass of the body, origin at A1 [m].
-        torque: (S,) driving torque on the body [N m]; stiffness: (S,) its derivative from the tangent [N m /
-            rad].
-        bending_energy, axial_energy, shear_energy: (S,) of both strips together [J].
         clamp_reactions: (S, G, 2, 3) force x, force y [N], moment [N m] by the clamp on the strip, ground end
             first.
         stations: (P,) reference arc length over L [1]; shape: (S, G, P, 2) [m].
@@ -92,27 +120,11 @@ class Response:
         centre_shift: (S, 2) displacement of the body's point that lies at the strips' crossing at rest [m].
         extreme_fibre_strain: (S, G, P) largest magnitude over the section's depth [1]; extreme_fibre_stress
             [Pa].
-        effects: names of what was assembled.
-        counters: work done, by kind; history: residual norms of every increment.
-        wall_s: time of the answer, without import, compilation and set-up of the model [s].
-        solve_s: of it, the increments alone: without tables, recovered multipliers and section forces [s].
-        estimate: what a model that was asked for an accuracy says of its error, by name; None otherwise.
+        history: residual norms of every increment.
     """
 
-    model: str
-    settings: dict[str, Any]
-    effects: tuple[str, ...]
-    status: str
-    message: str
-    resolution: str
     rotation: Array
-    load_factor: Array
     centre: Array
-    torque: Array
-    stiffness: Array
-    bending_energy: Array
-    axial_energy: Array
-    shear_energy: Array
     clamp_reactions: Array
     stations: Array
     shape: Array
@@ -122,22 +134,12 @@ class Response:
     centre_shift: Array
     extreme_fibre_strain: Array
     extreme_fibre_stress: Array
-    counters: dict[str, int]
     history: tuple[tuple[float, ...], ...]
-    wall_s: float
-    solve_s: float
-    estimate: dict[str, Any] | None = None
-    critical_points: tuple[Critical, ...] = ()
 
     @property
-    def converged(self) -> bool:
-        """Whether the whole path was reached."""
-        return self.status == "converged"
-
-    @property
-    def strain_energy(self) -> Array:
-        """(S,) bending, axial and shear energy together [J]."""
-        return self.bending_energy + self.axial_energy + self.shear_energy
+    def centres(self) -> dict[str, Array]:
+        """(S, 2) centres of mass of the bodies by name [m]."""
+        return {"body": self.centre}
 
     @property
     def max_stress(self) -> Array:
@@ -145,41 +147,77 @@ class Response:
         return np.asarray(self.extreme_fibre_stress.max(axis=(1, 2)))
 
 
-def response(
-    problem: Problem,
-    result: StaticResult,
-    *,
-    model: str,
-    settings: dict[str, Any],
-    effects: tuple[str, ...],
-    wall_s: float,
-    solve_s: float,
-) -> Response:
-    """Return the neutral form of a model's `result`, with what follows from it and the given data."""
-    arrays = {name: np.asarray(getattr(result, name), dtype=float) for name in SHARED_ARRAYS}
-    strain = extreme_fibre_strain(problem, arrays["axial_force"], arrays["bending_moment"])
-    estimate = estimate_of(result)
+@dataclass(frozen=True, kw_only=True)
+class MechanismResponse(StaticAnswer):
+    """Static answer of a mechanism over S converged states, that of load factor 0 first.
+
+    Attributes:
+        bodies: (S, 3) by name: centre of mass x, y [m], rotation, counter-clockwise [rad].
+        driven: name of the one that may be driven; None without one.
+        gravity_energy: (S,) against rest [J]; work: (S,) of loads and drives since the first state [J].
+    """
+
+    bodies: dict[str, Array]
+    driven: str | None
+    gravity_energy: Array
+    work: Array
+
+    @property
+    def centres(self) -> dict[str, Array]:
+        """(S, 2) centres of mass of the bodies by name [m]."""
+        return {name: place[:, :2] for name, place in self.bodies.items()}
+
+    @property
+    def centre(self) -> Array:
+        """(S, 2) centre of mass of the body that may be driven [m]."""
+        return self.centres[str(self.driven)]
+
+
+def response(problem: Problem, result: Any, **identity: Any) -> Response:
+    """Return the neutral form of a model's path of a pivot, with what follows from it and the given data.
+
+    identity: model, settings, effects and times.
+    """
+    given = _common(result, OF_PIVOTS, identity)
+    strain = extreme_fibre_strain(problem, given["axial_force"], given["bending_moment"])
     return Response(
-        model=model,
-        settings=settings | chosen_by(result),
-        effects=effects,
-        status=str(result.status.value),
-        message=result.message,
-        resolution=getattr(result, "resolution", ""),
-        centre_shift=centre_shift(problem, arrays["rotation"], arrays["centre"]),
+        centre_shift=centre_shift(problem, given["rotation"], given["centre"]),
         extreme_fibre_strain=strain,
         extreme_fibre_stress=problem.youngs_modulus * strain,
-        counters=dict(result.counters),
         history=result.history,
-        wall_s=wall_s,
-        solve_s=solve_s,
-        estimate=estimate,
-        critical_points=critical_of(result),
-        **arrays,
+        **given,
     )
 
 
-def critical_of(result: Any) -> tuple[Critical, ...]:
+def mechanism_response(result: Any, *, driven: str | None, **identity: Any) -> MechanismResponse:
+    """Return the neutral form of a model's path of a mechanism; identity: model, settings and times."""
+    return MechanismResponse(
+        bodies={name: np.asarray(place, dtype=float) for name, place in result.bodies.items()},
+        driven=driven,
+        **_common(result, OF_MECHANISMS, {**identity, "effects": result.effects}),
+    )
+
+
+def _common(result: Any, names: tuple[str, ...], identity: dict[str, Any]) -> dict[str, Any]:
+    """Return what both answers have alike, and the arrays of these names."""
+    arrays = {name: np.asarray(getattr(result, name), dtype=float) for name in (*OF_PATHS, *names)}
+    shear = getattr(result, "shear_energy", np.zeros_like(arrays["torque"]))  # only elements may have it
+    return {
+        **identity,
+        "settings": identity["settings"] | chosen_by(result),
+        "effects": assembled(identity["effects"]),
+        "status": str(result.status.value),
+        "message": result.message,
+        "resolution": getattr(result, "resolution", ""),
+        "critical_points": _critical_of(result),
+        "counters": dict(result.counters),
+        "estimate": estimate_of(result),
+        "shear_energy": np.asarray(shear, dtype=float),
+        **arrays,
+    }
+
+
+def _critical_of(result: Any) -> tuple[Critical, ...]:
     """Return the critical points of a model's path; none of a model that does not look for them."""
     return tuple(
         Critical(kind=point.kind, load_factor=float(point.load_factor), rotation=float(point.rotation))
@@ -190,7 +228,10 @@ def critical_of(result: Any) -> tuple[Critical, ...]:
 def estimate_of(result: Any) -> dict[str, Any] | None:
     """Return a model's estimate of its own error by name; None where it was not asked for an accuracy."""
     estimate = getattr(result, "estimate", None)
-    return None if estimate is None else asdict(estimate)
+    if estimate is None:
+        return None
+    parts = asdict(estimate)
+    return parts | dict(parts.pop("errors", {}))
 
 
 def chosen_by(result: Any) -> dict[str, Any]:

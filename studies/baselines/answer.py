@@ -1,6 +1,7 @@
-"""The neutral answers of a baseline, and what every baseline checks and times alike."""
+"""The neutral answers of a baseline, the pivot as it is given one, and what all check and time alike."""
 
 import gc
+import math
 import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -8,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from studies.cases.problem import Problem
 from studies.errors import BadInput
 from studies.kinds import Array
 
@@ -17,47 +19,59 @@ class BaselineFailed(RuntimeError):
 
 
 @dataclass(frozen=True, kw_only=True)
-class BaselinePath:
-    """A static path by a baseline, S states, the unloaded one first.
+class Followed:
+    """What path and motion of any model say of how they came about.
 
     Attributes:
-        model: name in `studies.baselines.registry`.
-        settings: of the model, complete.
+        solve_s: median time of the increments or steps alone [s]: without set-up, without the static path to
+            a release, and without reading the answer.
+        work: counters of the solve, by kind; "unknowns" is the size of its system.
+        status: "converged" or how it ended; message: why and where or when it stopped.
+    """
+
+    solve_s: float
+    work: Mapping[str, float]
+    status: str = "converged"
+    message: str = ""
+
+    @property
+    def converged(self) -> bool:
+        """Whether it was followed to its end."""
+        return self.status == "converged"
+
+
+@dataclass(frozen=True, kw_only=True)
+class SolvedPath(Followed):
+    """A static path, S states, the unloaded one first.
+
+    Attributes:
         rotation: (S,) of the body, counter-clockwise [rad].
         centre: (S, 2) centre of mass of the body, origin at A1 [m].
         torque: (S,) driving torque on the body [N m].
         stiffness: (S,) its derivative by the rotation [N m / rad]; NaN where the model does not give it.
-        solve_s: median time of the solver alone [s]: without set-up, and without reading the answer.
-        work: counters of the solve, by kind; "unknowns" is the size of its system.
+        wall_s: time of the whole answer [s], NaN if unknown.
     """
 
-    model: str
-    settings: Mapping[str, Any]
     rotation: Array
     centre: Array
     torque: Array
     stiffness: Array
-    solve_s: float
-    work: Mapping[str, int]
+    wall_s: float = math.nan
 
 
 @dataclass(frozen=True, kw_only=True)
-class BaselineMotion:
-    """Motion after a release at rest by a baseline, T records, the start first.
+class SolvedMotion(Followed):
+    """Motion after a release at rest, T records, the start first.
 
     Attributes:
-        model, settings, work: as of `BaselinePath`.
         time: (T,) [s].
         rotation: (T,) of the body [rad].
-        solve_s: median time of the integration alone [s]: without the static path to the start.
+        repeats: number of runs whose median time is `solve_s` [1].
     """
 
-    model: str
-    settings: Mapping[str, Any]
     time: Array
     rotation: Array
-    solve_s: float
-    work: Mapping[str, int]
+    repeats: int = 1
 
 
 def checked_rotations(rotations: Any) -> Array:
@@ -121,3 +135,50 @@ def median_seconds(prepare: Callable[[], Callable[[], Any]], repeat: int) -> flo
         if collecting:
             gc.enable()
     return float(np.median(seconds))
+
+
+#: The effects of a scene that baselines can stand for: what they leave out of these is their error.
+EFFECTS = ("bending", "stretching", "strip_inertia", "body_inertia")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Geometry:
+    """The pivot at rest: origin at the ground end of strip 1, x along the ground plate.
+
+    Attributes:
+        root: (2, 2) ground ends of the strips [m].
+        direction: (2, 2) unit vectors from there to the body.
+        tip: (2, 2) body ends [m].
+        crossing: (2,) where the strips cross [m].
+        centre: (2,) centre of mass of the body [m].
+    """
+
+    root: Array
+    direction: Array
+    tip: Array
+    crossing: Array
+    centre: Array
+
+
+def geometry_of(problem: Problem) -> Geometry:
+    """Return the pivot at rest.
+
+    Raises:
+        BadInput: a scene of other effects.
+    """
+    if set(problem.effects.names) != set(EFFECTS):
+        raise BadInput(
+            f"baseline: got the effects {', '.join(problem.effects.names)}, expected {', '.join(EFFECTS)}"
+        )
+    cosine, sine = math.cos(problem.inclination), math.sin(problem.inclination)
+    crossing = np.array(problem.crossing_point)
+    direction = np.array([[cosine, sine], [-cosine, sine]])
+    root = crossing - problem.crossing_ratio * problem.length * direction
+    tip = root + problem.length * direction
+    return Geometry(
+        root=root,
+        direction=direction,
+        tip=tip,
+        crossing=crossing,
+        centre=tip.mean(axis=0) + np.array(problem.centre_offset),
+    )

@@ -25,43 +25,14 @@ the rest.
 
 import math
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
-from studies.baselines.answer import BaselineMotion, BaselinePath
-from studies.baselines.geometry import Geometry, geometry_of
+from studies.baselines.answer import Geometry, geometry_of
 from studies.baselines.linear_pivot import shift_coefficient, small_angle_stiffness
-from studies.baselines.one_coordinate import motion_of, path_of
+from studies.baselines.one_coordinate import Surrogate
 from studies.cases.problem import Problem
 from studies.kinds import Array
-
-MODEL = "four-bar"
-
-
-def installed() -> bool:
-    """Return True: the model is this file."""
-    return True
-
-
-def static_path(problem: Problem, rotations: Any, *, repeat: int = 1) -> BaselinePath:
-    """Return the path through `rotations` (S,) [rad], the first of which is 0."""
-    return path_of(law_of(problem), rotations, model=MODEL, settings=_settings(problem), repeat=repeat)
-
-
-def release(
-    problem: Problem, *, start: float, duration: float, step: float, repeat: int = 1
-) -> BaselineMotion:
-    """Return the motion after a release at rest at `start` [rad] for `duration` in steps of `step` [s]."""
-    return motion_of(
-        law_of(problem),
-        start=start,
-        duration=duration,
-        step=step,
-        model=MODEL,
-        settings=_settings(problem),
-        repeat=repeat,
-    )
 
 
 def link_length(problem: Problem) -> float:
@@ -170,7 +141,7 @@ class FourBar:
         return 1j * w * (height - sine), 1j * (w_1 * (height - sine) + w * height_1)
 
 
-def law_of(problem: Problem) -> FourBar:
+def _law(problem: Problem) -> FourBar:
     """Return the law of a pivot."""
     at_rest, link = geometry_of(problem), link_length(problem) * problem.length
     left = 0.5 * (problem.length - link)
@@ -191,9 +162,8 @@ def law_of(problem: Problem) -> FourBar:
     )
 
 
-def _settings(problem: Problem) -> dict[str, Any]:
-    return {"link_length": link_length(problem), "spring_Nm_rad": spring(problem)}
-
-
 def _plane(z: Array) -> Array:
     return np.stack((z.real, z.imag), axis=-1)
+
+
+four_bar = Surrogate(model="four-bar", law_of=_law)

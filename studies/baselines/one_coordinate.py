@@ -18,12 +18,13 @@ from numba import njit
 from numpy.polynomial import chebyshev
 
 from studies.baselines.answer import (
-    BaselineMotion,
-    BaselinePath,
+    SolvedMotion,
+    SolvedPath,
     checked_release,
     checked_rotations,
     median_seconds,
 )
+from studies.cases.problem import Problem
 from studies.kinds import Array
 
 #: Highest degree of the series, and the part of their largest coefficient below which they end.
@@ -62,57 +63,67 @@ class Series:
     torque: Array
 
 
-def path_of(law: Law, rotations: Any, *, model: str, settings: dict[str, Any], repeat: int) -> BaselinePath:
-    """Return the path through the rotations [rad]; timed is the evaluation of place, V' and V''."""
-    turns = checked_rotations(rotations)
+@dataclass(eq=False, kw_only=True)
+class Surrogate:
+    """A model whose only coordinate is the rotation, as a baseline: its name, and the law of a pivot."""
 
-    def evaluate() -> tuple[Array, Array, Array]:
-        return law.centre(turns), law.torque(turns), law.stiffness(turns)
+    model: str
+    law_of: Callable[[Problem], Law]
 
-    seconds = median_seconds(lambda: evaluate, repeat)
-    centre, torque, stiffness = evaluate()
-    return BaselinePath(
-        model=model,
-        settings=settings,
-        rotation=turns,
-        centre=centre,
-        torque=torque,
-        stiffness=stiffness,
-        solve_s=seconds,
-        work={"unknowns": 1},
-    )
+    def installed(self) -> bool:
+        """Return True: the model is of this package."""
+        return True
 
+    def static_path(self, problem: Problem, rotations: Any, *, repeat: int = 1) -> SolvedPath:
+        """Return the path through `rotations` (S,) [rad], the first of which is 0.
 
-def motion_of(
-    law: Law,
-    *,
-    start: float,
-    duration: float,
-    step: float,
-    model: str,
-    settings: dict[str, Any],
-    repeat: int,
-) -> BaselineMotion:
-    """Return the motion after a release at rest at `start` [rad]; timed is the compiled integration alone."""
-    steps = checked_release(start, duration, step)
-    series = series_of(law, abs(start) or 1.0)
-    states = np.empty((steps + 1, 2))
-    tables = (series.reach, series.inertia, series.inertia_rate, series.torque)
-    integrate(start, duration / steps, states[:1], *tables)  # compiles
+        Timed is the evaluation of place, V' and V''.
 
-    def prepare() -> Callable[[], Any]:
-        return lambda: integrate(start, duration / steps, states, *tables)
+        Raises:
+            BadInput: a pivot outside the model's range.
+        """
+        law, turns = self.law_of(problem), checked_rotations(rotations)
 
-    seconds = median_seconds(prepare, repeat)
-    prepare()()
-    return BaselineMotion(
-        model=model,
-        settings=settings | {"step_s": duration / steps},
-        time=np.linspace(0.0, duration, steps + 1),
-        rotation=states[:, 0].copy(),
-        solve_s=seconds,
-        work={"unknowns": 1, "steps": steps, "evaluations": 4 * steps},
-    )
+        def evaluate() -> tuple[Array, Array, Array]:
+            return law.centre(turns), law.torque(turns), law.stiffness(turns)
+
+        seconds = median_seconds(lambda: evaluate, repeat)
+        centre, torque, stiffness = evaluate()
+        return SolvedPath(
+            rotation=turns,
+            centre=centre,
+            torque=torque,
+            stiffness=stiffness,
+            solve_s=seconds,
+            work={"unknowns": 1},
+        )
+
+    def release(
+        self, problem: Problem, *, start: float, duration: float, step: float, repeat: int = 1
+    ) -> SolvedMotion:
+        """Return the motion after a release at rest at `start` [rad] for `duration` in steps of `step` [s].
+
+        Timed is the compiled integration alone.
+
+        Raises:
+            BadInput: a pivot outside the model's range.
+        """
+        law, steps = self.law_of(problem), checked_release(start, duration, step)
+        series = series_of(law, abs(start) or 1.0)
+        states = np.empty((steps + 1, 2))
+        tables = (series.reach, series.inertia, series.inertia_rate, series.torque)
+        integrate(start, duration / steps, states[:1], *tables)  # compiles
+
+        def run() -> None:
+            integrate(start, duration / steps, states, *tables)
+
+        seconds = median_seconds(lambda: run, repeat)
+        return SolvedMotion(
+            time=np.linspace(0.0, duration, steps + 1),
+            rotation=states[:, 0].copy(),
+            solve_s=seconds,
+            work={"unknowns": 1, "steps": steps, "evaluations": 4 * steps},
+        )
 
 
 def series_of(law: Law, amplitude: float) -> Series:
@@ -148,29 +159,29 @@ def integrate(
     p, v = start, 0.0
     states[0, 0], states[0, 1] = p, v
     for row in range(1, states.shape[0]):
-        a = acceleration(p, v, reach, inertia, inertia_rate, torque)
+        a = _acceleration(p, v, reach, inertia, inertia_rate, torque)
         v2 = v + 0.5 * h * a
-        a2 = acceleration(p + 0.5 * h * v, v2, reach, inertia, inertia_rate, torque)
+        a2 = _acceleration(p + 0.5 * h * v, v2, reach, inertia, inertia_rate, torque)
         v3 = v + 0.5 * h * a2
-        a3 = acceleration(p + 0.5 * h * v2, v3, reach, inertia, inertia_rate, torque)
+        a3 = _acceleration(p + 0.5 * h * v2, v3, reach, inertia, inertia_rate, torque)
         v4 = v + h * a3
-        a4 = acceleration(p + h * v3, v4, reach, inertia, inertia_rate, torque)
+        a4 = _acceleration(p + h * v3, v4, reach, inertia, inertia_rate, torque)
         p += h * (v + 2.0 * v2 + 2.0 * v3 + v4) / 6.0
         v += h * (a + 2.0 * a2 + 2.0 * a3 + a4) / 6.0
         states[row, 0], states[row, 1] = p, v
 
 
 @njit(cache=True)
-def acceleration(
+def _acceleration(
     p: float, v: float, reach: float, inertia: Array, inertia_rate: Array, torque: Array
 ) -> float:
     """Return p'' [rad/s^2]."""
     u = p / reach
-    return -(0.5 * clenshaw(inertia_rate, u) * v * v + clenshaw(torque, u)) / clenshaw(inertia, u)
+    return -(0.5 * _clenshaw(inertia_rate, u) * v * v + _clenshaw(torque, u)) / _clenshaw(inertia, u)
 
 
 @njit(cache=True)
-def clenshaw(terms: Array, u: float) -> float:
+def _clenshaw(terms: Array, u: float) -> float:
     """Return a Chebyshev series at u."""
     last: float = 0.0
     before: float = 0.0

@@ -1,25 +1,20 @@
-"""Baselines by name. Each module has `installed()`, `static_path(problem, rotations, *, repeat, **settings)`
-and `release(problem, *, start, duration, step, repeat, **settings)`."""
+"""Baselines by name, and what this machine lacks of them.
 
-from importlib import import_module
+Each is an object or a module with `model` (its name), `installed()`, `static_path(problem, rotations, *,
+repeat, **settings)` and `release(problem, *, start, duration, step, repeat, **settings)`.
+"""
+
 from typing import Any
 
-from studies.errors import BadInput
+from studies.baselines import openseespy_frame
+from studies.baselines.exudyn_strips import exudyn_ancf, exudyn_exact
+from studies.baselines.four_bar import four_bar
+from studies.baselines.linear_pivot import linear_pivot, pin_joint
 from studies.record.extras import lacking
 
-#: Name -> module.
-MODELS: dict[str, str] = {
-    "linear pivot": "studies.baselines.linear_pivot",
-    "pin joint": "studies.baselines.pin_joint",
-    "four-bar": "studies.baselines.four_bar",
-    "exudyn ancf": "studies.baselines.peers.exudyn_ancf",
-    "exudyn exact": "studies.baselines.peers.exudyn_exact",
-    "openseespy frame": "studies.baselines.peers.openseespy_frame",
-}
-
 #: The models that are solved in closed form, and those that are other codes.
-SURROGATES = ("linear pivot", "pin joint", "four-bar")
-PEERS = ("exudyn ancf", "exudyn exact", "openseespy frame")
+SURROGATES = {each.model: each for each in (linear_pivot, pin_joint, four_bar)}
+PEERS: dict[str, Any] = {each.model: each for each in (exudyn_ancf, exudyn_exact, openseespy_frame)}
 
 #: What to do about a peer that is not there.
 HINT = "not installed: python -m pip install '.[peers]'"
@@ -27,29 +22,5 @@ HINT = "not installed: python -m pip install '.[peers]'"
 
 def missing() -> str:
     """Return what this machine lacks of a study that holds the suite against all other codes; or nothing."""
-    packages = {MODELS[name]: name.split()[0] for name in PEERS}
-    gone = [package for path, package in packages.items() if not import_module(path).installed()]
+    gone = [name.split()[0] for name, peer in PEERS.items() if not peer.installed()]
     return lacking("peers", list(dict.fromkeys(gone)))
-
-
-def module_of(name: str) -> Any:
-    """Import and return the module of the baseline `name`.
-
-    Raises:
-        BadInput: no such baseline.
-    """
-    if name not in MODELS:
-        raise BadInput(f"baseline: got {name!r}, expected one of {', '.join(MODELS)}")
-    return import_module(MODELS[name])
-
-
-def installed_module(name: str) -> Any:
-    """Return the module of the baseline `name`, ready to be asked.
-
-    Raises:
-        BadInput: no such baseline, or a peer that is not installed.
-    """
-    module = module_of(name)
-    if not module.installed():
-        raise BadInput(f"{name}: {HINT}")
-    return module

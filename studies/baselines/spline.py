@@ -22,8 +22,8 @@ from spline_model.reduced.path import Answer
 from spline_model.reduced.solve import run
 from studies.baselines.answer import (
     BaselineFailed,
-    BaselineMotion,
-    BaselinePath,
+    SolvedMotion,
+    SolvedPath,
     checked_release,
     checked_rotations,
     median_seconds,
@@ -31,7 +31,7 @@ from studies.baselines.answer import (
 from studies.cases.problem import Problem
 from studies.errors import BadInput
 
-MODEL = "spline"
+model = "spline"
 #: Records of a leapfrog run, some 50 of every period of the strips' own oscillations.
 RECORDS = 2500
 
@@ -48,7 +48,7 @@ def static_path(
     repeat: int = 1,
     control_points: int = 6,
     gauss_points: int | None = None,
-) -> BaselinePath:
+) -> SolvedPath:
     """Drive the body through `rotations` (S,) [rad], the first of which is 0, in compiled code.
 
     Args:
@@ -65,8 +65,8 @@ def static_path(
     pivot = _pivot(problem, control_points=control_points, gauss_points=gauss_points)
     elements = followed(compile_scene(pivot.driven(largest)))
     if not isinstance(elements, Elements) or is_preloaded(elements.system):
-        raise BadInput(f"{MODEL}: got the effects {', '.join(pivot.effects)}, expected an element's")
-    model, factors, start = elements.model, turns / largest, at_rest(elements.model)
+        raise BadInput(f"spline: got the effects {', '.join(pivot.effects)}, expected an element's")
+    scene, factors, start = elements.model, turns / largest, at_rest(elements.model)
 
     def prepare() -> Callable[[], Answer]:
         return lambda: run(elements, factors, start)
@@ -75,13 +75,11 @@ def static_path(
     if len(answer.y) < len(turns):
         raise BaselineFailed(f"spline with {control_points} control points: the path is not reached")
     seconds = median_seconds(prepare, repeat)
-    return BaselinePath(
-        model=MODEL,
-        settings={"control_points": control_points, "gauss_points": len(model.shape.weight)},
+    return SolvedPath(
         rotation=turns,
-        centre=answer.y[:, :2] * model.length,
-        torque=answer.reaction[:, 0] * model.energy,
-        stiffness=answer.stiffness * model.energy,
+        centre=answer.y[:, :2] * scene.length,
+        torque=answer.reaction[:, 0] * scene.energy,
+        stiffness=answer.stiffness * scene.energy,
         solve_s=seconds,
         work={
             "unknowns": len(start) - 1,
@@ -100,7 +98,7 @@ def release(
     repeat: int = 1,
     control_points: int = 6,
     integrator: str = "energy",
-) -> BaselineMotion:
+) -> SolvedMotion:
     """Let go of the body at rest at `start` [rad] and follow it for `duration` [s] in steps of `step` [s].
 
     Timed is the compiled run of the leapfrog alone, its arrays prepared as those of other codes are; else
@@ -134,9 +132,7 @@ def release(
         seconds = median_seconds(_leapfrog(pivot, motion), repeat)
     else:
         seconds = median_seconds(lambda: run(duration), repeat) - median_seconds(lambda: run(h), repeat)
-    return BaselineMotion(
-        model=MODEL,
-        settings={"control_points": control_points, "integrator": integrator, "step_s": h},
+    return SolvedMotion(
         time=motion.time,
         rotation=np.asarray(motion.rotation),
         solve_s=max(seconds, 0.0),

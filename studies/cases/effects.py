@@ -108,12 +108,12 @@ class Effects:
         words = [word.strip() for word in text.split(",") if word.strip()]
         if not words:
             raise BadInput(f"--effects: got {text!r}, expected {WORDS}, with commas")
-        scene = self.renamed(names_after("--effects", words, self.names))
-        require_parameters("--effects", scene)
+        scene = self.renamed(_names_after("--effects", words, self.names))
+        _require_parameters("--effects", scene)
         return scene
 
 
-def names_after(where: str, words: Sequence[str], present: Sequence[str]) -> tuple[str, ...]:
+def _names_after(where: str, words: Sequence[str], present: Sequence[str]) -> tuple[str, ...]:
     """Return the effects that `words` stand for: names alone are all, +NAME and -NAME change `present`.
 
     Raises:
@@ -149,9 +149,9 @@ def read_effects(path: str, content: Mapping[str, Any], changes: str | None = No
     if not isinstance(words, list) or not all(isinstance(word, str) for word in words):
         raise CaseError(f"{path}: scene.effects: got {shown(words)}, expected a list of names")
     effects = Effects(
-        names=names_after(f"{path}: scene.effects", words, DEFAULT), tables=_read_tables(path, content)
+        names=_names_after(f"{path}: scene.effects", words, DEFAULT), tables=_read_tables(path, content)
     )
-    require_parameters(path, effects)
+    _require_parameters(path, effects)
     changed = effects if changes is None else effects.changed(changes)
     for name in effects.tables:
         if name not in (*effects.names, *changed.names):
@@ -182,7 +182,7 @@ def require_known(where: str, name: str) -> None:
     raise CaseError(f"{where}: got {name}, expected {hint}one of {', '.join(KEYS)}")
 
 
-def require_parameters(where: str, effects: Effects) -> None:
+def _require_parameters(where: str, effects: Effects) -> None:
     """Raise CaseError if a named effect lacks a parameter that it needs."""
     for name in effects.names:
         for key in KEYS.get(name, ()):

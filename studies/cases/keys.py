@@ -2,7 +2,7 @@
 
 import math
 
-from studies.cases.rules import Choice, Key, Number, Whole, finite_pair, positive
+from studies.cases.rules import Choice, History, Interval, Key, Number, Whole, finite_pair, positive
 
 ROTATION = Number(
     expected="a number from -360 to 360 [deg]",
@@ -20,6 +20,12 @@ LOADS_FIRST, TOGETHER = "loads first", "together"
 ORDER = Choice(names=(LOADS_FIRST, TOGETHER))
 
 POISSON = Number(expected="a number above -1 and at most 0.5 [1]", low=-1.0, high=0.5, closed_high=True)
+
+#: When a motion goes on with the rotation that it starts from, and how that changes; without, it lets go.
+IN_MOTION = (
+    Key(section="drive", name="history", attribute="history", rule=History(), optional=True),
+    Key(section="drive", name="held_s", attribute="held", rule=Interval(), optional=True),
+)
 
 KEYS: tuple[Key, ...] = (
     Key(section="strip", name="length_m", attribute="length", rule=positive("m")),
@@ -70,4 +76,5 @@ KEYS: tuple[Key, ...] = (
     Key(section="drive", name="rotation_deg", attribute="rotation", rule=ROTATION),
     Key(section="drive", name="increments", attribute="increments", rule=INCREMENTS),
     Key(section="drive", name="order", attribute="order", rule=ORDER, optional=True),
+    *IN_MOTION,
 )

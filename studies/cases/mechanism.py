@@ -9,7 +9,7 @@ from typing import Any
 from studies.cases import document
 from studies.cases.document import CaseError
 from studies.cases.effects import Effects, read_effects
-from studies.cases.keys import INCREMENTS, LOADS_FIRST, ORDER, POISSON, ROTATION
+from studies.cases.keys import IN_MOTION, INCREMENTS, LOADS_FIRST, ORDER, POISSON, ROTATION
 from studies.cases.rules import Key, Text, finite, finite_pair, not_negative, positive, shown
 
 GROUND, FREE = "ground", "free"
@@ -55,6 +55,7 @@ DRIVE = (
     Key(section="drive", name="rotation_deg", attribute="rotation", rule=ROTATION, optional=True),
     Key(section="drive", name="increments", attribute="increments", rule=INCREMENTS),
     Key(section="drive", name="order", attribute="order", rule=ORDER, optional=True),
+    *IN_MOTION,
 )
 SECTIONS = ("strips", "bodies", "section", "material", "drive", "scene", "effects")
 
@@ -100,6 +101,8 @@ class Mechanism:
         rotation: that it is driven to [rad]; None: it follows the loads.
         increments: equal increments of the path [1].
         effects: of the scene.
+        history, held: of the rotation in a motion that goes on with it, pairs of time [s] and factor, and its
+            begin and end [s]; None for one that lets go.
         order: of loads and rotation, "loads first" or "together".
     """
 
@@ -110,6 +113,8 @@ class Mechanism:
     increments: int
     effects: Effects
     order: str = LOADS_FIRST
+    history: tuple[tuple[float, float], ...] | None = None
+    held: tuple[float, float] | None = None
 
     def mechanism_parameters(self) -> dict[str, list[dict[str, Any]]]:
         """Return strips and bodies as the keyword arguments of the designs of either model."""
@@ -161,7 +166,7 @@ def read_mechanism(path: str, content: Mapping[str, Any], changes: str | None = 
         rotation=drive.get("rotation"),
         increments=drive["increments"],
         effects=read_effects(path, content, changes),
-        order=drive.get("order", LOADS_FIRST),
+        **{key: drive[key] for key in ("order", "history", "held") if key in drive},
     )
 
 

@@ -54,6 +54,8 @@ class Problem:
         section_depth: depth of the section in the plane of bending [m]; None for the rectangle that A and I
             imply.
         effects: of the scene.
+        history, held: of the rotation in a motion that goes on with it, pairs of time [s] and factor, and its
+            begin and end [s]; None for one that lets go.
 
     Raises:
         CaseError: a value outside its admissible range.
@@ -75,6 +77,8 @@ class Problem:
     order: str = LOADS_FIRST
     section_depth: float | None = None
     effects: Effects = field(default_factory=Effects)
+    history: tuple[tuple[float, float], ...] | None = None
+    held: tuple[float, float] | None = None
 
     def __post_init__(self) -> None:
         for key in KEYS:

@@ -30,7 +30,7 @@ class Number:
         """Return `value` (in the file's unit) in SI; ValueError says what was got and expected."""
         if isinstance(value, bool) or not isinstance(value, int | float):
             raise ValueError(f"got {shown(value)}, expected {self.expected}")
-        number = as_float(value)
+        number = _as_float(value)
         above = number >= self.low if self.closed_low else number > self.low
         below = number <= self.high if self.closed_high else number < self.high
         if not (math.isfinite(number) and above and below):
@@ -41,7 +41,7 @@ class Number:
         """Raise ValueError unless `value` (SI) is admissible."""
         if isinstance(value, bool) or not isinstance(value, int | float):
             raise ValueError(f"got {shown(value)}, expected {self.expected}")
-        self.parse(self.from_si(as_float(value)))
+        self.parse(self.from_si(_as_float(value)))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -77,7 +77,7 @@ class Pair:
             if (
                 isinstance(part, bool)
                 or not isinstance(part, int | float)
-                or not math.isfinite(as_float(part))
+                or not math.isfinite(_as_float(part))
             ):
                 raise ValueError(f"got {shown(value)}, expected {self.expected}")
         return float(value[0]), float(value[1])
@@ -146,7 +146,25 @@ class History:
         self.parse(value)
 
 
-Rule = Number | Whole | Pair | Text | Choice | History
+@dataclass(frozen=True, kw_only=True)
+class Interval:
+    """Two instants [begin, end]."""
+
+    expected: str = "two instants [begin, end], the first before the second [s]"
+
+    def parse(self, value: Any) -> tuple[float, float]:
+        """Return `value` as a tuple; raises ValueError that says what was got and expected."""
+        begin, end = Pair(expected=self.expected).parse(value)
+        if not begin < end:
+            raise ValueError(f"got {shown(value)}, expected {self.expected}")
+        return begin, end
+
+    def verify(self, value: Any) -> None:
+        """Raise ValueError unless `value` is admissible."""
+        self.parse(value)
+
+
+Rule = Number | Whole | Pair | Text | Choice | History | Interval
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -160,7 +178,7 @@ class Key:
     optional: bool = False
 
 
-def as_float(value: float) -> float:
+def _as_float(value: float) -> float:
     """Return a number as a float: infinite where a whole number is beyond the range of floats."""
     try:
         return float(value)

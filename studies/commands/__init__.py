@@ -1,1 +1,1 @@
-"""Commands, one file each: `add_arguments(parser)` and `main(arguments) -> exit code`."""
+"""Commands: in each module `main`, a `Command` of parser.py, or in results.py several by their names."""

@@ -1,7 +1,7 @@
 """Say which setting of each model meets an error at the least cost, on one pivot.
 
-    python -m studies advise studies/cases/cross_axis_pivot.toml --error 1e-3
-    python -m studies advise my_pivot.toml --error 1e-2 --dynamic --json -
+    python -m studies advise cross_axis_pivot --accuracy 1e-3
+    python -m studies advise my_pivot.toml --accuracy 1e-2 --dynamic --json -
 
 Every setting of every model is tried on the case itself: the spline, the finite elements without and with
 shear, the surrogate models in closed form, and the other codes that are installed. Without --dynamic the
@@ -14,49 +14,39 @@ reference, or no model meets the error.
 
 import argparse
 import math
-import sys
 from collections.abc import Iterator, Sequence
 from typing import Any
 
 import pandas as pd
 
 from studies.answers.reference import NoReference
-from studies.cases.problem import Problem, read_case
-from studies.commands.answer import NOT_CONVERGED, add_json_argument, deliver, number, require_target
-from studies.commands.parser import Parser, add_case, positive
-from studies.errors import BadInput
+from studies.cases.problem import Problem
+from studies.commands.answer import deliver, not_converged, number, require_target
+from studies.commands.arguments import ACCURACY, CASE, JSON, turned_pivot
+from studies.commands.parser import Argument, command
 from studies.record.progress import Bar
 from studies.work_precision.advice import MOTION_ERRORS, PATH_ERRORS, advise_motion, advise_path
 
 
-def add_arguments(parser: Parser) -> None:
-    """Declare the arguments of the command."""
-    add_case(parser, "the design of a pivot")
-    parser.add_argument(
-        "--error", type=positive, default=1e-3, metavar="E", help="wanted relative error, default 1e-3"
-    )
-    parser.add_argument("--dynamic", action="store_true", help="advise on the motion after the release")
-    add_json_argument(parser)
-
-
+@command(
+    CASE,
+    ACCURACY.but(default=1e-3, help="wanted relative error, default 1e-3"),
+    Argument("--dynamic", action="store_true", help="advise on the motion after the release"),
+    JSON,
+)
 def main(arguments: argparse.Namespace) -> int:
     """Try, report; return the exit code."""
-    problem = read_case(arguments.case)
-    if problem.rotation == 0.0:
-        raise BadInput(
-            f"{arguments.case}: drive.rotation_deg: got 0, expected a rotation to relate errors to"
-        )
+    problem = turned_pivot(arguments, "rotation to relate errors to")
     require_target(arguments)
     advise, columns = (advise_motion, MOTION_ERRORS) if arguments.dynamic else (advise_path, PATH_ERRORS)
     try:
         with Bar("advise") as bar:
-            found = advise(problem, arguments.error, bar)
+            found = advise(problem, arguments.accuracy, bar)
     except NoReference as error:
-        print(f"studies: not converged: {error}", file=sys.stderr)
-        return NOT_CONVERGED
-    failure = None if found["meets"].any() else f"no model meets {arguments.error:g} here"
-    table = _readable(problem, found, columns, arguments.error)
-    return deliver(arguments, as_document(found, columns, arguments.error), table, failure=failure)
+        return not_converged(error)
+    failure = None if found["meets"].any() else f"no model meets {arguments.accuracy:g} here"
+    table = _readable(problem, found, columns, arguments.accuracy)
+    return deliver(arguments, as_document(found, columns, arguments.accuracy), table, failure=failure)
 
 
 def as_document(found: pd.DataFrame, columns: Sequence[str], error: float) -> dict[str, Any]:
@@ -73,7 +63,7 @@ def as_document(found: pd.DataFrame, columns: Sequence[str], error: float) -> di
         }
         for row in found.to_dict("records")
     ]
-    return {"error": error, "models": rows}
+    return {"accuracy": error, "models": rows}
 
 
 def _readable(problem: Problem, found: pd.DataFrame, columns: Sequence[str], error: float) -> Iterator[str]:

@@ -8,24 +8,13 @@ from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
-from studies.answers.assembly import MechanismResponse
-from studies.answers.response import Critical, Response
-from studies.commands.parser import Parser
+from studies.answers.response import Critical, MechanismResponse, Response
 from studies.record.files import require_writable_file, write_whole
 
 NOT_CONVERGED = 3
 
 #: Parts of an estimate that are no error.
-CHOSEN = ("control_points", "trials")
-
-
-def add_json_argument(parser: Parser) -> None:
-    """Declare where the answer goes."""
-    parser.add_argument(
-        "--json",
-        metavar="FILE|-",
-        help="write the answer as JSON to FILE or the output stream (default: a table to read)",
-    )
+CHOSEN = ("control_points", "trials", "meshes")
 
 
 def require_target(arguments: argparse.Namespace) -> None:
@@ -53,11 +42,27 @@ def deliver(
             sys.stdout.write(text)
         else:
             write_whole(Path(arguments.json), text.encode())
-            print(f"written: {arguments.json}")
+            print(f"{arguments.json}: the answer as JSON")
     if failure is None:
         return 0
-    print(f"studies: not converged: {failure}", file=sys.stderr)
+    return not_converged(failure)
+
+
+def not_converged(why: object) -> int:
+    """Say why there is no answer, or not all of it; return the exit code."""
+    print(f"studies: not converged: {why}", file=sys.stderr)
     return NOT_CONVERGED
+
+
+def headed(answer: Any) -> dict[str, Any]:
+    """Return how an answer ended and what it is of, as its JSON begins; modes pass nothing on their way."""
+    found = {"status": answer.status, "message": answer.message}
+    if hasattr(answer, "critical_points"):
+        found["critical_points"] = _passed(answer.critical_points)
+    if hasattr(answer, "resolution"):
+        found["resolution"] = answer.resolution
+    about = {"model": answer.model, "settings": answer.settings, "effects": list(answer.effects)}
+    return found | about
 
 
 def described(model: str, settings: Mapping[str, Any], effects: Iterable[str]) -> str:
@@ -85,11 +90,12 @@ def estimated(estimate: Mapping[str, Any] | None) -> Iterator[str]:
     if estimate is not None:
         errors = {name: value for name, value in estimate.items() if name not in ("accuracy", *CHOSEN)}
         listed = ", ".join(f"{name.replace('_', ' ')} {value:.1e}" for name, value in errors.items())
-        tried = ", ".join(map(str, estimate["trials"]))
-        yield f"estimated error: {listed}; control points tried: {tried}"
+        what = "elements" if "meshes" in estimate else "control points"
+        tried = ", ".join(map(str, estimate.get("meshes") or estimate["trials"]))
+        yield f"estimated error: {listed}; {what} tried: {tried}"
 
 
-def passed(points: Iterable[Critical]) -> list[dict[str, Any]]:
+def _passed(points: Iterable[Critical]) -> list[dict[str, Any]]:
     """Return critical points as JSON has them."""
     return [
         {"kind": point.kind, "load_factor": point.load_factor, "rotation_rad": number(point.rotation)}

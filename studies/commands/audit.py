@@ -1,6 +1,6 @@
 """Say what each effect of a scene is worth, and find the cheapest scene within a tolerance.
 
-    python -m studies audit studies/cases/cross_axis_pivot.toml
+    python -m studies audit cross_axis_pivot
     python -m studies audit my_pivot.toml --tolerance 1e-2 --json audit.json
 
 Every scene is asked, by the spline model, the static path of the case and then the motion from its end. The
@@ -16,36 +16,27 @@ code 0: done; 2: bad input; 3: the full scene has no answer.
 
 import argparse
 import math
-import sys
 from collections.abc import Iterator
 from typing import Any
 
 from studies.answers.settings import SplineSettings
-from studies.commands.answer import NOT_CONVERGED, add_json_argument, deliver, number, require_target
-from studies.commands.model import add_effects_argument, chosen_design
-from studies.commands.parser import Parser, add_case, positive, whole_number
+from studies.commands.answer import deliver, not_converged, number, require_target
+from studies.commands.arguments import CASE, CONTROL_POINTS, EFFECTS, JSON, chosen_design
+from studies.commands.parser import Argument, command, positive, whole_number
 from studies.effects.audit import Audit, audit
 from studies.effects.outcome import Outcome, Unanswered
 from studies.record.progress import Bar
 
 
-def add_arguments(parser: Parser) -> None:
-    """Declare the arguments of the command."""
-    add_case(parser, "the design")
-    add_effects_argument(parser)
-    parser.add_argument(
-        "--control-points",
-        type=whole_number(4),
-        default=6,
-        metavar="N",
-        help="control points a strip, default 6",
-    )
-    parser.add_argument(
+@command(
+    CASE,
+    EFFECTS,
+    CONTROL_POINTS.but(type=whole_number(4), default=6, help="control points a strip, default 6"),
+    Argument(
         "--tolerance", type=positive, default=1e-3, metavar="T", help="allowed relative change, default 1e-3"
-    )
-    add_json_argument(parser)
-
-
+    ),
+    JSON,
+)
 def main(arguments: argparse.Namespace) -> int:
     """Audit and report; return the exit code."""
     design = chosen_design(arguments)
@@ -55,8 +46,7 @@ def main(arguments: argparse.Namespace) -> int:
         with Bar("audit") as bar:
             found = audit(design, settings, arguments.tolerance, bar)
     except Unanswered as error:
-        print(f"studies: not converged: the full scene: {error}", file=sys.stderr)
-        return NOT_CONVERGED
+        return not_converged(f"the full scene: {error}")
     return deliver(arguments, as_document(found), _readable(found), failure=None)
 
 

@@ -1,7 +1,7 @@
 """Refine both models on a design and say how many control points or elements reach an accuracy.
 
-    python -m studies converge studies/cases/cross_axis_pivot.toml
-    python -m studies converge my_pivot.toml --control-points 4:16 --elements 5:320 --output my_pivot
+    python -m studies converge cross_axis_pivot
+    python -m studies converge my_pivot.toml --control-points 4:16 --elements 5:320 --out my_pivot
 
 The spline is refined point by point, the finite elements by doubling; both are held against the limit of the
 finite elements' refinement, whose own uncertainty is printed. Errors are the largest over the path. Tables
@@ -11,7 +11,6 @@ the reference, did not converge. A spline that does not converge keeps its row.
 
 import argparse
 import math
-import sys
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -19,9 +18,18 @@ import pandas as pd
 
 from studies.answers.reference import NoReference, Reference
 from studies.answers.settings import SplineSettings
-from studies.cases.problem import read_case
-from studies.commands.answer import NOT_CONVERGED
-from studies.commands.parser import Parser, add_case, counts
+from studies.commands.answer import not_converged
+from studies.commands.arguments import (
+    BASIS,
+    CASE,
+    CONTROL_POINTS,
+    ELEMENTS,
+    MEASURE,
+    OUT,
+    STRETCH,
+    turned_pivot,
+)
+from studies.commands.parser import command, counts
 from studies.convergence.sweep import (
     FINEST,
     QUANTITIES,
@@ -42,53 +50,22 @@ from studies.record.store import as_csv
 ACCURACIES = (1e-3, 1e-4, 1e-6)
 
 
-def add_arguments(parser: Parser) -> None:
-    """Declare the arguments of the command."""
-    add_case(parser, "the design of a pivot")
-    parser.add_argument(
-        "--control-points",
-        type=counts(4),
-        default=(4, 12),
-        metavar="A:B",
-        help="of the splines, in steps of 1, default 4:12",
-    )
-    parser.add_argument(
-        "--elements",
-        type=counts(1),
-        default=(5, 160),
-        metavar="A:B",
-        help="of the meshes, by doubling, default 5:160",
-    )
-    parser.add_argument(
-        "--basis", choices=("bezier", "bspline"), default="bezier", help="of the splines, default bezier"
-    )
-    parser.add_argument(
-        "--measure",
-        choices=("material", "spatial"),
-        default="material",
-        help="of the splines, default material",
-    )
-    parser.add_argument(
-        "--stretch",
-        choices=("mixed", "consistent", "inextensible"),
-        default="mixed",
-        help="of the splines, default mixed",
-    )
-    parser.add_argument(
-        "--output",
-        type=Path,
-        metavar="FOLDER",
-        help="of tables and figure (default: results/designs/<name of the case>)",
-    )
-
-
+@command(
+    CASE,
+    CONTROL_POINTS.but(
+        type=counts(4), default=(4, 12), metavar="A:B", help="of the splines, in steps of 1, default 4:12"
+    ),
+    ELEMENTS.but(
+        type=counts(1), default=(5, 160), metavar="A:B", help="of the meshes, by doubling, default 5:160"
+    ),
+    BASIS.but(default="bezier"),
+    MEASURE.but(choices=("material", "spatial"), default="material"),
+    STRETCH.but(default="mixed"),
+    OUT.but(help="of tables and figure (default: results/designs/<name of the case>)"),
+)
 def main(arguments: argparse.Namespace) -> int:
     """Refine, print, store and draw; return the exit code."""
-    problem = read_case(arguments.case)
-    if problem.rotation == 0.0:
-        raise BadInput(
-            f"{arguments.case}: drive.rotation_deg: got 0, expected a rotation to relate errors to"
-        )
+    problem = turned_pivot(arguments, "rotation to relate errors to")
     meshes = _doubled(*arguments.elements)
     first, last = arguments.control_points
     settings = [
@@ -97,14 +74,13 @@ def main(arguments: argparse.Namespace) -> int:
         )
         for n in range(first, last + 1)
     ]
-    output = arguments.output or ROOT / "results" / "designs" / Path(arguments.case).stem
+    output = arguments.out or ROOT / "results" / "designs" / Path(arguments.case).stem
     require_writable_folder(output)
     try:
         with Bar("finite elements") as bar:
             elements, limit = element_sweep(problem, meshes, "corotational", bar)
     except NoReference as error:
-        print(f"studies: not converged: {error}", file=sys.stderr)
-        return NOT_CONVERGED
+        return not_converged(error)
     with Bar("splines") as bar:
         splines = with_orders(spline_sweep(problem, settings, limit, bar), "control_points")
     print("\n".join(_report(splines, elements, limit)))
@@ -114,7 +90,7 @@ def main(arguments: argparse.Namespace) -> int:
     contents |= {f"convergence.{kind}": content for kind, content in figure.items()}
     for name, content in contents.items():
         write_whole(output / name, content)
-    print(f"\ntables and figure: {output}")
+    print(f"\n{output}: {', '.join(contents)}")
     return 0
 
 

@@ -18,8 +18,10 @@ import sys
 import webbrowser
 from pathlib import Path
 
-from studies.commands.parser import Parser, whole_number
+from studies.commands.arguments import OUT
+from studies.commands.parser import Argument, command, whole_number
 from studies.errors import BadInput
+from studies.record.files import require_writable_file, write_whole
 
 #: What the extra brings: module -> package.
 EXTRA = {
@@ -30,52 +32,40 @@ EXTRA = {
 }
 
 
-def add_arguments(parser: Parser) -> None:
-    """Declare the arguments of the command."""
-    parser.add_argument(
+@command(
+    Argument(
         "--port", type=whole_number(0), default=0, metavar="P", help="of the server, default any free one"
-    )
-    parser.add_argument("--no-browser", action="store_true", help="print the address, open nothing")
-    parser.add_argument(
-        "--film", metavar="FILE|demo", help="pictures from a film, not a camera (default: none)"
-    )
-    parser.add_argument(
+    ),
+    Argument("--no-browser", action="store_true", help="print the address, open nothing"),
+    Argument("--film", metavar="FILE|demo", help="pictures from a film, not a camera (default: none)"),
+    Argument(
         "--camera",
         default="browser",
         metavar="browser|none|N",
         help="the browser's, none, or number N of this machine, default browser",
-    )
-    parser.add_argument(
+    ),
+    Argument(
         "--calibration", type=Path, metavar="FILE", help="the camera's constants as JSON (default: none)"
-    )
-    parser.add_argument(
+    ),
+    Argument(
         "--preset",
         default="polymer",
         metavar="NAME",
         help="design to start with: polymer (default) or table-1",
-    )
-    parser.add_argument(
-        "--record", type=Path, metavar="FILE", help="store the session's events (default: none)"
-    )
-    parser.add_argument(
+    ),
+    Argument("--record", type=Path, metavar="FILE", help="store the session's events (default: none)"),
+    Argument(
         "--replay", type=Path, metavar="FILE", help="replay a stored session and compare (default: none)"
-    )
-
-
+    ),
+)
 def main(arguments: argparse.Namespace) -> int:
     """Serve until interrupted, or replay; return the exit code."""
     if arguments.replay is not None:
         return _replay(arguments.replay)
-    missing = missing_packages()
-    if missing:
-        raise BadInput(
-            f"interactive: got no {', '.join(missing)}, expected the extra: run `make interactive`, "
-            "or pip install -e '.[interactive]'"
-        )
+    _require_extra("interactive")
     from studies.interactive.pivot import presets
     from studies.interactive.tracking.calibration import Camera
-    from studies.interactive.warm_up import warm_up
-    from studies.interactive.web.server import Server, Settings
+    from studies.interactive.web.server import Server, Settings, warm_up
 
     presets.preset(arguments.preset)
     source, camera = _source(arguments)
@@ -100,9 +90,33 @@ def main(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def missing_packages() -> list[str]:
-    """Return the packages of the extra that are not installed."""
-    return [package for module, package in EXTRA.items() if importlib.util.find_spec(module) is None]
+@command(OUT.but(default=Path("markers.pdf"), metavar="FILE", help="default markers.pdf"))
+def markers(arguments: argparse.Namespace) -> int:
+    """Print the sheet with both markers, the pivot's outline and a ruler, as PDF for A4.
+
+        python -m studies markers --out markers.pdf
+
+    One marker is for the ground, the other moves. Print the sheet at 100 %, measure the ruler, and type its
+    length into the page if it is not 100 mm: no picture can tell the printed size. It needs the extra
+    `interactive`. Exit code 0: done; 2: bad input.
+    """
+    _require_extra("markers")
+    from studies.interactive.film.sheet import sheet
+
+    require_writable_file(arguments.out)
+    write_whole(arguments.out, sheet())
+    print(f"{arguments.out}: print at 100 %; the ruler must measure 100 mm")
+    return 0
+
+
+def _require_extra(name: str) -> None:
+    """Raise BadInput unless the packages of the extra are installed."""
+    missing = [package for module, package in EXTRA.items() if importlib.util.find_spec(module) is None]
+    if missing:
+        raise BadInput(
+            f"{name}: got no {', '.join(missing)}, expected the extra: run `make interactive`, "
+            "or pip install -e '.[interactive]'"
+        )
 
 
 def _source(arguments: argparse.Namespace):  # type: ignore[no-untyped-def]

@@ -7,14 +7,11 @@ A study may also be called by its last part, its group, or as one of "all". Exit
 
 import argparse
 
-from studies.commands.parser import Parser
+from studies.commands.parser import command
 from studies.registry import STUDIES, question_of
 
 
-def add_arguments(parser: Parser) -> None:
-    """Declare the arguments of the command: there are none."""
-
-
+@command()
 def main(arguments: argparse.Namespace) -> int:
     """Print one line a study; return the exit code."""
     width = max(map(len, STUDIES))

@@ -1,8 +1,8 @@
 """Report the natural frequencies of small motion, at rest or about a driven rotation, with one of the models.
 
-    python -m studies modes studies/cases/cross_axis_pivot.toml --model spline --control-points 8
-    python -m studies modes studies/cases/cross_axis_pivot.toml --model fe --rotation-deg 45 --held --json -
-    python -m studies modes studies/cases/parallel_strip_guide.toml --model spline --effects=-strip_inertia
+    python -m studies modes cross_axis_pivot --control-points 8
+    python -m studies modes cross_axis_pivot --model fe --rotation-deg 45 --held --json -
+    python -m studies modes parallel_strip_guide --effects=-strip_inertia
 
 Modes are free vibrations about a static state: of a pivot with the body turned to --rotation-deg, 0 unless
 said otherwise; of a mechanism with none turned unless --rotation-deg is given. In that state loads, weight,
@@ -14,6 +14,7 @@ not reach the rotation.
 """
 
 import argparse
+import math
 from collections.abc import Iterator
 from typing import Any
 
@@ -21,67 +22,53 @@ import numpy as np
 
 from studies.answers.adapters import answer_modes
 from studies.answers.spectrum import Spectrum
-from studies.cases.keys import ROTATION
-from studies.commands.answer import add_json_argument, deliver, described, ending, estimated, require_target
+from studies.commands.answer import deliver, described, ending, estimated, headed, require_target
+from studies.commands.arguments import (
+    ACCURACY,
+    COUNT,
+    HELD,
+    JSON,
+    MODEL,
+    ROTATION,
+    chosen_design,
+    chosen_settings,
+)
 from studies.commands.columns import plain, significant, table
-from studies.commands.model import add_model_arguments, chosen_design, chosen_settings
-from studies.commands.parser import Parser, degrees, positive, whole_number
-from studies.errors import BadInput
+from studies.commands.parser import command
 from studies.kinds import Array
 
 #: Of displacement and rotation at unit modal mass; and what is round-off of the largest of all modes.
 SHAPE_UNITS, NOISE = ("kg^-0.5", "kg^-0.5", "kg^-0.5/m"), 1e-7
 
 
-def add_arguments(parser: Parser) -> None:
-    """Declare the arguments of the command."""
-    add_model_arguments(parser)
-    parser.add_argument(
-        "--rotation-deg",
-        type=degrees,
-        metavar="X",
-        help="of the static state, in deg (default: 0 of a pivot; a mechanism is not turned)",
-    )
-    parser.add_argument("--held", action="store_true", help="hold the rotation of the body")
-    parser.add_argument(
-        "--count", type=whole_number(1), default=10, metavar="C", help="number of modes, default 10"
-    )
-    parser.add_argument(
-        "--accuracy",
-        type=positive,
-        metavar="A",
-        help="wanted relative error of the frequencies: raises the control points "
-        "(spline; default 1e-4, or none with --control-points)",
-    )
-    add_json_argument(parser)
-
-
+@command(
+    *MODEL,
+    ROTATION.but(help="of the static state, in deg (default: 0 of a pivot; a mechanism is not turned)"),
+    HELD,
+    COUNT,
+    ACCURACY.but(
+        help="wanted relative error of the frequencies: raises the control points (default 1e-4, or none "
+        "with --control-points) or doubles the elements (default: none is asked for)"
+    ),
+    JSON,
+)
 def main(arguments: argparse.Namespace) -> int:
     """Solve and report; return the exit code."""
     design = chosen_design(arguments)
     settings = chosen_settings(arguments)
-    try:
-        given = arguments.rotation_deg
-        rotation = None if given is None else ROTATION.parse(given)
-    except ValueError as error:
-        raise BadInput(f"--rotation-deg: {error}") from None
     require_target(arguments)
-    if arguments.accuracy is not None and settings.model != "spline":
-        raise BadInput(f"--accuracy: got it with --model {settings.model}, expected --elements")
     how = {"count": arguments.count, "held": arguments.held, "accuracy": arguments.accuracy}
-    answer = answer_modes(design, settings, rotation=rotation, **how)
-    failure = None if answer.converged else f"at {arguments.rotation_deg:g} deg: {answer.message}"
+    answer = answer_modes(design, settings, rotation=arguments.rotation, **how)
+    failure = (
+        None if answer.converged else f"at {math.degrees(arguments.rotation or 0.0):g} deg: {answer.message}"
+    )
     return deliver(arguments, as_document(answer), _readable(answer), failure=failure)
 
 
 def as_document(answer: Spectrum) -> dict[str, Any]:
     """Return the answer as the JSON object of the command."""
     return {
-        "status": answer.status,
-        "message": answer.message,
-        "model": answer.model,
-        "settings": answer.settings,
-        "effects": list(answer.effects),
+        **headed(answer),
         "rotation_rad": answer.rotation,
         "held": answer.held,
         "frequency_Hz": answer.frequency.tolist(),

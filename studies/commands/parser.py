@@ -1,13 +1,14 @@
-"""An argument parser whose errors are one line, and the number types that arguments share."""
+"""Commands and their arguments as values, a parser whose errors are one line, and the types of numbers."""
 
 import argparse
 import difflib
 import math
 import re
 from collections.abc import Callable, Iterable
-from pathlib import Path
+from dataclasses import dataclass
 from typing import Any, NoReturn
 
+from studies.cases.rules import Rule
 from studies.errors import BadInput
 
 
@@ -29,25 +30,47 @@ class Parser(argparse.ArgumentParser):
         raise BadInput(f"{self.prog.removeprefix('python -m studies ')}: {message}")
 
 
-def add_case(parser: Parser, what: str) -> None:
-    """Declare the case file, with what it is to the command."""
-    parser.add_argument("case", metavar="CASE.toml", help=what)
+class Argument:
+    """One argument of a command: its names, and what `argparse` is to know of it.
+
+    Args:
+        names: of the argument. group: heading that it stands under in the help.
+        keywords: of `ArgumentParser.add_argument`.
+    """
+
+    def __init__(self, *names: str, group: str = "", **keywords: Any) -> None:
+        self.names, self.group, self.keywords = names, group, keywords
+
+    def but(self, **keywords: Any) -> "Argument":
+        """Return the same argument, with what else is to be known of it here."""
+        return Argument(*self.names, group=self.group, **self.keywords | keywords)
+
+    def of(self, group: str) -> "Argument":
+        """Return the same argument, to stand under a heading of its own."""
+        return Argument(*self.names, group=group, **self.keywords)
 
 
-def add_studies(parser: Parser) -> None:
-    """Declare the names of studies."""
-    parser.add_argument("names", nargs="+", metavar="NAME", help="studies, groups, or all; `list` names them")
+@dataclass(frozen=True)
+class Command:
+    """What a command does, from its arguments to its exit code, and the arguments that it takes."""
+
+    run: Callable[[argparse.Namespace], int]
+    takes: tuple[Argument, ...]
+
+    def parser(self, name: str, text: str | None) -> Parser:
+        """Return the parser of the command of that name, which `text` explains."""
+        parser = Parser(prog=f"python -m studies {name}", description=text)
+        groups: dict[str, Any] = {"": parser}
+        for each in self.takes:
+            if each.group not in groups:
+                groups[each.group] = parser.add_argument_group(each.group)
+            groups[each.group].add_argument(*each.names, **each.keywords)
+        return parser
 
 
-def add_results(parser: Parser) -> None:
-    """Declare the folder of results."""
-    parser.add_argument(
-        "--results",
-        type=Path,
-        default=Path(__file__).parents[2] / "results",
-        metavar="FOLDER",
-        help="where tables and figures are, default results/",
-    )
+def command(*takes: Argument) -> Callable[[Callable[[argparse.Namespace], int]], Command]:
+    """Make a command of a function of these arguments."""
+    return lambda run: Command(run, takes)
 
 
 def whole_number(low: int) -> Callable[[str], int]:
@@ -77,37 +100,37 @@ def counts(low: int) -> Callable[[str], tuple[int, int]]:
     return parse
 
 
-def degrees(text: str) -> float:
-    """Parse a finite angle in degrees."""
-    try:
-        value = float(text)
-    except ValueError:
-        value = math.nan
-    if not math.isfinite(value):
-        raise argparse.ArgumentTypeError(f"got {text}, expected a finite number of degrees")
-    return value
+def number(low: float, expected: str, *, least: bool = False) -> Callable[[str], float]:
+    """Return a parser of finite numbers above `low`, or with `least` from there upwards."""
+
+    def parse(text: str) -> float:
+        try:
+            value = float(text)
+        except ValueError:
+            value = math.nan
+        if not (low <= value if least else low < value) or not math.isfinite(value):
+            raise argparse.ArgumentTypeError(f"got {text}, expected a finite number {expected}")
+        return value
+
+    return parse
 
 
-def positive(text: str) -> float:
-    """Parse a finite number above zero."""
-    try:
-        value = float(text)
-    except ValueError:
-        value = math.nan
-    if not 0.0 < value < math.inf:
-        raise argparse.ArgumentTypeError(f"got {text}, expected a finite number above 0")
-    return value
+degrees = number(-math.inf, "of degrees")
+positive = number(0.0, "above 0")
+not_negative = number(0.0, "of at least 0", least=True)
 
 
-def not_negative(text: str) -> float:
-    """Parse a finite number of zero or above."""
-    try:
-        value = float(text)
-    except ValueError:
-        value = math.nan
-    if not 0.0 <= value < math.inf:
-        raise argparse.ArgumentTypeError(f"got {text}, expected a finite number of at least 0")
-    return value
+def ruled(rule: Rule, read: Callable[[str], Any]) -> Callable[[str], Any]:
+    """Return a parser of what a key of a case may be, in SI, from the text that `read` makes a number of."""
+
+    def parse(text: str) -> Any:
+        value = read(text)
+        try:
+            return rule.parse(value)
+        except ValueError as error:
+            raise argparse.ArgumentTypeError(str(error)) from None
+
+    return parse
 
 
 def names_of(known: Iterable[str]) -> Callable[[str], tuple[str, ...]]:

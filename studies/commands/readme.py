@@ -10,9 +10,8 @@ import argparse
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 
-from studies.commands import agreement
-from studies.commands.digits import digits
-from studies.commands.parser import Parser
+from studies.commands import tables
+from studies.commands.parser import command
 from studies.errors import BadInput
 from studies.record.files import write_whole
 from studies.record.source import ROOT
@@ -22,32 +21,30 @@ from studies.stability.summary import lines
 
 def _digits(store: Store) -> Iterable[str]:
     studies = ("work_precision/statics", "work_precision/dynamics")
-    return digits(*(agreement.stored(store, study, "digits_of_time") for study in studies))
+    return tables.digits(*(tables.stored(store, study, "digits_of_time") for study in studies))
 
 
 #: File -> block -> the lines that stand between its marks.
 BLOCKS: dict[Path, Mapping[str, Callable[[Store], Iterable[str]]]] = {
-    ROOT / "README.md": {"agreement": agreement.short},
+    ROOT / "README.md": {"agreement": tables.short},
     ROOT / "docs" / "findings.md": {
-        "paths": agreement.paths,
-        "swings": agreement.swings,
-        "claims": agreement.claims,
+        "paths": tables.paths,
+        "swings": tables.swings,
+        "claims": tables.claims,
         "digits": _digits,
         "hard cases": lines,
-        "sized": agreement.sized,
+        "sized": tables.sized,
     },
 }
 
 
-def add_arguments(parser: Parser) -> None:
-    """Declare the arguments of the command: there are none."""
-
-
+@command()
 def main(arguments: argparse.Namespace) -> int:
     """Rewrite the blocks; return the exit code."""
     texts = {path: rewritten(path, Store()) for path in BLOCKS}
     for path, text in texts.items():
         write_whole(path, text.encode())
+        print(f"{path.relative_to(ROOT)}: {', '.join(BLOCKS[path])}")
     return 0
 
 

@@ -1,15 +1,16 @@
 """Let go of a driven pivot or mechanism and report its motion with one of the models.
 
-    python -m studies release studies/cases/cross_axis_pivot.toml --model spline --control-points 8
-    python -m studies release studies/cases/cross_axis_pivot.toml --model fe --duration 0.02 --json -
-    python -m studies release studies/cases/cantilever_with_body.toml --model spline --effects=-gravity
+    python -m studies release cross_axis_pivot --control-points 8
+    python -m studies release cross_axis_pivot --model fe --duration 0.02 --json -
+    python -m studies release cantilever_with_body --effects=-gravity
 
-The start is at rest in static equilibrium: the body turned to the rotation of the case or of --from-deg,
+The start is at rest in static equilibrium: the body turned to the rotation of the case or of --rotation-deg,
 weight, pre-strain and driven displacements in full, and each load at its value times its history at t = 0, in
 full without a history. Then the rotation is let go, and a driven displacement without a history; one with a
-history goes on holding (spline only). Loads go on as value times history(t), constant before its first and
-after its last time. A mechanism without a rotation starts where all of this settles it: under constant loads
-it stands still, and `message` says so.
+history goes on holding. So does the rotation where [drive] of the case says when, by `held_s = [begin, end]`,
+and by a `history`, whose change times rotation_deg it is led through from where it then is. Loads go on as
+value times history(t), constant before its first and after its last time. A mechanism without a rotation
+starts where all of this settles it: under constant loads it stands still, and `message` says so.
 
 Of a pivot coordinates have their origin at A1, the ground clamp of strip 1; rotation is counter-clockwise.
 The arrays of the JSON run over the instants, the release first, and effects are those that were assembled.
@@ -29,95 +30,79 @@ from studies.answers.adapters import answer_release
 from studies.answers.motion import Motion
 from studies.cases.design import Design, flexural_scale
 from studies.cases.effects import DEFAULT
-from studies.cases.keys import ROTATION
 from studies.cases.problem import Problem
 from studies.commands.answer import (
-    add_json_argument,
     deliver,
     described,
     ending,
+    headed,
     number,
     places,
     require_target,
 )
+from studies.commands.arguments import (
+    ACCURACY,
+    DURATION,
+    INTEGRATOR,
+    JSON,
+    MODEL,
+    REPEAT,
+    ROTATION,
+    STEP,
+    chosen_design,
+    chosen_settings,
+    refuse,
+)
 from studies.commands.columns import ENERGY_FLOOR, angle, plain, quantity, table
-from studies.commands.model import add_model_arguments, chosen_design, chosen_settings, refuse
-from studies.commands.parser import Parser, degrees, whole_number
-from studies.errors import BadInput
+from studies.commands.parser import Argument, command, whole_number
 
-#: Options of the motion that the finite elements lack, those that only they have, and those of both.
-SPLINE_OPTIONS = ("accuracy",)
+#: Options of the motion that only the finite elements have, and those of both models.
 FE_OPTIONS = ("most_steps",)
-OPTIONS = ("step", "integrator")
+OPTIONS = ("step", "integrator", "accuracy")
+
+#: Parts of an estimate that are angles [rad].
+ANGLES = ("accuracy", "rotation", "time", "space")
 
 #: Lines of the table, beside the release itself.
 LINES = 20
 
 
-def add_arguments(parser: Parser) -> None:
-    """Declare the arguments of the command."""
-    add_model_arguments(parser)
-    parser.add_argument(
-        "--from-deg", type=degrees, metavar="X", help="rotation at the release, in deg (default: the case's)"
-    )
-    parser.add_argument(
-        "--duration", type=float, default=0.05, metavar="T", help="of the motion, in s, default 0.05"
-    )
-    parser.add_argument("--step", type=float, metavar="S", help="of the integrator, in s (default: its own)")
-    parser.add_argument(
-        "--integrator",
-        metavar="NAME",
-        help="spline: energy (default), generalised-alpha, explicit, leapfrog; "
-        "fe: central-difference (default), generalised-alpha",
-    )
-    parser.add_argument(
-        "--accuracy",
-        type=float,
-        metavar="A",
-        help="wanted error of the rotation, in rad: chooses steps and raises the control points "
-        "(spline; default: none is asked for)",
-    )
-    parser.add_argument(
-        "--repeat",
-        type=whole_number(1),
-        default=1,
-        metavar="R",
-        help="wall_s is the median of R releases, default 1",
-    )
-    parser.add_argument(
+@command(
+    *MODEL,
+    ROTATION.but(help="at the release, in deg (default: the case's)"),
+    DURATION.but(default=0.05),
+    STEP,
+    INTEGRATOR,
+    ACCURACY.but(
+        help="wanted error of the rotation, in rad: chooses steps and raises the control points, or doubles "
+        "the elements (default: none is asked for)"
+    ),
+    REPEAT.but(help="wall_s is the median of R releases, default 1"),
+    Argument(
         "--no-check",
         action="store_true",
         help="leave out the companion motion that says how far the rotation is resolved",
-    )
-    parser.add_argument(
+    ),
+    Argument(
         "--most-steps",
         type=whole_number(1),
         metavar="N",
         help="explicit steps that are not too many to begin with (finite elements; default 20000000)",
-    )
-    add_json_argument(parser)
-
-
+    ),
+    JSON,
+)
 def main(arguments: argparse.Namespace) -> int:
     """Release and report; return the exit code."""
     design = chosen_design(arguments)
     settings = chosen_settings(arguments)
-    if settings.model != "spline":
-        refuse(arguments, SPLINE_OPTIONS, (*OPTIONS, *FE_OPTIONS))
-    else:
-        refuse(arguments, FE_OPTIONS, (*OPTIONS, *SPLINE_OPTIONS))
-    start = design.rotation
-    if arguments.from_deg is not None:
-        try:
-            start = ROTATION.parse(arguments.from_deg)
-        except ValueError as error:
-            raise BadInput(f"--from-deg: {error}") from None
+    if settings.model == "spline":
+        refuse(arguments, FE_OPTIONS, OPTIONS)
     require_target(arguments)
-    options = {name: getattr(arguments, name) for name in (*OPTIONS, *SPLINE_OPTIONS, *FE_OPTIONS)}
+    options = {name: getattr(arguments, name) for name in (*OPTIONS, *FE_OPTIONS)}
     answer = answer_release(
         design,
         settings,
-        start=start,
+        start=design.rotation if arguments.rotation is None else arguments.rotation,
         duration=arguments.duration,
         repeat=arguments.repeat,
         check=not arguments.no_check,
@@ -144,12 +129,7 @@ def as_document(design: Design, answer: Motion) -> dict[str, Any]:
         "dissipated_J": answer.dissipated.tolist(),
     }
     return {
-        "status": answer.status,
-        "message": answer.message,
-        "resolution": answer.resolution,
-        "model": answer.model,
-        "settings": answer.settings,
-        "effects": list(answer.effects),
+        **headed(answer),
         "rotation_error_rad": number(answer.rotation_error),
         "frequency_Hz": number(answer.swing.value),
         "frequency_reason": answer.swing.reason,
@@ -169,10 +149,12 @@ def _estimate(answer: Motion) -> dict[str, Any]:
     """Return the estimate of the error as a part of the JSON object; none where no accuracy was asked for."""
     if answer.estimate is None:
         return {}
-    angles = {
-        f"{name}_rad": number(answer.estimate[name]) for name in ("accuracy", "rotation", "time", "space")
+    return {
+        "estimate": {
+            f"{name}_rad" if name in ANGLES else name: number(value) if name in ANGLES else value
+            for name, value in answer.estimate.items()
+        }
     }
-    return {"estimate": angles | {name: answer.estimate[name] for name in ("control_points", "runs")}}
 
 
 def _readable(design: Design, answer: Motion) -> Iterator[str]:
@@ -197,8 +179,10 @@ def _readable(design: Design, answer: Motion) -> Iterator[str]:
     if math.isfinite(answer.rotation_error):
         yield f"rotation uncertain by {answer.rotation_error:.1e} rad, by the discretisation"
     if answer.estimate is not None:
-        whole, *parts = (f"{answer.estimate[name]:.1e} rad" for name in ("rotation", "time", "space"))
-        yield f"estimated error of the rotation {whole}: {parts[0]} by steps, {parts[1]} by control points"
+        told = {name: f"{value:.1e} rad" for name, value in answer.estimate.items() if name in ANGLES}
+        parts = f"{told['time']} by steps, {told['space']} by control points" if "time" in told else ""
+        parts = parts or f"elements tried: {', '.join(map(str, answer.estimate['meshes']))}"
+        yield f"estimated error of the rotation {told['rotation']}: {parts}"
     if answer.resolution:
         yield answer.resolution
     if answer.converged and answer.message:

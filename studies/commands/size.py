@@ -1,7 +1,7 @@
 """Size a pivot: least centre shift or least variation of stiffness at given range, stiffness and stress.
 
-    python -m studies size studies/cases/cross_axis_pivot.toml --objective centre-shift --rotation-deg 45
-    python -m studies size studies/cases/spring_steel_pivot.toml --objective stiffness-variation --aspect 0.5
+    python -m studies size cross_axis_pivot --objective centre-shift --rotation-deg 45
+    python -m studies size spring_steel_pivot --objective stiffness-variation --aspect 0.5
 
 The case gives the material, the range to either side (its rotation) and the design to compare with; the
 wanted stiffness at rest and the allowable stress at the end of the range are its own unless they are given.
@@ -14,20 +14,17 @@ found, and then the table of the starts says how near they came.
 
 import argparse
 import math
-import sys
 from collections.abc import Callable, Iterator
-from dataclasses import replace
 from typing import Any
 
 from studies.answers.reference import NoReference
-from studies.cases.keys import ROTATION
-from studies.cases.problem import Problem, read_case
-from studies.commands.answer import NOT_CONVERGED, add_json_argument, deliver, require_target
-from studies.commands.parser import Parser, add_case, degrees, positive, whole_number
-from studies.design.evaluate import PathEnds, answers
+from studies.cases.problem import Problem
+from studies.commands.answer import deliver, not_converged, require_target
+from studies.commands.arguments import CASE, JSON, ROTATION, option, turned_pivot
+from studies.commands.parser import Argument, command, positive, whole_number
+from studies.design.evaluate import Measured, PathEnds, answers, by_elements, of_spline
 from studies.design.optimise import Outcome, best, numbered, search, starts
 from studies.design.task import OBJECTIVES, VARIABLES, Room, Task, variables_of
-from studies.design.verify import Measured, by_elements, of_spline
 from studies.errors import BadInput
 from studies.record.progress import Bar
 
@@ -51,44 +48,56 @@ KEYS = {
     "centre-shift": "largest_centre_shift_m",
     "stiffness-variation": "stiffness_variation",
     "stiffness": "stiffness_Nm_per_rad",
-    "stress": "largest_stress_Pa",
+    "stress": "max_stress_Pa",
 }
 DIMENSIONS = ("length_m", "inclination_deg", "crossing_ratio", "thickness_m", "width_m")
 
 
-def add_arguments(parser: Parser) -> None:
-    """Declare the arguments of the command."""
-    add_case(parser, "the pivot to start from and to compare with")
-    parser.add_argument("--objective", choices=list(OBJECTIVES), required=True, help="what is to be least")
-    parser.add_argument(
-        "--rotation-deg", type=degrees, metavar="X", help="range to either side, in deg (default: the case's)"
-    )
-    parser.add_argument(
-        "--stiffness", type=positive, metavar="K", help="at rest, in N m/rad (default: the case's own)"
-    )
-    parser.add_argument(
-        "--stress-MPa", type=positive, metavar="S", help="allowable, in MPa (default: the case's own)"
-    )
-    for name, (option, _, most, said) in BOUNDS.items():
-        parser.add_argument(
-            f"--{option.replace('_', '-')}",
+def _interval(most: float) -> Callable[[str], tuple[float, float]]:
+    """Return a parser of intervals LOW:HIGH within 0 and `most`."""
+
+    def parse(text: str) -> tuple[float, float]:
+        try:
+            low, high = map(float, text.split(":"))
+        except ValueError:
+            low = high = math.nan
+        if 0.0 < low < high < most:
+            return low, high
+        limit = "" if math.isinf(most) else f" < {most:g}"
+        raise argparse.ArgumentTypeError(f"got {text}, expected LOW:HIGH with 0 < LOW < HIGH{limit}")
+
+    return parse
+
+
+@command(
+    CASE,
+    Argument("--objective", choices=list(OBJECTIVES), required=True, help="what is to be least"),
+    ROTATION.but(help="range to either side, in deg (default: the case's)"),
+    Argument("--stiffness", type=positive, metavar="K", help="at rest, in N m/rad (default: the case's own)"),
+    Argument(
+        "--max-stress-MPa", type=positive, metavar="S", help="allowable, in MPa (default: the case's own)"
+    ),
+    *(
+        Argument(
+            option(attribute),
             type=_interval(most),
             metavar="LOW:HIGH",
             help=f"bounds of the {name.replace('_', ' ')}, {said}",
         )
-    parser.add_argument(
+        for name, (attribute, _, most, said) in BOUNDS.items()
+    ),
+    Argument(
         "--aspect",
         type=positive,
         default=1.0,
         metavar="R",
         help="largest width, relative to the length, default 1",
-    )
-    parser.add_argument(
+    ),
+    Argument(
         "--starts", type=whole_number(1), default=8, metavar="N", help="starts of the search, default 8"
-    )
-    add_json_argument(parser)
-
-
+    ),
+    JSON,
+)
 def main(arguments: argparse.Namespace) -> int:
     """Search, check, report; return the exit code."""
     start = _start(arguments)
@@ -100,8 +109,7 @@ def main(arguments: argparse.Namespace) -> int:
         found = best(outcomes)
         checked = None if found is None else by_elements(found.problem)[0]
     except (PathEnds, NoReference) as error:
-        print(f"studies: not converged: {error}", file=sys.stderr)
-        return NOT_CONVERGED
+        return not_converged(error)
     failure = _failure(outcomes) if found is None else None
     document = as_document(task, outcomes, found, checked)
     return deliver(arguments, document, _readable(task, outcomes, found, checked), failure=failure)
@@ -145,14 +153,7 @@ def as_document(
 
 def _start(arguments: argparse.Namespace) -> Problem:
     """Return the case over the range that is asked for; BadInput where it cannot be sized."""
-    start = read_case(arguments.case)
-    if arguments.rotation_deg is not None:
-        try:
-            start = replace(start, rotation=ROTATION.parse(arguments.rotation_deg))
-        except ValueError as error:
-            raise BadInput(f"--rotation-deg: {error}") from None
-    if start.rotation == 0.0:
-        raise BadInput(f"{arguments.case}: drive.rotation_deg: got 0, expected a range to size for")
+    start = turned_pivot(arguments, "range to size for")
     if start.section_depth is not None:
         expected = "none: both sides of a rectangular section are sized"
         raise BadInput(
@@ -164,12 +165,13 @@ def _start(arguments: argparse.Namespace) -> Problem:
 def _task(start: Problem, arguments: argparse.Namespace) -> Task:
     own = answers(start)
     bounds = Room().bounds(start)
-    for name, (option, unit, _, _) in BOUNDS.items():
-        given = getattr(arguments, option)
+    for name, (attribute, unit, _, _) in BOUNDS.items():
+        given = getattr(arguments, attribute)
         if given is not None:
             bounds[name] = given[0] * unit, given[1] * unit
     length, _, _, thickness, _ = map(float, variables_of(start))
-    stress = float(abs(own.stress).max()) if arguments.stress_MPa is None else 1e6 * arguments.stress_MPa
+    wanted = arguments.max_stress_MPa
+    stress = float(abs(own.stress).max()) if wanted is None else 1e6 * wanted
     return Task(
         start=start,
         objective=arguments.objective,
@@ -240,19 +242,3 @@ def _line(problem: Problem) -> str:
     length, _, ratio, thickness, width = variables_of(problem)
     inclination = math.degrees(problem.inclination)
     return f"{1e3 * length:9.3f}{inclination:11.3f}{ratio:10.4f}{1e3 * thickness:9.4f}{1e3 * width:9.3f}"
-
-
-def _interval(most: float) -> Callable[[str], tuple[float, float]]:
-    """Return a parser of intervals LOW:HIGH within 0 and `most`."""
-
-    def parse(text: str) -> tuple[float, float]:
-        try:
-            low, high = map(float, text.split(":"))
-        except ValueError:
-            low = high = math.nan
-        if 0.0 < low < high < most:
-            return low, high
-        limit = "" if math.isinf(most) else f" < {most:g}"
-        raise argparse.ArgumentTypeError(f"got {text}, expected LOW:HIGH with 0 < LOW < HIGH{limit}")
-
-    return parse

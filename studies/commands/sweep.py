@@ -51,28 +51,26 @@ code 0: done; 2: bad input, or a place that cannot be written to; 130: interrupt
 
 import argparse
 import sys
-from pathlib import Path
 
-from studies.commands.parser import Parser, whole_number
+from studies.commands.arguments import OUT
+from studies.commands.parser import Argument, command, whole_number
 
 INTERRUPTED = 130
 
 
-def add_arguments(parser: Parser) -> None:
-    """Declare the arguments of the command."""
-    parser.add_argument("designs", metavar="DESIGNS.toml", help="which designs, and what is asked of them")
-    parser.add_argument("--out", type=Path, required=True, metavar="DIR", help="folder of the table")
-    parser.add_argument("--csv", action="store_true", help="write the table as CSV as well")
-    parser.add_argument(
+@command(
+    Argument("designs", metavar="DESIGNS.toml", help="which designs, and what is asked of them"),
+    OUT.but(required=True, metavar="DIR", help="folder of the table"),
+    Argument("--csv", action="store_true", help="write the table as CSV as well"),
+    Argument(
         "--workers", type=whole_number(1), metavar="N", help="threads or processes (default: all cores)"
-    )
-    parser.add_argument(
+    ),
+    Argument(
         "--scheduler",
         metavar="ADDRESS",
         help="of a Dask cluster, tcp://HOST:PORT (default: none, this machine alone)",
-    )
-
-
+    ),
+)
 def main(arguments: argparse.Namespace) -> int:
     """Run the sweep, or what is missing of it; return the exit code."""
     from studies.errors import BadInput
@@ -80,9 +78,9 @@ def main(arguments: argparse.Namespace) -> int:
     if arguments.scheduler and arguments.workers:
         raise BadInput("--workers: got it with --scheduler, expected one of them: a cluster has its own")
     from studies.record.progress import Bar
-    from studies.sweep.designs.read import read_plan
+    from studies.sweep.read import read_plan
     from studies.sweep.run import local_pool, sweep
-    from studies.sweep.workers.cluster import cluster
+    from studies.sweep.workers import cluster
 
     plan = read_plan(arguments.designs)
     pool = cluster(arguments.scheduler) if arguments.scheduler else local_pool(plan, arguments.workers)

@@ -32,7 +32,7 @@ def settings() -> list[SplineSettings]:
     ]
 
 
-def default_modes(rows: pd.DataFrame) -> pd.DataFrame:
+def _default_modes(rows: pd.DataFrame) -> pd.DataFrame:
     """Return the rows of the default m = n - 2, and those of consistent stretch, which has no modes."""
     return rows[(rows["stretch"] == "consistent") | (rows["axial_modes"] == rows["control_points"] - 2)]
 
@@ -40,7 +40,7 @@ def default_modes(rows: pd.DataFrame) -> pd.DataFrame:
 def _lines(tables: Tables) -> Figure:
     figure = page(9.5, 6.6)
     panels = figure.subplots(2, 2, sharex=True, sharey="row")
-    rows, limits = default_modes(tables["map"]), tables["reference"]
+    rows, limits = _default_modes(tables["map"]), tables["reference"]
     for line, quantity in enumerate(("trajectory", "torque")):
         level = float(limits["uncertainty"][limits["quantity"] == quantity].max())
         for column, (basis, label) in enumerate(BASES.items()):
@@ -103,7 +103,7 @@ def _map(panel: Axes, rows: pd.DataFrame, norm: LogNorm) -> None:
 def _findings(tables: Tables) -> list[Finding]:
     """Return what the map says of locking and of the number of control points, from the default modes."""
     found = []
-    chosen = default_modes(tables["map"]).query("measure == 'material'")
+    chosen = _default_modes(tables["map"]).query("measure == 'material'")
     for (basis, stretch), curve in chosen.groupby(["basis", "stretch"]):
         name = f"{BASES[str(basis)]}, {stretch} stretch"
         four = curve.query("control_points == 4").iloc[0]

@@ -21,7 +21,7 @@ MESHES = (5, 10, 20, 40, 80, 160, 320)
 ORDER, ALLOWANCE = 2.0, 0.1
 
 
-def refined(element: str) -> Answer:
+def _refined(element: str) -> Answer:
     """Return the errors of every mesh of an element, and the limits."""
     rows, limit = element_sweep(named_case(CASE), MESHES, element)
     return {"meshes": rows, "limits": _limits(element, limit)}
@@ -88,7 +88,7 @@ def _at(tables: Tables, count: int) -> list[dict[str, Any]]:
 
 STUDY = Study(
     cases=(CASE,),
-    parts=(Part(at=lambda: ELEMENTS, ask=refined),),
+    parts=(Part(at=lambda: ELEMENTS, ask=_refined),),
     claims=(
         Claim(
             claim="The {of} of the finite elements converges with order 2",

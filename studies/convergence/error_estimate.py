@@ -18,9 +18,9 @@ from scipy.stats import qmc
 
 from studies.answers.adapters import answer_modes, answer_release, answer_static
 from studies.answers.motion import Motion
+from studies.answers.reference import sampled
 from studies.answers.response import Response
 from studies.answers.settings import SplineSettings
-from studies.answers.swing import sampled
 from studies.cases.problem import Problem, named_case
 from studies.engine.findings import Finding, Tables
 from studies.engine.study import Part, Study
@@ -98,7 +98,7 @@ def period(problem: Problem) -> float:
     return 1.0 / float(answer_modes(problem, SplineSettings(control_points=6), count=1).frequency[0])
 
 
-def described(number: int, problem: Problem) -> dict[str, float]:
+def _described(number: int, problem: Problem) -> dict[str, float]:
     """Return the columns that say which design a row is of."""
     return {
         "design": number,
@@ -146,7 +146,7 @@ def _static_rows(number: int, problem: Problem) -> Iterator[dict[str, Any]]:
     uncertainty = _path_errors(check, exact)
     for accuracy in ACCURACIES:
         answer = answer_static(problem, SplineSettings(control_points=FIRST), accuracy=accuracy)
-        identity = {"problem": "statics", **described(number, problem), "accuracy": accuracy}
+        identity = {"problem": "statics", **_described(number, problem), "accuracy": accuracy}
         estimate = answer.estimate or {}
         for quantity, error in _path_errors(answer, exact).items():
             yield identity | _judged(quantity, "1", estimate, error, uncertainty[quantity], answer)
@@ -163,7 +163,7 @@ def _swing_rows(number: int, problem: Problem) -> Iterator[dict[str, Any]]:
     for accuracy in SWING_ACCURACIES:
         answer = let_go(SplineSettings(control_points=FIRST), accuracy=accuracy)
         estimate = answer.estimate or {}
-        identity = {"problem": "motion", **described(number, problem), "accuracy": accuracy}
+        identity = {"problem": "motion", **_described(number, problem), "accuracy": accuracy}
         error = _rotation_error(answer, exact)
         yield identity | _judged("rotation", "rad", estimate, error, uncertainty, answer)
 

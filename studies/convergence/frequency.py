@@ -11,7 +11,7 @@ from studies.convergence import swing_sweep
 from studies.convergence.swing_sweep import INTEGRATORS, MODES
 from studies.engine.findings import Finding, Tables
 from studies.engine.study import Part, Study
-from studies.paper import swings
+from studies.paper import formulations
 from studies.paper.formulations import CASE
 from studies.record.style import BLACK, BLUE, LOOKS, ORANGE, page, uncertain
 
@@ -183,7 +183,7 @@ def _findings_of_small_motion(tables: Tables) -> list[Finding]:
 
 
 def _reference() -> dict[str, float | str]:
-    limit = swings.reference()
+    limit = formulations.refined_swing()
     return {
         "quantity": "frequency",
         "frequency_Hz": limit.frequency,

@@ -21,7 +21,7 @@ from studies.cases.problem import named_case
 from studies.convergence.sweep import QUANTITIES
 from studies.engine.findings import Finding, Tables
 from studies.engine.study import Answer, Part, Study
-from studies.paper import formulations, swings
+from studies.paper import formulations
 from studies.paper.formulations import CASE
 from studies.record.style import COUNT_COLOURS, page
 
@@ -43,7 +43,7 @@ def defaults() -> list[dict[str, Any]]:
     return [dict(zip(("problem", "control_points", "slide_stiffness"), each, strict=True)) for each in own]
 
 
-def moving() -> list[tuple[int, float]]:
+def _moving() -> list[tuple[int, float]]:
     """Return counts and values that are asked in motion: the default is among them."""
     return [(n, each) for n in MOVING_COUNTS for each in sorted({*VALUES, swinging_slide_stiffness(n)})]
 
@@ -85,15 +85,15 @@ def _static(n: int, value: float) -> Answer:
 
 def _motion(n: int, value: float) -> Answer:
     """Return the row of one motion: status, largest error of the rotation and shift of the frequency."""
-    instants = swings.INSTANTS[swings.INSTANTS <= DURATION]
-    exact = swings.reference().swing.rotation[: len(instants)]
-    motion = swings.resolved(SplineSettings(control_points=n, slide_stiffness=value), duration=DURATION)
+    instants = formulations.INSTANTS[formulations.INSTANTS <= DURATION]
+    exact = formulations.refined_swing().swing.rotation[: len(instants)]
+    motion = formulations.resolved(SplineSettings(control_points=n, slide_stiffness=value), duration=DURATION)
     shift = motion.frequency / swing_frequency(instants, exact).value - 1.0
     row = {
         "control_points": n,
         "slide_stiffness": value,
         "status": motion.status,
-        "error_rotation_rad": swings.rotation_error(motion, exact, instants),
+        "error_rotation_rad": formulations.rotation_error(motion, exact, instants),
         "frequency_shift": shift if motion.converged else np.nan,
     }
     return {"motion": row}
@@ -123,7 +123,7 @@ STUDY = Study(
     cases=(CASE,),
     parts=(
         Part(at=lambda: product(COUNTS, VALUES), ask=_static),
-        Part(at=moving, ask=_motion),
+        Part(at=_moving, ask=_motion),
         Part(ask=lambda: {"defaults": defaults()}),
     ),
     claims=(

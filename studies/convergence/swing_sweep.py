@@ -8,19 +8,19 @@ from typing import Any
 from studies.answers.adapters import answer_modes, answer_static
 from studies.answers.metrics import extrapolate, quasi_static_frequency
 from studies.answers.motion import Motion
+from studies.answers.reference import SWING_MESHES, sampled
 from studies.answers.response import Response
 from studies.answers.settings import FeSettings, SplineSettings
-from studies.answers.swing import MESHES, sampled
 from studies.cases.problem import named_case
-from studies.paper import swings
+from studies.paper import formulations
 from studies.paper.formulations import CASE, FE, SETTINGS
 
-COUNTS = tuple(swings.STEPS)
+COUNTS = tuple(formulations.STEPS)
 #: Beyond this count the consistent form, whose axial waves are faster, needs shorter steps; nor does it lock.
 MOST_CONSISTENT = 7
 #: Stretch forms with their counts.
 FORMS = [("mixed", n) for n in COUNTS] + [("consistent", n) for n in COUNTS if n <= MOST_CONSISTENT]
-ELEMENTS = (5, 10, *MESHES[:1], 20, *MESHES[1:])
+ELEMENTS = (5, 10, *SWING_MESHES[:1], 20, *SWING_MESHES[1:])
 STEPS = (2e-6, 5e-6, 1e-5, 2e-5, 5e-5, 1e-4, 2e-4, 5e-4)
 INTEGRATORS = {"energy": "energy-consistent", "generalised-alpha": "generalised-α"}
 AMPLITUDES = (2, 5, 10, 20, 30, 45, 60, 75, 90)
@@ -41,7 +41,7 @@ def of_control_points(stretch: str, n: int) -> dict[str, Any]:
     error_rotation_rad (largest over the motion).
     """
     settings = SplineSettings(control_points=n, stretch=stretch)
-    motion = swings.resolved(settings)
+    motion = formulations.resolved(settings)
     implied = static_frequency(answer_static(named_case(CASE), _as_in(motion, settings)))
     row = {"stretch": stretch, "control_points": n} | _outcome(motion)
     return row | {"shift_from_statics": implied / _finest_static_frequency() - 1.0}
@@ -49,8 +49,8 @@ def of_control_points(stretch: str, n: int) -> dict[str, Any]:
 
 def of_elements(count: int) -> dict[str, Any]:
     """Return the row of a mesh of the explicit finite elements; columns as of `of_control_points`."""
-    levels = {int(level.settings["elements"]): level for level in swings.reference().levels}
-    motion = levels[count] if count in levels else swings.released(FeSettings(elements=count))
+    levels = {int(level.settings["elements"]): level for level in formulations.refined_swing().levels}
+    motion = levels[count] if count in levels else formulations.released(FeSettings(elements=count))
     return {"elements": count} | _outcome(motion)
 
 
@@ -60,8 +60,8 @@ def of_step(integrator: str, step: float) -> dict[str, Any]:
     Columns: integrator, step_s, status, frequency_Hz, shift, error_rotation_rad, energy_error.
     """
     settings = SplineSettings(control_points=6)
-    motion = swings.released(settings, integrator=integrator, step=step)
-    row = {"integrator": integrator, "step_s": step} | _outcome(motion, swings.resolved(settings))
+    motion = formulations.released(settings, integrator=integrator, step=step)
+    row = {"integrator": integrator, "step_s": step} | _outcome(motion, formulations.resolved(settings))
     return row | {"energy_error": motion.energy_error}
 
 
@@ -101,7 +101,7 @@ def of_amplitude(name: str, amplitude: float) -> dict[str, Any]:
     Columns: formulation, amplitude_rad, status, frequency_Hz, frequency_from_statics_Hz, first_mode_Hz.
     """
     problem = dataclasses.replace(named_case(CASE), rotation=float(amplitude))
-    motion = swings.released(SETTINGS[name], start=float(amplitude), **BACKBONE[name])
+    motion = formulations.released(SETTINGS[name], start=float(amplitude), **BACKBONE[name])
     return {
         "formulation": name,
         "amplitude_rad": amplitude,
@@ -136,13 +136,13 @@ def _as_in(motion: Motion, settings: SplineSettings) -> SplineSettings:
 
 def _outcome(motion: Motion, exact: Motion | None = None) -> dict[str, Any]:
     """Return status, frequency, shift and error of a motion against `exact`, or the limit of the elements."""
-    limit = swings.reference()
+    limit = formulations.refined_swing()
     frequency = limit.frequency if exact is None else exact.frequency
-    rotation = limit.swing.rotation if exact is None else sampled(exact, swings.INSTANTS).rotation
+    rotation = limit.swing.rotation if exact is None else sampled(exact, formulations.INSTANTS).rotation
     found = motion.frequency if motion.converged else math.nan
     return {
         "status": motion.status,
         "frequency_Hz": found,
         "shift": found / frequency - 1.0,
-        "error_rotation_rad": swings.rotation_error(motion, rotation),
+        "error_rotation_rad": formulations.rotation_error(motion, rotation),
     }

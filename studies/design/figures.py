@@ -8,7 +8,7 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure, SubFigure
 
-from studies.design.questions import BASELINES, QUESTIONS, TABLE_ONE, WIDE
+from studies.design.task import BASELINES, QUESTIONS, TABLE_ONE, WIDE
 from studies.record.style import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, RED, SKY, page
 
 COLOURS = dict(zip((*BASELINES, *QUESTIONS), (BLACK, BLACK, BLUE, RED, SKY, ORANGE, BLUE, RED), strict=True))

@@ -7,9 +7,8 @@ from scipy.optimize import minimize
 from scipy.stats import qmc
 
 from studies.cases.problem import Problem
-from studies.design.conditions import Active, conditions
 from studies.design.evaluate import Answers, answers
-from studies.design.programme import Programme
+from studies.design.programme import Active, Programme, conditions
 from studies.design.task import CENTRE_SHIFT, OBJECTIVES, Task, variables_of
 from studies.kinds import Array, Progress
 

@@ -13,12 +13,27 @@ from spline_model.sensitivity.solve import sensitivities
 from spline_model.statics import solve_statics
 from studies.answers.response import Response
 from studies.cases.problem import Problem, named_case
-from studies.design import figures, questions
-from studies.design.evaluate import Answers, answers
+from studies.design import figures
+from studies.design.evaluate import Answers, Measured, answers, by_elements, gradient_error, of_spline
 from studies.design.optimise import Outcome, best, numbered, search, starts
-from studies.design.questions import BASELINES, QUESTIONS, SPRING_STEEL, STARTS, TABLE_ONE, TRADE
-from studies.design.task import CENTRE_SHIFT, OBJECTIVES, VARIATION, Task, variables_of
-from studies.design.verify import Measured, by_elements, gradient_error, of_spline
+from studies.design.task import (
+    ALLOWABLE,
+    BASELINES,
+    CENTRE_SHIFT,
+    OBJECTIVES,
+    QUESTIONS,
+    SPRING_STEEL,
+    STARTS,
+    TABLE_ONE,
+    TRADE,
+    VARIATION,
+    WIDE,
+    Question,
+    Task,
+    baseline,
+    task_of,
+    variables_of,
+)
 from studies.engine.study import Answer, Part, Study
 from studies.record.progress import silent
 from studies.record.timing import measure
@@ -30,15 +45,22 @@ UNITS = ("length_m", "inclination_rad", "crossing_ratio", "thickness_m", "width_
 
 @cache
 def _baseline(name: str) -> tuple[Problem, Answers]:
-    problem = questions.baseline(name)
+    problem = baseline(name)
     return problem, answers(problem)
+
+
+def _task(question: Question, **limits: float) -> Task:
+    """Return the task of a question at its baseline's own stiffness, and largest stress."""
+    start, own = _baseline(question.baseline)
+    largest = float(np.abs(own.stress).max())
+    return task_of(start, question, stiffness=own.stiffness, stress=largest, **limits)
 
 
 @cache
 def _found(name: str) -> tuple[Task, list[Outcome]]:
     """Return what a question asks and where its starts have led."""
     question = QUESTIONS[name]
-    task = questions.task(*_baseline(question.baseline), question)
+    task = _task(question)
     return task, search(task, starts(task, STARTS), silent)
 
 
@@ -49,7 +71,7 @@ def _optimum(name: str) -> Outcome:
     return outcome
 
 
-def searched(name: str) -> Answer:
+def _searched(name: str) -> Answer:
     """Return a question's optimum and how it was found.
 
     Tables: starts (a row a start: where it led); history (a row an iteration); active (constraints that hold
@@ -90,9 +112,9 @@ def _trade() -> list[dict[str, Any]]:
     It lies between the optima of both objectives, and begins at the last one too.
     """
     rows: list[dict[str, Any]] = []
-    begin = [_optimum(name).at[:5] for name in questions.WIDE]
+    begin = [_optimum(name).at[:5] for name in WIDE]
     for limit in TRADE:
-        task = questions.task(*_baseline(TABLE_ONE), QUESTIONS[questions.WIDE[0]], variation=limit)
+        task = _task(QUESTIONS[WIDE[0]], variation=limit)
         found = best(search(task, np.array(begin), silent))
         rows.append(_trade_row(limit, found))
         begin = begin[:2] if found is None else [*begin[:2], found.at[:5]]
@@ -113,12 +135,12 @@ def _trade_row(limit: float, found: Outcome | None) -> dict[str, Any]:
 
 def _design(name: str, problem: Problem, found: Answers) -> dict[str, Any]:
     """Return a design's variables and objectives; factors are the baseline's objective over the design's."""
-    baseline = name if name in BASELINES else QUESTIONS[name].baseline
-    own, measured = _baseline(baseline)[1], of_spline(found)
-    reach = float(np.interp(questions.ALLOWABLE, measured.stress, measured.rotation))
+    other = name if name in BASELINES else QUESTIONS[name].baseline
+    own, measured = _baseline(other)[1], of_spline(found)
+    reach = float(np.interp(ALLOWABLE, measured.stress, measured.rotation))
     return {
         "design": name,
-        "baseline": baseline,
+        "baseline": other,
         **dict(zip(UNITS, variables_of(problem), strict=True)),
         "stiffness_Nm_per_rad": found.stiffness,
         "largest_stress_Pa": float(measured.stress.max()),
@@ -260,7 +282,7 @@ STUDY = Study(
     cases=tuple(BASELINES.values()),
     parts=(
         Part(at=lambda: BASELINES, ask=lambda name: described(name, *_baseline(name))),
-        Part(at=lambda: QUESTIONS, ask=searched),
+        Part(at=lambda: QUESTIONS, ask=_searched),
         Part(ask=lambda: {"trade": _trade()}),
         Part(at=lambda: TIMED, ask=timed, alone=True),
     ),

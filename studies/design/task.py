@@ -1,4 +1,4 @@
-"""A sizing question: what is to be least, what must hold, and between which bounds the design may move."""
+"""A sizing question: what is to be least, what must hold, between which bounds; and those of the study."""
 
 import math
 from collections.abc import Mapping
@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from studies.cases.problem import Problem
+from studies.cases.problem import Problem, named_case
 
 #: Variables of a sizing, as keywords of the sensitivities; both strips are alike.
 VARIABLES = ("length", "inclination", "crossing_ratio", "thickness", "width")
@@ -104,4 +104,84 @@ def variables_of(problem: Problem) -> NDArray[np.float64]:
     thickness = math.sqrt(12.0 * problem.second_moment_of_area / problem.area)
     return np.array(
         [problem.length, problem.inclination, problem.crossing_ratio, thickness, problem.area / thickness]
+    )
+
+
+#: Designs to compare with: their case.
+TABLE_ONE, SPRING_STEEL = "Table 1", "spring steel"
+BASELINES: Mapping[str, str] = {TABLE_ONE: "cross_axis_pivot", SPRING_STEEL: "spring_steel_pivot"}
+
+#: Range of Table 1's pivot to either side; at its 90 degrees the stress is above 14 GPa.
+RANGE_DEG = 45.0
+#: Increments of the path to the end of the range.
+INCREMENTS = 12
+#: Starts of every search: the design to compare with and points spread over the bounds.
+STARTS = 8
+#: Stress at which a strip of hardened spring steel lasts under repeated bending, a choice [Pa].
+ALLOWABLE = 500e6
+#: Strips no wider than half their length, in place of no wider than long.
+NARROW = 0.5
+#: Largest variations of stiffness for which the centre shift is made least [1].
+TRADE = (0.07, 0.06, 0.05, 0.04, 0.03, 0.02, 0.01, 0.005, 0.002, 0.001)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Question:
+    """What is to be least beside which design.
+
+    Args:
+        baseline: the design to compare with, a key of `BASELINES`; objective: a key of `OBJECTIVES`.
+        aspect: largest width over length [1].
+        stress: allowable [Pa]; None for the baseline's own at the end of the range.
+    """
+
+    baseline: str
+    objective: str
+    aspect: float = 1.0
+    stress: float | None = None
+
+
+QUESTIONS: Mapping[str, Question] = {
+    "least centre shift": Question(baseline=TABLE_ONE, objective=CENTRE_SHIFT),
+    "least variation of stiffness": Question(baseline=TABLE_ONE, objective=VARIATION),
+    "least centre shift, narrow strips": Question(baseline=TABLE_ONE, objective=CENTRE_SHIFT, aspect=NARROW),
+    "least variation of stiffness, narrow strips": Question(
+        baseline=TABLE_ONE, objective=VARIATION, aspect=NARROW
+    ),
+    "least centre shift, spring steel": Question(
+        baseline=SPRING_STEEL, objective=CENTRE_SHIFT, stress=ALLOWABLE
+    ),
+    "least variation of stiffness, spring steel": Question(
+        baseline=SPRING_STEEL, objective=VARIATION, stress=ALLOWABLE
+    ),
+}
+#: The two between which the trade lies.
+WIDE = ("least centre shift", "least variation of stiffness")
+
+
+def baseline(name: str = TABLE_ONE) -> Problem:
+    """Return the design to compare with, over its range."""
+    given = named_case(BASELINES[name])
+    rotation = math.radians(RANGE_DEG) if name == TABLE_ONE else given.rotation
+    return replace(given, rotation=rotation, increments=INCREMENTS)
+
+
+def task_of(start: Problem, question: Question, *, stiffness: float, stress: float, **limits: float) -> Task:
+    """Return the task of a question, at the stiffness of the design to compare with.
+
+    Args:
+        start: that design, with its own stiffness at rest [N m / rad] and largest stress [Pa].
+        question: of what is to be least.
+        limits: largest variation of stiffness, as `variation` [1].
+    """
+    length, _, _, thickness, _ = variables_of(start)
+    return Task(
+        start=start,
+        objective=question.objective,
+        stiffness=stiffness,
+        allowable_stress=stress if question.stress is None else question.stress,
+        bounds=Room().bounds(start),
+        least_slenderness=float(length / thickness),
+        largest_aspect=question.aspect,
+        limits={VARIATION: limits["variation"]} if limits else {},
     )

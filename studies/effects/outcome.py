@@ -6,16 +6,14 @@ from typing import TypeVar
 
 import numpy as np
 
-from studies.answers.adapters import answer_mechanism, answer_modes, answer_release, answer_static
-from studies.answers.assembly import MechanismResponse
+from studies.answers.adapters import answer_modes, answer_path, answer_release
 from studies.answers.motion import Motion
-from studies.answers.response import Response
+from studies.answers.response import MechanismResponse, Response
 from studies.answers.settings import SplineSettings
 from studies.answers.spectrum import Spectrum
 from studies.cases.design import Design
 from studies.cases.problem import Problem
-from studies.effects.size import Size, size_of
-from studies.effects.variants import Variant
+from studies.effects.variants import Size, Variant, size_of
 from studies.errors import BadInput
 from studies.kinds import Array
 
@@ -123,9 +121,9 @@ def answered(design: Design, run: Run, full: Answer | None = None) -> Answer:
     Raises:
         BadInput: what the model refuses. Unanswered: a path that stopped early, and why.
     """
-    static = _reached(_static(design, run.settings))
+    static = _reached(answer_path(design, run.settings))
     mode = float(_reached(answer_modes(design, run.settings, count=1)).frequency[0])
-    answer = Answer(path=_path(static), torque=static.torque, mode=mode)
+    answer = Answer(path=static.centres, torque=static.torque, mode=mode)
     if full is not None and abs(mode / full.mode - 1.0) > LOST:
         return replace(answer, note="no motion: the first mode is another")
     motion = answer_release(design, run.settings, duration=run.duration, step=run.step)
@@ -144,7 +142,7 @@ def answered(design: Design, run: Run, full: Answer | None = None) -> Answer:
 def timed(design: Design, run: Run) -> float:
     """Return the time of static path and motion once more [s]."""
     motion = answer_release(design, run.settings, duration=run.duration, step=run.step)
-    return _static(design, run.settings).wall_s + motion.wall_s
+    return answer_path(design, run.settings).wall_s + motion.wall_s
 
 
 def outcome(variant: Variant, design: Design, run: Run, full: Answer) -> Outcome:
@@ -187,19 +185,6 @@ def _reached(answer: Reached) -> Reached:
     if not answer.converged:
         raise Unanswered(answer.message)
     return answer
-
-
-def _static(design: Design, settings: SplineSettings) -> Response | MechanismResponse:
-    if isinstance(design, Problem):
-        return answer_static(design, settings)
-    return answer_mechanism(design, settings)
-
-
-def _path(answer: Response | MechanismResponse) -> dict[str, Array]:
-    """Return the centres of all bodies along the path, (S, 2) by name [m]."""
-    if isinstance(answer, Response):
-        return {"body": answer.centre}
-    return {name: place[:, :2] for name, place in answer.bodies.items()}
 
 
 def _rest(design: Design, full: Answer) -> dict[str, Array]:

@@ -11,8 +11,7 @@ from studies.cases.problem import Problem, named_case
 from studies.effects import figures
 from studies.effects.audit import Audit, audit
 from studies.effects.outcome import Outcome
-from studies.effects.size import size_of
-from studies.effects.variants import Variant, without
+from studies.effects.variants import Variant, size_of, without
 from studies.engine.findings import Claim, Finding, Tables
 from studies.engine.study import Answer, Part, Study
 
@@ -42,7 +41,7 @@ def designs() -> dict[str, Problem]:
     }
 
 
-def audited(name: str) -> Answer:
+def _audited(name: str) -> Answer:
     """Return the worth of a design's effects (a row a scene: changes, size, or why there is no answer), the
     times (of the full scene over the scene's) and the cheapest scene."""
     found = audit(designs()[name], SETTINGS, TOLERANCE)
@@ -188,7 +187,7 @@ def _exponent(tables: Tables) -> list[dict[str, Any]]:
 STUDY = Study(
     cases=(CASE,),
     parts=(
-        Part(at=designs, ask=audited, alone=True),
+        Part(at=designs, ask=_audited, alone=True),
         # highest frequency and explicit step with and without stretching
         Part(at=lambda: COUNTS, ask=lambda n: {"steps": _steps(n)}),
         # shift of the first mode by massless strips

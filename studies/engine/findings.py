@@ -38,6 +38,15 @@ class Finding:
         return asdict(self) | {"holds": "yes" if self.holds else "no", "sentence": self.sentence()}
 
 
+class Ratio(Finding):
+    """A finding whose value says how many times."""
+
+    def sentence(self) -> str:
+        """Return the finding as a sentence."""
+        verdict = "holds" if self.holds else "does not hold"
+        return f"{self.formulation}: {self.quantity} is {self.value:.3g}, so the claim {verdict}."
+
+
 @dataclass(frozen=True, kw_only=True)
 class Claim:
     """A claim that is held against rows of a study's tables, one finding a row.
@@ -48,6 +57,7 @@ class Claim:
         rows: of the tables, which rows are judged.
         value: the column that was measured [1], or what makes it of a row.
         holds: of a row, whether the claim holds. Without it: `least` <= value <= `most`.
+        kind: of the findings: `Ratio` where the value says how many times.
     """
 
     claim: str
@@ -58,13 +68,14 @@ class Claim:
     holds: Callable[[dict[str, Any]], Any] | None = None
     least: float = -math.inf
     most: float = math.inf
+    kind: type[Finding] = Finding
 
     def __call__(self, tables: Tables) -> Iterator[Finding]:
         """Yield the findings."""
         for row in records(self.rows(tables)):
             value = float(row[self.value] if isinstance(self.value, str) else self.value(row))
             within = self.least <= value <= self.most
-            yield Finding(
+            yield self.kind(
                 claim=self.claim.format(**row),
                 formulation=self.formulation.format(**row),
                 quantity=self.quantity.format(**row),

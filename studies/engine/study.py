@@ -70,21 +70,21 @@ class Study:
                 one = isinstance(rows, Mapping | pd.DataFrame)
                 given.setdefault(name, []).extend([rows] if one else rows)
         findings = {name: given.pop(name, []) for name in (FINDINGS, OF_TIME)}
-        tables = {name: as_table(rows) for name, rows in given.items()}
+        tables = {name: _as_table(rows) for name, rows in given.items()}
         for name, make in self.made.items():
-            tables[name] = as_table(make(tables))
+            tables[name] = _as_table(make(tables))
         for claim in self.claims:
             findings[FINDINGS].extend(claim(tables))
         for claim in self.claims_of_time:
             findings[OF_TIME].extend(claim(tables))
-        return tables | {name: as_table(rows) for name, rows in findings.items() if rows}
+        return tables | {name: _as_table(rows) for name, rows in findings.items() if rows}
 
     def draw(self, tables: Tables) -> dict[str, Figure]:
         """Return the figures by name."""
         return {name: make(tables) for name, make in self.figures.items()}
 
 
-def as_table(rows: pd.DataFrame | Iterable[Any]) -> pd.DataFrame:
+def _as_table(rows: pd.DataFrame | Iterable[Any]) -> pd.DataFrame:
     """Return rows, findings or tables one below the other as one table."""
     if isinstance(rows, pd.DataFrame):
         return rows

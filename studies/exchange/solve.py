@@ -6,7 +6,7 @@ import numpy as np
 
 from studies.answers.fields import Fields, blocks_of, parts_of, strip_arrays
 from studies.answers.models import as_solved, built, effects_of, is_given, model_of, refusals
-from studies.answers.moving import state_of
+from studies.answers.moving import drive_of, state_of
 from studies.answers.response import assembled
 from studies.answers.settings import Settings
 from studies.cases.design import Design
@@ -69,6 +69,7 @@ def release_fields(
     given = {name: value for name, value in options.items() if value is not None} | model.release_options
     given |= {"duration": duration, model.records: records, "check": False}
     with refusals(model, settings):
+        given |= drive_of(model, design)
         try:
             if isinstance(design, Problem):
                 result = model.dynamics.solve_release(asked, start=design.rotation, **given)

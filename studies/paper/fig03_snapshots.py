@@ -28,7 +28,7 @@ NODES: dict[str, Any] = {"color": BLACK, "linestyle": "", "marker": "o", "marker
 BOUND = 0.01
 
 
-def compared(name: str) -> Answer:
+def _compared(name: str) -> Answer:
     """Return a formulation's shapes at the snapshots, and their distance to the finest elements."""
     answer = formulations.answer(name)
     distance = _distance(answer, formulations.refined().finest) / named_case(CASE).length
@@ -127,7 +127,7 @@ STUDY = Study(
     cases=(CASE,),
     parts=(
         Part(ask=lambda: {"shapes": _snapshots(REFINED, formulations.refined().finest)}),
-        Part(at=lambda: SETTINGS, ask=compared),
+        Part(at=lambda: SETTINGS, ask=_compared),
     ),
     figures={"fig03_snapshots": figure},
 )

@@ -15,7 +15,7 @@ from studies.record.style import LOOKS, page, uncertain
 BOUND = 0.01
 
 
-def compared(name: str) -> Answer:
+def _compared(name: str) -> Answer:
     """Return a formulation's path, its error against the refined elements, and a summary."""
     answer, limit = formulations.answer(name), formulations.refined()
     error = errors(answer, limit).trajectory
@@ -84,7 +84,7 @@ def _path(name: str, rotation: np.ndarray, centre: np.ndarray, error: np.ndarray
 
 STUDY = Study(
     cases=(CASE,),
-    parts=(Part(ask=refined), Part(at=lambda: SETTINGS, ask=compared)),
+    parts=(Part(ask=refined), Part(at=lambda: SETTINGS, ask=_compared)),
     claims=(
         Claim(
             claim="Fig 4: the two trajectories differ by less than 1 % at the end of the movement",

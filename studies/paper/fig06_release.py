@@ -8,11 +8,11 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from studies.answers.motion import Motion
+from studies.answers.reference import Swing, SwingReference, sampled
 from studies.answers.settings import SplineSettings
-from studies.answers.swing import Swing, SwingReference, sampled
 from studies.engine.findings import Finding, Tables
 from studies.engine.study import Answer, Part, Study
-from studies.paper import swings
+from studies.paper import formulations
 from studies.paper.formulations import CASE, FE, LOCKING_FREE, MEANING, PAPER, REFINED, SETTINGS
 from studies.record.style import CHECK, LOOKS, page, uncertain
 
@@ -35,9 +35,9 @@ QUANTITIES = (
 
 def compared(name: str) -> Answer:
     """Return a motion with its differences to the limit of refinement, its summary and the findings."""
-    motion, limit = _motion(name), swings.reference()
+    motion, limit = _motion(name), formulations.refined_swing()
     return {
-        "motions": _trace(name, sampled(motion, swings.INSTANTS), limit.swing),
+        "motions": _trace(name, sampled(motion, formulations.INSTANTS), limit.swing),
         "summary": _summary(name, motion, limit),
         "findings": _findings(name, motion, _motion(FE)) if name in SPLINES else [],
     }
@@ -45,7 +45,7 @@ def compared(name: str) -> Answer:
 
 def refined() -> Answer:
     """Return the limit of refinement and its uncertainties: in rad, in m, relative for the frequency."""
-    limit = swings.reference()
+    limit = formulations.refined_swing()
     largest = {
         "rotation_rad": float(limit.uncertainty.max()),
         "com_x_m": float(limit.centre_uncertainty[:, 0].max()),
@@ -114,7 +114,11 @@ def _look(name: str) -> dict[str, Any]:
 def _motion(name: str) -> Motion:
     """Return the motion of one formulation: the splines' at a resolved step, the elements' at their own."""
     settings = SplineSettings(control_points=10) if name == REFINED_SPLINE else SETTINGS[name]
-    return swings.resolved(settings) if isinstance(settings, SplineSettings) else swings.released(settings)
+    return (
+        formulations.resolved(settings)
+        if isinstance(settings, SplineSettings)
+        else formulations.released(settings)
+    )
 
 
 def _trace(name: str, swing: Swing, limit: Swing) -> pd.DataFrame:
@@ -136,7 +140,7 @@ def _trace(name: str, swing: Swing, limit: Swing) -> pd.DataFrame:
 
 
 def _summary(name: str, motion: Motion, limit: SwingReference) -> dict[str, Any]:
-    swing = sampled(motion, swings.INSTANTS)
+    swing = sampled(motion, formulations.INSTANTS)
     return {
         "formulation": name,
         "meaning": MEANING.get(name, "material measure, mixed stretch: refined, a check of the reference"),
@@ -154,8 +158,8 @@ def _summary(name: str, motion: Motion, limit: SwingReference) -> dict[str, Any]
 
 def _findings(name: str, motion: Motion, elements: Motion) -> list[Finding]:
     """Return the claims of Fig 6 held against a spline, compared with 20 elements as there."""
-    twenty = sampled(elements, swings.INSTANTS).centre
-    distance = np.linalg.norm(sampled(motion, swings.INSTANTS).centre - twenty, axis=1).max()
+    twenty = sampled(elements, formulations.INSTANTS).centre
+    distance = np.linalg.norm(sampled(motion, formulations.INSTANTS).centre - twenty, axis=1).max()
     distance /= np.linalg.norm(np.ptp(twenty, axis=0))  # the diagonal of the rectangle that the path fills
     shift = motion.frequency / elements.frequency - 1.0
     return [

@@ -49,13 +49,11 @@ def missing() -> str:
     return "" if executable() else f"it needs a browser (no {NAMES[0]} on the PATH)"
 
 
-def browsed() -> Answer:
+def _browsed() -> Answer:
     """Return snapshots, and the frames as they were shown."""
     from studies.interactive.film.demo import demo_film
-    from studies.interactive.warm_up import warm_up
     from studies.interactive.web.browser import Browser
-    from studies.interactive.web.hosting import Hosted
-    from studies.interactive.web.server import Settings
+    from studies.interactive.web.server import Hosted, Settings, warm_up
     from studies.interactive.web.sources import FilmSource
 
     warm_up()  # no picture waits for a compiler
@@ -223,7 +221,7 @@ def _share(panel: Axes, times: pd.Series, label: str, colour: str, line: str) ->
 STUDY = Study(
     cases=("polymer_pivot", "cross_axis_pivot"),
     parts=(
-        Part(ask=browsed, alone=True),
+        Part(ask=_browsed, alone=True),
         Part(at=lambda: PRESETS, ask=lambda preset: {"alone_times": _alone(preset)}, alone=True),
     ),
     varying=("snapshots",),

@@ -37,7 +37,7 @@ def forget_stale(root: Path = ROOT) -> bool:
     former, _, former_stats = _read(mark).partition("\n")
     if stats == former_stats:
         return False
-    present = code_hash(files, root)
+    present = _code_hash(files, root)
     try:
         removed = forget(root) if present != former else 0
         mark.parent.mkdir(exist_ok=True)
@@ -47,7 +47,7 @@ def forget_stale(root: Path = ROOT) -> bool:
     return removed > 0
 
 
-def code_hash(files: list[Path], root: Path = ROOT) -> str:
+def _code_hash(files: list[Path], root: Path = ROOT) -> str:
     """Return one hash of the code of every module among `files` that holds kernels, with what it imports."""
     modules = [
         ".".join(file.relative_to(root).with_suffix("").parts)

@@ -1,15 +1,144 @@
-"""A family of hard cases as a study: outcomes of every model, and how many of each there are."""
+"""Families of hard cases: which models are asked, and how each ends: right, refused, wrong or bad input."""
 
+import math
 from collections.abc import Callable, Iterable, Mapping
+from dataclasses import asdict, dataclass, field
 from typing import Any
 
 import pandas as pd
 from matplotlib.figure import Figure
 
+from studies.answers.settings import FeSettings, Settings, SplineSettings
 from studies.engine.findings import Tables
 from studies.engine.study import Answer, Part, Study
-from studies.stability.columns import ORDER
-from studies.stability.outcome import OUTCOMES, Found, judged
+from studies.errors import BadInput
+
+DEFAULT = "spline, default"
+SIX = "spline n = 6"
+PAPER = "spline n = 4, as the paper"
+PRINTED = "spline n = 4, printed forces"
+LOCKING_FREE = "spline n = 4, locking-free"
+FE = "FE, 20 elements"
+
+#: Column -> settings. A peer is a column of the families when its settings are answered by
+#: `studies.answers.adapters`, as these are: add it here.
+COLUMNS: dict[str, Settings] = {
+    DEFAULT: SplineSettings(),
+    LOCKING_FREE: SplineSettings(control_points=4),
+    PAPER: SplineSettings(control_points=4, measure="spatial", stretch="consistent"),
+    PRINTED: SplineSettings(control_points=4, measure="printed", stretch="consistent"),
+    FE: FeSettings(),
+}
+
+#: Those of the families of paths, where the default takes as many control points as it needs: six beside it.
+#: Motions, arcs of frames and starts from guesses take six by default.
+PATHS: dict[str, Settings] = {**COLUMNS, SIX: SplineSettings(control_points=6)}
+
+#: Finer splines, for families in which the default reaches its end.
+EIGHT, TWELVE = "spline n = 8", "spline n = 12"
+FINER: dict[str, Settings] = {
+    EIGHT: SplineSettings(control_points=8),
+    TWELVE: SplineSettings(control_points=12),
+}
+
+GENERALISED_ALPHA = "spline, generalised-alpha"
+EXPLICIT = "spline, explicit"
+
+#: All columns, in the order of tables and figures.
+ORDER = (*PATHS, GENERALISED_ALPHA, EXPLICIT, *FINER)
+
+#: Columns that show the paper's own choices: what this suite has an answer say of its resolution does not
+#: count there, as the paper has no such check.
+UNCHECKED = (PAPER, PRINTED)
+
+#: A spline refined far beyond the default, with n + 2 Gauss points: what the others are held against.
+REFINED = SplineSettings(control_points=14)
+#: Another one, whose distance to it bounds what refinement still changes.
+CHECK = SplineSettings(control_points=11)
+#: An independent one.
+INDEPENDENT = FeSettings(elements=40)
+
+
+RIGHT, REFUSED, WRONG, BAD_INPUT = "right", "refused", "wrong", "bad input"
+
+#: The four outcomes in the order of tables and legends; there is no fifth.
+OUTCOMES = (RIGHT, REFUSED, WRONG, BAD_INPUT)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Found:
+    """What a model answered to a case, compared with what is known to be right.
+
+    Attributes:
+        error: the distance to the reference, or of an invariant to its value, over its scale [1].
+        reached: whether the model says that it got to the end; if not, `reason` says why not.
+        reason: what the model itself says about its answer; a limitation that it states makes an answer that
+            is off a refusal, provided `states_limit` is set.
+        states_limit: whether `reason` warns of what is off in an answer that reached its end.
+        fault: an invariant that the answer breaks, in words; what the model says does not excuse it.
+        counters: work done, by kind.
+    """
+
+    error: float
+    reached: bool = True
+    reason: str = ""
+    states_limit: bool = False
+    fault: str = ""
+    counters: Mapping[str, int] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Verdict:
+    """The outcome of a case: one of `OUTCOMES`, the error [1], the reason in words and the work."""
+
+    outcome: str
+    error: float
+    reason: str
+    iterations: int
+    halvings: int
+
+    def row(self) -> dict[str, Any]:
+        """Return the verdict as columns of a table."""
+        return asdict(self)
+
+
+def judged(attempt: Callable[[], Found], tolerance: float) -> Verdict:
+    """Return how `attempt` ends: right within `tolerance` [1].
+
+    An answer that is off, or not a finite number, is wrong unless the model said so itself. Bad input is a
+    refusal of the question (`BadInput`); any other exception is a fault of the model, and wrong.
+    """
+    try:
+        found = attempt()
+    except BadInput as refusal:
+        return _without_answer(BAD_INPUT, str(refusal))
+    except (
+        Exception
+    ) as fault:  # whatever escapes a model is a wrong outcome to be counted, not the study's end
+        return _without_answer(WRONG, f"{type(fault).__name__}: {fault}")
+    work = found.counters
+    return Verdict(
+        outcome=_outcome(found, tolerance),
+        error=found.error,
+        reason=found.fault or found.reason,
+        iterations=work.get("newton_iterations", work.get("iterations", 0)),
+        halvings=work.get("halved_increments", 0) + work.get("halved_steps", 0),
+    )
+
+
+def _outcome(found: Found, tolerance: float) -> str:
+    if found.fault:
+        return WRONG
+    # what a path or run holds up to where it stopped is judged as well: a refusal must leave a good state
+    if math.isfinite(found.error) and found.error <= tolerance:
+        return RIGHT if found.reached else REFUSED
+    return REFUSED if found.states_limit else WRONG
+
+
+def _without_answer(outcome: str, reason: str) -> Verdict:
+    one_line = " ".join(reason.split())
+    return Verdict(outcome=outcome, error=math.nan, reason=one_line, iterations=0, halvings=0)
+
 
 CASE = "cross_axis_pivot"
 

@@ -1,6 +1,6 @@
 """The map of a family: where each model is right, refuses, is wrong, or is asked what it cannot be."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 import pandas as pd
@@ -9,8 +9,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from studies.record.style import GREEN, GREY, RED, YELLOW, page
-from studies.stability.columns import ORDER
-from studies.stability.outcome import BAD_INPUT, REFUSED, RIGHT, WRONG
+from studies.stability.family import BAD_INPUT, ORDER, REFUSED, RIGHT, WRONG
 
 #: Outcome -> colour and marker, the same in every map.
 LOOKS: dict[str, tuple[str, str]] = {
@@ -45,12 +44,11 @@ def outcome_map(
         outcomes: columns x, y, outcome and `panels_by`.
         title: of the figure.
         panels_by: column whose values have a panel each; order: of the panels.
-        axes: properties of the panels, as of `Axes.set`; `yticks` and `xticks` with labels as a mapping of
-            place to label.
+        axes: properties of the panels, as of `Axes.set`.
     """
     models = [model for model in order if (outcomes[panels_by] == model).any()]
     figure, panels, across = _grid(len(models))
-    ticks: dict[str, Any] = {name: axes.pop(name) for name in ("xticks", "yticks") if name in axes}
+    ylabel = axes.pop("ylabel", "")
     for place, (panel, model) in enumerate(zip(panels, models, strict=True)):
         mine = outcomes[outcomes[panels_by] == model]
         for outcome, (colour, marker) in LOOKS.items():
@@ -60,12 +58,12 @@ def outcome_map(
         counts = ", ".join(
             f"{count} {name}" for name in LOOKS if (count := int((mine["outcome"] == name).sum()))
         )
-        panel.set(**{k: v for k, v in axes.items() if k != "ylabel"})
+        panel.set(**axes)
+        panel.minorticks_off()
         panel.tick_params(labelbottom=True)
         panel.set_title(f"{_broken(model)}\n{counts}", fontsize=8.0)
-        _set_ticks(panel, ticks)
         if place % across == 0:
-            panel.set_ylabel(axes.get("ylabel", ""))
+            panel.set_ylabel(ylabel)
     handles = [
         Line2D([], [], linestyle="", marker=marker, color=colour, label=LABELS[name])
         for name, (colour, marker) in LOOKS.items()
@@ -114,13 +112,3 @@ def listed(outcomes: pd.DataFrame, cases: Sequence[str], *, title: str) -> Figur
 def _broken(model: str) -> str:
     """Return the model's name in two lines, to stand below a column."""
     return model.replace(", ", ",\n")
-
-
-def _set_ticks(panel: Axes, ticks: Mapping[str, Any]) -> None:
-    for name, given in ticks.items():
-        setter = panel.set_xticks if name == "xticks" else panel.set_yticks
-        if isinstance(given, Mapping):
-            setter(list(given), labels=list(given.values()))
-        else:
-            setter(given)
-        panel.minorticks_off()

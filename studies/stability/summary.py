@@ -4,8 +4,7 @@ import pandas as pd
 
 from studies.record.store import Store
 from studies.registry import STUDIES
-from studies.stability.columns import DEFAULT
-from studies.stability.outcome import OUTCOMES
+from studies.stability.family import DEFAULT, OUTCOMES
 
 GROUP = "stability/"
 

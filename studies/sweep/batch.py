@@ -13,11 +13,10 @@ from studies.cases.effects import DEFAULT, MOTION_ONLY
 from studies.cases.problem import PIVOT_PARAMETERS, Problem
 from studies.cases.rules import Pair
 from studies.kinds import Array
-from studies.sweep import points, quantities
-from studies.sweep.designs import keys
-from studies.sweep.designs.plan import Task
+from studies.sweep import keys, points, quantities
+from studies.sweep.plan import Task
+from studies.sweep.points import CONVERGED
 from studies.sweep.quantities import Paths
-from studies.sweep.static import CONVERGED
 
 #: I / (A L^2) below which a strip is for the multiplier path, a hundredth above the kernel's own limit.
 LEAST_COMPLIANCE = 1.01e-9
@@ -41,7 +40,7 @@ def solve_chunk(task: Task, start: int, columns: Mapping[str, list[Any]]) -> pa.
     designs = [{key: column[i] for key, column in columns.items()} for i in range(count)]
     found: Mapping[str, Any]
     if task.batch:
-        status, reason, found = solve_batch(task, columns)
+        status, reason, found = _solve_batch(task, columns)
     else:
         status, reason, found = points.solve_each(task, designs)
     names = {name: found[name] for name in task.quantities}
@@ -77,7 +76,7 @@ def takes(task: Task) -> bool:
     )
 
 
-def solve_batch(
+def _solve_batch(
     task: Task, columns: Mapping[str, list[Any]]
 ) -> tuple[list[str], list[str], dict[str, Array]]:
     """Return status, reason and quantities of the designs, as `points.solve_each` does.

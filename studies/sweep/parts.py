@@ -31,7 +31,7 @@ from studies.record.files import (
     write_whole,
 )
 from studies.record.source import source_hash
-from studies.sweep.designs.plan import Plan
+from studies.sweep.plan import Plan
 from studies.sweep.points import POINT, REASON, STATUS, stored
 
 MANIFEST, PARTS, TABLE, CSV = "sweep.json", "parts", "designs.parquet", "designs.csv"
@@ -39,7 +39,7 @@ SUITE = "cross-axis-pivot-validation"
 #: Libraries whose version can change a number or a byte of the table.
 LIBRARIES = ("numpy", "scipy", "numba", "scikit-fem", "pyarrow")
 #: What the numbers follow from: the solution of a chunk, and the drawing of the sample.
-SOURCES = ("studies.sweep.batch", "studies.sweep.designs.sample")
+SOURCES = ("studies.sweep.batch", "studies.sweep.sample")
 
 
 class Folder:
@@ -55,7 +55,7 @@ class Folder:
         self.csv = root / CSV
         self._plan = plan
         self._parts = root / PARTS
-        self._manifest = manifest_of(plan)
+        self._manifest = _manifest_of(plan)
         _require_usable(root, self._manifest)
 
     @contextmanager
@@ -123,7 +123,7 @@ class Folder:
         return self._parts / f"part-{number:08d}.parquet"
 
 
-def manifest_of(plan: Plan) -> dict[str, Any]:
+def _manifest_of(plan: Plan) -> dict[str, Any]:
     """Return what the table follows from, and what its columns are; without date or place."""
     content = json.loads(json.dumps(plan.content))
     columns = {POINT: "number of the point, from 0"}

@@ -115,7 +115,7 @@ def _place(body: str, axis: int) -> Callable[[Paths], Array]:
     return of
 
 
-def of_bodies(names: list[str]) -> dict[str, Quantity]:
+def _of_bodies(names: list[str]) -> dict[str, Quantity]:
     """Return the places of bodies at the end of a path."""
     return {
         f"{body}_{part}": Quantity(meaning=f"{part} of {body} at the end", of=_place(body, axis))
@@ -124,7 +124,7 @@ def of_bodies(names: list[str]) -> dict[str, Quantity]:
     }
 
 
-def of_modes(count: int) -> dict[str, Quantity]:
+def _of_modes(count: int) -> dict[str, Quantity]:
     """Return the frequencies of the lowest modes; negative where the state is unstable."""
 
     def frequency(mode: int) -> Callable[[Spectrum], float]:
@@ -152,10 +152,10 @@ Answer = Paths | Spectrum | Motion
 def known(kind: str, *, bodies: list[str] | None, count: int) -> dict[str, Quantity]:
     """Return the quantities of an analysis; `bodies` of a mechanism, None for a pivot; `count` of modes."""
     if kind == "modes":
-        return of_modes(count)
+        return _of_modes(count)
     if kind == "release":
         return RELEASE
-    return PATH | (SHIFT if bodies is None else of_bodies(bodies))
+    return PATH | (SHIFT if bodies is None else _of_bodies(bodies))
 
 
 def values(found: Mapping[str, Quantity], names: tuple[str, ...], answer: Answer) -> dict[str, Array]:

@@ -14,10 +14,10 @@ from studies.errors import BadInput
 from studies.kinds import Progress
 from studies.record.progress import silent
 from studies.sweep.batch import solve_chunk
-from studies.sweep.designs.plan import Plan
-from studies.sweep.designs.sample import Drawer
 from studies.sweep.parts import Folder
-from studies.sweep.workers.pool import Pool, processes, threads
+from studies.sweep.plan import Plan
+from studies.sweep.sample import Drawer
+from studies.sweep.workers import Pool, processes, threads
 
 #: Chunks a worker that are under way or waiting, so that none idles and no result piles up.
 AHEAD = 2

@@ -13,11 +13,10 @@ from studies.answers.settings import SplineSettings
 from studies.cases.problem import Problem
 from studies.kinds import Progress
 from studies.record.progress import silent
-from studies.work_precision import moving_series, series
+from studies.work_precision import series
 from studies.work_precision.equal_error import coarsest, worst
-from studies.work_precision.limits import limit_of_theory
 from studies.work_precision.motions import at, motion_errors, moving
-from studies.work_precision.paths import path_errors
+from studies.work_precision.paths import limit_of_theory, path_errors
 
 PATH_ERRORS = ("error_trajectory", "error_torque")
 MOTION_ERRORS = ("error_rotation", "error_frequency")
@@ -47,7 +46,7 @@ def advise_path(problem: Problem, error: float, progress: Progress = silent) -> 
         NoReference: the finite elements do not reach the end of the path.
     """
     models = [each for each in series.own_series() if each.name in OWN]
-    models[0] = series.splines(series.SPLINE, "material", models[0].look, counts=COUNTS)
+    models[0] = series.splines(series.SPLINE, models[0].look, counts=COUNTS)
     models += series.other_series()
     total = sum(len(each.members) for each in models) + len(models)
     limits, members = {}, {}
@@ -88,8 +87,8 @@ def advise_motion(problem: Problem, error: float, progress: Progress = silent) -
     frequency = float(answer_modes(problem, SplineSettings(control_points=6), count=1).frequency[0])
     duration = PERIODS / frequency
     scale = 1.0 / frequency / PERIOD
-    models = moving_series.own_series(scale)
-    models += moving_series.other_series(scale)
+    models = series.moving_series(scale)
+    models += series.moving_others(scale)
     total = len(REFERENCE) + sum(len(each.members) for each in models)
     instants = np.linspace(0.0, duration, INSTANTS)
     integrator = _integrator(problem, duration)

@@ -14,16 +14,16 @@ import pandas as pd
 
 from studies.answers.frequency import swing_frequency
 from studies.answers.settings import SplineSettings
+from studies.baselines.answer import SolvedMotion
 from studies.baselines.registry import missing
 from studies.cases.problem import named_case
-from studies.engine.findings import Finding, Tables
+from studies.engine.findings import Claim, Ratio, Tables
 from studies.engine.study import Answer, Part, Study
 from studies.kinds import Array
-from studies.work_precision import figures
-from studies.work_precision.equal_error import cheapest
-from studies.work_precision.motions import MovingMember, SolvedMotion, at, motion_errors, moving
-from studies.work_precision.moving_series import SPLINE, MovingSeries, other_series, own_series
-from studies.work_precision.static_findings import Ratio
+from studies.work_precision.equal_error import cheapest, diagram, finer, less
+from studies.work_precision.motions import at, motion_errors, moving
+from studies.work_precision.paths import Member
+from studies.work_precision.series import SPLINE, Series, looks, moving_others, moving_series
 
 CASE = "cross_axis_pivot"
 
@@ -37,25 +37,46 @@ MARGIN = 10.0
 TARGETS = (1e-1, 2e-2, 1e-2, 5e-3, 2e-3, 1e-3)
 #: The error at which the paper's comparison is made [rad].
 COMPARED = 1e-2
+AT_EQUAL = f"At {{target:g}} rad over {DURATION:g} s"
+#: Errors in the figure: titles of their columns, above and below.
+QUANTITIES = {
+    "rotation_rad": ("rotation", "largest error of the rotation over 0.05 s [rad]"),
+    "frequency": ("frequency", "error of the swing's frequency [1]"),
+}
 
 
-def members() -> list[tuple[MovingSeries, int, MovingMember]]:
+def members() -> list[tuple[Series, int, Member]]:
     """Return every setting with its series and its rank there."""
     return [
         (series, rank, member)
-        for series in (*own_series(), *other_series())
+        for series in (*moving_series(), *moving_others())
         for rank, member in enumerate(series.members)
     ]
 
 
-def solved(series: MovingSeries, rank: int, member: MovingMember) -> Answer:
+def _solved(series: Series, rank: int, member: Member) -> Answer:
     """Return errors, work and times of a setting."""
-    motion = member.solve(named_case(CASE), DURATION)
+    motion: SolvedMotion = member.solve(named_case(CASE), DURATION)
     rotation, reference = _reference()
-    return {
-        "errors": _errors(series, member, rank, motion, rotation, pd.DataFrame(reference)),
-        "timings": _times(series, member, motion),
+    name = {"series": series.name, "setting": member.setting}
+    errors = {
+        "series": series.name,
+        "family": member.family,
+        "setting": member.setting,
+        "rank": rank,
+        "step_s": member.step,
+        "status": motion.status,
+        **motion_errors(motion, rotation, INSTANTS),
+        **{f"reference_{row['quantity']}": row["uncertainty"] for row in reference},
+        **motion.work,
+        "message": motion.message,
     }
+    times = {
+        "solve_s": motion.solve_s,
+        "real_time_factor": DURATION / motion.solve_s,
+        "repeats": motion.repeats,
+    }
+    return {"errors": errors, "timings": name | times}
 
 
 def _cheapest(tables: Tables, cost: str) -> pd.DataFrame:
@@ -66,7 +87,6 @@ def _cheapest(tables: Tables, cost: str) -> pd.DataFrame:
         cost=cost,
         rank="rank",
         targets=TARGETS,
-        baseline=SPLINE,
     )
 
 
@@ -91,102 +111,48 @@ def _reference() -> tuple[Array, list[dict[str, Any]]]:
     ]
 
 
-def _errors(
-    series: MovingSeries,
-    member: MovingMember,
-    rank: int,
-    motion: SolvedMotion,
-    rotation: Array,
-    reference: pd.DataFrame,
-) -> dict[str, Any]:
-    uncertain = reference.set_index("quantity")["uncertainty"]
-    return {
-        "series": series.name,
-        "family": member.family,
-        "setting": member.setting,
-        "rank": rank,
-        "step_s": member.step,
-        "status": motion.status,
-        **motion_errors(motion, rotation, INSTANTS),
-        "reference_rotation_rad": uncertain["rotation_rad"],
-        "reference_frequency": uncertain["frequency"],
-        **motion.work,
-        "message": motion.message,
-    }
-
-
-def _times(series: MovingSeries, member: MovingMember, motion: SolvedMotion) -> dict[str, Any]:
-    return {
-        "series": series.name,
-        "setting": member.setting,
-        "solve_s": motion.solve_s,
-        "real_time_factor": DURATION / motion.solve_s,
-        "repeats": motion.repeats,
-    }
-
-
-def _findings(tables: Tables) -> list[Finding]:
-    """Return findings that do not depend on the machine."""
-    found = _ratios(tables["digits"], "counted work")
-    for row in tables["reference"].to_dict("records"):
-        error = tables["errors"][f"error_{row['quantity']}"]
-        least = error.min()
-        found.append(
-            Finding(
-                claim="The reference is ten times finer than every error",
-                formulation=row["quantity"],
-                quantity="the uncertainty of the reference over the smallest error",
-                value=float(row["uncertainty"] / least),
-                holds=bool(MARGIN * row["uncertainty"] <= least),
-            )
-        )
-    return found
-
-
-def _findings_of_time(tables: Tables) -> list[Finding]:
-    """Return findings of time: they differ from run to run and machine to machine."""
-    found = _ratios(tables["digits_of_time"], "time")
-    best = tables["digits_of_time"].query("series == @SPLINE and target == @COMPARED").iloc[0]
-    factor = DURATION / float(best["solve_s"])
-    found.append(
-        Ratio(
-            claim=f"The swing within {COMPARED:g} rad is followed five times as fast as it happens",
-            formulation=str(best["setting"]),
-            quantity="the duration of the motion over that of its computation",
-            value=factor,
-            holds=factor > 5.0,
-        )
-    )
-    return found
-
-
-def _ratios(digits: pd.DataFrame, cost: str) -> list[Finding]:
-    """Return how many times the spline's cost the others take at equal error."""
-    others = digits.query("series != @SPLINE and target == @COMPARED")
-    return [
-        Ratio(
-            claim=f"At {COMPARED:g} rad over {DURATION:g} s the spline takes less {cost}",
-            formulation=f"{row['series']}, {row['setting']}",
-            quantity=f"its {cost} over that of the spline",
-            value=float(row["ratio"]),
-            holds=bool(row["ratio"] > 1.0),
-        )
-        for row in others[others["ratio"].notna()].to_dict("records")
-    ]
+def _swing(tables: Tables) -> pd.DataFrame:
+    """Return the spline's cheapest setting at the error that is compared."""
+    rows = tables["digits_of_time"]
+    return rows[(rows["series"] == SPLINE) & (rows["target"] == COMPARED)]
 
 
 STUDY = Study(
     cases=(CASE,),
     parts=(
         Part(ask=lambda: {"reference": _reference()[1]}, alone=True),
-        Part(at=members, ask=solved, alone=True),
+        Part(at=members, ask=_solved, alone=True),
     ),
     made={
         "digits": lambda tables: _cheapest(tables, "flops"),
         "digits_of_time": lambda tables: _cheapest(tables, "solve_s"),
     },
-    claims=(_findings,),
-    claims_of_time=(_findings_of_time,),
-    figures={"work_precision_dynamics": lambda tables: figures.dynamics(tables, MARGIN)},
+    claims=(
+        less("counted work", "digits", AT_EQUAL, (COMPARED,)),
+        finer("The reference is ten times finer than every error", "{quantity}"),
+    ),
+    claims_of_time=(
+        less("time", "digits_of_time", AT_EQUAL, (COMPARED,)),
+        Claim(
+            claim=f"The swing within {COMPARED:g} rad is followed five times as fast as it happens",
+            formulation="{setting}",
+            quantity="the duration of the motion over that of its computation",
+            rows=_swing,
+            value=lambda row: DURATION / row["solve_s"],
+            holds=lambda row: DURATION / row["solve_s"] > 5.0,
+            kind=Ratio,
+        ),
+    ),
+    figures={
+        "work_precision_dynamics": lambda tables: diagram(
+            tables,
+            QUANTITIES,
+            margin=MARGIN,
+            rank="rank",
+            styles=looks(moving_series()),
+            part="steps",
+            width=9.5,
+        )
+    },
     missing=missing,
 )

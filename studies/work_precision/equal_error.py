@@ -1,9 +1,15 @@
-"""The cheapest setting of every model at equal error: the only error at which cost may be compared."""
+"""The cheapest setting of every model at equal error, and what may be claimed of cost and of references."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from studies.engine.findings import Claim, Ratio, Tables, records
+from studies.record.style import Look, page
+from studies.work_precision.series import SPLINE
 
 
 def worst(rows: pd.DataFrame, columns: Sequence[str]) -> pd.Series:
@@ -40,7 +46,7 @@ def cheapest(
     cost: str,
     rank: str,
     targets: Sequence[float],
-    baseline: str,
+    baseline: str = SPLINE,
 ) -> pd.DataFrame:
     """Return a row a target and series: its cheapest setting whose errors are all within the target.
 
@@ -72,3 +78,102 @@ def cheapest(
                 }
             )
     return pd.DataFrame(found)
+
+
+def less(cost: str, table: str, claim: str, targets: Sequence[float]) -> Claim:
+    """Return the claim that the spline takes less of a cost than each other model at equal error.
+
+    Args:
+        cost: in words; table: of `cheapest`; claim: with its target in braces; targets: that are judged.
+    """
+    return Claim(
+        claim=f"{claim} the spline takes less {cost}",
+        formulation="{series}, {setting}",
+        quantity=f"its {cost} over that of the spline",
+        rows=lambda tables: tables[table][
+            (tables[table]["series"] != SPLINE)
+            & tables[table]["target"].isin(targets)
+            & tables[table]["ratio"].notna()
+        ],
+        value="ratio",
+        holds=lambda row: row["ratio"] > 1.0,
+        kind=Ratio,
+    )
+
+
+def finer(claim: str, formulation: str, *, within: Sequence[str] = ()) -> Claim:
+    """Return the claim that references are ten times finer than every error that is held against them.
+
+    Args:
+        claim, formulation: with columns of the table `reference` in braces; within: columns that errors
+            share with their reference.
+    """
+
+    def rows(tables: Tables) -> list[dict[str, object]]:
+        found = []
+        for row in records(tables["reference"]):
+            mine = tables["errors"]
+            for name in within:
+                mine = mine[mine[name] == row[name]]
+            found.append(dict(row) | {"least": mine[f"error_{row['quantity']}"].min()})
+        return found
+
+    return Claim(
+        claim=claim,
+        formulation=formulation,
+        quantity="the uncertainty of the reference over the smallest error",
+        rows=rows,
+        value=lambda row: row["uncertainty"] / row["least"],
+        holds=lambda row: row["uncertainty"] <= 0.1 * row["least"],
+    )
+
+
+def diagram(
+    tables: Tables,
+    quantities: Mapping[str, tuple[str, str]],
+    *,
+    margin: float,
+    rank: str,
+    styles: Mapping[str, Look],
+    part: str,
+    width: float,
+) -> Figure:
+    """Draw time (above) and work (below) over the largest error, one column a quantity.
+
+    Args:
+        tables: errors and timings; quantities: of the errors, with titles above and below.
+        margin: errors below so many times that of their reference are left out.
+        rank: column by which the settings of a family are joined; styles: by series.
+        part: what a path is made of: increments or steps; width: of the figure [inch].
+    """
+    rows = tables["errors"].merge(tables["timings"], on=["series", "setting"])
+    figure = page(width, 7.0)
+    panels = figure.subplots(2, len(quantities), sharex="col", sharey="row")
+    costs = {"solve_s": f"time of the {part} [s]", "flops": "counted operations [1]"}
+    for column, (quantity, (above, below)) in enumerate(quantities.items()):
+        shown = rows[rows[f"error_{quantity}"] >= margin * rows[f"reference_{quantity}"]]
+        for panel, (cost, title) in zip(panels[:, column], costs.items(), strict=True):
+            _curves(panel, shown, f"error_{quantity}", cost, rank, styles)
+            panel.set(xscale="log", yscale="log", ylabel=title if column == 0 else "")
+        panels[0, column].set_title(above)
+        panels[1, column].set_xlabel(below)
+        panels[1, column].invert_xaxis()
+    handles, labels = panels[0, 0].get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside lower center", ncols=4)
+    return figure
+
+
+def _curves(
+    panel: Axes, rows: pd.DataFrame, error: str, cost: str, rank: str, styles: Mapping[str, Look]
+) -> None:
+    """Draw one curve a family of each series, of the rows that have both numbers, in the order of `rank`."""
+    known = rows[rows[error].notna() & rows[cost].notna()].sort_values(rank)
+    for name, look in styles.items():
+        for place, (_, mine) in enumerate(known[known["series"] == name].groupby("family", sort=False)):
+            label = {} if place == 0 else {"label": None}
+            panel.plot(mine[error], mine[cost], **(look.keywords() | label))
+            if cost == "flops" and mine["family"].iloc[0] != "all":
+                panel.annotate(
+                    mine["family"].iloc[0], (mine[error].iloc[-1], mine[cost].iloc[-1]), (0, 4),
+                    textcoords="offset points", ha="center", fontsize=7, color=look.colour,
+                )  # fmt: skip

@@ -1,8 +1,7 @@
 """Motions of every model after the release, as what work-precision diagrams need of them."""
 
 import math
-from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -11,12 +10,12 @@ from scipy.interpolate import CubicSpline
 from studies.answers.adapters import answer_release
 from studies.answers.frequency import swing_frequency
 from studies.answers.settings import Settings
-from studies.baselines.answer import BaselineFailed
+from studies.baselines.answer import BaselineFailed, SolvedMotion
 from studies.cases.problem import Problem
 from studies.errors import BadInput
 from studies.kinds import Array
-from studies.work_precision.paths import Answered, counted
-from studies.work_precision.work_of_motion import work_of_motion
+from studies.work_precision.paths import Member, counted
+from studies.work_precision.work import work_of_motion
 
 WORK = ("unknowns", "points", "steps", "evaluations", "factorisations", "flops")
 #: Largest number of records: the strips' own oscillations, some 40 times as fast as the swing, need so many
@@ -28,36 +27,7 @@ TIMED_RECORDS = 50
 AFFORDED, REPEATS = 0.3, 7
 
 
-@dataclass(frozen=True, kw_only=True)
-class SolvedMotion(Answered):
-    """A motion at T records, the start first; its work has the columns of `WORK`.
-
-    Attributes:
-        time: (T,) [s]; rotation: (T,) [rad].
-        repeats: number of runs whose median time is `solve_s` [1].
-    """
-
-    time: Array
-    rotation: Array
-    repeats: int
-
-
-@dataclass(frozen=True, kw_only=True)
-class MovingMember:
-    """One setting of a model and integrator, of a family that differs in the step alone.
-
-    Attributes:
-        setting: its name; family: the discretisation; step: [s], NaN where the model chooses.
-        solve: the motion of a problem over a duration [s].
-    """
-
-    setting: str
-    family: str
-    step: float
-    solve: Callable[[Problem, float], SolvedMotion]
-
-
-def moving(settings: Settings, setting: str, family: str, **options: Any) -> MovingMember:
+def moving(settings: Settings, setting: str, family: str = "all", **options: Any) -> Member:
     """Return the member of one of the suite's own models."""
 
     def solve(problem: Problem, duration: float) -> SolvedMotion:
@@ -70,7 +40,7 @@ def moving(settings: Settings, setting: str, family: str, **options: Any) -> Mov
             motion = run(RECORDS)
         except BadInput as refused:  # an integrator that the scene does not allow
             return stopped(str(refused))
-        repeats = repeats_of(motion.solve_s) if motion.converged else 0
+        repeats = _repeats_of(motion.solve_s) if motion.converged else 0
         timed = run(TIMED_RECORDS, repeats) if repeats else motion
         return SolvedMotion(
             status=motion.status,
@@ -82,35 +52,28 @@ def moving(settings: Settings, setting: str, family: str, **options: Any) -> Mov
             work=work_of_motion(settings, motion.counters) if motion.converged else counted(WORK, {}),
         )
 
-    return MovingMember(setting=setting, family=family, step=options.get("step") or math.nan, solve=solve)
+    return Member(setting=setting, family=family, step=options.get("step") or math.nan, solve=solve)
 
 
-def moving_baseline(module: Any, setting: str, family: str, step: float, **options: Any) -> MovingMember:
+def moving_baseline(module: Any, setting: str, family: str, step: float, **options: Any) -> Member:
     """Return the member of a baseline's module; a pivot that it refuses is a motion that stopped."""
 
     def solve(problem: Problem, duration: float) -> SolvedMotion:
-        def run(repeat: int) -> Any:
-            return module.release(
+        def run(repeat: int) -> SolvedMotion:
+            motion: SolvedMotion = module.release(
                 problem, start=problem.rotation, duration=duration, step=step, repeat=repeat, **options
             )
+            return motion
 
         try:
             motion = run(1)
-            repeats = repeats_of(motion.solve_s)
+            repeats = _repeats_of(motion.solve_s)
             motion = run(repeats) if repeats > 1 else motion
         except (BaselineFailed, BadInput) as failure:
             return stopped(str(failure))
-        return SolvedMotion(
-            status="converged",
-            message="",
-            time=motion.time,
-            rotation=motion.rotation,
-            solve_s=motion.solve_s,
-            repeats=repeats,
-            work=counted(WORK, motion.work),
-        )
+        return replace(motion, repeats=repeats, work=counted(WORK, motion.work))
 
-    return MovingMember(setting=setting, family=family, step=step, solve=solve)
+    return Member(setting=setting, family=family, step=step, solve=solve)
 
 
 def stopped(message: str) -> SolvedMotion:
@@ -126,7 +89,7 @@ def stopped(message: str) -> SolvedMotion:
     )
 
 
-def repeats_of(seconds: float) -> int:
+def _repeats_of(seconds: float) -> int:
     """Return how often a motion that takes so long is timed."""
     return int(min(REPEATS, max(1.0, AFFORDED / max(seconds, 1e-9))))
 

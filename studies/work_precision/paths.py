@@ -1,19 +1,19 @@
-"""Static paths of every model, ours and others', as what work-precision diagrams need of them."""
+"""Static paths of every model, ours and others', as diagrams need them, and the limit of each theory."""
 
 import math
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
 from studies.answers.adapters import answer_static
 from studies.answers.metrics import relative_error, trajectory_error
-from studies.answers.settings import Settings
-from studies.baselines.answer import BaselineFailed
+from studies.answers.reference import MESHES, limit_of
+from studies.answers.settings import FeSettings, Settings, SplineSettings
+from studies.baselines.answer import BaselineFailed, SolvedPath
 from studies.cases.problem import Problem
 from studies.errors import BadInput
-from studies.kinds import Array
 from studies.work_precision.work import work_of
 
 QUANTITIES = ("trajectory", "torque", "stiffness")
@@ -21,27 +21,6 @@ QUANTITIES = ("trajectory", "torque", "stiffness")
 WORK = ("unknowns", "points", "iterations", "factorisation_flops", "assembly_flops", "flops")
 #: Names of these in the counters of a baseline, where they differ.
 THEIRS = {"iterations": "newton_iterations"}
-
-
-@dataclass(frozen=True, kw_only=True)
-class Answered:
-    """The answer of any model.
-
-    Attributes:
-        status: "converged" or how it ended; message: why and where or when it stopped.
-        solve_s: time of the increments or steps alone [s].
-        work: machine-neutral work by column, NaN where it is not known.
-    """
-
-    status: str
-    message: str
-    solve_s: float
-    work: Mapping[str, float]
-
-    @property
-    def converged(self) -> bool:
-        """Whether it was followed to its end."""
-        return self.status == "converged"
 
 
 def counted(
@@ -56,27 +35,20 @@ def counted(
 
 
 @dataclass(frozen=True, kw_only=True)
-class SolvedPath(Answered):
-    """A static path, S states, the unloaded one first; its work has the columns of `WORK`.
+class Member:
+    """One setting of a model.
 
     Attributes:
-        centre: (S, 2) [m]; torque: (S,) [N m]; stiffness: (S,) [N m / rad], NaN where a model gives none.
-        wall_s: time of the whole answer [s], NaN if unknown.
+        setting: its name; count: how fine it is, among paths.
+        family: the settings that differ from it in the step alone; step: [s], NaN where the model chooses.
+        solve: the path of a problem, timed so many times [1], or its motion over a duration [s].
     """
 
-    centre: Array
-    torque: Array
-    stiffness: Array
-    wall_s: float
-
-
-@dataclass(frozen=True, kw_only=True)
-class Member:
-    """One setting of a model: its name, how fine it is, and how a path is asked of it."""
-
     setting: str
-    count: int
-    solve: Callable[[Problem, int], SolvedPath]
+    solve: Callable[[Problem, Any], Any]
+    count: int = 0
+    family: str = "all"
+    step: float = math.nan
 
 
 def of_settings(settings: Settings, setting: str, count: int) -> Member:
@@ -87,6 +59,7 @@ def of_settings(settings: Settings, setting: str, count: int) -> Member:
         return SolvedPath(
             status=answer.status,
             message=answer.message,
+            rotation=answer.rotation,
             centre=answer.centre,
             torque=answer.torque,
             stiffness=answer.stiffness,
@@ -104,19 +77,10 @@ def of_baseline(module: Any, setting: str, count: int, **settings: Any) -> Membe
     def solve(problem: Problem, repeat: int) -> SolvedPath:
         rotations = np.linspace(0.0, problem.rotation, problem.increments + 1)
         try:
-            path = module.static_path(problem, rotations, repeat=repeat, **settings)
+            path: SolvedPath = module.static_path(problem, rotations, repeat=repeat, **settings)
         except (BaselineFailed, BadInput) as stopped:
             return unsolved(str(stopped))
-        return SolvedPath(
-            status="converged",
-            message="",
-            centre=path.centre,
-            torque=path.torque,
-            stiffness=path.stiffness,
-            solve_s=path.solve_s,
-            wall_s=math.nan,
-            work=counted(WORK, path.work, THEIRS),
-        )
+        return replace(path, work=counted(WORK, path.work, THEIRS))
 
     return Member(setting=setting, count=count, solve=solve)
 
@@ -127,11 +91,11 @@ def unsolved(message: str) -> SolvedPath:
     return SolvedPath(
         status="not_converged",
         message=message,
+        rotation=nothing,
         centre=nothing.reshape(0, 2),
         torque=nothing,
         stiffness=nothing,
         solve_s=math.nan,
-        wall_s=math.nan,
         work=counted(WORK, {}),
     )
 
@@ -152,3 +116,68 @@ def path_errors(path: SolvedPath, against: SolvedPath) -> dict[str, float]:
     }
     largest = {f"error_{name}": float(values.max()) for name, values in errors.items()}
     return largest | {f"end_{name}": float(values[-1]) for name, values in errors.items()}
+
+
+#: Theories of a strip, by what their energies are measured in.
+THEORIES = {
+    "material": "bending per reference length, no shear",
+    "spatial": "bending per current length, as the paper's Eq 10, no shear",
+    "shear": "bending per reference length, with shear",
+}
+#: Control points of the spatial limit, and of the one below that says how uncertain it is.
+SPATIAL = (15, 13)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Limit:
+    """The limit of a theory.
+
+    Attributes:
+        path: the limit; its times mean nothing.
+        uncertainty: largest relative error of it over the path, of trajectory, torque and stiffness [1].
+        source: what it was taken from.
+    """
+
+    path: SolvedPath
+    uncertainty: Mapping[str, float]
+    source: str
+
+
+def limit_of_theory(problem: Problem, theory: str) -> Limit:
+    """Return the limit of a theory on a problem.
+
+    Material and shear: the elements' limit of refinement, which shares no code with the splines. Spatial: no
+    elements have it, so a spline finer than any that is shown, and its distance to a coarser one.
+
+    Raises:
+        NoReference: the elements do not reach the end of the path.
+    """
+    if theory == "spatial":
+        return _spatial(problem)
+    element = "corotational" if theory == "material" else "reissner"
+    answers = [answer_static(problem, FeSettings(elements=count, element=element)) for count in MESHES]
+    limit = limit_of(answers)
+    return Limit(
+        path=replace(
+            unsolved(""),
+            status="converged",
+            centre=limit.centre,
+            torque=limit.torque,
+            stiffness=limit.stiffness,
+        ),
+        uncertainty=limit.uncertainty,
+        source=f"{element} elements, {', '.join(map(str, MESHES))} a strip, extrapolated",
+    )
+
+
+def _spatial(problem: Problem) -> Limit:
+    fine, coarse = (
+        of_settings(SplineSettings(control_points=n, measure="spatial"), "", n).solve(problem, 1)
+        for n in SPATIAL
+    )
+    gap = path_errors(coarse, fine)
+    return Limit(
+        path=fine,
+        uncertainty={name: gap[f"error_{name}"] for name in ("trajectory", "torque", "stiffness")},
+        source=f"spline with {SPATIAL[0]} control points; its distance to one with {SPATIAL[1]}",
+    )

@@ -1,14 +1,33 @@
-"""The models of the work-precision diagrams: a series of settings each, from coarse to fine."""
+"""The models of the work-precision diagrams: a series of settings each, from coarse to fine.
 
+In motion all have strips without shear and without rotary inertia of their sections: two theories would be
+3e-2 rad apart after 0.05 s, more than any mesh here.
+"""
+
+from collections.abc import Iterator
 from dataclasses import dataclass
-from types import ModuleType
 from typing import Any
 
 from studies.answers.settings import FeSettings, SplineSettings
-from studies.baselines import four_bar, linear_pivot, pin_joint
-from studies.baselines.peers import exudyn_ancf, exudyn_exact, openseespy_frame
+from studies.baselines import openseespy_frame
+from studies.baselines.exudyn_strips import exudyn_ancf, exudyn_exact
+from studies.baselines.four_bar import four_bar
+from studies.baselines.linear_pivot import linear_pivot, pin_joint
 from studies.record.style import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, RED, SKY, YELLOW, Look
+from studies.work_precision.motions import moving, moving_baseline
 from studies.work_precision.paths import Member, of_baseline, of_settings
+
+SPLINE, ELEMENTS, SHEAR = "spline", "finite elements", "finite elements with shear"
+IMPLICIT = "spline, energy-consistent"
+COUNTS = range(4, 13)
+BSPLINE_COUNTS = (4, 6, 8, 12, 16, 24, 32, 48, 64)
+MESHES = (5, 10, 20, 40, 80, 160)
+
+#: In motion: control points of the splines that take explicit steps of their own choice, near the largest
+#: stable one; control points and steps [s] of those that take large implicit steps; meshes.
+MOVING_COUNTS = (4, 5, 6, 7, 8, 9, 10, 12)
+IMPLICIT_COUNTS, STEPS = (4, 5, 6, 8), (2e-4, 1e-4, 5e-5, 2e-5)
+MOVING_MESHES = (5, 10, 16, 24, 36)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -17,125 +36,174 @@ class Series:
 
     Attributes:
         name: of the model, in tables.
-        theory: key of `limits.THEORIES` that its answers tend to.
+        theory: key of `paths.THEORIES` that its answers tend to.
         look: label, colour, line and marker in figures.
         members: settings, the coarsest first.
-        repeat: timed solves of each [1].
+        repeat: timed solves of each path [1].
     """
 
     name: str
-    theory: str
     look: Look
     members: tuple[Member, ...]
+    theory: str = "material"
     repeat: int = 7
 
 
-SPLINE, ELEMENTS, SHEAR = "spline", "finite elements", "finite elements with shear"
-COUNTS = range(4, 13)
-BSPLINE_COUNTS = (4, 6, 8, 12, 16, 24, 32, 48, 64)
-MESHES = (5, 10, 20, 40, 80, 160)
-PEER_MESHES = (2, 4, 8, 16, 32)
-FRAME_MESHES = (10, 20, 40, 80)
+@dataclass(frozen=True, kw_only=True)
+class Other:
+    """A baseline in the diagrams.
 
-#: Baseline -> module, theory, look, and its elements a strip; none for what has no refinement.
-BASELINES: dict[str, tuple[ModuleType, str, Look, tuple[int, ...]]] = {
-    "linear pivot": (
-        linear_pivot, "material", Look(label="linear closed form", colour=GREY, line="", marker="P"), (),
+    Attributes:
+        meshes, moving_meshes: elements a strip, none for what has no refinement; steps: [s], none for what
+            has no motion here.
+    """
+
+    baseline: Any
+    look: Look
+    theory: str = "material"
+    meshes: tuple[int, ...] = ()
+    moving_meshes: tuple[int, ...] = ()
+    steps: tuple[float, ...] = (1e-4,)
+
+
+OTHERS = (
+    Other(baseline=linear_pivot, look=Look(label="linear closed form", colour=GREY, line="", marker="P")),
+    Other(
+        baseline=pin_joint, look=Look(label="pseudo-rigid: pin joint", colour=YELLOW, line="", marker="*")
     ),
-    "pin joint": (
-        pin_joint, "material", Look(label="pseudo-rigid: pin joint", colour=YELLOW, line="", marker="*"), (),
+    Other(baseline=four_bar, look=Look(label="pseudo-rigid: four-bar", colour=RED, line="", marker="X")),
+    Other(
+        baseline=exudyn_ancf, look=Look(label="Exudyn, ANCF cable", colour=PURPLE, marker="^"),
+        meshes=(2, 4, 8, 16, 32), moving_meshes=(4, 8), steps=(2e-4, 1e-4, 5e-5, 2e-5, 1e-5, 5e-6),
     ),
-    "four-bar": (
-        four_bar, "material", Look(label="pseudo-rigid: four-bar", colour=RED, line="", marker="X"), (),
+    Other(
+        baseline=exudyn_exact, look=Look(label="Exudyn, exact beam", colour=PURPLE, line=":", marker="v"),
+        theory="shear", meshes=(2, 4, 8, 16, 32), steps=(),
     ),
-    "exudyn ancf": (
-        exudyn_ancf, "material", Look(label="Exudyn, ANCF cable", colour=PURPLE, marker="^"), PEER_MESHES,
+    Other(
+        baseline=openseespy_frame,
+        look=Look(label="OpenSees, corotational", colour=ORANGE, line="--", marker="<"),
+        meshes=(10, 20, 40, 80), moving_meshes=(20,), steps=(1e-4, 5e-5, 2e-5),
     ),
-    "exudyn exact": (
-        exudyn_exact, "shear",
-        Look(label="Exudyn, exact beam", colour=PURPLE, line=":", marker="v"), PEER_MESHES,
-    ),
-    "openseespy frame": (
-        openseespy_frame, "material",
-        Look(label="OpenSees, corotational", colour=ORANGE, line="--", marker="<"), FRAME_MESHES,
-    ),
-}  # fmt: skip
+)  # fmt: skip
 
 
 def own_series() -> list[Series]:
-    """Return the series of the two models of the suite."""
+    """Return the series of the two models of the suite, for paths."""
     return [
-        splines(SPLINE, "material", Look(label="spline", colour=BLUE, marker="x")),
+        splines(SPLINE, Look(label="spline", colour=BLUE, marker="x")),
         splines(
-            "spline, one axial mode more", "material",
+            "spline, one axial mode more",
             Look(label="spline, m = n - 1", colour=SKY, line=":", marker="D"), modes=1,
         ),
         splines(
-            "B-spline", "material", Look(label="cubic B-spline", colour=GREEN, line="-.", marker="o"),
+            "B-spline", Look(label="cubic B-spline", colour=GREEN, line="-.", marker="o"),
             counts=BSPLINE_COUNTS, basis="bspline",
         ),
         splines(
-            "spline, spatial measure", "spatial",
-            Look(label="spline, spatial measure", colour=BLUE, line="--", marker="+"),
-            measure="spatial",
+            "spline, spatial measure",
+            Look(label="spline, spatial measure", colour=BLUE, line="--", marker="+"), measure="spatial",
         ),
         splines(
-            "spline as the paper", "spatial",
-            Look(label="spline, as the paper", colour=RED, line="--", marker="o"),
+            "spline as the paper", Look(label="spline, as the paper", colour=RED, line="--", marker="o"),
             measure="spatial", stretch="consistent",
         ),
-        elements(ELEMENTS, "corotational", Look(label="finite elements", colour=BLACK, marker="s")),
-        elements(SHEAR, "reissner", Look(label="finite elements, shear", colour=GREY, line="--", marker="s")),
+        _elements(ELEMENTS, "corotational", Look(label="finite elements", colour=BLACK, marker="s")),
+        _elements(
+            SHEAR, "reissner", Look(label="finite elements, shear", colour=GREY, line="--", marker="s")
+        ),
     ]  # fmt: skip
 
 
 def splines(
     name: str,
-    theory: str,
     look: Look,
     *,
     counts: tuple[int, ...] | range = COUNTS,
     modes: int | None = None,
+    measure: str = "material",
     **settings: Any,
 ) -> Series:
     """Return a series of splines; `modes`: axial modes less n - 2, None for the default."""
     members = []
     for n in counts:
         axial = None if modes is None else n - 2 + modes
-        setting = SplineSettings(control_points=n, axial_modes=axial, **settings)
+        setting = SplineSettings(control_points=n, axial_modes=axial, measure=measure, **settings)
         members.append(of_settings(setting, f"n = {n}", n))
-    return Series(name=name, theory=theory, look=look, members=tuple(members), repeat=15)
+    return Series(name=name, theory=measure, look=look, members=tuple(members), repeat=15)
 
 
-def elements(name: str, element: str, look: Look) -> Series:
-    """Return a series of finite elements."""
+def _elements(name: str, element: str, look: Look) -> Series:
     members = (of_settings(FeSettings(elements=e, element=element), f"{e} elements", e) for e in MESHES)
     theory = "material" if element == "corotational" else "shear"
     return Series(name=name, theory=theory, look=look, members=tuple(members))
 
 
 def other_series() -> list[Series]:
-    """Return the surrogate models and the other codes that are installed."""
+    """Return the surrogate models and the other codes that are installed, for paths."""
     return [
-        Series(name=name, theory=theory, look=look, members=_members(module, counts))
-        for name, (module, theory, look, counts) in BASELINES.items()
-        if module.installed()
+        Series(
+            name=each.baseline.model,
+            theory=each.theory,
+            look=each.look,
+            members=tuple(of_baseline(each.baseline, f"{e} elements", e, elements=e) for e in each.meshes)
+            or (of_baseline(each.baseline, "closed form", 1),),
+        )
+        for each in OTHERS
+        if each.baseline.installed()
     ]
 
 
-def _members(module: ModuleType, counts: tuple[int, ...]) -> tuple[Member, ...]:
-    if not counts:
-        return (of_baseline(module, "closed form", 1),)
-    return tuple(of_baseline(module, f"{e} elements", e, elements=e) for e in counts)
+def moving_series(scale: float = 1.0) -> list[Series]:
+    """Return the series of the two models of the suite in motion, the implicit steps times `scale` [1]."""
+    explicit = (
+        moving(SplineSettings(control_points=n), f"n = {n}", integrator="leapfrog") for n in MOVING_COUNTS
+    )
+    implicit = (
+        moving(
+            SplineSettings(control_points=n),
+            f"n = {n}, {1e6 * scale * step:.3g} µs",
+            f"n = {n}",
+            step=scale * step,
+        )
+        for n in IMPLICIT_COUNTS
+        for step in STEPS
+    )
+    meshes = (moving(FeSettings(elements=e), f"{e} elements") for e in MOVING_MESHES)
+    return [
+        Series(
+            name=SPLINE, look=Look(label="spline, leapfrog", colour=BLUE, marker="x"),
+            members=(*explicit,),
+        ),
+        Series(
+            name=IMPLICIT, look=Look(label="spline, energy-consistent", colour=SKY, line=":", marker="D"),
+            members=(*implicit,),
+        ),
+        Series(
+            name=ELEMENTS, look=Look(label="finite elements, central difference", colour=BLACK, marker="s"),
+            members=(*meshes,),
+        ),
+    ]  # fmt: skip
 
 
-def all_series() -> list[Series]:
-    """Return all series, the suite's own first."""
-    return own_series() + other_series()
+def moving_others(scale: float = 1.0) -> list[Series]:
+    """Return the surrogates and other codes that are installed, in motion, all steps times `scale` [1]."""
+    return [
+        Series(name=each.baseline.model, look=each.look, members=tuple(_moving_members(each, scale)))
+        for each in OTHERS
+        if each.steps and each.baseline.installed()
+    ]
 
 
-def looks() -> dict[str, Look]:
-    """Return the look of every series by name, installed or not."""
-    return {series.name: series.look for series in own_series()} | {
-        name: look for name, (_, _, look, _) in BASELINES.items()
-    }
+def _moving_members(each: Other, scale: float) -> Iterator[Member]:
+    for step in (scale * step for step in each.steps):
+        if not each.moving_meshes:
+            yield moving_baseline(each.baseline, "closed form", "all", step)
+        for e in each.moving_meshes:
+            setting = f"{e} elements, {1e6 * step:.3g} µs"
+            yield moving_baseline(each.baseline, setting, f"{e} elements", step, elements=e)
+
+
+def looks(own: list[Series]) -> dict[str, Look]:
+    """Return the look of the suite's own series and of all others by name, installed or not."""
+    return {each.name: each.look for each in own} | {each.baseline.model: each.look for each in OTHERS}

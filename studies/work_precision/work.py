@@ -1,4 +1,4 @@
-"""Work of a static path that does not depend on machine or language: counted operations.
+"""Work of a static path or a motion that does not depend on machine or language: counted operations.
 
 One sum, difference, product, quotient, root or angle of two numbers is one operation. The counts per point
 and per element are those of the code as it stands (`assemble_points` and `condense` of the spline, `forces`
@@ -15,6 +15,16 @@ Factorisations are those of symmetric elimination in the order of the unknowns t
 - elements: node by node along a strip, three pivots that each reach to the next node's end, as the banded
   factors of the reference have them.
 
+In motion:
+
+- spline, leapfrog: every evaluation takes the forces of the strips in control points (`add_forces`) and
+  multiplies those of the inner ones with the constant inverse of their mass; what is done for the tips and
+  the body does not grow with the size and is left out;
+- spline, implicit: every Newton iteration assembles residual and tangent of the bordered system and takes a
+  dense LU of it;
+- elements, explicit: every evaluation takes the forces of all elements, and moves three coordinates a node
+  by four operations each. Nothing is factorised.
+
 The operations of a pivot with r rows below are 1 + r for the multipliers and r (r + 1) for the symmetric
 update; those of the substitution 4 r + 1.
 """
@@ -22,6 +32,7 @@ update; those of the substitution 4 r + 1.
 import math
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
+from typing import Any
 
 from studies.answers.settings import FeSettings, Settings, SplineSettings
 
@@ -67,7 +78,7 @@ def work_of(settings: Settings, counters: Mapping[str, int]) -> Work:
     return _condensed(settings, counters) if condensed else _bordered(settings, counters)
 
 
-def pivot_flops(rows: int) -> int:
+def _pivot_flops(rows: int) -> int:
     """Return the operations that eliminate one unknown which `rows` others still depend on."""
     return 1 + rows + rows * (rows + 1)
 
@@ -88,7 +99,7 @@ def condensation_flops(own: int, modes: int) -> int:
     size = own + 3
     axial = modes * (1 + 3 * size + size * (size + 1))
     # two more a row carry the residual along
-    return axial + sum(pivot_flops(rows) + 2 * rows for rows in range(3, size))
+    return axial + sum(_pivot_flops(rows) + 2 * rows for rows in range(3, size))
 
 
 def recovery_flops(own: int, modes: int) -> int:
@@ -149,7 +160,7 @@ def _of_elements(settings: FeSettings, counters: Mapping[str, int]) -> Work:
     inner = max(settings.elements - 1, 0)
     counted = settings.element == "corotational"
     rows = STRIPS * ([5, 4, 3] * max(inner - 1, 0) + [4, 3, 2] * min(inner, 1)) + [1, 0]
-    factorisation = sum(pivot_flops(row) for row in rows)
+    factorisation = sum(_pivot_flops(row) for row in rows)
     count = STRIPS * settings.elements
     tangents = counters["tangent_evaluations"] * count * (ELEMENT_FORCES + ELEMENT_TANGENT)
     residuals = counters["residual_evaluations"] * count * ELEMENT_FORCES
@@ -162,3 +173,61 @@ def _of_elements(settings: FeSettings, counters: Mapping[str, int]) -> Work:
         assembly_flops=count * (2 * ELEMENT_FORCES + ELEMENT_TANGENT) if counted else math.nan,
         flops=tangents + residuals + solves if counted else math.nan,
     )
+
+
+#: Operations that move the three coordinates of a node by one step.
+MOVED_NODE = 12
+
+
+def work_of_motion(settings: Settings, counters: Mapping[str, int]) -> dict[str, Any]:
+    """Return unknowns, points, steps, evaluations, factorisations and flops of a motion of the pivot."""
+    if isinstance(settings, FeSettings):
+        return _of_moving_elements(settings, counters)
+    return _explicit(settings, counters) if "evaluations" in counters else _implicit(settings, counters)
+
+
+def strip_force_flops(control_points: int) -> int:
+    """Return the operations of `add_forces` for a Bezier strip, n + 2 Gauss points, n - 1 axial forces."""
+    points, modes = control_points + 2, control_points - 1
+    return points * (16 * control_points + 4 * modes + 40) + modes
+
+
+def _of_moving_elements(settings: FeSettings, counters: Mapping[str, int]) -> dict[str, Any]:
+    count, evaluations = STRIPS * settings.elements, counters["force_evaluations"]
+    return {
+        "unknowns": 3 * (count - STRIPS) + 3,
+        "points": count,
+        "steps": counters["steps"],
+        "evaluations": evaluations,
+        "factorisations": 0,
+        "flops": evaluations * (count * ELEMENT_FORCES + (count - STRIPS) * MOVED_NODE),
+    }
+
+
+def _explicit(settings: SplineSettings, counters: Mapping[str, int]) -> dict[str, Any]:
+    n, evaluations = settings.points, counters["evaluations"]
+    inner = 4 * (n - 3) * (n - 1)
+    return {
+        "unknowns": STRIPS * (2 * n - 6) + 3,
+        "points": STRIPS * (n + 2),
+        "steps": counters["steps"],
+        "evaluations": evaluations,
+        "factorisations": 0,
+        "flops": evaluations * STRIPS * (strip_force_flops(n) + inner),
+    }
+
+
+def _implicit(settings: SplineSettings, counters: Mapping[str, int]) -> dict[str, Any]:
+    n, factorisations = settings.points, counters["factorisations"]
+    modes, points = n - 1, n + 2
+    size = STRIPS * (2 * n + modes + 6) + 3
+    evaluations = factorisations + counters["steps"]
+    return {
+        "unknowns": size,
+        "points": STRIPS * points,
+        "steps": counters["steps"],
+        "evaluations": evaluations,
+        "factorisations": factorisations,
+        "flops": evaluations * STRIPS * assembly_flops(points, n, modes)
+        + factorisations * (2 * size**3 // 3 + 2 * size**2),
+    }

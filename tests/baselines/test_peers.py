@@ -9,15 +9,15 @@ import pytest
 from studies.answers.adapters import answer_static
 from studies.answers.reference import limit_of
 from studies.answers.settings import FeSettings
-from studies.baselines import spline
+from studies.baselines import openseespy_frame, spline
 from studies.baselines.answer import BaselineFailed
-from studies.baselines.comparison import peer_statics, variants
-from studies.baselines.comparison.peer_statics import Limit
-from studies.baselines.comparison.ratios import kept, ratios
+from studies.baselines.comparison import tasks, variants
+from studies.baselines.comparison.peers import kept, ratios
+from studies.baselines.comparison.tasks import Limit
 from studies.baselines.comparison.variants import Variant, tried
-from studies.baselines.peers import exudyn_ancf, exudyn_exact, openseespy_frame
-from studies.baselines.peers.exudyn_solve import SOLVERS
-from studies.baselines.registry import PEERS, installed_module, module_of
+from studies.baselines.exudyn_solve import SOLVERS
+from studies.baselines.exudyn_strips import exudyn_ancf, exudyn_exact
+from studies.baselines.registry import PEERS
 from studies.cases.problem import named_case
 from studies.errors import BadInput
 from tests import gates
@@ -168,14 +168,13 @@ def test_opensees_refuses_unequal_increments():
 
 @pytest.mark.parametrize("name", PEERS)
 def test_what_is_not_installed_is_said_in_one_line(name, monkeypatch):
-    """Requirement: a code that is absent is refused with what to do, and is a row of the study."""
-    module = module_of(name)
+    """Requirement: a code that is absent is a row of the study, with what to do."""
+    module = PEERS[name]
     monkeypatch.setattr(module, "installed", lambda: False)
-    with pytest.raises(BadInput, match=rf"^{name}: not installed: python -m pip install '\.\[peers\]'$"):
-        installed_module(name)
     asked = [Variant(module=module, group="x", theory="y", settings={"elements": n}) for n in (1, 2)]
     rows, times = tried(asked, None, ["worst"])
     assert [(row["status"], row["model"]) for row in rows] == [("not installed", name)]
+    assert rows[0]["reason"] == "not installed: python -m pip install '.[peers]'"
     assert math.isnan(rows[0]["worst"])
     assert times == []
 
@@ -186,9 +185,9 @@ def test_study_runs_without_other_codes(monkeypatch):
 
     for module in (exudyn_ancf, exudyn_exact, openseespy_frame):
         monkeypatch.setattr(module, "installed", lambda: False)
-    monkeypatch.setattr(peer_statics, "REPEAT", 1)
-    limits, theories = peer_statics.limits(CASE)
-    rows, times = peer_statics.compared(CASE, limits)
+    monkeypatch.setattr(tasks, "REPEAT", 1)
+    limits, theories = tasks.path_limits(CASE)
+    rows, times = tasks.compared_paths(CASE, limits)
     assert [row["what"] for row in theories] == ["uncertainty", "uncertainty", "difference of the theories"]
     assert {row["status"] for row in rows} == {"converged", "not installed"}
     found = ratios(pd.DataFrame(rows), pd.DataFrame(times), "worst", [1e-3])

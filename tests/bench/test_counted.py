@@ -3,6 +3,7 @@
 import itertools
 import math
 import os
+import pickle
 import subprocess
 import sys
 import tracemalloc
@@ -52,6 +53,19 @@ def test_parts_are_all_of_a_solve(monkeypatch):
     assert set(seconds) == {"compile", "solve", "recover"}
     assert all(part >= 1.0 for part in seconds.values())
     assert sum(seconds.values()) == pytest.approx(next(readings) - 1.0, abs=1e-9)
+
+
+def test_what_nobody_asks_for_is_not_made():
+    """Requirement: what an answer is along its strips is made once, when it is asked for, and kept with it
+    when it is stored."""
+    answer = solve_statics(cross_axis_pivot(**SIX), rotation=math.pi / 2)
+    made = vars(answer.along)
+    assert answer.torque[-1] > 0.0
+    assert "sections" not in made
+    assert "array" not in vars(answer.along.unknowns)
+    assert answer.shape is answer.shape
+    stored = pickle.loads(pickle.dumps(answer))
+    np.testing.assert_array_equal(stored.shear_force, answer.shear_force)
 
 
 def test_memory_does_not_grow_with_the_increments():

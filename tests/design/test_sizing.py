@@ -5,12 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from studies.design import questions
-from studies.design.evaluate import answers
+from studies.design import task as questions
+from studies.design.evaluate import answers, by_elements, gradient_error, of_spline
 from studies.design.optimise import best, numbered, optimise, search, starts
 from studies.design.programme import OUTSIDE, Programme
 from studies.design.task import CENTRE_SHIFT, OBJECTIVES, VARIATION
-from studies.design.verify import by_elements, gradient_error, of_spline
 from studies.record.progress import silent
 from tests import gates
 
@@ -35,7 +34,10 @@ def narrow(own):
 def _task(own, objective=CENTRE_SHIFT, aspect=questions.NARROW, **changes):
     limits = {"variation": changes.pop("variation")} if "variation" in changes else {}
     question = questions.Question(baseline=questions.TABLE_ONE, objective=objective, aspect=aspect)
-    return replace(questions.task(*own, question, **limits), **changes)
+    start, found = own
+    stress = float(np.abs(found.stress).max())
+    task = questions.task_of(start, question, stiffness=found.stiffness, stress=stress, **limits)
+    return replace(task, **changes)
 
 
 def _quick(task):

@@ -92,7 +92,7 @@ def test_the_export_of_the_page_runs(tmp_path, monkeypatch):
         ["solve", "cross_axis_pivot", "--increments", "1"],
         ["solve", "cross_axis_pivot", "--increments", "2", "--rotation-deg", "5", "--accuracy", "0.1"],
         ["solve", "four_bar_of_flexures", "--increments", "1"],
-        ["release", "cross_axis_pivot", "--duration", "1e-4", "--from-deg", "5"],
+        ["release", "cross_axis_pivot", "--duration", "1e-4", "--rotation-deg", "5"],
         ["release", "cantilever_with_body", "--duration", "1e-4"],
         ["modes", "cross_axis_pivot", "--count", "1"],
     ],

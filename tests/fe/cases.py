@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from fe_reference.model import Body, Model, Section, straight_strip
+from fe_reference.model import Body, Model, Section, Strip
 from fe_reference.pivot import cross_axis_pivot
 from tests import gates
 
@@ -44,9 +44,15 @@ def pivot(**changes: Any) -> Model:
     return cross_axis_pivot(**{**TABLE_1, **changes})
 
 
+def flat_strip(elements: int, section: Section = SECTION) -> Strip:
+    """Return a horizontal strip from the origin to a body."""
+    nodes = np.outer(np.linspace(0.0, LENGTH, elements + 1), (1.0, 0.0))
+    return Strip(section=section, nodes=nodes)
+
+
 def cantilever(*, elements: int, element: str = "corotational", section: Section = SECTION) -> Model:
     """Return a horizontal strip, clamped on the left, with a massless body as its tip."""
-    strip = straight_strip((0.0, 0.0), (LENGTH, 0.0), section=section, elements=elements)
+    strip = flat_strip(elements, section)
     return Model(strips=(strip,), bodies=(Body(centre=np.array([LENGTH, 0.0])),), element=element)
 
 

@@ -6,12 +6,13 @@ import numpy as np
 import pytest
 from scipy.linalg import eigh
 
+from fe_reference.drives import drive_spans
 from fe_reference.dynamics import solve_release
 from fe_reference.errors import ConvergenceError
 from fe_reference.explicit import Explicit, critical_step
 from fe_reference.mass import about_mass_centre, carried_over, lumped_diagonal, lumped_nodes, mass_matrix
 from fe_reference.model import ELEMENTS, FREE, Body, Model
-from fe_reference.motion import Samples
+from fe_reference.motion import Samples, course
 from fe_reference.solution import Status
 from fe_reference.statics import static_state
 from fe_reference.structure import Structure, structure_of
@@ -94,7 +95,8 @@ def free_flight(velocity: float) -> tuple[Explicit, Structure, Samples]:
     v = velocity * np.random.default_rng(3).standard_normal(structure.size)
     v[2::3] = 20.0 * velocity
     step = 0.5 * critical_step(structure, rigid, y)
-    return scheme, structure, scheme.run(y, v, step, [200] * 20, None)
+    spans = drive_spans(model, None, 4000 * step)
+    return scheme, structure, course(lambda led: scheme, spans, y, v, step, [200] * 20)
 
 
 def test_free_flight_conserves_momentum() -> None:

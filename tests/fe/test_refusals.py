@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from fe_reference.errors import ConvergenceError, InvalidParameter
-from fe_reference.model import FREE, Body, Model, Section, Strip, straight_strip
+from fe_reference.model import FREE, Body, Model, Section, Strip
 from fe_reference.solution import Status
 from fe_reference.statics import solve_loads, solve_statics
-from tests.fe.cases import LENGTH, SECTION, cantilever, pivot
+from tests.fe.cases import SECTION, cantilever, flat_strip, pivot
 
 BAD = [
     ("length", 0.0, "length: got 0.0, expected a number above 0 [m]"),
@@ -74,7 +74,7 @@ def test_bad_load_and_geometry_are_refused() -> None:
         Body(centre=np.array([np.nan, 0.0]))
     with pytest.raises(InvalidParameter, match="above 0"):
         Section(area=1.0, second_moment_of_area=1.0, youngs_modulus=1.0, poisson_ratio=0.3, density=0.0)
-    strips = tuple(straight_strip((0.0, 0.0), (LENGTH, 0.0), section=SECTION, elements=n) for n in (2, 3))
+    strips = tuple(map(flat_strip, (2, 3)))
     with pytest.raises(InvalidParameter, match="same number of nodes"):
         Model(strips=strips, bodies=(Body(centre=np.zeros(2)),))
 

@@ -8,8 +8,7 @@ def server():
     """A server without pictures."""
     pytest.importorskip("cv2", reason="the extra `interactive` is not installed")
     pytest.importorskip("uvicorn", reason="the extra `interactive` is not installed")
-    from studies.interactive.web.hosting import Hosted
-    from studies.interactive.web.server import Settings
+    from studies.interactive.web.server import Hosted, Settings
 
     with Hosted(Settings(camera="none")) as hosted:
         yield hosted.server

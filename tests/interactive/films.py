@@ -8,8 +8,7 @@ import numpy as np
 
 from spline_model.held import HeldPivot
 from studies.interactive.film.painter import Film, Finger, Marker, Optics, Painter
-from studies.interactive.pivot.design import build
-from studies.interactive.pivot.placing import SIDE, Placing, turned
+from studies.interactive.pivot.design import SIDE, Placing, build, turned
 from studies.interactive.pivot.presets import PRESETS
 from studies.interactive.tracking.planar import CORNERS, project
 

@@ -14,14 +14,12 @@ pytest.importorskip("uvicorn", reason="the extra `interactive` is not installed"
 from PIL import Image
 
 from studies.interactive.film.painter import Optics
-from studies.interactive.pivot.design import build
-from studies.interactive.pivot.placing import Placing
+from studies.interactive.pivot.design import Placing, build
 from studies.interactive.pivot.presets import PRESETS
 from studies.interactive.tracking.detector import encoded
 from studies.interactive.tracking.planar import project
 from studies.interactive.web.browser import Browser, executable
-from studies.interactive.web.hosting import Hosted
-from studies.interactive.web.server import Settings
+from studies.interactive.web.server import Hosted, Settings
 from studies.interactive.web.sources import FilmSource
 from tests.interactive.films import both, film, true_corners, truth
 from tests.interactive.pages import BODY, LATE, WATCH, load

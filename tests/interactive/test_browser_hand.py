@@ -11,8 +11,7 @@ pytest.importorskip("uvicorn", reason="the extra `interactive` is not installed"
 
 from studies.interactive.pivot.presets import PRESETS
 from studies.interactive.web.browser import Browser, executable
-from studies.interactive.web.hosting import Hosted
-from studies.interactive.web.server import Settings
+from studies.interactive.web.server import Hosted, Settings
 from tests.interactive.pages import ANGLE, BODY, CONTRAST, COUNT_SOCKETS, load
 
 pytestmark = [

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from studies.interactive.pivot.mechanics import Mechanics
-from studies.interactive.session.clock import Clock
+from studies.interactive.session.input import Clock
 from tests.interactive.events import FRAME, codes, session, turned
 
 

@@ -118,7 +118,7 @@ def test_sheet_is_a_page(tmp_path):
     from studies.interactive.film.sheet import sheet
 
     target = tmp_path / "markers.pdf"
-    done = run("markers", "-o", str(target))
+    done = run("markers", "--out", str(target))
     assert (done.returncode, done.stderr) == (0, "")
     assert target.read_bytes()[:5] == b"%PDF-"
     assert target.read_bytes() == sheet()

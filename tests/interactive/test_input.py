@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from studies.errors import BadInput
-from studies.interactive.pivot.placing import inverse
+from studies.interactive.pivot.design import inverse
 from studies.interactive.pivot.presets import PARAMETERS, PRESETS
 from studies.interactive.session.session import ACTIONS, Session
 from tests.interactive.events import FRAME, codes, seen, session, turned

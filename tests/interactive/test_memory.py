@@ -14,8 +14,7 @@ from websockets.sync.client import connect
 
 from studies.interactive.film.painter import Optics
 from studies.interactive.web import protocol
-from studies.interactive.web.hosting import Hosted
-from studies.interactive.web.server import Settings
+from studies.interactive.web.server import Hosted, Settings
 from studies.interactive.web.sources import FilmSource
 from tests.interactive.films import film
 

@@ -6,7 +6,7 @@ import struct
 import pytest
 
 from studies.errors import BadInput
-from studies.interactive.web import protocol, security
+from studies.interactive.web import protocol
 
 JPEG_64 = b"\xff\xd8\xff\xc0\x00\x0b\x08\x00\x40\x00\x40\x01\x01\x11\x00" + b"\x00" * 20
 
@@ -88,8 +88,8 @@ def test_rate_is_limited():
 
 def test_only_this_machine_and_this_page():
     """Requirement: hosts and origins are this machine's with this port, the token is compared whole."""
-    assert security.good_host("127.0.0.1:80", 80)
-    assert security.good_host("localhost:80", 80)
+    assert protocol.good_host("127.0.0.1:80", 80)
+    assert protocol.good_host("localhost:80", 80)
     for host in (
         "evil.example",
         "evil.example:80",
@@ -99,21 +99,21 @@ def test_only_this_machine_and_this_page():
         None,
         "",
     ):
-        assert not security.good_host(host, 80)
-    assert security.good_origin("http://127.0.0.1:80", 80)
+        assert not protocol.good_host(host, 80)
+    assert protocol.good_origin("http://127.0.0.1:80", 80)
     for origin in ("null", None, "http://127.0.0.1:81", "https://127.0.0.1:80", "http://evil.example"):
-        assert not security.good_origin(origin, 80)
-    token = security.new_token()
+        assert not protocol.good_origin(origin, 80)
+    token = protocol.new_token()
     assert len(token) >= 32
-    assert token != security.new_token()
-    assert security.same(token, token)
+    assert token != protocol.new_token()
+    assert protocol.same(token, token)
     for other in (token[:-1], token + "x", "", None, 5):
-        assert not security.same(token, other)
+        assert not protocol.same(token, other)
 
 
 def test_policy_is_strict():
     """Requirement: the page may load and reach nothing but this server, and run no script from a string."""
-    policy = security.headers(80)["Content-Security-Policy"]
+    policy = protocol.headers(80)["Content-Security-Policy"]
     assert "default-src 'none'" in policy
     assert "frame-ancestors 'none'" in policy
     assert "unsafe" not in policy

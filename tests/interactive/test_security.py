@@ -10,7 +10,7 @@ pytest.importorskip("uvicorn", reason="the extra `interactive` is not installed"
 
 from websockets.exceptions import ConnectionClosed, InvalidStatus
 
-from studies.interactive.web import protocol, security
+from studies.interactive.web import protocol
 from tests.interactive.sockets import answer, closing, get, opened, say
 
 
@@ -18,7 +18,7 @@ def test_page_is_served_with_its_headers(server):
     """Requirement: page and modules come with their kinds and the strict headers."""
     response, body = get(server, "/")
     assert (response.status, b"<!doctype html>" in body) == (200, True)
-    for name, value in security.headers(server.port).items():
+    for name, value in protocol.headers(server.port).items():
         assert response.getheader(name) == value
     assert get(server, "/page/app.js")[0].getheader("Content-Type").startswith("text/javascript")
     assert server.address.startswith(f"http://127.0.0.1:{server.port}/#token=")
@@ -114,7 +114,7 @@ def test_floods_are_cut_off(server):
 def test_sockets_are_few(server):
     """Requirement: no more than four pages at a time; a closed one makes room."""
     with contextlib.ExitStack() as stack:
-        for _ in range(security.MOST_SOCKETS):
+        for _ in range(protocol.MOST_SOCKETS):
             stack.enter_context(opened(server))
         with opened(server, hello=False) as socket:
             say(socket, do="hello", version=1, token=server.token)
@@ -129,7 +129,7 @@ def test_sockets_are_few(server):
 def test_sockets_without_the_token_take_no_place(server):
     """Requirement: sockets that have not shown the token keep nobody out."""
     with contextlib.ExitStack() as stack:
-        for _ in range(2 * security.MOST_SOCKETS):
+        for _ in range(2 * protocol.MOST_SOCKETS):
             stack.enter_context(opened(server, hello=False))
         with opened(server) as socket:
             say(socket, do="pose", pose=[0, 0, 0.1])

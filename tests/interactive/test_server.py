@@ -16,8 +16,7 @@ from studies.interactive.session.recording import replay
 from studies.interactive.session.session import Session
 from studies.interactive.tracking.detector import encoded
 from studies.interactive.web import protocol
-from studies.interactive.web.hosting import Hosted
-from studies.interactive.web.server import Server, Settings
+from studies.interactive.web.server import Hosted, Server, Settings
 from studies.interactive.web.sources import FilmSource, VideoSource
 from tests.interactive.films import film, truth
 from tests.interactive.sockets import answer, closing, frame, opened, say

@@ -9,7 +9,7 @@ pytest.importorskip("cv2", reason="the extra `interactive` is not installed")
 
 from studies.errors import BadInput
 from studies.interactive.film.painter import Marker, Optics, counter
-from studies.interactive.pivot.placing import SIDE
+from studies.interactive.pivot.design import SIDE
 from studies.interactive.session.session import Session
 from studies.interactive.tracking import tracker as tracking
 from studies.interactive.tracking.calibration import Camera, calibrated

@@ -2,8 +2,7 @@
 
 import pytest
 
-from report.build import typeset
-from report.gather import gathered
+from report.build import gathered, typeset
 from report.results import Results
 from studies.record.store import Store
 

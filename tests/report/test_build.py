@@ -10,11 +10,9 @@ import pytest
 
 import report.build
 from report.build import FAILED, main, typeset
-from report.errors import ReportError
-from report.facts import Holds, Listing, fact, held, listed, written
+from report.facts import Holds, fact, held, listed, written
 from report.forms import percent
-from report.pick import at
-from report.results import Results
+from report.results import ReportError, Results, at
 from studies.record.source import ROOT
 from studies.record.store import RESULTS, Store
 
@@ -114,7 +112,7 @@ def test_condition_and_table_without_their_data_are_refused():
     with pytest.raises(ReportError, match=r"^condition name: no column b.* \(some words\)$"):
         held("name", Holds(words="some words", test=lambda r: at("b")(r.table("", ""))), missing)
     with pytest.raises(ReportError, match=r"^table name: got no rows"):
-        listed("name", Listing(made=lambda r: (["a"], [])), missing)
+        listed("name", lambda r: (["a"], []), missing)
 
 
 def test_unsupported_sentence_ends_the_build(content):

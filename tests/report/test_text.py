@@ -4,7 +4,7 @@ import re
 
 import pytest
 
-from report.gather import entries
+from report.build import entries
 from studies.record.store import Store
 from studies.registry import STUDIES
 from tests.report.sources import SECTIONS, prose, quoted, text

@@ -7,12 +7,12 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from report.gather import entries
+from report.build import entries
 from studies.record.source import ROOT
 from studies.record.store import Store
-from studies.stability.columns import COLUMNS, DEFAULT
+from studies.stability.family import COLUMNS, DEFAULT
+from studies.stability.fuzz import drawn
 from studies.stability.statics.axial_modes import settings
-from studies.stability.whole.fuzz import drawn
 from tests.report.sources import SECTIONS, text
 
 
@@ -130,13 +130,13 @@ def test_floor_is_what_a_formulation_ends_on():
         basis="bezier", measure="spatial", stretch="mixed", control_points=[6, 6, 12, 12],
         error_trajectory=[0.0005, 0.0008, 0.00075, 0.00075],
     )  # fmt: skip
-    assert entries("FACTS")["map.spatial.trajectory"].value(given) == 0.00075
+    assert entries("FACTS")["map.spatial.trajectory"].made(given) == 0.00075
 
 
 def test_energy_at_the_start_is_that_of_the_start():
     """Requirement: the energy that a swing begins with is taken at its first instant."""
     given = _One(formulation="FE refined", time_s=[0.0, 0.01], strain_J=[726.19, 728.45])
-    assert entries("FACTS")["fig06.energy"].value(given) == 726.19
+    assert entries("FACTS")["fig06.energy"].made(given) == 726.19
 
 
 def test_elements_and_errors_are_called_what_they_are():

@@ -126,8 +126,7 @@ def test_arc_length_goes_on_from_beyond_a_limit_point():
     scene = toggle(control_points=8).scene
     whole = solve_loads(scene, control="arc-length")[1]
     unstable = int(np.flatnonzero(whole.inertia == 1)[0])
-    part = type(whole)(**{**vars(whole), "states": whole.states[: unstable + 1],
-                          "load_factor": whole.load_factor[: unstable + 1]})  # fmt: skip
+    part = type(whole)(**{**vars(whole), **whole.rows(slice(unstable + 1))})
     onward = solve_loads(scene, control="arc-length", start=part, end=0.55)[1]
     assert onward.status.value == "converged", onward.message
     assert onward.inertia[0] == 1

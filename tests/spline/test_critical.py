@@ -8,7 +8,7 @@ from mpmath import ellipk, mp
 
 from spline_model.compile import compile_scene
 from spline_model.continuation.bordered import Bordered
-from spline_model.continuation.reduced import reduced_tangent
+from spline_model.continuation.critical import reduced_tangent
 from spline_model.errors import InvalidParameter
 from spline_model.pivot import cross_axis_pivot
 from spline_model.statics import solve_loads, solve_mechanism, solve_path, solve_statics

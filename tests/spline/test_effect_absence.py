@@ -7,17 +7,17 @@ import sys
 import numpy as np
 import pytest
 
+from spline_model.bordered import assemble
 from spline_model.compile import compile_scene
 from spline_model.dynamics import solve_motion
 from spline_model.effects import registry
 from spline_model.effects.registry import DEFAULT_EFFECTS, REGISTRY
-from spline_model.kernels import bending
-from spline_model.kernels.assemble import assemble
 from spline_model.mechanism import mechanism
 from spline_model.modes import natural_frequencies
 from spline_model.motion import run
 from spline_model.motion.start import set_in_motion
 from spline_model.pivot import cross_axis_pivot, swinging_slide_stiffness
+from spline_model.quadrature import STRETCHING
 from spline_model.statics import solve_mechanism
 from tests import gates
 from tests.spline.effect_scenes import EXTRA, scene_with
@@ -29,18 +29,16 @@ def test_unnamed_kinds_have_tables_of_length_zero():
     system = compile_scene(scene_with().scene)
     motion = set_in_motion(system)
     empty = (
-        system.tables.stretching.first,
+        np.flatnonzero(system.points.numbers[:, STRETCHING]),
         system.tables.drives.row,
         system.tables.loads.coordinate,
         system.tables.weight,
         motion.drag,
-        motion.bending_damping.first,
-        motion.stretching_damping.first,
-        motion.axial_relaxation,
+        np.flatnonzero(motion.relaxation),
     )
-    assert [array.size for array in empty] == [0] * len(empty)
+    assert [array.size for array in empty] == [0] * len(empty) and not motion.damped
     full = set_in_motion(compile_scene(scene_with(*(n for n in EXTRA if n != "driven_displacement")).scene))
-    assert full.drag.size and full.bending_damping.first.size and full.axial_relaxation.size
+    assert full.drag.size and full.damped and full.relaxation.all()
 
 
 def test_no_combination_recompiles():
@@ -48,10 +46,10 @@ def test_no_combination_recompiles():
     if not hasattr(run.run, "signatures"):
         pytest.skip("the compiler is switched off")
     solve_motion(scene_with(), start=0.5, duration=2e-4)
-    before = [len(kernel.signatures) for kernel in (assemble, run.run, bending.add_bending)]
+    before = [len(kernel.signatures) for kernel in (assemble, run.run)]
     for name in EXTRA:
         solve_motion(scene_with(name), start=0.5, duration=2e-4)
-    after = [len(kernel.signatures) for kernel in (assemble, run.run, bending.add_bending)]
+    after = [len(kernel.signatures) for kernel in (assemble, run.run)]
     assert after == before
 
 
@@ -73,10 +71,10 @@ def test_an_unnamed_effect_is_never_asked(monkeypatch):
 
 
 POISONED = """
-import spline_model.kernels.drives as drives, spline_model.strip.points as points
+import spline_model.effects.history as history, spline_model.strip.points as points
 def poison(*_):
     raise RuntimeError("not in the scene")
-points.stretching_law = drives.factor_at = poison
+points.stretching_law = history.factor_at = poison
 from spline_model.pivot import cross_axis_pivot
 from spline_model.statics import solve_statics
 from tests.table_one import SIX, TABLE_ONE

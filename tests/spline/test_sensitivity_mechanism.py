@@ -68,7 +68,7 @@ def changed(name, step):
     [
         ("c.start_x", 2e-3, 0.2, {}),
         ("a.second_moment_of_area", 1e-13, None, {"measure": "spatial"}),
-        ("whisker.end_y", 2e-3, 0.2, {"control_points": 4, "stretch": "consistent"}),
+        ("whisker.end_y", 8e-3, 0.2, {"control_points": 4, "stretch": "consistent"}),
         ("b.centre_x", 2e-3, None, {}),
     ],
 )

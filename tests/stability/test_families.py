@@ -7,7 +7,7 @@ import pytest
 
 from studies.engine.answer import answered
 from studies.registry import STUDIES, study_of
-from studies.stability.columns import DEFAULT, GENERALISED_ALPHA, PAPER, PATHS, SIX
+from studies.stability.family import DEFAULT, GENERALISED_ALPHA, PAPER, PATHS, SIX
 from studies.stability.motion import long_run, step_size
 from studies.stability.statics import rotation, slenderness
 from tests import gates
@@ -132,28 +132,27 @@ def test_error_goes_with_the_square_of_the_step():
     assert order["order"].iloc[-2:].min() > 2 - 0.15, order  # and below them again
 
 
-def drift(tmp_path, model=DEFAULT, pieces=4, steps=5000):
-    """Largest change of energy of a run in pieces, and its rows."""
-    for _ in range(pieces):
-        run = long_run.Run(model, folder=tmp_path, steps=steps)  # each piece as if after an interruption
-        run.go_on()
-    assert run.pieces == pieces
-    return run.change, run
+def drift(pieces=4, steps=5000):
+    """Rows of drift and memory of a run in pieces."""
+    drifts, memory = zip(*long_run.run(DEFAULT, pieces, steps), strict=True)
+    assert len(drifts) == pieces
+    return drifts, memory
 
 
-def test_long_run_keeps_energy(tmp_path):
-    """Requirement: twenty thousand steps in pieces, each after an interruption, keep energy and clamps."""
-    change, run = drift(tmp_path)
-    gates.check("stability_long_run", change)
-    residual = [row["constraint_residual_m"] for row in run.rows]
+def test_long_run_keeps_energy():
+    """Requirement: twenty thousand steps, each piece begun where the one before ended, keep energy and
+    clamps."""
+    rows, memory = drift()
+    gates.check("stability_long_run", rows[-1]["energy_change"])
+    residual = [row["constraint_residual_m"] for row in rows]
     assert residual[-1] < long_run.GROWTH * residual[0]
-    assert run.memory[-1]["largest_memory_MB"] < 1.05 * run.memory[0]["largest_memory_MB"]
+    assert memory[-1]["largest_memory_MB"] < 1.05 * memory[0]["largest_memory_MB"]
 
 
-def test_long_run_gate_has_teeth(tmp_path, monkeypatch):
+def test_long_run_gate_has_teeth(monkeypatch):
     """Requirement: a Newton that stops early drifts."""
     from spline_model.motion import energy_consistent
 
     monkeypatch.setattr(energy_consistent, "TOLERANCE", gates.teeth("stability_long_run")["tolerance"])
     with pytest.raises(AssertionError, match="x the gate"):
-        gates.check("stability_long_run", drift(tmp_path, pieces=1)[0])
+        gates.check("stability_long_run", drift(pieces=1)[0][-1]["energy_change"])

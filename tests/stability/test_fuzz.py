@@ -6,8 +6,8 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from studies.stability.outcome import judged
-from studies.stability.whole.fuzz import TOLERANCE, Example, asked
+from studies.stability.family import judged
+from studies.stability.fuzz import TOLERANCE, Example, asked
 
 #: Values that no design can have, among those that it can.
 BAD = (-1.0, 0.0, math.nan, math.inf)

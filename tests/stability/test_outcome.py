@@ -9,9 +9,9 @@ from studies.answers.settings import SplineSettings
 from studies.errors import BadInput
 from studies.paper import formulations
 from studies.record.store import Store
-from studies.stability import columns, maps
-from studies.stability.family import counted
-from studies.stability.outcome import OUTCOMES, Found, judged
+from studies.stability import family as columns
+from studies.stability import maps
+from studies.stability.family import OUTCOMES, Found, counted, judged
 from studies.stability.summary import lines
 
 

@@ -8,13 +8,13 @@ import pandas as pd
 import pytest
 
 from studies.__main__ import main
+from studies.baselines.answer import SolvedMotion, SolvedPath
 from studies.cases.problem import FOLDER, named_case
 from studies.commands import advise as command
 from studies.errors import BadInput
-from studies.work_precision import advice, moving_series, series
+from studies.work_precision import advice, series
 from studies.work_precision.equal_error import cheapest, coarsest, kept
-from studies.work_precision.motions import MovingMember, SolvedMotion
-from studies.work_precision.paths import WORK, Member, SolvedPath, of_baseline, path_errors, unsolved
+from studies.work_precision.paths import WORK, Member, of_baseline, path_errors, unsolved
 
 CASE = str(FOLDER / "cross_axis_pivot.toml")
 
@@ -61,6 +61,7 @@ def exact_path(problem, offset=0.0):
     return SolvedPath(
         status="converged",
         message="",
+        rotation=turns,
         centre=np.column_stack((np.sin(turns), turns)) * (1.0 + offset),
         torque=turns * (1.0 + offset),
         stiffness=np.ones_like(turns),
@@ -100,7 +101,7 @@ def test_static_advice_as_json(capsys, monkeypatch):
     others = [each for each in series.other_series() if each.name in wanted]
     monkeypatch.setattr(series, "own_series", lambda: own)
     monkeypatch.setattr(series, "other_series", lambda: others)
-    assert main(["advise", CASE, "--error", "1e-2", "--json", "-"]) == 0
+    assert main(["advise", CASE, "--accuracy", "1e-2", "--json", "-"]) == 0
     document = json.loads(capsys.readouterr().out)
     found = {row["model"]: row for row in document["models"]}
     assert set(found) == {"spline", "finite elements", *wanted}
@@ -118,17 +119,17 @@ def test_dynamic_advice_as_a_table(capsys, monkeypatch):
     """The command with --dynamic prints each model's setting, errors of rotation and frequency, and time."""
     monkeypatch.setattr(advice, "REFERENCE", (6, 5))
     monkeypatch.setattr(advice, "PERIODS", 1.0)
-    one = moving_series.own_series()[1]
-    small = [moving_series.MovingSeries(name=one.name, look=one.look, members=one.members[8:11])]
+    one = series.moving_series()[1]
+    small = [series.Series(name=one.name, look=one.look, members=one.members[8:11])]
     stopped = SolvedMotion(
         status="not_converged", message="it blew up", time=np.zeros(0), rotation=np.zeros(0),
         solve_s=math.nan, repeats=0, work={},
     )  # fmt: skip
-    failing = MovingMember(setting="one", family="all", step=1.0, solve=lambda *_: stopped)
-    other = moving_series.MovingSeries(name="failing", look=one.look, members=(failing,))
-    monkeypatch.setattr(moving_series, "own_series", lambda *_: small)
-    monkeypatch.setattr(moving_series, "other_series", lambda *_: [other])
-    assert main(["advise", CASE, "--error", "0.1", "--dynamic"]) == 0
+    failing = Member(setting="one", family="all", step=1.0, solve=lambda *_: stopped)
+    other = series.Series(name="failing", look=one.look, members=(failing,))
+    monkeypatch.setattr(series, "moving_series", lambda *_: small)
+    monkeypatch.setattr(series, "moving_others", lambda *_: [other])
+    assert main(["advise", CASE, "--accuracy", "0.1", "--dynamic"]) == 0
     lines = capsys.readouterr().out.splitlines()
     assert lines[2].split()[:4] == ["model", "setting", "rotation", "frequency"]
     assert any(line.startswith("spline, energy-consistent") and " ms" in line for line in lines)
@@ -139,11 +140,11 @@ def test_no_model_meets_an_impossible_error(capsys, monkeypatch):
     """Where no model meets the error the exit code says so, and the best of each is still told."""
     coarse = Member(setting="coarse", count=1, solve=lambda problem, repeat: exact_path(problem, 0.5))
     one = series.own_series()[0]
-    bad = series.Series(name="spline", theory="material", look=one.look, members=(coarse,))
+    bad = series.Series(name="spline", look=one.look, members=(coarse,))
     monkeypatch.setattr(series, "own_series", lambda: [bad])
     monkeypatch.setattr(series, "splines", lambda *_, **__: bad)
     monkeypatch.setattr(series, "other_series", list)
-    assert main(["advise", CASE, "--error", "1e-9"]) == 3
+    assert main(["advise", CASE, "--accuracy", "1e-9"]) == 3
     streams = capsys.readouterr()
     assert "no model meets 1e-09 here" in streams.err
     assert "its best" in streams.out
@@ -153,8 +154,8 @@ def test_no_model_meets_an_impossible_error(capsys, monkeypatch):
     ("words", "expected"),
     [
         ([str(FOLDER / "four_bar_of_flexures.toml")], "got a mechanism, expected a cross-axis pivot"),
-        ([CASE, "--error", "0"], "expected a finite number above 0"),
-        ([CASE, "--error", "no"], "expected a finite number above 0"),
+        ([CASE, "--accuracy", "0"], "expected a finite number above 0"),
+        ([CASE, "--accuracy", "no"], "expected a finite number above 0"),
         (["nowhere.toml"], "nowhere.toml"),
     ],
     ids=str,

@@ -19,8 +19,7 @@ from studies.cases.effects import Effects
 from studies.cases.problem import FOLDER, named_case
 from studies.effects import audit as module
 from studies.effects import outcome
-from studies.effects.size import size_of
-from studies.effects.variants import Variant, full_scene, without
+from studies.effects.variants import Variant, full_scene, size_of, without
 from studies.record.store import Store
 
 TABLE_1 = FOLDER / "cross_axis_pivot.toml"
@@ -46,7 +45,7 @@ def audited(tmp_path_factory):
     path = tmp_path_factory.mktemp("audit") / "audit.json"
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(outcome, "SWINGS", 1.5)
-        for name in ("answer_static", "answer_release"):
+        for name in ("answer_path", "answer_release"):
             patch.setattr(outcome, name, counted(getattr(outcome, name)))
         assert main(["audit", str(TABLE_1), "--tolerance", str(TOLERANCE), "--json", str(path)]) == 0
     return json.loads(path.read_text(encoding="utf-8"))

@@ -10,8 +10,7 @@ from studies.cases.effects import Effects
 from studies.cases.problem import named_case
 from studies.effects import audit, outcome
 from studies.effects.outcome import Answer, Outcome, Run
-from studies.effects.size import Size
-from studies.effects.variants import Variant
+from studies.effects.variants import Size, Variant
 
 TOLERANCE = 1e-3
 WITHIN = {"trajectory": 1e-4, "torque": 1e-4, "swing": 1e-4, "mode": 1e-4, "loss": 1e-4}

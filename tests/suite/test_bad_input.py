@@ -141,7 +141,6 @@ def test_missing_section_names_what_it_needs(case, command, table_1):
 
 #: Words after `solve CASE.toml`, and what the one line must say.
 BAD_OPTIONS = {
-    "no model": ([], "required: --model"),
     "unknown model": (["--model", "rod"], "invalid choice: 'rod' (choose from"),
     "three control points": (
         ["--model", "spline", "--control-points", "3"],
@@ -194,6 +193,7 @@ def test_bad_option_is_one_line(name, case, command):
             ["solve", "absent.toml", "--model", "fe"],
             "absent.toml: cannot be read (No such file or directory)",
         ),
+        (["solve", "cross_axis"], "got cross_axis, expected cross_axis_pivot (the nearest name), or a file"),
         (["converge", "absent.toml"], "absent.toml: cannot be read (No such file or directory)"),
     ],
 )

@@ -17,7 +17,7 @@ SMALL = (
 )
 WORDS = {
     "solve": ["--rotation-deg", 5, "--increments", 2],
-    "release": ["--from-deg", 5, "--duration", 1e-3, "--step", 1e-5],
+    "release": ["--rotation-deg", 5, "--duration", 1e-3, "--step", 1e-5],
     "modes": ["--count", 3],
 }
 

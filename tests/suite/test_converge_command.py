@@ -14,7 +14,7 @@ def short(case, command, tmp_path):
     """Run the command on a short path with few refinements; return its outcome and its folder."""
     folder = tmp_path / "out"
     path = case(("rotation_deg = 90", "rotation_deg = 30"), ("increments = 20", "increments = 3"))
-    words = ["converge", path, "--control-points", "4:6", "--elements", "5:40", "--output", folder]
+    words = ["converge", path, "--control-points", "4:6", "--elements", "5:40", "--out", folder]
     return command(*words), folder
 
 
@@ -46,7 +46,7 @@ def test_other_files_of_the_folder_stay(case, command, tmp_path):
     """Files that were in the output folder before are left alone."""
     (tmp_path / "mine.txt").write_text("keep")
     path = case(("rotation_deg = 90", "rotation_deg = 5"), ("increments = 20", "increments = 1"))
-    words = ["converge", path, "--control-points", "4:5", "--elements", "5:20", "--output", tmp_path]
+    words = ["converge", path, "--control-points", "4:5", "--elements", "5:20", "--out", tmp_path]
     assert command(*words).code == 0
     assert (tmp_path / "mine.txt").read_text() == "keep"
 
@@ -76,7 +76,7 @@ def test_no_rotation_and_no_folder_are_refused(case, command, tmp_path):
     assert outcome.code == 2
     assert "drive.rotation_deg: got 0, expected a rotation to relate errors to" in outcome.err
     (tmp_path / "file").write_text("in the way")
-    outcome = command("converge", case(), "--output", tmp_path / "file" / "out")
+    outcome = command("converge", case(), "--out", tmp_path / "file" / "out")
     assert outcome.code == 2
     assert outcome.err.count("\n") == 1
     assert "cannot be written" in outcome.err

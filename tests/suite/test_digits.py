@@ -6,9 +6,9 @@ import pandas as pd
 import pytest
 
 from studies.commands import readme
-from studies.commands.digits import DYNAMICS, STATICS, digits
+from studies.commands.tables import DYNAMICS, STATICS, digits
 from studies.errors import BadInput
-from studies.work_precision import moving_series, series
+from studies.work_precision import series
 
 
 def found(rows):
@@ -55,5 +55,5 @@ def test_blocks_are_put_between_their_marks():
 
 def test_columns_are_series_of_the_studies():
     """Every column is a series that the studies know by that name."""
-    assert set(STATICS) <= set(series.looks())
-    assert set(DYNAMICS) <= set(moving_series.looks())
+    assert set(STATICS) <= set(series.looks(series.own_series()))
+    assert set(DYNAMICS) <= set(series.looks(series.moving_series()))

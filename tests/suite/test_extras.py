@@ -45,7 +45,8 @@ def test_results_stay_without_the_other_codes(tmp_path):
 @pytest.mark.parametrize("study", BESIDE_PEERS)
 def test_one_code_is_not_enough(study, monkeypatch):
     """With one of the codes alone the tables would lose the other: it is named, and nothing is computed."""
-    from studies.baselines.peers import exudyn_ancf, exudyn_exact, openseespy_frame
+    from studies.baselines import openseespy_frame
+    from studies.baselines.exudyn_strips import exudyn_ancf, exudyn_exact
 
     for module in (exudyn_ancf, exudyn_exact):
         monkeypatch.setattr(module, "installed", lambda: True)

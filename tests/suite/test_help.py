@@ -4,13 +4,13 @@ import argparse
 import re
 import shutil
 from functools import cache
-from importlib import import_module
 from pathlib import Path
 
 import pytest
 
-from studies.__main__ import main
+from studies.__main__ import command_of, main
 from studies.cases.problem import FOLDER
+from studies.commands.arguments import ROTATION
 from studies.commands.parser import Parser, degrees, degrees_list, not_negative, positive
 from studies.record.source import ROOT
 from studies.registry import COMMANDS, selected
@@ -28,16 +28,13 @@ PARSED = {
 #: What an example is run with beside its own words, so that it writes nowhere but here.
 BESIDE = {name: ["--results", "results"] for name in ("run", "draw", "verify")}
 
-NUMBERS = (float, positive, not_negative, degrees, degrees_list)
+NUMBERS = (float, positive, not_negative, degrees, degrees_list, ROTATION.keywords["type"])
 UNIT = re.compile(r"\bin (s|deg|rad|m|mm|MPa|N m/rad|EI/L\^2)\b|\brelative\b|\bin s or rad\b")
 
 
 @cache
 def parser_of(name: str) -> Parser:
-    module = import_module(COMMANDS[name][0])
-    parser = Parser(prog=f"python -m studies {name}", description=module.__doc__)
-    module.add_arguments(parser)
-    return parser
+    return command_of(name)[1]
 
 
 def examples(name: str) -> list[str]:

@@ -145,3 +145,12 @@ def test_integration_runs_what_a_user_runs():
     assert "make test" in script
     assert (ROOT / ".ci" / "run").stat().st_mode & 0o111
     assert "run: .ci/run" in (ROOT / ".github" / "workflows" / "ci.yml").read_text(encoding="utf-8")
+
+
+def test_every_folder_says_what_lives_in_it():
+    """Each top-level folder has a README of about ten lines, and CONTRIBUTING's layout names the folder."""
+    layout = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
+    for name in ("spline_model", "fe_reference", "studies", "results", "report", "docs", "tests"):
+        text = (ROOT / name / "README.md").read_text(encoding="utf-8")
+        assert 5 <= len(text.splitlines()) <= 16, name
+        assert f"\n    {name}/" in layout

@@ -100,7 +100,7 @@ def test_effects_are_changed_on_the_command_line(change, names, case, command):
     """Signed names change the scene's list, names alone are all; what was assembled is reported."""
     words = ["--model", "spline", f"--effects={change}"]
     if "strip_inertia" in names:
-        moving = answer(command, "release", case(), *words, "--from-deg", 20, "--duration", 1e-4)
+        moving = answer(command, "release", case(), *words, "--rotation-deg", 20, "--duration", 1e-4)
         assert moving["effects"] == names
         assert ("gravity_J" in moving) == ("gravity" in names)
     assert answer(command, "modes", case(), *words, "--count", 1)["effects"] == names

@@ -72,7 +72,7 @@ def test_file_holds_what_the_stream_would(case, command, tmp_path):
     streamed = json.loads(command(*words, "-").out)
     outcome = command(*words, tmp_path / "answer.json")
     written = json.loads((tmp_path / "answer.json").read_text(encoding="utf-8"))
-    assert (outcome.code, outcome.out) == (0, f"written: {tmp_path / 'answer.json'}\n")
+    assert (outcome.code, outcome.out) == (0, f"{tmp_path / 'answer.json'}: the answer as JSON\n")
     assert streamed.keys() == written.keys()
     assert {**streamed, "wall_s": None} == {**written, "wall_s": None}
     assert sorted(path.name for path in tmp_path.iterdir()) == ["answer.json", "case.toml"]
@@ -155,6 +155,19 @@ def test_accuracy_raises_the_control_points_and_is_reported(case, command):
     assert lines[-2].startswith("estimated error: trajectory ")
 
 
+@pytest.mark.parametrize("words", [["solve", "--increments", 2], ["modes", "--count", 2]], ids=lambda w: w[0])
+def test_accuracy_doubles_the_elements(words, case, command):
+    """Statics and modes of the elements take an accuracy: meshes that were tried and errors are reported."""
+    words = [words[0], case(), "--model", "fe", "--elements", 5, "--accuracy", 1e-2, *words[1:]]
+    answer = json.loads(command(*words, "--json", "-").out)
+    estimate = answer["estimate"]
+    meshes = estimate.pop("meshes")
+    assert meshes[:2] == [5, 10] and answer["settings"]["elements"] == meshes[-1]
+    assert 0.0 < max(value for name, value in estimate.items() if name != "accuracy") <= 1e-2
+    tried = ", ".join(map(str, meshes))
+    assert f"; elements tried: {tried}" in command(*words).out
+
+
 def test_accuracy_out_of_reach_is_exit_code_3(case, command):
     """An accuracy below round-off reports the best path and how far its estimate came."""
     outcome = command("solve", case(), "--model", "spline", "--accuracy", 1e-17, "--json", "-")
@@ -168,14 +181,13 @@ def test_accuracy_out_of_reach_is_exit_code_3(case, command):
 @pytest.mark.parametrize(
     ("options", "line"),
     [
-        (["fe", "--accuracy", 1e-3], "--accuracy: got it with --model fe, expected --elements: "),
         (["spline", "--accuracy", 0], "--accuracy: got 0, expected a finite number above 0"),
         (
             ["spline", "--accuracy", 1e-3, "--control-points", 8, "--axial-modes", 3],
             "axial_modes: got 3, expected none beside accuracy",
         ),
     ],
-    ids=["elements", "zero", "axial modes"],
+    ids=["zero", "axial modes"],
 )
 def test_accuracy_that_cannot_be_is_one_line(options, line, case, command):
     """Elements are refined by another command; an accuracy is positive; it chooses the axial modes."""
@@ -278,3 +290,14 @@ def test_critical_points_of_a_pivot_have_their_angle(case, command, monkeypatch)
     monkeypatch.setattr(solve, "answer_static", passing)
     out = command("solve", case(), "--model", "fe", "--rotation-deg", 30, "--increments", 1).out
     assert out.splitlines()[-3:-1] == ["the torque has a limit", "limit point: load factor 0.5, 15 deg"]
+
+
+def test_a_case_of_the_suite_is_called_by_its_name(command):
+    """A design of the suite is solved by its name, by the spline unless another model is asked for."""
+    words = ["--rotation-deg", 10, "--increments", 2, "--control-points", 4, "--json", "-"]
+    named, file = (
+        json.loads(command("solve", each, *words).out)
+        for each in ("cross_axis_pivot", FOLDER / "cross_axis_pivot.toml")
+    )
+    assert named["model"] == "spline"
+    assert named["torque_Nm"] == file["torque_Nm"]

@@ -3,8 +3,8 @@
 import tomllib
 from pathlib import Path
 
-from studies.sweep.designs.plan import Plan
-from studies.sweep.designs.read import plan_of
+from studies.sweep.plan import Plan
+from studies.sweep.read import plan_of
 
 #: Twelve pivots over two settings: on the batch kernel.
 GRID = """

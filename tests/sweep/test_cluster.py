@@ -11,10 +11,9 @@ import pytest
 from studies.__main__ import main
 from studies.errors import BadInput
 from studies.record.source import ROOT
-from studies.sweep.designs.read import read_plan
+from studies.sweep.read import read_plan
 from studies.sweep.run import sweep
-from studies.sweep.workers.cluster import cluster
-from studies.sweep.workers.loopback import loopback
+from studies.sweep.workers import cluster, loopback
 from tests.sweep.sweeps import RANDOM, plan
 
 with_dask = pytest.mark.skipif(not importlib.util.find_spec("distributed"), reason="needs the extra cluster")

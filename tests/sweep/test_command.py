@@ -14,7 +14,7 @@ import pytest
 
 from studies.__main__ import main
 from studies.record.source import ROOT
-from studies.sweep.designs.read import read_plan
+from studies.sweep.read import read_plan
 from tests.sweep.sweeps import RANDOM
 
 EXAMPLES = sorted((ROOT / "studies" / "sweep" / "examples").glob("*.toml"))

@@ -9,8 +9,8 @@ from studies.answers.adapters import answer_static
 from studies.answers.settings import FeSettings, SplineSettings
 from studies.cases.effects import DEFAULT, Effects
 from studies.cases.problem import named_case
+from studies.sweep.points import static_answer
 from studies.sweep.quantities import PATH, SHIFT, values
-from studies.sweep.static import static_answer
 
 #: Natural curvature that the drive of the pivot undoes, so that the stress falls on the way.
 UNBENT = replace(

@@ -11,8 +11,8 @@ from studies.answers.settings import FeSettings, SplineSettings
 from studies.cases.design import named_design
 from studies.cases.problem import named_case
 from studies.sweep import batch, points
-from studies.sweep.designs.plan import Plan
-from studies.sweep.designs.sample import Drawer
+from studies.sweep.plan import Plan
+from studies.sweep.sample import Drawer
 from tests import gates
 from tests.sweep.sweeps import GRID, RANDOM, plan
 

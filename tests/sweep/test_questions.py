@@ -8,9 +8,9 @@ import pytest
 
 from studies.record import extras
 from studies.record.source import ROOT
-from studies.sweep.questions import throughput
-from studies.sweep.questions.design_space import SPACE, WITTRICK, rounded
-from studies.sweep.questions.pareto import dominating, not_dominated
+from studies.sweep import throughput
+from studies.sweep.design_space import SPACE, WITTRICK, rounded
+from studies.sweep.space_figure import dominating, not_dominated
 
 
 @pytest.mark.parametrize("quantities", [1, 2, 4])

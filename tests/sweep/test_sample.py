@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from scipy.stats import qmc
 
-from studies.sweep.designs.sample import Drawer
+from studies.sweep.sample import Drawer
 from tests.sweep.sweeps import GRID, RANDOM, plan
 
 

@@ -2,23 +2,159 @@
 
 Every error is against the limit of the code's own rod theory, with or without shear; how far the two are
 apart, and how far the codes' finest answers are from the limits, stands in the tables `theories` and
-`swing_theories`.
+`swing_theories`. Times are compared at equal error: the fastest of each group that reaches a level, over the
+fastest spline that does.
 """
 
 import importlib.metadata
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import Any
 
+import numpy as np
 import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
-from studies.baselines.comparison import peer_figures, peer_statics, peer_swings
-from studies.baselines.comparison.ratios import kept, ratios
-from studies.baselines.comparison.variants import EXUDYN
-from studies.baselines.peers import exudyn_ancf, openseespy_frame
+from studies.baselines import openseespy_frame
+from studies.baselines.comparison import tasks
+from studies.baselines.comparison.variants import AS_DELIVERED, EXUDYN, OPENSEES, SPLINE
+from studies.baselines.exudyn_strips import exudyn_ancf
 from studies.baselines.registry import HINT, missing
 from studies.cases.problem import named_case
 from studies.engine.findings import Claim, Tables, records
 from studies.engine.study import Answer, Part, Study
+from studies.record.style import BLUE, GREEN, GREY, ORANGE, RED, page
+
+GROUPS = (EXUDYN, AS_DELIVERED, OPENSEES)
+
+#: A limit must be this much more certain than the level that errors against it are compared at.
+CERTAINTY = 2.0
+
+
+def ratios(
+    rows: pd.DataFrame,
+    times: pd.DataFrame,
+    error: str,
+    levels: Iterable[float],
+    unsure: str | None = None,
+) -> pd.DataFrame:
+    """Return a row a level and group: the fastest variants, their times [s] and the ratio.
+
+    Where no variant of a group gets there, `tried_s` says how long the longest of them took.
+
+    Args:
+        rows: model, group, variant, status and the column `error`; times: model, variant, solve_s.
+        error: column that must not be above the level.
+        levels: errors asked for.
+        unsure: column with the uncertainty of what errors are against; a level that is not `CERTAINTY` times
+            as large leaves the row out.
+    """
+    joined = rows[rows["status"] == "converged"].merge(times, on=["model", "variant"])
+    groups = [group for group in GROUPS if group in set(rows["group"])]
+    found = []
+    for level in levels:
+        sure = joined if unsure is None else joined[CERTAINTY * joined[unsure] <= level]
+        spline = fastest(sure, SPLINE, error, level)
+        for group in groups:
+            peer = fastest(sure, group, error, level)
+            found.append(
+                {
+                    "level": level,
+                    "group": group,
+                    "peer": peer["name"],
+                    "peer_s": peer["solve_s"],
+                    "spline": spline["name"],
+                    "spline_s": spline["solve_s"],
+                    "ratio": peer["solve_s"] / spline["solve_s"],
+                    "tried_s": sure.loc[sure["group"] == group, "solve_s"].max(),
+                }
+            )
+    return pd.DataFrame(found)
+
+
+def fastest(joined: pd.DataFrame, group: str, error: str, level: float) -> dict[str, Any]:
+    """Return name and time of the fastest variant of a group within the level; NaN when none is."""
+    within = joined[(joined["group"] == group) & (joined[error] <= level)]
+    if within.empty:
+        return {"name": "none", "solve_s": np.nan}
+    best = within.sort_values("solve_s").iloc[0]
+    return {"name": f"{best['model']}, {best['variant']}", "solve_s": float(best["solve_s"])}
+
+
+def kept(rows: pd.DataFrame, error: str) -> pd.DataFrame:
+    """Return the rows with their error replaced by the largest of their settings at this step and finer ones.
+
+    An error that comes and goes as the step is refined is luck; this one only falls.
+    """
+    found = rows.copy()
+    settings = rows["variant"].str.replace(r"step=\S+", "", regex=True)
+    for _, same in rows.groupby([rows["model"], settings]):
+        ordered = same.sort_values("step_s")
+        found.loc[ordered.index, error] = np.maximum.accumulate(ordered[error].to_numpy(float))
+    return found
+
+
+#: (model, group) -> label, colour and marker.
+LOOKS = {
+    ("spline", "spline"): ("spline", BLUE, "x"),
+    ("exudyn ancf", "Exudyn"): ("Exudyn, ANCF cable", ORANGE, "o"),
+    ("exudyn exact", "Exudyn"): ("Exudyn, geometrically exact", GREEN, "s"),
+    ("exudyn ancf", "Exudyn as delivered"): ("Exudyn as delivered, ANCF cable", RED, "v"),
+    ("exudyn exact", "Exudyn as delivered"): ("Exudyn as delivered, geometrically exact", RED, "^"),
+    ("openseespy frame", "OpenSees"): ("OpenSees, corotational frame", GREY, "D"),
+}
+
+
+def _work_precision(tables: Mapping[str, pd.DataFrame]) -> Figure:
+    """Draw every setting as a point and the best of each model as a line, for the path and the swing."""
+    figure = page(9.5, 4.6)
+    path, swing = figure.subplots(1, 2)
+    _panel(path, tables["statics"], tables["statics_timings"], "worst")
+    path.set(
+        xlabel="time of the solver [ms]",
+        ylabel="larger error of trajectory and torque [1]",
+        title="Static path to 90° in 20 increments",
+    )
+    _panel(swing, tables["swings"], tables["swings_timings"], "rotation_rad")
+    swing.set(
+        xlabel="time of the solver [ms]",
+        ylabel="largest error of the rotation [rad]",
+        title="Free swing of 0.05 s from 90°",
+    )
+    _doubt(swing, tables["swing_theories"])
+    handles, labels = path.get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside lower center", ncols=3)
+    figure.suptitle(
+        "Each against the limit of its own theory; points: all settings tried; lines: the best of them"
+    )
+    return figure
+
+
+def _doubt(panel: Axes, theories: pd.DataFrame) -> None:
+    """Mark how certain the limits of the swing are."""
+    for row in theories[theories["what"] == "uncertainty"].to_dict("records"):
+        level = float(row["rotation_rad"])
+        panel.axhline(level, color="#444444", linewidth=0.9, linestyle=":")
+        panel.annotate(
+            f"uncertainty of the limit {row['theory']}", (0.99, level), (0, 2),
+            ("axes fraction", "data"), "offset points",
+            ha="right", va="bottom", fontsize=7, color="#444444",
+            bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.5, "alpha": 0.85},
+        )  # fmt: skip
+
+
+def _panel(panel: Axes, rows: pd.DataFrame, times: pd.DataFrame, error: str) -> None:
+    joined = rows[rows["status"] == "converged"].merge(times, on=["model", "variant"])
+    for (model, group), (label, colour, marker) in LOOKS.items():
+        mine = joined[(joined["model"] == model) & (joined["group"] == group)].sort_values("solve_s")
+        if mine.empty:
+            continue
+        panel.loglog(
+            1e3 * mine["solve_s"], mine[error], marker, color=colour, alpha=0.35, markersize=3, linestyle=""
+        )
+        best = mine[mine[error] <= mine[error].cummin()]
+        panel.loglog(1e3 * best["solve_s"], best[error], marker + "-", color=colour, label=label)
+
 
 CASE = "cross_axis_pivot"
 
@@ -32,16 +168,16 @@ SWING_AIMS = {5e-3: 20.0}
 
 def paths() -> Answer:
     """Return theories, errors and times of the static path."""
-    limits, theories = peer_statics.limits(named_case(CASE))
-    rows, times = peer_statics.compared(named_case(CASE), limits)
+    limits, theories = tasks.path_limits(named_case(CASE))
+    rows, times = tasks.compared_paths(named_case(CASE), limits)
     return {"theories": theories, "statics": rows, "statics_timings": times}
 
 
-def motions() -> Answer:
+def _motions() -> Answer:
     """Return theories, errors and times of the swing."""
-    limits, theories = peer_swings.limits(named_case(CASE))
+    limits, theories = tasks.swing_limits(named_case(CASE))
     uncertainty = {row["theory"]: row["rotation_rad"] for row in theories if row["theory"]}
-    rows, times = peer_swings.compared(named_case(CASE), limits, uncertainty)
+    rows, times = tasks.compared_swings(named_case(CASE), limits, uncertainty)
     return {"swing_theories": theories, "swings": rows, "swings_timings": times}
 
 
@@ -86,7 +222,7 @@ STUDY = Study(
     parts=(
         Part(ask=lambda: {"codes": _codes()}),
         Part(ask=paths, alone=True),
-        Part(ask=motions, alone=True),
+        Part(ask=_motions, alone=True),
     ),
     made={"statics_ratios": _path_ratios, "swings_ratios": _swing_ratios},
     claims_of_time=(
@@ -107,6 +243,6 @@ STUDY = Study(
         ),
     ),
     varying=("statics_ratios", "swings_ratios"),
-    figures={"peers": peer_figures.work_precision},
+    figures={"peers": _work_precision},
     missing=missing,
 )

@@ -4,8 +4,7 @@ The four-bar's link length and spring are fitted to the small-angle limit: its p
 not found.
 """
 
-from dataclasses import asdict, dataclass, replace
-from types import ModuleType
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -15,22 +14,25 @@ from studies.answers.frequency import swing_frequency
 from studies.answers.metrics import relative_error, trajectory_error
 from studies.answers.response import Response
 from studies.answers.settings import SplineSettings
-from studies.baselines import four_bar, linear_pivot, pin_joint, spline
-from studies.baselines.answer import BaselinePath
+from studies.baselines import spline
+from studies.baselines.answer import SolvedPath
 from studies.baselines.comparison import surrogate_figures
+from studies.baselines.four_bar import four_bar, link_length, spring
+from studies.baselines.linear_pivot import (
+    linear_pivot,
+    pin_joint,
+    shift_coefficient,
+    small_angle_stiffness,
+)
+from studies.baselines.registry import SURROGATES
 from studies.cases.problem import Problem, named_case
 from studies.engine.findings import Claim, Tables
 from studies.engine.study import Answer, Part, Study
 from studies.kinds import Array
-from studies.paper import formulations, swings
+from studies.paper import formulations
 
 CASE = "cross_axis_pivot"
 
-SURROGATES: dict[str, ModuleType] = {
-    linear_pivot.MODEL: linear_pivot,
-    pin_joint.MODEL: pin_joint,
-    four_bar.MODEL: four_bar,
-}
 #: Splines beside them: what the paper wrote, the same count without locking, and the default.
 SPLINES = (formulations.PAPER, formulations.LOCKING_FREE, "n = 6")
 #: Control points of the reference, and those whose difference to it is its uncertainty.
@@ -43,7 +45,7 @@ LEVELS = (0.01, 0.05)
 
 #: Amplitudes of the swings, over the end of the path.
 AMPLITUDES = np.arange(1, 10) / 9.0
-DURATION = swings.DURATION
+DURATION = formulations.DURATION
 #: Step of the surrogates [s]: a hundredth of it moves their rotation by less than 1e-9 rad.
 STEP = 1e-5
 #: Spline that swings of less than the full amplitude are held against, and its step [s].
@@ -51,52 +53,41 @@ SWING = SplineSettings(control_points=8)
 SWING_STEP = 2e-5
 
 
-@dataclass(frozen=True, kw_only=True)
-class Row:
-    """Errors of one model at one rotation [rad]; trajectory >= 0, the others signed [1]."""
-
-    model: str
-    rotation_rad: float
-    trajectory: float
-    torque: float
-    stiffness: float
-
-
-def paths() -> Answer:
+def _paths() -> Answer:
     """Return errors over the path (a row a model and degree), the reference's uncertainty and the times."""
     problem = named_case(CASE)
     turns = np.linspace(0.0, problem.rotation, STATES)
     limit = spline.static_path(problem, turns, control_points=REFINED)
-    paths = {name: each.static_path(problem, turns, repeat=9) for name, each in SURROGATES.items()}
-    rows = [row for name, path in paths.items() for row in _rows(name, path, limit)]
+    _paths = {name: each.static_path(problem, turns, repeat=9) for name, each in SURROGATES.items()}
+    rows = [row for name, path in _paths.items() for row in _rows(name, path, limit)]
     fine = replace(problem, increments=STATES - 1)
     for name in SPLINES:
         rows += _rows(name, answer_static(fine, formulations.SETTINGS[name]), limit)
-    paths[spline.MODEL] = spline.static_path(problem, turns, repeat=9)
+    _paths[spline.model] = spline.static_path(problem, turns, repeat=9)
     near = _rows("check", spline.static_path(problem, turns, control_points=CHECK), limit)
     uncertainty = [
-        {"quantity": name, "unit": "1", "uncertainty": max(abs(getattr(row, name)) for row in near)}
+        {"quantity": name, "unit": "1", "uncertainty": max(abs(row[name]) for row in near)}
         for name in QUANTITIES
     ]
     timings = [
         {"model": name, "task": f"path of {STATES - 1} increments", "solve_s": path.solve_s}
-        for name, path in paths.items()
+        for name, path in _paths.items()
     ]
-    return {"errors": map(asdict, rows), "reference": uncertainty, "timings": timings}
+    return {"errors": rows, "reference": uncertainty, "timings": timings}
 
 
-def _rows(name: str, path: BaselinePath | Response, limit: BaselinePath) -> list[Row]:
+def _rows(name: str, path: SolvedPath | Response, limit: SolvedPath) -> list[dict[str, Any]]:
+    """Return the errors at each rotation: trajectory >= 0, the others signed [1]."""
     torque = np.zeros(len(limit.torque))  # at rest there is none, but for round-off
     torque[1:] = relative_error(path.torque[1:], limit.torque[1:])
-    columns = (
-        path.rotation,
-        trajectory_error(path.centre, limit.centre),
-        torque,
-        relative_error(path.stiffness, limit.stiffness),
-    )
+    columns = {
+        "rotation_rad": path.rotation,
+        "trajectory": trajectory_error(path.centre, limit.centre),
+        "torque": torque,
+        "stiffness": relative_error(path.stiffness, limit.stiffness),
+    }
     return [
-        Row(model=name, rotation_rad=p, trajectory=x, torque=t, stiffness=k)
-        for p, x, t, k in zip(*columns, strict=True)
+        {"model": name, **dict(zip(columns, row, strict=True))} for row in zip(*columns.values(), strict=True)
     ]
 
 
@@ -136,11 +127,13 @@ def first_above(rotation: Array, error: Array, level: float) -> float:
     return float(rotation[before] + part * (rotation[after] - rotation[before]))
 
 
-def released() -> Answer:
+def _released() -> Answer:
     """Return the motions from the end of the path, the reference's uncertainty and the times."""
     problem = named_case(CASE)
-    limit = swings.sampled(swings.resolved(SplineSettings(control_points=10)), swings.INSTANTS)
-    check = swings.sampled(swings.resolved(SWING), swings.INSTANTS)
+    limit = formulations.sampled(
+        formulations.resolved(SplineSettings(control_points=10)), formulations.INSTANTS
+    )
+    check = formulations.sampled(formulations.resolved(SWING), formulations.INSTANTS)
     rows = [
         {"model": "reference", "time_s": t, "rotation_rad": p, "difference_rad": 0.0}
         for t, p in zip(limit.time, limit.rotation, strict=True)
@@ -160,7 +153,7 @@ def released() -> Answer:
     return {"motion": rows, "reference": uncertainty, "timings": times}
 
 
-def swung(part: float) -> Answer:
+def _swung(part: float) -> Answer:
     """Return the frequencies of the swing of one amplitude, over the end of the path."""
     problem = named_case(CASE)
     amplitude = float(part) * problem.rotation
@@ -187,35 +180,24 @@ def swung(part: float) -> Answer:
 def _parameters(problem: Problem) -> list[dict[str, Any]]:
     """Return what the surrogates were made with, and whether published or fitted."""
     rigidity = problem.youngs_modulus * problem.second_moment_of_area / problem.length
-    pin = pin_joint.law_of(problem).constant / rigidity
-    return [
-        _parameter(
-            linear_pivot.MODEL,
-            "stiffness over EI/L",
-            linear_pivot.law_of(problem).constant / rigidity,
-            "closed form",
-        ),
-        _parameter(
-            linear_pivot.MODEL,
+    pin = float(pin_joint.static_path(problem, [0.0, problem.rotation]).stiffness[0])
+    linear, fitted = "closed form", "fitted to small rotations"
+    found = [
+        (linear_pivot, "stiffness over EI/L", small_angle_stiffness(problem) / rigidity, linear),
+        (
+            linear_pivot,
             "centre shift over L and square of the rotation",
-            linear_pivot.law_of(problem).shift / problem.length,
-            "closed form",
+            shift_coefficient(problem) / problem.length,
+            linear,
         ),
-        _parameter(pin_joint.MODEL, "stiffness over EI/L", pin, "published"),
-        _parameter(
-            four_bar.MODEL, "link length over L", four_bar.link_length(problem), "fitted to small rotations"
-        ),
-        _parameter(
-            four_bar.MODEL,
-            "spring over EI/L",
-            four_bar.spring(problem) / rigidity,
-            "fitted to small rotations",
-        ),
+        (pin_joint, "stiffness over EI/L", pin / rigidity, "published"),
+        (four_bar, "link length over L", link_length(problem), fitted),
+        (four_bar, "spring over EI/L", spring(problem) / rigidity, fitted),
     ]
-
-
-def _parameter(model: str, name: str, value: float, origin: str) -> dict[str, Any]:
-    return {"model": model, "parameter": name, "value": value, "origin": origin}
+    return [
+        {"model": each.model, "parameter": name, "value": value, "origin": origin}
+        for each, name, value, origin in found
+    ]
 
 
 def _over_the_best(tables: Tables) -> list[dict[str, Any]]:
@@ -232,9 +214,9 @@ def _over_the_best(tables: Tables) -> list[dict[str, Any]]:
 STUDY = Study(
     cases=(CASE,),
     parts=(
-        Part(ask=paths, alone=True),
-        Part(ask=released, alone=True),
-        Part(at=lambda: AMPLITUDES, ask=swung),
+        Part(ask=_paths, alone=True),
+        Part(ask=_released, alone=True),
+        Part(at=lambda: AMPLITUDES, ask=_swung),
         Part(ask=lambda: {"parameters": _parameters(named_case(CASE))}),
     ),
     made={"thresholds": _thresholds},

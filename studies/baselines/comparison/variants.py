@@ -2,14 +2,13 @@
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
-from types import ModuleType
 from typing import Any
 
 import numpy as np
 
-from studies.baselines import spline
+from studies.baselines import openseespy_frame, spline
 from studies.baselines.answer import BaselineFailed
-from studies.baselines.peers import exudyn_ancf, exudyn_exact, openseespy_frame
+from studies.baselines.exudyn_strips import exudyn_ancf, exudyn_exact
 from studies.baselines.registry import HINT
 
 #: Theories of the rod: the limit that a model tends to.
@@ -29,13 +28,13 @@ class Variant:
     """One setting of one model.
 
     Attributes:
-        module: with the interface of a baseline.
+        module: a baseline, as `studies.baselines.registry` says.
         group: under which its times are compared.
         theory: of its rod.
         settings: keywords; label: the same as a text.
     """
 
-    module: ModuleType
+    module: Any
     group: str
     theory: str
     settings: Mapping[str, Any] = field(default_factory=dict)
@@ -43,7 +42,7 @@ class Variant:
     @property
     def model(self) -> str:
         """Name of the model."""
-        return str(self.module.MODEL)
+        return str(self.module.model)
 
     @property
     def label(self) -> str:
@@ -107,7 +106,7 @@ def release_variants() -> list[Variant]:
     ]
 
 
-def _variant(module: ModuleType, group: str, **settings: Any) -> Variant:
+def _variant(module: Any, group: str, **settings: Any) -> Variant:
     theory = WITH_SHEAR if module is exudyn_exact else WITHOUT_SHEAR
     return Variant(module=module, group=group, theory=theory, settings=settings)
 

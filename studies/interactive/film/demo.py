@@ -8,8 +8,7 @@ from numpy.typing import NDArray
 
 from spline_model.held import HeldPivot
 from studies.interactive.film.painter import Film, Finger, Marker, Optics, Painter
-from studies.interactive.pivot.design import build
-from studies.interactive.pivot.placing import Placing, turned
+from studies.interactive.pivot.design import Placing, build, turned
 from studies.interactive.pivot.presets import PRESETS
 
 #: Length of the film, its turns and the frames in which a finger covers a corner and a hand a marker.

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from studies.interactive.pivot.placing import SIDE
+from studies.interactive.pivot.design import SIDE
 from studies.interactive.tracking.calibration import Camera
 from studies.kinds import Array
 
@@ -132,7 +132,7 @@ class Painter:
         done = np.clip(np.rint(picture * ramp + noise), 0, 255).astype(np.uint8)
         if optics.mirrored:
             done = np.ascontiguousarray(done[:, ::-1])
-        burn_in(done, number)
+        _burn_in(done, number)
         return done
 
     def _plane_of(self, marker: Marker) -> Array:
@@ -232,7 +232,7 @@ def bits(number: int) -> Array:
     return np.where(image > 127, WHITE, BLACK)
 
 
-def burn_in(picture: Picture, number: int) -> None:
+def _burn_in(picture: Picture, number: int) -> None:
     """Write `number` into the upper left corner as white and black blocks."""
     for bit in range(COUNTER_BITS):
         value = 255 if number >> bit & 1 else 0
@@ -240,7 +240,7 @@ def burn_in(picture: Picture, number: int) -> None:
 
 
 def counter(picture: Picture) -> int:
-    """Return the number that `burn_in` wrote into a picture."""
+    """Return the number that `_burn_in` wrote into a picture."""
     places = BLOCK // 2 + BLOCK * np.arange(COUNTER_BITS)
     return int(sum(1 << bit for bit, x in enumerate(places) if picture[BLOCK, x] > 127))
 

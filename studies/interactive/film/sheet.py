@@ -8,8 +8,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
 from studies.interactive.film.painter import BITS, MARGIN, bits
-from studies.interactive.pivot.design import build
-from studies.interactive.pivot.placing import SIDE, Placing
+from studies.interactive.pivot.design import SIDE, Placing, build
 from studies.interactive.pivot.presets import PRESETS
 
 #: A4, and the pivot's origin on it [mm].

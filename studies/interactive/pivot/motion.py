@@ -8,8 +8,8 @@ import numpy as np
 
 from spline_model.compile import System, compile_scene
 from spline_model.impulses.solver import Run
-from spline_model.kernels.record import DISSIPATED, KINETIC, STRAIN
 from spline_model.motion.energy_consistent import Stepper
+from spline_model.motion.records import DISSIPATED, KINETIC, STRAIN
 from spline_model.motion.start import initial_acceleration, set_in_motion
 from spline_model.motion.step import HALVED, NEWTON
 from spline_model.pivot import BODY, STRIPS, Pivot

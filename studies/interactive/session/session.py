@@ -12,16 +12,11 @@ import numpy as np
 
 from studies.errors import BadInput
 from studies.interactive.pivot import presets
-from studies.interactive.pivot.bench import Bench
 from studies.interactive.pivot.design import wrapped
-from studies.interactive.pivot.mechanics import Mechanics
 from studies.interactive.pivot.motion import MOTIONS
-from studies.interactive.pivot.placing import Placing
 from studies.interactive.pivot.presets import STEP
-from studies.interactive.session.clock import Clock
-from studies.interactive.session.fields import choice, mapping, number, three, words
-from studies.interactive.session.hand import Hand
-from studies.interactive.session.view import Warnings, shown
+from studies.interactive.session.input import choice, mapping, number, three, words
+from studies.interactive.session.view import DRIVES, Instant, shown
 from studies.kinds import Array
 
 #: Farthest a pose may lie from rest: shift over the strips' length, and turn [rad].
@@ -29,11 +24,9 @@ FARTHEST_SHIFT, FARTHEST_TURN = 2.0, 3.5
 #: Distance of the body from where the pivot turns by itself, over the strips' length, that is named: few
 #: hands pull so hard, but 1.5 % of a wrong printed size do it.
 OFF_PATH = 0.02
-#: What the hand holds: the whole pose, or the rotation alone.
-DRIVES = ("pose", "rotation")
 
 
-class Session:
+class Session(Instant):
     """The state machine behind the page.
 
     Args:
@@ -43,28 +36,6 @@ class Session:
 
     def __init__(self, preset: str = "polymer", *, lock_step: bool = True) -> None:
         self._begin(preset, presets.preset(preset).values(), lock_step)
-
-    def _begin(self, preset: str, values: Mapping[str, object], lock_step: bool) -> None:
-        """Everything as at the start, with these settings."""
-        self.bench, self.clock = Bench(preset, values), Clock(lock_step=lock_step)
-        self.warnings = Warnings()
-        self.drive, self.solver = DRIVES[0], next(iter(MOTIONS))
-        self.paused, self.time = False, 0.0
-        self.sight: dict[str, Any] = {"state": "none"}
-        self.spread: Array | None = None
-        self.start_energy, self.wanted = 0.0, np.zeros(3)
-        self._marker: Array | None = None
-        self._hand = Hand()
-
-    @property
-    def mechanics(self) -> Mechanics:
-        """The present design at work."""
-        return self.bench.mechanics
-
-    @property
-    def placing(self) -> Placing:
-        """Where its markers sit."""
-        return self.bench.placing
 
     def feed(self, event: Mapping[str, Any]) -> dict[str, Any]:
         """Take one event and return the state after it.

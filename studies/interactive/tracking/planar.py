@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from studies.interactive.tracking.calibration import Camera
-from studies.interactive.tracking.profiles import INSET
+from studies.interactive.tracking.edges import INSET
 from studies.kinds import Array
 
 #: Corners of a square of side 1 in its own frame (x right, y up), in the detector's order: from the upper

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from studies.interactive.pivot.placing import SIDE
+from studies.interactive.pivot.design import SIDE
 from studies.interactive.tracking import edges, planar
 from studies.interactive.tracking.calibration import Camera
 from studies.interactive.tracking.detector import Detector, Picture, Squares

@@ -15,7 +15,8 @@ from studies.errors import BadInput
 from studies.interactive.pivot.motion import MOTIONS
 from studies.interactive.pivot.presets import PARAMETERS, PRESETS
 from studies.interactive.session.recording import Recorder, line
-from studies.interactive.session.session import DRIVES, Session
+from studies.interactive.session.session import Session
+from studies.interactive.session.view import DRIVES
 from studies.interactive.tracking.calibration import Camera
 from studies.interactive.tracking.tracker import Tracker
 from studies.interactive.web import protocol

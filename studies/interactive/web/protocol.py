@@ -1,7 +1,9 @@
 """Messages of the web socket: text events up, pictures up, states down; everything that comes in is checked
 here."""
 
+import hmac
 import json
+import secrets
 import struct
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -108,14 +110,14 @@ def sent_picture(data: bytes) -> Sent:
     body = data[HEADER.size :]
     if coding == GREY and len(body) != width * height:
         raise BadInput(f"picture: got {len(body)} grey levels, expected {width} x {height}")
-    if coding == JPEG and jpeg_size(body) != (width, height):
-        raise BadInput(f"picture: got a JPEG of {jpeg_size(body)}, expected {width} x {height}")
+    if coding == JPEG and _jpeg_size(body) != (width, height):
+        raise BadInput(f"picture: got a JPEG of {_jpeg_size(body)}, expected {width} x {height}")
     if not 0.0 <= time < 1e15:
         raise BadInput(f"picture: got time {time}, expected milliseconds")
     return Sent(seq=seq, time=time / 1e3, width=width, height=height, coding=coding, data=body)
 
 
-def jpeg_size(data: bytes) -> tuple[int, int] | None:
+def _jpeg_size(data: bytes) -> tuple[int, int] | None:
     """Return width and height that a JPEG's header states, before anything is decoded; None if it states
     none."""
     if data[:2] != b"\xff\xd8":
@@ -156,3 +158,49 @@ class Meter:
             return False
         self._left -= 1.0
         return True
+
+
+#: Bytes of the token that stands in the address behind the #.
+TOKEN_BYTES = 24
+#: Sockets at a time.
+MOST_SOCKETS = 4
+HOSTS = ("127.0.0.1", "localhost")
+
+
+def new_token() -> str:
+    """Return a token that cannot be guessed."""
+    return secrets.token_urlsafe(TOKEN_BYTES)
+
+
+def same(token: str, given: object) -> bool:
+    """Return whether `given` is the token, in a time that does not depend on where they differ."""
+    return isinstance(given, str) and hmac.compare_digest(token.encode(), given.encode())
+
+
+def good_host(host: str | None, port: int) -> bool:
+    """Return whether a request's Host is this machine by a name that no foreign page can take."""
+    return host in {f"{name}:{port}" for name in HOSTS}
+
+
+def good_origin(origin: str | None, port: int) -> bool:
+    """Return whether a socket was opened by a page of this server."""
+    return origin in {f"http://{name}:{port}" for name in HOSTS}
+
+
+def headers(port: int) -> Mapping[str, str]:
+    """Return the headers of every answer: nothing from elsewhere is loaded, framed, sniffed or kept."""
+    sockets = " ".join(f"ws://{name}:{port}" for name in HOSTS)
+    policy = (
+        "default-src 'none'; script-src 'self'; style-src 'self'; "
+        "img-src 'self' blob: data:; media-src blob:; "
+        f"connect-src 'self' {sockets}; frame-ancestors 'none'; base-uri 'none'; form-action 'none'"
+    )
+    return {
+        "Content-Security-Policy": policy,
+        "X-Content-Type-Options": "nosniff",
+        "Cross-Origin-Opener-Policy": "same-origin",
+        "Cross-Origin-Resource-Policy": "same-origin",
+        "Permissions-Policy": "camera=(self), microphone=(), geolocation=()",
+        "Referrer-Policy": "no-referrer",
+        "Cache-Control": "no-store",
+    }

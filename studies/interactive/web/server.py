@@ -1,12 +1,16 @@
 """The local web server: the page's files, and one web socket at /ws. Loopback only."""
 
 import asyncio
+import importlib.util
 import logging
 import socket as sockets
+import threading
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from importlib.resources import files
+from types import TracebackType
+from typing import Self
 
 import uvicorn
 from starlette.applications import Starlette
@@ -17,8 +21,10 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
 from studies.errors import BadInput
+from studies.interactive.pivot.motion import MOTIONS
+from studies.interactive.session.session import Session
 from studies.interactive.tracking.calibration import Camera
-from studies.interactive.web import protocol, security
+from studies.interactive.web import protocol
 from studies.interactive.web.connection import Connection
 from studies.interactive.web.sources import Source
 
@@ -51,7 +57,7 @@ class Settings:
     keep: Callable[[str], None] | None = None
 
 
-class Guard:
+class _Guard:
     """Refuses foreign hosts and adds the headers of `security` to every answer."""
 
     def __init__(self, app: ASGIApp, port: Callable[[], int]) -> None:
@@ -64,11 +70,11 @@ class Guard:
             return
         given = {name.decode("latin-1"): value.decode("latin-1") for name, value in scope["headers"]}
         port = self._port()
-        if not security.good_host(given.get("host"), port):
+        if not protocol.good_host(given.get("host"), port):
             await self._refuse(scope, receive, send, 400, "host: expected this machine")
             return
         if scope["type"] == "websocket":
-            if not security.good_origin(given.get("origin"), port):
+            if not protocol.good_origin(given.get("origin"), port):
                 await self._refuse(scope, receive, send, 403, "origin: expected this page")
                 return
             await self._app(scope, receive, send)
@@ -76,7 +82,7 @@ class Guard:
 
         async def with_headers(message: Message) -> None:
             if message["type"] == "http.response.start":
-                extra = [(k.encode(), v.encode()) for k, v in security.headers(port).items()]
+                extra = [(k.encode(), v.encode()) for k, v in protocol.headers(port).items()]
                 message["headers"] = [*message.get("headers", []), *extra]
             await send(message)
 
@@ -97,7 +103,7 @@ class Server:
 
     def __init__(self, settings: Settings) -> None:
         self.settings = settings
-        self.token = security.new_token()
+        self.token = protocol.new_token()
         self.port = settings.port
         self.open = 0
         self._listener: sockets.socket | None = None
@@ -109,7 +115,7 @@ class Server:
                 WebSocketRoute("/ws", self._socket),
             ]
         )
-        self.app: ASGIApp = Guard(app, lambda: self.port)
+        self.app: ASGIApp = _Guard(app, lambda: self.port)
 
     @property
     def address(self) -> str:
@@ -176,7 +182,7 @@ class Server:
         try:
             if not await self._hello(socket):
                 return
-            if self.open >= security.MOST_SOCKETS:  # who has no token takes no page's place
+            if self.open >= protocol.MOST_SOCKETS:  # who has no token takes no page's place
                 await _close(socket, FULL, "too many pages are open")
                 return
             counted = True
@@ -212,7 +218,7 @@ class Server:
         event = protocol.event(message.get("text") or "")
         if event["do"] != "hello" or event.get("version") != protocol.VERSION:
             raise BadInput("do: got no hello of this version, expected one first")
-        if not security.same(self.token, event.get("token")):
+        if not protocol.same(self.token, event.get("token")):
             await _close(socket, FORBIDDEN, "token: expected the one of the address that was printed")
             return False
         return True
@@ -224,3 +230,50 @@ async def _close(socket: WebSocket, code: int, reason: str) -> None:
         await socket.close(code, reason.encode()[:120].decode(errors="ignore"))
     except RuntimeError:
         LOG.debug("socket was closed already")
+
+
+class Hosted:
+    """Serves within a context; `server` has the address and the token."""
+
+    def __init__(self, settings: Settings) -> None:
+        self.server = Server(settings)
+        self.server.bind()
+        self._thread = threading.Thread(target=lambda: asyncio.run(self.server.serve()), daemon=True)
+
+    def __enter__(self) -> Self:
+        self._thread.start()
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.server.stop()
+        self._thread.join(10.0)
+
+
+def warm_up() -> None:
+    """Enter every kernel once, so that no picture waits for a compiler.
+
+    A pivot is held, turned, released, caught and squeezed until it buckles; a picture is tracked where OpenCV
+    is there.
+    """
+    session = Session()
+    for name in MOTIONS:
+        events = (
+            {"do": "solver", "name": name},
+            {"do": "drive", "by": "rotation"},
+            {"do": "pose", "pose": [0.0, 0.0, 0.1]},
+            {"do": "drive", "by": "pose"},
+            {"do": "pose", "pose": [0.0, -0.002, 0.0]},
+            {"do": "release"},
+            {"do": "tick"},
+            {"do": "catch"},
+        )
+        for event in events:
+            session.feed({**event, "t": 0.0})
+    if importlib.util.find_spec("cv2") is None:
+        return
+    from studies.interactive.film.demo import demo_film
+    from studies.interactive.tracking.tracker import Tracker
+
+    Tracker().see(demo_film().picture(0), 0.0)

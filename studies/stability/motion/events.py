@@ -17,11 +17,22 @@ from studies.answers.settings import Settings, SplineSettings
 from studies.cases.problem import Problem, named_case
 from studies.engine.study import Answer, Part
 from studies.stability import maps
-from studies.stability.columns import CHECK, COLUMNS, DEFAULT, LOCKING_FREE, PAPER, UNCHECKED
-from studies.stability.family import CASE, Task, family, names, outcome_of
-from studies.stability.outcome import Found
+from studies.stability.family import (
+    CASE,
+    CHECK,
+    COLUMNS,
+    DEFAULT,
+    LOCKING_FREE,
+    PAPER,
+    UNCHECKED,
+    Found,
+    Task,
+    family,
+    names,
+    outcome_of,
+)
 from studies.stability.statics.geometry import as_mechanism
-from studies.stability.statics.paths import TOLERANCE, traced
+from studies.stability.statics.paths import TOLERANCE
 from studies.stability.statics.paths import found as compared
 
 #: Reversals, and releases with as many catches: of the default, and of the other columns.
@@ -43,14 +54,14 @@ QUIET = 1e-6
 INSTANT = 1e-9
 
 
-def timed(case: str, model: str, attempt: Callable[[], Found], tolerance: float) -> Answer:
+def _timed(case: str, model: str, attempt: Callable[[], Found], tolerance: float) -> Answer:
     """Return how one task ends and how long that takes."""
     begin = time.perf_counter()
     outcome = outcome_of(case, model, attempt, tolerance)
     return {**outcome, "timings": {"case": case, "model": model, "wall_s": time.perf_counter() - begin}}
 
 
-def tasks() -> list[Task]:
+def _tasks() -> list[Task]:
     """Return case, model, what is asked, and the tolerance."""
     return [*_motions(), *_jumps()]
 
@@ -60,7 +71,7 @@ def _motions() -> list[Task]:
     for model, count in EVENTS.items():
         found.append(("drive reversed again and again", model, partial(reversals, model, count), BOOKS))
         found.append(("let go and caught again and again", model, partial(catches, model, count), BOOKS))
-        found.append(("target jumps by 60° in a motion", model, partial(jump_in_motion, model), BOOKS))
+        found.append(("target jumps by 60° in a motion", model, partial(_jump_in_motion, model), BOOKS))
     return found
 
 
@@ -72,14 +83,14 @@ def _jumps() -> list[Task]:
             name = f"target jumps from rest to {degrees:g}°"
             found.append((name, model, partial(jump, settings, degrees, checked), TOLERANCE))
         name = f"target jumps between 60° and -60°, {ROUNDS} times"
-        found.append((name, model, partial(jumping, settings), TOLERANCE))
+        found.append((name, model, partial(_jumping, settings), TOLERANCE))
         for millimetres in ((0.0, 20.0), (20.0, 0.0), (-20.0, 0.0)):
             name = "target jumps by {:g}, {:g} mm".format(*millimetres)
-            found.append((name, model, partial(displaced, settings, millimetres, checked), TOLERANCE))
+            found.append((name, model, partial(_displaced, settings, millimetres, checked), TOLERANCE))
     return found
 
 
-def mechanism_of(model: str) -> Any:
+def _mechanism_of(model: str) -> Any:
     """Return Table 1 in motion in a column of splines."""
     settings = COLUMNS[model]
     assert isinstance(settings, SplineSettings)
@@ -94,7 +105,7 @@ def reversals(model: str, count: int) -> Found:
     corners = tuple(zip(times, factors, strict=True))
     drive = DrivenRotation(body="body", angle=REVERSAL, history=corners)
     run = solve_motion(
-        mechanism_of(model), drive=drive, duration=count * between, step=STEP, records=200, check=False
+        _mechanism_of(model), drive=drive, duration=count * between, step=STEP, records=200, check=False
     )
     place = np.interp(run.time, times, factors) * REVERSAL
     return _booked(run, extra=float(np.abs(run.rotation - place).max()))
@@ -102,7 +113,7 @@ def reversals(model: str, count: int) -> Found:
 
 def catches(model: str, count: int) -> Found:
     """Let the body go and catch it again, `count` times each: books of energy, none of which comes back."""
-    mechanism = mechanism_of(model)
+    mechanism = _mechanism_of(model)
     held = DrivenRotation(body="body", angle=0.0)
     span = STEPS_BETWEEN * STEP
     run = solve_motion(mechanism, start=RELEASE, duration=span, step=STEP, records=1, check=False)
@@ -124,11 +135,11 @@ def catches(model: str, count: int) -> Found:
     )
 
 
-def jump_in_motion(model: str) -> Found:
+def _jump_in_motion(model: str) -> Found:
     """Let a drive's target jump by 60 degrees within a nanosecond of a motion: followed, or refused."""
     history = ((1e-3, 0.0), (1e-3 + INSTANT, 1.0))
     drive = DrivenRotation(body="body", angle=math.radians(60.0), history=history)
-    run = solve_motion(mechanism_of(model), drive=drive, duration=2e-3, step=STEP, check=False)
+    run = solve_motion(_mechanism_of(model), drive=drive, duration=2e-3, step=STEP, check=False)
     return _booked(run, extra=0.0)
 
 
@@ -150,12 +161,13 @@ def _booked(run: Trajectory, *, extra: float) -> Found:
 def jump(settings: Settings, degrees: float, checked: bool) -> Found:
     """Follow a target that jumps from rest in one increment; against the refined path of many."""
     design = replace(named_case(CASE), rotation=math.radians(degrees), increments=1)
-    many = traced(replace(design, increments=36), CHECK)
-    reference = replace(many, at=many.at[[0, -1]], torque=many.torque[[0, -1]], centre=many.centre[[0, -1]])
-    return _bounded(compared(traced(design, settings), reference, checked=checked), 1)
+    many = answer_static(replace(design, increments=36), CHECK)
+    ends = {name: getattr(many, name)[[0, -1]] for name in ("load_factor", "torque", "centre")}
+    reference = replace(many, **ends)
+    return _bounded(compared(answer_static(design, settings), reference, checked=checked), 1)
 
 
-def jumping(settings: Settings) -> Found:
+def _jumping(settings: Settings) -> Found:
     """Follow a target that jumps to and fro; the torque is the same every time."""
     design: Problem = replace(named_case(CASE), rotation=math.radians(60.0), increments=1)
     once = answer_static(design, settings)
@@ -176,7 +188,7 @@ def jumping(settings: Settings) -> Found:
     )
 
 
-def displaced(settings: Settings, millimetres: tuple[float, float], checked: bool) -> Found:
+def _displaced(settings: Settings, millimetres: tuple[float, float], checked: bool) -> Found:
     """Follow a body whose centre's target jumps in one increment, free to rotate: its energy and rotation."""
     given = as_mechanism(named_case(CASE), 0.0)
     target = {"displacement": tuple(1e-3 * part for part in millimetres)}
@@ -212,11 +224,11 @@ def _bounded(answer: Found, jumps: int) -> Found:
 
 
 STUDY = family(
-    Part(at=tasks, ask=timed, alone=True),
+    Part(at=_tasks, ask=_timed, alone=True),
     figures={
         "stability_events": lambda tables: maps.listed(
             tables["outcomes"],
-            names(tasks()),
+            names(_tasks()),
             title=f"Sudden events: {EVENTS[DEFAULT]} a motion for the default, "
             f"{EVENTS[PAPER]} for the others",
         )

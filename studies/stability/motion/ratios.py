@@ -11,8 +11,7 @@ from studies.cases.mechanism import Mechanism, Strip
 from studies.cases.problem import Problem, named_case
 from studies.engine.study import Answer, Part
 from studies.stability import maps
-from studies.stability.columns import EXPLICIT, FE
-from studies.stability.family import CASE, family
+from studies.stability.family import CASE, EXPLICIT, FE, RIGHT, family
 from studies.stability.motion.swings import (
     INDEPENDENT,
     REFINED,
@@ -22,7 +21,6 @@ from studies.stability.motion.swings import (
     refined_swing,
     rotation_error,
 )
-from studies.stability.outcome import RIGHT
 from studies.stability.statics.geometry import as_mechanism
 
 #: Factors on mass and moment of inertia of Table 1's body, and on the flexural rigidity of one strip.
@@ -78,7 +76,7 @@ def stiffer(given: Problem, factor: float) -> Mechanism:
     return replace(cross, strips=tuple(strips))
 
 
-def outcomes_of(case: Ratio) -> Answer:
+def _outcomes_of(case: Ratio) -> Answer:
     """Return the outcomes of a design, with the gain of energy, and its reference."""
     start = math.radians(START_DEG)
     period = 1.0 / float(answer_modes(case.design, REFINED, count=1).frequency[0])
@@ -104,7 +102,7 @@ def outcomes_of(case: Ratio) -> Answer:
 
 
 STUDY = family(
-    Part(at=cases, ask=outcomes_of),
+    Part(at=cases, ask=_outcomes_of),
     figures={
         "stability_ratios": lambda tables: maps.listed(
             tables["outcomes"],

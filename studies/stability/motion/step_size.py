@@ -16,8 +16,7 @@ from studies.cases.problem import named_case
 from studies.engine.study import Answer, Part
 from studies.record.style import BLACK, BLUE, ORANGE, RED, page
 from studies.stability import maps
-from studies.stability.columns import COLUMNS, DEFAULT
-from studies.stability.family import CASE, family
+from studies.stability.family import CASE, COLUMNS, DEFAULT, family
 from studies.stability.motion.swings import (
     SWINGING,
     TOLERANCE,
@@ -60,7 +59,7 @@ def settled(degrees: float) -> Answer:
     }
 
 
-def outcomes_of(degrees: float, step: float) -> Answer:
+def _outcomes_of(degrees: float, step: float) -> Answer:
     """Return the outcomes of all models at a step, with the gain of energy."""
     duration = min(max(round(SWING / step), FEWEST), MOST) * step
     known = {"start": math.radians(degrees), "duration": duration, "step": step}
@@ -116,7 +115,7 @@ def _order_figure(tables: Mapping[str, pd.DataFrame]) -> Figure:
 
 STUDY = family(
     Part(at=lambda: STARTS, ask=settled),
-    Part(at=lambda: product(STARTS, STEPS), ask=outcomes_of),
+    Part(at=lambda: product(STARTS, STEPS), ask=_outcomes_of),
     Part(ask=lambda: {"order": order_table()}),
     figures={
         "stability_step_size": lambda tables: maps.outcome_map(
@@ -127,7 +126,8 @@ STUDY = family(
             xscale="log",
             xlim=(5e-8, 2e-2),
             ylim=(0.0, 145.0),
-            xticks={1e-7: "1e-7", 1e-5: "1e-5", 1e-3: "1e-3"},
+            xticks=(1e-7, 1e-5, 1e-3),
+            xticklabels=("1e-7", "1e-5", "1e-3"),
             yticks=list(STARTS),
         ),
         "stability_step_order": _order_figure,

@@ -12,7 +12,7 @@ from studies.answers.adapters import answer_release
 from studies.answers.motion import Motion
 from studies.answers.settings import FeSettings, Settings, SplineSettings
 from studies.cases.design import Design
-from studies.stability.columns import (
+from studies.stability.family import (
     COLUMNS,
     DEFAULT,
     EXPLICIT,
@@ -21,8 +21,10 @@ from studies.stability.columns import (
     LOCKING_FREE,
     PAPER,
     UNCHECKED,
+    Found,
+    Verdict,
+    judged,
 )
-from studies.stability.outcome import Found, Verdict, judged
 
 #: Largest error of the rotation that counts as right, over the rotation at the start [1]. A step of a
 #: twentieth of the swing's period errs by 0.03 after one swing; an answer off by more shows another motion.
@@ -62,7 +64,7 @@ SWINGING: dict[str, Swinging] = {
 }
 
 
-def swing_of(design: Design, column: Swinging, *, start: float, duration: float, step: float) -> Motion:
+def _swing_of(design: Design, column: Swinging, *, start: float, duration: float, step: float) -> Motion:
     """Return the motion of `design` in a column, let go at `start` [rad] for `duration` with `step` [s]."""
     return answer_release(
         design, column.settings, start=start, duration=duration, step=step, records=RECORDS, **column.options
@@ -91,7 +93,7 @@ def rotation_error(motion: Motion, reference: Motion) -> float:
     return float(np.abs(motion.rotation[known] - expected).max() / abs(reference.rotation[0]))
 
 
-def energy_gain(motion: Motion) -> float:
+def _energy_gain(motion: Motion) -> float:
     """Return the largest gain of the balance of energies over the stored one at the start [1]; NaN without
     a record."""
     stored = motion.kinetic_energy + motion.strain_energy
@@ -99,11 +101,11 @@ def energy_gain(motion: Motion) -> float:
     return float((balance / balance[0] - 1.0).max()) if len(balance) else math.nan
 
 
-def compared(motion: Motion, reference: Motion, *, most_gain: float, checked: bool) -> Found:
+def _compared(motion: Motion, reference: Motion, *, most_gain: float, checked: bool) -> Found:
     """Return a motion against the reference; without `checked`, as if it said nothing of itself."""
     if not len(motion.time):  # statics does not reach the start
         return Found(error=0.0, reached=False, reason=motion.message, counters=motion.counters)
-    gain = energy_gain(motion)
+    gain = _energy_gain(motion)
     resolution = motion.resolution if checked else ""
     return Found(
         error=rotation_error(motion, reference),
@@ -122,8 +124,8 @@ def judged_swing(
     column, gains = SWINGING[name], [math.nan]
 
     def attempt() -> Found:
-        motion = swing_of(design, column, start=start, duration=duration, step=step)
-        gains.append(energy_gain(motion))
-        return compared(motion, reference, most_gain=column.most_gain, checked=name not in UNCHECKED)
+        motion = _swing_of(design, column, start=start, duration=duration, step=step)
+        gains.append(_energy_gain(motion))
+        return _compared(motion, reference, most_gain=column.most_gain, checked=name not in UNCHECKED)
 
     return judged(attempt, TOLERANCE), gains[-1]

@@ -5,14 +5,13 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cache, partial
 
+from studies.answers.adapters import answer_path
 from studies.answers.settings import SplineSettings
 from studies.cases.problem import Problem, named_case
 from studies.engine.study import Answer, Part
 from studies.stability import maps
-from studies.stability.columns import DEFAULT, FE, INDEPENDENT, PAPER, REFINED
-from studies.stability.family import CASE, family
-from studies.stability.outcome import judged
-from studies.stability.statics.paths import TOLERANCE, Traced, attempted, distance, traced
+from studies.stability.family import CASE, DEFAULT, FE, INDEPENDENT, PAPER, REFINED, family, judged
+from studies.stability.statics.paths import TOLERANCE, StaticPath, attempted, distance
 
 COUNTS = (4, 5, 6, 8, 10)
 ROTATION_DEG = 45.0
@@ -36,12 +35,12 @@ class Setting:
 
 
 @cache
-def reference() -> Traced:
+def reference() -> StaticPath:
     """Return the refined path that all are held against."""
-    return traced(_design(), REFINED)
+    return answer_path(_design(), REFINED)
 
 
-def outcome(each: Setting) -> Answer:
+def _outcome(each: Setting) -> Answer:
     """Return how one discretisation ends."""
     attempt = partial(attempted, _design(), each.settings, reference(), checked=each.model != PAPER)
     place = {"panel": each.panel, "model": each.model, "x": each.count, "y": each.other}
@@ -50,7 +49,7 @@ def outcome(each: Setting) -> Answer:
 
 def independent() -> Answer:
     """Return how far finite elements are from the reference."""
-    gap = distance(traced(_design(), INDEPENDENT), reference())
+    gap = distance(answer_path(_design(), INDEPENDENT), reference())
     settled = "yes" if gap <= TOLERANCE / 5.0 else "no"
     return {"references": {"case": CASE, "model": FE, "independent": gap, "settled": settled}}
 
@@ -76,7 +75,7 @@ def settings() -> Iterator[Setting]:
 
 
 STUDY = family(
-    Part(at=settings, ask=outcome),
+    Part(at=settings, ask=_outcome),
     Part(ask=independent),
     figures={
         "stability_axial_modes": lambda tables: maps.outcome_map(

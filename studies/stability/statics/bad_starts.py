@@ -19,9 +19,7 @@ from studies.engine.findings import Tables
 from studies.engine.study import Answer, Part
 from studies.kinds import Array
 from studies.stability import maps
-from studies.stability.columns import DEFAULT, LOCKING_FREE, PAPER, PATHS, SIX
-from studies.stability.family import CASE, family
-from studies.stability.outcome import Found, judged
+from studies.stability.family import CASE, DEFAULT, LOCKING_FREE, PAPER, PATHS, SIX, Found, family, judged
 
 ASKED = (DEFAULT, LOCKING_FREE, PAPER)
 ROTATIONS = (45, 90, 120)
@@ -44,11 +42,12 @@ def figure(tables: Tables) -> Figure:
         xlim=(30.0, 135.0),
         ylim=(-0.7, len(kinds) - 0.3),
         xticks=list(ROTATIONS),
-        yticks=dict(enumerate(kinds)),
+        yticks=range(len(kinds)),
+        yticklabels=kinds,
     )
 
 
-def outcomes_of(model: str, degrees: float) -> Answer:
+def _outcomes_of(model: str, degrees: float) -> Answer:
     """Return the outcomes of one model's guesses at a rotation."""
     settings = PATHS[SIX if model == DEFAULT else model]
     given = replace(named_case(CASE), rotation=math.radians(degrees))
@@ -101,6 +100,6 @@ def guesses(pivot: Pivot, settings: Any, rotation: float) -> Iterator[tuple[str,
 
 
 STUDY = family(
-    Part(at=lambda: product(ASKED, ROTATIONS), ask=outcomes_of),
+    Part(at=lambda: product(ASKED, ROTATIONS), ask=_outcomes_of),
     figures={"stability_bad_starts": figure},
 )

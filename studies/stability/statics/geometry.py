@@ -19,7 +19,7 @@ INCLINATIONS = (10, 20, 30, 45, 60, 70, 80)
 OTHER_ROTATION = 45.0
 
 
-def grid() -> Iterator[StaticCase]:
+def _grid() -> Iterator[StaticCase]:
     """Yield the pivots of all crossing ratios and inclinations, driven as the paper's."""
     given = named_case(CASE)
     for ratio in RATIOS:
@@ -30,7 +30,7 @@ def grid() -> Iterator[StaticCase]:
             )
 
 
-def others() -> Iterator[StaticCase]:
+def _others() -> Iterator[StaticCase]:
     """Yield parallel strips, unequal strips in length, stiffness and angle, strips curved at rest."""
     given = named_case(CASE)
     cross = as_mechanism(given, OTHER_ROTATION)
@@ -128,7 +128,7 @@ def _thicker(strip: Strip, factor: float) -> Strip:
 
 
 STUDY = family(
-    Part(at=lambda: [*grid(), *others()], ask=outcomes_of),
+    Part(at=lambda: [*_grid(), *_others()], ask=outcomes_of),
     figures={
         "stability_geometry": lambda tables: maps.outcome_map(
             tables["outcomes"][tables["outcomes"]["case"].str.startswith("cross")],
@@ -142,7 +142,7 @@ STUDY = family(
         ),
         "stability_other_geometry": lambda tables: maps.listed(
             tables["outcomes"][~tables["outcomes"]["case"].str.startswith("cross")],
-            [case.name for case in others()],
+            [case.name for case in _others()],
             title=f"Other pairs of strips, driven to {OTHER_ROTATION:g}°",
         ),
     },

@@ -6,18 +6,18 @@ from functools import partial
 
 import numpy as np
 
-from studies.answers.adapters import answer_mechanism, answer_static
+from studies.answers.adapters import answer_path
+from studies.answers.response import MechanismResponse, Response
 from studies.answers.settings import FeSettings, Settings
 from studies.cases.design import Design
-from studies.cases.problem import Problem
 from studies.engine.study import Answer
-from studies.kinds import Array
-from studies.stability.columns import CHECK, FE, PATHS, REFINED, UNCHECKED
-from studies.stability.outcome import Found, judged
+from studies.stability.family import CHECK, FE, PATHS, REFINED, UNCHECKED, Found, judged
 
 #: Largest distance of a path that counts as right [1], over the largest torque and displacement. The error of
 #: six control points grows to 0.03 at a half turn; another branch is off by more than 0.1.
 TOLERANCE = 0.05
+StaticPath = Response | MechanismResponse
+
 #: Finer elements, asked where those of the column do not confirm the refined spline.
 ARBITER = FeSettings(elements=80)
 
@@ -41,57 +41,14 @@ class StaticCase:
     check: Settings = CHECK
 
 
-@dataclass(frozen=True, kw_only=True)
-class Traced:
-    """A path over S states.
-
-    Attributes:
-        at: (S,) rotation [rad] or load factor; torque: (S,) [N m]; centre: (S, 2) of the driven body [m].
-    """
-
-    at: Array
-    torque: Array
-    centre: Array
-    reached: bool
-    message: str
-    resolution: str
-    counters: Mapping[str, int]
-
-
-def traced(design: Design, settings: Settings) -> Traced:
-    """Return the path of `design`; BadInput for what the model refuses to be asked."""
-    if isinstance(design, Problem):
-        pivot = answer_static(design, settings)
-        torque, centre, counters = pivot.torque, pivot.centre, pivot.counters
-        return Traced(
-            at=pivot.rotation,
-            torque=torque,
-            centre=centre,
-            reached=pivot.converged,
-            message=pivot.message,
-            resolution=pivot.resolution,
-            counters=counters,
-        )
-    answer = answer_mechanism(design, settings)
-    return Traced(
-        at=answer.load_factor,
-        torque=answer.torque,
-        centre=answer.bodies[str(design.body)][:, :2],
-        reached=answer.converged,
-        message=answer.message,
-        resolution=answer.resolution,
-        counters=answer.counters,
-    )
-
-
-def distance(path: Traced, reference: Traced) -> float:
+def distance(path: StaticPath, reference: StaticPath) -> float:
     """Return the largest distance of two paths over the states that both have: of torque or place [1].
 
     Each over its largest value on the reference's path; infinite where the path is not of finite numbers. A
     path that stopped may end between two of the reference's states.
     """
-    near = np.abs(path.at[:, None] - reference.at).min(axis=1) < 1e-9
-    same = np.abs(path.at[near][:, None] - reference.at).argmin(axis=1)
+    near = np.abs(path.load_factor[:, None] - reference.load_factor).min(axis=1) < 1e-9
+    same = np.abs(path.load_factor[near][:, None] - reference.load_factor).argmin(axis=1)
     if not (np.isfinite(path.torque).all() and np.isfinite(path.centre).all()):
         return float("inf")
     torque = np.abs(path.torque[near] - reference.torque[same]).max()
@@ -106,8 +63,8 @@ def outcomes_of(case: StaticCase) -> Answer:
     A reference is settled where refinement moves it by less than a fifth of the tolerance and elements agree
     with it within the tolerance.
     """
-    reference = traced(case.design, case.refined)
-    spread = distance(traced(case.design, case.check), reference)
+    reference = answer_path(case.design, case.refined)
+    spread = distance(answer_path(case.design, case.check), reference)
     place = {"case": case.name, "x": case.x, "y": case.y}
     rows, gap = [], float("inf")
     for model, settings in PATHS.items():
@@ -118,23 +75,23 @@ def outcomes_of(case: StaticCase) -> Answer:
         if model == FE:
             gap = verdict.error
     if not gap <= TOLERANCE:
-        gap = distance(traced(case.design, ARBITER), reference)
-    settled = reference.reached and spread <= TOLERANCE / 5.0 and gap <= TOLERANCE
+        gap = distance(answer_path(case.design, ARBITER), reference)
+    settled = reference.converged and spread <= TOLERANCE / 5.0 and gap <= TOLERANCE
     known = {**place, "refinement": spread, "independent": gap, "settled": "yes" if settled else "no"}
     return {"outcomes": rows, "references": known}
 
 
-def attempted(design: Design, settings: Settings, reference: Traced, *, checked: bool) -> Found:
+def attempted(design: Design, settings: Settings, reference: StaticPath, *, checked: bool) -> Found:
     """Solve `design` and compare the path with the reference; see `found`."""
-    return found(traced(design, settings), reference, checked=checked)
+    return found(answer_path(design, settings), reference, checked=checked)
 
 
-def found(path: Traced, reference: Traced, *, checked: bool) -> Found:
+def found(path: StaticPath, reference: StaticPath, *, checked: bool) -> Found:
     """Return a path compared with the reference; without `checked`, as if it said nothing of itself."""
     resolution = path.resolution if checked else ""
     return Found(
         error=distance(path, reference),
-        reached=path.reached,
+        reached=path.converged,
         reason=path.message or resolution,
         states_limit=bool(resolution),
         counters=path.counters,

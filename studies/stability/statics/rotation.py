@@ -16,8 +16,7 @@ from studies.cases.problem import Problem, named_case
 from studies.engine.study import Part
 from studies.record.style import BLACK, BLUE, GREY, ORANGE, page
 from studies.stability import maps
-from studies.stability.columns import FE, PATHS, REFINED, SIX
-from studies.stability.family import CASE, family
+from studies.stability.family import CASE, FE, PATHS, REFINED, SIX, family
 from studies.stability.statics.paths import StaticCase, outcomes_of
 
 ROTATIONS = (-180, -90, 90, 135, 150, 165, 180, 200, 220, 240, 260)
@@ -127,7 +126,8 @@ STUDY = family(
             xlim=(-200.0, 280.0),
             ylim=(-0.3, 2.6),
             xticks=[-180, -90, 0, 90, 180],
-            yticks={math.log10(count): f"{count}" for count in INCREMENTS},
+            yticks=np.log10(INCREMENTS),
+            yticklabels=INCREMENTS,
         ),
         "stability_increments": _increments_figure,
     },

@@ -16,8 +16,7 @@ from studies.cases.problem import Problem, named_case
 from studies.engine.study import Part
 from studies.record.style import BLACK, BLUE, GREY, ORANGE, page
 from studies.stability import maps
-from studies.stability.columns import CHECK, DEFAULT, LOCKING_FREE, PATHS, REFINED, SIX
-from studies.stability.family import CASE, family
+from studies.stability.family import CASE, CHECK, DEFAULT, LOCKING_FREE, PATHS, REFINED, SIX, family
 from studies.stability.statics.paths import StaticCase, outcomes_of
 
 #: L/h of a rectangular section of Table 1's flexural rigidity.
@@ -126,7 +125,8 @@ STUDY = family(
             xscale="log",
             xlim=(5.0, 2.0 * INEXTENSIBLE),
             ylim=(0.0, 145.0),
-            xticks={10.0: "10", 1e3: "1e3", 1e5: "1e5", INEXTENSIBLE: "∞"},
+            xticks=(10.0, 1e3, 1e5, INEXTENSIBLE),
+            xticklabels=("10", "1e3", "1e5", "∞"),
             yticks=list(ROTATIONS),
         ),
         "stability_slenderness_limit": _limit_figure,

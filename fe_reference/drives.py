@@ -1,0 +1,158 @@
+"""Drives of a motion: what leads which coordinates of a body, from when to when, and how fast.
+
+Histories are linear between their instants, so that a motion falls into spans on which every led coordinate
+goes at a constant rate. Held like that they need no multiplier: the body is reduced about the point that is
+led (`mass.about_mass_centre`), the led rows have no equation of motion, and what resists them is what the
+drive exerts. At the beginning of a span velocities change at once, by impulses of the drives alone.
+"""
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .effects import DrivenDisplacement, History, factor_of, read_history
+from .errors import InvalidParameter, finite
+from .mass import RigidBodies
+from .model import Model, rotation_matrix
+from .structure import Structure
+
+Array = NDArray[np.float64]
+#: Instants nearer than this part of the motion are the same.
+SAME = 1e-12
+ALWAYS = (0.0, math.inf)
+
+
+@dataclass(frozen=True, kw_only=True)
+class DrivenRotation:
+    """The rotation of a body led through angle [rad] times the change of a history, from where it is.
+
+    It acts between the two instants `held` [s]. A body that is caught loses the velocity that the drive does
+    not have.
+    """
+
+    body: str | None = None
+    angle: float
+    history: History = ((0.0, 1.0),)
+    held: tuple[float, float] = ALWAYS
+
+    def __post_init__(self) -> None:
+        finite("angle", self.angle, "rad")
+        object.__setattr__(self, "history", read_history(self.history))
+        begin, end = self.held
+        if not begin < end:
+            raise InvalidParameter("held", self.held, "two instants, the first before the second [s]")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Span:
+    """A part of a motion, `begin` to `end` [s], on which all drives go at constant rates.
+
+    Attributes:
+        rates: of coordinate k of body b, under 3 b + k [m/s, rad/s].
+        begins: whether a drive takes hold at its beginning.
+    """
+
+    begin: float
+    end: float
+    rates: Mapping[int, float]
+    begins: bool
+
+    @property
+    def led(self) -> tuple[int, ...]:
+        """The bodies whose centres are led."""
+        return tuple(sorted({at // 3 for at in self.rates if at % 3 < 2}))
+
+    def held(self, structure: Structure) -> NDArray[np.bool_]:
+        """Return which coordinates of a structure are led (size,)."""
+        held = np.zeros(structure.size, dtype=bool)
+        held[[structure.first_body + at for at in self.rates]] = True
+        return held
+
+    def caught(self, structure: Structure, bodies: RigidBodies, y: Array, v: Array) -> Array:
+        """Return velocities (size,) with the rates of the drives, all others as impulses of these leave them.
+
+        The mass of a body is off the point that is led: an impulse there turns it.
+        """
+        after = v.copy()
+        for at, rate in self.rates.items():
+            after[structure.first_body + at] = rate
+        for body in self.led:
+            place, inertia = structure.body_slice(body), bodies.moment_of_inertia[body]
+            if 3 * body + 2 not in self.rates and inertia > 0.0:
+                arm = rotation_matrix(y[place][2]) @ (bodies.centre[body] - structure.points[body])
+                change = (after - v)[place]
+                lever = arm[0] * change[1] - arm[1] * change[0]
+                after[place.stop - 1] -= bodies.mass[body] * lever / inertia
+        return after
+
+
+def drive_spans(model: Model, drive: DrivenRotation | None, duration: float) -> list[Span]:
+    """Return the spans of a motion, in order: one where nothing is led."""
+    drives: list[tuple[int, Sequence[float], History, tuple[float, float]]] = []
+    if drive is not None:
+        turn = 3 * model.body_index(drive.body) + 2
+        drives.append((turn, (drive.angle,), drive.history, drive.held))
+    led = model.effects.find(DrivenDisplacement)
+    if led is not None and led.history is not None:
+        drives.append((3 * model.body_index(led.body), led.displacement, led.history, ALWAYS))
+    times = {duration}
+    for _, _, history, held in drives:
+        times |= {*held, *(time for time, _ in history)}
+    instants = [0.0]
+    for time in sorted(times):
+        if instants[-1] + SAME * duration < time <= duration:
+            instants.append(time)
+    spans: list[Span] = []
+    for begin, end in pairwise([*instants[:-1], duration]):
+        rates = {
+            at + k: (factor_of(history, end) - factor_of(history, begin)) / (end - begin) * part
+            for at, target, history, held in drives
+            if held[0] < 0.5 * (begin + end) < held[1]
+            for k, part in enumerate(target)
+        }
+        before = spans[-1].rates if spans else {}
+        spans.append(Span(begin=begin, end=end, rates=rates, begins=bool(rates.keys() - before.keys())))
+    return spans
+
+
+@dataclass(frozen=True, kw_only=True)
+class Leg:
+    """Steps of one length from an instant on [s]; after each chunk of them, if it is `kept`, is a sample."""
+
+    time: float
+    step: float
+    chunks: tuple[int, ...]
+    kept: bool
+
+
+def legs(span: Span, step: float, chunks: list[int]) -> list[Leg]:
+    """Return the legs of a span of a motion whose samples are `chunks` of steps [s] apart.
+
+    Chunks within which a span begins or ends are cut there, in whole steps of their own.
+    """
+    found: list[Leg] = []
+    whole: list[int] = []
+    close, done, first = SAME * step * sum(chunks), 0, 0.0
+    for count in chunks:
+        low, high = step * done, step * (done + count)
+        done += count
+        begin, end = max(low, span.begin), min(high, span.end)
+        if end - begin <= close:
+            continue
+        if end - begin >= high - low - close:
+            first = first if whole else low
+            whole.append(count)
+            continue
+        if whole:
+            found.append(Leg(time=first, step=step, chunks=tuple(whole), kept=True))
+            whole = []
+        parts = max(1, math.ceil((end - begin) / step * (1.0 - SAME)))
+        kept = end >= high - close
+        found.append(Leg(time=begin, step=(end - begin) / parts, chunks=(parts,), kept=kept))
+    if whole:
+        found.append(Leg(time=first, step=step, chunks=tuple(whole), kept=True))
+    return found

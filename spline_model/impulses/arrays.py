@@ -1,0 +1,237 @@
+"""What the compiled steps work on, in few arrays: each costs every kernel that they are passed to."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from spline_model.compile import System
+from spline_model.effects import Clamp, DrivenDisplacement, DrivenRotation, MixedStretching
+from spline_model.effects.base import Constraint
+from spline_model.errors import InvalidParameter
+from spline_model.motion.start import Motion
+from spline_model.quadrature import PointTable
+from spline_model.tables import ClampTable
+
+Array = NDArray[np.float64]
+Indices = NDArray[np.int64]
+
+IMPULSES = ("direct", "strips", "constraints")
+"""What is solved as one: everything (Eq 30), a strip with its axial forces and both clamps, or a
+single constraint."""
+ITERATIONS = 12
+"""Most Newton iterations of a stable step before it is halved."""
+LEAST_FRACTION = 2.0**-6
+"""Least part of a step before it is refused: bounds the time that a step may take."""
+
+COORDINATE, DRIVE, ACTIVE, BEGIN, PAIRS = range(5)
+"""Columns of ``Problem.acting``; DRIVE is a drive's place among the rows, -1 for a load."""
+ORIGIN, SIZE = range(2)
+"""Columns of ``Problem.sizes``."""
+STEPS, SOLVES, SWEEPS, HALVED, LIMITED = range(5)
+"""Places of the counters: steps, linear systems, sweeps over the blocks, steps that were halved, and
+steps whose velocity was reduced so that no energy is gained."""
+COUNTS, RESIDUAL, ENERGY = range(3)
+"""Places of ``Moving.status``."""
+
+
+class Problem(NamedTuple):
+    """What does not change in a run: N unknowns, Q coordinates, M axial modes, R rows of constraints.
+
+    points, clamps: of the scene. acting (A, 5) loads and drives, sizes (A, 2) their origin and value,
+    history (2, H) times and factors. mass, drag (Q, Q), weight (Q,); rigidity (M, M) inverse compliance and
+    relaxation (M,) [s] of the axial modes; unit (N,) makes residuals dimensionless, energy is EI/L [J];
+    turns: the rotations' places. groups (G, 2): start and size in q of each strip's control points and of
+    each body's pose; no inertia couples one group with another. rows (R, 3): place in z of each row's
+    multiplier, in the order of the sweep, and the two groups that it acts on, -1 for none; first (B + 1,):
+    where each block begins in them, blocks being solved as one. grounded: 1 if the ground holds anything.
+    sweeps of a linear system, iterations of a step: the most; tolerance [1]; least_part of a step.
+    """
+
+    points: PointTable
+    clamps: ClampTable
+    acting: Indices
+    sizes: Array
+    history: Array
+    mass: Array
+    drag: Array
+    weight: Array
+    rigidity: Array
+    relaxation: Array
+    unit: Array
+    energy: float
+    turns: Indices
+    groups: Indices
+    rows: Indices
+    first: Indices
+    grounded: int
+    sweeps: int
+    iterations: int
+    tolerance: float
+    least_part: float
+
+
+class Space(NamedTuple):
+    """Arrays that a step fills.
+
+    z, gradient (N,), matrix (N, N); v, base, drift, x (Q,); drag (Q, Q) all damping of the coordinates;
+    schur (R, R); mu, change, gap (R,); strains (M,); work (5, 4).
+    """
+
+    z: Array
+    gradient: Array
+    matrix: Array
+    v: Array
+    base: Array
+    drift: Array
+    x: Array
+    drag: Array
+    schur: Array
+    mu: Array
+    change: Array
+    gap: Array
+    strains: Array
+    work: Array
+
+
+class Moving(NamedTuple):
+    """A motion on its way, advanced in place, and its records.
+
+    z (N,) unknowns, v (Q,) velocities; earlier (2, Q) coordinates and velocities of the step before;
+    status (3,): 1 if they count, the largest residual so far [1], the energy [J]; counters (5,);
+    totals (2,) work done on it and energy dissipated [J]. K records, the start first: states (K, N), rates
+    (K, Q), energies (K, 3) strain energy and totals [J].
+    """
+
+    z: Array
+    v: Array
+    earlier: Array
+    status: Array
+    counters: Indices
+    totals: Array
+    states: Array
+    rates: Array
+    energies: Array
+
+
+def make_problem(
+    system: System, motion: Motion, *, soft: bool, impulses: str, sweeps: int, tolerance: float
+) -> Problem:
+    """The problem of a system: rows of the strips' axial forces and clamps first, then those of the drives.
+
+    soft: the axial forces of extensible strips are rows as well, with their compliance; else
+    only those of inextensible ones are. impulses: one of IMPULSES.
+    """
+    layout, tables, count = system.layout, motion.tables, system.layout.coordinate_count
+    strips = {name: g for g, name in enumerate(layout.strips)}
+    bodies = {name: len(strips) + g for g, name in enumerate(layout.bodies)}
+    start = [at for at, _ in layout.strips.values()] + list(layout.bodies.values())
+    size = [2 * n for _, n in layout.strips.values()] + [3] * len(bodies)
+    _require_mass(motion, start, size, [*strips, *bodies])
+    constraints = _constraints(system, soft, strips, bodies)
+    blocks = list(constraints.values())
+    if impulses == "strips":
+        owners = dict.fromkeys(owner for owner, _ in constraints)
+        blocks = [
+            [row for (owner, _), rows in constraints.items() if owner == one for row in rows]
+            for one in owners
+        ]
+    rows = np.array([row for block in blocks for row in block], dtype=np.int64).reshape(-1, 3)
+    ends = [len(rows)] if impulses == "direct" else np.cumsum([len(block) for block in blocks])
+    problem = Problem(
+        points=tables.points,
+        clamps=tables.clamps,
+        acting=np.zeros((0, 5), dtype=np.int64),
+        sizes=np.zeros((0, 2)),
+        history=np.zeros((2, 0)),
+        mass=motion.mass,
+        drag=motion.drag if motion.drag.size else np.zeros((count, count)),
+        weight=tables.weight if tables.weight.size else np.zeros(count),
+        rigidity=motion.rigidity,
+        relaxation=motion.relaxation,
+        unit=system.scales.unit / system.scales.energy,
+        energy=motion.energy,
+        turns=motion.turns,
+        groups=np.array((start, size), dtype=np.int64).T.copy(),
+        rows=rows,
+        first=np.array([0, *ends], dtype=np.int64),
+        grounded=int((tables.clamps.body < 0).any()),
+        sweeps=sweeps,
+        iterations=ITERATIONS,
+        tolerance=float(tolerance),
+        least_part=LEAST_FRACTION,
+    )
+    return with_drives(problem, motion, np.zeros(len(tables.drives.row), dtype=np.int64))
+
+
+def with_drives(problem: Problem, motion: Motion, active: Indices) -> Problem:
+    """The problem with the loads and drives of a motion, of which those hold whose ``active`` (D,) is 1."""
+    drives, loads = motion.tables.drives, motion.tables.loads
+    place = {row: r for r, row in enumerate(problem.rows[:, 0].tolist())}
+    rows = np.array([place[row] for row in drives.row.tolist()], dtype=np.int64)
+    free, always = np.full_like(loads.first, -1), np.ones_like(loads.first)
+    behind = drives.times.size + loads.first
+    mine = np.column_stack((drives.coordinate, rows, active, drives.first, drives.pairs))
+    others = np.column_stack((loads.coordinate, free, always, behind, loads.pairs))
+    return problem._replace(
+        acting=np.concatenate((mine, others)),
+        sizes=np.column_stack(
+            (np.append(drives.origin, 0.0 * loads.value), np.append(drives.target, loads.value))
+        ),
+        history=np.array((np.append(drives.times, loads.times), np.append(drives.factors, loads.factors))),
+    )
+
+
+def make_space(problem: Problem) -> Space:
+    """Arrays of a problem's size."""
+    size, rows, coordinates = len(problem.unit), len(problem.rows), len(problem.mass)
+    return Space(
+        z=np.zeros(size),
+        gradient=np.zeros(size),
+        matrix=np.zeros((size, size)),
+        v=np.zeros(coordinates),
+        base=np.zeros(coordinates),
+        drift=np.zeros(coordinates),
+        x=np.zeros(coordinates),
+        drag=np.zeros((coordinates, coordinates)),
+        schur=np.zeros((rows, rows)),
+        mu=np.zeros(rows),
+        change=np.zeros(rows),
+        gap=np.zeros(rows),
+        strains=np.zeros(len(problem.rigidity)),
+        work=np.zeros((5, 4)),
+    )
+
+
+def _constraints(
+    system: System, soft: bool, strips: dict[str, int], bodies: dict[str, int]
+) -> dict[tuple[str, str], list[tuple[int, int, int]]]:
+    """Rows of each constraint, with the groups they act on; the key is its strip or body, and which it is."""
+    layout, scene = system.layout, system.scene
+    found: dict[tuple[str, str], list[tuple[int, int, int]]] = {}
+    for (at, count), effect in zip(layout.modes, scene.of(MixedStretching), strict=True):
+        if soft or effect.axial_compliance == 0:
+            rows = [(at + k, strips[effect.strip], -1) for k in range(count)]
+            found.setdefault((effect.strip, "axial"), []).extend(rows)
+    for i, constraint in enumerate(scene.of(Constraint)):
+        at, count = layout.multipliers[i]
+        if isinstance(constraint, Clamp):
+            key: tuple[str, str] = (constraint.strip, constraint.end)
+            touched = (strips[constraint.strip], bodies.get(constraint.to, -1))
+        elif isinstance(constraint, DrivenRotation | DrivenDisplacement):
+            key, touched = (constraint.body, "drive"), (bodies[constraint.body], -1)
+        else:
+            expected = "clamps, driven rotations and displacements"
+            raise InvalidParameter("effects", type(constraint).__name__, expected)
+        found.setdefault(key, []).extend((at + k, *touched) for k in range(count))
+    return found
+
+
+def _require_mass(motion: Motion, start: list[int], size: list[int], names: list[str]) -> None:
+    """Refuse a group without inertia: an impulse would change its velocity without bound."""
+    for at, count, name in zip(start, size, names, strict=True):
+        block = motion.mass[at : at + count, at : at + count]
+        if np.linalg.eigvalsh(block)[0] <= 0:
+            raise InvalidParameter("effects", f"no inertia of {name}", "inertia of every strip and body")

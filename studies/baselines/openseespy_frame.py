@@ -1,0 +1,238 @@
+"""The pivot with strips of OpenSees' corotational frame elements.
+
+Law: `elasticBeamColumn` in a `Corotational` transformation: linear Euler-Bernoulli elements in axes that
+follow the chord, without shear and, with masses lumped at the nodes, without the inertia of the sections.
+Refined, they tend to the rod of the spline. `dispBeamColumn` with elastic sections gives the same digits in
+1.2 times the time. The rigid body is a node with mass, tied to the strips' ends by frame elements
+`LINK_FACTOR` times as stiff: OpenSees' `rigidLink` is linear in the rotation, and the path fails with it.
+
+What was tried on Table 1, 20 elements (time of the whole path of 20 increments): `BandSPD` is the fastest
+solver (`ProfileSPD`, `BandGeneral`, `SparseSYM` 1.1 times, `SuperLU` 1.4, `UmfPack` 2.7, `FullGeneral` 5.5
+times its time); full Newton the fastest algorithm (`KrylovNewton` 1.1, `ModifiedNewton` 1.7, `BFGS` 2.4
+times; with the initial tangent it fails). Driven by `DisplacementControl` of the rotation under a moment it
+takes one iteration an increment fewer than by a prescribed rotation, with the same answers. The tolerance is
+on the energy of an iteration, over EI/L. In motion `HHT` with 0.9 is the most accurate and reliable
+(`Newmark` fails at 1e-5 s, `GeneralizedAlpha` at 2e-5 s, `TRBDF2` takes twice the solves); it needs the
+acceleration of the body at the release to be given. The timed call is `analyze` alone, without recorders.
+"""
+
+import ctypes
+import importlib.util
+import os
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from studies.baselines.answer import (
+    BaselineFailed,
+    SolvedMotion,
+    SolvedPath,
+    checked_count,
+    checked_release,
+    checked_rotations,
+    geometry_of,
+    median_seconds,
+)
+from studies.cases.problem import Problem
+from studies.errors import BadInput
+from studies.kinds import Array
+
+model = "openseespy frame"
+#: Stiffness of the links that stand for the body, over the strips': 1e4 still moves the torque by 6e-5.
+LINK_FACTOR = 1e6
+#: Largest increment of the static path to the start of a release [rad], and its tolerance.
+INCREMENT = np.pi / 40.0
+START_TOLERANCE = 1e-16
+MOST_ITERATIONS = 50
+BODY = 1
+
+
+@cache
+def installed() -> bool:
+    """Return whether OpenSees can be imported."""
+    try:
+        loaded()
+    except (ImportError, OSError, RuntimeError):
+        return False
+    return True
+
+
+@cache
+def loaded() -> Any:
+    """Return OpenSees' commands; its own library of linear algebra is loaded first, lest it is not found."""
+    place = importlib.util.find_spec("openseespylinux")
+    if place is not None and place.origin is not None:
+        for library in sorted(Path(place.origin).parent.glob("lib/libblas.so*")):
+            ctypes.CDLL(str(library), mode=ctypes.RTLD_GLOBAL)
+    import openseespy.opensees as commands
+
+    commands.logFile(os.devnull, "-noEcho")
+    return commands
+
+
+def static_path(
+    problem: Problem, rotations: Any, *, repeat: int = 1, elements: int = 20, tolerance: float = 1e-8
+) -> SolvedPath:
+    """Drive the body through `rotations` [rad], equal increments from 0.
+
+    Args:
+        problem: the pivot.
+        rotations: (S,) [rad].
+        repeat: timed solves of the whole path [1].
+        elements: a strip [1].
+        tolerance: of the energy of Newton's last iteration, in EI/L [1].
+
+    Raises:
+        BadInput: a setting out of range, or increments that differ. BaselineFailed: no convergence.
+    """
+    turns = checked_rotations(rotations)
+    increments = np.diff(turns)
+    if np.abs(increments - increments[0]).max() > 1e-9 * abs(increments[0]):
+        raise BadInput("rotations: got unequal increments, expected equal ones for OpenSees")
+    asked = {"elements": elements, "tolerance": tolerance}
+
+    def prepare() -> Callable[[], Any]:
+        ops = _driven(problem, asked, float(increments[0]), moving=False)
+        return lambda: ops.analyze(len(increments))
+
+    seconds = median_seconds(prepare, repeat)
+    ops = _driven(problem, asked, float(increments[0]), moving=False)
+    states, iterations = [np.zeros(3)], 0
+    for turn in turns[1:]:
+        if ops.analyze(1) != 0:
+            raise BaselineFailed(f"OpenSees: no convergence at {turn:g} rad")
+        iterations += ops.testIter()
+        states.append(np.array([*ops.nodeDisp(BODY)[:2], ops.getTime()]))
+    answer = np.array(states)
+    return SolvedPath(
+        rotation=turns,
+        centre=geometry_of(problem).centre + answer[:, :2],
+        torque=answer[:, 2],
+        stiffness=np.full(len(turns), np.nan),
+        solve_s=seconds,
+        work={
+            "unknowns": ops.systemSize(),
+            "newton_iterations": iterations,
+            "factorisations": iterations,
+        },
+    )
+
+
+def release(
+    problem: Problem,
+    *,
+    start: float,
+    duration: float,
+    step: float,
+    repeat: int = 1,
+    elements: int = 20,
+    tolerance: float = 1e-8,
+    alpha: float = 0.9,
+) -> SolvedMotion:
+    """Let go of the body at rest at `start` [rad] and follow it by Hilber, Hughes and Taylor's method.
+
+    Args:
+        step: [s]; alpha: of the method, 2/3 to 1 (1: none of its damping). The others as of `static_path`.
+
+    Raises:
+        BadInput: a setting out of range. BaselineFailed: no convergence.
+    """
+    steps = checked_release(start, duration, step)
+    asked = {"elements": elements, "tolerance": tolerance, "alpha": alpha, "step_s": duration / steps}
+
+    def prepare() -> Callable[[], Any]:
+        ops = _let_go(problem, asked, start)
+        return lambda: ops.analyze(steps, duration / steps)
+
+    seconds = median_seconds(prepare, repeat)
+    ops = _let_go(problem, asked, start)
+    rotation, iterations = np.full(steps + 1, start), 0
+    for row in range(1, steps + 1):
+        if ops.analyze(1, duration / steps) != 0:
+            raise BaselineFailed(f"OpenSees: no convergence at {ops.getTime():g} s")
+        iterations += ops.testIter()
+        rotation[row] = ops.nodeDisp(BODY)[2]
+    return SolvedMotion(
+        time=np.linspace(0.0, duration, steps + 1),
+        rotation=rotation,
+        solve_s=seconds,
+        work={
+            "unknowns": ops.systemSize(),
+            "newton_iterations": iterations,
+            "factorisations": iterations,
+            "steps": steps,
+        },
+    )
+
+
+def _build(problem: Problem, elements: int, *, moving: bool) -> Any:
+    """Make nodes, strips and body anew, OpenSees having one model at a time; with masses if it is to move."""
+    checked_count("elements", elements, 1)
+    ops, at_rest = loaded(), geometry_of(problem)
+    ops.wipe()
+    ops.model("basic", "-ndm", 2, "-ndf", 3)
+    ops.node(BODY, *map(float, at_rest.centre))
+    if moving:
+        ops.mass(BODY, problem.body_mass, problem.body_mass, problem.body_moment_of_inertia)
+    ops.geomTransf("Corotational", 1)
+    section = (problem.area, problem.youngs_modulus, problem.second_moment_of_area)
+    link = (LINK_FACTOR * section[0], section[1], LINK_FACTOR * section[2])
+    mass = ("-mass", problem.density * problem.area) if moving else ()
+    element = 1
+    for strip in range(2):
+        first = BODY + 1 + strip * (elements + 1)
+        for number, place in enumerate(_places(at_rest.root[strip], at_rest.tip[strip], elements)):
+            ops.node(first + number, *map(float, place))
+        ops.fix(first, 1, 1, 1)
+        for node in range(first, first + elements):
+            ops.element("elasticBeamColumn", element, node, node + 1, *section, 1, *mass)
+            element += 1
+        ops.element("elasticBeamColumn", element, BODY, first + elements, *link, 1)
+        element += 1
+    return ops
+
+
+def _places(root: Array, tip: Array, elements: int) -> Array:
+    return np.asarray(root + np.linspace(0.0, 1.0, elements + 1)[:, None] * (tip - root))
+
+
+def _driven(problem: Problem, asked: dict[str, Any], increment: float, *, moving: bool) -> Any:
+    """Return OpenSees ready to drive the body by equal increments [rad]."""
+    ops = _build(problem, asked["elements"], moving=moving)
+    ops.timeSeries("Linear", 1)
+    ops.pattern("Plain", 1, 1)
+    ops.load(BODY, 0.0, 0.0, 1.0)
+    ops.integrator("DisplacementControl", BODY, 3, increment)
+    _solver(ops, problem, asked["tolerance"])
+    ops.analysis("Static")
+    return ops
+
+
+def _let_go(problem: Problem, asked: dict[str, Any], start: float) -> Any:
+    """Return OpenSees at rest in the static state at `start`, without its moment, ready to move."""
+    count = max(1, int(np.ceil(abs(start) / INCREMENT)))
+    strict = asked | {"tolerance": START_TOLERANCE}
+    ops = _driven(problem, strict, start / count, moving=True)
+    if ops.analyze(count) != 0:
+        raise BaselineFailed(f"OpenSees: statics does not reach the start, {start:g} rad")
+    moment = ops.getTime()
+    ops.remove("loadPattern", 1)
+    ops.wipeAnalysis()
+    ops.setTime(0.0)
+    ops.integrator("HHT", asked["alpha"])
+    _solver(ops, problem, asked["tolerance"])
+    ops.analysis("Transient")
+    ops.setNodeAccel(BODY, 3, -moment / problem.body_moment_of_inertia, "-commit")
+    return ops
+
+
+def _solver(ops: Any, problem: Problem, tolerance: float) -> None:
+    energy = problem.youngs_modulus * problem.second_moment_of_area / problem.length
+    ops.constraints("Plain")
+    ops.numberer("RCM")
+    ops.system("BandSPD")
+    ops.test("EnergyIncr", tolerance * energy, MOST_ITERATIONS)
+    ops.algorithm("Newton")

@@ -1,1 +1,0 @@
-"""The same pivot in other codes; each is optional (`pip install '.[peers]'`)."""

@@ -1,0 +1,163 @@
+"""The commands of the studies and their stored results: run, draw, verify, status."""
+
+import argparse
+import sys
+import time
+from concurrent.futures import Executor
+from typing import Any
+
+import pandas as pd
+
+from studies.commands.arguments import NAMES, RESULTS
+from studies.commands.parser import Argument, command, whole_number
+from studies.engine.answer import Kept, answered, cores, processes
+from studies.engine.findings import Tables
+from studies.engine.study import Study
+from studies.errors import BadInput
+from studies.record import style
+from studies.record.progress import Bar
+from studies.record.source import ROOT, source_hash
+from studies.record.store import Store, as_csv
+from studies.registry import STUDIES, selected, study_of
+
+#: Where the answers of interrupted studies are kept; not a result.
+KEPT = ROOT / ".cache" / "studies"
+DIFFERS = 1
+PROCESSES = Argument(
+    "--processes",
+    type=whole_number(1),
+    default=cores(),
+    metavar="N",
+    help="answer points beside each other where time is not measured, default the number of cores",
+)
+
+
+@command(NAMES, RESULTS, PROCESSES)
+def run(arguments: argparse.Namespace) -> int:
+    """Compute studies, store their tables and draw their figures.
+
+        python -m studies run fig04_trajectory
+        python -m studies run paper convergence --processes 1
+
+    A name is a study, its last part, a group of studies or "all". Tables and their provenance go to
+    results/data, figures to results/figures. A study that this machine cannot compute, for want of a
+    browser, a cluster or the other codes that it is about (pip install ".[peers]"), says so and keeps its
+    stored result. One that was interrupted goes on from there. Exit code 0: done; 2: bad input, for example
+    a folder that cannot be written to.
+    """
+    names = selected(arguments.names)
+    store = Store(arguments.results)
+    store.require_writable()
+    with processes(arguments.processes) as pool:
+        for name in names:
+            reason = study_of(name).missing()
+            if reason:
+                print(f"{name}: left as it is: {reason}", file=sys.stderr)
+                continue
+            seconds = _run(name, store, pool)
+            print(f"{name}: {seconds:.1f} s: {store.data(name)}, figures in {store.figures}", file=sys.stderr)
+    return 0
+
+
+@command(NAMES, RESULTS)
+def draw(arguments: argparse.Namespace) -> int:
+    """Redraw studies from their stored tables, without computing anything.
+
+        python -m studies draw fig04_trajectory
+
+    A name is a study, its last part, a group of studies or "all". Exit code 0: done; 2: bad input, for
+    example a study that was never run.
+    """
+    store = Store(arguments.results)
+    for name in selected(arguments.names):
+        try:
+            tables = store.load_tables(name)
+        except FileNotFoundError:
+            raise BadInput(
+                f"{name}: got no stored tables, expected those of `python -m studies run {name}`"
+            ) from None
+        with style.applied():
+            store.save_figures(name, study_of(name).draw(tables))
+        print(f"{name}: figures in {store.figures}", file=sys.stderr)
+    return 0
+
+
+@command(NAMES, RESULTS, PROCESSES)
+def verify(arguments: argparse.Namespace) -> int:
+    """Compute stale studies anew and call them fresh where every table comes out as it is stored.
+
+        python -m studies verify convergence/elements
+
+    A name is a study, its last part, a group of studies or "all". Tables that differ from run to run, as
+    times do, are not compared, and nothing is drawn: only the note of the source that the results are of is
+    renewed. A study with another table is named and keeps what is stored. Exit code 0: all that could be
+    computed here is fresh; 1: a table differs; 2: bad input.
+    """
+    store, code = Store(arguments.results), 0
+    with processes(arguments.processes) as pool:
+        for name in selected(arguments.names):
+            study = study_of(name)
+            known: dict[str, Any] = {"module": STUDIES[name], "cases": study.cases}
+            said = study.missing() or store.state(name, **known).kind
+            if said == "stale":
+                differing = _differing(store.load_tables(name), computed(name, pool), study)
+                if differing:
+                    said, code = f"differs: {', '.join(differing)}", DIFFERS
+                else:
+                    store.renew(name, **known)
+                    said = f"the same, {store.state(name, **known).kind}"
+            print(f"{name}: {said}", file=sys.stderr)
+    return code
+
+
+@command(RESULTS)
+def status(arguments: argparse.Namespace) -> int:
+    """Say of every study whether its stored result is fresh, stale or missing.
+
+        python -m studies status
+
+    A result is stale when the case, the source it was computed by (docstrings and layout aside) or one of
+    its files was changed since. Exit code 0 whatever the states.
+    """
+    store = Store(arguments.results)
+    width = max(map(len, STUDIES))
+    for name, module in STUDIES.items():
+        state = store.state(name, module=module, cases=study_of(name).cases)
+        print(f"{name:{width}}  {state.kind:7}  {state.reason}".rstrip())
+    return 0
+
+
+def _run(name: str, store: Store, pool: Executor | None) -> float:
+    """Compute, store and draw one study; return the seconds it took."""
+    start = time.perf_counter()
+    study, kept = study_of(name), _kept(name)
+    store.save_tables(
+        name,
+        computed(name, pool, kept),
+        module=STUDIES[name],
+        cases=study.cases,
+        command=f"python -m studies run {name}",
+        elapsed=time.perf_counter() - start,
+    )
+    kept.forget()
+    with style.applied():
+        store.save_figures(name, study.draw(store.load_tables(name)))
+    return time.perf_counter() - start
+
+
+def computed(name: str, pool: Executor | None, kept: Kept | None = None) -> dict[str, pd.DataFrame]:
+    """Return the tables of one study while a bar shows how far it is."""
+    with Bar(name) as bar:
+        return answered(study_of(name), bar, kept=kept, pool=pool, module=STUDIES[name])
+
+
+def _kept(name: str) -> Kept:
+    """Return where the answers of a study by the present source are kept."""
+    return Kept(KEPT / f"{name.replace('/', '_')}_{source_hash(STUDIES[name])[:16]}.pickle")
+
+
+def _differing(stored: Tables, found: Tables, study: Study) -> list[str]:
+    """Return the tables that are not as stored, of those that do not differ from run to run."""
+    names = [name for name in {**stored, **found} if not study.varies(name)]
+    both = {name for name in stored if name in found}
+    return [name for name in names if name not in both or as_csv(stored[name]) != as_csv(found[name])]

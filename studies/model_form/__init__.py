@@ -1,0 +1,1 @@
+"""What both models leave out of a real strip."""

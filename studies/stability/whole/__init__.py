@@ -1,1 +1,0 @@
-"""Families that ask statics and motion alike, and the summary of all."""

@@ -1,1 +1,0 @@
-"""Questions that a sweep answers: the studies of the group."""

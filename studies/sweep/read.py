@@ -1,0 +1,218 @@
+"""Read DESIGNS.toml into a `Plan`; what is wrong with it is said in one line before anything is solved."""
+
+import copy
+import hashlib
+import json
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+from studies.answers.models import built, model_of
+from studies.cases import document
+from studies.cases.document import CaseError
+from studies.cases.keys import ROTATION
+from studies.cases.problem import FOLDER
+from studies.cases.rules import Whole, positive, shown
+from studies.sweep import batch, keys, points
+from studies.sweep.plan import KINDS, Analysis, Plan, Sample, Task
+from studies.sweep.sample import POINTS, leaves, parsed, require_known, sample_of
+
+SECTIONS = ("settings", "set", "analysis", "sample", "vary", "store")
+#: Designs a chunk, smallest and largest: of the batch kernel (a third of a second), of single solves.
+CHUNK, CHUNK_OF_SINGLE = (64, 2048), (1, 16)
+#: Chunks that a sweep has at least, where they are not too small: enough for a few workers.
+CHUNKS = 16
+MOST_MODES = Whole(expected="a whole number from 1 to 100", low=1, high=100)
+#: Options of an analysis: key -> (keyword, rule).
+OPTIONS: dict[str, dict[str, tuple[str, Any]]] = {
+    "static": {},
+    "modes": {"rotation_deg": ("rotation", ROTATION), "count": ("count", MOST_MODES)},
+    "release": {"duration_s": ("duration", positive("s")), "step_s": ("step", positive("s"))},
+}
+#: Those that are truth values or names.
+SWITCHES = {"static": ("both_sides",), "modes": ("held",), "release": ()}
+STANDARD: dict[str, dict[str, Any]] = {"static": {}, "modes": {"count": 3}, "release": {"duration": 0.05}}
+
+
+def read_plan(path: str | Path) -> Plan:
+    """Return the sweep that the file describes.
+
+    Raises:
+        BadInput: one line with the file, the key, what was got and what was expected.
+    """
+    where = str(path)
+    return plan_of(where, document.parsed(path), Path(path).parent)
+
+
+def plan_of(where: str, content: Mapping[str, Any], folder: Path) -> Plan:
+    """Return the sweep of a parsed file whose relative paths start from `folder`; errors as there."""
+    tables = _tables(where, content)
+    if not tables["vary"] and "file" not in tables["sample"]:
+        raise CaseError(f"{where}: [vary]: got nothing to vary, expected keys of the case, as strip.length_m")
+    case = _case(where, content.get("case"), folder)
+    model = _one_of(where, "model", content.get("model", "spline"), tuple(keys.MODELS))
+    known = keys.known(case, model)
+    for key, value in leaves(tables["set"]):
+        if key.startswith(f"{keys.SETTINGS}."):
+            raise CaseError(f"{where}: set.{key}: got a setting, expected it in [settings]")
+        require_known(where, "set", key, known)
+        parsed(where, f"set.{key}", known[key], value)
+    keys.put_all(case, dict(leaves(tables["set"])))
+    settings = _settings(where, tables["settings"], known)
+    sample = sample_of(where, tables["sample"], tables["vary"], known, folder)
+    _refuse_overlaps(where, [axis.key for axis in sample.axes], case)
+    analysis = _analysis(where, tables["analysis"])
+    task = Task(
+        where=where,
+        case=case,
+        model=model,
+        settings=settings,
+        analysis=analysis,
+        keys=tuple(axis.key for axis in sample.axes),
+        quantities=_quantities(where, tables["store"], case, analysis),
+        batch=False,
+    )
+    task = _checked(task, sample)
+    least, most = CHUNK if task.batch else CHUNK_OF_SINGLE
+    chunk = max(least, min(most, -(-sample.points // CHUNKS)))
+    if "chunk" in tables["sample"]:
+        chunk = parsed(where, "sample.chunk", POINTS, tables["sample"]["chunk"])
+    return Plan(task=task, sample=sample, chunk=chunk, content=_content(content, task, sample, chunk))
+
+
+def _tables(where: str, content: Mapping[str, Any]) -> dict[str, Mapping[str, Any]]:
+    """Return the sections, empty where they are not there."""
+    for name in content:
+        if name not in ("case", "model", *SECTIONS):
+            expected = document.nearest(name, ["case", "model", *SECTIONS])
+            raise CaseError(f"{where}: {name}: got an unknown name, expected {expected}")
+    return {name: document.table(where, content, name) for name in SECTIONS}
+
+
+def _case(where: str, name: Any, folder: Path) -> dict[str, Any]:
+    """Return the document of the case: one that comes with the suite, or a file beside DESIGNS.toml."""
+    if not isinstance(name, str) or not name:
+        raise CaseError(f"{where}: case: got {shown(name)}, expected the name of a case or a file")
+    own = FOLDER / f"{name}.toml"
+    if own.is_file():
+        return document.parsed(own)
+    if name.endswith(".toml"):
+        return document.parsed(folder / name)
+    expected = document.nearest(name, sorted(path.stem for path in FOLDER.glob("*.toml")))
+    raise CaseError(f"{where}: case: got {name}, expected {expected}, or a file that ends in .toml")
+
+
+def _one_of(where: str, label: str, value: Any, names: tuple[str, ...]) -> str:
+    if not isinstance(value, str) or value not in names:
+        expected = document.nearest(str(value), list(names))
+        raise CaseError(f"{where}: {label}: got {shown(value)}, expected {expected}")
+    return value
+
+
+def _settings(where: str, given: Mapping[str, Any], known: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the keywords of the model's settings."""
+    own = [key.partition(".")[2] for key in known if key.startswith(f"{keys.SETTINGS}.")]
+    document.refuse_unknown(where, keys.SETTINGS, given, own)
+    return {
+        name: parsed(where, f"settings.{name}", known[f"{keys.SETTINGS}.{name}"], value)
+        for name, value in given.items()
+    }
+
+
+def _refuse_overlaps(where: str, varied: list[str], case: Mapping[str, Any]) -> None:
+    """Raise CaseError if a key comes twice, whole and in part, or beside a slenderness that sets it."""
+    for key in varied:
+        whole = key.rpartition(".")[0]
+        if whole in varied:
+            raise CaseError(f"{where}: vary.{key}: got it beside {whole}, expected one of them")
+    if keys.SLENDERNESS in varied:
+        both = [key for key in keys.SECTION if key in varied]
+        given = "section_depth_m" in case.get("strip", {})
+        if both or given:
+            other = both[0] if both else keys.SECTION[2]
+            raise CaseError(f"{where}: vary.{keys.SLENDERNESS}: got it beside {other}, which it sets itself")
+
+
+def _analysis(where: str, given: Mapping[str, Any]) -> Analysis:
+    kind = _one_of(where, "analysis.kind", given.get("kind", "static"), KINDS)
+    options, switches = OPTIONS[kind], SWITCHES[kind]
+    names = ["kind", *options, *switches, *(["integrator"] if kind == "release" else [])]
+    document.refuse_unknown(where, "analysis", given, names)
+    found = dict(STANDARD[kind])
+    for name, (keyword, rule) in options.items():
+        if name in given:
+            found[keyword] = parsed(where, f"analysis.{name}", rule, given[name])
+    for name in switches:
+        value = given.get(name, False)
+        if not isinstance(value, bool):
+            raise CaseError(f"{where}: analysis.{name}: got {shown(value)}, expected true or false")
+        if value:
+            found[name] = value
+    if "integrator" in given:
+        found["integrator"] = str(given["integrator"])
+    return Analysis(kind=kind, both_sides=found.pop("both_sides", False), options=found)
+
+
+def _quantities(
+    where: str, given: Mapping[str, Any], case: Mapping[str, Any], analysis: Analysis
+) -> tuple[str, ...]:
+    """Return the names of what is stored: as the file says, or what is usual."""
+    document.refuse_unknown(where, "store", given, ["quantities"])
+    found = points.known(case, analysis.kind, analysis.options.get("count", 0))
+    names = given.get("quantities", [name for name, quantity in found.items() if quantity.usual])
+    if not isinstance(names, list) or not names or len(set(map(str, names))) < len(names):
+        raise CaseError(f"{where}: store.quantities: got {shown(names)}, expected different names in a list")
+    for name in names:
+        _one_of(where, "store.quantities", name, tuple(found))
+    return tuple(names)
+
+
+def _checked(task: Task, sample: Sample) -> Task:
+    """Return the task once its case and every combination of settings has been taken by the model.
+
+    Ends of ranges and listed values have kept their own rules by now; here the case as a whole is read.
+    """
+    first = {axis.key: axis.low if axis.values is None else axis.values[0] for axis in sample.axes}
+    design = points.design_of(task, first)
+    if task.analysis.both_sides and design.rotation is None:
+        raise CaseError(f"{task.where}: analysis.both_sides: got true, expected it with a driven rotation")
+    for chosen in _settings_of(task, sample):
+        settings = points.settings_of(task.model, chosen)
+        built(model_of(settings), design, settings, moving=task.analysis.kind != "static")
+    takes = batch.takes(task)
+    return Task(**{**vars(task), "batch": takes})
+
+
+def _settings_of(task: Task, sample: Sample) -> Iterator[dict[str, Any]]:
+    """Yield the settings of the sweep with each value of each setting that it varies."""
+    yield points.varied_settings(task, {})
+    for axis in sample.axes:
+        if axis.key.startswith(f"{keys.SETTINGS}."):
+            for value in axis.values or ():
+                yield points.varied_settings(task, {axis.key: value})
+
+
+def _content(content: Mapping[str, Any], task: Task, sample: Sample, chunk: int) -> dict[str, Any]:
+    """Return all that the table follows from, for the manifest."""
+    from_file = "file" in content.get("sample", {})
+    listed = json.dumps([axis.values for axis in sample.axes]) if from_file else ""
+    found = {
+        "case": task.case,
+        "model": task.model,
+        "settings": task.settings,
+        "analysis": {
+            "kind": task.analysis.kind,
+            "both_sides": task.analysis.both_sides,
+            **task.analysis.options,
+        },
+        "sample": {
+            "method": sample.method,
+            "points": sample.points,
+            "seed": sample.seed,
+            "chunk": chunk,
+        },
+        "vary": content.get("vary", {}),
+        "file_sha256": hashlib.sha256(listed.encode()).hexdigest() if listed else "",
+        "store": list(task.quantities),
+    }
+    return copy.deepcopy(found)

@@ -1,0 +1,247 @@
+"""Which designs: the sections [sample] and [vary] of DESIGNS.toml, and the points that they say, in order."""
+
+import math
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.stats import qmc
+
+from studies.cases import document
+from studies.cases.document import CaseError
+from studies.cases.rules import Number, Whole, shown
+from studies.errors import BadInput
+from studies.kinds import Array
+from studies.sweep.plan import METHODS, Axis, Sample
+
+POINTS = Whole(expected="a whole number from 1 to 100000000", low=1, high=100_000_000)
+SEED = Whole(expected="a whole number from 0 to 4294967295", low=0, high=2**32 - 1)
+FIELDS = ("from", "to", "points", "scale", "values")
+SCALES = ("linear", "log")
+
+
+def sample_of(
+    where: str, given: Mapping[str, Any], varied: Mapping[str, Any], known: Mapping[str, Any], folder: Path
+) -> Sample:
+    """Return the sample that the sections [sample] and [vary] describe."""
+    document.refuse_unknown(where, "sample", given, ["method", "points", "seed", "chunk", "file"])
+    method = given.get("method", "list" if "file" in given else "grid")
+    if method not in METHODS:
+        expected = document.nearest(str(method), list(METHODS))
+        raise CaseError(f"{where}: sample.method: got {shown(method)}, expected {expected}")
+    random = method in METHODS[2:]
+    for name in ("points", "seed"):
+        if name in given and not random:
+            raise CaseError(f"{where}: sample.{name}: got it for a {method}, which has those of [vary]")
+    if "file" in given:
+        axes = _from_file(where, given, varied, known, folder)
+    else:
+        axes = tuple(_axis(where, key, value, known, method) for key, value in leaves(varied))
+    if random:
+        if "points" not in given:
+            raise CaseError(f"{where}: sample.points: got no such key, expected {POINTS.expected}")
+        points = parsed(where, "sample.points", POINTS, given["points"])
+    elif method == "list":
+        points = _length(where, axes)
+    else:
+        points = math.prod(axis.count for axis in axes)
+        if points > POINTS.high:
+            raise CaseError(f"{where}: [vary]: got a grid of {points} points, expected at most {POINTS.high}")
+    seed = parsed(where, "sample.seed", SEED, given.get("seed", 0))
+    return Sample(method=method, axes=axes, points=points, seed=seed)
+
+
+def leaves(table: Mapping[str, Any], way: str = "") -> Iterator[tuple[str, Any]]:
+    """Yield the keys of nested tables with dots between the names, and what stands there.
+
+    A table is gone into unless it has a field of an axis.
+    """
+    for name, value in table.items():
+        key = f"{way}.{name}" if way else name
+        if isinstance(value, dict) and value and not set(FIELDS) & set(value):
+            yield from leaves(value, key)
+        else:
+            yield key, value
+
+
+def require_known(where: str, section: str, key: str, known: Mapping[str, Any]) -> None:
+    """Raise CaseError unless the case has the key."""
+    if key not in known:
+        expected = document.nearest(key, list(known))
+        raise CaseError(f"{where}: {section}.{key}: got no key of the case, expected {expected}")
+
+
+def parsed(where: str, label: str, rule: Any, value: Any) -> Any:
+    """Return a value by its rule; CaseError unless that admits it."""
+    try:
+        return rule.parse(value)
+    except (ValueError, BadInput) as error:
+        raise CaseError(f"{where}: {label}: {error}") from None
+
+
+def _axis(where: str, key: str, given: Any, known: Mapping[str, Any], method: str) -> Axis:
+    """Return one axis of [vary]."""
+    require_known(where, "vary", key, known)
+    label = f"vary.{key}"
+    if isinstance(given, list):
+        given = {"values": given}
+    if not isinstance(given, dict) or not given:
+        raise CaseError(f"{where}: {label}: got {shown(given)}, expected a list or {{ from, to }}")
+    document.refuse_unknown(where, label, given, FIELDS)
+    if "values" in given:
+        if len(given) > 1:
+            raise CaseError(f"{where}: {label}: got values beside {_others(given)}, expected one of the two")
+        return Axis(key=key, rule=known[key], values=_listed(where, label, known[key], given["values"]))
+    if method == "list":
+        raise CaseError(f'{where}: {label}: got a range, expected values for sample.method = "list"')
+    return _range(where, key, given, known[key], grid=method == "grid")
+
+
+def _others(given: Mapping[str, Any]) -> str:
+    return ", ".join(name for name in given if name != "values")
+
+
+def _listed(where: str, label: str, rule: Any, values: Any) -> tuple[Any, ...]:
+    """Return listed values, each admitted by the rule; pairs as tuples."""
+    if not isinstance(values, list) or not values:
+        raise CaseError(f"{where}: {label}.values: got {shown(values)}, expected a list of values")
+    for value in values:
+        parsed(where, label, rule, value)
+    kept = [float(v) if isinstance(rule, Number) else tuple(v) if isinstance(v, list) else v for v in values]
+    return tuple(kept)
+
+
+def _range(where: str, key: str, given: Mapping[str, Any], rule: Any, *, grid: bool) -> Axis:
+    """Return an axis from a low to a high end."""
+    label = f"vary.{key}"
+    if not isinstance(rule, Number):
+        raise CaseError(f"{where}: {label}: got a range, expected values ({rule.expected})")
+    for name in ("from", "to", *(["points"] if grid else [])):
+        if name not in given:
+            raise CaseError(f"{where}: {label}.{name}: got no such field, expected it for a range")
+    if "points" in given and not grid:
+        raise CaseError(f"{where}: {label}.points: got it without a grid, expected sample.points alone")
+    low, high = given["from"], given["to"]
+    for name, value in (("from", low), ("to", high)):
+        parsed(where, f"{label}.{name}", rule, value)
+    if not low < high:
+        raise CaseError(
+            f"{where}: {label}: got an empty range from {shown(low)} to {shown(high)}, expected from < to"
+        )
+    scale = given.get("scale", "linear")
+    if scale not in SCALES:
+        expected = document.nearest(str(scale), list(SCALES))
+        raise CaseError(f"{where}: {label}.scale: got {shown(scale)}, expected {expected}")
+    if scale == "log" and low <= 0:
+        raise CaseError(f"{where}: {label}.from: got {low}, expected it above 0 for a logarithm")
+    points = parsed(where, f"{label}.points", POINTS, given.get("points", 1))
+    return Axis(key=key, rule=rule, low=float(low), high=float(high), points=points, log=scale == "log")
+
+
+def _length(where: str, axes: tuple[Axis, ...]) -> int:
+    """Return the number of designs of a list; CaseError unless all its columns have it."""
+    lengths = {axis.key: axis.count for axis in axes}
+    if len(set(lengths.values())) > 1:
+        told = ", ".join(f"{key} {count}" for key, count in lengths.items())
+        raise CaseError(f"{where}: [vary]: got lists of different lengths ({told}), expected the same")
+    return next(iter(lengths.values()))
+
+
+def _from_file(
+    where: str, given: Mapping[str, Any], varied: Mapping[str, Any], known: Mapping[str, Any], folder: Path
+) -> tuple[Axis, ...]:
+    """Return the axes of a list in a CSV file, whose head names the keys."""
+    import pandas as pd
+
+    if varied or given.get("method", "list") != "list":
+        raise CaseError(f"{where}: sample.file: got it beside [vary] or a method, expected it alone")
+    path = folder / str(given["file"])
+    try:
+        table = pd.read_csv(path)
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or str(error).splitlines()[0]
+        raise CaseError(f"{where}: sample.file: {path}: cannot be read ({reason}), expected CSV") from None
+    if table.empty:
+        raise CaseError(f"{where}: sample.file: {path}: got no design, expected at least one row")
+    axes = []
+    for key in map(str, table.columns):
+        require_known(where, f"sample.file: {path}", key, known)
+        values = _listed(where, f"sample.file: {path}: {key}", known[key], table[key].tolist())
+        axes.append(Axis(key=key, rule=known[key], values=values))
+    return tuple(axes)
+
+
+Columns = dict[str, list[Any]]
+
+
+class Drawer:
+    """Draws the points of a sample forwards: `rows(start, stop)` with starts that do not fall.
+
+    A grid, a list and a Sobol sequence are made where they are asked for; a Latin hypercube, whose points
+    depend on their number, is drawn whole (8 bytes a point and key).
+    """
+
+    def __init__(self, sample: Sample) -> None:
+        self._sample = sample
+        dimensions = len(sample.axes)
+        if sample.method == "sobol":
+            self._sobol = qmc.Sobol(d=dimensions, scramble=True, seed=sample.seed)
+        elif sample.method == "latin-hypercube":
+            self._cube = qmc.LatinHypercube(d=dimensions, seed=sample.seed).random(sample.points)
+
+    def rows(self, start: int, stop: int) -> Columns:
+        """Return the points from `start` to before `stop` as columns by key, in the file's units."""
+        axes = self._sample.axes
+        if self._sample.method in ("grid", "list"):
+            number = np.arange(start, stop)
+            places = list(_places(self._sample, number))
+            return {axis.key: _values_at(axis, place) for axis, place in zip(axes, places, strict=True)}
+        unit = self._unit(start, stop)
+        return {axis.key: _spread(axis, unit[:, i]) for i, axis in enumerate(axes)}
+
+    def _unit(self, start: int, stop: int) -> Array:
+        """Return the points within the unit cube, (stop - start, axes)."""
+        if self._sample.method == "latin-hypercube":
+            return np.asarray(self._cube[start:stop])
+        skipped = start - self._sobol.num_generated
+        if skipped:
+            self._sobol.fast_forward(skipped)
+        if start > 0:
+            return np.asarray(self._sobol.random(stop - start))
+        # one first: scipy warns of a first draw that is no power of two
+        return np.concatenate([self._sobol.random(count) for count in (1, stop - 1) if count])
+
+
+def _places(sample: Sample, number: NDArray[np.int64]) -> Iterator[NDArray[np.int64]]:
+    """Yield the place on each axis: the last axis of a grid runs fastest, a list runs along all at once."""
+    if sample.method == "list":
+        yield from (number for _ in sample.axes)
+        return
+    shape = tuple(axis.count for axis in sample.axes)
+    yield from np.unravel_index(number, shape)
+
+
+def _values_at(axis: Axis, place: NDArray[np.int64]) -> list[Any]:
+    if axis.values is not None:
+        return [axis.values[i] for i in place]
+    share = place / max(axis.points - 1, 1)
+    return _between(axis, share)
+
+
+def _spread(axis: Axis, share: Array) -> list[Any]:
+    """Return the values at shares of [0, 1): of a range, or one of those listed."""
+    if axis.values is not None:
+        return [axis.values[int(part * len(axis.values))] for part in share]
+    return _between(axis, share)
+
+
+def _between(axis: Axis, share: Array) -> list[Any]:
+    if axis.log:
+        low, high = math.log(axis.low), math.log(axis.high)
+        values = np.exp(low + (high - low) * share)
+    else:
+        values = axis.low + (axis.high - axis.low) * share
+    # the ends are exactly those of the file
+    return list(np.clip(np.where(share == 1.0, axis.high, values), axis.low, axis.high).tolist())

@@ -1,0 +1,201 @@
+"""How many designs a second: threads of the batch kernel, processes and Dask workers, and what a chunk costs.
+
+Measured on the machine of the provenance; beyond its cores more workers cannot help, and nothing is said of
+larger machines.
+"""
+
+import os
+import tempfile
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager, nullcontext
+from itertools import product
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+import pyarrow.parquet as pq
+from matplotlib.figure import Figure
+
+from studies.engine.findings import Finding, Tables
+from studies.engine.study import Answer, Part, Study
+from studies.record.extras import absent, lacking
+from studies.record.style import BLUE, GREEN, ORANGE, page
+from studies.sweep.design_space import SPACE
+from studies.sweep.read import plan_of
+from studies.sweep.run import sweep
+from studies.sweep.workers import Pool, cluster, loopback, processes, threads
+
+KINDS = {"threads": "threads", "processes": "processes", "dask": "Dask workers on loopback"}
+ONE_WORKER = "Dask worker on loopback"
+WORKERS = (1, 2)
+#: Designs of a sweep -> how often it is timed; the largest by two workers, and not by processes again.
+SIZES: dict[int, int] = {1_000: 3, 10_000: 2, 100_000: 1}
+LARGEST = 100_000
+#: Chunks that the same designs are cut into, by one worker.
+CUT, CHUNKS = 4096, (2, 16, 64, 256)
+#: The wanted time of a hundred thousand designs [s].
+WANTED = 40.0
+#: What a chunk may cost beside its designs, a twentieth of those of the usual size [s].
+CHUNK_COST = 0.01
+
+
+def missing() -> str:
+    """Return what this machine lacks."""
+    return lacking("cluster", absent(["distributed"]))
+
+
+def timed(kind: str, count: int) -> Answer:
+    """Return the times of so many workers of a kind, from drawing to the written table.
+
+    Tables: timings (a row a size: the least time of repeated sweeps, without starting the workers);
+    timings_of_chunks (the same designs in more and more chunks, by one worker).
+    """
+    row = {"workers": kind, "count": count, "cores": os.cpu_count()}
+    timings, cuts = [], []
+    with _pool_of(kind, count) as pool:
+        _timed(pool, 64 * count, chunk=32)  # loads the kernels in every worker
+        for size, repeats in SIZES.items():
+            if size < LARGEST or (count == max(WORKERS) and kind != "processes"):
+                seconds = min(_timed(pool, size) for _ in range(repeats))
+                timings.append(row | {"designs": size, "wall_s": seconds})
+        for chunks in CHUNKS if count == 1 else ():
+            seconds = min(_timed(pool, CUT, chunk=CUT // chunks) for _ in range(2))
+            cuts.append(row | {"chunks": chunks, "wall_s": seconds})
+    return {"timings": timings, "timings_of_chunks": cuts}
+
+
+def figure(tables: Tables) -> Figure:
+    """Draw designs a second against the size of the sweep, and the time against the number of chunks."""
+    drawn = page(9.5, 4.4)
+    rate, cost = drawn.subplots(1, 2)
+    colours = dict(zip(KINDS, (BLUE, ORANGE, GREEN), strict=True))
+    timings, cuts = tables["timings"], tables["timings_of_chunks"]
+    for kind, count in [(kind, count) for kind in KINDS for count in WORKERS]:
+        mine = timings.query("workers == @kind and count == @count").sort_values("designs")
+        rate.semilogx(
+            mine["designs"], mine["designs"] / mine["wall_s"], color=colours[kind], marker="o",
+            linestyle="--" if count == 1 else "-", label=f"{count} {_named(kind, count)}",
+        )  # fmt: skip
+    cores = timings["cores"].iloc[0]
+    rate.set(xlabel="designs of the sweep [1]", ylabel="designs a second [1/s]", ylim=(0.0, None))
+    rate.set_title(f"Static paths of 20 increments, n = 6, measured on {cores} cores")
+    for kind, colour in colours.items():
+        mine = cuts[cuts["workers"] == kind].sort_values("chunks")
+        label = f"1 {_named(kind, 1)}: {1e3 * chunk_cost(cuts, kind):.1f} ms a chunk"
+        cost.semilogx(mine["chunks"], mine["wall_s"], color=colour, marker="o", label=label)
+    cost.set(xlabel="chunks [1]", ylabel="time [s]", ylim=(0.0, None))
+    cost.set_title(f"The same {CUT} designs in more chunks")
+    drawn.legend(*rate.get_legend_handles_labels(), loc="outside lower left", ncols=3)
+    cost.legend(loc="upper left")
+    return drawn
+
+
+def chunk_cost(cuts: pd.DataFrame, kind: str) -> float:
+    """Return what one chunk more costs a worker of that kind [s]: the slope of the time over the chunks."""
+    mine = cuts[cuts["workers"] == kind]
+    return float(np.polyfit(mine["chunks"], mine["wall_s"], 1)[0])
+
+
+@contextmanager
+def _pool_of(kind: str, count: int) -> Iterator[Pool]:
+    """Yield workers of a kind, those of Dask with a cluster of their own."""
+    if kind == "dask":
+        with loopback(count) as own, cluster(own.address, workers=count) as pool:
+            yield pool
+    else:
+        with (threads if kind == "threads" else processes)(count) as pool:
+            yield pool
+
+
+def content(designs: int, chunk: int | None = None) -> dict[str, Any]:
+    """Return the sweep of so many designs of the design space, by six control points."""
+    sample: dict[str, Any] = {"method": "sobol", "points": designs}
+    if chunk is not None:
+        sample["chunk"] = chunk
+    return SPACE | {"settings": {}, "analysis": {"kind": "static"}, "sample": sample}
+
+
+def _timed(pool: Pool, designs: int, *, chunk: int | None = None) -> float:
+    """Return the time of one sweep, from drawing to the written table [s]."""
+    plan = plan_of("throughput", content(designs, chunk), Path())
+    with tempfile.TemporaryDirectory() as folder:
+        start = time.perf_counter()
+        sweep(plan, Path(folder) / "sweep", pool=nullcontext(pool))
+        return time.perf_counter() - start
+
+
+def _work(designs: int) -> dict[str, Any]:
+    """Return what a sweep of that size is made of, which no machine changes."""
+    plan = plan_of("throughput", content(designs), Path())
+    with tempfile.TemporaryDirectory() as folder:
+        sweep(plan, Path(folder) / "sweep")
+        found = pq.read_table(Path(folder) / "sweep" / "designs.parquet", columns=["status", "iterations"])
+    return {
+        "designs": designs,
+        "chunks": plan.chunks,
+        "converged": found["status"].to_pylist().count("converged"),
+        "iterations_a_design": sum(found["iterations"].to_pylist()) / designs,
+    }
+
+
+def _findings(tables: Tables) -> list[Finding]:
+    """Return what more workers bring, and whether the wanted time is met."""
+    times = tables["timings"].set_index(["workers", "count", "designs"])["wall_s"].to_dict()
+    cores = tables["timings"]["cores"].iloc[0]
+    middle = 10_000
+    found = []
+    for kind, label in KINDS.items():
+        gain = times[kind, 1, middle] / times[kind, 2, middle]
+        found.append(
+            Finding(
+                claim="Two workers solve at least 1.6 times as many designs a second as one",
+                formulation=f"{label}, {middle} designs, {cores} cores",
+                quantity="the gain",
+                value=float(gain),
+                holds=bool(gain >= 1.6),
+            )
+        )
+        each = chunk_cost(tables["timings_of_chunks"], kind)
+        found.append(
+            Finding(
+                claim=f"A chunk costs less than {CHUNK_COST:g} s beside its designs",
+                formulation=f"{label}, {cores} cores",
+                quantity=f"the cost over {CHUNK_COST:g} s",
+                value=each / CHUNK_COST,
+                holds=each < CHUNK_COST,
+            )
+        )
+    seconds = times["threads", 2, LARGEST]
+    found.append(
+        Finding(
+            claim=f"{LARGEST} static designs take less than {WANTED:g} s",
+            formulation=f"2 threads, {cores} cores",
+            quantity=f"the time over {WANTED:g} s",
+            value=float(seconds / WANTED),
+            holds=bool(seconds < WANTED),
+        )
+    )
+    return found
+
+
+def _named(kind: str, count: int) -> str:
+    label = KINDS[kind]
+    return label if count > 1 else {"threads": "thread", "processes": "process"}.get(kind, ONE_WORKER)
+
+
+STUDY = Study(
+    cases=("cross_axis_pivot",),
+    parts=(
+        Part(at=lambda: product(KINDS, WORKERS), ask=timed, alone=True),
+        Part(
+            at=lambda: [size for size in SIZES if size < LARGEST],
+            ask=lambda size: {"work": _work(size)},
+            alone=True,
+        ),
+    ),
+    claims_of_time=(_findings,),
+    figures={"sweep_throughput": figure},
+    missing=missing,
+)

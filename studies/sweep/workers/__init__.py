@@ -1,1 +1,0 @@
-"""Who solves the chunks: threads and processes of this machine, or a Dask cluster."""

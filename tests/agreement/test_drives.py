@@ -1,0 +1,86 @@
+"""Drives that begin and end during a motion, in both models: rotations of either sign, and a led centre."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from studies.answers.settings import FeSettings
+from studies.cases.design import Design
+from studies.errors import BadInput
+from tests import gates
+from tests.agreement import loaded
+from tests.agreement.loaded import ROTATION
+from tests.agreement.test_loads_release import ELEMENTS, SPLINE, STEP, apart, largest, places, released
+
+#: A rotation that is held and then let go, one that is led back and let go as it moves, and the centre led
+#: on. Corners are off the grid of steps.
+HELD, LED_BACK = (0.0, 0.00301), ((0.0, 1.0), (0.00503, 0.7))
+AWAY = ((0.0, 1.0), (0.00307, 0.8), (0.00611, 1.0))
+
+
+def driven(name: str, sign: float = 1.0) -> Design:
+    """Return a loaded design whose motion is driven in part."""
+    centre = {"history": AWAY} if "centre" in name else {}
+    asked = loaded.design("driven_displacement" if centre else "gravity", sign * ROTATION, **centre)
+    return {
+        "held": replace(asked, held=HELD),
+        "led back": replace(asked, history=LED_BACK, held=(0.0, 0.00503)),
+        "caught": replace(asked, held=(0.00211, 0.00701)),
+        "led centre": asked,
+        "held, led centre": replace(asked, held=HELD),
+    }[name]
+
+
+@pytest.mark.parametrize(
+    "name, sign", [("held", -1.0), ("led back", 1.0), ("led back", -1.0), ("led centre", 1.0)]
+)
+def test_motions_that_are_driven_in_part_agree(name, sign):
+    """Requirement: drives hold, lead and end at the same instants in both models, which move alike."""
+    gates.check("drives_release", apart(driven(name, sign)))
+
+
+@pytest.mark.parametrize("name", ["caught", "held, led centre"])
+@pytest.mark.parametrize("settings", [SPLINE, ELEMENTS], ids=lambda s: s.model)
+def test_what_is_held_stays_and_the_books_close(name, settings):
+    """Requirement: a held rotation stays, what the catch costs is dissipated, and the energies balance."""
+    motion = released(driven(name), settings)
+    inside = (motion.time > 0.00212) & (motion.time < 0.003)
+    assert np.ptp(motion.rotation[inside]) < 1e-10
+    assert motion.dissipated[-1] > 0.0 or name != "caught"
+    gates.check("drives_books", max(motion.energy_error, 1e-16))
+    other = released(driven(name), SPLINE if settings is ELEMENTS else ELEMENTS)
+    assert motion.dissipated[-1] == pytest.approx(other.dissipated[-1], rel=0.02, abs=1e-12)
+
+
+def schemes_apart(step: float) -> float:
+    """Return how far the motions of the implicit and the explicit scheme of the elements are apart."""
+    design, mesh = driven("held, led centre"), FeSettings(elements=4)
+    implicit = released(design, mesh, integrator="generalised-alpha", step=step)
+    return largest(places(implicit), places(released(design, mesh)))
+
+
+def test_both_schemes_of_the_elements_follow_the_same_drives():
+    """Requirement: the implicit integrator of the elements moves as the explicit one does."""
+    gates.check("drives_schemes", schemes_apart(0.4 * STEP))
+
+
+@pytest.mark.parametrize("gate", ["drives_release", "drives_books", "drives_schemes"])
+def test_gates_of_drives_have_teeth(gate):
+    """Requirement: longer steps do not pass."""
+    coarse = gates.teeth(gate)
+    with pytest.raises(AssertionError, match="x the gate"):
+        if gate == "drives_release":
+            gates.check(gate, apart(driven("led back", -1.0), **coarse))
+        elif gate == "drives_books":
+            gates.check(gate, released(driven("caught"), ELEMENTS, **coarse).energy_error)
+        else:
+            gates.check(gate, schemes_apart(**coarse))
+
+
+def test_a_drive_without_a_rotation_is_refused():
+    """Requirement: a case that leads a rotation says which, and says until when in order."""
+    with pytest.raises(BadInput, match=r"drive\.rotation_deg: got none, expected the rotation"):
+        released(replace(loaded.design("applied_force", None), held=HELD), ELEMENTS)
+    with pytest.raises(BadInput, match=r"drive\.held_s: got \[0.5, 0.2\], expected two instants"):
+        replace(loaded.design("gravity"), held=(0.5, 0.2))

@@ -1,0 +1,63 @@
+"""The strip as a plate between built-in ends: published factors, limits and its mesh."""
+
+import pytest
+
+from fe_reference.errors import InvalidParameter
+from fe_reference.plate import plate_factors
+from tests.fe.cases import hold
+
+#: b/L, Poisson ratio, factors of a constant and of a linear moment: Ritz values of the literature.
+KNOWN = [
+    (0.2, 0.29, 1.0140, 1.0349),
+    (0.25, 0.30, 1.0188, 1.0445),
+    (0.5, 0.30, 1.0376, 1.0678),
+    (1.0, 0.29, 1.0599, 1.0776),
+    (2.0, 0.33, 1.1009, 1.1125),
+]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("row", KNOWN, ids=lambda row: f"b/L {row[0]}, nu {row[1]}")
+def test_factors_of_the_literature(row):
+    """Requirement: both factors are those of an independent Ritz solution, to its printed digits."""
+    ratio, nu, constant, linear = row
+
+    def error(poisson_ratio: float = 0.0) -> float:
+        found = plate_factors(ratio, nu + poisson_ratio)
+        return max(abs(found.constant - constant), abs(found.linear - linear))
+
+    hold("fe_plate_factors", error)
+
+
+@pytest.mark.slow
+def test_mesh_is_fine_enough():
+    """Requirement: halved elements change the factors by far less than the printed digits."""
+
+    def error(width_ratio: float = 0.5) -> float:
+        given, finer = (plate_factors(width_ratio, 0.3, halvings=each) for each in (0, 1))
+        return max(abs(given.constant - finer.constant), abs(given.linear - finer.linear))
+
+    hold("fe_plate_mesh", error)
+
+
+@pytest.mark.slow
+def test_limits():
+    """Requirement: the excess of a narrow strip goes with its width, and no strip is stiffer than one that is
+    held flat."""
+    narrow, wider = plate_factors(0.1, 0.3).constant - 1.0, plate_factors(0.2, 0.3).constant - 1.0
+    assert wider / narrow == pytest.approx(2.0, rel=0.02)
+    wide = plate_factors(20.0, 0.3)
+    assert 1.09 < wide.constant < wide.linear < 1.0 / (1.0 - 0.3**2)
+
+
+def test_no_poisson_effect():
+    """Requirement: a strip whose section does not curl is a beam."""
+    found = plate_factors(1.0, 0.0)
+    assert max(abs(found.constant - 1.0), abs(found.linear - 1.0)) <= 1e-12
+
+
+@pytest.mark.parametrize(("ratio", "nu"), [(0.0, 0.3), (float("nan"), 0.3), (0.5, -0.1), (0.5, 0.6)])
+def test_bad_ratios(ratio, nu):
+    """Requirement: a ratio that no strip has is refused with its name."""
+    with pytest.raises(InvalidParameter, match="ratio"):
+        plate_factors(ratio, nu)
