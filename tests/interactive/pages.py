@@ -30,13 +30,19 @@ def load(browser, server):
     return time.monotonic() - begin
 
 
-#: Makes the copy of a picture late by more than two frames of the camera, as a busy machine does.
+#: Makes copies of a picture late, and every other one's code later than that of the next: a busy machine.
 LATE = """
-const copied = window.createImageBitmap.bind(window);
+const wait = (time) => new Promise((done) => setTimeout(done, time));
+const copied = window.createImageBitmap.bind(window), coded = OffscreenCanvas.prototype.convertToBlob;
+let turn = 0;
 window.createImageBitmap = async (...words) => {
   const picture = await copied(...words);
-  await new Promise((done) => setTimeout(done, 100));
+  await wait(100);
   return picture;
+};
+OffscreenCanvas.prototype.convertToBlob = async function (...words) {
+  await wait(turn++ % 2 ? 20 : 140);
+  return coded.apply(this, words);
 };
 """
 #: Counts the sockets that a page opens.

@@ -12,8 +12,7 @@ export class Camera {
     this.socket = socket;
     this.say = say;
     this.waiting = new Map();
-    this.seq = 0;
-    this.canvas = document.createElement("canvas");
+    this.seq = this.sent = 0;
     this.video = document.createElement("video");
     this.video.muted = this.video.playsInline = true;
   }
@@ -36,7 +35,6 @@ export class Camera {
   stop() {
     for (const track of this.stream?.getTracks() ?? []) track.stop();
     this.stream = null;
-    for (const picture of this.waiting.values()) picture?.close();
     this.waiting.clear();
   }
 
@@ -55,15 +53,11 @@ export class Camera {
     const { videoWidth: width, videoHeight: height } = this.video;
     if (this.waiting.size >= IN_FLIGHT || !this.socket.ready || !width) return;
     const seq = (this.seq = (this.seq + 1) % 2 ** 32);
-    this.waiting.set(seq, null); // its place is taken before the copy is made
-    // one copy is shown and sent: meanwhile the camera goes on, and the next picture is drawn
-    const picture = await createImageBitmap(this.video);
-    if (!this.waiting.has(seq)) return picture.close();
+    // a canvas of its own, drawn at once, is what is shown and sent: while it is coded the camera goes on
+    const picture = new OffscreenCanvas(width, height);
+    picture.getContext("2d", { alpha: false }).drawImage(this.video, 0, 0);
     this.waiting.set(seq, picture);
-    this.canvas.width = width;
-    this.canvas.height = height;
-    this.canvas.getContext("2d", { alpha: false }).drawImage(picture, 0, 0, width, height);
-    const blob = await new Promise((done) => this.canvas.toBlob(done, "image/jpeg", QUALITY));
+    const blob = await picture.convertToBlob({ type: "image/jpeg", quality: QUALITY });
     const body = new Uint8Array(await blob.arrayBuffer());
     const message = new Uint8Array(20 + body.length);
     const head = new DataView(message.buffer);
@@ -71,6 +65,9 @@ export class Camera {
     head.setUint32(4, seq, true); head.setUint16(8, width, true); head.setUint16(10, height, true);
     head.setFloat64(12, data.captureTime ?? now, true);
     message.set(body, 20);
+    // coding may end in another order than it began: a picture behind its successor would be tracked after it
+    if (seq < this.sent) return void this.waiting.delete(seq);
+    this.sent = seq;
     this.socket.send(message);
   }
 
@@ -81,6 +78,6 @@ export class Camera {
   }
 
   answered(seq) {
-    for (const [number, picture] of this.waiting) if (number < seq) { picture?.close(); this.waiting.delete(number); }
+    for (const number of this.waiting.keys()) if (number < seq) this.waiting.delete(number);
   }
 }
