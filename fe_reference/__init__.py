@@ -2,11 +2,13 @@
 
 Data flow one way, and so do the imports:
 
-    effects -> model (pivot, mechanism) -> mesh -> structure (law, matrix) -> control -> path -> statics
+    effects -> model (pivot, mechanism) -> mesh -> structure (law, bending, matrix) -> control -> path
+    path -> statics
+    control -> newton -> response -> path, arc_length, critical
     structure -> mass, loads -> drives, actions -> motion -> explicit, implicit -> dynamics
     statics -> modes; all -> solution
     solution -> refined (meshes to a wanted accuracy) -> statics, modes, dynamics
-    plate: one strip as a plate, which says what all beams leave out; it shares nothing with the rest
+    plate: one strip as a plate, which says what beams leave out -> clamped_width -> mesh
 
 What is scikit-fem's, and what is not: the mesh of the strips, the basis of three linear fields on it, the
 numbering of its degrees of freedom and the pattern of the assembled matrices are scikit-fem's. The energies

@@ -13,20 +13,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .effects import BodyDamping, StripDamping, StripDrag
-from .law import (
-    FORCES,
-    MATERIAL,
-    body_forces,
-    carry,
-    carry_velocity,
-    elements,
-    gravity_energy,
-    kernel,
-    put_weight,
-)
+from .kernel import kernel
+from .law import FORCES, MATERIAL, elements
 from .loads import applied, load_forces, load_power, load_tables, put_loads
 from .mass import body_blocks
 from .matrix import Symmetric
+from .rigid import body_forces, carry, carry_velocity, gravity_energy, put_weight
 from .structure import Structure
 
 Array = NDArray[np.float64]

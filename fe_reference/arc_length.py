@@ -6,18 +6,20 @@ two solves with the same factors: K a = -r, K b = -dr/dp.
 """
 
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
+from itertools import islice
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicHermiteSpline
 
-from .control import Balance, Control, respond
+from .control import Balance, Control
 from .errors import ConvergenceError, InvalidParameter, count
-from .matrix import Factors, Singular
-from .newton import ITERATIONS, TOLERANCE, equilibrate
+from .matrix import Factors
+from .newton import Outcome, equilibrate
 from .path import ROUND_OFF
+from .response import respond
 
 Array = NDArray[np.float64]
 
@@ -50,6 +52,21 @@ class Place:
     steepness: float
     potential: float
     conjugate: tuple[float, float]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Stride:
+    """A step of a path between two states: its length, and the bend (size,) of the path at its beginning."""
+
+    begin: Place
+    end: Place
+    length: float
+    bend: Array
+
+    @property
+    def turned(self) -> bool:
+        """Whether the parameter goes the other way at the end."""
+        return self.begin.slope * self.end.slope < 0.0
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -102,58 +119,72 @@ class Walk:
         change, load = balance.at.tangent.times(rate), self.control.rates(y, parameter, 0.0)[0]
         return change if load is None else change + load
 
-    def place(
-        self, y: Array, parameter: float, balance: Balance, factors: Factors, along: tuple[Array, float]
-    ) -> Place:
-        """Complete a state in equilibrium; the tangent goes with `along`."""
-        response = respond(self.control, y, parameter, balance, factors)
+    def place(self, found: Outcome, along: tuple[Array, float]) -> Place:
+        """Complete a state in equilibrium; the tangent goes with `along`; raises Singular."""
+        response = respond(self.control, found)
         rate, slope = response.rate, 1.0
         size = np.sqrt(self.product((rate, slope), (rate, slope)))
         scale = float(np.copysign(1.0 / size, self.product((rate, slope), along)))
         return Place(
-            y=y,
-            parameter=parameter,
+            y=found.y,
+            parameter=found.parameter,
             rate=scale * rate,
             slope=scale * slope,
             negative=response.inertia,
             torque=response.torque,
             steepness=response.stiffness,
-            potential=balance.potential,
+            potential=found.balance.potential,
             conjugate=(response.conjugate, scale * response.slope),
         )
 
-    def step(self, here: Place, length: float, bend: Array | float = 0.0) -> tuple[Place | None, int]:
+    def step(self, here: Place, length: float, bend: Array) -> tuple[Place | None, int]:
         """Return the state on the plane at `length` along the tangent, or None, and the iterations."""
         control, normal = self.control, (here.rate, here.slope)
         y = here.y + length * here.rate + 0.5 * length**2 * bend
         parameter = here.parameter + length * here.slope
-        start, tolerance = (y.copy(), parameter), max(TOLERANCE, control.structure.round_off)
-        for iteration in range(ITERATIONS + 1):
-            y[control.held] = control.prescribed(parameter)
-            balance = control.balance(y, parameter)
-            norm = control.unbalanced(balance.residual)
-            if not np.isfinite(norm) or (norm > tolerance and iteration == ITERATIONS):
-                return None, iteration
-            try:
-                factors = control.factors(balance)
-            except Singular:  # at the end of a step: as good a critical point as there is
-                return None, iteration
-            if norm <= tolerance:
-                break
-            self.counters["factorisations"] += 1
-            right = np.stack([balance.residual, self.push(parameter, y, balance)])
-            a, b = factors.solve(-right)
+        start = (y.copy(), parameter)
+
+        def correct(y: Array, parameter: float, balance: Balance, factors: Factors) -> tuple[Array, float]:
+            a, b = factors.solve(-np.stack([balance.residual, self.push(parameter, y, balance)]))
             b[control.held] = control.slope
             off = self.product((y - start[0], parameter - start[1]), normal)
             change = -(off + self.product((a, 0.0), normal)) / self.product((b, 1.0), normal)
-            y, parameter = y + a + change * b, parameter + change
-        away = (y - start[0], parameter - start[1])
-        if np.sqrt(self.product(away, away)) > FARTHEST * abs(length):
-            return None, iteration
-        there = self.place(y, parameter, balance, factors, normal)
+            return a + change * b, change
+
+        found = equilibrate(control, y, parameter, self.counters, correct)
+        iterations, away = len(found.norms) - 1, (found.y - start[0], found.parameter - start[1])
+        if found.factors is None or np.sqrt(self.product(away, away)) > FARTHEST * abs(length):
+            return None, iterations
+        there = self.place(found, normal)
         turn = self.product((there.rate, there.slope), (here.rate, here.slope))
         sound = turn >= SHARPEST and self.balanced(here, there)
-        return (there if sound else None), iteration
+        return (there if sound else None), iterations
+
+    def onward(self, here: Place, length: float, longest: float = LONGEST) -> Iterator[Stride]:
+        """Yield the steps from a state on, the first of a length; it ends where they become too short."""
+        shortest, bend = SHORTEST * length, np.zeros_like(here.y)
+        while length > shortest:
+            there, iterations = self.step(here, length, bend)
+            if there is None:
+                length /= 2.0
+                continue
+            yield Stride(begin=here, end=there, length=length, bend=bend)
+            bend, here = (there.rate - here.rate) / length, there
+            length = min(1.5 * length, longest) if iterations <= EASY else length
+
+    def before(self, stride: Stride, holds: Callable[[Place], bool]) -> Place:
+        """Return the last state of a step for which something holds, by bisection."""
+        low, high, best = 0.0, stride.length, stride.begin
+        for _ in range(BISECTIONS):
+            middle = 0.5 * (low + high)
+            place, _ = self.step(stride.begin, middle, stride.bend)
+            if place is None:
+                break
+            if holds(place):
+                low, best = middle, place
+            else:
+                high = middle
+        return best
 
     def balanced(self, here: Place, there: Place) -> bool:
         """Return whether the potential gained is what its rate gives along a path between two states."""
@@ -181,64 +212,39 @@ def follow_arc(control: Control, *, increments: int = 20) -> ArcPath:
     """
     walk, end = Walk(control=control), control.span[1]
     first = equilibrate(control, np.zeros(control.structure.size), control.span[0], walk.counters)
-    if first.failure or first.factors is None:
+    if first.failure:
         raise InvalidParameter("control", first.failure, "a scene at rest at its beginning [1]")
     along = (np.zeros_like(first.y), end - control.span[0])
-    here = walk.place(first.y, control.span[0], first.balance, first.factors, along)
-    length = shortest = abs(end - control.span[0]) / count("increments", increments) / abs(here.slope)
-    length, shortest = min(length, LONGEST), SHORTEST * shortest
+    here = walk.place(first, along)
+    length = abs(end - control.span[0]) / count("increments", increments) / abs(here.slope)
     places, critical = [here], []
-    bend: Array | float = 0.0
-    while len(places) <= MOST and length > shortest:
-        there, iterations = walk.step(here, length, bend)
-        if there is None:
-            length /= 2.0
-            continue
-        critical += _critical(walk, here, there, length, bend)
+    for stride in islice(walk.onward(here, min(length, LONGEST)), MOST):
+        here, there = stride.begin, stride.end
+        critical += _critical(walk, stride)
         if (there.parameter - end) * (here.parameter - end) <= 0.0:
             places.append(_last(walk, here, there))
             return _packed(places, critical)
-        bend = (there.rate - here.rate) / length
-        here = there
-        places.append(here)
-        length = min(1.5 * length, LONGEST) if iterations <= EASY else length
+        places.append(there)
     raise ConvergenceError(
-        f"p = {end:g} is not reached from {here.parameter:.6g}",
+        f"p = {end:g} is not reached from {places[-1].parameter:.6g}",
         solution=_packed(places, critical),
-        load_factor=here.parameter,
+        load_factor=places[-1].parameter,
         history=(),
     )
 
 
-def _critical(walk: Walk, here: Place, there: Place, length: float, bend: Array | float) -> list[Critical]:
-    """Return the critical points of a step, by bisection of its length."""
-    found = []
+def _critical(walk: Walk, stride: Stride) -> list[Critical]:
+    """Return the critical points of a step."""
+    found, here, there = [], stride.begin, stride.end
     if here.negative != there.negative:
-        turned = here.slope * there.slope < 0.0
         turn = "limit point" if walk.control.watched is None else "turning point"
-        at = bisect(walk, here, length, bend, lambda place: place.negative == here.negative)
-        found.append(Critical(kind=turn if turned else "bifurcation", parameter=at.parameter, y=at.y))
-    if here.steepness * there.steepness < 0.0 and here.slope * there.slope > 0.0:
-        at = bisect(walk, here, length, bend, lambda place: place.steepness * here.steepness > 0.0)
+        at = walk.before(stride, lambda place: place.negative == here.negative)
+        kind = turn if stride.turned else "bifurcation"
+        found.append(Critical(kind=kind, parameter=at.parameter, y=at.y))
+    if here.steepness * there.steepness < 0.0 and not stride.turned:
+        at = walk.before(stride, lambda place: place.steepness * here.steepness > 0.0)
         found.append(Critical(kind="limit point", parameter=at.parameter, y=at.y))
     return found
-
-
-def bisect(
-    walk: Walk, here: Place, length: float, bend: Array | float, before: Callable[[Place], bool]
-) -> Place:
-    """Return the last state of a step for which `before` holds."""
-    low, high, best = 0.0, length, here
-    for _ in range(BISECTIONS):
-        middle = 0.5 * (low + high)
-        place, _ = walk.step(here, middle, bend)
-        if place is None:
-            break
-        if before(place):
-            low, best = middle, place
-        else:
-            high = middle
-    return best
 
 
 def _last(walk: Walk, here: Place, there: Place) -> Place:
@@ -248,7 +254,7 @@ def _last(walk: Walk, here: Place, there: Place) -> Place:
     outcome = equilibrate(walk.control, here.y + share * (there.y - here.y), end, walk.counters)
     if outcome.factors is None:
         return replace(there, parameter=end, y=np.full_like(there.y, np.nan))
-    return walk.place(outcome.y, end, outcome.balance, outcome.factors, (there.rate, there.slope))
+    return walk.place(outcome, (there.rate, there.slope))
 
 
 def _packed(places: list[Place], critical: list[Critical]) -> ArcPath:

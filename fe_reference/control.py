@@ -1,4 +1,4 @@
-"""How a structure is led along an equilibrium path: what is held, what is loaded, and what is reported.
+"""How a structure is led along an equilibrium path: what is held and what is loaded.
 
 The path is followed in one parameter p. On a span p_0 to p_1 the held coordinates go linearly from their
 values at its beginning to those at its end, and so does the load a F, whose share a is p itself unless the
@@ -135,7 +135,7 @@ def spans(
     *,
     body: int | None = None,
     rotations: Sequence[float] | None = None,
-    displacement: Sequence[float] | None = None,
+    displacement: Sequence[float | None] | None = None,
     led: int | None = None,
     load: Array | None = None,
     watched: int | None = None,
@@ -143,14 +143,16 @@ def spans(
 ) -> list[Control]:
     """Return the spans of a path on which a body is led through `rotations` [rad], one leg each.
 
-    The displacement [m] of the centre of that body, or of the `led` one, and the load grow with the load
-    factor over all legs, or `first`: in a leg of their own before the rotation, and then they stay.
+    The displacement [m] of the centre of that body, or of the `led` one, None where it is free, and the load
+    grow with the load factor over all legs, or `first`: in a leg of their own before the rotation, and then
+    they stay.
     """
     ends = [0.0, *rotations] if rotations is not None else [0.0, 0.0]
     ends = [0.0, *ends] if first else ends
     at = structure.body_slice(0 if body is None else body).start
     centre = structure.body_slice(led).start if led is not None else at
-    held = [] if displacement is None else [centre, centre + 1]
+    parts = {} if displacement is None else {k: d for k, d in enumerate(displacement) if d is not None}
+    held = [centre + axis for axis in parts]
     held += [at + 2] if rotations is not None else []
     legs = len(ends) - 1
 
@@ -158,7 +160,7 @@ def spans(
         return min(float(leg), 1.0) if first else leg / legs
 
     def values(leg: int) -> list[float]:
-        place = [] if displacement is None else [share(leg) * part for part in displacement]
+        place = [share(leg) * part for part in parts.values()]
         return place + ([ends[leg]] if rotations is not None else [])
 
     return [
@@ -173,64 +175,3 @@ def spans(
         )
         for leg in range(legs)
     ]
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Response:
-    """How an equilibrium changes along its path.
-
-    Attributes:
-        rate: d y / d p (size,).
-        conjugate, slope: first and second derivative of the total potential along the path [J].
-        torque, stiffness: generalised force on the watched turn [N m] and its derivative [N m/rad], all that
-            is not held being free; nan if no turn is watched.
-        inertia: number of negative eigenvalues of the tangent on the free coordinates; 0: stable.
-    """
-
-    rate: Array
-    conjugate: float
-    slope: float
-    torque: float
-    stiffness: float
-    inertia: int
-
-
-def respond(control: Control, y: Array, parameter: float, balance: Balance, factors: Factors) -> Response:
-    """Return the response at an equilibrium: one solve for each drive and for the load.
-
-    What is left of the residual is carried to the drives by the same solve: to first order what they exert
-    is that of exact equilibrium, free of the round-off in the last elements' forces.
-    """
-    tangent, held = balance.at.tangent, control.held
-    moves = np.zeros((len(held), control.structure.size))
-    moves[np.arange(len(held)), held] = 1.0
-    moves -= factors.solve(tangent.times(moves))
-    drive, pushed = moves @ balance.residual, tangent.times(moves)
-    stiffness = moves @ pushed.T  # errors of the solve enter squared
-    rate = control.slope @ moves
-    change, first, second = control.rates(y, parameter, balance.load_work)
-    if change is not None:
-        rate -= factors.solve(change)
-        second += 2.0 * float(change @ rate)
-    along = tangent.times(rate)
-    if control.watched is None:
-        torque, turning = np.nan, np.nan
-    elif control.is_held[control.watched]:
-        k = int(np.flatnonzero(held == control.watched)[0])
-        torque, turning = float(drive[k]), float(stiffness[k, k])
-    else:
-        unit = np.zeros(control.structure.size)
-        unit[control.watched] = 1.0
-        torque = float(balance.residual[control.watched])
-        torque += (
-            0.0 if control.load is None else control.share(parameter) * float(control.load[control.watched])
-        )
-        turning = 1.0 / float(factors.solve(unit)[control.watched])
-    return Response(
-        rate=rate,
-        conjugate=first + float(drive @ control.slope),
-        slope=second + float(rate @ along),
-        torque=torque,
-        stiffness=turning,
-        inertia=factors.negative,
-    )

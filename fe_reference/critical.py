@@ -8,9 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import brentq
 
-from .control import Control, respond
+from .control import Control
 from .matrix import Symmetric
 from .newton import equilibrate
+from .response import respond
 from .solution import CriticalPoint
 
 if TYPE_CHECKING:
@@ -77,7 +78,7 @@ def tipping(control: Control, before: "State", after: "State", counters: Counter
         found = equilibrate(control, y, parameter, counters)
         if found.factors is None:
             return stiff + part * (soft - stiff)
-        return respond(control, found.y, parameter, found.balance, found.factors).stiffness
+        return respond(control, found).stiffness
 
     part = brentq(remaining, 0.0, 1.0, xtol=PLACED)
     y, parameter = _between(before, after, part)

@@ -92,7 +92,7 @@ class Span:
 
 def drive_spans(model: Model, drive: DrivenRotation | None, duration: float) -> list[Span]:
     """Return the spans of a motion, in order: one where nothing is led."""
-    drives: list[tuple[int, Sequence[float], History, tuple[float, float]]] = []
+    drives: list[tuple[int, Sequence[float | None], History, tuple[float, float]]] = []
     if drive is not None:
         turn = 3 * model.body_index(drive.body) + 2
         drives.append((turn, (drive.angle,), drive.history, drive.held))
@@ -113,6 +113,7 @@ def drive_spans(model: Model, drive: DrivenRotation | None, duration: float) -> 
             for at, target, history, held in drives
             if held[0] < 0.5 * (begin + end) < held[1]
             for k, part in enumerate(target)
+            if part is not None
         }
         before = spans[-1].rates if spans else {}
         spans.append(Span(begin=begin, end=end, rates=rates, begins=bool(rates.keys() - before.keys())))

@@ -1,5 +1,6 @@
 """Motion of a model after its drives are removed, or from the shape at rest."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cache
 from math import ceil
@@ -11,7 +12,7 @@ from numpy.typing import NDArray
 from .companion import with_companion
 from .drives import DrivenRotation, drive_spans
 from .effects import DEFAULT_EFFECTS, DrivenDisplacement, needs_inertia, read_effects
-from .errors import ConvergenceError, InvalidParameter, choice, count, finite, positive, within
+from .errors import InvalidParameter, choice, count, finite, positive, within
 from .explicit import Explicit, critical_step
 from .implicit import Implicit
 from .loads import start_load
@@ -19,11 +20,11 @@ from .mass import about_mass_centre, carried_over
 from .model import Model
 from .modes import natural_frequencies
 from .motion import Progress, Samples, course, sampling
-from .refined import limit_of_motions
-from .solution import Status, Stopwatch
+from .refined import limit_of
+from .solution import Stopwatch
 from .statics import settled_state
 from .structure import Structure, structure_of
-from .trajectory import Trajectory, trajectory
+from .trajectory import ENERGIES, Trajectory, trajectory
 
 Array = NDArray[np.float64]
 INTEGRATORS = ("central-difference", "generalised-alpha")
@@ -151,17 +152,21 @@ def solve_motion(
     def solve(model: Model) -> Trajectory:
         return _moved(model, start, body, drive, settled, increments, run)
 
-    motion = solve(mechanism) if accuracy is None else limit_of_motions(mechanism, accuracy, solve)
-    if motion.status is not Status.CONVERGED and raise_on_failure:
-        raise ConvergenceError(
-            f"{motion.message}; {motion.status.text}",
-            solution=motion,
-            load_factor=float(motion.time[-1] / duration),
-            history=motion.history,
-        )
-    if accuracy is not None or not check or not settled:
+    if accuracy is not None:
+        return _limit(mechanism, accuracy, solve).checked(raise_on_failure)
+    motion = solve(mechanism).checked(raise_on_failure)
+    if not check or not settled:
         return motion
     return checked(mechanism, motion, start=start, body=body, drive=drive)
+
+
+def _limit(model: Model, accuracy: float, solve: Callable[[Model], Trajectory]) -> Trajectory:
+    """Return the limit of a motion's meshes at the same instants; its rotations and places are judged."""
+    units = {**dict.fromkeys((*ENERGIES, "bodies", "rates"), 1.0), "shape": structure_of(model).length}
+    turns: dict[str, Callable[[Array], Array]] = {"rotation": lambda places: places[..., 2]}
+    motion = limit_of(model, accuracy, solve, units, turns, ("rotation", "shape"), relative=False)
+    errors = {} if motion.estimate is None else motion.estimate.errors
+    return replace(motion, rotation_error=errors.get("rotation", np.nan))
 
 
 def _moved(

@@ -11,11 +11,17 @@ from typing import Any, Self, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from .errors import InvalidParameter, finite, not_negative, pair
+from .errors import InvalidParameter, finite, not_negative, pair, partly
 
 Array = NDArray[np.float64]
 Pair = tuple[float, float]
 History = tuple[Pair, ...]
+#: Extra length of a strip cut from one block with its body: a half-plane at a sharp corner, plane stress.
+#: W. J. O'Donnell measured 0.44, J. Appl. Mech. 27 (1960) 461-464.
+MONOLITHIC = 0.416
+#: Effects of a strip's width and thickness, and those of them that are of the curl across the width.
+SIDES = ("clamped_width", "anticlastic", "root_compliance")
+CURL = SIDES[:2]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -124,27 +130,32 @@ class TipForce(Effect):
 class DrivenDisplacement(Effect):
     """Displacement (d_x, d_y) [m] that the centre of a body is led to, times the load factor.
 
+    None in place of one of them leaves the body free that way.
     body: None for the one whose rotation is driven, or the only one. In a motion it lets go at the start, or
     with a history goes on leading, times that.
     """
 
-    displacement: Pair
+    displacement: tuple[float | None, float | None]
     body: str | None = None
     history: History | None = None
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "displacement", pair("displacement", self.displacement, "m"))
+        object.__setattr__(self, "displacement", partly("displacement", self.displacement, "m"))
         if self.history is not None:
             object.__setattr__(self, "history", read_history(self.history))
 
     def at(self, time: float) -> Self:
         """Return the same effect with the displacement that it has at an instant [s]."""
         part = 1.0 if self.history is None else factor_of(self.history, time)
-        return replace(self, displacement=(part * self.displacement[0], part * self.displacement[1]))
+        x, y = (None if moved is None else part * moved for moved in self.displacement)
+        return replace(self, displacement=(x, y))
 
     def turned(self, turn: Array) -> Self:
         """Return the same effect with its displacement turned by the matrix `turn` (2, 2)."""
-        return replace(self, displacement=_turned(turn, self.displacement))
+        x, y = self.displacement
+        if x is None or y is None:
+            raise InvalidParameter("displacement", self.displacement, "two numbers in a model that turns [m]")
+        return replace(self, displacement=_turned(turn, (x, y)))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -163,6 +174,17 @@ class PreStrain(Effect):
         finite("strain", self.strain, "1")
 
 
+@dataclass(frozen=True, kw_only=True)
+class RootCompliance(Effect):
+    """Clamped ends turn against springs of EI / (root t) [N m]; root: number, or "monolithic": MONOLITHIC."""
+
+    root: float | str
+
+    def __post_init__(self) -> None:
+        own = MONOLITHIC if self.root == "monolithic" else not_negative("root", self.root, "thicknesses")
+        object.__setattr__(self, "root", own)
+
+
 #: Every effect that these elements can have.
 KNOWN: Mapping[str, type[Effect]] = {
     "bending": Effect,
@@ -179,6 +201,9 @@ KNOWN: Mapping[str, type[Effect]] = {
     "tip_force": TipForce,
     "driven_displacement": DrivenDisplacement,
     "pre_strain": PreStrain,
+    "clamped_width": Effect,
+    "anticlastic": Effect,
+    "root_compliance": RootCompliance,
 }
 DEFAULT_EFFECTS = ("bending", "stretching", "strip_inertia", "body_inertia")
 T = TypeVar("T", bound=Effect)

@@ -19,7 +19,7 @@ class ConvergenceError(RuntimeError):
     Attributes:
         solution: the converged part (`StaticSolution` or `Trajectory`), last good state last.
         load_factor: fraction of the path (statics) or of the duration (dynamics) that was reached.
-        history: dimensionless residual norms of the attempts that failed, one tuple an attempt.
+        history: dimensionless residual norms, one tuple an attempt, those that failed last.
     """
 
     def __init__(
@@ -91,6 +91,15 @@ def pair(name: str, value: Any, unit: str) -> tuple[float, float]:
     if len(parts) != 2:
         raise InvalidParameter(name, value, f"two finite numbers [{unit}]")
     return finite(name, float_or_same(parts[0]), unit), finite(name, float_or_same(parts[1]), unit)
+
+
+def partly(name: str, value: Any, unit: str) -> tuple[float | None, float | None]:
+    """Return `value` as two floats, None where it is None, or refuse it if that leaves no finite number."""
+    parts = list(value) if isinstance(value, list | tuple) or hasattr(value, "tolist") else []
+    if len(parts) != 2 or parts == [None, None]:
+        raise InvalidParameter(name, value, f"two finite numbers [{unit}], or one and None where it is free")
+    x, y = (None if part is None else finite(name, float_or_same(part), unit) for part in parts)
+    return x, y
 
 
 def float_or_same(value: Any) -> Any:

@@ -43,7 +43,7 @@ def critical_step(structure: Structure, bodies: RigidBodies, y: Array) -> float:
     root = np.sqrt(lumped).T
     tangents = structure.element_matrices(y, TANGENT) / (root[:, :, None] * root[:, None, :])
     highest = float(np.linalg.eigvalsh(tangents)[:, -1].max())
-    curvature = structure.evaluate(y).curvature
+    curvature = structure.evaluate(y).curvature[0]
     square = highest + float(np.max(curvature / bodies.moment_of_inertia, initial=0.0))
     actions = Actions(structure)
     decay = actions.fastest_decay(y, lumped, bodies.mass, bodies.moment_of_inertia) if actions.damped else 0.0

@@ -4,14 +4,16 @@ Where a path ends for want of an equilibrium, the limit point beyond its last st
 """
 
 from collections.abc import Callable, Sequence
+from itertools import islice
 
 import numpy as np
 from numpy.typing import NDArray
 
-from .arc_length import Place, Walk, bisect
+from .arc_length import Stride, Walk
 from .control import Control
 from .critical import bodies_stand, point
 from .matrix import Singular
+from .newton import taken
 from .path import Path
 from .solution import CriticalPoint
 
@@ -89,28 +91,21 @@ def limit_point(path: Path, toward: float) -> CriticalPoint | None:
     walk = Walk(control=path.control, counters=path.counters)
     along = (np.zeros_like(last.y), toward - last.parameter)
     try:
-        balance = path.control.balance(last.y, last.parameter)
-        here = walk.place(last.y, last.parameter, balance, path.control.factors(balance), along)
+        here = walk.place(taken(path.control, last.y, last.parameter), along)
     except Singular:
         return None
-    length, bend = FIRST, np.zeros_like(last.y)
-    for _ in range(MOST):
-        there, _ = walk.step(here, length, bend)
-        if there is None:
-            length /= 2.0
-            continue
-        if there.slope * here.slope < 0.0:
-            return _turned(walk, here, length, bend)
-        if abs(there.parameter - last.parameter) > NEAR:
+    for stride in islice(walk.onward(here, FIRST, LONGEST), MOST):
+        if stride.turned:
+            return _turned(walk, stride)
+        if abs(stride.end.parameter - last.parameter) > NEAR:
             return None
-        bend, here = (there.rate - here.rate) / length, there
-        length = min(1.5 * length, LONGEST)
     return None
 
 
-def _turned(walk: Walk, here: Place, length: float, bend: Array) -> CriticalPoint:
+def _turned(walk: Walk, stride: Stride) -> CriticalPoint:
     """Return the limit point within a step; the path goes on there along its tangent, at the same load."""
-    at, control = bisect(walk, here, length, bend, lambda place: place.slope * here.slope > 0.0), walk.control
+    control = walk.control
+    at = walk.before(stride, lambda place: place.slope * stride.begin.slope > 0.0)
     driven = control.watched is not None and control.watched in control.held
     kind = "turning point" if driven else "limit point"
     strips = bodies_stand(control, at.rate)

@@ -19,11 +19,20 @@ normal t and n = t turned by +90 deg, one integration point, free of locking, of
     eps = r'.t - 1,    gamma = r'.n,    kappa = (phi_2 - phi_1) / l0
     U = l0 (EA (eps - e0)^2 + kGA gamma^2 + EI (kappa - k0)^2) / 2        [J]
 
-e0 and k0 are natural strain and curvature, of which a share may act. A row of the table of elements is
+e0 and k0 are natural strain and curvature, of which a share may act. Both are held by a test against what
+scikit-fem assembles from these energies as weak forms.
 
-    X, Y, l0, EA, EI, kGA, e0, k0
+**Sections that do not curl freely** have the energy of `bending` in place of EI kappa^2 / 2: at the one point
+of the shear-deformable element, and at two Gauss points of the other, whose curvature is linear.
 
-Both are held by a test against what scikit-fem assembles from these energies as weak forms.
+**Roots that give way**: a rotational spring of compliance c between an end's section, turned by psi, and its
+node, turned by phi. The energy is the least over psi of that of the element plus (psi - phi)^2 / (2 c), so
+that the node keeps the one turn it shares with its body and the tangent is the condensed one. The springs'
+energy counts as that of bending, and dampers of the material's strains act in the roots as well.
+
+A row of the table of elements is
+
+    X, Y, l0, EA, EI, kGA, e0, k0, nu^2 (0: it curls freely), g at two points, reach [m], c at both ends
 
 Sources: M. A. Crisfield, Non-linear Finite Element Analysis of Solids and Structures, vol. 1 (1991), ch. 7;
 E. Reissner, J. Appl. Math. Phys. (ZAMP) 23 (1972) 795-804; J. C. Simo, L. Vu-Quoc, Comput. Methods Appl.
@@ -31,22 +40,21 @@ Mech. Eng. 58 (1986) 79-116.
 """
 
 import math
-from functools import partial
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from .bending import STEPS, bent_element, section
+from .kernel import kernel
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
 
-#: Without numba's runtime there are no references of arrays and slices to count, which takes half of the time
-#: of a small kernel; what allocates does not compile.
-kernel = partial(njit, cache=True, nogil=True, error_model="numpy", _nrt=False)
-
 #: What is asked of the law: forces, with the tangent, or with the part of it that comes from the change of
 #: the strains alone.
 FORCES, TANGENT, MATERIAL = 0, 1, 2
+#: A Newton step for the turns of roots [rad] below which the next one is round-off.
+QUADRATIC = 1e-9
 
 
 @kernel()
@@ -69,7 +77,12 @@ def _corotational(
     first -= 2.0 * math.pi * math.floor(first / (2.0 * math.pi) + 0.5)
     second -= 2.0 * math.pi * math.floor(second / (2.0 * math.pi) + 0.5)
     axial, natural = row[3] * strain / length, share * row[4] * row[7]
-    moment_1, moment_2 = rate * (4.0 * first + 2.0 * second), rate * (2.0 * first + 4.0 * second)
+    if row[8] == 0.0 and row[12] == 0.0 and row[13] == 0.0:
+        moment_1, moment_2 = rate * (4.0 * first + 2.0 * second), rate * (2.0 * first + 4.0 * second)
+        bending = 0.5 * (moment_1 * first + moment_2 * second)
+        k_11, k_12, k_22 = 4.0 * rate, 2.0 * rate, 4.0 * rate
+    else:
+        bending, moment_1, moment_2, k_11, k_12, k_22 = bent_element(row, natural, first, second)
     shear = (moment_1 + moment_2) / (length * length)
     f[0], f[1] = axial * x + shear * y, axial * y - shear * x
     f[2], f[3] = moment_1 + natural, moment_2 - natural
@@ -77,18 +90,16 @@ def _corotational(
     f[4] = max(abs(first), abs(second), 0.5 * abs(turn_2 - turn_1))
     if asked != FORCES:
         c, s, stretching = x / length, y / length, row[3] / length_0
-        turning, mixed = 12.0 * rate / (length * length), 0.0
+        turning, mixed = (k_11 + 2.0 * k_12 + k_22) / (length * length), 0.0
         if asked == TANGENT:
             turning, mixed = turning + axial, shear
         h[0, 0] = stretching * c * c + turning * s * s - 2.0 * mixed * c * s
         h[1, 1] = stretching * s * s + turning * c * c + 2.0 * mixed * c * s
         h[0, 1] = (stretching - turning) * c * s + mixed * (c * c - s * s)
-        lever = 6.0 * rate / length
-        h[0, 2] = h[0, 3] = lever * s
-        h[1, 2] = h[1, 3] = -lever * c
-        h[2, 2] = h[3, 3] = 4.0 * rate
-        h[2, 3] = 2.0 * rate
-    bending = 0.5 * (moment_1 * first + moment_2 * second)
+        lever_1, lever_2 = (k_11 + k_12) / length, (k_12 + k_22) / length
+        h[0, 2], h[0, 3] = lever_1 * s, lever_2 * s
+        h[1, 2], h[1, 3] = -lever_1 * c, -lever_2 * c
+        h[2, 2], h[2, 3], h[3, 3] = k_11, k_12, k_22
     bending += natural * (0.5 * share * row[7] * length_0 - (turn_2 - turn_1))
     return bending, 0.5 * row[3] * length_0 * strain * strain, 0.0
 
@@ -107,12 +118,17 @@ def _reissner(
     sliding = (y * c - x * s) / length - sine
     curvature = (turn_2 - turn_1) / length - share * row[7]
     stretch, strain = 1.0 + strain, strain - share * row[6]
-    axial, shear, moment = row[3] * strain, row[5] * sliding, row[4] * curvature
+    axial, shear, moment, rigidity = row[3] * strain, row[5] * sliding, row[4] * curvature, row[4]
+    unit = 0.5 * length
+    bent = unit * moment * curvature
+    if row[8] != 0.0:
+        bent, moment, rigidity = section(row[4] / (1.0 - row[8]), row[8] * row[9], row[11], curvature)
+        bent *= length
     lever = 0.5 * length * (axial * sliding - shear * stretch)
     f[0], f[1] = axial * c - shear * s, axial * s + shear * c
     f[2], f[3], f[4] = lever - moment, lever + moment, 0.5 * abs(turn_2 - turn_1)
     if asked != FORCES:
-        bending = row[4] / length
+        bending = rigidity / length
         along, across = 0.5 * row[3] * sliding, -0.5 * row[5] * stretch
         turning = row[3] * sliding * sliding + row[5] * stretch * stretch
         if asked == TANGENT:
@@ -125,8 +141,48 @@ def _reissner(
         h[1, 2] = h[1, 3] = along * s + across * c
         h[2, 2] = h[3, 3] = 0.25 * length * turning + bending
         h[2, 3] = 0.25 * length * turning - bending
-    unit = 0.5 * length
-    return unit * moment * curvature, unit * axial * strain, unit * shear * sliding
+    return bent, unit * axial * strain, unit * shear * sliding
+
+
+@kernel()
+def _rooted(
+    row: Array, share: float, x: float, y: float, turn_1: float, turn_2: float, asked: int, f: Array, h: Array
+) -> tuple[float, float, float]:
+    """Write the same for a shear-deformable element whose end sections are held to its nodes by roots."""
+    c_1, c_2, last, psi_1, psi_2 = row[12], row[13], math.inf, turn_1, turn_2
+    # psi - phi + c M(psi) = 0
+    for _ in range(STEPS):
+        _reissner(row, share, x, y, psi_1, psi_2, TANGENT, f, h)
+        r_1, r_2 = psi_1 - turn_1 + c_1 * f[2], psi_2 - turn_2 + c_2 * f[3]
+        a, b, c, d = 1.0 + c_1 * h[2, 2], c_1 * h[2, 3], c_2 * h[2, 3], 1.0 + c_2 * h[3, 3]
+        whole = a * d - b * c
+        step_1, step_2 = (d * r_1 - b * r_2) / whole, (a * r_2 - c * r_1) / whole
+        psi_1, psi_2, size = psi_1 - step_1, psi_2 - step_2, max(abs(step_1), abs(step_2))
+        if not QUADRATIC < size < last:
+            break
+        last = size
+    parts = _reissner(row, share, x, y, psi_1, psi_2, asked, f, h)
+    if asked != FORCES:
+        _condense(c_1, c_2, h)
+    return parts[0] + 0.5 * (c_1 * f[2] * f[2] + c_2 * f[3] * f[3]), parts[1], parts[2]
+
+
+@kernel()
+def _condense(c_1: float, c_2: float, h: Array) -> None:
+    """Condense the turns of the sections out of the tangent (4, 4), those of the nodes take their place.
+
+    With the roots' compliances C and the parts H (turns) and B (step, turns) of the tangent, B goes to B S
+    and H to H S, and B S C B^T is taken from the rest, S = (1 + C H)^-1.
+    """
+    a, b, c, d = 1.0 + c_1 * h[2, 2], c_1 * h[2, 3], c_2 * h[2, 3], 1.0 + c_2 * h[3, 3]
+    whole = a * d - b * c
+    p_1, p_2, q_1, q_2, k = h[0, 2], h[0, 3], h[1, 2], h[1, 3], h[2, 3]
+    h[0, 2], h[0, 3] = (p_1 * d - p_2 * c) / whole, (p_2 * a - p_1 * b) / whole
+    h[1, 2], h[1, 3] = (q_1 * d - q_2 * c) / whole, (q_2 * a - q_1 * b) / whole
+    h[2, 2], h[2, 3], h[3, 3] = (h[2, 2] * d - k * c) / whole, k / whole, (h[3, 3] * a - k * b) / whole
+    h[0, 0] -= h[0, 2] * c_1 * p_1 + h[0, 3] * c_2 * p_2
+    h[0, 1] -= h[0, 2] * c_1 * q_1 + h[0, 3] * c_2 * q_2
+    h[1, 1] -= h[1, 2] * c_1 * q_1 + h[1, 3] * c_2 * q_2
 
 
 @kernel()
@@ -145,7 +201,7 @@ def elements(
     """Evaluate all elements at once.
 
     Args:
-        shear: whether they are Reissner's. table (E, 8), first nodes (E,); the second node is the next one.
+        shear: whether they are Reissner's. table (E, 14), first nodes (E,); the second node is the next one.
         share: of the natural strains that acts. asked: FORCES, TANGENT or MATERIAL.
         u (nodes, 3): displacements and turns. force (nodes, 3): written, what holds the elements.
         ends (E, 5): written, force x, y [N] at the second node, the moments [N m] at both, and the largest
@@ -162,10 +218,12 @@ def elements(
         i = first[e]
         j, f = i + 1, ends[e]
         x, y = u[j, 0] - u[i, 0], u[j, 1] - u[i, 1]
-        if shear:
+        if not shear:
+            parts = _corotational(table[e], share, x, y, u[i, 2], u[j, 2], asked, f, h)
+        elif table[e, 12] == 0.0 and table[e, 13] == 0.0:
             parts = _reissner(table[e], share, x, y, u[i, 2], u[j, 2], asked, f, h)
         else:
-            parts = _corotational(table[e], share, x, y, u[i, 2], u[j, 2], asked, f, h)
+            parts = _rooted(table[e], share, x, y, u[i, 2], u[j, 2], asked, f, h)
         bending, axial, sliding = bending + parts[0], axial + parts[1], sliding + parts[2]
         force[i, 0] -= f[0]
         force[i, 1] -= f[1]
@@ -192,77 +250,3 @@ def _spread(h: Array, matrix: Array) -> None:
             matrix[3 + i, turn] = matrix[turn, 3 + i] = h[i, 2 + k]
     matrix[2, 2], matrix[5, 5] = h[2, 2], h[3, 3]
     matrix[2, 5] = matrix[5, 2] = h[2, 3]
-
-
-@kernel()
-def carry(bodies: Array, attached: Indices, carrier: Indices, offsets: Array, u: Array) -> None:
-    """Move the attached nodes with their bodies (B, 3) (displacement x, y and turn): exact rigid motion."""
-    for k in range(len(attached)):
-        i, b = attached[k], carrier[k]
-        # R - 1 written with sines: no cancellation at small turns
-        sine, less = math.sin(bodies[b, 2]), 2.0 * math.sin(0.5 * bodies[b, 2]) ** 2
-        u[i, 0] = bodies[b, 0] - less * offsets[k, 0] - sine * offsets[k, 1]
-        u[i, 1] = bodies[b, 1] + sine * offsets[k, 0] - less * offsets[k, 1]
-        u[i, 2] = bodies[b, 2]
-
-
-@kernel()
-def carry_velocity(
-    bodies: Array, bodies_v: Array, attached: Indices, carrier: Indices, offsets: Array, v: Array
-) -> None:
-    """Write the velocities of the attached nodes."""
-    for k in range(len(attached)):
-        i, b = attached[k], carrier[k]
-        c, s = math.cos(bodies[b, 2]), math.sin(bodies[b, 2])
-        v[i, 0] = bodies_v[b, 0] - bodies_v[b, 2] * (s * offsets[k, 0] + c * offsets[k, 1])
-        v[i, 1] = bodies_v[b, 1] + bodies_v[b, 2] * (c * offsets[k, 0] - s * offsets[k, 1])
-        v[i, 2] = bodies_v[b, 2]
-
-
-@kernel()
-def body_forces(
-    bodies: Array, attached: Indices, carrier: Indices, offsets: Array, force: Array, out: Array
-) -> None:
-    """Write forces and moments about the bodies' points (B, 3) that the forces on attached nodes make up."""
-    for b in range(len(out)):
-        out[b, 0] = out[b, 1] = out[b, 2] = 0.0
-    for k in range(len(attached)):
-        i, b = attached[k], carrier[k]
-        c, s = math.cos(bodies[b, 2]), math.sin(bodies[b, 2])
-        arm_x, arm_y = c * offsets[k, 0] - s * offsets[k, 1], s * offsets[k, 0] + c * offsets[k, 1]
-        out[b, 0] += force[i, 0]
-        out[b, 1] += force[i, 1]
-        out[b, 2] += force[i, 2] + arm_x * force[i, 1] - arm_y * force[i, 0]
-
-
-@kernel()
-def put_weight(
-    share: float, weight: Array, body_weight: Array, bodies: Array, force: Array, resultants: Array
-) -> None:
-    """Take a share of the weight of nodes (nodes, 3) and bodies (B, 4) from the forces that resist.
-
-    A row of a body is force x, y [N] and the offset of its point from the body's [m].
-    """
-    for i in range(len(weight)):
-        force[i, 0] -= share * weight[i, 0]
-        force[i, 1] -= share * weight[i, 1]
-    for b in range(len(body_weight)):
-        w_x, w_y, x, y = body_weight[b, 0], body_weight[b, 1], body_weight[b, 2], body_weight[b, 3]
-        c, s = math.cos(bodies[b, 2]), math.sin(bodies[b, 2])
-        resultants[b, 0] -= share * w_x
-        resultants[b, 1] -= share * w_y
-        resultants[b, 2] -= share * ((c * x - s * y) * w_y - (s * x + c * y) * w_x)
-
-
-@kernel()
-def gravity_energy(weight: Array, body_weight: Array, bodies: Array, u: Array) -> float:
-    """Return the energy of the full weight, zero in the shape at rest [J]."""
-    energy = 0.0
-    for i in range(len(weight)):
-        energy -= weight[i, 0] * u[i, 0] + weight[i, 1] * u[i, 1]
-    for b in range(len(body_weight)):
-        x, y = body_weight[b, 2], body_weight[b, 3]
-        sine, less = math.sin(bodies[b, 2]), 2.0 * math.sin(0.5 * bodies[b, 2]) ** 2
-        energy -= body_weight[b, 0] * (bodies[b, 0] - less * x - sine * y)
-        energy -= body_weight[b, 1] * (bodies[b, 1] + sine * x - less * y)
-    return energy

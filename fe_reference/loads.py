@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .effects import AppliedForce, AppliedMoment, History, TipForce, factor_of
-from .law import kernel
+from .kernel import kernel
 from .structure import Structure
 
 Array = NDArray[np.float64]

@@ -13,7 +13,8 @@ rotary inertia of the sections has rho I l / 2 in its place, with either element
 
 Consistent element masses: cubic bending and linear stretching in the frame of the chord (corotational),
 linear fields with rotary inertia (Reissner). The rotary inertia of the sections, if it is named, is added to
-the first with the slopes of the same cubics.
+the first with the slopes of the same cubics. An end whose root gives way counts as turned like its body: an
+error of second order in the element length.
 
 Strips without inertia and bodies without inertia have none of this, and none of the attached masses.
 

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from scipy.sparse import csc_matrix
 from skfem.assembly.form.coo_data import COOData
 
-from .law import kernel
+from .kernel import kernel
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]

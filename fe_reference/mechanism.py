@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from .effects import DEFAULT_EFFECTS, read_effects
 from .errors import InvalidParameter, count, finite, pair
-from .model import FREE, GROUND, Body, Model, Section, Strip
+from .model import FREE, GROUND, NOT_GIVEN, Body, Model, Section, Strip
 
 Array = NDArray[np.float64]
 
@@ -31,7 +31,8 @@ class StripDesign:
     Attributes:
         name: what it is called. start, end: of its axis at rest [m].
         root, tip: "ground" or the name of the body that its start and its end are on; None if it is free.
-        area [m^2], second_moment_of_area [m^4], youngs_modulus [Pa], poisson_ratio [1], density [kg/m^3].
+        youngs_modulus [Pa], poisson_ratio [1], density [kg/m^3].
+        area [m^2], second_moment_of_area [m^4]; or width and thickness [m], which make them, or all four.
         rise: sagitta of the circular arc it is at rest [m], to the left of start to end; 0: straight.
     """
 
@@ -40,12 +41,14 @@ class StripDesign:
     end: Sequence[float]
     root: str | None = "ground"
     tip: str | None
-    area: float
-    second_moment_of_area: float
+    area: float = NOT_GIVEN
+    second_moment_of_area: float = NOT_GIVEN
     youngs_modulus: float
     poisson_ratio: float
     density: float
     rise: float = 0.0
+    width: float | None = None
+    thickness: float | None = None
 
 
 def mechanism(
@@ -93,6 +96,8 @@ def _strip(design: StripDesign, bodies: Sequence[str], elements: int) -> Strip:
         youngs_modulus=design.youngs_modulus,
         poisson_ratio=design.poisson_ratio,
         density=design.density,
+        width=design.width,
+        thickness=design.thickness,
     )
     return Strip(
         name=design.name,

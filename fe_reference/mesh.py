@@ -19,8 +19,9 @@ import numpy as np
 from numpy.typing import NDArray
 from skfem import Basis, ElementLineP1, ElementVector, MeshLine
 
-from .effects import PreStrain
-from .model import Model
+from .clamped_width import left_by_clamps, shares
+from .effects import CURL, PreStrain, RootCompliance
+from .model import FREE, Model, Strip
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
@@ -38,6 +39,9 @@ class Elements:
         length: reference length (E,) [m].
         axial_rigidity, flexural_rigidity, shear_rigidity: EA [N], EI [N m^2], kGA [N], (E,).
         linear_density, rotary_density: rho A [kg/m], rho I [kg m], (E,).
+        plate (E, 4): nu^2 of sections that do not curl freely, else 0; the share of their curl that clamps
+        leave at two points; the reach [m] of anticlastic bending, as in `bending`.
+        roots (E, 2): compliances of the roots that its ends are [rad / (N m)].
     """
 
     chord: Array
@@ -47,12 +51,15 @@ class Elements:
     shear_rigidity: Array
     linear_density: Array
     rotary_density: Array
+    plate: Array
+    roots: Array
 
     def table(self, natural: PreStrain) -> Array:
-        """Return the rows of `law`, (E, 8)."""
+        """Return the rows of `law`, (E, 14)."""
         own = [np.full_like(self.length, part) for part in (natural.strain, natural.curvature)]
         rigidities = [self.axial_rigidity, self.flexural_rigidity, self.shear_rigidity]
-        return np.ascontiguousarray(np.transpose([*self.chord, self.length, *rigidities, *own]))
+        known = np.transpose([*self.chord, self.length, *rigidities, *own])
+        return np.hstack([known, self.plate, self.roots])
 
 
 def strip_basis(model: Model) -> Basis:
@@ -76,7 +83,47 @@ def reference_elements(model: Model) -> Elements:
     constants = {
         name: np.repeat([getattr(strip.section, name) for strip in model.strips], many) for name in names
     }
-    return Elements(chord=chord, length=np.hypot(*chord), **constants)
+    plate = np.vstack([_plate(model, strip) for strip in model.strips])
+    roots = np.vstack([_roots(model, strip) for strip in model.strips])
+    return Elements(chord=chord, length=np.hypot(*chord), plate=plate, roots=roots, **constants)
+
+
+def nodal_shares(model: Model) -> Array:
+    """Return the share of their curl that the clamps leave the sections at the nodes (G, P)."""
+    if "clamped_width" not in model.effects:
+        return np.ones((len(model.strips), len(model.strips[0].nodes)))
+    return np.array(
+        [left_by_clamps(_ratio(strip), strip.section.poisson_ratio, strip.places) for strip in model.strips]
+    )
+
+
+def _ratio(strip: Strip) -> float:
+    """Return width over length, 0 of a strip without width."""
+    return (strip.section.width or 0.0) / strip.length
+
+
+def _plate(model: Model, strip: Strip) -> Array:
+    """Return what the sections of a strip curl in its elements (E, 4)."""
+    section, rows = strip.section, np.zeros((len(strip.nodes) - 1, 4))
+    if section.width is None or section.thickness is None or not set(CURL) & set(model.effects.names):
+        return rows
+    nu, width = section.poisson_ratio, section.width
+    rows[:, 0], rows[:, 1:3] = nu**2, 1.0
+    if "clamped_width" in model.effects:
+        points = 1 if model.element == "reissner" else 2
+        rows[:, 1:3] = shares(_ratio(strip), nu, strip.places, points)
+    if "anticlastic" in model.effects:
+        rows[:, 3] = np.sqrt(3.0 * (1.0 - nu**2)) * width**2 / section.thickness
+    return rows
+
+
+def _roots(model: Model, strip: Strip) -> Array:
+    """Return the compliances of the roots of a strip's elements (E, 2) [rad / (N m)]."""
+    rows, effect = np.zeros((len(strip.nodes) - 1, 2)), model.effects.find(RootCompliance)
+    if effect is not None and strip.section.thickness is not None:
+        compliance = float(effect.root) * strip.section.thickness / strip.section.flexural_rigidity
+        rows[0, 0], rows[-1, 1] = (0.0 if end == FREE else compliance for end in (strip.root, strip.tip))
+    return rows
 
 
 class Attachments:

@@ -4,18 +4,32 @@ Each end of a strip is clamped to ground, carried by a body, or free. The parame
 radians.
 """
 
+import math
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from .effects import AppliedForce, AppliedMoment, DrivenDisplacement, Effects, TipForce
+from .effects import (
+    CURL,
+    SIDES,
+    AppliedForce,
+    AppliedMoment,
+    DrivenDisplacement,
+    Effects,
+    PreStrain,
+    TipForce,
+)
 from .errors import InvalidParameter, choice, not_negative, positive, within
 
 Array = NDArray[np.float64]
 ELEMENTS = ("corotational", "reissner")
 #: What an end of a strip is on, where it is not on a body: clamped to ground, or on nothing.
 GROUND, FREE = -1, -2
+#: Area and second moment of a section that is told by its sides.
+NOT_GIVEN = math.nan
+#: How far area and second moment may be from those of the sides beside them: printed values are rounded.
+ROUNDING = 1e-3
 
 
 def rotation_matrix(angle: float) -> Array:
@@ -31,22 +45,45 @@ class Section:
     Symbols: A [m^2], I [m^4], E [Pa], nu [1], rho [kg/m^3], shear factor k [1].
     Rigidities: EA [N], EI [N m^2], k G A [N] with G = E / (2 (1 + nu)); linear density mu = rho A [kg/m].
     k = 5/6 is the value for a rectangle in energy equivalence (Reissner), without the dependence on nu.
+
+    A rectangle may be told by its sides, the width b [m] and the thickness t in the plane of bending [m],
+    which effects of the curl across the width need: then A = b t and I = b t^3 / 12 where they are left out;
+    where they are given they hold, and must be those of the sides to ROUNDING.
     """
 
-    area: float
-    second_moment_of_area: float
+    area: float = NOT_GIVEN
+    second_moment_of_area: float = NOT_GIVEN
     youngs_modulus: float
     poisson_ratio: float
     density: float
     shear_factor: float = 5.0 / 6.0
+    width: float | None = None
+    thickness: float | None = None
 
     def __post_init__(self) -> None:
+        self._read_sides()
         positive("area", self.area, "m^2")
         positive("second_moment_of_area", self.second_moment_of_area, "m^4")
         positive("youngs_modulus", self.youngs_modulus, "Pa")
         within("poisson_ratio", self.poisson_ratio, -1.0, 0.5, "1")
         positive("density", self.density, "kg/m^3")
         positive("shear_factor", self.shear_factor, "1")
+
+    def _read_sides(self) -> None:
+        """Fill in what the sides make of the section; refuse what contradicts them, and half a section."""
+        names = ("area", "second_moment_of_area")
+        missing = [name for name in names if getattr(self, name) != getattr(self, name)]  # NOT_GIVEN
+        if self.width is None and self.thickness is None:
+            if missing:
+                raise InvalidParameter(missing[0], "nothing", "it, or width and thickness of a rectangle [m]")
+            return
+        b, t = (positive(name, getattr(self, name), "m") for name in ("width", "thickness"))
+        for name, made, power in zip(names, (b * t, b * t**3 / 12.0), (2, 4), strict=True):
+            if name in missing:
+                object.__setattr__(self, name, made)
+            elif abs(positive(name, getattr(self, name), f"m^{power}") - made) > ROUNDING * made:
+                expected = f"{made:.6g}, that of width and thickness [m^{power}]"
+                raise InvalidParameter(name, getattr(self, name), expected)
 
     @property
     def axial_rigidity(self) -> float:
@@ -107,6 +144,18 @@ class Strip:
         """Reference length [m]."""
         return float(np.linalg.norm(np.diff(self.nodes, axis=0), axis=1).sum())
 
+    @property
+    def places(self) -> Array:
+        """Parts of the length at which the nodes are (P,), from 0 to 1."""
+        steps = np.linalg.norm(np.diff(self.nodes, axis=0), axis=1)
+        places: Array = np.concatenate([[0.0], np.cumsum(steps)]) / steps.sum()
+        return places
+
+    @property
+    def straight(self) -> bool:
+        """Whether it is straight at rest, to round-off."""
+        return self.length <= (1.0 + 1e-12) * float(np.linalg.norm(self.nodes[-1] - self.nodes[0]))
+
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Body:
@@ -160,6 +209,7 @@ class Model:
             if len(set(names)) != len(names):
                 raise InvalidParameter(kind, names, "names that differ [name]")
         self._check_places()
+        self._check_sides()
 
     def _check_places(self) -> None:
         """Refuse loads and drives on what is not there."""
@@ -174,6 +224,23 @@ class Model:
             raise InvalidParameter("driven_displacement", "no bodies", "a body to lead [name]")
         if led is not None and led.body is not None:
             self.body_index(led.body)
+
+    def _check_sides(self) -> None:
+        """Refuse effects of the strips' sides where they do not hold."""
+        named = [name for name in SIDES if name in self.effects]
+        curl = [name for name in CURL if name in named]
+        natural = self.effects.find(PreStrain)
+        if curl and natural is not None and natural.curvature:
+            raise InvalidParameter(
+                curl[0], "natural curvature", "strips that are straight when free of stress"
+            )
+        for strip in self.strips if named else ():
+            if strip.section.width is None:
+                raise InvalidParameter(named[0], strip.name, "strips with width and thickness [name]")
+            if curl and not strip.straight:
+                raise InvalidParameter(curl[0], strip.name, "straight strips [name]")
+            if "clamped_width" in curl and FREE in (strip.root, strip.tip):
+                raise InvalidParameter("clamped_width", strip.name, "strips clamped at both ends [name]")
 
     @property
     def strip_names(self) -> tuple[str, ...]:

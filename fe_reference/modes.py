@@ -146,7 +146,7 @@ def _held(structure: Structure, body: str | None, turn: bool) -> NDArray[np.bool
     led = model.effects.find(DrivenDisplacement)
     if led is not None and led.history is not None:
         place = structure.body_slice(model.body_index(led.body if led.body is not None else body))
-        held[place.start : place.start + 2] = True
+        held[place.start : place.start + 2] |= [part is not None for part in led.displacement]
     return held
 
 

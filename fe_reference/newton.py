@@ -1,6 +1,7 @@
 """Newton's method to the equilibrium at one parameter of a path, with the consistent tangent."""
 
 from collections import Counter
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -26,29 +27,45 @@ class Outcome:
     """What Newton's method left.
 
     Attributes:
-        y: coordinates. norms: of the residuals. failure: "" or the reason.
+        y, parameter: coordinates and where. norms: of the residuals. failure: "" or the reason.
         balance, factors: at the last iterate; no factors after a failure.
     """
 
     y: Array
+    parameter: float
     norms: tuple[float, ...]
     failure: str
     balance: Balance
     factors: Factors | None = None
 
 
-def equilibrate(control: Control, start: Array, parameter: float, counters: Counter[str]) -> Outcome:
+#: Changes of coordinates and parameter that correct a state, from these, the balance there and its factors.
+Correct = Callable[[Array, float, Balance, Factors], tuple[Array, float]]
+
+
+def at_the_parameter(y: Array, parameter: float, balance: Balance, factors: Factors) -> tuple[Array, float]:
+    """Return Newton's correction with the parameter as it is."""
+    return -factors.solve(balance.residual), 0.0
+
+
+def equilibrate(
+    control: Control,
+    start: Array,
+    parameter: float,
+    counters: Counter[str],
+    correct: Correct = at_the_parameter,
+) -> Outcome:
     """Iterate from `start` to equilibrium at `parameter`, with the consistent tangent at every iteration.
 
     One compiled call gives residual and tangent; the factors at the equilibrium serve what is asked there.
     """
     tolerance = max(TOLERANCE, control.structure.round_off)
     y, norms = start.copy(), []
-    y[control.held] = control.prescribed(parameter)
     while True:
+        y[control.held] = control.prescribed(parameter)
         for counted in ("residual_evaluations", "tangent_evaluations"):
             counters[counted] += 1
-        balance = control.balance(y, parameter)
+        balance, factors = control.balance(y, parameter), None
         norms.append(control.unbalanced(balance.residual))
         failure = "" if np.isfinite(norms[-1]) else "the residual is not finite"
         if len(norms) > ITERATIONS and norms[-1] > tolerance:
@@ -59,11 +76,25 @@ def equilibrate(control: Control, start: Array, parameter: float, counters: Coun
                 factors = control.factors(balance)
             except Singular as error:
                 failure = str(error)
-        if failure:
-            return Outcome(y=y, norms=tuple(norms), failure=failure, balance=balance)
-        if norms[-1] <= tolerance:
+        if factors is not None and norms[-1] <= tolerance:
             last = factors.solve(balance.residual)
             y = y - last if np.abs(control.structure.measure * last).max(initial=0.0) <= LAST else y
-            return Outcome(y=y, norms=tuple(norms), failure="", balance=balance, factors=factors)
+        if factors is None or norms[-1] <= tolerance:
+            return Outcome(
+                y=y,
+                parameter=parameter,
+                norms=tuple(norms),
+                failure=failure,
+                balance=balance,
+                factors=factors,
+            )
         counters["newton_iterations"] += 1
-        y = y - factors.solve(balance.residual)
+        move, change = correct(y, parameter, balance, factors)
+        y, parameter = y + move, parameter + change
+
+
+def taken(control: Control, y: Array, parameter: float) -> Outcome:
+    """Return coordinates that are in equilibrium as such; raises Singular."""
+    balance = control.balance(y, parameter)
+    factors = control.factors(balance)
+    return Outcome(y=y, parameter=parameter, norms=(0.0,), failure="", balance=balance, factors=factors)

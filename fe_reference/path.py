@@ -14,11 +14,12 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from .control import Balance, Control, Response, respond
+from .control import Balance, Control
 from .critical import critical_point, tipping
 from .errors import InvalidParameter
 from .matrix import Singular
-from .newton import LAST, Outcome, equilibrate
+from .newton import LAST, Outcome, equilibrate, taken
+from .response import Response, respond
 from .solution import CriticalPoint
 
 Array = NDArray[np.float64]
@@ -123,7 +124,7 @@ class Path:
         """Put down the first state: rest, or coordinates in equilibrium (size,)."""
         y = np.zeros(self.control.structure.size) if y is None else y
         try:
-            self.states.append(self._at(y, self.control.span[0]))
+            self.states.append(self._state(taken(self.control, y, self.control.span[0]), None))
         except Singular as error:
             raise InvalidParameter(
                 "strips", "a model that can move freely", "clamps that hold it [1]"
@@ -132,15 +133,8 @@ class Path:
     def turn_to(self, control: Control) -> None:
         """Go on from the last state in the next span."""
         last, self.control = self.states[-1], control
-        there = self._at(last.y, last.parameter)
+        there = self._state(taken(control, last.y, last.parameter), None)
         self.states[-1] = replace(there, work=last.work, norms=last.norms)
-
-    def _at(self, y: Array, parameter: float) -> State:
-        """Return the state at coordinates in equilibrium; raises Singular."""
-        balance = self.control.balance(y, parameter)
-        factors = self.control.factors(balance)
-        outcome = Outcome(y=y, norms=(0.0,), failure="", balance=balance, factors=factors)
-        return self._state(outcome, parameter, None)
 
     def advance(self, target: float) -> bool:
         """Go from the last state to `target` in one increment or in halved ones, and keep its end."""
@@ -164,7 +158,7 @@ class Path:
         outcome = equilibrate(self.control, state.ahead(target), target, self.counters)
         failure = outcome.failure
         if not failure:
-            reached = self._state(outcome, target, state)
+            reached = self._state(outcome, state)
             failure = self._doubt(state, reached) or self._judged(state, reached)
             if not failure:
                 self.critical += tipping(self.control, state, reached, self.counters)
@@ -207,11 +201,9 @@ class Path:
             f" after {depth} halvings of the increment; last residual {outcome.norms[-1]:.3g}"
         )
 
-    def _state(self, outcome: Outcome, parameter: float, before: State | None) -> State:
+    def _state(self, outcome: Outcome, before: State | None) -> State:
         """Complete a converged state by its response, potential and work."""
-        if outcome.factors is None:
-            raise Singular(outcome.failure)
-        response = respond(self.control, outcome.y, parameter, outcome.balance, outcome.factors)
+        parameter, response = outcome.parameter, respond(self.control, outcome)
         done, work = outcome.balance.load_work, 0.0
         if before is not None:
             # loads a F.q: their work is [a F.q] less the integral of F.q da, which is part of the conjugate

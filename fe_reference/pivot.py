@@ -8,7 +8,7 @@ import numpy as np
 from .effects import DEFAULT_EFFECTS
 from .errors import InvalidParameter, finite, positive, within
 from .mechanism import BodyDesign, StripDesign, mechanism
-from .model import Model
+from .model import NOT_GIVEN, Model, rotation_matrix
 
 
 def cross_axis_pivot(
@@ -16,14 +16,17 @@ def cross_axis_pivot(
     length: float,
     inclination: float,
     crossing_ratio: float,
-    area: float,
-    second_moment_of_area: float,
+    area: float = NOT_GIVEN,
+    second_moment_of_area: float = NOT_GIVEN,
     youngs_modulus: float,
     poisson_ratio: float,
     density: float,
     body_mass: float,
     body_moment_of_inertia: float,
     centre_offset: Sequence[float] = (0.0, 0.0),
+    orientation: float = 0.0,
+    width: float | None = None,
+    thickness: float | None = None,
     effects: Sequence[str] = DEFAULT_EFFECTS,
     parameters: Mapping[str, Mapping[str, Any]] | None = None,
     elements: int = 20,
@@ -35,13 +38,14 @@ def cross_axis_pivot(
 
         A1 = (0, 0),  A2 = (2 r L cos a, 0),  B1 = A1 + L (cos a, sin a),  B2 = A2 + L (-cos a, sin a)
 
-    and the body's centre at (B1 + B2)/2 + centre_offset.
+    and the body's centre at (B1 + B2)/2 + centre_offset; then the orientation turns all of it about A1.
 
     Args:
         length: L [m]. inclination: a [rad], between 0 and pi/2. crossing_ratio: r, between 0 and 1.
         area [m^2], second_moment_of_area [m^4], youngs_modulus [Pa], poisson_ratio [1], density [kg/m^3]: of
         strips. body_mass [kg], body_moment_of_inertia about its centre [kg m^2]; zero is legal.
-        centre_offset: (2,) [m].
+        width, thickness [m]: of strips, in place of area and second moment of area, or beside them.
+        centre_offset: (2,) [m]. orientation: of the whole, counter-clockwise [rad].
         effects: names of the effects of the scene. parameters: of those that have any, by name.
         elements: number of elements a strip. element: "corotational" or "reissner".
 
@@ -57,12 +61,16 @@ def cross_axis_pivot(
     run, rise = span * np.cos(angle), span * np.sin(angle)
     ground = np.array([[0.0, 0.0], [2.0 * ratio * run, 0.0]])
     ends = ground + np.array([[run, rise], [-run, rise]])
+    turn = rotation_matrix(finite("orientation", orientation, "rad")).T
+    ground, ends, offset = ground @ turn, ends @ turn, offset @ turn
     given: dict[str, Any] = {
         "area": area,
         "second_moment_of_area": second_moment_of_area,
         "youngs_modulus": youngs_modulus,
         "poisson_ratio": poisson_ratio,
         "density": density,
+        "width": width,
+        "thickness": thickness,
     }
     body = BodyDesign(
         name="body",

@@ -12,7 +12,8 @@ over the width b and the length 1, and the stiffness over the beam's EI is
 
 Conforming elements (Argyris) give a(z, z) from below, so f from above. Strips are symmetric about both
 their middle lines: a quarter is meshed, with elements that shrink towards the corner of clamp and free edge,
-where curvatures are unbounded.
+where curvatures are unbounded. Lengths are taken in widths, and the quintics of every triangle about its own
+centre: about a common origin they lose the digits that the smallest triangles need.
 
 Source: Timoshenko and Woinowsky-Krieger, Theory of Plates and Shells (1959), articles 21 and 22; Argyris,
 Fried and Scharpf, Aeronaut J 72 (1968) 701.
@@ -21,7 +22,7 @@ Fried and Scharpf, Aeronaut J 72 (1968) 701.
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,8 +33,8 @@ from .errors import InvalidParameter
 
 Array = NDArray[np.float64]
 
-#: Halvings of the elements towards the corner.
-LAYERS = 7
+#: Halvings of the elements towards the corner, and elements a width along the rest of a narrow strip.
+LAYERS, ALONG = 6, 2
 #: Rule that is exact for squares of second derivatives of quintics.
 QUADRATURE = 6
 
@@ -72,8 +73,8 @@ def plate_factors(width_ratio: float, poisson_ratio: float, *, halvings: int = 0
         raise InvalidParameter("width_ratio", width_ratio, "a number above 0")
     if not 0.0 <= poisson_ratio <= 0.5:
         raise InvalidParameter("poisson_ratio", poisson_ratio, "a number between 0 and 0.5")
-    mesh = MeshTri.init_tensor(*_lines(width_ratio)).refined(halvings)
-    basis = Basis(mesh, ElementTriArgyris(), intorder=QUADRATURE)
+    mesh = MeshTri.init_tensor(*_lines(0.5 / width_ratio)).refined(halvings)
+    basis = Basis(mesh, _Argyris(), intorder=QUADRATURE)
     energy = BilinearForm(_energy).assemble(basis, nu=poisson_ratio)
     flat = 1.0 / (1.0 - poisson_ratio**2)
     constant, linear = (
@@ -83,14 +84,39 @@ def plate_factors(width_ratio: float, poisson_ratio: float, *, halvings: int = 0
     return PlateFactors(constant=constant, linear=linear, unknowns=int(basis.N))
 
 
-def _lines(width: float) -> tuple[Array, Array]:
-    """Return the mesh lines of a quarter, x from the clamp on and y from the middle to the free edge."""
-    near = min(width, 0.5)
+def _lines(half: float) -> tuple[Array, Array]:
+    """Return the mesh lines of a quarter in widths: x from the clamp to `half` the length, y from the middle
+    to the free edge."""
+    near = 1.0 if half > 1.5 else half
     halves = 0.5 ** np.arange(LAYERS, -1, -1)
-    x = np.concatenate(
-        [[0.0], near * halves, np.linspace(near, 0.5, 1 + math.ceil(4 * (0.5 - near) / near))[1:]]
-    )
-    return x, width / 2 * (1.0 - np.concatenate([[0.0], halves])[::-1])
+    rest = np.linspace(near, half, 1 + math.ceil(ALONG * (half - near)))[1:]
+    return np.concatenate([[0.0], near * halves, rest]), 0.5 * (1.0 - np.concatenate([[0.0], halves])[::-1])
+
+
+class _Centred(NamedTuple):
+    """A mapping of the triangles that counts places from their centres (2, T)."""
+
+    mesh: MeshTri
+    mapping: Any
+    centres: Array
+
+    def F(self, X: Array, tind: Any) -> Array:
+        places: Array = self.mapping.F(X, tind=tind) - self.centres[:, tind, None]
+        return places
+
+
+class _Argyris(ElementTriArgyris):
+    """Argyris triangles whose quintics are powers of the distance from the centre of each."""
+
+    def gdof(self, F: Any, w: dict[str, Array], i: int) -> Any:
+        """Return what the degree of freedom i is of functions F, at vertices and edges about the centres."""
+        centre = w["v"].mean(axis=0)
+        return super().gdof(F, {**w, "v": w["v"] - centre, "e": w["e"] - centre}, i)
+
+    def gbasis(self, mapping: Any, X: Array, i: int, tind: Any = None) -> Any:
+        """Return the basis function i at the points."""
+        mesh = mapping.mesh
+        return super().gbasis(_Centred(mesh, mapping, mesh.p[:, mesh.t].mean(axis=1)), X, i, tind)
 
 
 def _energy(u, v, w):  # type: ignore[no-untyped-def]
@@ -100,10 +126,11 @@ def _energy(u, v, w):  # type: ignore[no-untyped-def]
 
 def _released(basis: Basis, energy: Any, nu: float, antisymmetric: bool) -> float:
     """Return a(z, z) / a(w_0, w_0) where the ends turn against one another, or together (antisymmetric)."""
+    half = float(basis.mesh.p[0].max())
 
     @LinearForm
     def load(v, w):  # type: ignore[no-untyped-def]
-        bent = 1.0 - 2.0 * w.x[0] if antisymmetric else 1.0  # w_0''
+        bent = 1.0 - w.x[0] / half if antisymmetric else 1.0  # w_0''
         return -bent * (dd(v)[0][0] + nu * dd(v)[1][1])
 
     def held(at: Callable[[Array], Any], *names: str) -> Array:
@@ -115,11 +142,11 @@ def _released(basis: Basis, energy: Any, nu: float, antisymmetric: bool) -> floa
         np.concatenate(
             [
                 held(lambda x: np.isclose(x[0], 0.0), "u", "u_x", "u_y", "u_xy", "u_yy", "u_n"),
-                held(lambda x: np.isclose(x[0], 0.5), *middle),
+                held(lambda x: np.isclose(x[0], half), *middle),
                 held(lambda x: np.isclose(x[1], 0.0), "u_y", "u_xy", "u_n"),
             ]
         )
     )
     z = solve(*condense(energy, load.assemble(basis), D=fixed))
-    beam = basis.mesh.p[1].max() * (1 / 6 if antisymmetric else 1 / 2)  # int w_0''^2 over the quarter
+    beam = 0.5 * half * (1 / 3 if antisymmetric else 1.0)  # int w_0''^2 over the quarter
     return float(z @ (energy @ z) / beam)

@@ -6,20 +6,20 @@ what it was applied to, which is larger than that of the limit.
 """
 
 from collections.abc import Callable, Collection, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from typing import Any, Generic, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from .errors import ConvergenceError, positive
+from .errors import positive
 from .model import Model, Strip
 from .solution import ErrorEstimate, StaticSolution, Status
-from .structure import structure_of
-from .trajectory import ENERGIES, Trajectory
+from .trajectory import Trajectory
 
 Array = NDArray[np.float64]
 Answer = TypeVar("Answer")
+Solved = TypeVar("Solved", StaticSolution, Trajectory)
 #: Quantities by name: values at the same places on every mesh, and a unit, below which all is round-off.
 Quantities = Mapping[str, tuple[Array, float]]
 #: Elements of a strip at which the refinement ends.
@@ -74,7 +74,7 @@ def refine(
     Args:
         model: the coarsest mesh. solve: answers a model. quantities: of an answer, none if it is not whole.
         judged: names of the quantities whose errors count, all by default. relative: whether errors are parts
-            of a quantity's largest value, or count as they are.
+            of a quantity's largest value, or of its unit.
     """
     positive("accuracy", accuracy, "1")
     known: list[list[Array]] = []
@@ -87,7 +87,7 @@ def refine(
         if len(known) > 1:
             limits, changes = _limit(known[-3:])
             errors = {
-                name: float(np.abs(change).max(initial=0.0)) / (_size(limit, unit) if relative else 1.0)
+                name: float(np.abs(change).max(initial=0.0)) / (_size(limit, unit) if relative else unit)
                 for (name, (_, unit)), limit, change in zip(here.items(), limits, changes, strict=True)
                 if judged is None or name in judged
             }
@@ -128,106 +128,49 @@ def _size(values: Array, unit: float) -> float:
     return largest if largest > NOTHING * unit else unit
 
 
-def told(message: str, remark: str) -> str:
-    """Return both, or the one there is."""
-    return "; ".join(each for each in (message, remark) if each)
-
-
-#: What an accuracy is asked of, and what it takes to its limit along the strips.
-JUDGED = ("path", "torque", "stiffness", "strain_energy", "largest_stress")
-DERIVED = ("path", "strain_energy", "bodies")
+#: What is given at the nodes.
 ALONG = ("shape", "axial_force", "shear_force", "bending_moment")
 
 
-def limit_of_paths(
-    model: Model, accuracy: float, solve: Callable[[Model], StaticSolution], raise_on_failure: bool
-) -> StaticSolution:
-    """Return the limit of a path's meshes, or the solution of the first mesh that has none."""
-    refined = refine(model, accuracy, solve, _of_paths(model), JUDGED)
-    found, limits = refined.answer, refined.limits
+def limit_of(
+    model: Model,
+    accuracy: float,
+    solve: Callable[[Model], Solved],
+    units: Mapping[str, float],
+    derived: Mapping[str, Callable[[Array], Array]],
+    judged: Collection[str],
+    relative: bool = True,
+) -> Solved:
+    """Return the limit of an answer's meshes, at the nodes of the coarsest, or the first that has none.
+
+    Args:
+        model, accuracy, solve, judged, relative: as in `refine`.
+        units: of the answer's attributes that are taken to their limits. derived: quantities of one, by what
+            makes them from the places of the bodies (B, S, 3).
+    """
+    stations = len(model.strips[0].nodes)
+
+    def quantities(answer: Solved) -> Quantities:
+        if answer.status is not Status.CONVERGED:
+            return {}
+        every, found = (answer.shape.shape[2] - 1) // (stations - 1), {}
+        for name, unit in units.items():
+            values = getattr(answer, name)
+            if isinstance(values, Mapping):
+                values = np.array(list(values.values())).reshape(-1, len(answer.shape), 3)
+            if np.isfinite(values).all():
+                found[name] = (values[:, :, ::every] if name in ALONG else values, unit)
+        return found | {name: (make(found["bodies"][0]), 1.0) for name, make in derived.items()}
+
+    refined = refine(model, accuracy, solve, quantities, judged, relative)
+    found = refined.answer
     if refined.estimate is None:
         return found
-    every = (found.shape.shape[2] - 1) // (len(model.strips[0].nodes) - 1)
-    fields: dict[str, Any] = {name: values for name, values in limits.items() if name not in DERIVED}
-    fields["bodies"] = dict(zip(found.bodies, np.moveaxis(limits["bodies"], 1, 0), strict=True))
-    found = replace(
-        found,
-        status=Status.NOT_CONVERGED if refined.message else found.status,
-        message=told(found.message, refined.message),
-        stations=found.stations[::every],
-        estimate=refined.estimate,
-        **fields,
-    )
-    if refined.message and raise_on_failure:
-        raise ConvergenceError(refined.message, solution=found, load_factor=1.0, history=found.history)
-    return found
-
-
-def _of_paths(model: Model) -> Callable[[StaticSolution], Quantities]:
-    """Return what takes the quantities of a solution at the nodes of a model, the coarsest mesh."""
-    structure = structure_of(model)
-    length, force, moment = structure.length, structure.force_unit, structure.moment_unit
-    section = model.strips[0].section
-    units = {
-        "torque": moment, "stiffness": moment, "clamp_reactions": force, "shape": length,
-        "axial_force": force, "shear_force": force, "bending_moment": moment,
-        "largest_stress": moment * np.sqrt(3.0 / (section.area * section.second_moment_of_area)),
-        **dict.fromkeys(("bending_energy", "axial_energy", "shear_energy"), moment),
-        **dict.fromkeys(("gravity_energy", "work", "strain_energy"), moment),
-    }  # fmt: skip
-
-    def quantities(solution: StaticSolution) -> Quantities:
-        if solution.status is not Status.CONVERGED:
-            return {}
-        every = (solution.shape.shape[2] - 1) // (structure.stations - 1)
-        arrays = {name: getattr(solution, name) for name in units}
-        known = {name: values for name, values in arrays.items() if np.isfinite(values).all()}
-        found = {
-            name: (values[:, :, ::every] if name in ALONG else values, units[name])
-            for name, values in known.items()
-        }
-        bodies = np.array(list(solution.bodies.values())).reshape(-1, len(solution.load_factor), 3)
-        places = np.moveaxis(bodies, 0, 1)
-        moved = (places - places[0]) / np.array([length, length, 1.0])
-        return found | {"bodies": (places, length), "path": (moved, 1.0)}
-
-    return quantities
-
-
-def limit_of_motions(model: Model, accuracy: float, solve: Callable[[Model], Trajectory]) -> Trajectory:
-    """Return the limit of a motion's meshes, recorded at the same instants, or the motion that has none.
-
-    The accuracy is that of the rotations [rad] and of the nodes' places in strip lengths.
-    """
-    length, stations = structure_of(model).length, structure_of(model).stations
-
-    def quantities(motion: Trajectory) -> Quantities:
-        if motion.status is not Status.CONVERGED:
-            return {}
-        places, rates = (
-            np.array(list(each.values())).reshape(-1, len(motion.time), 3)
-            for each in (motion.bodies, motion.rates)
-        )
-        every = (motion.shape.shape[2] - 1) // (stations - 1)
-        shape = motion.shape[:, :, ::every] / length
-        energies = {name: getattr(motion, name) for name in ENERGIES}
-        moves = {"places": places, "rates": rates, "rotation": places[..., 2], "shape": shape}
-        return {name: (values, 1.0) for name, values in (moves | energies).items()}
-
-    refined = refine(model, accuracy, solve, quantities, ("rotation", "shape"), relative=False)
-    motion, limits = refined.answer, refined.limits
-    if refined.estimate is None:
-        return motion
-    names = tuple(motion.bodies)
-    energies: dict[str, Any] = {name: limits[name] for name in ENERGIES}
-    return replace(
-        motion,
-        status=Status.NOT_CONVERGED if refined.message else motion.status,
-        message=refined.message,
-        bodies=dict(zip(names, limits["places"], strict=True)),
-        rates=dict(zip(names, limits["rates"], strict=True)),
-        shape=length * limits["shape"],
-        rotation_error=refined.estimate.errors["rotation"],
-        estimate=refined.estimate,
-        **energies,
-    )
+    own = {each.name: getattr(found, each.name) for each in fields(found)}
+    limits: dict[str, Any] = {name: limit for name, limit in refined.limits.items() if name in own}
+    for name in limits:
+        if isinstance(own[name], Mapping):
+            limits[name] = dict(zip(own[name], limits[name], strict=True))
+    status = Status.NOT_CONVERGED if refined.message else found.status
+    message = "; ".join(each for each in (found.message, refined.message) if each)
+    return replace(found, status=status, message=message, estimate=refined.estimate, **limits)

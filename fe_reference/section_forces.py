@@ -5,8 +5,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from .bending import curve
 from .effects import PreStrain
+from .errors import InvalidParameter
 from .law import FORCES
+from .mesh import nodal_shares
 from .model import Model
 from .structure import Structure, structure_of
 
@@ -20,8 +23,10 @@ class StripFields:
     Attributes:
         arc_length (G, P): at rest [m]. rest_shape (G, P, 2): positions at rest [m].
         shape (S, G, P, 2): positions [m].
-        rotation (S, G, P): turn of the section from rest, as the nodes have it, without wrapping [rad].
-        curvature (S, G, P): d theta / d s0, that at rest and M / EI + natural curvature [1/m].
+        rotation (S, G, P): turn of the section from rest, as the nodes have it, without wrapping [rad]; at an
+            end whose root gives way that of the strip's section, not the body's.
+        curvature (S, G, P): d theta / d s0, that at rest and M / EI + natural curvature [1/m], or what the
+            law of sections that do not curl freely makes of M.
         stretch (S, G, P): 1 + N / EA + natural strain [1].
         axial_force, shear_force (S, G, P): N = n.t, V = n.normal [N] at the nodes: n is the force of the part
             beyond on the part before, t the normal of the cross-section, normal = t turned by +90 deg.
@@ -55,19 +60,27 @@ def strip_fields(model: Model, states: Array, ends: Array | None = None) -> Stri
 
     Args:
         model: with the structure that the states belong to. ends (S, E, 5): of the elements, if known.
+
+    Raises:
+        InvalidParameter: states of another structure, such as another number of elements.
     """
     structure, y = structure_of(model), np.asarray(states)
+    if y.ndim != 2 or y.shape[1] != structure.size:
+        expected = f"(S, {structure.size}), of this model with its number of elements"
+        raise InvalidParameter("states", y.shape, f"shape {expected} [m, rad]")
     if ends is None:
         ends = np.array([structure.evaluate(each, asked=FORCES).ends for each in y])
     grid, rows, many = (structure.strips, structure.stations), (structure.strips, -1), len(y)
     force_x, force_y, first, last = np.moveaxis(ends[..., :4], -1, 0).reshape(4, many, *rows)
-    force_x, force_y, moment = midpoints(force_x), midpoints(force_y), at_nodes(-first, last)
     nodal = np.array([structure.displacement(each) for each in y]).reshape(many, *grid, 3)
+    roots = structure.elements.roots.reshape(*rows, 2)
+    nodal[:, :, 0, 2] -= roots[:, 0, 0] * first[..., 0]
+    nodal[:, :, -1, 2] -= roots[:, -1, 1] * last[..., -1]
+    force_x, force_y, moment = midpoints(force_x), midpoints(force_y), at_nodes(-first, last)
     angle = nodal_angles(structure)
     c, s = np.cos(angle + nodal[..., 2]), np.sin(angle + nodal[..., 2])
     axial, beyond = force_x * c + force_y * s, np.stack([force_x, force_y, moment], axis=-1)
     natural, elements = model.effects.find(PreStrain) or PreStrain(), structure.elements
-    bending = elements.flexural_rigidity.reshape(rows)[:, :1]
     turning = np.diff(angle, axis=1) / elements.length.reshape(rows)
     rest = np.array([strip.nodes for strip in model.strips])
     return StripFields(
@@ -75,7 +88,7 @@ def strip_fields(model: Model, states: Array, ends: Array | None = None) -> Stri
         rest_shape=rest,
         shape=rest + nodal[..., :2],
         rotation=nodal[..., 2],
-        curvature=at_nodes(turning, turning) + moment / bending + natural.curvature,
+        curvature=at_nodes(turning, turning) + _bent(model, moment) + natural.curvature,
         stretch=1.0 + axial / elements.axial_rigidity.reshape(rows)[:, :1] + natural.strain,
         axial_force=axial,
         shear_force=force_y * c - force_x * s,
@@ -86,10 +99,29 @@ def strip_fields(model: Model, states: Array, ends: Array | None = None) -> Stri
     )
 
 
+def _bent(model: Model, moment: Array) -> Array:
+    """Return the curvatures that moments at the nodes (S, G, P) bend the strips by."""
+    sections = [strip.section for strip in model.strips]
+    rigidity = np.array([section.flexural_rigidity for section in sections])[:, None]
+    plate = structure_of(model).elements.plate.reshape(len(sections), -1, 4)[:, :1]
+    if not plate[..., 0].any():
+        free: Array = moment / rigidity
+        return free
+    square, reach = plate[..., 0], plate[..., 3]
+    held, nodes = square * nodal_shares(model), moment.shape[1:]
+    flat, held, reach = (
+        np.broadcast_to(each, nodes).ravel() for each in (rigidity / (1.0 - square), held, reach)
+    )
+    curvature = moment.reshape(len(moment), -1).copy()
+    curve(flat, held, reach, curvature)
+    return curvature.reshape(moment.shape)
+
+
 def outer_stress(model: Model, fields: StripFields) -> Array:
     """Return the largest magnitude of stress at the nodes (S, G, P) [Pa], of sections taken as rectangles.
 
-    |N| / A + |M| d / (2 I) with the depth d = sqrt(12 I / A).
+    |N| / A + |M| d / (2 I) with the depth d = sqrt(12 I / A). Of a strip that does not curl freely this is
+    the mean across the width, to which the stress is equal where the section is held flat or wholly free.
     """
     given = np.array([(strip.section.area, strip.section.second_moment_of_area) for strip in model.strips])
     area, inertia = given.T[:, :, None]

@@ -4,12 +4,14 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import StrEnum
 from time import perf_counter
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Self
 
 import numpy as np
 from numpy.typing import NDArray
 
-from .errors import InvalidParameter
+from .body_stiffness import body_stiffness
+from .errors import ConvergenceError, InvalidParameter
+from .model import Model
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -70,9 +72,25 @@ class Stopwatch:
 
 
 class Answer:
-    """What solutions and trajectories have alike: places of the bodies by name, and columns of one number."""
+    """What solutions and trajectories have alike: how they ended, places of bodies, columns of one number."""
 
+    status: Status
+    message: str
     bodies: Mapping[str, Array]
+    history: tuple[tuple[float, ...], ...]
+    estimate: "ErrorEstimate | None"
+
+    @property
+    def reached(self) -> float:
+        """Part of what was asked that was reached [1]."""
+        raise NotImplementedError
+
+    def checked(self, raise_on_failure: bool = True) -> Self:
+        """Return the answer, or raise it as a ConvergenceError if it ended early and that is to raise."""
+        if self.status is Status.CONVERGED or not raise_on_failure:
+            return self
+        told = self.message if self.estimate is not None else f"{self.message}; {self.status.text}"
+        raise ConvergenceError(told, solution=self, load_factor=self.reached, history=self.history)
 
     @property
     def rotation(self) -> Array:
@@ -117,10 +135,12 @@ class StaticSolution(Answer):
         largest_stress (S,): over all strips, of sections taken as rectangles [Pa].
         stations (P,): reference arc length of the nodes over the first strip's length, 0 at its root [1].
         shape, axial_force, shear_force, bending_moment: as in `section_forces.StripFields`.
-        states (S, size): reduced coordinates, for `section_forces`, of the finest mesh.
+        states (S, size): reduced coordinates, for `section_forces`, of the finest mesh: that of `model`.
+        driven: name of the body whose turn is led or watched; None without one.
         effects: names of the effects of the scene.
         counters: increments, halvings, newton_iterations, evaluations, factorisations, and
-            settling_increments: of the way to the first state. history: residual norms of the increments.
+            settling_increments: of the way to the first state. history: residual norms of the increments,
+            and of the attempts that failed.
         seconds: by part, see `Stopwatch`.
         estimate: of the error, where an accuracy was asked for: then all arrays but `states` and `inertia`
             are limits of meshes, at the nodes of the coarsest.
@@ -147,6 +167,8 @@ class StaticSolution(Answer):
     bending_moment: Array
     shear_force: Array
     states: Array
+    model: Model
+    driven: str | None
     effects: tuple[str, ...]
     counters: Mapping[str, int]
     history: tuple[tuple[float, ...], ...]
@@ -154,9 +176,21 @@ class StaticSolution(Answer):
     estimate: "ErrorEstimate | None" = None
 
     @property
+    def reached(self) -> float:
+        """Load factor of the last state [1]."""
+        return float(self.load_factor[-1])
+
+    @property
     def strain_energy(self) -> Array:
         """Sum of the three parts (S,) [J]."""
         return self.bending_energy + self.axial_energy + self.shear_energy
+
+    def body_stiffness(self, body: str | None = None) -> Array:
+        """Return the stiffness (S, 3, 3) of a body's x, y and turn, on the finest mesh: `body_stiffness`.
+
+        body: its name; None: the driven one, or the only one.
+        """
+        return body_stiffness(self.model, self.states, body or self.driven, driven=self.driven)
 
     def columns(self) -> dict[str, Array]:
         """Return what is one number in every state, by names with units: the columns of a frame."""

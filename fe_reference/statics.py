@@ -1,6 +1,7 @@
 """Static solution of a model: a body driven along a path, or dead loads raised in steps."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -8,43 +9,56 @@ from numpy.typing import ArrayLike, NDArray
 
 from .control import Control, spans
 from .effects import DrivenDisplacement
-from .errors import ConvergenceError, InvalidParameter, choice, count, finite, pair, several
+from .errors import InvalidParameter, choice, count, finite, pair, several
 from .follow import COUNTERS, Progress, follow
 from .law import FORCES
 from .loads import full_load, on_body
 from .model import Model
 from .path import Path
-from .refined import limit_of_paths
+from .refined import limit_of
 from .section_forces import outer_stress, strip_fields
-from .solution import StaticSolution, Status, Stopwatch
+from .solution import ENERGIES, StaticSolution, Status, Stopwatch
 from .structure import structure_of
 
 Array = NDArray[np.float64]
 
 #: How loads and a rotation meet.
 LOADS_FIRST, TOGETHER = ORDERS = ("loads first", "together")
+#: What an accuracy is asked of.
+JUDGED = ("path", "torque", "stiffness", "strain_energy", "largest_stress")
 
 
-def solve_statics(
-    pivot: Model,
+def solve_statics(pivot: Model, *, rotation: float | Sequence[float], **options: Any) -> StaticSolution:
+    """Drive the rotation of the one body there is from 0 to `rotation` [rad]: `solve_mechanism` of it."""
+    pivot.body_index(None)
+    return solve_mechanism(pivot, rotation=several("rotation", rotation, "rad"), **options)
+
+
+def solve_mechanism(
+    mechanism: Model,
     *,
-    rotation: float | Sequence[float],
+    body: str | None = None,
+    rotation: float | Sequence[float] | None = None,
+    displacement: Sequence[float] | None = None,
     increments: int = 20,
     order: str = LOADS_FIRST,
     accuracy: float | None = None,
     raise_on_failure: bool = True,
     progress: Progress | None = None,
 ) -> StaticSolution:
-    """Drive the rotation of the one body from 0 to `rotation` and return every state in between.
+    """Lead a mechanism of any bodies from load factor 0 to 1 and return every state in between.
 
     Each increment is one extrapolation and Newton with the consistent tangent on all other coordinates; an
     increment that fails, or whose state is not believed, is halved. The torque is the generalised force on
-    the rotation, the stiffness the Schur complement of the tangent. Gravity and natural strains act in full
-    from the first state on, loads and the driven displacement of the scene as `order` says.
+    the driven rotation, the stiffness the Schur complement of the tangent. Gravity and natural strains act in
+    full from the first state on, loads and the driven displacement of the scene as `order` says.
 
     Args:
-        pivot: the model.
-        rotation: end of the path [rad], or the ends of several legs, one after another.
+        mechanism: strips, bodies and effects.
+        body: name of the driven body; None: the only one.
+        rotation: that it is led to [rad], or the ends of several legs, one after another; None: it is free.
+        displacement: that its centre is led to (2,) [m]; None: the one of the effect driven_displacement, or
+            free if that is not named.
         increments: equal increments of each leg, and of the loads before it.
         order: "loads first": they grow with the body held, and stay as it turns; "together": both grow with
             the load factor.
@@ -54,17 +68,17 @@ def solve_statics(
         progress: called as progress(done, total) after every increment.
 
     Raises:
-        InvalidParameter: a rotation that is not finite, fewer than one increment, several bodies.
+        InvalidParameter: a rotation that is not finite, fewer than one increment, an unknown body, a drive
+            without a body, a displacement given twice.
         ConvergenceError: the path ended early; carries the converged part. The accuracy was not reached;
             carries the best answer.
     """
-    pivot.body_index(None)
-    ends = several("rotation", rotation, "rad")
+    ends = None if rotation is None else several("rotation", rotation, "rad")
 
     def solve(model: Model) -> StaticSolution:
-        return _solved(model, None, ends, None, increments, raise_on_failure, progress, order=order)
+        return _solved(model, body, ends, displacement, increments, progress, order=order)
 
-    return solve(pivot) if accuracy is None else limit_of_paths(pivot, accuracy, solve, raise_on_failure)
+    return _answered(mechanism, accuracy, solve, raise_on_failure)
 
 
 def solve_loads(
@@ -82,7 +96,7 @@ def solve_loads(
     Args:
         model: the model; loads and the driven displacement that its scene names are added.
         force: final force (2,) [N], fixed in space. moment: final moment [N m].
-        increments, accuracy, raise_on_failure, progress: as in `solve_statics`.
+        increments, accuracy, raise_on_failure, progress: as in `solve_mechanism`.
     """
     pull = [finite("force", part, "N") for part in np.ravel(np.asarray(force)).tolist()]
     if len(pull) != 2:
@@ -92,47 +106,32 @@ def solve_loads(
     def solve(each: Model) -> StaticSolution:
         structure = structure_of(each)
         load = full_load(structure, on_body(structure, None, force=pull, moment=turn))
-        return _solved(each, None, None, None, increments, raise_on_failure, progress, load=load, watch=True)
+        return _solved(each, None, None, None, increments, progress, load=load, watch=True)
 
-    return solve(model) if accuracy is None else limit_of_paths(model, accuracy, solve, raise_on_failure)
+    return _answered(model, accuracy, solve, raise_on_failure)
 
 
-def solve_mechanism(
-    mechanism: Model,
-    *,
-    body: str | None = None,
-    rotation: float | None = None,
-    displacement: Sequence[float] | None = None,
-    increments: int = 20,
-    order: str = LOADS_FIRST,
-    accuracy: float | None = None,
-    raise_on_failure: bool = True,
-    progress: Progress | None = None,
+def _answered(
+    model: Model, accuracy: float | None, solve: Callable[[Model], StaticSolution], raise_on_failure: bool
 ) -> StaticSolution:
-    """Return the states of a mechanism of any bodies from load factor 0 to 1.
+    """Return the solution of a model, or to an accuracy the limit of its meshes, at the first one's nodes."""
+    if accuracy is None:
+        return solve(model).checked(raise_on_failure)
+    structure = structure_of(model)
+    length, force, moment = structure.length, structure.force_unit, structure.moment_unit
+    section = model.strips[0].section
+    units = dict.fromkeys((*ENERGIES, "strain_energy", "torque", "stiffness", "bending_moment"), moment)
+    units |= dict.fromkeys(("clamp_reactions", "axial_force", "shear_force"), force)
+    units |= dict.fromkeys(("bodies", "shape"), length)
+    units["largest_stress"] = moment * np.sqrt(3.0 / (section.area * section.second_moment_of_area))
 
-    Args:
-        mechanism: strips, bodies and effects.
-        body: name of the driven body; None: the only one.
-        rotation: that it is led to [rad]; None: its rotation is free.
-        displacement: that its centre is led to (2,) [m]; None: the one of the effect driven_displacement, or
-            free if that is not named.
-        increments, order, accuracy, raise_on_failure, progress: as in `solve_statics`.
+    def path(places: Array) -> Array:
+        moved: Array = (places - places[:, :1]) / np.array([length, length, 1.0])
+        return moved
 
-    Gravity and natural strains act in full from load factor 0 on; drives and loads grow with it.
-
-    Raises:
-        InvalidParameter: an unknown body, a drive without a body, a displacement given twice.
-        ConvergenceError: the path ended early; carries the converged part.
-    """
-    ends = None if rotation is None else [finite("rotation", rotation, "rad")]
-
-    def solve(model: Model) -> StaticSolution:
-        return _solved(model, body, ends, displacement, increments, raise_on_failure, progress, order=order)
-
-    return (
-        solve(mechanism) if accuracy is None else limit_of_paths(mechanism, accuracy, solve, raise_on_failure)
-    )
+    found = limit_of(model, accuracy, solve, units, {"path": path}, JUDGED)
+    every = (len(found.stations) - 1) // (found.shape.shape[2] - 1)
+    return replace(found, stations=found.stations[::every]).checked(raise_on_failure)
 
 
 def static_state(
@@ -163,7 +162,7 @@ def settled_state(
     still = not rotation and load is None and not model.effects.find(DrivenDisplacement)
     if still and not structure.constant_effects:
         return np.zeros(structure.size), ""  # rest, whether or not clamps hold it
-    solution = _solved(model, body, ends, None, increments, True, None, load=load)
+    solution = _solved(model, body, ends, None, increments, None, load=load).checked()
     return solution.states[-1], solution.message
 
 
@@ -173,7 +172,6 @@ def _solved(
     rotations: Sequence[float] | None,
     displacement: Sequence[float] | None,
     increments: int,
-    raise_on_failure: bool,
     progress: Progress | None,
     *,
     order: str = LOADS_FIRST,
@@ -202,20 +200,12 @@ def _solved(
     clock.stop("compile")
     path = follow(controls, steps, progress)
     clock.stop("solve")
-    solution = _packed(path, controls, steps, clock)
-    if solution.status is not Status.CONVERGED and raise_on_failure:
-        raise ConvergenceError(
-            f"{solution.message}; {solution.status.text}",
-            solution=solution,
-            load_factor=float(solution.load_factor[-1]),
-            history=tuple(path.failures),
-        )
-    return solution
+    return _packed(path, controls, steps, clock, None if which is None else model.body_names[which])
 
 
 def _displacement(
     model: Model, given: Sequence[float] | None
-) -> tuple[tuple[float, float] | None, int | None]:
+) -> tuple[tuple[float | None, float | None] | None, int | None]:
     """Return the displacement that is asked for or named [m], and the body that is named with it."""
     named = model.effects.find(DrivenDisplacement)
     if given is not None and named is not None:
@@ -225,7 +215,9 @@ def _displacement(
     return named.displacement, None if named.body is None else model.body_index(named.body)
 
 
-def _packed(path: Path, controls: Sequence[Control], steps: int, clock: Stopwatch) -> StaticSolution:
+def _packed(
+    path: Path, controls: Sequence[Control], steps: int, clock: Stopwatch, driven: str | None
+) -> StaticSolution:
     """Gather the states of a path into arrays."""
     total = steps * len(controls)
     shares = [c.share(p) for c in controls for p in np.linspace(*c.span, steps + 1)[1:]]
@@ -254,8 +246,10 @@ def _packed(path: Path, controls: Sequence[Control], steps: int, clock: Stopwatc
         stations=structure.basis.mesh.p[0, : structure.stations] / model.strips[0].length,
         **{name: getattr(fields, name) for name in ("shape", "axial_force", "shear_force", "bending_moment")},
         states=y,
+        model=model,
+        driven=driven,
         effects=model.effects.names,
         counters={name: path.counters[name] for name in (*COUNTERS, "settling_increments")},
-        history=tuple(state.norms for state in states[1:]),
+        history=(*(state.norms for state in states[1:]), *path.failures),
         seconds=clock.stop("recover"),
     )

@@ -16,20 +16,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .effects import Gravity, PreStrain
-from .law import (
-    FORCES,
-    TANGENT,
-    body_forces,
-    carry,
-    carry_velocity,
-    elements,
-    gravity_energy,
-    kernel,
-    put_weight,
-)
+from .kernel import kernel
+from .law import FORCES, TANGENT, elements
 from .matrix import Envelope, Symmetric, assemble
 from .mesh import Attachments, reference_elements, strip_basis
 from .model import GROUND, Model
+from .rigid import body_forces, carry, carry_velocity, gravity_energy, put_weight
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
@@ -44,7 +36,8 @@ class Evaluation:
         strain (3,): bending, axial and shear energy [J]. gravity: energy of the full weight [J].
         ends (E, 5): force x, y [N] at the second node of the elements, moments [N m] at both, and the largest
             turn of an end from its element [rad].
-        curvature (B,): what the carrying of nodes adds to the stiffness of the turns [N m].
+        matrices (E, 6, 6): tangents of the elements, none if they were not asked for. curvature (2, B): what
+            the carrying of nodes and of the weight adds to the stiffness of the turns [N m].
     """
 
     gradient: Array
@@ -52,6 +45,7 @@ class Evaluation:
     strain: tuple[float, float, float]
     gravity: float
     ends: Array
+    matrices: Array
     curvature: Array
 
 
@@ -206,18 +200,18 @@ class Structure:
             strain=strain,
             gravity=gravity,
             ends=ends,
-            curvature=curvature[0],
+            matrices=matrices,
+            curvature=curvature,
         )
 
     def _assemble(self, matrices: Array, y: Array, into: Symmetric) -> None:
-        _, carrier, offsets = self.carried
-        places = self.pattern.places
-        assemble(matrices, self.attachments.ends, carrier, offsets, y[self.turns], places, into.data)
+        ends, places, turns = self.attachments.ends, self.pattern.places, y[self.turns]
+        assemble(matrices.copy(), ends, *self.carried[1:], turns, places, into.data)
 
     def reduced_matrix(self, matrices: Array, y: Array) -> Symmetric:
         """Assemble element matrices (E, 6, 6) into the reduced coordinates as P^T K P."""
         whole = self.pattern.zero()
-        self._assemble(matrices.copy(), y, whole)
+        self._assemble(matrices, y, whole)
         return whole
 
     def element_matrices(self, y: Array, asked: int) -> Array:
@@ -240,7 +234,8 @@ class Structure:
         """Return what the share changes at fixed y: the gradient (size,), and the potential, once and twice.
 
         The gradient is linear in the share and the potential a parabola, of which the derivative at the full
-        share is returned; its bend is that of the energy of natural strains.
+        share is returned; its bend is that of the energy of natural strains. Nearly so only where roots of
+        shear-deformable elements give way.
         """
         none, half, full = (self.evaluate(y, share, FORCES) for share in (0.0, 0.5, 1.0))
         u_0, u_1, u_2 = (

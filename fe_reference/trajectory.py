@@ -65,6 +65,11 @@ class Trajectory(Answer):
     estimate: ErrorEstimate | None = None
 
     @property
+    def reached(self) -> float:
+        """Part of the duration that the motion went on [1]."""
+        return float(self.time[-1] / float(self.settings["duration_s"]))
+
+    @property
     def energy_error(self) -> float:
         """Largest deviation of kinetic + strain + gravity energy - work + dissipated from its start [1].
 

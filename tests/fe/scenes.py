@@ -27,6 +27,11 @@ PARAMETERS: dict[str, dict[str, Any]] = {
     "applied_moment": {"moment": 30.0, "body": "crank"},
     "pre_strain": {"curvature": 3.0, "strain": 1e-3},
 }
+#: Effects of the sides of a wide thin strip, and that strip: as wide as it is long in the four-bar.
+SIDED: dict[str, dict[str, Any]] = {"clamped_width": {}, "anticlastic": {}, "root_compliance": {"root": 3.0}}
+BARE = {name: value for name, value in SECTION.items() if name not in ("area", "second_moment_of_area")}
+WIDE, THICK = BARE | {"width": 0.02, "thickness": 0.001}, BARE | {"width": 0.02, "thickness": 0.004}
+SIDED_SCENE = {name: given for name, given in PARAMETERS.items() if name != "pre_strain"} | SIDED
 #: The same effects with nothing in them.
 NOTHING: dict[str, dict[str, Any]] = {
     "gravity": {"acceleration": (0.0, 0.0)},
@@ -54,10 +59,12 @@ def free_cantilever(
     return mechanism(strips=[strip], effects=(*effects, *given), parameters=given, **discretisation)
 
 
-def guide(parameters: Parameters | None = None, **discretisation: Any) -> Model:
+def guide(
+    parameters: Parameters | None = None, *, section: Mapping[str, float] = SECTION, **discretisation: Any
+) -> Model:
     """Return a stage on two parallel strips."""
     strips = [
-        StripDesign(name=name, start=(x, 0.0), end=(x, GUIDE), tip="stage", **SECTION)
+        StripDesign(name=name, start=(x, 0.0), end=(x, GUIDE), tip="stage", **section)
         for name, x in (("left", 0.0), ("right", APART))
     ]
     stage = BodyDesign(name="stage", centre=(0.5 * APART, GUIDE), mass=0.2, moment_of_inertia=1e-4)
@@ -77,6 +84,7 @@ def four_bar(
     effects: tuple[str, ...] = DEFAULT_EFFECTS,
     short: float = 0.02,
     rise: float = 0.0,
+    section: Mapping[str, float] = SECTION,
     **discretisation: Any,
 ) -> Model:
     """Return a parallelogram of crank, coupler and rocker with a strip of length `short` in every joint.
@@ -91,7 +99,7 @@ def four_bar(
         ("d", (APART, low), (APART, 0.0), "rocker", "ground"),
     )
     strips = [
-        StripDesign(name=name, start=start, end=end, root=root, tip=tip, rise=rise, **SECTION)
+        StripDesign(name=name, start=start, end=end, root=root, tip=tip, rise=rise, **section)
         for name, start, end, root, tip in joints
     ]
     centres = {

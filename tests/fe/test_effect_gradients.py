@@ -7,13 +7,20 @@ from fe_reference.mass import about_mass_centre
 from fe_reference.model import ELEMENTS
 from fe_reference.structure import Structure, structure_of
 from tests.fe.cases import LENGTH, hold
-from tests.fe.scenes import PARAMETERS, four_bar
+from tests.fe.scenes import PARAMETERS, SIDED_SCENE, WIDE, four_bar
 from tests.fe.test_gradients import derivative
 
 
-def scene(element: str, about_mass: bool) -> Structure:
-    """Return a four-bar of curved strips with every effect, about the bodies' centres or those of mass."""
-    structure = structure_of(four_bar(PARAMETERS, rise=0.003, elements=3, element=element))
+def scene(element: str, about_mass: bool, wide: bool) -> Structure:
+    """Return a four-bar of curved strips with every effect, about the bodies' centres or those of mass.
+
+    wide: of straight strips that are as wide as they are long, with the effects of that.
+    """
+    if wide:
+        model = four_bar(SIDED_SCENE, section=WIDE, elements=3, element=element)
+    else:
+        model = four_bar(PARAMETERS, rise=0.003, elements=3, element=element)
+    structure = structure_of(model)
     return about_mass_centre(structure)[0] if about_mass else structure
 
 
@@ -30,14 +37,15 @@ def sizes(structure: Structure, step: float) -> np.ndarray:
     return step * np.where(structure.scale == structure.force_unit, LENGTH, 1.0)
 
 
+@pytest.mark.parametrize("wide", [False, True], ids=["curved", "wide"])
 @pytest.mark.parametrize("about_mass", [False, True])
 @pytest.mark.parametrize("element", ELEMENTS)
-def test_force_is_the_gradient_of_the_potential(element: str, about_mass: bool) -> None:
+def test_force_is_the_gradient_of_the_potential(element: str, about_mass: bool, wide: bool) -> None:
     """With gravity, natural strains and several bodies the force is the gradient of the potential."""
-    structure = scene(element, about_mass)
+    structure = scene(element, about_mass, wide)
     y, size = far(structure), sizes(structure, 1.0)
 
-    def error(step: float = 1e-3) -> float:
+    def error(step: float = 1e-4 if wide else 1e-3) -> float:
         slope = derivative(lambda z: np.array(structure.potential(z, 0.7)), y, sizes(structure, step))
         force = structure.evaluate(y, 0.7).gradient
         return float(np.abs((slope - force) * size).max() / np.abs(force * size).max())
@@ -45,14 +53,15 @@ def test_force_is_the_gradient_of_the_potential(element: str, about_mass: bool) 
     hold("fe_scene_force_is_gradient", error)
 
 
+@pytest.mark.parametrize("wide", [False, True], ids=["curved", "wide"])
 @pytest.mark.parametrize("about_mass", [False, True])
 @pytest.mark.parametrize("element", ELEMENTS)
-def test_tangent_is_the_derivative_of_the_force(element: str, about_mass: bool) -> None:
+def test_tangent_is_the_derivative_of_the_force(element: str, about_mass: bool, wide: bool) -> None:
     """The tangent is the derivative of that force, in the coordinates and in the share."""
-    structure = scene(element, about_mass)
+    structure = scene(element, about_mass, wide)
     y, size = far(structure), sizes(structure, 1.0)
 
-    def error(step: float = 1e-3) -> float:
+    def error(step: float = 1e-4 if wide else 1e-3) -> float:
         slope = derivative(lambda z: structure.evaluate(z, 0.7).gradient, y, sizes(structure, step))
         tangent = structure.evaluate(y, 0.7).tangent.sparse().toarray()
         gap = np.abs((slope - tangent) * size * size[:, None]).max()

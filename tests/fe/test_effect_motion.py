@@ -19,7 +19,16 @@ from fe_reference.modes import natural_frequencies
 from fe_reference.motion import course
 from fe_reference.structure import structure_of
 from tests.fe.cases import EI, MOMENT, TABLE_1, hold, pivot
-from tests.fe.scenes import GUIDE, PARAMETERS, SECTION, decay_and_frequency, four_bar, free_cantilever
+from tests.fe.scenes import (
+    GUIDE,
+    PARAMETERS,
+    SECTION,
+    SIDED_SCENE,
+    THICK,
+    decay_and_frequency,
+    four_bar,
+    free_cantilever,
+)
 
 EXPLICIT, IMPLICIT = INTEGRATORS
 MASSLESS = ("bending", "stretching", "body_inertia")
@@ -217,12 +226,15 @@ def test_impulse_of_a_load() -> None:
     hold("fe_impulse", error)
 
 
+@pytest.mark.parametrize("wide", [False, True], ids=["every", "sides"])
 @pytest.mark.parametrize("element", ELEMENTS)
-def test_motion_balance(element: str) -> None:
-    """With every effect the energies balance with work and dissipation in the explicit integrator."""
+def test_motion_balance(element: str, wide: bool) -> None:
+    """With every effect the energies balance with work and dissipation in the explicit integrator, those of
+    wide strips and their roots in place of the natural strains."""
+    parameters, section = (SIDED_SCENE, THICK) if wide else (PARAMETERS, SECTION)
 
     def error(integrator: str = EXPLICIT, step: float | None = None) -> float:
-        model = four_bar(PARAMETERS, elements=5, element=element)
+        model = four_bar(parameters, section=section, elements=5, element=element)
         motion = solve_motion(
             model, body="crank", start=0.5, duration=2e-3, integrator=integrator, step=step, samples=100
         )

@@ -2,6 +2,7 @@
 
 import pytest
 
+from fe_reference import plate
 from fe_reference.errors import InvalidParameter
 from fe_reference.plate import plate_factors
 from tests.fe.cases import hold
@@ -30,11 +31,14 @@ def test_factors_of_the_literature(row):
 
 
 @pytest.mark.slow
-def test_mesh_is_fine_enough():
-    """Requirement: halved elements change the factors by far less than the printed digits."""
+@pytest.mark.parametrize("ratio", [0.05, 0.5])
+def test_mesh_is_fine_enough(ratio, monkeypatch):
+    """Requirement: halved elements change the factors by far less than the printed digits, also of a narrow
+    strip, whose smallest triangles are a hundredth of its width and far from its middle."""
 
-    def error(width_ratio: float = 0.5) -> float:
-        given, finer = (plate_factors(width_ratio, 0.3, halvings=each) for each in (0, 1))
+    def error(layers: int = plate.LAYERS) -> float:
+        monkeypatch.setattr(plate, "LAYERS", layers)
+        given, finer = (plate_factors(ratio, 0.45, halvings=each) for each in (0, 1))
         return max(abs(given.constant - finer.constant), abs(given.linear - finer.linear))
 
     hold("fe_plate_mesh", error)
