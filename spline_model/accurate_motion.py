@@ -12,14 +12,13 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import cache, partial
+from functools import cache, cached_property, partial
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.design import swinging_slide_stiffness
-from spline_model.errors import InvalidParameter
 from spline_model.estimate import MotionEstimate
 from spline_model.mechanism import Mechanism
 from spline_model.solution import Status
@@ -83,16 +82,21 @@ class Resolved(NamedTuple):
 class Task:
     """What is asked for: a motion of ``duration`` [s] with a swing of ``amplitude`` [rad].
 
-    frequency: slowest circular frequency at rest [rad/s], 0 for none; run: solves a mechanism
+    lowest: asked for the slowest circular frequency at rest [rad/s], 0 for none; run: solves a mechanism
     with an integrator, a step [s] and a number of records; critical: the longest stable step of the
     explicit one with a mechanism [s], 0 where it cannot be used.
     """
 
     duration: float
     amplitude: float
-    frequency: float
+    lowest: Callable[[], float]
     run: Callable[[Mechanism, str, float, int], Trajectory]
     critical: Callable[[Mechanism], float]
+
+    @cached_property
+    def frequency(self) -> float:
+        """That frequency."""
+        return self.lowest()
 
 
 def solve_accurately(mechanism: Mechanism, accuracy: float, task: Task, records: int | None) -> Trajectory:
@@ -153,6 +157,7 @@ def _answer(fine: Trajectory, estimate: MotionEstimate, slide_stiffness: float, 
     changes: dict[str, Any] = {
         name: value[::every] for name, value in vars(fine).items() if isinstance(value, np.ndarray)
     }
+    changes["whole"] = fine.whole.thinned(every)
     changes["bodies"] = {name: place[::every] for name, place in fine.bodies.items()}
     changes["settings"] = fine.settings | {
         "accuracy_rad": estimate.accuracy,
@@ -170,7 +175,7 @@ class _Runs:
         self.spacing = task.duration / instants
         self.count = 0
         self.with_points = cache(partial(with_points, mechanism))
-        self.critical = cache(self._critical)
+        self.critical = cache(lambda n: task.critical(self.with_points(n)))
         self.run = cache(self._run)
 
     def first(self, n: int, accuracy: float) -> Rung:
@@ -248,12 +253,6 @@ class _Runs:
         self.count += 1
         records = self.instants * (FINE if steps % FINE == 0 else 1)
         return self.task.run(self.with_points(n), integrator, self.spacing / steps, records)
-
-    def _critical(self, n: int) -> float:
-        try:
-            return self.task.critical(self.with_points(n))
-        except InvalidParameter:
-            return 0.0
 
 
 def with_points(mechanism: Mechanism, n: int) -> Mechanism:

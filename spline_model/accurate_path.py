@@ -21,6 +21,8 @@ Array = NDArray[np.float64]
 NOTHING = 1e-9
 """Displacement in lengths, turn [rad], torque in stiffness times 1 rad, and force in moment over length,
 below which there is none but round-off."""
+SAME_STATE = 1e-9
+"""The same of states before the end: those of increments are the same, of arcs they are not."""
 SAME_END = 1e-3
 """Difference of load factors, and of rotations [rad], at which paths stop that stop at the same thing."""
 
@@ -104,11 +106,14 @@ def distances(design: Design, answer: StaticSolution, better: StaticSolution) ->
 
 
 def _in_step(one: StaticSolution, other: StaticSolution) -> bool:
-    """Whether two paths have the states of the same load factors and rotations."""
+    """Whether two paths have the states of the same load factors and rotations, about so where they end."""
     mine, others = (
         np.stack((p.load_factor, p.rotation if p.driven else p.load_factor)) for p in (one, other)
     )
-    return mine.shape == others.shape and bool(np.allclose(mine, others, rtol=0.0, atol=SAME_END))
+    if mine.shape != others.shape:
+        return False
+    apart = np.abs(mine - others)
+    return bool(apart[:, :-1].max(initial=0.0) <= SAME_STATE and apart[:, -1].max() <= SAME_END)
 
 
 def _relative(apart: Array, right: Array, unit: float) -> float:

@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from spline_model.compile import compile_scene
 from spline_model.design import Discretisation
 from spline_model.effects import Bending, MixedStretching
+from spline_model.effects.curl import CLAMPED_WIDTH
 from spline_model.errors import InvalidParameter, require_count
 from spline_model.mechanism import Mechanism
 from spline_model.newton import TOLERANCE
@@ -28,6 +29,9 @@ from spline_model.static_answers import STATIONS
 from spline_model.varied_designs import one_each, pivots, varied
 
 Array = NDArray[np.float64]
+
+SAME = 1e-9
+"""Relative difference to which two widths over lengths are one."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -103,6 +107,7 @@ def solve_many(
         if grid != Discretisation():
             raise InvalidParameter("discretisation", grid, "none beside a mechanism, which has its own")
         base, given = designs, varied(designs, values or {}, np.size(rotation))
+        _require_shape(base, given)
     else:
         if values is not None:
             raise InvalidParameter("values", list(values), "none beside columns of pivots, which hold them")
@@ -142,11 +147,28 @@ def solve_many(
     return batch
 
 
+def _require_shape(base: Mechanism, given: Given) -> None:
+    """Refuse strips of another b/L than the mechanism's: clamped over the width they have other profiles."""
+    if CLAMPED_WIDTH in base.design.curling:
+        own = Given.of(base.design)
+        shape, known = (each.width / np.abs(each.chord) for each in (given, own))
+        other = np.argwhere(np.abs(shape / known - 1.0) > SAME)
+        if other.size:
+            d, s = other[0]
+            name = f"design {d}: b/L of {base.design.strips[s].name}"
+            raise InvalidParameter(
+                name,
+                float(shape[d, s]),
+                f"{known[0, s]:.6g}, that of the mechanism, for {CLAMPED_WIDTH}",
+            )
+
+
 def _model(mechanism: Mechanism, body: str | None) -> Reduced:
     """The element's scene of a mechanism, one body turned; refused where a batch does not know it."""
     model = reduced(compile_scene(mechanism.driven(1.0, body)))
-    if model is None:
-        raise InvalidParameter("discretisation", "printed forces or long splines", "what the elements know")
+    if model is None or model.yields:
+        unknown = "printed forces, long splines or root_compliance"
+        raise InvalidParameter("discretisation", unknown, "what the elements know")
     return model
 
 

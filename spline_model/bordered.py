@@ -14,7 +14,9 @@ from numpy.typing import NDArray
 from spline_model.compile import System
 from spline_model.quadrature import (
     COMPLIANCE,
+    CURL,
     CURVATURE,
+    DROP,
     FIRST,
     MEASURE,
     MODE,
@@ -28,7 +30,7 @@ from spline_model.quadrature import (
 )
 from spline_model.strip.compiled import kernel, part
 from spline_model.strip.laws import MATERIAL, SPATIAL, bending_law, mixed_law, stretching_law
-from spline_model.tables import ACROSS, ALONG, BODY, DIRECTION, END, INNER, ROW, SIGN
+from spline_model.tables import ACROSS, ALONG, BODY, DIRECTION, END, INNER, ROW, SIGN, YIELDING
 
 Array = NDArray[np.float64]
 
@@ -83,7 +85,7 @@ def assemble(z, points, clamps, gradient, hessian, work):
         axial += stretched
         slowest = min(slowest, v / points.numbers[p, SPEED])
     for c in range(clamps.place.shape[0]):
-        subtract_clamp(z, clamps.place[c], clamps.numbers[c], gradient, hessian)
+        bending += subtract_clamp(z, clamps.place[c], clamps.numbers[c], gradient, hessian)
     return bending, axial, slowest
 
 
@@ -103,7 +105,7 @@ def derivatives(z, first, width, d1, d2):
 @part()
 def printed_bending(phi, v, curvature, rigidity):
     """The forces of Eq 12 as printed, without d|C'|/dq: energy, m, m_phi, m_v, f, f_phi and f_v."""
-    density, m, m_phi, m_v, _, _ = bending_law(phi, v, 1.0, curvature, rigidity, SPATIAL)
+    density, m, m_phi, m_v, _, _ = bending_law(phi, v, 1.0, curvature, rigidity, 0.0, 0.0, SPATIAL)
     ratio = phi / v
     slope = rigidity * (2.0 * ratio - curvature) / v
     return density, m, m_phi, m_v, -m * ratio, -slope, slope * ratio
@@ -124,7 +126,8 @@ def add_point(p, z, points, gradient, hessian, work):
     if measure == PRINTED:
         bent, m, m_phi, m_v, f, f_phi, f_v = printed_bending(phi, v, curvature, rigidity)
     else:
-        bent, m, m_phi, m_v, f, f_v = bending_law(phi, v, speed, curvature, rigidity, law)
+        drop, curl = numbers[DROP], numbers[CURL]
+        bent, m, m_phi, m_v, f, f_v = bending_law(phi, v, speed, curvature, rigidity, drop, curl, law)
         f_phi = m_v
     stretched = force = by_n = by_nv = 0.0
     if stretching > 0.0:
@@ -187,7 +190,8 @@ def add_point(p, z, points, gradient, hessian, work):
 
 @part()
 def subtract_clamp(z, place, numbers, gradient, hessian):
-    """Subtract lambda psi of a clamped end, its gradient and its Hessian (Eqs 5 and 6)."""
+    """Subtract lambda psi of a clamped end, its gradient and its Hessian (Eqs 5 and 6); returns the energy of
+    its root, if that yields [J]."""
     end, inner, body, row, sign = place[END], place[INNER], place[BODY], place[ROW], numbers[SIGN]
     fx, fy, moment = z[row], z[row + 1], z[row + 2]
     bx, by, angle = numbers[ACROSS], numbers[ALONG], 0.0
@@ -231,6 +235,10 @@ def subtract_clamp(z, place, numbers, gradient, hessian):
             hessian[end + i, end + j] += value
             hessian[inner + i, end + j] -= value
             hessian[end + i, inner + j] -= value
+    yielded = numbers[YIELDING] * moment
+    gradient[row + 2] -= yielded
+    hessian[row + 2, row + 2] -= numbers[YIELDING]
+    return 0.5 * yielded * moment
 
 
 @part()

@@ -55,12 +55,12 @@ def with_companion(mechanism: Mechanism, motion: Trajectory, task: Task) -> Traj
     seconds = laps.lap("check") | motion.seconds
     if failed:
         remark = f"not checked with {points} control points: {failed}"
-        return replace(motion, resolution=_joined(motion.resolution, remark), seconds=seconds)
+        return replace(motion, checked=remark, seconds=seconds)
     apart = np.abs(other.rotation - motion.rotation[::every])
     return replace(
         motion,
         rotation_error=float(apart.max()),
-        resolution=_joined(motion.resolution, _remark(mechanism, motion, instants, apart, points)),
+        checked=_remark(mechanism, motion, instants, apart, points),
         seconds=seconds,
     )
 
@@ -95,7 +95,3 @@ def _remark(mechanism: Mechanism, motion: Trajectory, time: Array, apart: Array,
         f"more than {UNRESOLVED:.0%} of the swing from {time[much[0]]:.3g} s on: the motion is not resolved; "
         "take more control points or ask for an accuracy"
     )
-
-
-def _joined(*remarks: str) -> str:
-    return "; ".join(remark for remark in remarks if remark)

@@ -74,6 +74,16 @@ class System:
             weight=self.weight,
         )
 
+    def once(self, name: str, make: Callable[[System], Any]) -> Any:
+        """What ``make`` makes of the system, kept with it under a name."""
+        if name not in self._made:
+            self._made[name] = make(self)
+        return self._made[name]
+
+    @cached_property
+    def _made(self) -> dict[str, Any]:
+        return {}
+
     def _table(self, name: str, make: Callable[[System], Table]) -> Table:
         changed: Table = self.changed[name] if name in self.changed else make(self)
         return changed

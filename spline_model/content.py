@@ -13,7 +13,7 @@ from spline_model.bordered import assemble
 from spline_model.compile import System, compile_scene
 from spline_model.effects import MixedStretching
 from spline_model.modes import SLIDE_SHARE, linear_modes
-from spline_model.motion.start import Motion, initial_acceleration, set_in_motion
+from spline_model.motion.start import Motion, Start, set_in_motion
 from spline_model.quadrature import RIGIDITY
 from spline_model.scene import Scene
 
@@ -90,23 +90,21 @@ def resolution(content: list[Content], swing: float, step: float) -> str:
     )
 
 
-def unresolved(
-    scene: Scene, system: System, motion: Motion, start: tuple[Array, Array, Array], step: float
-) -> str:
-    """What a step [s] leaves unresolved of the modes that carry the energy of a start z, v, acceleration.
+def unresolved(scene: Scene, start: Start, step: float) -> str:
+    """What a step [s] leaves unresolved of the modes that carry the energy of a start.
 
-    The scene is that in motion, without the drives that z may have multipliers of: they let go.
+    The scene is that in motion, without the drives that the start may have multipliers of: they let go.
     """
-    z, v, acceleration = start
-    if system.scene is not scene:
-        system = compile_scene(scene)
-        motion, size = set_in_motion(system), system.layout.size
+    if start.system.scene is not scene:
+        system, known = compile_scene(scene), start.z
+        size = system.layout.size
         free = np.zeros(size)
-        free[: min(size, len(z))] = z[:size]
-        acceleration, z = initial_acceleration(system, motion, free, v)
+        free[: min(size, len(known))] = known[:size]
+        start = Start(system, set_in_motion(system), free, start.v)
+    system, motion = start.system, start.motion
     lowest = linear_modes(system, system.rest, motion.mass)[0][0]
     swing = math.sqrt(max(lowest, 0.0)) / (2 * math.pi)
-    return resolution(energy_content(system, motion, z, v, acceleration), swing, step)
+    return resolution(energy_content(system, motion, start.z, start.v, start.acceleration), swing, step)
 
 
 def _stretching_share(system: System, z: Array, shapes: Array, squares: Array) -> Array:

@@ -36,6 +36,12 @@ for n = 6 and 10 (results of convergence/slide_stiffness); from 100 on the strip
 """
 
 
+NOT_GIVEN = math.nan
+"""Area and second moment of a strip that has them from its width and thickness."""
+ROUNDED = 1e-3
+"""Relative difference to which a printed area and second moment agree with those of the sides."""
+
+
 def swinging_slide_stiffness(control_points: int) -> float:
     """The default slide stiffness of a motion, in EI/L^2: 100 ((n - 2) / 6)^3.
 
@@ -127,23 +133,32 @@ class StripDesign:
     """A strip between two points, from ``root`` to ``tip``: the ground, a body, or None (free tip).
 
     start, end [m]; area [m^2], second_moment_of_area [m^4], youngs_modulus [Pa], density
-    [kg/m^3]; poisson_ratio is for models with shear; rise: sagitta of the circular arc at
-    rest [m], positive to the left of start -> end, 0 for a straight strip.
+    [kg/m^3]; width b and thickness t in the plane of bending [m], both or neither: of a rectangular
+    section, whose area b t and second moment b t^3 / 12 then need not be given, and where they are must
+    agree to ROUNDED (and count as given); poisson_ratio is for the section's curl (``clamped_width``,
+    ``anticlastic``); rise: sagitta of the circular arc at rest [m], positive to the left of
+    start -> end, 0 for a straight strip.
     """
 
     name: str
     start: tuple[float, float]
     end: tuple[float, float]
-    area: float
-    second_moment_of_area: float
+    area: float = NOT_GIVEN
+    second_moment_of_area: float = NOT_GIVEN
     youngs_modulus: float
     density: float
     poisson_ratio: float = 0.3
     root: str = GROUND
     tip: str | None = None
     rise: float = 0.0
+    width: float | None = None
+    thickness: float | None = None
 
     def __post_init__(self) -> None:
+        if self.width is not None or self.thickness is not None:
+            self._take_sides()
+        elif NOT_GIVEN in (self.area, self.second_moment_of_area):
+            raise InvalidParameter("area", "none", "area and second_moment_of_area, or width and thickness")
         require_positive("area", self.area, "m^2")
         require_positive("second_moment_of_area", self.second_moment_of_area, "m^4")
         require_positive("youngs_modulus", self.youngs_modulus, "Pa")
@@ -151,6 +166,21 @@ class StripDesign:
         require_positive("length", self.chord, "m")
         if not abs(self.rise) < self.chord / 2:
             raise InvalidParameter("rise", self.rise, f"less than half the chord, {self.chord / 2:g} [m]")
+
+    def _take_sides(self) -> None:
+        """Area and second moment from width and thickness, compared with them where they are given."""
+        for name, side in (("width", self.width), ("thickness", self.thickness)):
+            if side is None:
+                raise InvalidParameter(name, side, "width and thickness, both or neither")
+            require_positive(name, side, "m")
+        assert self.width is not None and self.thickness is not None
+        area = self.width * self.thickness
+        for name, made in (("area", area), ("second_moment_of_area", area * self.thickness**2 / 12.0)):
+            given = getattr(self, name)
+            if given is NOT_GIVEN:
+                object.__setattr__(self, name, made)
+            elif not abs(given - made) <= ROUNDED * made:
+                raise InvalidParameter(name, given, f"{made:.6g}, that of width and thickness, or none")
 
     @property
     def chord(self) -> float:
@@ -234,12 +264,14 @@ class BodyDesign:
 
 @dataclass(frozen=True, kw_only=True)
 class Design:
-    """Strips and bodies with their discretisation; pre_strain holds curvature and strain, if any."""
+    """Strips and bodies with their discretisation; pre_strain holds curvature and strain, if any; curling
+    the names of the effects of the sections' curl, which bending takes up."""
 
     strips: tuple[StripDesign, ...]
     bodies: tuple[BodyDesign, ...]
     discretisation: Discretisation
     pre_strain: Mapping[str, Any] = field(default_factory=dict)
+    curling: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         names = {body.name for body in self.bodies}

@@ -3,16 +3,24 @@
 from __future__ import annotations
 
 import math
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
 
+from spline_model.accuracy import MORE, MOST
 from spline_model.accurate_motion import EXPLICIT, Task, solve_accurately
 from spline_model.companion import with_companion
 from spline_model.compile import System, compile_scene
 from spline_model.content import unresolved
 from spline_model.effects import DrivenRotation
-from spline_model.errors import InvalidParameter, require_choice, require_finite, require_positive
+from spline_model.errors import (
+    ConvergenceError,
+    InvalidParameter,
+    require_choice,
+    require_finite,
+    require_positive,
+)
 from spline_model.laps import Laps
 from spline_model.mechanism import Mechanism
 from spline_model.modes import linear_modes, static_state
@@ -27,9 +35,10 @@ from spline_model.motion.dispatch import (
     require_options,
 )
 from spline_model.motion.explicit import require_explicit, stability_limit
-from spline_model.motion.start import Motion, initial_acceleration, set_in_motion
+from spline_model.motion.start import Motion, Start, set_in_motion
 from spline_model.motion.trajectory import Trajectory, counted_on, last_state, later, trajectory_of
 from spline_model.pivot import Pivot
+from spline_model.scene import Scene
 from spline_model.solution import Status
 
 __all__ = [
@@ -127,42 +136,57 @@ def solve_motion(
     require_options(integrator, options)
     if accuracy is not None and after is not None:
         raise InvalidParameter("accuracy", accuracy, "a step for a motion that goes on after another")
-    laps, mechanism = Laps(), mechanism.in_motion()
-    body = mechanism.design.body_named(body)
+    laps, body = Laps(), mechanism.design.body_named(body)
+    mechanism, held = _settled(mechanism, start, body) if after is None else (mechanism.in_motion(), None)
     if accuracy is not None:
         task = _task(mechanism, start, body, drive, duration)
         return solve_accurately(mechanism, accuracy, task, records)
+    laps.lap("start")
     scene = mechanism.released()
     system = compile_scene(scene if drive is None else scene.with_effects(drive))
-    motion, layout = set_in_motion(system), system.layout
+    motion = set_in_motion(system)
     laps.lap("compile")
-    z, v, motion = _begin(mechanism, system, motion, start, body, after)
-    acceleration, z = initial_acceleration(system, motion, z, v)
+    begun = _begin(system, motion, held, after)
     laps.lap("start")
+    trajectory = _run(mechanism, begun, body, scene, (duration, step, records), integrator, options, laps)
+    if after is not None:
+        return counted_on(trajectory, after)
+    return checked(mechanism, trajectory, start=start, body=body, drive=drive) if check else trajectory
+
+
+def _run(
+    mechanism: Mechanism,
+    begun: Start,
+    body: str,
+    scene: Scene,
+    asked: tuple[float, float | None, int | None],
+    integrator: str,
+    options: dict[str, float],
+    laps: Laps,
+) -> Trajectory:
+    """The motion from its start on; scene: without drives; asked: duration, step and records."""
+    (duration, step, records), layout = asked, begun.system.layout
     if step is None:
-        step = default_step(integrator, system, motion, z, duration)
+        step = default_step(integrator, begun, duration)
     steps, every = count_steps(duration, step, records, layout.size + layout.coordinate_count + 7)
     step = duration / steps
     laps.lap("compile")
-    began = z, v, acceleration
-    ran, run = integrate(
-        integrator, system, motion, began, step=step, steps=steps, every=every, options=options
-    )
+    ran, run = integrate(integrator, begun, step=step, steps=steps, every=every, options=options)
     laps.lap("solve")
-    trajectory = trajectory_of(
-        system,
+    return trajectory_of(
+        begun.system,
         run,
         effects=mechanism.effects,
         body=body,
-        settings={"integrator": ran, "step_s": step, **options},
-        resolution=unresolved(scene, system, motion, began, step),
+        settings={
+            "integrator": ran,
+            "step_s": step,
+            "slide_stiffness": mechanism.design.discretisation.slide,
+            **options,
+        },
+        unresolved=partial(unresolved, scene, begun, step),
         laps=laps,
     )
-    if after is not None:
-        return counted_on(trajectory, after)
-    if not check:
-        return trajectory
-    return checked(mechanism, trajectory, start=start, body=body, drive=drive)
 
 
 def checked(
@@ -177,7 +201,7 @@ def checked(
 
     Arguments as of the motion. A motion that stopped or has an estimate is returned as it is.
     """
-    mechanism = mechanism.in_motion()
+    mechanism = mechanism.with_control_points(trajectory.control_points).in_motion()
     if trajectory.status is not Status.CONVERGED or trajectory.estimate is not None:
         return trajectory
     body = mechanism.design.body_named(body)
@@ -186,32 +210,44 @@ def checked(
     )
 
 
-def _begin(
-    mechanism: Mechanism,
-    system: System,
-    motion: Motion,
-    start: float | None,
-    body: str,
-    after: Trajectory | None,
-) -> tuple[Array, Array, Motion]:
-    """Unknowns (N,) and velocities (Q,) that a motion begins with, and the motion with its clock set."""
+def _settled(mechanism: Mechanism, start: float | None, body: str) -> tuple[Mechanism, Array]:
+    """The mechanism as it swings, and the state (..., ) that it starts from.
+
+    Where its control points are left open it gets more until statics reaches the start.
+    """
+    grid, chosen = mechanism.design.discretisation, mechanism.in_motion()
+    points, most = grid.points, grid.points if grid.control_points is not None else MOST[grid.basis]
+    while True:
+        try:
+            return chosen, static_state(chosen.at_start(), start, body=body)
+        except ConvergenceError:
+            if points == most:
+                raise
+            points = min(points + MORE, most)
+            chosen = mechanism.with_control_points(points).in_motion()
+
+
+def _begin(system: System, motion: Motion, held: Array | None, after: Trajectory | None) -> Start:
+    """What a motion begins with, its clock set: the state it is held in, or the end of another one."""
     layout = system.layout
-    if after is not None:
-        z, v = last_state(after, system)
-        return z, v, later(motion, float(after.time[-1]))
-    held = static_state(mechanism.at_start(), start, body=body)
+    if held is None:
+        assert after is not None, "one of both"
+        return Start(system, later(motion, float(after.time[-1])), *last_state(after, system))
     z, v = np.zeros(layout.size), np.zeros(layout.coordinate_count)
     known = min(len(held), layout.size)
     z[:known] = held[:known]
-    return z, v, motion
+    return Start(system, motion, z, v)
 
 
 def _task(
     mechanism: Mechanism, start: float | None, body: str, drive: DrivenRotation | None, duration: float
 ) -> Task:
     """The motion as a task of accuracy on request."""
-    system = compile_scene(mechanism.released())
-    squares = linear_modes(system, system.rest, set_in_motion(system).mass)[0]
+
+    def frequency() -> float:
+        system = compile_scene(mechanism.released())
+        squares = linear_modes(system, system.rest, set_in_motion(system).mass)[0]
+        return math.sqrt(max(float(squares[0]), 0.0))
 
     def run(chosen: Mechanism, integrator: str, step: float, records: int) -> Trajectory:
         return solve_motion(
@@ -229,14 +265,17 @@ def _task(
     def critical(chosen: Mechanism) -> float:
         scene = compile_scene(chosen.released())
         motion = set_in_motion(scene)
-        require_explicit(scene, motion, EXPLICIT)
+        try:
+            require_explicit(scene, motion, EXPLICIT)
+        except InvalidParameter:
+            return 0.0
         held = static_state(chosen.at_start(), start, body=body)[: scene.layout.size]
         return stability_limit(EXPLICIT, motion) / highest_frequency(scene, motion, held)
 
     return Task(
         duration=duration,
         amplitude=abs(start or 0.0),
-        frequency=math.sqrt(max(float(squares[0]), 0.0)),
+        lowest=frequency,
         run=run,
         critical=critical if drive is None else lambda chosen: 0.0,
     )

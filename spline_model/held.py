@@ -211,7 +211,7 @@ def _held_model(mechanism: Mechanism) -> Reduced | None:
         return None
     system = compile_scene(mechanism.driven(1.0))
     model = reduced(system)
-    if model is None or model.strips.measure != MATERIAL or model.strips.stretching.any():
+    if model is None or model.yields or model.strips.measure != MATERIAL or model.strips.stretching.any():
         return None
     if (model.strips.compliance < LEAST_HELD_COMPLIANCE).any():
         return None

@@ -18,21 +18,34 @@ from spline_model.effects import (
     TipForce,
 )
 from spline_model.effects.base import Inertia
+from spline_model.effects.curl import CURLING
 from spline_model.effects.registry import DEFAULT_EFFECTS, INERTIA, build, check_names
 from spline_model.errors import InvalidParameter
 from spline_model.scene import Body, Effect, Scene, Strip
+
+HERE = (0.0, 0.0)
+"""Displacement of what is held in place [m]."""
 
 __all__ = ["BodyDesign", "Mechanism", "StripDesign", "mechanism"]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Mechanism:
-    """A design, the names of its effects with their parameters, and its scene without a driven rotation."""
+    """A design, the names of its effects with their parameters, and its scene without a driven rotation.
+
+    pins: bodies whose centres are held in place and that are free to turn.
+    """
 
     design: Design
     effects: tuple[str, ...]
     parameters: Mapping[str, Mapping[str, Any]]
     scene: Scene
+    pins: tuple[str, ...] = ()
+
+    def pinned(self, *bodies: str) -> Self:
+        """The same mechanism with these bodies held in place, free to turn: a pin joint to the ground."""
+        held = (DrivenDisplacement(body=self.design.body_named(name), displacement=HERE) for name in bodies)
+        return replace(self, pins=(*self.pins, *bodies), scene=self.with_effects(*held))
 
     def with_discretisation(self, **changes: Any) -> Self:
         """The same mechanism with other keywords of ``Discretisation``."""
@@ -44,7 +57,9 @@ class Mechanism:
             parameters=self.parameters,
             **({part.name: getattr(grid, part.name) for part in fields(grid)} | changes),
         )
-        return replace(self, design=made.design, effects=made.effects, scene=made.scene)
+        return replace(self, design=made.design, effects=made.effects, scene=made.scene, pins=()).pinned(
+            *self.pins
+        )
 
     def with_control_points(self, control_points: int | None) -> Self:
         """The same mechanism with so many control points a strip."""
@@ -128,7 +143,13 @@ def mechanism(
     if "inextensible" in names and grid.stretch == "consistent":
         raise InvalidParameter("stretch", "consistent", "mixed for inextensible strips")
     pre_strain = dict(given.get("pre_strain", {}))
-    design = Design(strips=tuple(strips), bodies=tuple(bodies), discretisation=grid, pre_strain=pre_strain)
+    design = Design(
+        strips=tuple(strips),
+        bodies=tuple(bodies),
+        discretisation=grid,
+        pre_strain=pre_strain,
+        curling=tuple(name for name in names if name in CURLING),
+    )
     attachments: list[Effect] = []
     for strip in strips:
         attachments.append(Clamp(strip=strip.name, end="start", to=strip.root))

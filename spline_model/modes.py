@@ -247,8 +247,9 @@ def _bordered(system: System, z: Array) -> Linear:
         (indices[layout.axial_modes(i)], effect.axial_compliance == 0, isinstance(effect.modes, SlideModes))
         for i, effect in enumerate(system.scene.of(MixedStretching))
     ]
-    rows = hessian[layout.multiplier_start :, free]
-    return *_condensed(hessian, free, parts, rows), np.diag(unit[free])
+    held, yields = (each[layout.multiplier_start :] for each in (indices, np.diag(hessian) != 0.0))
+    parts.append((held[yields], False, False))  # moments of roots that comply
+    return *_condensed(hessian, free, parts, hessian[np.ix_(held[~yields], free)]), np.diag(unit[free])
 
 
 def _condensed(

@@ -10,7 +10,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from spline_model.design import SLIDE_STIFFNESS, BodyDesign, StripDesign, swinging_slide_stiffness
+from spline_model.design import (
+    NOT_GIVEN,
+    SLIDE_STIFFNESS,
+    BodyDesign,
+    StripDesign,
+    swinging_slide_stiffness,
+)
 from spline_model.effects.registry import DEFAULT_EFFECTS
 from spline_model.errors import InvalidParameter, require_positive
 from spline_model.mechanism import Mechanism, mechanism
@@ -92,8 +98,8 @@ def cross_axis_pivot(
     length: float,
     inclination: float,
     crossing_ratio: float,
-    area: float,
-    second_moment_of_area: float,
+    area: float = NOT_GIVEN,
+    second_moment_of_area: float = NOT_GIVEN,
     youngs_modulus: float,
     poisson_ratio: float,
     density: float,
@@ -101,6 +107,8 @@ def cross_axis_pivot(
     body_moment_of_inertia: float,
     centre_offset: tuple[float, float] = (0.0, 0.0),
     orientation: float = 0.0,
+    width: float | None = None,
+    thickness: float | None = None,
     effects: Sequence[str] = DEFAULT_EFFECTS,
     parameters: Mapping[str, Mapping[str, Any]] | None = None,
     control_points: int | None = None,
@@ -118,7 +126,8 @@ def cross_axis_pivot(
     length : L of each strip [m]. inclination : of the strips to the x axis [rad].
     crossing_ratio : distance of the crossing from the ground end over L, in (0, 1).
     area, second_moment_of_area : of a strip's section [m^2, m^4].
-    poisson_ratio : taken for the sake of one signature; a shear-rigid strip ignores it.
+    width, thickness : of a rectangular section [m], in place of area and second moment or beside them.
+    poisson_ratio : of effects that know the section's curl; a shear-rigid strip is without it otherwise.
     centre_offset : of the body's centre of mass from the midpoint of B1 B2 [m].
     orientation : turns the whole pivot about A1 [rad].
     effects, parameters : names of the effects of the scene, and the parameters of each.
@@ -147,6 +156,8 @@ def cross_axis_pivot(
             youngs_modulus=youngs_modulus,
             poisson_ratio=poisson_ratio,
             density=density,
+            width=width,
+            thickness=thickness,
         )
         for name, (start, end) in zip(STRIPS, points, strict=True)
     ]

@@ -8,8 +8,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from spline_model.basis import SplineBasis
+from spline_model.basis import AxialModes, SplineBasis
 from spline_model.effects import MEASURES, Bending, MixedStretching, Stretching, StripDamping
+from spline_model.effects.curl import curl_factors
 from spline_model.layout import Layout
 from spline_model.scene import Scene, Strip
 
@@ -18,7 +19,7 @@ Indices = NDArray[np.int64]
 
 FIRST, WIDTH, MODE, MODES, MEASURE = range(5)
 """Columns of ``PointTable.place``."""
-WEIGHT, SPEED, REST, CURVATURE, RIGIDITY, STRAIN, STRETCHING, COMPLIANCE, RELAXATION = range(9)
+WEIGHT, SPEED, REST, CURVATURE, RIGIDITY, STRAIN, STRETCHING, COMPLIANCE, RELAXATION, DROP, CURL = range(11)
 """Columns of ``PointTable.numbers``."""
 
 
@@ -28,9 +29,9 @@ class PointTable(NamedTuple):
     place (P, 5): index in z of the support's first x and its number of control points; index in z of the
     first axial force that does not vanish there, and their number; code of the measure. basis (2, P, S):
     first and second derivatives, S the widest support. modes (P, M): values of the axial forces' modes.
-    numbers (P, 9): Gauss weight; J0 [m]; curvature at rest and stress-free [1/m]; EI [N m^2]; natural
+    numbers (P, 11): Gauss weight; J0 [m]; curvature at rest and stress-free [1/m]; EI [N m^2]; natural
     strain; EA of stretching by quadrature [N]; compliance 1/EA of the axial forces [1/N]; relaxation time
-    [s]. What does not act is zero.
+    [s]; the two numbers of ``curl_law`` [1, m]. What does not act is zero.
     """
 
     place: Indices
@@ -52,6 +53,11 @@ class PointTable(NamedTuple):
     def rigidity(self) -> Array:
         """EI (P,) [N m^2]."""
         return self.numbers[:, RIGIDITY]
+
+    def moments(self, strain: Array) -> Array:
+        """Bending moments (P,) [N m] of curvatures that are counted from the stress-free ones [1/m]."""
+        factor = curl_factors(strain, self.numbers[:, DROP], self.numbers[:, CURL])
+        return np.asarray(self.rigidity * strain * factor)
 
     def derivatives(self, z: Array) -> Array:
         """x', y', x'', y'' at the unknowns z (N,), (4, P)."""
@@ -77,7 +83,9 @@ def point_table(scene: Scene, layout: Layout) -> PointTable:
     most = max((at.modes.width for _, at, _ in groups if isinstance(at, MixedStretching)), default=0)
     parts = [_rows(scene, layout, *group, widest, most) for group in groups]
     if not parts:
-        return PointTable(np.zeros((0, 5), np.int64), np.zeros((2, 0, 0)), np.zeros((0, 0)), np.zeros((0, 9)))
+        return PointTable(
+            np.zeros((0, 5), np.int64), np.zeros((2, 0, 0)), np.zeros((0, 0)), np.zeros((0, 11))
+        )
     place, basis, modes, numbers = zip(*parts, strict=True)
     joined = np.ascontiguousarray(np.concatenate(basis, axis=1))
     return PointTable(np.concatenate(place), joined, np.concatenate(modes), np.concatenate(numbers))
@@ -106,7 +114,7 @@ def _rows(
     strip = scene.strip(effect.strip)
     weight, support, basis, _ = _tables(strip.basis, effect.gauss_points)
     count, width = len(weight), basis.shape[2]
-    place, numbers = np.zeros((count, 5), dtype=np.int64), np.zeros((count, 9))
+    place, numbers = np.zeros((count, 5), dtype=np.int64), np.zeros((count, 11))
     modes = np.zeros((count, most))
     place[:, FIRST] = layout.strips[strip.name][0] + 2 * support
     place[:, WIDTH], place[:, MEASURE] = width, MEASURES.index(effect.measure)
@@ -117,17 +125,22 @@ def _rows(
     numbers[:, RELAXATION] = damping.get(strip.name, 0.0)
     if isinstance(effect, Bending):
         numbers[:, CURVATURE] += effect.natural_curvature
-        numbers[:, RIGIDITY] = effect.flexural_rigidity
+        u = strip.basis.gauss_rule(effect.gauss_points)[0]
+        numbers[:, RIGIDITY] = effect.rigidity_at(strip.basis, u)
+        if effect.curl is not None:
+            numbers[:, DROP], numbers[:, CURL] = effect.curl.drop(strip.basis, u), effect.curl.flattening
     if axial is not None:
         numbers[:, STRAIN] = axial.natural_strain
     if isinstance(axial, Stretching):
         numbers[:, STRETCHING] = axial.axial_rigidity
     if isinstance(axial, MixedStretching):
         numbers[:, COMPLIANCE] = axial.axial_compliance
-        first, values = axial.modes.evaluate(strip.basis.gauss_rule(axial.gauss_points)[0])
+        first, values = _modes_at(axial.modes, strip.basis, axial.gauss_points)
         place[:, MODE], place[:, MODES] = mode + first, axial.modes.width
         modes[:, : axial.modes.width] = values
-    return place, np.pad(basis, ((0, 0), (0, 0), (0, widest - width))), modes, numbers
+    if width < widest:
+        basis = np.pad(basis, ((0, 0), (0, 0), (0, widest - width)))
+    return place, basis, modes, numbers
 
 
 @lru_cache(maxsize=256)
@@ -141,6 +154,15 @@ def _tables(basis: SplineBasis, count: int) -> tuple[Array, Indices, Array, Arra
     for array in kept:
         array.setflags(write=False)
     return kept
+
+
+@lru_cache(maxsize=256)
+def _modes_at(modes: AxialModes, basis: SplineBasis, count: int) -> tuple[Indices, Array]:
+    """First axial force that does not vanish (P,), and values of those that do not (P, W); kept."""
+    first, values = modes.evaluate(basis.gauss_rule(count)[0])
+    for array in (first, values):
+        array.setflags(write=False)
+    return first, values
 
 
 @lru_cache(maxsize=256)

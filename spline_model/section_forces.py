@@ -13,6 +13,7 @@ from spline_model.basis import SlideModes
 from spline_model.bordered import evaluate
 from spline_model.compile import System, compile_scene
 from spline_model.effects import GROUND, MixedStretching
+from spline_model.errors import InvalidParameter
 from spline_model.mechanism import Mechanism
 from spline_model.motion.start import axial_rigidity
 from spline_model.sections import Sections, clamp_reactions, sections
@@ -62,7 +63,7 @@ def static_fields(asked: Mechanism, states: Array) -> StripFields:
     residual. N and M follow from the strains and show the error of too few control points.
     """
     mechanism, system = _compiled(asked)
-    return _fields(mechanism, system, np.asarray(states)[:, : system.layout.size], _balanced)
+    return _fields(mechanism, system, _known(system, states), _balanced)
 
 
 def moving_fields(asked: Mechanism, states: Array) -> StripFields:
@@ -75,13 +76,21 @@ def moving_fields(asked: Mechanism, states: Array) -> StripFields:
     keep none; of inextensible strips those that the states hold.
     """
     mechanism, system = _compiled(asked)
-    known = _with_axial_forces(system, np.asarray(states)[:, : system.layout.size])
+    known = _with_axial_forces(system, _known(system, states))
     return _fields(mechanism, system, known, _by_moments)
 
 
 def _compiled(asked: Mechanism) -> tuple[Mechanism, System]:
     mechanism = asked
     return mechanism, compile_scene(mechanism.scene)
+
+
+def _known(system: System, states: Array) -> Array:
+    """The unknowns (S, N) among states, which may have a drive's behind them; refuses another design's."""
+    found, size = np.asarray(states), system.layout.size
+    if found.ndim != 2 or found.shape[1] < size:
+        raise InvalidParameter("states", found.shape, f"(S, {size}), of this design and control points")
+    return found[:, :size]
 
 
 def _fields(mechanism: Mechanism, system: System, states: Array, shear: Shear) -> StripFields:

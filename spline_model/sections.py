@@ -90,7 +90,8 @@ def _alike(system: System, states: Array, strips: list[Strip], stations: Array, 
             if bending is not None:
                 length = rest_speed[..., g] if bending.measure == "material" else speed[..., g]
                 strain = turning[..., g] / length - (rest_turning / rest_speed)[..., g]
-                moment[..., g] = bending.flexural_rigidity * (strain - bending.natural_curvature)
+                strain -= bending.natural_curvature
+                moment[..., g] = bending.moment_at(strain, strip.basis, stations)
         force = _axial_forces(system, states, strips, stations, speed / rest_speed)
     return Sections(
         shape=np.ascontiguousarray(curve[0, :, :, :count].transpose(2, 3, 0, 1)),

@@ -21,6 +21,7 @@ transposed Jacobian, Eq 30 its minus sign.
 from __future__ import annotations
 
 import math
+from functools import partial
 from itertools import pairwise
 
 import numpy as np
@@ -143,7 +144,7 @@ def solve_impulses(
         effects=mechanism.effects,
         body=body,
         settings=settings,
-        resolution=_resolution(solver, duration / steps),
+        unresolved=partial(_resolution, solver, duration / steps),
         laps=laps,
     )
 

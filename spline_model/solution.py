@@ -169,8 +169,8 @@ def body_columns(bodies: Mapping[str, Array]) -> dict[str, Array]:
 class StaticSolution(Tabulated):
     """Answer of a mechanism, a pivot or any other; S states, G strips, P stations.
 
-    load_factor (S,) share of the loads that acts; bodies: x, y, theta (S, 3) by name [m, m, rad]; driven:
-    the body whose rotation is driven, if there is one;
+    load_factor (S,) share of the loads that acts, below zero where they act the other way; bodies: x, y,
+    theta (S, 3) by name [m, m, rad]; driven: the body whose rotation is driven, if there is one;
     torque (S,) lambda_13 [N m], and stiffness (S,) d(torque)/d(rotation) [N m/rad] (Eq 20) at fixed loads
     and driven displacements, from the tangent, of the driven rotation, nan without one;
     bending_energy, axial_energy (S,) [J];
@@ -252,6 +252,13 @@ class StaticSolution(Tabulated):
         """V (S, G, P) [N]."""
         return self.along.sections.shear_force
 
+    def body_stiffness(self, body: str | None = None) -> Array:
+        """Stiffness (S, 3, 3) of a body's x, y, theta [N/m, N, N m/rad]: ``body_stiffness``.
+
+        body: its name; None for the driven one, or the only one.
+        """
+        return self.along.body_stiffness(body or self._watched_name)
+
     @property
     def shear_energy(self) -> Array:
         """None: strips are rigid in shear (S,) [J]."""
@@ -264,9 +271,13 @@ class StaticSolution(Tabulated):
 
     @property
     def _watched(self) -> Array:
+        return self.bodies[self._watched_name]
+
+    @property
+    def _watched_name(self) -> str:
         if self.driven is None and len(self.bodies) != 1:
             raise InvalidParameter("bodies", list(self.bodies), "one body, or the name of one in ``bodies``")
-        return next(iter(self.bodies.values())) if self.driven is None else self.bodies[self.driven]
+        return next(iter(self.bodies)) if self.driven is None else self.driven
 
     def columns(self) -> dict[str, Array]:
         """What is one number in every state, by names with units."""

@@ -9,6 +9,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from spline_model.body_stiffness import body_stiffness
 from spline_model.compile import System
 from spline_model.effects import DrivenRotation
 from spline_model.effects.registry import MOTION_ONLY
@@ -52,18 +53,23 @@ class Along:
         ]
         return np.asarray(np.array(by_strip).transpose(2, 0, 1, 3))
 
+    def body_stiffness(self, body: str) -> Array:
+        """Of a body by its name (S, 3, 3)."""
+        return body_stiffness(self.system, self.unknowns.array, body)
+
 
 def static_answer(
     system: System, path: Path, effects: Sequence[str], laps: Laps, *, balanced: bool = False
 ) -> StaticSolution:
     """The answer of a mechanism with these effects from its path; balanced: see ``Sections``."""
     scene, turns = system.scene, system.drives.turns.tolist()
+    driven = next((drive.body for drive in scene.of(DrivenRotation)), None)
     return StaticSolution(
         status=path.status,
         message=path.message,
-        load_factor=np.abs(path.load_factor),
+        load_factor=path.load_factor if driven is None else np.abs(path.load_factor),
         bodies={body.name: path.bodies[:, 3 * i : 3 * i + 3] for i, body in enumerate(scene.bodies)},
-        driven=next((drive.body for drive in scene.of(DrivenRotation)), None),
+        driven=driven,
         torque=path.reactions[:, turns.index(1)] if 1 in turns else np.full(len(path.work), np.nan),
         stiffness=path.stiffness,
         bending_energy=path.energies[:, 0],

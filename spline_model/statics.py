@@ -15,7 +15,6 @@ from spline_model.accurate_path import solve_accurately
 from spline_model.compile import System, compile_scene
 from spline_model.continuation.recover import recover
 from spline_model.continuation.start import last_state
-from spline_model.effects.registry import MOTION_ONLY
 from spline_model.errors import (
     ConvergenceError,
     InvalidParameter,
@@ -56,9 +55,6 @@ Array = NDArray[np.float64]
 LEAST_ROTATION = 1e-12
 """Largest rotation of a path that is none [rad]: states are solved to 1e-11."""
 
-UNLOADED = {"bending", "stretching", "inextensible", *MOTION_ONLY}
-"""Effects under which nothing happens unless the body is turned."""
-
 METHODS = ("condensed", "multipliers")
 
 
@@ -81,7 +77,7 @@ def solve_statics(
     ``increments``. order: "loads first" raises loads in ``increments`` with the body held, and then they
     stay; "together", and so always with driven displacements, lets them grow with |rotation| over the
     largest one of the path, its start's included. With rotation 0 the body is held and they grow from 0
-    to 1.
+    to 1; without any all states are that at rest.
     method: "condensed" runs compiled with the clamps solved and the strips
     condensed, where the scene allows it; "multipliers" is the paper's bordered system. Both
     agree to 1e-10. accuracy: wanted error over the whole path of all that ``ErrorEstimate`` has,
@@ -98,7 +94,7 @@ def solve_statics(
     require_choice("order", order, ORDERS)
     laps, design = Laps(), pivot.design
     origin = 0.0 if start is None else float(start.rotation[-1])
-    rotations = _rotations(rotation, increments, origin, loaded=_is_loaded(pivot))
+    rotations = _rotations(rotation, increments, origin)
     chosen = wanted(accuracy, design, start)
 
     def solve(control_points: int | None) -> StaticSolution:
@@ -128,19 +124,13 @@ def solve_statics(
     return solution
 
 
-def _is_loaded(pivot: Pivot) -> bool:
-    """Whether anything but a driven rotation moves the pivot."""
-    return not set(pivot.effects) <= UNLOADED
-
-
-def _rotations(rotation: float | Sequence[float], increments: int, origin: float, *, loaded: bool) -> Array:
+def _rotations(rotation: float | Sequence[float], increments: int, origin: float) -> Array:
     """The rotations of a path from ``origin`` [rad] on, each leg in ``increments``."""
     targets = finite_numbers("rotation", rotation, "rad")
     legs = list(pairwise([origin, *targets]))
     largest = max(abs(origin), *map(abs, targets))
-    still = largest == 0.0 and loaded
-    if (largest < LEAST_ROTATION and not still) or any(0.0 < abs(b - a) < LEAST_ROTATION for a, b in legs):
-        raise InvalidParameter("rotation", rotation, "an angle other than zero [rad], or a load")
+    if 0.0 < largest < LEAST_ROTATION or any(0.0 < abs(b - a) < LEAST_ROTATION for a, b in legs):
+        raise InvalidParameter("rotation", rotation, f"0, or legs of {LEAST_ROTATION:g} [rad] or more")
     return np.array([b - (b - a) * left / increments for a, b in legs for left in range(increments)[::-1]])
 
 
@@ -177,8 +167,8 @@ def solve_from(
     A guess that leads elsewhere is never believed: see ``continuation.recover``.
     """
     require_count("increments", increments, 1)
-    if not math.isfinite(rotation) or (rotation == 0.0 and not _is_loaded(pivot)):
-        raise InvalidParameter("rotation", rotation, "an angle other than zero [rad], or a load")
+    if not math.isfinite(rotation):
+        raise InvalidParameter("rotation", rotation, "a finite angle [rad]")
     laps = Laps()
     system = compile_scene(pivot.driven(rotation))
     laps.lap("compile")

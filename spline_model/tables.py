@@ -17,6 +17,7 @@ from spline_model.effects import (
     Clamp,
     DrivenDisplacement,
     DrivenRotation,
+    RootCompliance,
     StripGravity,
     TipForce,
 )
@@ -33,7 +34,7 @@ SIZED = (AppliedForce, AppliedMoment, TipForce)
 
 END, INNER, BODY, ROW = range(4)
 """Columns of ``ClampTable.place``."""
-SIGN, ACROSS, ALONG, DIRECTION = range(4)
+SIGN, ACROSS, ALONG, DIRECTION, YIELDING = range(5)
 """Columns of ``ClampTable.numbers``."""
 
 
@@ -41,9 +42,9 @@ class ClampTable(NamedTuple):
     """One row a clamp, C in all.
 
     place (C, 4): indices in z of x of the end's control point, of its neighbour and of the body, -1 for the
-    ground, and of the first of its three multipliers. numbers (C, 4): sign, +1 at the start of a strip and -1
+    ground, and of the first of its three multipliers. numbers (C, 5): sign, +1 at the start of a strip and -1
     at its end, so that sign * (inner - end) points along C'; clamped point from the body's centre [m];
-    angle of m at rest [rad].
+    angle of m at rest [rad]; compliance of the root [rad/(N m)], 0 for a clamp that holds.
     """
 
     place: Indices
@@ -136,6 +137,7 @@ class Tables(NamedTuple):
 def clamp_table(scene: Scene, layout: Layout) -> ClampTable:
     """The clamped strip ends."""
     places, numbers = [], []
+    yielding = {(e.strip, e.end): e.compliance for e in scene.of(RootCompliance)}
     for i, clamp in enumerate(scene.of(Constraint)):
         if not isinstance(clamp, Clamp):
             continue
@@ -149,10 +151,11 @@ def clamp_table(scene: Scene, layout: Layout) -> ClampTable:
         body = -1 if clamp.to == GROUND else layout.bodies[clamp.to]
         places.append((start + 2 * end, start + 2 * inner, body, layout.multipliers[i][0]))
         point = strip.control_points[end] - centre
-        numbers.append((sign, *point, np.arctan2(along[1], along[0])))
+        yields = yielding.get((clamp.strip, clamp.end), 0.0)
+        numbers.append((sign, *point, np.arctan2(along[1], along[0]), yields))
     return ClampTable(
         place=np.array(places, dtype=np.int64).reshape(-1, 4),
-        numbers=np.array(numbers, dtype=float).reshape(-1, 4),
+        numbers=np.array(numbers, dtype=float).reshape(-1, 5),
     )
 
 
@@ -167,8 +170,8 @@ def drive_table(scene: Scene, layout: Layout) -> DriveTable:
             centre = scene.body(drive.body).centre
             grown = 0.0 if drive.steady else 1.0
             parts = [
-                (k, float(centre[k]) + (1.0 - grown) * moved, grown * moved)
-                for k, moved in enumerate(drive.displacement)
+                (axis, float(centre[axis]) + (1.0 - grown) * moved, grown * moved)
+                for axis, moved in drive.parts.items()
             ]
         else:
             continue

@@ -26,6 +26,8 @@ there: closer to it the tangent is singular to no purpose."""
 JUMP = 1e-3
 """Part of the value at the ends of a step that is no zero: a sign that changes in a jump, from one
 path to another one."""
+NO_PART = 1e-6
+"""Part of a mode's largest entry below which bodies have none in it."""
 MOST_TRIALS = 60
 
 
@@ -145,8 +147,7 @@ def _of_torque(bracket: Bracket) -> Crossing | None:
 def _crossing(work: Followed, kind: str, at: Point, mode: Array, inertia: int) -> Crossing:
     """Complete a critical point; ``mode`` in dimensionless coordinates of the system."""
     system, moved = work.system, work.moved(at.z, mode)
-    size = np.abs(moved)
-    scale = 1.0 / moved[np.flatnonzero(size >= (1.0 - 1e-6) * size.max())[0]]  # ties in a symmetric mode
+    scale = _sense(system, moved) / np.abs(moved).max()
     drives = [d for d in system.scene.of(Constraint) if isinstance(d, DrivenRotation)]
     told = CriticalPoint(
         kind=kind,
@@ -157,6 +158,16 @@ def _crossing(work: Followed, kind: str, at: Point, mode: Array, inertia: int) -
         inertia=inertia,
     )
     return Crossing(told=told, z=at.z, mode=scale * mode)
+
+
+def _sense(system: System, moved: Array) -> float:
+    """The sign that a mode is given: with any number of control points the bodies move to the same side."""
+    at = [system.layout.body(body.name) for body in system.scene.bodies]
+    bodies = moved[np.r_[tuple(at)]] if at else moved
+    if np.abs(bodies).max() < NO_PART * np.abs(moved).max():
+        bodies = moved
+    size = np.abs(bodies)
+    return float(np.sign(bodies[np.flatnonzero(size >= 0.5 * size.max())[0]]))
 
 
 def _zero(value: Callable[[float], float]) -> float | None:

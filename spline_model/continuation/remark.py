@@ -14,6 +14,11 @@ from spline_model.effects.base import Constraint, Load
 from spline_model.scene import Scene
 from spline_model.solution import CriticalPoint
 
+PREFIXES = {9: "G", 6: "M", 3: "k", 0: "", -3: "m", -6: "u", -9: "n"}
+"""Prefixes by their powers of ten."""
+PLAIN = 1e-2, 1e4
+"""Sizes of forces and moments that are readable without one."""
+
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Place:
@@ -30,7 +35,7 @@ class Place:
             return f"{100 * load_factor:.6g} % of weight and pre-strain"
         if is_steady(self.system.scene):
             return self._acting(load_factor, rotation).strip(" ()")
-        return f"load factor {abs(load_factor):.6g}{self._acting(load_factor, rotation)}"
+        return f"load factor {self._share(load_factor):.6g}{self._acting(load_factor, rotation)}"
 
     def between(self, last: float, following: float) -> str:
         """Two neighbouring places."""
@@ -39,7 +44,12 @@ class Place:
         if is_steady(self.system.scene):
             return f"{self.at(last)} and {self.at(following)}"
         acting = self._acting(following, math.nan)
-        return f"load factor {abs(last):.6g} and {abs(following):.6g}{acting}"
+        return f"load factor {self._share(last):.6g} and {self._share(following):.6g}{acting}"
+
+    def _share(self, load_factor: float) -> float:
+        """The share of the loads: of a driven rotation its size, to whichever side it goes."""
+        assert self.system is not None
+        return load_factor if driven_row(self.system) is None else abs(load_factor)
 
     def _acting(self, load_factor: float, rotation: float) -> str:
         assert self.system is not None
@@ -53,9 +63,9 @@ def _drives(system: System, load_factor: float, rotation: float) -> list[str]:
         if isinstance(drive, DrivenRotation) and drive.angle != 0.0:
             angle = load_factor * drive.angle if math.isnan(rotation) else rotation
             parts.append(f"rotation {math.degrees(angle):.5g} deg")
-        elif isinstance(drive, DrivenDisplacement) and any(drive.displacement):
+        elif isinstance(drive, DrivenDisplacement) and any(drive.parts.values()):
             share = 1.0 if drive.steady else abs(load_factor)
-            parts.append(f"displacement {1e3 * share * math.hypot(*drive.displacement):.4g} mm")
+            parts.append(f"displacement {1e3 * share * math.hypot(*drive.parts.values()):.4g} mm")
     return parts
 
 
@@ -64,10 +74,18 @@ def _loads(system: System, load_factor: float) -> list[str]:
     for load in system.scene.of(Load):
         share = 1.0 if getattr(load, "steady", False) else load_factor
         if isinstance(load, AppliedMoment) and load.moment:
-            parts.append(f"moment {share * load.moment:.4g} N m")
+            parts.append(f"moment {sized(share * load.moment)}N m")
         elif isinstance(load, AppliedForce | TipForce) and any(load.force):
-            parts.append(f"force {abs(share) * math.hypot(*load.force):.4g} N")
+            parts.append(f"force {sized(abs(share) * math.hypot(*load.force))}N")
     return parts
+
+
+def sized(value: float) -> str:
+    """A number with four digits and the prefix that spares it a power of ten."""
+    if value == 0.0 or PLAIN[0] <= abs(value) < PLAIN[1]:
+        return f"{value:.4g} "
+    power = max(-9, min(9, 3 * math.floor(math.log10(abs(value)) / 3)))
+    return f"{value / 10.0**power:.4g} {PREFIXES[power]}"
 
 
 def is_steady(scene: Scene) -> bool:

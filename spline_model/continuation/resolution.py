@@ -63,7 +63,7 @@ class Resolution:
         x1, y1, x2, y2 = table.derivatives(z)
         square = x1**2 + y1**2
         speed = np.where(table.place[:, MEASURE] == 0, table.speed, np.sqrt(square))
-        moment = table.rigidity * ((x1 * y2 - y1 * x2) / square / speed - table.curvature)
+        moment = table.moments((x1 * y2 - y1 * x2) / square / speed - table.curvature)
         wrong, stored = 0.0, SMALLEST_MOMENT**2 * self.system.scales.energy
         for span in self.spans:
             ds = self.length[span.rows] / table.rigidity[span.rows]

@@ -8,7 +8,7 @@ from spline_model.effects.constraints import (
     DrivenRotation,
 )
 from spline_model.effects.damping import BodyDamper, StripDamping, StripDrag
-from spline_model.effects.elastic import MEASURES, Bending, MixedStretching, Stretching
+from spline_model.effects.elastic import MEASURES, Bending, MixedStretching, RootCompliance, Stretching
 from spline_model.effects.inertia import BodyInertia, SectionRotaryInertia, StripInertia
 from spline_model.effects.loads import AppliedForce, AppliedMoment, BodyGravity, StripGravity, TipForce
 
@@ -26,6 +26,7 @@ __all__ = [
     "DrivenDisplacement",
     "DrivenRotation",
     "MixedStretching",
+    "RootCompliance",
     "SectionRotaryInertia",
     "Stretching",
     "StripDamping",

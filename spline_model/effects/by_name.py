@@ -7,12 +7,13 @@ from typing import TYPE_CHECKING
 
 from spline_model.basis import AxialModes, SlideModes
 from spline_model.effects.constraints import DrivenDisplacement
+from spline_model.effects.curl import curl_of
 from spline_model.effects.damping import BodyDamper, StripDamping, StripDrag
-from spline_model.effects.elastic import Bending, MixedStretching, Stretching
+from spline_model.effects.elastic import Bending, MixedStretching, RootCompliance, Stretching
 from spline_model.effects.history import STEADY, History
 from spline_model.effects.inertia import BodyInertia, SectionRotaryInertia, StripInertia
 from spline_model.effects.loads import AppliedForce, AppliedMoment, BodyGravity, StripGravity, TipForce
-from spline_model.errors import InvalidParameter
+from spline_model.errors import InvalidParameter, is_finite
 
 if TYPE_CHECKING:
     from spline_model.design import Design, StripDesign
@@ -20,15 +21,19 @@ if TYPE_CHECKING:
 
 Vector = tuple[float, float]
 
+MONOLITHIC = 0.416
+"""Length of a root over the thickness: half-plane in plane stress, sharp corner, of any Poisson ratio."""
+
 
 def bending(design: Design) -> Iterator[Effect]:
-    """Bending of every strip, in the discretisation's measure and with the design's pre-strain."""
+    """Bending of every strip, in the discretisation's measure, with the design's pre-strain and curl."""
     grid = design.discretisation
     for strip in design.strips:
         yield Bending(
             strip=strip.name,
             flexural_rigidity=strip.flexural_rigidity,
             natural_curvature=design.pre_strain.get("curvature", 0.0),
+            curl=curl_of(design, strip),
             measure=grid.measure,
             gauss_points=grid.points_a_span,
         )
@@ -141,9 +146,13 @@ def tip_force(design: Design, strip: str, force: Vector, history: History = STEA
 
 
 def driven_displacement(
-    design: Design, displacement: Vector, body: str | None = None, history: History | None = None
+    design: Design,
+    displacement: tuple[float | None, float | None],
+    body: str | None = None,
+    history: History | None = None,
 ) -> Iterator[Effect]:
-    """Displacement [m] of a body's centre prescribed beside its rotation; in a motion only with a history."""
+    """Displacement [m] of a body's centre prescribed beside its rotation, None where it is free; in a motion
+    only with a history."""
     yield DrivenDisplacement(body=design.body_named(body), displacement=displacement, history=history)
 
 
@@ -151,3 +160,31 @@ def pre_strain(design: Design, curvature: float = 0.0, strain: float = 0.0) -> I
     """Natural curvature [1/m] and strain of the strips, from rest: bending and stretching take them up."""
     del design, curvature, strain  # the design carries them to the two potentials
     yield from ()
+
+
+def clamped_width(design: Design) -> Iterator[Effect]:
+    """Clamps that hold every strip's section flat over its width: bending takes it up."""
+    del design
+    yield from ()
+
+
+def anticlastic(design: Design) -> Iterator[Effect]:
+    """Sections that flatten as wide strips bend, M(kappa) by Ashwell's law: bending takes it up."""
+    del design
+    yield from ()
+
+
+def root_compliance(design: Design, root: float | str) -> Iterator[Effect]:
+    """Roots of all clamped ends, of length ``root`` over the thickness: "monolithic", or a number >= 0."""
+    if root != "monolithic" and not (not isinstance(root, str) and is_finite(root) and root >= 0.0):
+        raise InvalidParameter("root", root, '"monolithic" or a number >= 0, its length over the thickness')
+    length = MONOLITHIC if isinstance(root, str) else root
+    for strip in design.strips:
+        if strip.thickness is None:
+            needs = "width and thickness [m] for root_compliance"
+            raise InvalidParameter(f"thickness of {strip.name}", None, needs)
+        compliance = length * strip.thickness / strip.flexural_rigidity
+        if compliance > 0.0:
+            yield RootCompliance(strip=strip.name, end="start", compliance=compliance)
+            if strip.tip is not None:
+                yield RootCompliance(strip=strip.name, end="end", compliance=compliance)

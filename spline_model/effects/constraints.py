@@ -58,23 +58,34 @@ class DrivenRotation(Constraint):
 class DrivenDisplacement(Constraint):
     """The displacement of a body's centre prescribed as (dx, dy) x load factor, two rows in m.
 
-    A ``steady`` one is there in full at any load factor.
+    None in place of dx or dy leaves that way free, and its row out. A ``steady`` one is there in full at any
+    load factor.
 
     The paper's "two other driving constraints" (section 4). Without a history it holds the start of
     a motion and lets go; with one it goes on holding through the motion, as ``DrivenRotation``. The
     multipliers are the applied force [N].
     """
 
-    rows: ClassVar[int] = 2
     body: str
-    displacement: tuple[float, float]
+    displacement: tuple[float | None, float | None]
     history: History | None = None
     held: tuple[float, float] = ALWAYS
     steady: bool = False
 
     def __post_init__(self) -> None:
-        if not all(math.isfinite(part) for part in self.displacement):
-            raise InvalidParameter("displacement", self.displacement, "two finite numbers [m]")
+        if not self.parts or not all(math.isfinite(part) for part in self.parts.values()):
+            expected = "two finite numbers [m], or one and None where the body is free"
+            raise InvalidParameter("displacement", self.displacement, expected)
+
+    @property
+    def parts(self) -> dict[int, float]:
+        """The prescribed parts by their axis, 0 or 1 [m]."""
+        return {axis: part for axis, part in enumerate(self.displacement) if part is not None}
+
+    @property
+    def rows(self) -> int:  # type: ignore[override]
+        """One for each prescribed part."""
+        return len(self.parts)
 
     @property
     def lets_go(self) -> bool:
@@ -84,4 +95,5 @@ class DrivenDisplacement(Constraint):
     def at(self, time: float) -> DrivenDisplacement:
         """The drive with the displacement that it has at an instant [s] of a motion."""
         part = 1.0 if self.history is None else factor_of(self.history, time)
-        return replace(self, displacement=(part * self.displacement[0], part * self.displacement[1]))
+        x, y = (None if moved is None else part * moved for moved in self.displacement)
+        return replace(self, displacement=(x, y))

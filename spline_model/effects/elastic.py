@@ -1,12 +1,19 @@
-"""Strain energies of a strip: bending and stretching."""
+"""Strain energies of a strip: bending, with its roots, and stretching."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Literal
 
-from spline_model.basis import AxialModes
+import numpy as np
+from numpy.typing import NDArray
+
+from spline_model.basis import AxialModes, SplineBasis
 from spline_model.effects.base import Potential
-from spline_model.errors import require_choice, require_count, require_not_negative
+from spline_model.effects.curl import Curl, curl_factors
+from spline_model.errors import require_choice, require_count, require_not_negative, require_positive
+
+Array = NDArray[np.float64]
 
 MEASURES = ("material", "spatial", "printed")
 """Measure names; the position is the code that the kernels read."""
@@ -31,6 +38,7 @@ class Bending(Potential):
     flexural_rigidity : EI >= 0.                                               [N m^2]
     natural_curvature : kappa_n of the stress-free strip, counted from kappa_0 at rest,
         as the natural strain is counted from the length at rest.                  [1/m]
+    curl : of the section; None for a narrow beam's, whose rigidity is EI all along.
     gauss_points : Gauss points in each knot span.
 
     Exact for: material: the geometrically exact (extensible, unshearable) elastica.
@@ -42,6 +50,7 @@ class Bending(Potential):
     strip: str
     flexural_rigidity: float
     natural_curvature: float = 0.0
+    curl: Curl | None = None
     measure: str = "material"
     gauss_points: int
 
@@ -49,6 +58,43 @@ class Bending(Potential):
         require_not_negative("flexural_rigidity", self.flexural_rigidity, "N m^2")
         require_choice("measure", self.measure, MEASURES)
         require_count("gauss_points", self.gauss_points, 1)
+
+    def rigidity_at(self, basis: SplineBasis, u: Array) -> Array:
+        """Rigidity at u (P,) of a strip of that basis [N m^2]."""
+        if self.curl is None:
+            return np.full(len(u), self.flexural_rigidity)
+        return self.flexural_rigidity * self.curl.rigidity(basis, u)
+
+    def moment_at(self, strain: Array, basis: SplineBasis, u: Array) -> Array:
+        """Bending moments (P, ...) [N m] at u (P,) of curvatures from the stress-free ones [1/m]."""
+        moment = self.rigidity_at(basis, u)[:, None] * strain
+        if self.curl is not None:
+            moment *= curl_factors(strain, self.curl.drop(basis, u)[:, None], self.curl.flattening)
+        return np.asarray(moment)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class RootCompliance(Potential):
+    """A rotational spring between what a strip's end is clamped to and the end's tangent.
+
+        V = 1/2 psi^2 / c,      M = -psi / c                                         [J, N m]
+
+    with psi the angle from the clamp's direction to the tangent and c the compliance: the row of the clamp's
+    moment M becomes psi + c M = 0, exact for any angle. A strip that is cut from the same block as its bodies
+    turns in its roots as if it were longer, c = 0.416 t / EI at a sharp corner (half-plane in plane stress).
+    Its energy counts to that of bending.
+
+    Parameters: strip, end, compliance c > 0 [rad/(N m)].
+    Left out: what a root gives way along and across the strip.
+    Source: O'Donnell, J Appl Mech 27 (1960) 461.
+    """
+
+    strip: str
+    end: Literal["start", "end"]
+    compliance: float
+
+    def __post_init__(self) -> None:
+        require_positive("compliance", self.compliance, "rad/(N m)")
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

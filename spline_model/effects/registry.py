@@ -36,6 +36,9 @@ REGISTRY: dict[str, Builder] = {
     "tip_force": by_name.tip_force,
     "driven_displacement": by_name.driven_displacement,
     "pre_strain": by_name.pre_strain,
+    "clamped_width": by_name.clamped_width,
+    "anticlastic": by_name.anticlastic,
+    "root_compliance": by_name.root_compliance,
 }
 
 DEFAULT_EFFECTS = ("bending", "stretching", "strip_inertia", "body_inertia")

@@ -99,7 +99,7 @@ def strain_energy(z, v, problem, space):
         x1, y1, x2, y2 = derivatives(z, place[FIRST], place[WIDTH], points.basis[0, p], points.basis[1, p])
         s, speed, law = x1 * x1 + y1 * y1, numbers[SPEED], min(place[MEASURE], SPATIAL)
         length, phi = math.sqrt(s), (x1 * y2 - y1 * x2) / s
-        bent = bending_law(phi, length, speed, numbers[CURVATURE], numbers[RIGIDITY], law)[0]
+        bent = bending_law(phi, length, speed, numbers[CURVATURE], numbers[RIGIDITY], 0.0, 0.0, law)[0]
         stretched = stretching_law(length, speed, numbers[STRAIN], numbers[STRETCHING], law)[0]
         energy += numbers[WEIGHT] * (bent + stretched)
     axial_strains(z, v, False, problem, strains)

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.compile import System
+from spline_model.effects.curl import ANTICLASTIC
 from spline_model.errors import InvalidParameter, require_choice, require_count, require_positive
 from spline_model.impulses.arrays import (
     COUNTS,
@@ -25,8 +26,8 @@ from spline_model.impulses.printed import printed_advance
 from spline_model.impulses.stable import stable_advance
 from spline_model.mechanism import Mechanism
 from spline_model.modes import static_state
-from spline_model.motion.records import KINETIC, POSITION, STRAIN, VELOCITY, WEIGHT, rows_of
-from spline_model.motion.start import Motion, Records, require_compiled, set_in_motion
+from spline_model.motion.records import KINETIC, STRAIN, WEIGHT, Records, known_records, records_of, rows_of
+from spline_model.motion.start import Motion, require_compiled, set_in_motion
 from spline_model.strip.compiled import copy, kernel, once
 
 Array = NDArray[np.float64]
@@ -104,6 +105,8 @@ class ImpulseSolver:
         require_positive("tolerance", tolerance, "1")
         require_count("sweeps", sweeps, 1)
         require_compiled(system, "sequential impulses")
+        if ANTICLASTIC in mechanism.design.curling:
+            raise InvalidParameter("effects", ANTICLASTIC, "another one for sequential impulses")
         self.mechanism, self.system, self.form = mechanism, system, form
         self.motion, soft = set_in_motion(system), form == "stable"
         self.problem = make_problem(
@@ -222,21 +225,17 @@ class Run:
     def records(self, spacing: float, kept: int, message: str) -> Records:
         """The first ``kept`` records, ``spacing`` [s] apart; message: why the run stopped, if it did."""
         states, rates, energies = (kinds[:kept] for kinds in self.moving[-3:])
-        return Records(
-            time=np.arange(0.0, kept) * spacing,
-            states=states,
-            velocities=rates,
-            rows=rows_of(self.solver.motion, states, rates, energies),
-            message=message,
-            counters=self._counters(),
-        )
+        motion = self.solver.motion
+        rows = rows_of(motion, states, rates, energies)
+        return records_of(motion, spacing, states, rates, rows, message, self._counters())
 
     def outcome(self, taken: int, asked: int, time: float, held: bool) -> Outcome:
         """Where the run stands, for who asked for steps."""
         moving, solver = self.moving, self.solver
         strain = strain_energy(moving.z, moving.v, solver.problem, solver.space)
         energies = np.array([[strain, *moving.totals]])
-        row = rows_of(solver.motion, moving.z[None], moving.v[None], energies)[0]
+        here = moving.z[None], moving.v[None]
+        (row,), (gap,) = rows_of(solver.motion, *here, energies), known_records(solver.motion, *here).gaps
         known = int(moving.status[COUNTS])
         weight, rest = solver.system.weight, solver.system.rest
         return Outcome(
@@ -246,8 +245,8 @@ class Run:
             kinetic_energy=float(row[KINETIC]),
             strain_energy=float(row[STRAIN]),
             gravity_energy=float(row[WEIGHT] + weight @ rest[: weight.size]),
-            constraint_residual=float(row[POSITION]),
-            velocity_residual=float(row[VELOCITY]),
+            constraint_residual=float(gap[0]),
+            velocity_residual=float(gap[1]),
             residual=float(moving.status[RESIDUAL]),
             counters=self._counters(),
         )

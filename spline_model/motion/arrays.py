@@ -20,12 +20,12 @@ Places = NDArray[np.int64]
 class Flexures(NamedTuple):
     """S strips of n control points, G Gauss points with W basis functions each, K axial forces.
 
-    first (G,) of the basis functions; d1, d2 (G, W) their derivatives, pairs (G, 4, W W) the products
-    d1 d1, d1 d2, d2 d1, d2 d2; weight (G,); speed, curvature, rigidity (S, G), stretching, strain (S,),
-    modes (S, G, K), compliance and gain (S, K), roots, tips (S,), root, tip (S, 3), reach (S, 2) as in
-    ``spline_model.strip.element``; outer: the leading axial forces that stay beside the bodies; free_from:
-    the first body that is a free end; relaxation (S,) [s]; mass, drag (S, n, n); dead (S, 2, n) dead load;
-    measure: of all.
+    first (G,) of the basis functions; d1, d2 (G, W) their derivatives, pairs (G, 4, W W) the products d1 d1,
+    d1 d2, d2 d1, d2 d2; weight (G,); speed, curvature, rigidity (S, G), curl (S, G, 2): the numbers of
+    ``curl_law``, stretching, strain (S,), modes (S, G, K), compliance and gain (S, K), roots, tips (S,),
+    root, tip (S, 3), reach (S, 2) as in ``spline_model.strip.element``; outer: leading axial forces that stay
+    beside the bodies; free_from: the first body that is a free end; relaxation (S,) [s]; mass, drag (S, n,
+    n); dead (S, 2, n) dead load; measure: of all.
     """
 
     first: Places
@@ -36,6 +36,7 @@ class Flexures(NamedTuple):
     speed: Array
     curvature: Array
     rigidity: Array
+    curl: Array
     stretching: Array
     strain: Array
     modes: Array
@@ -86,12 +87,7 @@ class Masses(NamedTuple):
 def masses_of(system: System, motion: Motion, poses: int) -> Masses:
     """The bodies and what acts on them; poses: the number of their coordinates."""
     scene, layout, tables = system.scene, system.layout, system.tables
-    length, energy, loads, drives = (
-        system.scales.length,
-        system.scales.energy,
-        system.tables.loads,
-        system.tables.drives,
-    )
+    length, energy, loads, drives = system.scales.length, system.scales.energy, tables.loads, tables.drives
     unit = np.tile([length, length, 1.0], poses // 3)
     inertia, drag, weight = (np.zeros(poses) for _ in range(3))
     body_at: dict[int, int] = {}
@@ -263,7 +259,8 @@ class Poses(NamedTuple):
 
     y (Y,) with the strips' coordinates; rate (Q,) velocities; energy (2,) W and the next one; pull, next
     (Q',) reactions g, slope (Q',) derivative of the gap; totals (2,) work and losses; trial (Y,), dx, load
-    (Q,); system (Q', Q'), x, free (Q',).
+    (Q,); ahead (Y,) the strips' change along the tangent, bent (Y,) what the last step's, of length last (1,)
+    [s], left out; system (Q', Q'), x, free (Q',); still: places of what has no mass.
     """
 
     y: Array
@@ -276,25 +273,29 @@ class Poses(NamedTuple):
     trial: Array
     dx: Array
     load: Array
+    ahead: Array
+    bent: Array
+    last: Array
     system: Array
     x: Array
     free: Places
+    still: Places
 
 
-def poses_of(y: Array, rate: Array, all_bodies: int) -> Poses:
-    """A state with these coordinates and velocities."""
+def poses_of(y: Array, rate: Array, inertia: Array, all_bodies: int) -> Poses:
+    """A state with these coordinates and velocities; inertia (Q,)."""
+    count, q = all_bodies, len(rate)
     return Poses(
         y=y,
         rate=rate,
         energy=np.zeros(2),
-        pull=np.zeros(all_bodies),
-        next=np.zeros(all_bodies),
-        slope=np.zeros(all_bodies),
         totals=np.zeros(2),
+        last=np.ones(1),
         trial=y.copy(),
-        dx=np.zeros_like(rate),
-        load=np.zeros_like(rate),
-        system=np.zeros((all_bodies, all_bodies)),
-        x=np.zeros(all_bodies),
-        free=np.zeros(all_bodies, dtype=np.int64),
+        **{name: np.zeros_like(y) for name in ("ahead", "bent")},
+        **{name: np.zeros(count) for name in ("pull", "next", "slope", "x")},
+        **{name: np.zeros(q) for name in ("dx", "load")},
+        system=np.zeros((count, count)),
+        free=np.zeros(count, dtype=np.int64),
+        still=np.array([*np.flatnonzero(inertia == 0.0), *range(q, count)], dtype=np.int64),
     )

@@ -14,8 +14,8 @@ from scipy.linalg import get_lapack_funcs
 from spline_model.bordered import evaluate, open_energy
 from spline_model.checks import refuse
 from spline_model.compile import System
-from spline_model.motion.records import MOST_GAIN_OF_OTHERS, first_gain, rows_of
-from spline_model.motion.start import Array, Motion, Records
+from spline_model.motion.records import MOST_GAIN_OF_OTHERS, Records, first_gain, records_of, rows_of
+from spline_model.motion.start import Array, Motion
 
 (gesv,) = get_lapack_funcs(("gesv",))  # without the checks and warnings of scipy.linalg.solve
 
@@ -92,7 +92,7 @@ class Stepper:
         return None if failed else np.asarray(-unit * change)
 
     def row(self) -> Array:
-        """The record of the present state (7,); the axial forces are those that its strains give."""
+        """The row of the present state (5,); the axial forces are those that its strains give."""
         strain = sum(self.energies) + open_energy(self.system, self.z)
         rows = rows_of(self.motion, self.z[None], self.v[None], np.array([[strain, 0.0, 0.0]]))
         return np.asarray(rows[0])
@@ -113,11 +113,5 @@ def carry(stepper: Stepper, step: float, steps: int, every: int) -> Records:
                 message = f"stopped at {k * step:.6g} s: the energy grows; take a shorter step"
                 states, rates, rows = states[:-1], rates[:-1], rows[:-1]
                 break
-    return Records(
-        time=np.arange(0.0, len(states)) * (step * every),
-        states=np.array(states),
-        velocities=np.array(rates),
-        rows=np.array(rows),
-        message=message,
-        counters=stepper.counters,
-    )
+    z, v, energies = (np.array(each) for each in (states, rates, rows))
+    return records_of(stepper.motion, step * every, z, v, energies, message, stepper.counters)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from functools import partial
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,7 +14,8 @@ from spline_model.compile import System
 from spline_model.errors import InvalidParameter, require_count
 from spline_model.modes import linear_modes
 from spline_model.motion import energy_consistent, explicit, generalised_alpha, quasi_static
-from spline_model.motion.start import Motion, Records
+from spline_model.motion.records import Records
+from spline_model.motion.start import Motion, Start
 
 Array = NDArray[np.float64]
 
@@ -52,31 +54,28 @@ def massless(system: System, motion: Motion) -> bool:
 
 def integrate(
     integrator: str,
-    system: System,
-    motion: Motion,
-    start: tuple[Array, Array, Array],
+    start: Start,
     *,
     step: float,
     steps: int,
     every: int,
     options: Mapping[str, float],
 ) -> tuple[str, Records]:
-    """Run from ``start``, unknowns z, velocities v and accelerations; returns what ran and its records."""
-    z, v, acceleration = start
+    """Run from a start; returns what ran and its records."""
+    system, motion, v = start.system, start.motion, start.v
+    run: dict[str, Any] = {"step": step, "steps": steps, "every": every}
     if integrator == "energy" and massless(system, motion):
-        run = quasi_static.integrate(system, motion, z, v, step=step, steps=steps, every=every)
-        return QUASI_STATIC, run
-    run = INTEGRATORS[integrator](
-        system, motion, z, v, acceleration, step=step, steps=steps, every=every, **options
-    )
-    return integrator, run
+        return QUASI_STATIC, quasi_static.integrate(system, motion, start.known, v, **run)
+    scheme = INTEGRATORS[integrator]
+    return integrator, scheme(system, motion, start.z, v, start.acceleration, **run, **options)
 
 
-def default_step(integrator: str, system: System, motion: Motion, z: Array, duration: float) -> float:
+def default_step(integrator: str, start: Start, duration: float) -> float:
     """STEP, or that of EXPLICIT_STEPS where it is shorter; at most the duration [s]."""
     step = min(STEP, duration)
     if integrator in EXPLICIT_STEPS:
-        stable = explicit.stability_limit(integrator, motion) / highest_frequency(system, motion, z)
+        limit = explicit.stability_limit(integrator, start.motion)
+        stable = limit / highest_frequency(start.system, start.motion, start.z)
         step = min(step, EXPLICIT_STEPS[integrator] * stable)
     return step
 

@@ -14,8 +14,8 @@ Source: Gonzalez, Time integration and discrete Hamiltonian systems, J Nonlinear
 from __future__ import annotations
 
 import math
+from abc import ABC, abstractmethod
 from itertools import pairwise
-from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,10 +23,10 @@ from numpy.typing import NDArray
 from spline_model.compile import System
 from spline_model.motion.events import SAME, catch, drives_at, event_times, from_here
 from spline_model.motion.mechanism import moving
-from spline_model.motion.records import MOST_GAIN, first_gain, rows_of
+from spline_model.motion.records import ENERGIES, MOST_GAIN, Records, compact, first_gain
 from spline_model.motion.run import MOST_HALVED, MOST_HALVED_A_STEP, run, store
-from spline_model.motion.start import Array, Motion, Records, require_compiled
-from spline_model.motion.step import FACTORISATIONS, FOLDED, HALVED, NEWTON, STEPS, WHOLE
+from spline_model.motion.start import Array, Motion, require_compiled
+from spline_model.motion.step import FACTORISATIONS, FOLDS, HALVED, NEWTON, REFUSED, STEPS, WHOLE
 
 TOLERANCE = 1e-11
 """Residual of a step, in EI/L^2, EI/L, L and rad; the energy of a step is exact to this."""
@@ -56,93 +56,112 @@ def integrate(
     return carry(Stepper(system, motion, z, v, acceleration), z, step, steps, every)
 
 
-def carry(stepper: Moves, z: Array, step: float, steps: int, every: int) -> Records:
-    """The records of a stepper that starts from z (N,)."""
-    mover = _Mover(stepper, z, step, steps, every)
+def carry(stepper: Moves, z: Array | None, step: float, steps: int, every: int) -> Records:
+    """The records of a stepper that starts from z (N,), or None where its own first record says as much."""
+    mover = _Mover(stepper, step, steps, every)
     for begin, end in pairwise((0.0, *event_times(stepper.motion, steps * step, step), steps * step)):
         mover.switch(begin, min(end - begin, step))
         if not mover.go_to(end):
             break
-    kept = mover.kept
-    return Records(
-        time=np.arange(0.0, kept) * (step * every),
-        states=mover.states[:kept],
-        velocities=mover.rates[:kept],
-        rows=mover.rows[:kept],
-        message=mover.message,
-        counters=counts(stepper.counters),
-    )
+    records, counters = mover.records[: mover.kept], counts(stepper.counters)
+    return compact(stepper.motion, stepper, records, z, step * every, mover.message, counters)
 
 
-class Moves(Protocol):
-    """What a run asks of a stepper: see ``Stepper``."""
-
-    motion: Motion
-    counters: NDArray[np.int64]
-    most_gain: float
-
-    def advance(self, time: float, duration: float, smallest: float) -> float:
-        """Move on by ``duration`` [s] in one step or parts of it; returns the time done."""
-
-    def run(self, step: float, begin: int, end: int, every: int) -> tuple[int, tuple[Array, Array, Array]]:
-        """Take whole steps; returns the next one's number, and what ``look`` gives at the records."""
-
-    def look(self) -> tuple[Array, Array, Array]:
-        """Unknowns (R, N), velocities (R, Q) and rows (R, 7)."""
-
-    def switch(self, time: float, span: float) -> None:
-        """Let drives begin, change or end at a time [s]."""
+def why(counters: NDArray[np.int64]) -> str:
+    """Why a step was given up, by what was counted."""
+    if counters[HALVED] > MOST_HALVED + MOST_HALVED_A_STEP * counters[WHOLE]:
+        return "steps are halved too often; take a shorter one"
+    return "a strip folds; take a shorter step" if counters[REFUSED] == FOLDS else "Newton fails at any step"
 
 
-class Stepper:
-    """A scene in motion that the scheme advances; active (D,) is 1 for each drive that holds."""
+class Moves(ABC):
+    """A scene in motion, advanced in compiled steps that are halved at need.
+
+    most_gain: of energy over the run's at which it is stopped; width: numbers of a record, the bodies' poses
+    first and the energies last; unit (3,) of a pose [m, rad].
+    """
 
     most_gain = MOST_GAIN
-    """Gain of energy over the run's at which it is stopped."""
+    motion: Motion
+    counters: NDArray[np.int64]
+    width: int
+    unit: Array
+
+    def advance(self, time: float, duration: float, smallest: float) -> float:
+        """Advance by a step of ``duration``, halved at need down to ``smallest`` of it; the time done."""
+        nothing = np.zeros((0, self.width))
+        return duration * self.take(time, duration, 0, 1, 2, duration * smallest, nothing)
+
+    def run(self, step: float, begin: int, end: int, every: int, records: Array) -> int:
+        """Take the steps ``begin`` ... ``end`` - 1, filling records (R, W); the next step's number."""
+        return self.take(0.0, step, begin, end, every, step * SMALLEST_STEP, records)
+
+    @abstractmethod
+    def take(
+        self, time: float, step: float, begin: int, end: int, every: int, smallest: float, records: Array
+    ) -> int:
+        """The same after a time [s], of steps that are halved down to ``smallest`` [s]."""
+
+    @abstractmethod
+    def record(self) -> Array:
+        """The present state's record (W,)."""
+
+    @abstractmethod
+    def unknowns(self, records: Array) -> tuple[Array, Array]:
+        """Unknowns (R, N) and velocities (R, Q) of records."""
+
+    @abstractmethod
+    def switch(self, time: float, span: float) -> None:
+        """Let drives begin, change or end at ``time``; they then hold for at least ``span`` [s]."""
+
+    def reason(self) -> str:
+        """Why the last step was given up."""
+        return why(self.counters)
+
+
+class Stepper(Moves):
+    """A scene that the scheme advances; active (D,) is 1 for each drive that holds."""
 
     def __init__(self, system: System, motion: Motion, z: Array, v: Array, acceleration: Array) -> None:
         require_compiled(system, "energy")
         self.motion, self._model = motion, moving(system, motion)
+        self.width, self.unit = self._model.width, self._model.unit
         self._state, self._work = self._model.arrays(z, v, acceleration)
         self.counters = np.zeros(6, dtype=np.int64)
         self.active = np.zeros(motion.tables.drives.row.size, dtype=np.int64)
 
-    def advance(self, time: float, duration: float, smallest: float) -> float:
-        """Advance by a step of ``duration``, halved at need down to ``smallest`` of it; the time done."""
-        return duration * self._run(time, duration, 0, 1, 2, duration * smallest)[0]
-
-    def run(self, step: float, begin: int, end: int, every: int) -> tuple[int, tuple[Array, Array, Array]]:
-        """Take the steps ``begin`` ... ``end`` - 1; the next step's number, and records as of ``look``."""
-        done, records = self._run(0.0, step, begin, end, every, step * SMALLEST_STEP)
-        return done, self._shown(records[: done // every - begin // every])
-
-    def _run(
-        self, time: float, step: float, begin: int, end: int, every: int, smallest: float
-    ) -> tuple[int, Array]:
-        """The next step's number, and records."""
-        records = np.zeros((end // every - begin // every, self._model.width))
-        done = run(
-            time, step, begin, end, every, smallest, self.active, self._state, self._model.strips,
-            self._model.masses, TOLERANCE, self._work, self.counters, records,
+    def take(
+        self, time: float, step: float, begin: int, end: int, every: int, smallest: float, records: Array
+    ) -> int:
+        """The next step's number."""
+        return int(
+            run(
+                time, step, begin, end, every, smallest, self.active, self._state, self._model.strips,
+                self._model.masses, TOLERANCE, self._work, self.counters, records,
+            )
         )  # fmt: skip
-        return int(done), records
+
+    def record(self) -> Array:
+        """The present state's record (W,)."""
+        record = np.zeros(self.width)
+        store(self._state, self._model.strips, self._model.masses, self._work, record)
+        return record
+
+    def unknowns(self, records: Array) -> tuple[Array, Array]:
+        """Unknowns (R, N) and velocities (R, Q) of records."""
+        return self._model.unknowns(records)
 
     def look(self) -> tuple[Array, Array, Array]:
-        """Unknowns (1, N), velocities (1, Q) and row (1, 7) of the present state."""
-        record = np.zeros((1, self._model.width))
-        store(self._state, self._model.strips, self._model.masses, self._work, record[0])
-        return self._shown(record)
-
-    def _shown(self, records: Array) -> tuple[Array, Array, Array]:
-        z, v, energies = self._model.unknowns(records)
-        return z, v, rows_of(self.motion, z, v, energies)
+        """Unknowns (1, N), velocities (1, Q) and energies (1, 5) [J] of the present state."""
+        record = self.record()[None]
+        return *self.unknowns(record), record[:, -ENERGIES:] * self.motion.energy
 
     def switch(self, time: float, span: float) -> None:
         """Let drives begin, change or end at ``time``; they then hold for at least ``span`` [s]."""
         before, self.active = self.active, drives_at(self.motion, time + 0.5 * span)
         if not self.active.any():
             return
-        (z,), (v,), _ = self.look()
+        (z,), (v,) = self.unknowns(self.record()[None])
         self.motion = from_here(self.motion, z, self.active, before, time)
         self._model = self._model.with_drives(self.motion)
         v, lost = catch(self.motion, z, v, self.active, time, span)
@@ -165,20 +184,16 @@ class Stepper:
 class _Mover:
     """A run and its records on a uniform grid."""
 
-    def __init__(self, stepper: Moves, z: Array, step: float, steps: int, every: int) -> None:
-        count = steps // every + 1
+    def __init__(self, stepper: Moves, step: float, steps: int, every: int) -> None:
         self.stepper, self.step, self.every = stepper, step, every
-        self.states = np.zeros((count, z.size))
-        self.rates, self.rows = np.zeros((count, len(stepper.motion.mass))), np.zeros((count, 7))
+        self.records = np.empty((steps // every + 1, stepper.width))
         self.time, self.kept, self.message = 0.0, 0, ""
-        self.first = z
 
     def switch(self, time: float, span: float) -> None:
         """As of the stepper; the first record has the drives that hold from the start on."""
         self.stepper.switch(time, span)
         if time == 0.0:
-            self._keep(0, self.stepper.look())
-            self.states[0] = self.first
+            self._keep(0)
 
     def go_to(self, end: float) -> bool:
         """Move on to the time ``end`` [s]; False, with the reason, where that fails."""
@@ -196,9 +211,9 @@ class _Mover:
         return True
 
     def _whole_steps(self, begin: int, end: int) -> bool:
-        done, records = self.stepper.run(self.step, begin, end, self.every)
-        self._keep(begin // self.every + 1, records)
-        self.time = done * self.step
+        places = slice(begin // self.every + 1, end // self.every + 1)
+        done = self.stepper.run(self.step, begin, end, self.every, self.records[places])
+        self.kept, self.time = done // self.every + 1, done * self.step
         return self._is_good(done == end)
 
     def _part_of_step(self, target: float, number: int) -> bool:
@@ -209,28 +224,22 @@ class _Mover:
             at_grid = abs(target - number * self.step) <= SAME * self.step
             self.time = number * self.step if at_grid else target
             if at_grid and number % self.every == 0:
-                self._keep(number // self.every, self.stepper.look())
+                self._keep(number // self.every)
         return self._is_good(done == span)
 
-    def _keep(self, place: int, records: tuple[Array, Array, Array]) -> None:
-        self.kept = place + len(records[0])
-        for kept, new in zip((self.states, self.rates, self.rows), records, strict=True):
-            kept[place : self.kept] = new
+    def _keep(self, place: int) -> None:
+        self.records[place], self.kept = self.stepper.record(), place + 1
 
     def _is_good(self, solved: bool) -> bool:
         """Whether the run may go on: its steps were solved, and its energy did not grow."""
         most = self.stepper.most_gain
-        good = first_gain(self.rows[: self.kept], self.stepper.motion.energy, most)
+        good = first_gain(self.records[: self.kept, -ENERGIES:], 1.0, most)
         if good < self.kept:
             at = good * self.every * self.step
             self.message = f"stopped at {at:.6g} s: the energy grows by more than {most:g} of itself"
             self.kept = good
         elif not solved:
-            counters = self.stepper.counters
-            reason = "a strip folds; take a shorter step" if counters[FOLDED] else "Newton fails at any step"
-            if counters[HALVED] > MOST_HALVED + MOST_HALVED_A_STEP * counters[WHOLE]:
-                reason = "steps are halved too often; take a shorter one"
-            self.message = f"stopped at {self.time:.6g} s: {reason}"
+            self.message = f"stopped at {self.time:.6g} s: {self.stepper.reason()}"
         return not self.message
 
 

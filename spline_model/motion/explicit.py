@@ -33,9 +33,9 @@ from spline_model.motion.acceleration import accelerate, move, place
 from spline_model.motion.arrays import Scratch, State
 from spline_model.motion.grid import Grid, Room, grid_of, room_of
 from spline_model.motion.mechanism import Moving, moving
-from spline_model.motion.records import MOST_GAIN_OF_OTHERS, STRAIN, first_gain, rows_of
+from spline_model.motion.records import ENERGIES, MOST_GAIN_OF_OTHERS, Records, compact, first_gain
 from spline_model.motion.run import SLOWEST_SPEED, store
-from spline_model.motion.start import Motion, Records, require_compiled, require_conservative
+from spline_model.motion.start import Motion, require_compiled, require_conservative
 from spline_model.motion.strip import curve_at
 from spline_model.strip.compiled import kernel, part
 
@@ -164,29 +164,26 @@ class Flight(NamedTuple):
         return (1 if self.grid.outer else 2) if self.scheme == LEAPFROG else 4
 
     def fly(self, step: float, every: int) -> int:
-        """Fill the records, ``every`` steps apart, in compiled code; returns the rows filled."""
+        """Fill the records behind the first, ``every`` steps apart, compiled; returns how many."""
         model = self.model
         return int(
             run(
                 self.scheme, self.stages, step, every, self.r, self.w, self.push, self.grid, model.strips,
-                model.masses, self.room, self.state, self.work, self.records,
+                model.masses, self.room, self.state, self.work, self.records[1:],
             )
         )  # fmt: skip
 
-    def shown(self, motion: Motion, rows: int) -> tuple[Array, Array, Array]:
-        """Unknowns, velocities and rows of the energies of the first records."""
-        z, v, energies = self.model.unknowns(self.records[:rows])
-        return z, v, rows_of(motion, z, v, energies)
-
 
 def flight(system: System, motion: Motion, z: Array, v: Array, rows: int, integrator: str) -> Flight:
-    """The motion from (z, v) with space for ``rows`` records."""
+    """The motion from (z, v), which the first record has, with space for ``rows`` more."""
     require_explicit(system, motion, integrator)
     model = moving(system, motion)
     strips, masses = model.strips, model.masses
     state, work = model.arrays(z, v, np.zeros(len(v)))
     grid = grid_of(strips)
     r, w = _reduced(model, state)
+    records = np.empty((rows + 1, model.width))
+    store(state, strips, masses, work, records[0])
     return Flight(
         scheme=SCHEMES[integrator],
         model=model,
@@ -197,7 +194,7 @@ def flight(system: System, motion: Motion, z: Array, v: Array, rows: int, integr
         push=np.zeros_like(r),
         state=state,
         work=work,
-        records=np.zeros((rows, model.width)),
+        records=records,
     )
 
 
@@ -215,12 +212,8 @@ def integrate(
 ) -> Records:
     """Take ``steps`` steps from (z, v), recording every ``every``-th one; finds its own acceleration."""
     start = flight(system, motion, z, v, steps // every, integrator)
-    filled = start.fly(step, every)
-    first = rows_of(motion, z[None], v[None], np.zeros((1, 3)))
-    first[0, STRAIN] = strain_energy(start.model, z, v)
-    states, rates, rows = start.shown(motion, filled)
-    rows = np.concatenate((first, rows))
-    kept = first_gain(rows, motion.energy, MOST_GAIN_OF_OTHERS)
+    records = start.records[: start.fly(step, every) + 1]
+    kept = first_gain(records[:, -ENERGIES:], 1.0, MOST_GAIN_OF_OTHERS)
     message = ""
     if kept <= steps // every:
         message = (
@@ -228,14 +221,8 @@ def integrate(
             "take a shorter step"
         )
     done = (kept - 1) * every
-    return Records(
-        time=np.arange(0.0, kept) * (step * every),
-        states=np.concatenate((z[None], states))[:kept],
-        velocities=np.concatenate((v[None], rates))[:kept],
-        rows=rows[:kept],
-        message=message,
-        counters={"steps": done, "evaluations": start.stages * done},
-    )
+    counters = {"steps": done, "evaluations": start.stages * done}
+    return compact(motion, start.model, records[:kept], z, step * every, message, counters)
 
 
 def stability_limit(integrator: str, motion: Motion) -> float:
@@ -251,14 +238,6 @@ def require_explicit(system: System, motion: Motion, integrator: str) -> None:
     blocks = [motion.mass[at, at][::2, ::2] for at in map(system.layout.strip, system.layout.strips)]
     if not all(np.linalg.eigvalsh(block)[0] > 0.0 for block in blocks):
         raise InvalidParameter("integrator", integrator, "an implicit one for strips without mass")
-
-
-def strain_energy(model: Moving, z: Array, v: Array) -> float:
-    """Strain energy of a state [J]."""
-    state, work = model.arrays(z, v, np.zeros(len(v)))
-    record = np.zeros(model.width)
-    store(state, model.strips, model.masses, work, record)
-    return float(record[-3]) * model.energy
 
 
 def _reduced(model: Moving, state: State) -> tuple[Array, Array]:

@@ -53,8 +53,9 @@ def add_forces(s, tied, strips, grid, points, at, axial, force):
         r = inverse * inverse
         phi = (x1 * y2 - y1 * x2) * r
         _, m, _, _, f, _ = bending_law(
-            phi, v, strips.speed[s, p], strips.curvature[s, p], strips.rigidity[s, p], measure
-        )
+            phi, v, strips.speed[s, p], strips.curvature[s, p], strips.rigidity[s, p],
+            strips.curl[s, p, 0], strips.curl[s, p, 1], measure,
+        )  # fmt: skip
         for k in range(tied, count):
             f += strips.modes[s, p, k] * axial[k]
         if stretching > 0.0:

@@ -26,14 +26,15 @@ from numpy.typing import NDArray
 from spline_model.compile import System
 from spline_model.errors import InvalidParameter
 from spline_model.motion import bordered, energy_consistent
-from spline_model.motion.records import MOST_GAIN_OF_OTHERS
+from spline_model.motion.records import MOST_GAIN_OF_OTHERS, Records
 from spline_model.motion.run import MOST_HALVED, MOST_HALVED_A_STEP, clamp_forces, forward, set_points, store
-from spline_model.motion.start import Motion, Records, require_conservative
+from spline_model.motion.start import Motion, require_conservative
 from spline_model.motion.step import (
     FACTORISATIONS,
-    FOLDED,
+    FOLDS,
     HALVED,
     NEWTON,
+    REFUSED,
     STEPS,
     WHOLE,
     assemble,
@@ -226,7 +227,7 @@ def run(step, first, end, every, smallest, alpha, state, strips, masses, work, c
             copy(alpha.y, state.y)
             set_points(state, strips, masses)
             counters[HALVED] += 1
-            counters[FOLDED] = 1 if solved else 0
+            counters[REFUSED] = FOLDS if solved else 0
             h *= 0.5
             if h < smallest or counters[HALVED] > MOST_HALVED + MOST_HALVED_A_STEP * counters[WHOLE]:
                 return number
@@ -258,16 +259,16 @@ class Stepper(energy_consistent.Stepper):
         for array in (self._alpha.a, self._alpha.p):
             gather(state.push, state.acceleration, array)
 
-    def run(self, step: float, begin: int, end: int, every: int) -> tuple[int, tuple[Array, Array, Array]]:
-        """Take the steps ``begin`` ... ``end`` - 1; the next step's number, and records as of ``look``."""
-        records = np.zeros((end // every - begin // every, self._model.width))
-        done = int(
+    def take(
+        self, time: float, step: float, begin: int, end: int, every: int, smallest: float, records: Array
+    ) -> int:
+        """The next step's number; at any time, as nothing that acts has a history."""
+        return int(
             run(
-                step, begin, end, every, step * SMALLEST_STEP, self._alpha, self._state, self._model.strips,
+                step, begin, end, every, smallest, self._alpha, self._state, self._model.strips,
                 self._model.masses, self._work, self.counters, records,
             )
         )  # fmt: skip
-        return done, self._shown(records[: done // every - begin // every])
 
 
 def integrate(

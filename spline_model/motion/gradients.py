@@ -12,7 +12,9 @@ import numpy as np
 from spline_model.reduced.assembly import AXIAL, BENDING, DEAD, FORCE, SLOWEST, place_of
 from spline_model.strip.compiled import called, part
 from spline_model.strip.element import (
+    CURL,
     CURVATURE,
+    DROP,
     FIRST,
     GRADIENT,
     LAST,
@@ -26,8 +28,8 @@ from spline_model.strip.element import (
     STRETCHING,
     WEIGHT,
     place_points,
-    to_ends,
 )
+from spline_model.strip.ends import to_ends
 from spline_model.strip.laws import bending_law, mixed_law, stretching_law
 
 
@@ -53,13 +55,16 @@ def add_gradient(s, a, shape, strips, local, out):
             y1 += d1[p, i] * y
             x2 += d2[p, i] * x
             y2 += d2[p, i] * y
-        weight, speed = weights[p], along[p, SPEED]
+        weight, at = weights[p], along[p]
+        speed = at[SPEED]
         v = math.sqrt(x1 * x1 + y1 * y1)
         inverse = 1.0 / v
         r = inverse * inverse
         slowest = min(slowest, v / speed)
         phi = (x1 * y2 - y1 * x2) * r
-        density, m, _, _, f, _ = bending_law(phi, v, speed, along[p, CURVATURE], along[p, RIGIDITY], measure)
+        density, m, _, _, f, _ = bending_law(
+            phi, v, speed, at[CURVATURE], at[RIGIDITY], at[DROP], at[CURL], measure
+        )
         bending += weight * density
         if a.size > 0:
             force = 0.0

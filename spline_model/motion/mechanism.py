@@ -16,8 +16,10 @@ from spline_model.effects.base import Constraint
 from spline_model.effects.elastic import MEASURES
 from spline_model.errors import InvalidParameter
 from spline_model.motion.arrays import Flexures, Masses, Scratch, State, masses_of, scratch_of, state_of
+from spline_model.motion.records import ENERGIES
 from spline_model.motion.run import set_points
 from spline_model.motion.start import Motion
+from spline_model.quadrature import CURL, DROP
 from spline_model.reduced.axial import len_modes, natural_strain, orthonormal_modes
 from spline_model.reduced.ends import Ends, ends_of, frames_of
 from spline_model.reduced.model import GAIN, LEAST_COMPLIANCE
@@ -44,7 +46,7 @@ class Moving:
         """Numbers in a record (``spline_model.motion.run.store``)."""
         state = state_of(self.strips, self.masses)
         shown = (state.y, state.rate, state.points, state.velocity, state.clamped, state.reaction)
-        return sum(array.size for array in shown) + 3
+        return sum(array.size for array in shown) + ENERGIES
 
     def with_drives(self, motion: Motion) -> Moving:
         """The same with the drives starting where those of a motion do."""
@@ -67,12 +69,13 @@ class Moving:
     def _place(self, given: Array, of_bodies: Array, of_points: Array) -> None:
         layout, n = self.system.layout, self.strips.mass.shape[1]
         for i, body in enumerate(self.system.scene.bodies):
-            of_bodies[3 * i : 3 * i + 3] = given[layout.body(body.name)] / self._unit
+            of_bodies[3 * i : 3 * i + 3] = given[layout.body(body.name)] / self.unit
         for s, strip in enumerate(self.system.scene.strips):
             of_points[s] = given[layout.strip(strip.name)].reshape(n, 2).T / self.length
 
     @property
-    def _unit(self) -> Array:
+    def unit(self) -> Array:
+        """Of a pose (3,) [m, rad]."""
         return np.array([self.length, self.length, 1.0])
 
     @property
@@ -83,7 +86,7 @@ class Moving:
         system, strips, n = self.system, self.strips, self.strips.mass.shape[1]
         pose, own = np.zeros(len(self.masses.inertia)), []
         for i, body in enumerate(system.scene.bodies):
-            pose[3 * i : 3 * i + 3] = z[system.layout.body(body.name)] / self._unit
+            pose[3 * i : 3 * i + 3] = z[system.layout.body(body.name)] / self.unit
         for s, strip in enumerate(system.scene.strips):
             points = z[system.layout.strip(strip.name)].reshape(n, 2) / self.length
             chords = points[1] - points[0], points[-1] - points[-2]
@@ -105,8 +108,8 @@ class Moving:
             ]
         return np.concatenate((pose, *own))
 
-    def unknowns(self, records: Array) -> tuple[Array, Array, Array]:
-        """Unknowns z (R, N), velocities v (R, Q), and strain energy, work and losses (R, 3) [J] of records.
+    def unknowns(self, records: Array) -> tuple[Array, Array]:
+        """Unknowns z (R, N) and velocities v (R, Q) of records.
 
         Axial forces and multipliers are the means of the steps that end there.
         """
@@ -118,8 +121,8 @@ class Moving:
         at = 2 * q + s_count * (own + k)
         for i, body in enumerate(scene.bodies):
             place = layout.body(body.name)
-            z[:, place] = records[:, 3 * i : 3 * i + 3] * self._unit
-            v[:, place] = records[:, at - q + 3 * i : at - q + 3 * i + 3] * self._unit
+            z[:, place] = records[:, 3 * i : 3 * i + 3] * self.unit
+            v[:, place] = records[:, at - q + 3 * i : at - q + 3 * i + 3] * self.unit
         rows: dict[tuple[str, str], slice] = {
             (c.strip, c.end): layout.rows(i)
             for i, c in enumerate(scene.of(Constraint))
@@ -143,7 +146,7 @@ class Moving:
                     z[:, layout.axial_modes(i)] = forces[:, done : done + effect.modes.count]
                     done += effect.modes.count
         z[:, drives.row] = records[:, at : at + len(drives.row)] * unit[2 * drives.turns]
-        return z, v, records[:, -3:] * self.energy
+        return z, v
 
 
 def moving(system: System, motion: Motion) -> Moving:
@@ -202,6 +205,7 @@ def _strips(system: System, motion: Motion, ends: Ends) -> dict[str, Any]:
         speed=speed,
         curvature=np.array([tables.points.curvature[r] for r in rows]) * length,
         rigidity=np.array([tables.points.rigidity[r] for r in rows]) / (energy * length),
+        curl=np.array([tables.points.numbers[r, DROP : CURL + 1] for r in rows]) / [1.0, length],
         stretching=np.array([consistent[s].axial_rigidity if s in consistent else 0.0 for s in names])
         / (energy / length),
         strain=np.array(

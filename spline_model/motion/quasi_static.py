@@ -2,22 +2,32 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
+from scipy.linalg import eigh
 
 from spline_model.compile import System
 from spline_model.errors import InvalidParameter
 from spline_model.motion import energy_consistent
 from spline_model.motion.arrays import masses_of, poses_of
-from spline_model.motion.energy_consistent import SMALLEST_STEP
-from spline_model.motion.massless import run, settle
-from spline_model.motion.records import MOST_GAIN, rows_of
-from spline_model.motion.start import Array, Motion, Records
+from spline_model.motion.energy_consistent import why
+from spline_model.motion.massless import settle
+from spline_model.motion.massless_run import run, store
+from spline_model.motion.records import ENERGIES, Records
+from spline_model.motion.start import Array, Motion
+from spline_model.motion.step import FOLDS, REFUSED
 from spline_model.reduced.assembly import working_space
-from spline_model.reduced.model import Reduced, from_unknowns, reduced
+from spline_model.reduced.model import Reduced, at_rest, from_unknowns, reduced
 from spline_model.reduced.states import unknowns_of
+from spline_model.reduced.whole import whole_tangents
 
 TOLERANCE = 1e-11
 """Residual of a step in EI/L^2, EI/L and L."""
+LEAST = 1e-9
+"""Compliance in L^2/EI that stands for none where the stiffness of strips is asked for."""
+SOFT = 0.5
+"""Least stiffness of a strip over that at rest below which it is what stops a motion."""
 
 
 def integrate(
@@ -38,67 +48,83 @@ def integrate(
         raise InvalidParameter(
             "strips", "massless ones of this kind", "strip_inertia for printed forces or long B-splines"
         )
-    return energy_consistent.carry(Stepper(model, motion, z, v), z, step, steps, every)
+    return energy_consistent.carry(Stepper(model, motion, z, v), None, step, steps, every)
 
 
-class Stepper:
-    """Bodies on massless strips that the scheme advances; as ``energy_consistent.Stepper``."""
+def softness(model: Reduced, y: Array, strip: int) -> float:
+    """Least stiffness of a strip between held ends at a state y (Y,), over that at rest in the same shape.
 
-    most_gain = MOST_GAIN
+    Over all shapes of its own coordinates: 0 where it buckles or snaps through, below where it is unstable.
+    """
+    w, a = model.places(strip)
+    parts = []
+    for hessian in whole_tangents(model, np.array([y, at_rest(model)]))[1]:
+        coupling = hessian[a, w]
+        compliance = -hessian[a, a] + LEAST * np.eye(len(coupling))
+        parts.append(hessian[w, w] + coupling.T @ np.linalg.solve(compliance, coupling))
+    return float(eigh(*parts, eigvals_only=True)[0])
+
+
+class Stepper(energy_consistent.Moves):
+    """Bodies on massless strips that the scheme advances."""
 
     def __init__(self, model: Reduced, motion: Motion, z: Array, v: Array) -> None:
         self.motion, self._model, scene = motion, model, model.system.scene
         self._masses = masses_of(model.system, motion, len(model.bodies.rest))
+        self.unit = np.array([model.length, model.length, 1.0])
         rate = np.zeros(len(model.bodies.rest))
         for i, body in enumerate(scene.bodies):
-            rate[3 * i : 3 * i + 3] = v[model.system.layout.body(body.name)] / self._unit
-        self._poses = poses_of(from_unknowns(model, z), rate, len(model.bodies.load))
+            rate[3 * i : 3 * i + 3] = v[model.system.layout.body(body.name)] / self.unit
+        self._poses = poses_of(from_unknowns(model, z), rate, self._masses.inertia, len(model.bodies.load))
         self._local, self._space = model.local(), working_space(model.bodies, model.size)
+        self.width = model.size + len(rate) + ENERGIES
         self.counters = np.zeros(6, dtype=np.int64)
         made = self._masses, model.bodies, model.strips, model.shape, self._local, self._space
         self._given = (self._poses, *made, TOLERANCE, self.counters)
         if not settle(*self._given):
             raise InvalidParameter("start", "no equilibrium of the strips", "a static state")
 
-    @property
-    def _unit(self) -> Array:
-        return np.array([self._model.length, self._model.length, 1.0])
+    def take(
+        self, time: float, step: float, begin: int, end: int, every: int, smallest: float, records: Array
+    ) -> int:
+        """The next step's number."""
+        bodies = len(self._model.system.scene.bodies)
+        return int(run(time, step, begin, end, every, smallest, bodies, *self._given, records))
 
-    def advance(self, time: float, duration: float, smallest: float) -> float:
-        """Advance by a step of ``duration``, halved at need down to ``smallest`` of it; the time done."""
-        return duration * self._run(time, duration, 0, 1, 2, duration * smallest)[0]
-
-    def run(self, step: float, begin: int, end: int, every: int) -> tuple[int, tuple[Array, Array, Array]]:
-        """Take the steps ``begin`` ... ``end`` - 1; the next step's number, and records as of ``look``."""
-        done, records = self._run(0.0, step, begin, end, every, step * SMALLEST_STEP)
-        kept = done // every - begin // every
-        return done, self._shown(*(record[:kept] for record in records))
-
-    def _run(
-        self, time: float, step: float, begin: int, end: int, every: int, smallest: float
-    ) -> tuple[int, list[Array]]:
-        """The next step's number, and states, rates and books of the records."""
-        bodies, poses = len(self._model.system.scene.bodies), self._poses
-        count = end // every - begin // every
-        records = [np.zeros((count, k)) for k in (len(poses.y), len(poses.rate), 3)]
-        return int(run(time, step, begin, end, every, smallest, bodies, *self._given, *records)), records
-
-    def look(self) -> tuple[Array, Array, Array]:
-        """Unknowns (1, N), velocities (1, Q) and row (1, 7) of the present state."""
-        poses = self._poses
-        books = np.array([[poses.energy[0], *poses.totals]])
-        return self._shown(poses.y[None], poses.rate[None], books)
+    def record(self) -> Array:
+        """The present state's record (W,)."""
+        record, model = np.zeros(self.width), self._model
+        store(self._poses, self._masses, model.bodies, model.strips, model.shape, self._local, record)
+        return record
 
     def switch(self, time: float, span: float) -> None:
         """Nothing begins or ends but loads."""
 
-    def _shown(self, y: Array, rates: Array, books: Array) -> tuple[Array, Array, Array]:
-        model = self._model
-        z = unknowns_of(model, y, np.zeros((len(y), 0)))
-        v = np.zeros((len(y), model.system.layout.coordinate_count))
+    def reason(self) -> str:
+        """Why the last step was given up: where none folds, a strip that is soft by now snaps through."""
+        model, y = self._model, self._poses.y
+        scene, strips = model.system.scene, model.strips
+        least = [softness(model, y, s) for s in range(len(strips.roots))]
+        soft = int(np.argmin(least))
+        if self.counters[REFUSED] == FOLDS or least[soft] > SOFT:
+            return why(self.counters)
+        turned = [
+            f"{math.degrees(y[3 * i + 2]):.3g} degrees of {scene.bodies[i].name}"
+            for i in (strips.roots[soft], strips.tips[soft])
+            if 0 <= i < len(scene.bodies)
+        ]
+        return (
+            f"{scene.strips[soft].name} snaps through at {' and '.join(turned) or 'its free end'}: without "
+            "mass it goes from equilibrium to equilibrium, and there is none to go on to; give the strips "
+            "their inertia (strip_inertia)"
+        )
+
+    def unknowns(self, records: Array) -> tuple[Array, Array]:
+        """Unknowns (R, N) and velocities (R, Q) of records."""
+        model, size = self._model, len(self._poses.y)
+        v = np.zeros((len(records), model.system.layout.coordinate_count))
         for i, body in enumerate(model.system.scene.bodies):
-            v[:, model.system.layout.body(body.name)] = rates[:, 3 * i : 3 * i + 3] * self._unit
-        energies, weight = books * model.energy, model.system.tables.weight
-        if weight.size:
-            energies[:, 0] += z[:, : weight.size] @ weight  # W less the weight's potential
-        return z, v, rows_of(self.motion, z, v, energies)
+            begin = size + 3 * i
+            v[:, model.system.layout.body(body.name)] = records[:, begin : begin + 3] * self.unit
+        y = np.ascontiguousarray(records[:, :size])
+        return unknowns_of(model, y, np.zeros((len(y), 0))), v

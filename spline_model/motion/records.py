@@ -1,6 +1,11 @@
-"""Records of a run: rows of energies and of how well the clamps hold, and the watch over gains of energy."""
+"""Records of a run: energies, states and how well the clamps hold, and the watch over gains of energy."""
 
 from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property, partial
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,9 +14,11 @@ from spline_model.motion.start import Motion
 
 Array = NDArray[np.float64]
 
-KINETIC, STRAIN, POSITION, VELOCITY, WEIGHT, WORK, DISSIPATED = range(7)
-"""Places of a record: kinetic and strain energy [J], largest constraint residual [m] and its rate
-[m/s], potential of the weight, work of loads and drives so far, energy dissipated so far [J]."""
+KINETIC, WEIGHT, STRAIN, WORK, DISSIPATED = range(5)
+"""Places of a row: kinetic energy, potential of the weight, strain energy, work of loads and drives so far,
+energy dissipated so far [J]."""
+ENERGIES = 5
+"""Length of a row: the last numbers of a compiled run's record, there in EI/L."""
 MOST_GAIN = 1e-6
 """Largest gain of an energy-consistent run over its energy: a million steps stay below."""
 MOST_GAIN_OF_OTHERS = 1e-2
@@ -20,16 +27,127 @@ QUIET = 1e-6
 """Energies below this, in EI/L, are not told from this much: their gain is round-off."""
 
 
+@dataclass(frozen=True, eq=False)
+class Whole:
+    """All that R records say, made when it is first asked for.
+
+    make: unknowns z (R, N) and velocities v (R, Q); every: which of them are kept.
+    """
+
+    motion: Motion
+    make: Callable[[], tuple[Array, Array]]
+    every: int = 1
+
+    def thinned(self, every: int) -> Whole:
+        """Every so many of the records, from the first on."""
+        return Whole(self.motion, self.make, every * self.every)
+
+    @cached_property
+    def both(self) -> tuple[Array, Array]:
+        """z (R, N) and v (R, Q)."""
+        z, v = self.make()
+        return z[:: self.every], v[:: self.every]
+
+    @cached_property
+    def gaps(self) -> Array:
+        """Largest constraint residual [m] and its rate [m/s] at each record, (R, 2)."""
+        z, v = self.both
+        largest = np.zeros((len(z), 2))
+        for c in range(len(self.motion.tables.clamps.end)):
+            for k, gap in enumerate(clamp_gaps(self.motion, c, z, v)):
+                largest[:, k] = np.maximum(largest[:, k], np.abs(gap).max(axis=0))
+        return largest
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Records:
+    """R records of a run, the start first.
+
+    time (R,) [s]; poses (R, 3 B) of the bodies [m, rad]; rows (R, 5) as named above; message: empty,
+    or why the run stopped.
+    """
+
+    time: Array
+    poses: Array
+    rows: Array
+    whole: Whole
+    message: str
+    counters: dict[str, int]
+
+
+def records_of(
+    motion: Motion, spacing: float, z: Array, v: Array, rows: Array, message: str, counters: dict[str, int]
+) -> Records:
+    """The records ``spacing`` [s] apart of a run that kept its states z (R, N) and v (R, Q)."""
+    poses = (motion.turns[:, None] + np.arange(-2, 1)).ravel()
+    return Records(
+        time=np.arange(0.0, len(z)) * spacing,
+        poses=z[:, poses],
+        rows=rows,
+        whole=known_records(motion, z, v),
+        message=message,
+        counters=counters,
+    )
+
+
+class Reader(Protocol):
+    """Who knows the numbers of a compiled run's records: the bodies' poses first, the energies last."""
+
+    @property
+    def unit(self) -> Array:
+        """Of a pose (3,) [m, rad]."""
+
+    def unknowns(self, records: Array) -> tuple[Array, Array]:
+        """Unknowns (R, N) and velocities (R, Q) of records (R, W)."""
+
+
+def compact(
+    motion: Motion,
+    reader: Reader,
+    records: Array,
+    z: Array | None,
+    spacing: float,
+    message: str,
+    counters: dict[str, int],
+) -> Records:
+    """The records (R, W) of a compiled run, ``spacing`` [s] apart, read as far as every answer needs.
+
+    z (N,): all unknowns of the first one; None where the record says as much.
+    """
+    bodies = len(motion.turns)
+    return Records(
+        time=np.arange(0.0, len(records)) * spacing,
+        poses=records[:, : 3 * bodies] * np.tile(reader.unit, bodies),
+        rows=records[:, -ENERGIES:] * motion.energy,
+        whole=Whole(motion, partial(_read, reader, records, z)),
+        message=message,
+        counters=counters,
+    )
+
+
+def _read(reader: Reader, records: Array, z: Array | None) -> tuple[Array, Array]:
+    states, rates = reader.unknowns(records)
+    if z is not None:
+        states[0] = z
+    return states, rates
+
+
+def known_records(motion: Motion, z: Array, v: Array) -> Whole:
+    """Records whose states z (R, N) and velocities v (R, Q) are there already."""
+    return Whole(motion, partial(_both, z, v))
+
+
+def _both(z: Array, v: Array) -> tuple[Array, Array]:
+    return z, v
+
+
 def rows_of(motion: Motion, z: Array, v: Array, energies: Array) -> Array:
-    """Rows (R, 7) of states z (R, N), velocities v (R, Q), and strain energy, work and losses (R, 3) [J]."""
-    rows, weight = np.zeros((len(z), 7)), motion.tables.weight
+    """Rows (R, 5) of states z (R, N), velocities v (R, Q), and strain energy, work and losses (R, 3) [J]."""
+    rows, weight = np.zeros((len(z), ENERGIES)), motion.tables.weight
     rows[:, KINETIC] = 0.5 * ((v @ motion.mass) * v).sum(axis=1)
     rows[:, [STRAIN, WORK, DISSIPATED]] = energies
     if weight.size:
         rows[:, WEIGHT] = -z[:, : weight.size] @ weight
-    for c in range(len(motion.tables.clamps.end)):
-        for place, gap in zip((POSITION, VELOCITY), clamp_gaps(motion, c, z, v), strict=True):
-            rows[:, place] = np.maximum(rows[:, place], np.abs(gap).max(axis=0))
     return rows
 
 
@@ -54,7 +172,7 @@ def clamp_gaps(motion: Motion, c: int, z: Array, v: Array) -> tuple[Array, Array
 def energy_gain(rows: Array, unit: float) -> Array:
     """Gain of the balance T + V - work + dissipated at each record over the run's energy, (R,) [1].
 
-    rows (R, 7) as named above; unit EI/L [J]. The energy is the
+    rows (R, 5) as named above; unit: EI/L in them. The energy is the
     largest of the balance's parts so far, so that the gain of a run that starts at rest, or
     about which the weight's arbitrary zero says nothing, has a scale.
     """

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from spline_model.motion.step import FOLDED, HALVED, STEPS, WHOLE, cayley, load_at, newton
+from spline_model.motion.step import FOLDS, HALVED, REFUSED, STEPS, WHOLE, cayley, load_at, newton
 from spline_model.motion.strip import curve_at, look_at, place_strip
 from spline_model.strip.compiled import kernel, part
 
@@ -109,7 +109,10 @@ def set_points(state, strips, masses):
 
 @kernel()
 def store(state, strips, masses, work, row):
-    """A record: y, the bodies' rates, points, velocities, clamps, reactions, strain energy, totals."""
+    """A record: y, the bodies' rates, points, velocities, clamps, reactions, and its energies.
+
+    These are, in EI/L: kinetic energy, potential of the weight, strain energy, work and losses.
+    """
     at, n = 0, strips.mass.shape[1]
     for i in range(state.y.size):
         row[at + i] = state.y[i]
@@ -131,7 +134,19 @@ def store(state, strips, masses, work, row):
     for d in range(state.reaction.size):
         row[at] = state.reaction[d]
         at += 1
-    row[at], row[at + 1], row[at + 2] = work.energies[0], state.totals[0], state.totals[1]
+    row[at] = row[at + 1] = 0.0
+    for i in range(state.rate.size):
+        row[at] += 0.5 * masses.inertia[i] * state.rate[i] * state.rate[i]
+        row[at + 1] -= masses.weight[i] * state.y[i]
+    for s in range(strips.roots.size):
+        for k in range(2):
+            for i in range(n):
+                total = 0.0
+                for j in range(n):
+                    total += strips.mass[s, i, j] * state.velocity[s, k, j]
+                row[at] += 0.5 * total * state.velocity[s, k, i]
+                row[at + 1] -= strips.dead[s, k, i] * state.points[s, k, i]
+    row[at + 2], row[at + 3], row[at + 4] = work.energies[0], state.totals[0], state.totals[1]
 
 
 @kernel()
@@ -160,7 +175,7 @@ def run(
                 h = min(2.0 * h, step)
                 continue
             counters[HALVED] += 1
-            counters[FOLDED] = 1 if solved else 0
+            counters[REFUSED] = FOLDS if solved else 0
             h *= 0.5
             if h < smallest or counters[HALVED] > MOST_HALVED + MOST_HALVED_A_STEP * counters[WHOLE]:
                 return k

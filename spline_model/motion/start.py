@@ -1,8 +1,9 @@
-"""From a compiled scene to a motion: its constants and consistent start; and what a run returns."""
+"""From a compiled scene to a motion: its constants and consistent start."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -10,7 +11,7 @@ from numpy.typing import NDArray
 
 from spline_model.bordered import evaluate
 from spline_model.compile import System
-from spline_model.effects import MixedStretching, StripDamping
+from spline_model.effects import MixedStretching, RootCompliance, StripDamping
 from spline_model.effects.base import Inertia
 from spline_model.effects.history import factor_at
 from spline_model.errors import InvalidParameter
@@ -42,20 +43,28 @@ class Motion(NamedTuple):
     energy: float
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Records:
-    """R records of a run, the start first.
+@dataclass(frozen=True, eq=False)
+class Start:
+    """Where a motion begins: its motion, unknowns z (N,) known so far, and velocities v (Q,)."""
 
-    time (R,) [s]; states (R, N); velocities (R, Q); rows (R, 7) as named in
-    ``spline_model.motion.records``; message: empty, or why the run stopped.
-    """
+    system: System
+    motion: Motion
+    known: Array
+    v: Array
 
-    time: Array
-    states: Array
-    velocities: Array
-    rows: Array
-    message: str
-    counters: dict[str, int]
+    @cached_property
+    def _consistent(self) -> tuple[Array, Array]:
+        return initial_acceleration(self.system, self.motion, self.known, self.v)
+
+    @property
+    def acceleration(self) -> Array:
+        """Consistent with the state, (Q,); worked out when it is first asked for."""
+        return self._consistent[0]
+
+    @property
+    def z(self) -> Array:
+        """The unknowns (N,) with the axial forces and multipliers that go with it."""
+        return self._consistent[1]
 
 
 def set_in_motion(system: System) -> Motion:
@@ -63,6 +72,8 @@ def set_in_motion(system: System) -> Motion:
     scene, layout, rest = system.scene, system.layout, system.rest
     if not scene.of(Inertia):
         raise InvalidParameter("effects", "no inertia", "strip_inertia and body_inertia for a motion")
+    if scene.of(RootCompliance):
+        raise InvalidParameter("effects", "root_compliance", "statics or modes: a motion holds its clamps")
     if any(effect.measure != "material" for effect in scene.of(MixedStretching)):
         raise InvalidParameter("measure", "spatial", "material for the motion of mixed strips")
     mixed = scene.of(MixedStretching)

@@ -12,9 +12,11 @@ from spline_model.motion.project import condense, to_reduced
 from spline_model.motion.strip import add_points, move_strip
 from spline_model.strip.compiled import called, part
 
-STEPS, HALVED, NEWTON, FACTORISATIONS, FOLDED, WHOLE = range(6)
-"""Places of the counters of a run: STEPS with the parts of halved ones, WHOLE without; FOLDED is 1 if the
-last refused step was solved, but no strip."""
+STEPS, HALVED, NEWTON, FACTORISATIONS, REFUSED, WHOLE = range(6)
+"""Places of the counters of a run: STEPS with the parts of halved ones, WHOLE without; REFUSED: why the last
+step that was solved is none, or 0."""
+FOLDS, SNAPS = 1, 2
+"""Why a solved step is refused: a strip folds back, or a massless one would leave its equilibrium."""
 MOST_ITERATIONS = 20
 
 

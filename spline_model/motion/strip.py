@@ -16,7 +16,7 @@ from __future__ import annotations
 import math
 
 from spline_model.strip.compiled import called, part
-from spline_model.strip.laws import MATERIAL
+from spline_model.strip.laws import MATERIAL, curl_law
 from spline_model.strip.two_states import (
     bending_between,
     bending_strain,
@@ -163,7 +163,8 @@ def add_points(s, a, h, state, strips, work):
             h00, h01, h02, h03, h10, h11, h12, h13, h20, h21, h22, h23, h30, h31, h32, h33,
         ) = bending_between(
             old[0], old[1], old[2], old[3], v0, x1, y1, new[2], new[3], v1,
-            speed, strips.curvature[s, p], strips.rigidity[s, p], rate, measure,
+            speed, strips.curvature[s, p], strips.rigidity[s, p], strips.curl[s, p, 0],
+            strips.curl[s, p, 1], rate, measure,
         )  # fmt: skip
         inverse, w = 1.0 / v1, 2.0 / (v0 + v1)
         dx, dy = 0.5 * (old[0] + x1) * w, 0.5 * (old[1] + y1) * w
@@ -215,7 +216,10 @@ def look_at(s, old, new, step, strips, out):
         v, v0 = new[p, 4], old[p, 4]
         c = new[p, 0] * new[p, 3] - new[p, 1] * new[p, 2]
         b, w = bending_strain(c, v, speed, strips.curvature[s, p], measure)
-        out[0] += 0.5 * weight * rigidity * b * b * w
+        energy = 0.5 * weight * rigidity * b * b * w
+        if strips.curl[s, p, 1] > 0.0:
+            energy *= curl_law(b, strips.curl[s, p, 0], strips.curl[s, p, 1])[0]
+        out[0] += energy
         if strips.stretching[s] > 0.0:
             out[0] += weight * stretching_energy(v, speed, strips.strain[s], strips.stretching[s], measure)
         if strips.relaxation[s] > 0.0 and step > 0.0:

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -13,11 +15,23 @@ from spline_model.compile import System
 from spline_model.errors import InvalidParameter
 from spline_model.estimate import MotionEstimate
 from spline_model.laps import Laps
-from spline_model.motion.records import DISSIPATED, KINETIC, POSITION, STRAIN, VELOCITY, WEIGHT, WORK
-from spline_model.motion.start import Motion, Records
+from spline_model.motion.records import DISSIPATED, KINETIC, STRAIN, WEIGHT, WORK, Records, Whole
+from spline_model.motion.start import Motion
 from spline_model.solution import Status, Tabulated, body_columns
 
 Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Remark:
+    """A sentence that is made when it is first asked for."""
+
+    make: Callable[[], str]
+
+    @cached_property
+    def text(self) -> str:
+        """It, or an empty string."""
+        return self.make()
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
@@ -27,11 +41,10 @@ class Trajectory(Tabulated):
     time (T,) [s]; bodies: x, y, theta (T, 3) by name [m, m, rad]; body: the one that rotation
     (T,) and centre (T, 2) are of; kinetic_energy, strain_energy (T,) [J]; gravity_energy
     against rest, work of loads and drives so far, dissipated so far (T,) [J];
-    constraint_residual (T,) [m]; velocity_residual (T,) its rate [m/s]; states (T, N) and
-    velocities (T, Q) of the system in motion; resolution: empty, or what step and control points
-    leave unresolved; effects: names of the scene's effects; counters: steps,
-    halved_steps, newton_iterations, ...; seconds: by part (``spline_model.laps``), "start" the
-    static state that is let go; estimate: of the error, where an accuracy was asked for;
+    whole: what is made when it is asked for, states, velocities and constraint residuals; unresolved: what
+    the step leaves unresolved, likewise, and checked: what a companion found; effects: names of the scene's
+    effects; counters: steps, halved_steps, newton_iterations, ...; seconds: by part (``spline_model.laps``),
+    "start" the static state that is let go; estimate: of the error, where an accuracy was asked for;
     rotation_error: largest difference of the rotation to a companion's with two control points more
     [rad], nan without one.
     """
@@ -46,17 +59,45 @@ class Trajectory(Tabulated):
     gravity_energy: Array
     work: Array
     dissipated: Array
-    constraint_residual: Array
-    velocity_residual: Array
-    states: Array
-    velocities: Array
-    resolution: str
+    whole: Whole
+    unresolved: Remark
     effects: tuple[str, ...]
     counters: dict[str, int]
     settings: dict[str, Any]
     seconds: dict[str, float]
     estimate: MotionEstimate | None = None
     rotation_error: float = math.nan
+    checked: str = ""
+
+    @property
+    def states(self) -> Array:
+        """Unknowns (T, N) of the system in motion."""
+        return self.whole.both[0]
+
+    @property
+    def velocities(self) -> Array:
+        """Velocities (T, Q) of the system in motion."""
+        return self.whole.both[1]
+
+    @property
+    def constraint_residual(self) -> Array:
+        """Largest one (T,) [m]."""
+        return self.whole.gaps[:, 0]
+
+    @property
+    def velocity_residual(self) -> Array:
+        """Largest rate of it (T,) [m/s]."""
+        return self.whole.gaps[:, 1]
+
+    @property
+    def resolution(self) -> str:
+        """Empty, or what step and control points leave unresolved."""
+        return "; ".join(remark for remark in (self.unresolved.text, self.checked) if remark)
+
+    @property
+    def control_points(self) -> int:
+        """Control points of a strip."""
+        return int(self.settings["control_points"])
 
     @property
     def rotation(self) -> Array:
@@ -85,31 +126,28 @@ def trajectory_of(
     effects: tuple[str, ...],
     body: str,
     settings: dict[str, Any],
-    resolution: str,
+    unresolved: Callable[[], str],
     laps: Laps,
 ) -> Trajectory:
     """The trajectory of a run; a run that says why it stopped has not converged."""
-    rows, layout = run.rows, system.layout
+    rows = run.rows
     rest = float(system.tables.weight @ system.rest[: system.tables.weight.size])
     return Trajectory(
         status=Status.NOT_CONVERGED if run.message else Status.CONVERGED,
         message=run.message,
         time=run.time,
-        bodies={b.name: run.states[:, layout.body(b.name)] for b in system.scene.bodies},
+        bodies={b.name: run.poses[:, 3 * i : 3 * i + 3] for i, b in enumerate(system.scene.bodies)},
         body=body,
         kinetic_energy=rows[:, KINETIC],
         strain_energy=rows[:, STRAIN],
         gravity_energy=rows[:, WEIGHT] + rest,
         work=rows[:, WORK],
         dissipated=rows[:, DISSIPATED],
-        constraint_residual=rows[:, POSITION],
-        velocity_residual=rows[:, VELOCITY],
-        states=run.states,
-        velocities=run.velocities,
-        resolution=resolution,
+        whole=run.whole,
+        unresolved=Remark(unresolved),
         effects=effects,
         counters=run.counters,
-        settings=settings,
+        settings={"control_points": max(s.basis.control_points for s in system.scene.strips), **settings},
         seconds=laps.lap("recover"),
     )
 

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from spline_model.design import Design
 from spline_model.reduced.model import Reduced, at_rest
-from spline_model.strip.element import PER_U, REACH, ROOT, STRETCHING, TIP
+from spline_model.strip.element import PER_U, REACH, ROOT, SPRING, STRETCHING, TIP
 
 Array = NDArray[np.float64]
 
@@ -48,6 +48,16 @@ class Given:
         return np.asarray(self.section[..., 1] * self.section[..., 2])
 
     @property
+    def width(self) -> Array:
+        """Width of the rectangle with that section (D, S) [m]."""
+        return np.asarray(self.section[..., 0] ** 1.5 / np.sqrt(12.0 * self.section[..., 1]))
+
+    @property
+    def flatness(self) -> Array:
+        """Square of the width over the thickness (D, S) [m]."""
+        return np.asarray(self.width**3 / self.section[..., 0])
+
+    @property
     def compliance(self) -> Array:
         """Axial compliance of each strip over the longest strip and the largest rigidity, (D, S)."""
         length = np.abs(self.chord).max(axis=1)[:, None]
@@ -62,9 +72,9 @@ class Given:
 class Designs(NamedTuple):
     """What tells D designs from one another, over the length (D,) [m] and energy (D,) [J] of each.
 
-    factor (D, S, 4): of J0, stress-free curvature, EI and modes; numbers (D, S, 12 + 2 n) and compliance
-    (D, S, K) as in ``Strips``; start (D, Y): at rest; force (D, 2, 3 B): load and weight as in ``Bodies``;
-    target (D, H): change of the held coordinates.
+    factor (D, S, 6): of J0, stress-free curvature, EI, the numbers of ``curl_law`` and modes; numbers (D, S,
+    14 + 2 n) and compliance (D, S, K) as in ``Strips``; start (D, Y): at rest; force (D, 2, 3 B): load and
+    weight as in ``Bodies``; target (D, H): change of the held coordinates.
     """
 
     length: Array
@@ -95,7 +105,7 @@ def designs_of(model: Reduced, base: Given, given: Given, rotation: Array) -> De
     numbers = np.repeat(strips.numbers[None], count, axis=0)
     numbers[..., STRETCHING] *= area * modulus / force
     numbers[..., PER_U:] *= (area * longer / force)[..., None]
-    numbers[..., REACH:PER_U] *= speed[..., None]
+    numbers[..., REACH:SPRING] *= speed[..., None]
     for end, (place, carriers) in enumerate(((ROOT, strips.roots), (TIP, strips.tips))):
         numbers[..., place + 2] += np.angle(turn)
         for s, body in enumerate(carriers):
@@ -128,7 +138,15 @@ def designs_of(model: Reduced, base: Given, given: Given, rotation: Array) -> De
         length=length,
         energy=energy,
         factor=np.stack(
-            (speed, np.broadcast_to(wide / model.length, speed.shape), rigid, speed**-0.5), axis=-1
+            (
+                speed,
+                np.broadcast_to(wide / model.length, speed.shape),
+                rigid,
+                np.ones_like(speed),
+                given.flatness / base.flatness * (model.length / wide),
+                speed**-0.5,
+            ),
+            axis=-1,
         ),
         numbers=numbers,
         compliance=strips.compliance * soft[..., which],

@@ -25,11 +25,8 @@ ITERATIONS, EVALUATIONS, HALVED = range(3)
 """Places of the counters."""
 MOST_ITERATIONS = 15
 NEARLY = 0.1
-(
-    "Residual over the tolerance from which the last correction is enough: it squares the residual, "
-    "but stiffness\n"
-    "is that of the state before it."
-)
+"""Residual over the tolerance from which the last correction is enough: it squares the residual, but
+stiffness is that of the state before it."""
 
 
 @kernel()

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 
@@ -12,32 +11,27 @@ from scipy.interpolate import BSpline
 
 from spline_model.basis import SplineBasis
 from spline_model.compile import System
-from spline_model.effects import Bending, MixedStretching, Stretching, StripGravity
+from spline_model.effects import Bending, MixedStretching, RootCompliance, Stretching
 from spline_model.effects.elastic import MEASURES
 from spline_model.reduced.assembly import Bodies
-from spline_model.reduced.axial import len_modes, natural_strain, orthonormal_modes
-from spline_model.reduced.ends import End, Ends, bodies_of, ends_of, frames_of
+from spline_model.reduced.axial import len_modes, orthonormal_modes
+from spline_model.reduced.ends import Ends, bodies_of, ends_of
+from spline_model.reduced.numbers import numbers_of, speeds
 from spline_model.scene import Scene
 from spline_model.strip.element import (
+    CURL,
     CURVATURE,
-    FIRST,
+    DROP,
     MODES,
-    ON_POINTS,
-    PER_U,
-    REACH,
     RIGIDITY,
-    ROOT,
-    SECOND,
     SPEED,
-    STRAIN,
-    STRETCHING,
-    TIP,
+    SPRING,
+    WHERE,
     Local,
     Shape,
     Strips,
     local_arrays,
 )
-from spline_model.tables import steady_loads
 
 Array = NDArray[np.float64]
 
@@ -81,6 +75,11 @@ class Reduced:
         at = len(self.bodies.rest) + strip * (own + modes)
         return slice(at, at + own), slice(at + own, at + own + modes)
 
+    @property
+    def yields(self) -> bool:
+        """Whether roots turn, by the first two of w: see ``spline_model.strip.ends``."""
+        return bool(self.strips.numbers[0, SPRING] > 0.0)
+
     @cached_property
     def drive_length(self) -> Array:
         """Unit of each driven coordinate (D,): 1 rad or the length."""
@@ -111,15 +110,20 @@ def reduced(system: System, *, longest: float = MOST_CONTROL_POINTS) -> Reduced 
     """The reduced mechanism of a scene, or None where the element does not know one of its parts.
 
     Strips of one basis and quadrature, clamped or free at their ends, with bending in the material
-    or the spatial measure; longest: control points of a strip, at most.
+    or the spatial measure; longest: control points of a strip, at most. It is made once a system.
     """
-    scene = system.scene
-    if not _known(scene, system, longest):
+    if not _known(system.scene, system, longest):
         return None
+    made: Reduced | None = system.once("reduced", _reduced)
+    return made
+
+
+def _reduced(system: System) -> Reduced | None:
+    scene = system.scene
     bending = {e.strip: e for e in scene.of(Bending)}
     basis, points = scene.strips[0].basis, next(iter(bending.values())).gauss_points
     length, energy = system.scales.length, system.scales.energy
-    shape = _shape(basis, points)
+    shape = _shape(basis, points, bool(scene.of(RootCompliance)))
     ends = ends_of(system)
     strips, rest, to_modes = _strips(system, shape, basis, points, ends)
     bodies = bodies_of(system, ends, strips.outer * len(scene.strips))
@@ -153,13 +157,17 @@ def _known(scene: Scene, system: System, longest: float) -> bool:
 
 
 @lru_cache(maxsize=64)
-def _shape(basis: SplineBasis, points: int) -> Shape:
+def _shape(basis: SplineBasis, points: int, yields: bool) -> Shape:
+    """yields: whether there is a point on no curve, for the turns of the roots."""
     n = basis.control_points
     order = np.array([*range(2, n - 2), 1, n - 2, n - 1, 0], dtype=np.int64)
     u, weight = basis.gauss_rule(points)
     whole = BSpline(basis.knots, np.eye(n), basis.degree).antiderivative()
     values = [basis.evaluate(u, k) for k in range(3)] + [whole(1.0) - whole(u)]
     tables = np.ascontiguousarray(np.array(values)[:, :, order])
+    if yields:
+        order = np.concatenate(([n], order))
+        tables = np.concatenate((np.zeros((*tables.shape[:2], 1)), tables), axis=2)
     return Shape(order=order, tables=tables, rule=np.array((u, weight)))
 
 
@@ -173,7 +181,7 @@ def _strips(
     for effect in scene.of(MixedStretching):
         mixed[effect.strip].append(effect)
     parts, bends = list(mixed.values()), [bending[name] for name in mixed]
-    speed, rest = _at_rest(shape, np.array([strip.control_points for strip in scene.strips]) / length)
+    speed, rest = speeds(shape, np.array([strip.control_points for strip in scene.strips]) / length)
     modes, to_modes = orthonormal_modes(
         [tuple(e.modes for e in each) for each in parts], basis, points, speed
     )
@@ -186,13 +194,18 @@ def _strips(
     along = np.empty((*speed.shape, MODES + c.shape[1]))
     along[..., SPEED], along[..., MODES:] = speed, modes
     along[..., CURVATURE] = rest + np.array([[e.natural_curvature * length] for e in bends])
-    along[..., RIGIDITY] = np.array([[e.flexural_rigidity / (energy * length)] for e in bends])
+    u = shape.rule[WHERE]
+    along[..., RIGIDITY] = np.array([e.rigidity_at(basis, u) for e in bends]) / (energy * length)
+    along[..., DROP : CURL + 1] = 0.0
+    for row, curl in zip(along, (e.curl for e in bends), strict=True):
+        if curl is not None:
+            row[:, DROP], row[:, CURL] = curl.drop(basis, u), curl.flattening / length
     starts, tips = ([ends[name, end] for name in mixed] for end in ("start", "end"))
     strips = Strips(
         along=along,
         compliance=c,
         gain=np.where(small, GAIN, 1.0 / np.where(small, 1.0, c)),
-        numbers=_numbers(system, shape, parts, consistent, starts, tips),
+        numbers=numbers_of(system, shape, parts, consistent, starts, tips),
         roots=np.array([end.body for end in starts], dtype=np.int64),
         tips=np.array([end.body for end in tips], dtype=np.int64),
         split=split,
@@ -203,85 +216,40 @@ def _strips(
     return strips, rest, to_modes
 
 
-def _at_rest(shape: Shape, control_points: Array) -> tuple[Array, Array]:
-    """Speed and curvature at rest (S, G) of strips of control points (S, n, 2)."""
-    curve = shape.tables[FIRST : SECOND + 1, None] @ control_points[:, shape.order]
-    (x1, x2), (y1, y2) = curve[..., 0], curve[..., 1]
-    speed = np.hypot(x1, y1)
-    return speed, (x1 * y2 - y1 * x2) / speed**3
-
-
-def _numbers(
-    system: System,
-    shape: Shape,
-    mixed: list[list[MixedStretching]],
-    consistent: dict[str, Stretching],
-    starts: list[End],
-    tips: list[End],
-) -> Array:
-    """The numbers of ``Strips``, (S, 12 + 2 n)."""
-    scene, length, energy = system.scene, system.scales.length, system.scales.energy
-    numbers = np.zeros((len(scene.strips), ON_POINTS + 2 * len(shape.order)))
-    for row, strip, parts in zip(numbers, scene.strips, mixed, strict=True):
-        stretching, points = consistent.get(strip.name), strip.control_points.tolist()
-        row[STRETCHING] = 0.0 if stretching is None else stretching.axial_rigidity * length / energy
-        row[STRAIN] = natural_strain(parts, stretching)
-        row[REACH:PER_U] = (
-            math.dist(points[1], points[0]) / length,
-            math.dist(points[-1], points[-2]) / length,
-        )
-    numbers[:, ROOT:TIP], numbers[:, TIP:REACH] = frames_of(starts, length), frames_of(tips, length)
-    if system.weight.size:
-        numbers[:, ON_POINTS:], numbers[:, PER_U:ON_POINTS] = _dead(system, shape)
-    return numbers
-
-
-def _dead(system: System, shape: Shape) -> tuple[Array, Array]:
-    """Dead load on the control points (S, 2 n), in the order of elimination, and per du (S, 2)."""
-    scene, weight = system.scene, system.weight.copy()
-    for place, value in steady_loads(scene, system.layout):  # they act on bodies and free ends
-        weight[place] -= value
-    force = system.scales.energy / system.scales.length
-    dead, per_u = np.zeros((len(scene.strips), 2 * len(shape.order))), np.zeros((len(scene.strips), 2))
-    for s, strip in enumerate(scene.strips):
-        dead[s] = weight[system.layout.strip(strip.name)].reshape(-1, 2)[shape.order].ravel() / force
-        for effect in scene.of(StripGravity):
-            if effect.strip == strip.name:
-                mass = effect.linear_density * float(strip.share_of_length().sum())
-                per_u[s] += mass * np.asarray(effect.acceleration) / force
-    return dead, per_u
-
-
 def at_rest(model: Reduced) -> Array:
     """The state y at rest."""
     y, bodies = np.zeros(model.size), model.bodies
     y[: len(bodies.rest)] = bodies.rest
     for s, strip in enumerate(model.system.scene.strips):
         w, _ = model.places(s)
-        y[w] = [*(strip.control_points[2:-2] / model.length).ravel(), 1.0, 1.0]
+        turns = [0.0] * (2 * model.yields)
+        y[w] = [*turns, *(strip.control_points[2:-2] / model.length).ravel(), 1.0, 1.0]
     return y
 
 
 def from_unknowns(model: Reduced, z: Array) -> Array:
     """The states y (..., Y) of unknowns z (..., N) of the scene, whose clamps hold."""
-    scene, layout, strips, n = model.system.scene, model.system.layout, model.strips, len(model.shape.order)
+    scene, layout, strips = model.system.scene, model.system.layout, model.strips
     y = np.empty((*z.shape[:-1], model.size))
     for i, body in enumerate(scene.bodies):
         y[..., 3 * i : 3 * i + 3] = z[..., layout.body(body.name)] / [model.length, model.length, 1.0]
     for s, strip in enumerate(scene.strips):
-        w, a = model.places(s)
+        (w, a), n = model.places(s), strip.basis.control_points
         points = z[..., layout.strip(strip.name)].reshape(*z.shape[:-1], n, 2) / model.length
-        y[..., w.start : w.stop - 2] = points[..., 2:-2, :].reshape(*z.shape[:-1], -1)
+        y[..., w.stop + 6 - 2 * n : w.stop - 2] = points[..., 2:-2, :].reshape(*z.shape[:-1], -1)
         for end, (bodies, frames, outer, inner) in enumerate(
             ((strips.roots, strips.root, 0, 1), (strips.tips, strips.tip, n - 1, n - 2))
         ):
             chord = (1 - 2 * end) * (points[..., inner, :] - points[..., outer, :])
             y[..., w.stop - 2 + end] = np.hypot(chord[..., 0], chord[..., 1]) / strips.reach[s, end]
+            turn = np.arctan2(chord[..., 1], chord[..., 0]) - frames[s, 2]
             if bodies[s] >= len(scene.bodies):  # a free end is its own body
-                turn = np.arctan2(chord[..., 1], chord[..., 0]) - frames[s, 2]
                 place = 3 * bodies[s]
                 y[..., place : place + 2] = points[..., outer, :]
                 y[..., place + 2] = np.arctan2(np.sin(turn), np.cos(turn))
+            if model.yields:
+                turn = turn - (y[..., 3 * bodies[s] + 2] if bodies[s] >= 0 else 0.0)
+                y[..., w.start + end] = np.arctan2(np.sin(turn), np.cos(turn))
         effects = [i for i, e in enumerate(scene.of(MixedStretching)) if e.strip == strip.name]
         forces = np.concatenate([z[..., layout.axial_modes(i)] for i in effects] or [z[..., :0]], axis=-1) * (
             model.length / model.energy

@@ -19,7 +19,8 @@ from spline_model.reduced.assembly import AXIAL, BENDING, SLOWEST, condensed, el
 from spline_model.reduced.equilibrium import EVALUATIONS, HALVED, ITERATIONS
 from spline_model.strip.compiled import called, copy, kernel
 from spline_model.strip.condense import SINGULAR
-from spline_model.strip.element import LAST, ROOT, TIP, end_frame
+from spline_model.strip.element import LAST, ROOT, TIP
+from spline_model.strip.ends import end_frame
 
 Array = NDArray[np.float64]
 
@@ -171,7 +172,7 @@ def settle(s, at, own, y, strips, shape, local, room, tolerance, counters):
     size, least = own + strips.compliance.shape[1], np.inf
     for i in range(size):
         room.saddle[i] = room.best[i] = y[at + i]
-    end_frame(strips.roots[s], strips.numbers[s], ROOT, y, room.place)
+    end_frame(strips.roots[s], strips.numbers[s], ROOT, 0.0, y, room.place)
     for turn in range(2):
         for i in range(size):
             y[at + i] = room.saddle[i]
@@ -233,9 +234,9 @@ def parts_of(before, pose, strips, room):
         for end in range(2):
             body = strips.tips[s] if end else strips.roots[s]
             frame = TIP if end else ROOT
-            end_frame(body, strips.numbers[s], frame, before, room.place)
+            end_frame(body, strips.numbers[s], frame, 0.0, before, room.place)
             x, y = room.place[0], room.place[1]
-            end_frame(body, strips.numbers[s], frame, pose, room.place)
+            end_frame(body, strips.numbers[s], frame, 0.0, pose, room.place)
             longest = max(longest, math.hypot(room.place[0] - x, room.place[1] - y) / LONGEST_SHIFT)
     for i in range(2, pose.size, 3):
         longest = max(longest, abs(pose[i] - before[i]) / LONGEST_TURN)

@@ -20,8 +20,10 @@ from spline_model.reduced.assembly import (
     solve_free,
 )
 from spline_model.reduced.model import Reduced
+from spline_model.reduced.numbers import in_order
 from spline_model.strip.compiled import kernel
-from spline_model.strip.element import CURVATURE, GRADIENT, LAST, PER_U, STRAIN, Strips, to_ends
+from spline_model.strip.element import CURVATURE, GRADIENT, LAST, PER_U, POINTS, SPRING, STRAIN, Strips
+from spline_model.strip.ends import by_roots, to_ends
 from spline_model.strip.laws import MATERIAL
 from spline_model.strip.points import evaluate_points
 
@@ -51,7 +53,8 @@ def preload_of(model: Reduced) -> Preload:
     strips, bodies, system = model.strips, model.bodies, model.system
     hung, (count, modes) = 0.0, strips.compliance.shape
     if system.weight.size:
-        points = np.array([s.control_points[model.shape.order].ravel() for s in system.scene.strips])
+        given = [in_order(s.control_points, model.shape).ravel() for s in system.scene.strips]
+        points = np.array(given)
         hung = float((strips.dead * points).sum() / model.length)
     return Preload(
         curvature=np.array((model.rest, strips.curvature)),
@@ -142,6 +145,8 @@ def swell(y, share, preload, bodies, strips, shape, local, space):
         for i in range(first):
             g[i] = given[i]
         to_ends(given, first, local.map[s], tip, root, g, first, last)
+        if strips.numbers[s, SPRING] > 0.0:
+            by_roots(given, first, local.nodal[s, POINTS], g)
         for i in range(own):
             push[at + i] = g[i]
         for i in range(3 * tip):

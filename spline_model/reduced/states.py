@@ -91,7 +91,8 @@ def gathered(model: Reduced, y: Array, points: Array, forces: Array, reaction: A
     for s, strip in enumerate(scene.strips):
         in_order = np.empty((*many, n, 2), dtype=points.dtype)
         in_order[..., shape.order, :] = points[..., s, :].reshape(*many, n, 2)
-        z[..., layout.strip(strip.name)] = in_order.reshape(*many, 2 * n) * model.length
+        on_curve = in_order[..., : strip.basis.control_points, :].reshape(*many, -1)
+        z[..., layout.strip(strip.name)] = on_curve * model.length
         force = y[..., model.places(s)[1]] @ model.to_modes[s].T * (model.energy / model.length)
         done = 0
         for i, effect in enumerate(scene.of(MixedStretching)):

@@ -75,14 +75,13 @@ def add_strip(s, at, first, axial, y, strips, shape, local, out, gradient, hessi
 def coordinates_by(model: Reduced, y: Array) -> Array:
     """dq/dy (Q, Y) at a state y (Y,): control points [m] and bodies of the scene by what determines them."""
     strips, scene, layout = model.strips, model.system.scene, model.system.layout
-    n = len(model.shape.order)
     by = np.zeros((layout.coordinate_count, model.size))
     for i, body in enumerate(scene.bodies):
         by[layout.body(body.name), 3 * i : 3 * i + 3] = np.diag((model.length, model.length, 1.0))
     for s, strip in enumerate(scene.strips):
-        w = model.places(s)[0]
+        w, n = model.places(s)[0], strip.basis.control_points
         mine = np.zeros((n, 2, model.size))
-        mine[2 : n - 2].reshape(2 * n - 8, model.size)[:, w.start : w.stop - 2] = np.eye(2 * n - 8)
+        mine[2 : n - 2].reshape(2 * n - 8, model.size)[:, w.stop + 6 - 2 * n : w.stop - 2] = np.eye(2 * n - 8)
         reach = y[w.stop - 2 : w.stop]
         for end, (bodies, frames, outer, inner) in enumerate(
             ((strips.roots, strips.root, 0, 1), (strips.tips, strips.tip, n - 1, n - 2))
@@ -91,9 +90,12 @@ def coordinates_by(model: Reduced, y: Array) -> Array:
             angle = y[3 * body + 2] if body >= 0 else 0.0
             cos, sin = np.cos(angle), np.sin(angle)
             arm = np.array([cos * px - sin * py, sin * px + cos * py])
+            turn += y[w.start + end] if model.yields else 0.0
             stick = strips.reach[s, end] * np.array([np.cos(angle + turn), np.sin(angle + turn)])
             stick *= 1.0 - 2.0 * end
             mine[inner, :, w.stop - 2 + end] = stick
+            if model.yields:
+                mine[inner, :, w.start + end] = reach[end] * np.array((-stick[1], stick[0]))
             if body >= 0:
                 for point, lever in ((outer, arm), (inner, arm + reach[end] * stick)):
                     mine[point, :, 3 * body : 3 * body + 2] += np.eye(2)

@@ -121,7 +121,7 @@ class Elements:
     def _bending(self) -> tuple[Array, ...]:
         strips, curve = self.model.strips, self.curve
         given = (self.varied.speed, strips.curvature.T[..., None, None], self.varied.rigidity)
-        return tuple(bending_law(curve.turning, curve.speed, *given, strips.measure))
+        return tuple(bending_law(curve.turning, curve.speed, *given, 0.0, 0.0, strips.measure))
 
     @cached_property
     def _stretching(self) -> tuple[Array, ...]:

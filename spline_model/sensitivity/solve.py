@@ -54,20 +54,23 @@ def sensitivities(
     back-substitution a parameter and one for the rate y_t. The parameters enter through the end frames,
     reach, speed, EI, compliance and dead load of the strips, by a complex step: exact to round-off for
     the discrete answer, in either measure, under loads and pre-strain. The slide stiffness goes with the
-    design. Bodies keep their mass. Refuses what the elements do not know: printed forces, own potentials.
+    design. Bodies keep their mass. Refuses what the elements do not know: printed forces, own potentials; and
+    effects of the section's curl, whose rates are not among these.
     Source: implicit function theorem; Haftka and Guerdal, Elements of Structural Optimization
     (1992), ch. 7.
     """
     if asked.design.discretisation.control_points is None:
         asked = asked.with_control_points(solution.control_points)
+    if asked.design.curling:
+        raise InvalidParameter("effects", list(asked.design.curling), "none of them for sensitivities")
     rates = rates_of(asked, parameters)
     mechanism = asked
     driven = not np.isnan(solution.torque).all()
     system = compile_scene(mechanism.driven(1.0, body) if driven else mechanism.scene)
     model = reduced(system, longest=math.inf)
-    if model is None:
+    if model is None or model.yields:
         raise InvalidParameter(
-            "effects", "printed forces or an own potential", "what the strips' elements know"
+            "effects", "printed forces, root_compliance or an own potential", "what the strips' elements know"
         )
     z = solution.states
     if z.shape[1:] != (system.layout.size,):

@@ -16,13 +16,13 @@ constant.
 
 from __future__ import annotations
 
-import math
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from spline_model.strip.compiled import called, part
+from spline_model.strip.compiled import part
+from spline_model.strip.ends import add_roots, end_frame, to_ends
 
 Array = NDArray[np.float64]
 GROUNDED = -1
@@ -31,9 +31,9 @@ VALUE, FIRST, SECOND, BEYOND = range(4)
 """Places of ``Shape.tables``."""
 WHERE, WEIGHT = range(2)
 """Places of ``Shape.rule``."""
-SPEED, CURVATURE, RIGIDITY, MODES = range(4)
+SPEED, CURVATURE, RIGIDITY, DROP, CURL, MODES = range(6)
 """Places along a strip, ``Strips.along``."""
-STRETCHING, STRAIN, ROOT, TIP, REACH, PER_U, ON_POINTS = 0, 1, 2, 5, 8, 10, 12
+STRETCHING, STRAIN, ROOT, TIP, REACH, SPRING, PER_U, ON_POINTS = 0, 1, 2, 5, 8, 10, 12, 14
 """Places of a strip's numbers."""
 LEVER, GRADIENT, POINTS = -3, -2, -1
 """Last rows of ``Local.nodal``."""
@@ -71,14 +71,15 @@ class Shape(NamedTuple):
 class Strips(NamedTuple):
     """What tells S strips from one another, in few arrays: each costs every kernel that they are passed to.
 
-    along (S, G, 3 + K): J0, stress-free curvature, EI, and the modes of the axial force at the Gauss points,
-    orthonormal along the strip, of which ``split`` belong to the stretching and the others to the sliding of
-    control points; compliance (S, K) of each; gain (S, K) the stiffness by which they are condensed; numbers
-    (S, 12 + 2 n): EA of stretching by quadrature, 0 for the mixed form; natural strain; root and tip, three
-    each, the clamped point in its body's frame, or on the ground, and direction at rest [rad]; reach, k_A and
-    k_B; dead load per du, two, and on the control points; roots, tips (S,) bodies or GROUNDED; coupled:
-    leading axial forces that stay beside w, where a compliance is too small to divide by or depends on the
-    state; outer: 1 if the first of them, the mean, stays beside the bodies, or 0; measure: of all.
+    along (S, G, 5 + K): J0, stress-free curvature, EI, the numbers of ``curl_law``, and the modes of the
+    axial force at the Gauss points, orthonormal, of which ``split`` belong to the stretching, the others to
+    the sliding of control points; compliance (S, K) of each; gain (S, K) the stiffness by which they are
+    condensed; numbers (S, 14 + 2 n): EA of stretching by quadrature, 0 for the mixed form; natural strain;
+    root and tip, three each, the clamped point in its body's frame, or on the ground, and direction at rest
+    [rad]; reach, k_A and k_B; springs of both roots in EI/L, 0 where they do not turn
+    (``spline_model.strip.ends``); dead load per du, two, and on the control points; roots, tips (S,) bodies
+    or GROUNDED; coupled: leading axial forces that stay beside w, where a compliance is too small to divide
+    by or depends on the state; outer: 1 if the mean stays beside the bodies, or 0; measure: of all.
     """
 
     along: Array
@@ -135,7 +136,7 @@ class Strips(NamedTuple):
     @property
     def reach(self) -> Array:
         """k_A, k_B (S, 2)."""
-        return self.numbers[:, REACH:PER_U]
+        return self.numbers[:, REACH:SPRING]
 
     @property
     def per_u(self) -> Array:
@@ -185,25 +186,6 @@ def local_arrays(strips: int, control_points: int, modes: int, gauss_points: int
     )
 
 
-@called()
-def end_frame(body, numbers, end, pose, out):
-    """Point, direction and the body's centre of a clamped end: out (6,) = x, y, cos, sin, X, Y.
-
-    end: ROOT or TIP, where the end's frame stands in the strip's numbers.
-    """
-    px, py, turn = numbers[end], numbers[end + 1], numbers[end + 2]
-    if body < 0:
-        out[0], out[1], out[4], out[5] = px, py, 0.0, 0.0
-        out[2], out[3] = math.cos(turn), math.sin(turn)
-    else:
-        at = 3 * body
-        x, y, angle = pose[at], pose[at + 1], pose[at + 2]
-        c, d = math.cos(angle), math.sin(angle)
-        out[0], out[1] = x + c * px - d * py, y + d * px + c * py
-        out[2], out[3] = math.cos(angle + turn), math.sin(angle + turn)
-        out[4], out[5] = x, y
-
-
 @part()
 def place_points(s, w, pose, strips, local):
     """Control points of strip s from its own coordinates w (W,) and the bodies' poses (3 B,), and its map."""
@@ -212,40 +194,21 @@ def place_points(s, w, pose, strips, local):
     inner = own - 2
     for i in range(inner):
         points[i] = w[i]
-    end_frame(strips.roots[s], numbers, ROOT, pose, frame)
+    yields = numbers[SPRING] > 0.0
+    end_frame(strips.roots[s], numbers, ROOT, w[0] if yields else 0.0, pose, frame)
     kx, ky = numbers[REACH] * frame[2], numbers[REACH] * frame[3]
     points[inner], points[inner + 1] = frame[0] + w[own - 2] * kx, frame[1] + w[own - 2] * ky
     points[inner + 6], points[inner + 7] = frame[0], frame[1]
     ends[0], ends[1] = kx, ky
     ends[8], ends[9] = frame[5] - points[inner + 1], points[inner] - frame[4]
     ends[10], ends[11] = frame[5] - frame[1], frame[0] - frame[4]
-    end_frame(strips.tips[s], numbers, TIP, pose, frame)
+    end_frame(strips.tips[s], numbers, TIP, w[1] if yields else 0.0, pose, frame)
     kx, ky = -numbers[REACH + 1] * frame[2], -numbers[REACH + 1] * frame[3]
     points[inner + 2], points[inner + 3] = frame[0] + w[own - 1] * kx, frame[1] + w[own - 1] * ky
     points[inner + 4], points[inner + 5] = frame[0], frame[1]
     ends[2], ends[3] = kx, ky
     ends[4], ends[5] = frame[5] - points[inner + 3], points[inner + 2] - frame[4]
     ends[6], ends[7] = frame[5] - frame[1], frame[0] - frame[4]
-
-
-@called()
-def to_ends(v, at, ends, tip, root, out, first, behind):
-    """A covector's entries at P_1, P_(n-2), P_(n-1), P_0, from v[at] on, in (s_A, s_B) and the ends' poses.
-
-    The former go to out[first], the latter to out[behind] on.
-    """
-    out[first] = ends[0] * v[at] + ends[1] * v[at + 1]
-    out[first + 1] = ends[2] * v[at + 2] + ends[3] * v[at + 3]
-    k = behind
-    if tip:
-        out[k] = v[at + 2] + v[at + 4]
-        out[k + 1] = v[at + 3] + v[at + 5]
-        out[k + 2] = ends[4] * v[at + 2] + ends[5] * v[at + 3] + ends[6] * v[at + 4] + ends[7] * v[at + 5]
-        k += 3
-    if root:
-        out[k] = v[at] + v[at + 6]
-        out[k + 1] = v[at + 1] + v[at + 7]
-        out[k + 2] = ends[8] * v[at] + ends[9] * v[at + 1] + ends[10] * v[at + 6] + ends[11] * v[at + 7]
 
 
 @part()
@@ -297,4 +260,9 @@ def to_element(s, moving, inner, strips, local):
         x, y, bx, by = gradient[at + 6], gradient[at + 7], gradient[at], gradient[at + 1]
         h[at, turn] += ends[0] * by - ends[1] * bx
         h[turn, turn] += ends[10] * y - ends[11] * x + ends[8] * by - ends[9] * bx
+    if strips.numbers[s, SPRING] > 0.0:
+        points, count = hessian[POINTS], strips.compliance.shape[1]
+        add_roots(
+            at, special, behind, tip, root, ends, points, gradient, hessian, lines[16], h, g, width, count
+        )
     return behind + columns - 2

@@ -8,21 +8,66 @@ over L, energy over EI/L.
 
 from __future__ import annotations
 
-from spline_model.strip.compiled import part
+import math
+
+from spline_model.strip.compiled import called, part
 
 MATERIAL, SPATIAL = range(2)
 
 
+@called()
+def curl_law(b, drop, curl):
+    """How the flattening of a strip that curls across its width multiplies energy, moment and tangent.
+
+    The energy density is 1/2 R b^2 (1 - P f(x)) / (1 - P), x^2 = curl |b|, and R the rigidity at b = 0:
+
+        f = (2 / x) (cosh x - cos x) / (sinh x + sin x),      h = f + x f' / 4,
+
+    1 - P h for the moment and 1 - P (h + x h' / 2) for the tangent. P (drop): nu^2, or what clamps leave of
+    it. f is smooth in y = x^4: quotient of power series below 1, exponentials over the largest above.
+    Source: Ashwell, J R Aeronaut Soc 54 (1950) 708; Audoly and Neukirch, J Mech Phys Solids 153 (2021).
+    """
+    y = curl * curl * b * b
+    if y < 1.0:
+        n0 = 1.0 + y * (1.0 / 360.0 + y * (1.0 / 1814400.0 + y * (1.0 / 43589145600.0)))
+        n1 = 1.0 / 360.0 + y * (1.0 / 907200.0 + y * (1.0 / 14529715200.0))
+        n2 = 1.0 / 907200.0 + y * (1.0 / 7264857600.0)
+        d0 = 1.0 + y * (1.0 / 120.0 + y * (1.0 / 362880.0 + y * (1.0 / 6227020800.0)))
+        d1 = 1.0 / 120.0 + y * (1.0 / 181440.0 + y * (1.0 / 2075673600.0))
+        d2 = 1.0 / 181440.0 + y * (1.0 / 1037836800.0)
+        f = n0 / d0
+        slope = (n1 - f * d1) / d0
+        bend = (n2 - 2.0 * slope * d1 - f * d2) / d0
+        h, t = f + y * slope, f + y * (5.0 * slope + 2.0 * y * bend)
+    else:
+        x = math.sqrt(math.sqrt(y))
+        small = math.exp(-x)
+        c, s = 2.0 * small * math.cos(x), 2.0 * small * math.sin(x)
+        small *= small
+        even, odd, sinh = 1.0 + small, 1.0 - small, 1.0 - small + s  # over e^x / 2
+        q, d, w = (even - c) / sinh, (even + c) / sinh, (odd - s) / sinh
+        q1, q2 = 1.0 - q * d, 2.0 * q * d * d - d - q * w
+        over = q / x
+        f, first, second = 2.0 * over, 2.0 * (q1 - over), 2.0 * x * q2 - 4.0 * (q1 - over)
+        h, t = f + 0.25 * first, f + 0.875 * first + 0.125 * second
+    whole = 1.0 / (1.0 - drop)
+    return whole * (1.0 - drop * f), whole * (1.0 - drop * h), whole * (1.0 - drop * t)
+
+
 @part()
-def bending_law(phi, v, speed, curvature, rigidity, measure):
+def bending_law(phi, v, speed, curvature, rigidity, drop, curl, measure):
     """Energy, its derivatives in phi (the moment), phi phi, phi v, v and v v.
 
-    material (0)  1/2 EI (phi / J0 - kappa_0)^2 J0
+    material (0)  1/2 EI (phi / J0 - kappa_0)^2 J0, times the factor of ``curl_law`` where curl is not zero
     spatial (1)   1/2 EI (phi / v - kappa_0)^2 v     (Eq 10)
     """
     if measure == MATERIAL:
         b = phi / speed - curvature
-        return 0.5 * rigidity * b * b * speed, rigidity * b, rigidity / speed, 0.0, 0.0, 0.0
+        energy, moment, tangent = 0.5 * rigidity * b * b * speed, rigidity * b, rigidity / speed
+        if curl > 0.0:
+            by_energy, by_moment, by_tangent = curl_law(b, drop, curl)
+            energy, moment, tangent = energy * by_energy, moment * by_moment, tangent * by_tangent
+        return energy, moment, tangent, 0.0, 0.0, 0.0
     ratio = phi / v
     b = ratio - curvature
     return (

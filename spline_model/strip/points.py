@@ -8,7 +8,9 @@ import numpy as np
 
 from spline_model.strip.compiled import part
 from spline_model.strip.element import (
+    CURL,
     CURVATURE,
+    DROP,
     FIRST,
     GRADIENT,
     LAST,
@@ -18,6 +20,7 @@ from spline_model.strip.element import (
     RIGIDITY,
     SECOND,
     SPEED,
+    SPRING,
     STRAIN,
     STRETCHING,
     WEIGHT,
@@ -50,6 +53,12 @@ def evaluate_points(s, a, moving, shape, strips, local, out):
     for i in range(2 * moving):
         for j in range(i, 2 * moving):
             hessian[i, j] = 0.0
+    if numbers[SPRING] > 0.0:  # of roots that turn
+        for i in range(2):
+            push = numbers[SPRING + i] * points[i]
+            bending += 0.5 * push * points[i]
+            gradient[i] += push
+            hessian[i, i] = numbers[SPRING + i]
     for k in range(count):
         for i in range(2 * moving):
             hessian[2 * n + k, i] = 0.0
@@ -75,7 +84,9 @@ def evaluate_points(s, a, moving, shape, strips, local, out):
         slowest = min(slowest, v / speed)
         tx, ty = x1 / v, y1 / v
         phi = (x1 * y2 - y1 * x2) * r
-        density, m, m_phi, m_v, f, f_v = bending_law(phi, v, speed, at[CURVATURE], at[RIGIDITY], measure)
+        density, m, m_phi, m_v, f, f_v = bending_law(
+            phi, v, speed, at[CURVATURE], at[RIGIDITY], at[DROP], at[CURL], measure
+        )
         bending += weight * density
         moment[p] = m
         force = sliding = by_nv = 0.0

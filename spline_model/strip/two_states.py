@@ -11,8 +11,16 @@ Phil Trans R Soc A 357 (1999) 1021; Gonzalez, J Nonlinear Sci 6 (1996) 449.
 
 from __future__ import annotations
 
-from spline_model.strip.compiled import part
-from spline_model.strip.laws import MATERIAL
+from spline_model.strip.compiled import called, part
+from spline_model.strip.laws import MATERIAL, curl_law
+
+GAUSS = (
+    (0.5 - 0.4305681557970263, 0.17392742256872692),
+    (0.5 - 0.16999052179242813, 0.32607257743127307),
+    (0.5 + 0.16999052179242813, 0.32607257743127307),
+    (0.5 + 0.4305681557970263, 0.17392742256872692),
+)
+"""Points on [0, 1] and weights of Gauss and Legendre, four of them."""
 
 
 @part()
@@ -40,8 +48,31 @@ def bending_strain(c, v, speed, curvature, measure):
     return c / (v * v * v) - curvature, v
 
 
+@called()
+def mean_moment(e0, e1, drop, curl):
+    """Mean over R of the moment of ``curl_law`` between two strains, and its derivative in the second.
+
+    Times the change of the strain it is that of the energy to round-off: by Gauss's rule of four points,
+    which has no difference of energies, and over more than the law's own width by that difference.
+    """
+    if abs(e1 - e0) * curl > 1.0:
+        by_energy, by_moment, _ = curl_law(e1, drop, curl)
+        before = curl_law(e0, drop, curl)[0]
+        mean = 0.5 * (e1 * e1 * by_energy - e0 * e0 * before) / (e1 - e0)
+        return mean, (e1 * by_moment - mean) / (e1 - e0)
+    mean = slope = 0.0
+    for point, weight in GAUSS:
+        e = e0 + point * (e1 - e0)
+        _, by_moment, by_tangent = curl_law(e, drop, curl)
+        mean += weight * e * by_moment
+        slope += weight * point * by_tangent
+    return mean, slope
+
+
 @part()
-def bending_between(a0, b0, a2, b2, v0, x1, y1, x2, y2, v1, speed, curvature, rigidity, rate, measure):
+def bending_between(
+    a0, b0, a2, b2, v0, x1, y1, x2, y2, v1, speed, curvature, rigidity, drop, curl, rate, measure
+):
     """Discrete gradient (4 numbers) of bending in (x', y', x'', y''), and its derivative (4 x 4, by rows).
 
     a0, b0, a2, b2: C' and C'' of the first state; x1, y1, x2, y2 of the second.
@@ -51,8 +82,10 @@ def bending_between(a0, b0, a2, b2, v0, x1, y1, x2, y2, v1, speed, curvature, ri
     scale = 1.0 / speed if measure == MATERIAL else 1.0
     w = speed if measure == MATERIAL else 0.5 * (v0 + v1)
     e0, e1 = c0 * r0 * scale - curvature, c1 * r1 * scale - curvature
-    share, middle = 0.5 + rate, 0.5 * (c0 + c1)
-    moment = 0.5 * (e0 + e1) + rate * (e1 - e0)
+    moment, share, middle = 0.5 * (e0 + e1), 0.5, 0.5 * (c0 + c1)
+    if curl > 0.0:
+        moment, share = mean_moment(e0, e1, drop, curl)
+    moment, share = moment + rate * (e1 - e0), share + rate
     m0, m1, m2, m3 = 0.5 * (a0 + x1), 0.5 * (b0 + y1), 0.5 * (a2 + x2), 0.5 * (b2 + y2)
     factor = 2.0 * middle * divided
     d0, d1, d2, d3 = factor * m0 + mean * m3, factor * m1 - mean * m2, -mean * m1, mean * m0

@@ -15,6 +15,8 @@ from tests import gates
 #: Designs of a seed; the first ones are judged, the others on demand: `judged(range(COUNT))`.
 SEED, COUNT, JUDGED = 14, 200, 24
 MESHES = 40, 80
+#: Designs whose stress is judged, and meshes for it: strips that are bent far have short peaks.
+STRESSED, FINER = 50, (80, 160)
 #: Length [m], area [m^2] and modulus [Pa] of all strips; I follows from the slenderness L / sqrt(I / A).
 LENGTH, AREA, MODULUS = 0.1, 1e-5, 206e9
 CRITICAL = "limit point", "bifurcation", "turning point"
@@ -99,3 +101,36 @@ def test_default_answers_gate_has_teeth():
     """Requirement: the check notices six control points."""
     with pytest.raises(AssertionError, match="x the gate"):
         gates.check("default_answers", judged(range(4), **gates.teeth("default_answers"))[0])
+
+
+def stress_apart(numbers, **settings):
+    """Largest error of the largest stress over the paths of these designs, over its largest value."""
+    worst = 0.0
+    for number in numbers:
+        design, rotation = designs()[number]
+        pivot = spline_model.pivot.cross_axis_pivot(**design, **settings)
+        answer = spline_model.statics.solve_statics(pivot, rotation=rotation)
+        coarse, fine = (
+            fe_reference.statics.solve_statics(
+                fe_reference.pivot.cross_axis_pivot(**design, elements=count), rotation=rotation
+            ).largest_stress
+            for count in FINER
+        )
+        limit = (4.0 * fine - coarse) / 3.0
+        modulus = math.sqrt(AREA * design["second_moment_of_area"] / 3.0)
+        stress = np.abs(answer.axial_force) / AREA + np.abs(answer.bending_moment) / modulus
+        worst = max(worst, float(np.abs(stress.max(axis=(1, 2)) - limit).max() / limit.max()))
+    return worst
+
+
+@pytest.mark.slow
+def test_default_stress_is_right():
+    """Requirement: the largest stress of default answers is within 0.1 % of refined elements."""
+    gates.check("default_stress", stress_apart(range(STRESSED)))
+
+
+@pytest.mark.slow
+def test_default_stress_gate_has_teeth():
+    """Requirement: the check notices six control points."""
+    with pytest.raises(AssertionError, match="x the gate"):
+        gates.check("default_stress", stress_apart((4,), **gates.teeth("default_stress")))

@@ -17,12 +17,13 @@ PARAMETERS = {
     "driven_displacement": {"displacement": (-0.0148, -0.0011)},  # near the free path at 0.5 rad
     "pre_strain": {"curvature": 1.0, "strain": 1e-4},
 }
-EXTRA = [name for name in REGISTRY if name not in (*DEFAULT_EFFECTS, "inextensible")]
+EXTRA = [name for name in REGISTRY if name not in (*DEFAULT_EFFECTS, "inextensible", "root_compliance")]
+"""Effects that a motion can have beside the default ones."""
 
 
 def scene_with(*names, parameters=None, **settings):
     """Table 1 with a free strip on its body, whose scene holds the default effects and the named ones."""
-    pivot = cross_axis_pivot(**SIX).design
+    pivot = cross_axis_pivot(**SIX, width=0.01, thickness=0.005).design
     strips = list(pivot.strips)
     if "tip_force" in names:
         strips.append(
@@ -33,6 +34,8 @@ def scene_with(*names, parameters=None, **settings):
                 root="body",
                 area=5e-6,
                 second_moment_of_area=1e-12,
+                width=3.2275e-3,
+                thickness=1.5492e-3,
                 youngs_modulus=206e9,
                 density=7800.0,
             )

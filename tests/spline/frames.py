@@ -3,7 +3,6 @@
 import itertools
 import math
 
-from spline_model.effects import DrivenDisplacement
 from spline_model.mechanism import BodyDesign, StripDesign, mechanism
 from spline_model.pivot import Pivot
 from tests.table_one import TABLE_ONE
@@ -34,8 +33,7 @@ def lees_frame(*, load=3.0, area=6.0, **discretisation):
     """Lee, Manuel and Rossow's frame (1968): two members of 120 cm at a right angle, pinned ends.
 
     A = 6 cm^2, I = 2 cm^4, E = 720 t/cm^2 (in print also 7.06e6 N/cm^2); ``load`` [t] down at 24 cm from the
-    corner. The law is the extensible, shear-rigid elastica. A pin is a body without mass that is
-    held in its place and free to turn. Returns the scene.
+    corner. The law is the extensible, shear-rigid elastica. A pin is a body without mass.
     """
     section = {"area": area, "second_moment_of_area": 2.0, "youngs_modulus": 720.0, "density": 1.0}
     joints = {"foot": (0.0, 0.0), "corner": (0.0, 120.0), "loaded": (24.0, 120.0), "far": (120.0, 120.0)}
@@ -51,8 +49,7 @@ def lees_frame(*, load=3.0, area=6.0, **discretisation):
         parameters={"applied_force": {"body": "loaded", "force": (0.0, -load)}},
         **({"control_points": 6} | discretisation),
     )
-    pins = (DrivenDisplacement(body=name, displacement=(0.0, 0.0)) for name in ("foot", "far"))
-    return frame.with_effects(*pins)
+    return frame.pinned("foot", "far")
 
 
 def column(*, load, slenderness=1e3, side=0.0, effects=STATIC, **discretisation):

@@ -44,19 +44,29 @@ def test_a_flatter_toggle_has_no_limit_point():
 
 def test_lees_frame_passes_both_limit_points():
     """Requirement: Lee's frame passes its limit load and the one below zero, as published."""
-    against_print("spline_lee_published", limits(lees_frame(control_points=10), 3.0), (1.85, -0.94))
+    against_print("spline_lee_published", limits(lees_frame(control_points=10).scene, 3.0), (1.85, -0.94))
 
 
 def test_lees_frame_gate_has_teeth():
     """Requirement: the check notices a coarser curve."""
-    coarse = limits(lees_frame(**gates.teeth("spline_lee_published")), 3.0)
+    coarse = limits(lees_frame(**gates.teeth("spline_lee_published")).scene, 3.0)
     with pytest.raises(AssertionError, match="x the gate"):
         against_print("spline_lee_published", coarse, (1.85, -0.94))
 
 
+def test_a_load_that_turns_round_keeps_its_sign():
+    """Requirement: with default settings Lee's frame is followed through loads below zero, told with sign."""
+    path = solve_mechanism(lees_frame(control_points=None), control="arc-length")
+    assert path.estimate.accuracy == 1e-4 and path.resolution == ""
+    found = 3.0 * np.array([point.load_factor for point in path.critical_points])
+    against_print("spline_lee_published", found, (1.85, -0.94))
+    assert path.load_factor.min() < -0.3
+    assert "load factor -0.3138" in path.message
+
+
 def work_balance(late=0):
     """Work of the load on Lee's frame, some states late, against the energy stored at the end of its path."""
-    path = solve_loads(lees_frame(control_points=10), control="arc-length")[1]
+    path = solve_loads(lees_frame(control_points=10).scene, control="arc-length")[1]
     return abs(path.work[-1 - late] / path.energies[-1].sum() - 1)
 
 
@@ -73,7 +83,7 @@ def test_work_gate_has_teeth():
 
 def test_inertia_goes_with_the_limit_points():
     """Requirement: between its two limit points the frame is unstable, before and after it is not."""
-    path = solve_loads(lees_frame(control_points=8), control="arc-length")[1]
+    path = solve_loads(lees_frame(control_points=8).scene, control="arc-length")[1]
     slope = np.gradient(path.load_factor)
     turns = np.flatnonzero(np.diff(np.sign(slope))).tolist()
     assert set(path.inertia[: turns[0] - 1]) == {0}

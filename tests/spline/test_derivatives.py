@@ -5,6 +5,7 @@ import pytest
 
 from spline_model.bordered import evaluate
 from spline_model.compile import compile_scene
+from spline_model.effects.registry import DEFAULT_EFFECTS
 from spline_model.pivot import cross_axis_pivot
 from spline_model.quadrature import CURVATURE, STRAIN
 from tests import gates
@@ -18,6 +19,13 @@ FORMS = {
     "spatial consistent": {"stretch": "consistent", "measure": "spatial"},
     "printed": {"stretch": "consistent", "measure": "printed"},
     "B-spline": {"basis": "bspline", "control_points": 7, "axial_modes": 3},
+    "curling": {
+        "effects": (*DEFAULT_EFFECTS, "clamped_width", "anticlastic"),
+        "width": 0.04,
+        "thickness": 0.001,
+        "area": 4e-5,
+        "second_moment_of_area": 4e-11 / 12.0,
+    },
 }
 
 

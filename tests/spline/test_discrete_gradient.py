@@ -4,6 +4,8 @@ import numpy as np
 import pytest
 
 from spline_model.pivot import cross_axis_pivot
+from spline_model.strip.laws import MATERIAL, SPATIAL, stretching_law
+from spline_model.strip.two_states import stretching_between
 from tests import gates
 from tests.spline.steps import Step
 from tests.table_one import SIX
@@ -60,3 +62,12 @@ def test_discrete_gradient_gate_has_teeth():
     """Requirement: the plain gradient at the end of the step does not give the change of energy."""
     with pytest.raises(AssertionError, match="x the gate"):
         gates.check("spline_discrete_gradient", energy_identity("mixed", at_the_end=True))
+
+
+@pytest.mark.parametrize("measure", [MATERIAL, SPATIAL])
+def test_force_of_stretching_does_the_work_of_its_energy(measure):
+    """Between two states the force does the change of energy, natural strain among it."""
+    v0, v1, given = 1.03, 0.98, (1.01, 0.02, 7.0)
+    force = stretching_between.py_func(v0, v1, *given, 0.0, measure)[0]
+    energies = [stretching_law.py_func(v, *given, measure)[0] for v in (v0, v1)]
+    assert force * (v1 - v0) == pytest.approx(energies[1] - energies[0], rel=1e-13)

@@ -70,7 +70,7 @@ def phase_error(omega_h, mode=14, periods=400):
     steps = math.ceil(2 * math.pi * periods / omega_h)
     start = flight(system, motion, z, np.zeros(count), 1, "leapfrog")
     assert start.fly(omega_h / omega, steps) == 1
-    (z,), (v,), _ = start.shown(motion, 1)
+    (z,), (v,) = start.model.unknowns(start.records[1:])
     weighted = motion.mass @ shape
     phase = math.atan2(-weighted @ v / omega, weighted @ (z - system.rest)[:count])
     gained = (phase - steps * omega_h + math.pi) % (2 * math.pi) - math.pi

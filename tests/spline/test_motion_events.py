@@ -12,7 +12,7 @@ from spline_model.effects import DrivenRotation
 from spline_model.errors import InvalidParameter
 from spline_model.modes import static_state
 from spline_model.motion import energy_consistent
-from spline_model.motion.records import energy_gain, first_gain
+from spline_model.motion.records import KINETIC, STRAIN, energy_gain, first_gain
 from spline_model.motion.start import initial_acceleration, set_in_motion
 from spline_model.pivot import cross_axis_pivot, swinging_slide_stiffness
 from tests import gates
@@ -102,13 +102,13 @@ def test_generalised_alpha_stops_before_it_blows_up():
 
 def test_gain_has_a_scale_at_rest():
     """Requirement: a motion at rest, whose energies are round-off, gains nothing; a real gain is seen."""
-    rows = np.zeros((3, 7))
-    rows[:, 0] = 0.0, 1e-28, 2e-28
+    rows = np.zeros((3, 5))
+    rows[:, KINETIC] = 0.0, 1e-28, 2e-28
     assert first_gain(rows, 250.0, 1e-6) == 3
-    rows[:, 1] = 10.0, 10.0, 10.1
+    rows[:, STRAIN] = 10.0, 10.0, 10.1
     assert first_gain(rows, 250.0, 1e-6) == 2
     assert energy_gain(rows, 250.0)[2] == pytest.approx(0.1 / 10.1)
-    rows[1, 1] = np.nan
+    rows[1, STRAIN] = np.nan
     assert first_gain(rows, 250.0, 1e-6) == 1
 
 
@@ -146,14 +146,3 @@ def test_energy_content_adds_up_and_names_the_mode():
     assert content[1].share > CARRIED > content[2].share
     run = solve_release(released, duration=2e-4, step=2e-4)
     assert "mode 2 (bending, 850 Hz" in run.resolution and "take 5.9e-05 s or less" in run.resolution
-
-
-@pytest.mark.parametrize("steps", [200, 800])
-@pytest.mark.parametrize("start", [0.1, 0.5236, 1.0])
-def test_massless_strips_take_short_steps(start, steps):
-    """Requirement: massless strips move at short steps as at long ones, and keep energy."""
-    without = pivot(6, effects=("bending", "stretching", "body_inertia"))
-    run = solve_release(without, start=start, duration=0.013 / 8, step=0.013 / steps)
-    assert not run.message
-    stored = run.kinetic_energy + run.strain_energy
-    assert np.abs(stored / stored[0] - 1).max() < 1e-9  # three orders below a step of 1e-6 of the energy

@@ -244,7 +244,7 @@ def test_one_factorisation_a_state_and_one_back_substitution_a_parameter():
         (
             {"measure": "printed", "stretch": "consistent"},
             KEYWORDS,
-            "effects: got 'printed forces or an own potential', expected what the strips' elements know",
+            "effects: got 'printed forces, root_compliance or an own potential', expected what",
         ),
         ({}, ("strip_3.area",), "parameters: got 'strip_3.area', expected one of length, "),
     ],

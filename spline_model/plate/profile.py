@@ -1,0 +1,139 @@
+"""The rigidity along a strip whose clamps hold its section flat.
+
+    R(s) = EI (1 - nu^2 g(s)) / (1 - nu^2),      s in [0, 1] along the strip, u = s - 1/2,
+
+from EI / (1 - nu^2) at a clamp, where the section cannot curl, to about EI inside. g is the share of the
+curl that the clamps leave, the double root of the plate theory with one term across the width,
+(l^2 d^2 - 1)^2 g = A with g = g' = 0 at both clamps:
+
+    g = A (1 - alpha cosh(u/l) - beta (u/l) sinh(u/l)).
+
+A and l are such that the strip has both factors of its plate in the linear range,
+
+    1 / f_b = int EI/R ds,      1 / f_s = 12 int u^2 EI/R ds,
+
+so that nothing is fitted to an answer. Left out: what the plate does beyond these two at large rotations.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+from numpy.polynomial import legendre
+from numpy.typing import NDArray
+
+from spline_model.basis import SplineBasis, gauss_legendre
+from spline_model.plate.factors import plate_factors
+
+Array = NDArray[np.float64]
+
+MOST_STEPS = 30
+TOLERANCE = 1e-13
+"""Of the two compliances, 1 / f; round-off is some 1e-15."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Profile:
+    """g(s) of a strip by its size A, its reach l over L and its Poisson ratio."""
+
+    size: float
+    reach: float
+    poisson_ratio: float
+
+    def share(self, s: Array) -> Array:
+        """g at s (P,), zero at the clamps."""
+        return self.size * (1.0 - _decay(np.asarray(s), self.reach))
+
+    def compliance(self, s: Array) -> Array:
+        """EI / R at s (P,)."""
+        square = self.poisson_ratio**2
+        return np.asarray((1.0 - square) / (1.0 - square * self.share(s)))
+
+
+def _decay(s: Array, reach: float) -> Array:
+    """alpha cosh(u/l) + beta (u/l) sinh(u/l): 1 with zero slope at both ends; relative to e^(1/2l)."""
+    half, u = 0.5 / reach, np.abs(s - 0.5) / reach
+    small, grown = math.exp(-2.0 * half), 0.5 * np.exp(u - half)
+    cosh, sinh = grown * (1.0 + np.exp(-2.0 * u)), grown * (1.0 - np.exp(-2.0 * u))
+    cosh_end, sinh_end = 0.5 * (1.0 + small), 0.5 * (1.0 - small)
+    determinant = cosh_end * sinh_end + half * (cosh_end**2 - sinh_end**2)
+    alpha, beta = (sinh_end + half * cosh_end) / determinant, -sinh_end / determinant
+    return np.asarray(alpha * cosh + beta * u * sinh)
+
+
+@lru_cache(maxsize=256)
+def profile_of(ratio: float, poisson_ratio: float) -> Profile:
+    """The profile of a strip of width over length ``ratio``; kept, for the plate takes some milliseconds.
+
+    Newton's method in log A and log l.
+    """
+    factors = plate_factors(ratio, poisson_ratio)
+    aim, logs = 1.0 / np.array(factors), np.log([1.0, 0.2 * ratio])
+    square = poisson_ratio**2
+    for _ in range(MOST_STEPS if square > 0.0 else 0):
+        found = _compliances(logs, ratio, poisson_ratio)
+        if np.abs(found - aim).max() < TOLERANCE:
+            break
+        step = 1e-6
+        rates = [(_compliances(logs + step * e, ratio, poisson_ratio) - found) / step for e in np.eye(2)]
+        change = np.linalg.solve(np.transpose(rates), aim - found)
+        logs += change * min(1.0, 0.5 / np.abs(change).max())
+    else:
+        assert square == 0.0, f"no profile for b/L = {ratio:g}, nu = {poisson_ratio:g}"
+    return Profile(size=math.exp(logs[0]), reach=math.exp(logs[1]), poisson_ratio=poisson_ratio)
+
+
+def _compliances(logs: Array, ratio: float, poisson_ratio: float) -> Array:
+    """1 / f_b and 1 / f_s of a profile."""
+    s, weight = _graded(ratio, (0.0, 1.0), 16)
+    size, reach = np.exp(logs)
+    c = Profile(size=size, reach=reach, poisson_ratio=poisson_ratio).compliance(s)
+    return np.array([weight @ c, 12.0 * weight @ (c * (s - 0.5) ** 2)])
+
+
+@lru_cache(maxsize=256)
+def _graded(ratio: float, breakpoints: tuple[float, ...], points: int) -> tuple[Array, Array]:
+    """Points and weights on [0, 1] that see layers of some 0.1 of the width at both ends, and breakpoints."""
+    layers = [min(0.5, part * ratio) for part in (0.25, 0.5, 1.0, 2.0, 4.0, 8.0)]
+    edges = np.unique([*breakpoints, *layers, *(1.0 - part for part in layers)])
+    nodes, weights = gauss_legendre(points)
+    width = np.diff(edges)[:, None]
+    return (edges[:-1, None] + width * (nodes + 1.0) / 2.0).ravel(), (width * weights / 2.0).ravel()
+
+
+def rigidity_of(ratio: float, poisson_ratio: float, basis: SplineBasis, u: Array) -> Array:
+    """R / EI at u (P,) as a strip of that basis can follow it.
+
+    The compliance EI / R in each knot span is projected on polynomials of the degree of the curvature under
+    a linear moment, less one: the strip's own curvature M EI / R is then one that it can take, and it has
+    both factors exactly, however thin the layers are. With more control points it tends to R.
+    """
+    return _rigidity(ratio, poisson_ratio, basis, u.tobytes())
+
+
+@lru_cache(maxsize=256)
+def _rigidity(ratio: float, poisson_ratio: float, basis: SplineBasis, at: bytes) -> Array:
+    coefficients, u = _projected(ratio, poisson_ratio, basis), np.frombuffer(at)
+    span = basis.first_of_support(u)
+    left, width = basis.breakpoints[span], np.diff(basis.breakpoints)[span]
+    values = legendre.legvander(2.0 * (u - left) / width - 1.0, coefficients.shape[1] - 1)
+    rigidity = 1.0 / np.einsum("pk,pk->p", values, coefficients[span])
+    rigidity.setflags(write=False)
+    return np.asarray(rigidity)
+
+
+@lru_cache(maxsize=256)
+def _projected(ratio: float, poisson_ratio: float, basis: SplineBasis) -> Array:
+    """Legendre coefficients (spans, degree + 1) of EI / R."""
+    profile, degree = profile_of(ratio, poisson_ratio), max(2, basis.degree - 3)
+    s, w = _graded(ratio, tuple(basis.breakpoints), 16 + degree)
+    span = basis.first_of_support(s)
+    left, long = basis.breakpoints[span], np.diff(basis.breakpoints)[span]
+    values = legendre.legvander(2.0 * (s - left) / long - 1.0, degree)
+    spans = len(basis.breakpoints) - 1
+    found = np.zeros((spans, degree + 1))
+    np.add.at(found, span, (w * profile.compliance(s) / long)[:, None] * values)
+    return found * (2.0 * np.arange(degree + 1) + 1.0)

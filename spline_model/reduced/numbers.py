@@ -1,0 +1,89 @@
+"""What tells the strips' elements of a scene from one another: the numbers of each, in one row."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from spline_model.compile import System
+from spline_model.effects import MixedStretching, RootCompliance, Stretching, StripGravity
+from spline_model.reduced.axial import natural_strain
+from spline_model.reduced.ends import End, frames_of
+from spline_model.strip.element import (
+    FIRST,
+    ON_POINTS,
+    PER_U,
+    REACH,
+    ROOT,
+    SECOND,
+    SPRING,
+    STRAIN,
+    STRETCHING,
+    TIP,
+    Shape,
+)
+from spline_model.tables import steady_loads
+
+Array = NDArray[np.float64]
+
+
+def in_order(points: Array, shape: Shape) -> Array:
+    """Values at control points (..., n, 2) in the order of elimination, zero at one on no curve."""
+    on_none = np.zeros((*points.shape[:-2], 1, 2))
+    return np.asarray(np.concatenate((points, on_none), axis=-2)[..., shape.order, :])
+
+
+def speeds(shape: Shape, control_points: Array) -> tuple[Array, Array]:
+    """Speed and curvature at rest (S, G) of strips of control points (S, n, 2)."""
+    curve = shape.tables[FIRST : SECOND + 1, None] @ in_order(control_points, shape)
+    (x1, x2), (y1, y2) = curve[..., 0], curve[..., 1]
+    speed = np.hypot(x1, y1)
+    return speed, (x1 * y2 - y1 * x2) / speed**3
+
+
+def numbers_of(
+    system: System,
+    shape: Shape,
+    mixed: list[list[MixedStretching]],
+    consistent: dict[str, Stretching],
+    starts: list[End],
+    tips: list[End],
+) -> Array:
+    """The numbers of ``Strips``, (S, 14 + 2 n)."""
+    scene, length, energy = system.scene, system.scales.length, system.scales.energy
+    numbers = np.zeros((len(scene.strips), ON_POINTS + 2 * len(shape.order)))
+    for row, strip, parts in zip(numbers, scene.strips, mixed, strict=True):
+        stretching, points = consistent.get(strip.name), strip.control_points.tolist()
+        row[STRETCHING] = 0.0 if stretching is None else stretching.axial_rigidity * length / energy
+        row[STRAIN] = natural_strain(parts, stretching)
+        row[REACH:SPRING] = (
+            math.dist(points[1], points[0]) / length,
+            math.dist(points[-1], points[-2]) / length,
+        )
+    roots = {(e.strip, e.end): 1.0 / e.compliance for e in scene.of(RootCompliance)}
+    if roots:  # a free end has a frame of its own, against which it does not turn
+        for row, strip in zip(numbers, scene.strips, strict=True):
+            springs = [roots.get((strip.name, end), energy) / energy for end in ("start", "end")]
+            row[SPRING:PER_U] = springs
+    numbers[:, ROOT:TIP], numbers[:, TIP:REACH] = frames_of(starts, length), frames_of(tips, length)
+    if system.weight.size:
+        numbers[:, ON_POINTS:], numbers[:, PER_U:ON_POINTS] = _dead(system, shape)
+    return numbers
+
+
+def _dead(system: System, shape: Shape) -> tuple[Array, Array]:
+    """Dead load on the control points (S, 2 n), in the order of elimination, and per du (S, 2)."""
+    scene, weight = system.scene, system.weight.copy()
+    for place, value in steady_loads(scene, system.layout):  # they act on bodies and free ends
+        weight[place] -= value
+    force = system.scales.energy / system.scales.length
+    dead, per_u = np.zeros((len(scene.strips), 2 * len(shape.order))), np.zeros((len(scene.strips), 2))
+    for s, strip in enumerate(scene.strips):
+        dead[s] = in_order(weight[system.layout.strip(strip.name)].reshape(-1, 2), shape).ravel() / force
+        for effect in scene.of(StripGravity):
+            if effect.strip == strip.name:
+                mass = effect.linear_density * float(strip.share_of_length().sum())
+                per_u[s] += mass * np.asarray(effect.acceleration) / force
+    return dead, per_u

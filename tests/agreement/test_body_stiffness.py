@@ -1,0 +1,86 @@
+"""The 3 x 3 stiffness of a body: both models agree, and it is what is known of it in closed form."""
+
+import math
+
+import numpy as np
+import pytest
+
+import fe_reference
+import spline_model
+from studies.answers.settings import FeSettings, SplineSettings
+from studies.cases.design import named_design
+from tests import gates
+from tests.agreement.loaded import LOADS, design, solution
+from tests.table_one import TABLE_ONE
+
+MESHES = FeSettings(elements=20), FeSettings(elements=40)
+
+
+def apart(asked, body=None, control_points=10):
+    """Largest difference of the spline from the limit of two meshes, over the largest entry of its units."""
+    coarse, fine = (solution(asked, mesh)[0].body_stiffness(body) for mesh in MESHES)
+    limit = (4.0 * fine - coarse) / 3.0
+    found = solution(asked, SplineSettings(control_points=control_points))[0].body_stiffness(body)
+    unit = np.sqrt(np.abs(np.einsum("sii->si", limit)).max(axis=0))
+    return float((np.abs(found - limit) / (unit[:, None] * unit)).max())
+
+
+@pytest.mark.parametrize("effect", LOADS)
+def test_body_stiffness_agrees(effect):
+    """Requirement: under every load, along a path, both models give a body the same stiffness."""
+    gates.check("body_stiffness", apart(design(effect)))
+
+
+@pytest.mark.parametrize("body", [None, "coupler"])
+def test_body_stiffness_of_a_linkage_agrees(body):
+    """Requirement: so they do for the driven body of a linkage, and for another one while that is held."""
+    gates.check("body_stiffness", apart(named_design("four_bar_of_flexures"), body))
+
+
+def test_body_stiffness_gate_has_teeth():
+    """Requirement: fewer control points do not pass."""
+    with pytest.raises(AssertionError, match="x the gate"):
+        gates.check("body_stiffness", apart(design("applied_force"), **gates.teeth("body_stiffness")))
+
+
+@pytest.mark.parametrize(
+    ("package", "how"),
+    [
+        (spline_model, {"control_points": 6}),
+        (spline_model, {"control_points": 6, "basis": "bspline"}),
+        (spline_model, {"control_points": 6, "measure": "printed", "stretch": "consistent"}),
+        (fe_reference, {"elements": 8}),
+    ],
+)
+def test_body_stiffness_holds_that_of_the_rotation(package, how):
+    """Requirement: with x and y released it is d(torque)/d(rotation), in every form of the models."""
+    path = package.solve_statics(package.cross_axis_pivot(**TABLE_ONE, **how), rotation=0.6, increments=3)
+    released = 1.0 / np.linalg.inv(path.body_stiffness())[:, 2, 2]
+    assert released == pytest.approx(path.stiffness, rel=1e-8)
+
+
+@pytest.mark.parametrize(
+    ("package", "how"), [(spline_model, {"control_points": 6}), (fe_reference, {"elements": 1})]
+)
+def test_body_stiffness_at_rest_is_that_of_straight_beams(package, how):
+    """Requirement: at rest it is the sum of clamped beams, EA/L along and 12 EI/L^3 across each."""
+    length, modulus = TABLE_ONE["length"], TABLE_ONE["youngs_modulus"]
+    rigidity, expected = modulus * TABLE_ONE["second_moment_of_area"], np.zeros((3, 3))
+    for sign in (1.0, -1.0):
+        c, s, arm = sign * math.cos(TABLE_ONE["inclination"]), math.sin(TABLE_ONE["inclination"]), sign * 0.03
+        beam = np.zeros((3, 3))
+        beam[0, 0] = modulus * TABLE_ONE["area"] / length
+        beam[1:, 1:] = rigidity / length**3 * np.array([[12.0, -6 * length], [-6 * length, 4 * length**2]])
+        by_tip = np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
+        by_centre = by_tip @ np.array([[1.0, 0.0, 0.0], [0.0, 1.0, arm], [0.0, 0.0, 1.0]])
+        expected += by_centre.T @ beam @ by_centre
+    path = package.solve_statics(package.cross_axis_pivot(**TABLE_ONE, **how), rotation=0.1, increments=1)
+    assert path.body_stiffness()[0] == pytest.approx(expected, abs=1e-9 * np.abs(expected).max())
+
+
+def test_strips_that_cannot_stretch_leave_no_stiffness_at_rest():
+    """Requirement: straight inextensible strips hold the body in x and y without end: there is no number."""
+    pivot = spline_model.cross_axis_pivot(**TABLE_ONE, control_points=6, stretch="inextensible")
+    found = spline_model.solve_statics(pivot, rotation=0.6, increments=2).body_stiffness()
+    assert np.isnan(found[0]).all()
+    assert np.isfinite(found[1:]).all()

@@ -1,0 +1,131 @@
+"""Anticlastic bending: Ashwell's law, what it does in a scene, and what refuses it."""
+
+import numpy as np
+import pytest
+
+from spline_model.batch import solve_many
+from spline_model.dynamics import solve_motion
+from spline_model.effects.registry import DEFAULT_EFFECTS
+from spline_model.errors import InvalidParameter
+from spline_model.mechanism import BodyDesign, StripDesign, mechanism
+from spline_model.sequential_impulse import impulse_solver
+from spline_model.statics import solve_mechanism, solve_statics
+from spline_model.strip import two_states
+from spline_model.strip.laws import curl_law
+from spline_model.strip.two_states import mean_moment
+from tests import gates
+from tests.spline.test_clamped_width import BARE, CLAMPED, thin_pivot
+
+CURLING = (*CLAMPED, "anticlastic")
+#: b^2 / (R t), factors of moment and stiffness in pure bending at nu = 0.3: Ashwell's law, printed digits.
+ASHWELL = [
+    (1.0, 1.0029, 1.0085),
+    (2.0, 1.0106, 1.0293),
+    (5.0, 1.0402, 1.0816),
+    (10.0, 1.0634, 1.0854),
+    (50.0, 1.0826, 1.0908),
+    (1000.0, 1.0953, 1.0971),
+]
+
+
+def rolled(flatness, effects=(*DEFAULT_EFFECTS, "anticlastic"), **settings):
+    """A strip of unit length that is bent to 1/R = 1/2 by its tip, b^2 / (R t) = flatness."""
+    sides = {"width": 0.3, "thickness": 0.3**2 * 0.5 / flatness}
+    strip = StripDesign(
+        name="strip", start=(0.0, 0.0), end=(1.0, 0.0), tip="tip", youngs_modulus=2e11, density=1.0, **sides
+    )
+    tip = BodyDesign(name="tip", centre=(1.0, 0.0))
+    made = mechanism(strips=[strip], bodies=[tip], effects=effects, **settings)
+    return made, solve_mechanism(made, rotation=0.5, increments=4)
+
+
+def test_anticlastic_bending_in_a_roll_up():
+    """A strip rolled up by its end has the moment and the stiffness of Ashwell's law."""
+
+    def error(poisson_ratio=0.3):
+        found = []
+        for flatness, *_ in ASHWELL:
+            made, path = rolled(flatness)
+            rigidity = made.design.strips[0].flexural_rigidity
+            found.append((path.torque[-1] / (0.5 * rigidity), path.stiffness[-1] / rigidity))
+        wrong = (0.3 / poisson_ratio) ** 2 - 1.0
+        return np.abs(np.array(found) - 1.0 - (1.0 + wrong) * (np.array(ASHWELL)[:, 1:] - 1.0)).max()
+
+    gates.check("spline_anticlastic", error())
+    with pytest.raises(AssertionError):
+        gates.check("spline_anticlastic", error(**gates.teeth("spline_anticlastic")))
+
+
+def test_roll_up_reports_the_moment_that_bends_it():
+    """Sections carry the moment of the law, which is that of balance, and the energy is its work."""
+    made, path = rolled(20.0)
+    assert path.bending_moment[-1] == pytest.approx(np.full_like(path.bending_moment[-1], path.torque[-1]))
+    law = getattr(curl_law, "py_func", curl_law)
+    energy = 0.5 * made.design.strips[0].flexural_rigidity * 0.5**2
+    by_energy = law(0.5, 0.09, np.sqrt(3.0 * 0.91) * 20.0 / 0.5)[0]
+    assert path.bending_energy[-1] == pytest.approx(energy * by_energy, rel=1e-10)
+
+
+@pytest.mark.parametrize("strain", [0.3, 0.999999, 1.000001, -4.0, 60.0])
+def test_curl_law_is_one_law(strain):
+    """Moment and tangent are derivatives of the energy, over the seam of its two formulas too."""
+    law, drop, step = getattr(curl_law, "py_func", curl_law), 0.09, 1e-5 * abs(strain)
+    factors = np.array([law(strain + k * step, drop, 1.0) for k in (-1, 0, 1)])
+    b = strain + step * np.array([-1.0, 0.0, 1.0])
+    energy, moment = 0.5 * b**2 * factors[:, 0], b * factors[:, 1]
+    assert (energy[2] - energy[0]) / (2.0 * step) == pytest.approx(moment[1], rel=1e-9)
+    assert (moment[2] - moment[0]) / (2.0 * step) == pytest.approx(factors[1, 2], rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("before", "after"), [(0.3, 0.31), (0.2, 1.15), (-0.5, 0.4), (-3.0, 9.0), (80.0, 81.5)]
+)
+def test_mean_moment_does_the_work_of_the_energy(before, after, monkeypatch):
+    """The mean moment of a step times the change of strain is the change of energy, to round-off."""
+    law, mean = (getattr(each, "py_func", each) for each in (curl_law, mean_moment))
+    monkeypatch.setattr(two_states, "curl_law", law)
+    energy = [0.5 * b * b * law(b, 0.09, 1.0)[0] for b in (before, after)]
+    found, slope = mean(before, after, 0.09, 1.0)
+    assert found * (after - before) == pytest.approx(energy[1] - energy[0], rel=1e-12, abs=1e-14)
+    near = [mean(before, after + step, 0.09, 1.0)[0] for step in (-1e-6, 1e-6)]
+    assert slope == pytest.approx((near[1] - near[0]) / 2e-6, rel=1e-6)
+
+
+def test_curl_never_exceeds_the_plate():
+    """With both effects no strip is stiffer than one that is held flat, and each adds to the other."""
+    flat, torque = 1.0 / (1.0 - BARE["poisson_ratio"] ** 2), []
+    for effects in (DEFAULT_EFFECTS, CLAMPED, (*DEFAULT_EFFECTS, "anticlastic"), CURLING):
+        pivot = thin_pivot(0.02, thickness=5e-4, effects=effects)
+        torque.append(solve_statics(pivot, rotation=1.0, increments=4).torque[-1])
+    plain, clamped, curved, both = np.array(torque) / torque[0]
+    assert 1.0 == plain < clamped < curved < both < flat
+
+
+def test_a_batch_scales_the_curl():
+    """Designs of other sides and another length have their own flattening in a batch."""
+    pivot = thin_pivot(0.01, effects=(*DEFAULT_EFFECTS, "anticlastic"))
+    changed = {"thickness": 3e-4, "width": 0.02}
+    one = thin_pivot(effects=pivot.effects, **changed)
+    alone = solve_statics(one, rotation=1.0, increments=4)
+    found = solve_many(pivot, {k: [v] for k, v in changed.items()}, rotation=1.0, increments=4)
+    assert found.torque[0] == pytest.approx(alone.torque, rel=1e-9)
+
+
+@pytest.mark.slow
+def test_motion_keeps_its_energy():
+    """The default motion loses and gains no energy with both effects of the curl."""
+    body = {"body_mass": 0.05, "body_moment_of_inertia": 1e-4, "control_points": 6}
+    run = solve_motion(
+        thin_pivot(0.02, thickness=1e-3, effects=CURLING, **body), start=np.pi / 2, duration=0.02
+    )
+    energy = run.kinetic_energy + run.strain_energy
+    assert np.abs(energy / energy[0] - 1.0).max() < 1e-10
+
+
+def test_what_does_not_know_the_curl_says_so():
+    """The spatial measure and sequential impulses refuse anticlastic bending by its name."""
+    anticlastic = (*DEFAULT_EFFECTS, "anticlastic")
+    with pytest.raises(InvalidParameter, match="measure: got 'spatial', expected material for anticlastic"):
+        thin_pivot(0.01, effects=anticlastic, measure="spatial")
+    with pytest.raises(InvalidParameter, match="effects: got 'anticlastic'"):
+        impulse_solver(thin_pivot(0.01, effects=anticlastic))

@@ -1,0 +1,200 @@
+"""A strip by its width and thickness, and clamps over the whole width: what they need, and what they give."""
+
+import numpy as np
+import pytest
+
+from spline_model.batch import solve_many
+from spline_model.effects.registry import DEFAULT_EFFECTS
+from spline_model.errors import InvalidParameter
+from spline_model.mechanism import BodyDesign, StripDesign, mechanism
+from spline_model.pivot import cross_axis_pivot
+from spline_model.plate.factors import plate_factors
+from spline_model.plate.profile import profile_of
+from spline_model.sensitivity.solve import sensitivities
+from spline_model.statics import solve_mechanism, solve_statics
+from tests import gates
+from tests.table_one import TABLE_ONE
+
+SIDES = {"width": 0.01, "thickness": 0.005}
+BARE = {name: value for name, value in TABLE_ONE.items() if name not in ("area", "second_moment_of_area")}
+CLAMPED = (*DEFAULT_EFFECTS, "clamped_width")
+#: b/L, Poisson ratio, factors of a constant and of a linear moment: Ritz values of the literature.
+KNOWN = [
+    (0.1, 0.30, 1.0075, 1.0205),
+    (0.2, 0.29, 1.0140, 1.0349),
+    (0.25, 0.30, 1.0188, 1.0445),
+    (0.5, 0.30, 1.0376, 1.0678),
+    (1.0, 0.29, 1.0599, 1.0776),
+    (2.0, 0.33, 1.1009, 1.1125),
+]
+
+
+def thin_pivot(width, **changed):
+    """A pivot of strips so thin that stretch is out of sight, whose clamps hold the whole width."""
+    return cross_axis_pivot(
+        **BARE | {"width": width, "thickness": 1e-4, "effects": CLAMPED, "control_points": 8} | changed
+    )
+
+
+def guide(width, thickness=1e-5, **settings):
+    """Two strips of unit length side by side that carry a stage."""
+    section = {"width": width, "thickness": thickness, "youngs_modulus": 2e11, "density": 7800.0}
+    strips = [
+        StripDesign(name=f"strip_{i}", start=(0.0, y), end=(1.0, y), tip="stage", **section)
+        for i, y in enumerate((-0.5, 0.5))
+    ]
+    return mechanism(strips=strips, bodies=[BodyDesign(name="stage", centre=(1.0, 0.0))], **settings)
+
+
+def test_width_and_thickness_stand_for_area_and_second_moment():
+    """Sides give A = b t and I = b t^3 / 12; printed ones beside them count, and may be rounded."""
+    strip = cross_axis_pivot(**BARE, **SIDES).design.strips[0]
+    assert strip.area == 0.01 * 0.005
+    assert strip.second_moment_of_area == pytest.approx(0.01 * 0.005**3 / 12.0, rel=1e-15)
+    both = cross_axis_pivot(**TABLE_ONE, **SIDES).design.strips[0]
+    assert both.second_moment_of_area == TABLE_ONE["second_moment_of_area"]
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        ({"width": 0.01}, "thickness: got None, expected width and thickness, both or neither"),
+        ({"width": -1.0, "thickness": 1.0}, "width: got -1.0, expected a finite number > 0 [m]"),
+        (SIDES | {"area": 6e-5}, "area: got 6e-05, expected 5e-05, that of width and thickness, or none"),
+        ({"area": 5e-5}, "area: got 'none', expected area and second_moment_of_area, or width and thickness"),
+    ],
+)
+def test_sides_that_do_not_fit_are_refused(given, message):
+    """One side alone, an impossible one, one that contradicts the area, and half a section are refused."""
+    with pytest.raises(InvalidParameter) as caught:
+        cross_axis_pivot(**BARE, **given)
+    assert str(caught.value) == message
+
+
+def test_plate_factors_are_those_of_the_literature():
+    """Both factors of a clamped plate are the published ones, to their printed digits."""
+
+    def error(poisson_ratio=0.0):
+        found = [plate_factors(ratio, nu + poisson_ratio) for ratio, nu, *_ in KNOWN]
+        return np.abs(np.array(found) - np.array(KNOWN)[:, 2:]).max()
+
+    gates.check("spline_plate_factors", error())
+    with pytest.raises(AssertionError):
+        gates.check("spline_plate_factors", error(**gates.teeth("spline_plate_factors")))
+
+
+def test_plate_factors_are_converged(monkeypatch):
+    """More functions across and along change the factors by less than a digit that anything here shows."""
+
+    def error(across=16, cells=26):
+        found = [[plate_factors(ratio, 0.45) for ratio in (0.05, 0.5, 2.0)]]
+        with monkeypatch.context() as finer:
+            finer.setattr("spline_model.plate.factors.ACROSS", across)
+            finer.setattr("spline_model.plate.factors.CELLS", cells)
+            found.append([plate_factors(ratio, 0.45) for ratio in (0.05, 0.5, 2.0)])
+        return np.abs(np.subtract(*found)).max()
+
+    gates.check("spline_plate_ritz", error())
+    with pytest.raises(AssertionError):
+        gates.check("spline_plate_ritz", error(**gates.teeth("spline_plate_ritz")))
+
+
+@pytest.mark.parametrize("ratio", [0.05, 0.118, 0.5, 2.0])
+@pytest.mark.parametrize("nu", [0.25, 0.45])
+def test_profile_has_both_factors(ratio, nu):
+    """The rigidity along the strip is EI/(1 - nu^2) at a clamp, smooth there, and has both plate factors."""
+    profile, factors = profile_of(ratio, nu), plate_factors(ratio, nu)
+    s, weight = np.polynomial.legendre.leggauss(400)
+    s, weight = 0.5 * (s + 1.0), 0.5 * weight
+    c = profile.compliance(s)
+    assert 1.0 / (weight @ c) == pytest.approx(factors.constant, rel=1e-10)
+    assert 1.0 / (12.0 * weight @ (c * (s - 0.5) ** 2)) == pytest.approx(factors.linear, rel=1e-10)
+    ends = np.array([0.0, 1.0])
+    assert np.abs(profile.share(ends)).max() < 1e-12
+    assert np.abs(profile.share(ends + np.array([1e-6, -1e-6]))).max() < 1e-6
+
+
+@pytest.mark.parametrize("crossing_ratio", [0.5, 0.3, 0.873])
+def test_clamped_width_gives_a_pivot_the_stiffness_of_its_plates(crossing_ratio):
+    """K(0) = sum EI/L [f_b + 12 (lambda - 1/2)^2 f_s] for all widths, with five control points or more."""
+
+    def error(control_points=6):
+        worst = 0.0
+        for ratio in (0.05, 0.5, 2.0):
+            pivot = thin_pivot(
+                ratio * BARE["length"], control_points=control_points, crossing_ratio=crossing_ratio
+            )
+            found = solve_statics(pivot, rotation=1e-4, increments=1).stiffness[0]
+            bend, shift = plate_factors(ratio, BARE["poisson_ratio"])
+            known = bend + 12.0 * (crossing_ratio - 0.5) ** 2 * shift
+            known *= 2.0 * pivot.flexural_rigidity / BARE["length"]
+            worst = max(worst, abs(found / known - 1.0))
+        return worst
+
+    gates.check("spline_clamped_width", error())
+    with pytest.raises(AssertionError):
+        gates.check("spline_clamped_width", error(**gates.teeth("spline_clamped_width")))
+
+
+@pytest.mark.parametrize("grid", [{}, {"basis": "bspline"}, {"measure": "spatial"}])
+def test_clamped_width_in_a_guide(grid):
+    """A parallel guide is stiffer by f_s, in either basis and measure."""
+    shift = {"driven_displacement": {"displacement": (0.0, 1e-6)}}
+
+    def error(control_points=9):
+        stored = []
+        for more in ((), ("clamped_width",)):
+            names = (*DEFAULT_EFFECTS, "driven_displacement", *more)
+            made = guide(0.4, effects=names, parameters=shift, control_points=control_points, **grid)
+            stored.append(solve_mechanism(made, increments=1).bending_energy[-1])
+        return abs(stored[1] / stored[0] / plate_factors(0.4, 0.3).linear - 1.0)
+
+    gates.check("spline_clamped_guide", error())
+    with pytest.raises(AssertionError):
+        gates.check("spline_clamped_guide", error(**gates.teeth("spline_clamped_guide")))
+
+
+@pytest.mark.parametrize(
+    ("changed", "effects", "message"),
+    [
+        ({"tip": None}, CLAMPED, "tip of strip_0: got None, expected ground or a body for clamped_width"),
+        ({"rise": 0.1}, CLAMPED, "rise of strip_0: got 0.1, expected 0, a straight strip, for clamped_width"),
+        ({"width": 5.0}, CLAMPED, "width over length of strip_0: got 5.0, expected 0.005 to 4"),
+        (
+            {"width": None, "thickness": None, "area": 1e-5, "second_moment_of_area": 1e-16},
+            CLAMPED,
+            "width of strip_0: got None, expected width and thickness [m] for clamped_width",
+        ),
+    ],
+)
+def test_strips_without_a_clamped_width_are_refused(changed, effects, message):
+    """What has no width, no clamp or another form than a straight strip is refused in one line."""
+    given = {"name": "strip_0", "start": (0.0, 0.0), "end": (1.0, 0.0), "tip": "stage"}
+    given |= {"width": 0.4, "thickness": 1e-3, "youngs_modulus": 2e11, "density": 7800.0}
+    with pytest.raises(InvalidParameter) as caught:
+        mechanism(
+            strips=[StripDesign(**given | changed)],
+            bodies=[BodyDesign(name="stage", centre=(1.0, 0.0))],
+            effects=effects,
+        )
+    assert str(caught.value) == message
+
+
+def test_natural_curvature_beside_a_curl_is_refused():
+    """Pre-strain that bends the strips at rest is refused beside effects of the section's curl."""
+    with pytest.raises(InvalidParameter, match="natural curvature of pre_strain: got 1"):
+        thin_pivot(0.01, effects=(*CLAMPED, "pre_strain"), parameters={"pre_strain": {"curvature": 1.0}})
+
+
+def test_batches_and_sensitivities_know_their_bounds():
+    """A batch keeps the profile where b/L stays, refuses it where it does not; sensitivities refuse it."""
+    pivot = thin_pivot(0.01)
+    alone = solve_statics(
+        thin_pivot(0.01, thickness=2e-4, youngs_modulus=1e11, control_points=8), rotation=0.5, increments=4
+    )
+    found = solve_many(pivot, {"thickness": [2e-4], "youngs_modulus": [1e11]}, rotation=0.5, increments=4)
+    assert found.torque[0] == pytest.approx(alone.torque, rel=1e-9)
+    with pytest.raises(InvalidParameter, match=r"design 1: b/L of strip_1: got .*, that of the mechanism"):
+        solve_many(pivot, {"strip_1.width": [0.01, 0.02]}, rotation=0.5)
+    with pytest.raises(InvalidParameter, match=r"effects: got \['clamped_width'\], expected none of them"):
+        sensitivities(pivot, alone, parameters=["width"])

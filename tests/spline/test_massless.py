@@ -1,0 +1,93 @@
+"""Bodies on massless strips: steps of any length, stable equilibria alone, and a strip that snaps through."""
+
+import math
+import re
+from functools import cache
+
+import numpy as np
+import pytest
+
+from spline_model.compile import compile_scene
+from spline_model.dynamics import solve_release
+from spline_model.motion.quasi_static import softness
+from spline_model.pivot import cross_axis_pivot, swinging_slide_stiffness
+from spline_model.reduced.model import from_unknowns, reduced
+from tests.table_one import TABLE_ONE
+
+EFFECTS = ("bending", "stretching", "body_inertia")
+SLENDER = TABLE_ONE | {
+    "area": TABLE_ONE["area"] / 10.0,
+    "second_moment_of_area": TABLE_ONE["second_moment_of_area"] / 1000.0,
+}
+LONG_STEP = 1.75e-3
+
+
+def massless(design=TABLE_ONE, control_points=6, effects=EFFECTS):
+    """A pivot whose strips have no inertia."""
+    slide = swinging_slide_stiffness(control_points)
+    return cross_axis_pivot(**design, control_points=control_points, slide_stiffness=slide, effects=effects)
+
+
+@cache
+def slender(control_points, step, duration):
+    """Release of the ten times more slender pivot from a quarter turn; pivot and trajectory."""
+    pivot = massless(SLENDER, control_points, (*EFFECTS, "gravity"))
+    run = solve_release(pivot, start=math.pi / 2, duration=duration, step=step, check=False)
+    return pivot, run
+
+
+@pytest.mark.parametrize("steps", [200, 800])
+@pytest.mark.parametrize("start", [0.1, 0.5236, 1.0])
+def test_massless_strips_take_short_steps(start, steps):
+    """Requirement: massless strips move at short steps as at long ones, and keep energy."""
+    run = solve_release(massless(), start=start, duration=0.013 / 8, step=0.013 / steps)
+    assert not run.message
+    stored = run.kinetic_energy + run.strain_energy
+    assert np.abs(stored / stored[0] - 1).max() < 1e-9  # three orders below a step of 1e-6 of the energy
+
+
+def test_massless_strips_take_steps_of_a_microsecond():
+    """Requirement: with massless strips steps of a microsecond are of order two like longer ones."""
+    steps = (1e-5, 5e-6, 2.5e-6, 1.25e-6)
+    ends = [solve_release(massless(), duration=2e-4, step=step).rotation[-1] for step in steps]
+    coarse, fine, finest = np.abs(np.diff(ends))
+    assert math.log2(coarse / fine) > 1.85
+    assert math.log2(fine / finest) > 1.85
+
+
+def test_massless_strips_stand_in_stable_equilibrium():
+    """Requirement: a body that bounces on slender strips never leaves one in an unstable equilibrium."""
+    pivot, run = slender(6, LONG_STEP, 280 * LONG_STEP)
+    model = reduced(compile_scene(pivot.released()))
+    states = from_unknowns(model, run.states)
+    assert run.time[-1] > 0.47
+    assert min(softness(model, y, strip) for y in states for strip in range(2)) > 0.0
+
+
+def snapped(control_points, step):
+    """Rotation [deg] at which the slender pivot's second strip snaps through, as the motion says it."""
+    _, run = slender(control_points, step, 0.1)
+    said = r"stopped at 0\.0957\d* s: strip_2 snaps through at (\S+) degrees of body: .*\(strip_inertia\)"
+    match = re.fullmatch(said, run.message)
+    assert match, run.message
+    return float(match[1])
+
+
+@pytest.mark.slow
+def test_strip_that_snaps_through_is_named():
+    """Requirement: a motion says which massless strip has no equilibrium to go on to, and at which rotation.
+
+    More control points and shorter steps find it at the same one.
+    """
+    assert snapped(8, 1e-5) == pytest.approx(-0.437, rel=0.01)
+    assert snapped(10, 5e-6) == pytest.approx(snapped(8, 1e-5), rel=0.01)
+
+
+def test_strips_with_inertia_go_through_it():
+    """Requirement: the motion that stops on massless strips goes on where they have their inertia."""
+    slide = swinging_slide_stiffness(6)
+    effects = (*EFFECTS, "gravity", "strip_inertia")
+    pivot = cross_axis_pivot(**SLENDER, control_points=6, slide_stiffness=slide, effects=effects)
+    run = solve_release(pivot, start=math.pi / 2, duration=0.1, step=LONG_STEP / 16, check=False)
+    assert not run.message
+    assert run.rotation[-1] < 0.0
