@@ -25,7 +25,8 @@ MARKS = ("<!-- slips: begin -->\n", "<!-- slips: end -->\n")
 LEFT_OUT = shutil.ignore_patterns(".*", "__pycache__", "results", "_build", "*.egg-info", "build")
 #: Exit codes of pytest.
 PASSED, FAILED = 0, 1
-#: Time after which a test counts as failed [s]: slips may keep a solver from its end.
+#: Time after which a test counts as failed [s], or so many times it for as many: slips may keep a solver from
+#: its end.
 LONGEST = 300
 
 
@@ -59,7 +60,8 @@ def outcome(copy: Path, tests: Sequence[str]) -> int:
     command = [sys.executable, "-m", "pytest", "-q", "-x", "-p", "no:cacheprovider", "-p", "no:xdist", *tests]
     env = os.environ | one | apart
     try:
-        return subprocess.run(command, cwd=copy, env=env, capture_output=True, timeout=LONGEST).returncode
+        done = subprocess.run(command, cwd=copy, env=env, capture_output=True, timeout=LONGEST * len(tests))
+        return done.returncode
     except subprocess.TimeoutExpired:
         return FAILED
 

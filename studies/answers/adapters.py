@@ -64,7 +64,7 @@ def answer_mechanism(mechanism: Mechanism, settings: Settings, **options: Any) -
         return model.statics.solve_mechanism(asked, **(given | {"increments": mechanism.increments} | how))
 
     result, times = _timed(model, settings, path, {}, **options)
-    return mechanism_response(result, driven=mechanism.body, model=settings.model, settings=keywords, **times)
+    return mechanism_response(mechanism, result, model=settings.model, settings=keywords, **times)
 
 
 def answer_path(design: Design, settings: Settings, **options: Any) -> Response | MechanismResponse:

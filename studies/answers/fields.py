@@ -1,13 +1,13 @@
 """Fields along the strips of any design, and its bodies: arrays that do not tell which model they are of."""
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, field, fields
 from typing import Any
 
 import numpy as np
 
 from studies.answers.response import Answered
 from studies.cases.design import Design
-from studies.cases.mechanism import GROUND
+from studies.cases.mechanism_keys import GROUND
 from studies.cases.problem import Problem
 from studies.kinds import Array
 
@@ -54,7 +54,9 @@ class Fields(Answered):
             stretch: [1]; axial_force, shear_force: [N]; bending_moment: [N m].
         reactions: (S, G, 2, 3) force x, y [N] and moment [N m] on the strip at root and tip.
         bodies: (S, B, 3) centre x, y [m], rotation [rad].
-        torque: (S,) of the drive of a static path [N m]; None without one.
+        torque, stiffness: (S,) of the drive of a static path [N m], [N m/rad]; None without one.
+        energies: (S,) by name [J]: "bending", "axial", "shear", "gravity" of a path; "kinetic", "strain",
+            "gravity" of a motion, with what was lost to damping, "dissipated"; none of modes.
         frequency: (S,) of modes [Hz]; mode_shape: (S, G, P, 2), mode_bodies: (S, B, 3) displacement and
             rotation at unit modal mass; None of other analyses. The other fields of modes are those of the
             static state that the motion is about, the same in all.
@@ -79,6 +81,8 @@ class Fields(Answered):
     reactions: Array
     bodies: Array
     torque: Array | None = None
+    stiffness: Array | None = None
+    energies: dict[str, Array] = field(default_factory=dict)
     frequency: Array | None = None
     mode_shape: Array | None = None
     mode_bodies: Array | None = None
@@ -108,25 +112,20 @@ def strip_arrays(found: Any) -> dict[str, Any]:
 def parts_of(design: Design) -> tuple[Part, ...]:
     """Return the strips of a design; a mechanism's sections are taken as rectangles, sqrt(12 I / A) deep."""
     if isinstance(design, Problem):
-        shared = _section(design, design.depth)
+        shared = section_of(design) | {"depth": design.depth}
         return tuple(Part(name=f"strip_{k}", root=GROUND, tip="body", **shared) for k in (1, 2))
     return tuple(
-        Part(
-            name=strip.name,
-            root=strip.root,
-            tip=strip.tip,
-            **_section(strip, float(np.sqrt(12.0 * strip.second_moment_of_area / strip.area))),
-        )
-        for strip in design.strips
+        Part(name=strip.name, root=strip.root, tip=strip.tip, **section_of(strip)) for strip in design.strips
     )
 
 
-def _section(given: Any, depth: float) -> dict[str, float]:
+def section_of(given: Any) -> dict[str, float]:
+    """Return what a `Part` knows of its section: of whatever has A, I and E, as a rectangle."""
     return {
         "axial_rigidity": given.youngs_modulus * given.area,
         "flexural_rigidity": given.youngs_modulus * given.second_moment_of_area,
         "youngs_modulus": given.youngs_modulus,
-        "depth": depth,
+        "depth": float(np.sqrt(12.0 * given.second_moment_of_area / given.area)),
     }
 
 

@@ -9,6 +9,9 @@ from scipy.interpolate import CubicSpline
 
 from studies.kinds import Array
 
+#: Part of the largest value of a path below which a value is round-off.
+NOTHING = 1e-9
+
 
 def trajectory_error(centre: Array, reference: Array) -> Array:
     """Return |g - g_ref| over |g_ref,end - g_ref,0|, the distance of two paths over the reference's
@@ -32,7 +35,8 @@ def trajectory_error(centre: Array, reference: Array) -> Array:
 
 
 def relative_error(values: Array, reference: Array) -> Array:
-    """Return (v - v_ref) / |v_ref| state by state, 0/0 of an unloaded state counting as no error.
+    """Return (v - v_ref) / |v_ref| state by state; a reference that is none but round-off of its largest
+    value, as that of an unloaded state, counts as that value.
 
     Args:
         values: (S,) of any unit.
@@ -43,8 +47,8 @@ def relative_error(values: Array, reference: Array) -> Array:
     """
     expected = reference[: len(values)]
     difference = values - expected
-    safe = np.where(expected == 0.0, 1.0, np.abs(expected))
-    return np.where((expected == 0.0) & (difference == 0.0), 0.0, difference / safe)
+    largest = float(np.abs(reference).max(initial=0.0)) or 1.0
+    return np.asarray(difference / np.where(np.abs(expected) <= NOTHING * largest, largest, np.abs(expected)))
 
 
 def observed_order(coarse: float, fine: float, ratio: float = 2.0) -> float:

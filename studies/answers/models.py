@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from types import ModuleType
 from typing import Any
 
@@ -93,13 +93,18 @@ def model_of(settings: Settings) -> Model:
     )
 
 
+def model_named(package: str, element: str = "") -> tuple[Model, str]:
+    """Return the model that is the package of that name, and what it is called with these elements."""
+    settings = SplineSettings() if package == "spline_model" else FeSettings(element=element)
+    return model_of(settings), settings.model
+
+
 def _swinging_spline(settings: Settings) -> dict[str, Any]:
-    """Return the control points of a spline in motion, and the slide stiffness that goes with them."""
-    from spline_model.design import FIRST_POINTS
+    """Return the slide stiffness that goes with the control points of a spline in motion, where given."""
     from spline_model.pivot import swinging_slide_stiffness
 
-    points = settings.keywords().get("control_points") or FIRST_POINTS
-    return {"control_points": points, "slide_stiffness": swinging_slide_stiffness(points)}
+    points = settings.keywords().get("control_points")
+    return {} if points is None else {"slide_stiffness": swinging_slide_stiffness(points)}
 
 
 def built(model: Model, design: Design, settings: Settings, *, moving: bool) -> tuple[Any, dict[str, Any]]:
@@ -137,6 +142,14 @@ def as_solved(
     if isinstance(settings, SplineSettings) and not is_given(settings):
         settings = replace(settings, control_points=result.control_points)
     return built(model, design, settings, moving=moving)
+
+
+def settings_of(answer: Any) -> Settings:
+    """Return the settings that a neutral answer was reached with: its model's, with what that chose."""
+    kind = SplineSettings if answer.model == "spline" else FeSettings
+    return kind(
+        **{key.name: answer.settings[key.name] for key in fields(kind) if key.name in answer.settings}
+    )
 
 
 def effects_of(asked: Any) -> tuple[str, ...]:

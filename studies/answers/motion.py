@@ -116,6 +116,7 @@ def motion(
         resolution="" if still else getattr(result, "resolution", ""),
         bodies={name: np.asarray(place, dtype=float) for name, place in bodies.items()},
         body=body,
+        solution=result,
         counters=dict(result.counters),
         estimate=estimate_of(result),
         rotation_error=getattr(result, "rotation_error", math.nan),

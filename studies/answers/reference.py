@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from scipy.interpolate import CubicSpline
@@ -10,7 +11,7 @@ from studies.answers.adapters import answer_release, answer_static
 from studies.answers.frequency import swing_frequency
 from studies.answers.metrics import extrapolate, relative_error, trajectory_error
 from studies.answers.motion import Motion
-from studies.answers.response import Response
+from studies.answers.response import MechanismResponse, Response
 from studies.answers.settings import FeSettings
 from studies.cases.problem import Problem
 from studies.kinds import Array
@@ -38,12 +39,12 @@ class Reference:
     """Limit of refinement of the finite-element path and how uncertain it is.
 
     Attributes:
-        finest: the response on the finest mesh, for shapes and what else is not extrapolated.
+        finest: the answer on the finest mesh, for shapes and what else is not extrapolated.
         rotation: (S,) [rad]; centre: (S, 2) [m]; torque: (S,) [N m]; stiffness: (S,) [N m / rad], the limits.
         uncertainty: largest over the path, relative, of "trajectory", "torque" and "stiffness" [1].
     """
 
-    finest: Response
+    finest: Any
     rotation: Array
     centre: Array
     torque: Array
@@ -77,7 +78,7 @@ def reference(problem: Problem) -> Reference:
     return limit_of([answer_static(problem, FeSettings(elements=count)) for count in MESHES])
 
 
-def limit_of(answers: list[Response]) -> Reference:
+def limit_of(answers: Sequence[Response | MechanismResponse]) -> Reference:
     """Return the limit of finite-element answers, each on twice as many elements as the one before.
 
     Raises:
@@ -104,7 +105,7 @@ def limit_of(answers: list[Response]) -> Reference:
     )
 
 
-def errors(answer: Response, against: Reference) -> Errors:
+def errors(answer: Response | MechanismResponse, against: Reference) -> Errors:
     """Return the errors of `answer`, of which only the states it reached count."""
     return Errors(
         trajectory=trajectory_error(answer.centre, against.centre),

@@ -1,28 +1,31 @@
 """The neutral answers to a static problem: arrays that do not tell which model they came from."""
 
 from collections.abc import Iterable
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 
+from studies.answers.strength import extreme_fibre_strain
 from studies.cases.effects import MOTION_ONLY
+from studies.cases.mechanism import Mechanism
 from studies.cases.problem import Problem
 from studies.kinds import Array
 
 #: Arrays that an answer takes over from a model's solution as they are: of any path, of a pivot's, and of a
 #: mechanism's.
-OF_PATHS = ("load_factor", "torque", "stiffness", "bending_energy", "axial_energy")
-OF_PIVOTS = (
-    "rotation",
-    "centre",
-    "clamp_reactions",
+OF_PATHS = (
+    "load_factor",
+    "torque",
+    "stiffness",
+    "bending_energy",
+    "axial_energy",
     "stations",
-    "shape",
     "axial_force",
     "bending_moment",
-    "shear_force",
 )
+OF_PIVOTS = ("rotation", "centre", "clamp_reactions", "shape", "shear_force")
 OF_MECHANISMS = ("gravity_energy", "work")
 
 
@@ -36,6 +39,7 @@ class Answered:
         effects: names of what was assembled.
         status: "converged", or how it ended early; `message` says why and where or when, or what a path that
             reached its end has passed.
+        solution: the model's own, which `exchange.solutions` makes fields of; None where there is none.
     """
 
     model: str
@@ -43,6 +47,7 @@ class Answered:
     effects: tuple[str, ...]
     status: str
     message: str
+    solution: Any = field(default=None, repr=False, compare=False)
 
     @property
     def converged(self) -> bool:
@@ -86,24 +91,50 @@ class StaticAnswer(Solved):
 
     Attributes:
         critical_points: in the order of the path.
+        bodies: (S, 3) by name: centre of mass x, y [m], rotation, counter-clockwise [rad].
+        driven: name of the one that may be driven; None without one.
         load_factor: (S,) share of the loads that acts, of the rotation where there are none [1].
         torque: (S,) driving torque [N m]; stiffness: (S,) its derivative from the tangent [N m / rad]; NaN
             where nothing is driven.
         bending_energy, axial_energy, shear_energy: (S,) of all strips [J]; zero without shear.
+        stations: (P,) reference arc length over L [1]; axial_force: (S, G, P) [N]; bending_moment: [N m];
+            extreme_fibre_stress: its largest magnitude over the section's depth [Pa].
     """
 
     critical_points: tuple[Critical, ...] = ()
+    bodies: dict[str, Array]
+    driven: str | None
     load_factor: Array
     torque: Array
     stiffness: Array
     bending_energy: Array
     axial_energy: Array
     shear_energy: Array
+    stations: Array
+    axial_force: Array
+    bending_moment: Array
+    extreme_fibre_stress: Array
 
     @property
     def strain_energy(self) -> Array:
         """(S,) bending, axial and shear energy together [J]."""
         return self.bending_energy + self.axial_energy + self.shear_energy
+
+    @property
+    def centres(self) -> dict[str, Array]:
+        """(S, 2) centres of mass of the bodies by name [m]."""
+        return {name: place[:, :2] for name, place in self.bodies.items()}
+
+    @property
+    def max_stress(self) -> Array:
+        """(S,) largest extreme-fibre stress over all strips [Pa]."""
+        return np.asarray(self.extreme_fibre_stress.max(axis=(1, 2), initial=0.0))
+
+    @cached_property
+    def body_stiffness(self) -> Array:
+        """(S, 3, 3) of the body that is driven or may be, about its centre, in x, y and turn, at fixed loads
+        [N/m, N, N m/rad]; found when it is first asked for."""
+        return np.asarray(self.solution.body_stiffness(self.driven))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -115,36 +146,18 @@ class Response(StaticAnswer):
         centre: (S, 2) centre of mass of the body, origin at A1 [m].
         clamp_reactions: (S, G, 2, 3) force x, force y [N], moment [N m] by the clamp on the strip, ground end
             first.
-        stations: (P,) reference arc length over L [1]; shape: (S, G, P, 2) [m].
-        axial_force, shear_force: (S, G, P) [N]; bending_moment: (S, G, P) [N m].
+        shape: (S, G, P, 2) [m]; shear_force: (S, G, P) [N].
         centre_shift: (S, 2) displacement of the body's point that lies at the strips' crossing at rest [m].
-        extreme_fibre_strain: (S, G, P) largest magnitude over the section's depth [1]; extreme_fibre_stress
-            [Pa].
         history: residual norms of every increment.
     """
 
     rotation: Array
     centre: Array
     clamp_reactions: Array
-    stations: Array
     shape: Array
-    axial_force: Array
-    bending_moment: Array
     shear_force: Array
     centre_shift: Array
-    extreme_fibre_strain: Array
-    extreme_fibre_stress: Array
     history: tuple[tuple[float, ...], ...]
-
-    @property
-    def centres(self) -> dict[str, Array]:
-        """(S, 2) centres of mass of the bodies by name [m]."""
-        return {"body": self.centre}
-
-    @property
-    def max_stress(self) -> Array:
-        """(S,) largest extreme-fibre stress over both strips [Pa]."""
-        return np.asarray(self.extreme_fibre_stress.max(axis=(1, 2)))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -152,25 +165,21 @@ class MechanismResponse(StaticAnswer):
     """Static answer of a mechanism over S converged states, that of load factor 0 first.
 
     Attributes:
-        bodies: (S, 3) by name: centre of mass x, y [m], rotation, counter-clockwise [rad].
-        driven: name of the one that may be driven; None without one.
         gravity_energy: (S,) against rest [J]; work: (S,) of loads and drives since the first state [J].
     """
 
-    bodies: dict[str, Array]
-    driven: str | None
     gravity_energy: Array
     work: Array
-
-    @property
-    def centres(self) -> dict[str, Array]:
-        """(S, 2) centres of mass of the bodies by name [m]."""
-        return {name: place[:, :2] for name, place in self.bodies.items()}
 
     @property
     def centre(self) -> Array:
         """(S, 2) centre of mass of the body that may be driven [m]."""
         return self.centres[str(self.driven)]
+
+    @property
+    def rotation(self) -> Array:
+        """(S,) of the body that may be driven [rad]."""
+        return self.bodies[str(self.driven)][:, 2]
 
 
 def response(problem: Problem, result: Any, **identity: Any) -> Response:
@@ -181,20 +190,26 @@ def response(problem: Problem, result: Any, **identity: Any) -> Response:
     given = _common(result, OF_PIVOTS, identity)
     strain = extreme_fibre_strain(problem, given["axial_force"], given["bending_moment"])
     return Response(
+        driven="body",
         centre_shift=centre_shift(problem, given["rotation"], given["centre"]),
-        extreme_fibre_strain=strain,
         extreme_fibre_stress=problem.youngs_modulus * strain,
         history=result.history,
         **given,
     )
 
 
-def mechanism_response(result: Any, *, driven: str | None, **identity: Any) -> MechanismResponse:
+def mechanism_response(design: Mechanism, result: Any, **identity: Any) -> MechanismResponse:
     """Return the neutral form of a model's path of a mechanism; identity: model, settings and times."""
+    given = _common(result, OF_MECHANISMS, {**identity, "effects": result.effects})
+    forces = np.moveaxis(given["axial_force"], 1, 0), np.moveaxis(given["bending_moment"], 1, 0)
+    stress = [
+        strip.youngs_modulus * extreme_fibre_strain(strip, *each)
+        for strip, *each in zip(design.strips, *forces, strict=True)
+    ]
     return MechanismResponse(
-        bodies={name: np.asarray(place, dtype=float) for name, place in result.bodies.items()},
-        driven=driven,
-        **_common(result, OF_MECHANISMS, {**identity, "effects": result.effects}),
+        driven=design.body,
+        extreme_fibre_stress=np.stack(stress, axis=1),
+        **given,
     )
 
 
@@ -208,6 +223,8 @@ def _common(result: Any, names: tuple[str, ...], identity: dict[str, Any]) -> di
         "effects": assembled(identity["effects"]),
         "status": str(result.status.value),
         "message": result.message,
+        "solution": result,
+        "bodies": {name: np.asarray(place, dtype=float) for name, place in result.bodies.items()},
         "resolution": getattr(result, "resolution", ""),
         "critical_points": _critical_of(result),
         "counters": dict(result.counters),
@@ -266,21 +283,3 @@ def centre_shift(problem: Problem, rotation: Array, centre: Array) -> Array:
     cosine, sine = np.cos(rotation), np.sin(rotation)
     turned = np.stack((cosine * arm[0] - sine * arm[1], sine * arm[0] + cosine * arm[1]), axis=-1)
     return np.asarray(centre + turned - crossing)
-
-
-def extreme_fibre_strain(problem: Problem, axial_force: Array, bending_moment: Array) -> Array:
-    """Return max |N/(EA) +- M d/(2 EI)|, the larger magnitude of the two extreme fibres (d: depth of the
-    section).
-
-    Exact for plane sections and small strain; leaves out shear, the strips' initial curvature and the clamps'
-    notches.
-
-    Args:
-        problem: gives E, A, I and d.
-        axial_force: N, any shape [N].
-        bending_moment: M, the same shape [N m].
-    """
-    modulus = problem.youngs_modulus
-    axial = axial_force / (modulus * problem.area)
-    bending = bending_moment * problem.depth / (2.0 * modulus * problem.second_moment_of_area)
-    return np.asarray(np.abs(axial) + np.abs(bending))

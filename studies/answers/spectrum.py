@@ -47,6 +47,7 @@ def spectrum(result: Any, *, body: str | None, place: int, **identity: Any) -> S
     return Spectrum(
         status="converged",
         message="",
+        solution=result,
         held=result.held,
         frequency=np.asarray(result.frequency, dtype=float),
         body=body,

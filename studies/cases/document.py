@@ -88,7 +88,9 @@ def table(where: str, document: Mapping[str, Any], section: str) -> Mapping[str,
     """Return the content of a section, empty if it is not there; CaseError if it is no table."""
     content = document.get(section, {})
     if not isinstance(content, dict):
-        raise CaseError(f"{where}: {section}: got {type(content).__name__}, expected a table [{section}]")
+        mend = f' with name = "{content}"' if section == "material" and isinstance(content, str) else ""
+        got = type(content).__name__
+        raise CaseError(f"{where}: {section}: got {got}, expected a table [{section}]{mend}")
     return content
 
 

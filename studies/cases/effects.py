@@ -5,6 +5,7 @@ A table `[effects.NAME]` gives the parameters of an effect that the scene names,
 """
 
 import difflib
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from importlib import import_module
@@ -12,7 +13,8 @@ from typing import Any
 
 from studies.cases import document
 from studies.cases.document import CaseError
-from studies.cases.rules import History, Key, Rule, Text, finite, finite_pair, not_negative, shown
+from studies.cases.effect_keys import KEYS
+from studies.cases.rules import shown
 from studies.errors import BadInput
 
 DEFAULT = ("bending", "stretching", "strip_inertia", "body_inertia")
@@ -26,49 +28,6 @@ MOTION_ONLY = (
     "strip_drag",
     "body_damping",
 )
-
-_BODY = ("body", "body", Text(expected="the name of a body"), True)
-_HISTORY = ("history", "history", History(), True)
-
-#: Effect -> its keys as (key, parameter, rule, optional).
-_KEYS: dict[str, tuple[tuple[str, str, Rule, bool], ...]] = {
-    "bending": (),
-    "stretching": (),
-    "inextensible": (),
-    "strip_inertia": (),
-    "section_rotary_inertia": (),
-    "body_inertia": (),
-    "gravity": (("acceleration_m_per_s2", "acceleration", finite_pair("m/s^2"), True),),
-    "strip_damping": (("relaxation_time_s", "relaxation_time", not_negative("s"), False),),
-    "strip_drag": (("rate_per_s", "rate", not_negative("1/s"), False),),
-    "body_damping": (
-        ("translation_Ns_per_m", "translation", not_negative("N s/m"), True),
-        ("rotation_Nms", "rotation", not_negative("N m s"), True),
-    ),
-    "applied_force": (("force_N", "force", finite_pair("N"), False), _BODY, _HISTORY),
-    "applied_moment": (("moment_Nm", "moment", finite("N m"), False), _BODY, _HISTORY),
-    "tip_force": (
-        ("strip", "strip", Text(expected="the name of a strip with a free end"), False),
-        ("force_N", "force", finite_pair("N"), False),
-        _HISTORY,
-    ),
-    "driven_displacement": (
-        ("displacement_m", "displacement", finite_pair("m"), False),
-        _BODY,
-        _HISTORY,
-    ),
-    "pre_strain": (
-        ("curvature_per_m", "curvature", finite("1/m"), True),
-        ("strain", "strain", finite("1"), True),
-    ),
-}
-KEYS: dict[str, tuple[Key, ...]] = {
-    effect: tuple(
-        Key(section=f"effects.{effect}", name=name, attribute=parameter, rule=rule, optional=optional)
-        for name, parameter, rule, optional in rows
-    )
-    for effect, rows in _KEYS.items()
-}
 
 #: How a scene is named.
 WORDS = "+NAME and -NAME, or names alone"
@@ -200,4 +159,23 @@ def _parameters(path: str, name: str, given: Mapping[str, Any]) -> dict[str, Any
     """Return the parameters of a table in SI; those of an effect without keys here as they stand."""
     if name not in KEYS:
         return {key: tuple(value) if isinstance(value, list) else value for key, value in given.items()}
-    return document.values(path, KEYS[name], given, f"effects.{name}")
+    found = document.values(path, KEYS[name], given, f"effects.{name}")
+    return _free_fall(path, found) if name == "gravity" else found
+
+
+def _free_fall(path: str, found: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the acceleration of gravity that is given by its parts, or by size and direction."""
+    if not found:
+        return {}
+    beside = [key.name for key in KEYS["gravity"][1:] if key.attribute in found]
+    if "acceleration" in found and beside:
+        raise CaseError(
+            f"{path}: effects.gravity.{beside[0]}: got it beside acceleration_m_per_s2, expected one of them"
+        )
+    if "acceleration" in found:
+        return dict(found)
+    downwards = STANDARD["gravity"]["acceleration"]
+    size = found.get("magnitude", math.hypot(*downwards))
+    angle = found.get("direction")
+    x, y = downwards if angle is None else (math.cos(angle), math.sin(angle))
+    return {"acceleration": (size * x / math.hypot(x, y), size * y / math.hypot(x, y))}

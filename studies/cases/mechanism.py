@@ -9,55 +9,10 @@ from typing import Any
 from studies.cases import document
 from studies.cases.document import CaseError
 from studies.cases.effects import Effects, read_effects
-from studies.cases.keys import IN_MOTION, INCREMENTS, LOADS_FIRST, ORDER, POISSON, ROTATION
-from studies.cases.rules import Key, Text, finite, finite_pair, not_negative, positive, shown
-
-GROUND, FREE = "ground", "free"
-
-SECTION = (
-    Key(section="section", name="area_m2", attribute="area", rule=positive("m^2")),
-    Key(section="section", name="second_moment_m4", attribute="second_moment_of_area", rule=positive("m^4")),
-)
-MATERIAL = (
-    Key(section="material", name="youngs_modulus_Pa", attribute="youngs_modulus", rule=positive("Pa")),
-    Key(section="material", name="poisson_ratio", attribute="poisson_ratio", rule=POISSON),
-    Key(section="material", name="density_kg_m3", attribute="density", rule=positive("kg/m^3")),
-)
-_NAME = Text(expected="a name")
-_PLACE = Text(expected=f"{GROUND} or the name of a body")
-STRIP = (
-    Key(section="strips", name="name", attribute="name", rule=_NAME),
-    Key(section="strips", name="start_m", attribute="start", rule=finite_pair("m")),
-    Key(section="strips", name="end_m", attribute="end", rule=finite_pair("m")),
-    Key(section="strips", name="root", attribute="root", rule=_PLACE, optional=True),
-    Key(section="strips", name="tip", attribute="tip", rule=Text(expected=f"{_PLACE.expected}, or {FREE}")),
-    Key(section="strips", name="rise_m", attribute="rise", rule=finite("m"), optional=True),
-)
-BODY = (
-    Key(section="bodies", name="name", attribute="name", rule=_NAME),
-    Key(section="bodies", name="centre_m", attribute="centre", rule=finite_pair("m")),
-    Key(section="bodies", name="mass_kg", attribute="mass", rule=not_negative("kg")),
-    Key(
-        section="bodies",
-        name="moment_of_inertia_kg_m2",
-        attribute="moment_of_inertia",
-        rule=not_negative("kg m^2"),
-    ),
-)
-DRIVE = (
-    Key(
-        section="drive",
-        name="body",
-        attribute="body",
-        rule=Text(expected="the name of a body"),
-        optional=True,
-    ),
-    Key(section="drive", name="rotation_deg", attribute="rotation", rule=ROTATION, optional=True),
-    Key(section="drive", name="increments", attribute="increments", rule=INCREMENTS),
-    Key(section="drive", name="order", attribute="order", rule=ORDER, optional=True),
-    *IN_MOTION,
-)
-SECTIONS = ("strips", "bodies", "section", "material", "drive", "scene", "effects")
+from studies.cases.keys import LOADS_FIRST, MATERIAL, SECTION
+from studies.cases.mechanism_keys import BODY, DRIVE, GROUND, OWN, SECTIONS, STRIP
+from studies.cases.rules import FREE, shown
+from studies.cases.strips import completed, inherited, refuse_both, without
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -65,7 +20,8 @@ class Strip:
     """A strip between two points [m], on the ground or on a body at its root, free or on either at its tip.
 
     tip: None for a free end. rise: sagitta of the circular arc it is at rest [m], to the left of start to
-    end.
+    end. width, thickness: of a rectangular section [m], None where only A and I are known. yield_strength:
+    that stresses must stay below [Pa], None where none is known.
     """
 
     name: str
@@ -76,9 +32,12 @@ class Strip:
     rise: float = 0.0
     area: float
     second_moment_of_area: float
+    width: float | None = None
+    thickness: float | None = None
     youngs_modulus: float
     poisson_ratio: float
     density: float
+    yield_strength: float | None = None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -137,14 +96,10 @@ def read_mechanism(path: str, content: Mapping[str, Any], changes: str | None = 
     """
     document.refuse_sections(path, content, SECTIONS)
     shared = {
-        key.attribute: document.value(path, key, given[key.name], key.section)
-        for keys, given in (
-            (SECTION, _shared(path, content, SECTION)),
-            (MATERIAL, _shared(path, content, MATERIAL)),
-        )
-        for key in keys
-        if key.name in given
+        **document.values(path, SECTION, document.table(path, content, "section"), "section"),
+        **document.values(path, MATERIAL, document.table(path, content, "material"), "material"),
     }
+    refuse_both(path, shared, "section")
     bodies = tuple(
         Body(**document.values(path, BODY, given, label)) for label, given in _each(path, content, "bodies")
     )
@@ -171,14 +126,10 @@ def read_mechanism(path: str, content: Mapping[str, Any], changes: str | None = 
 
 
 def _keywords(part: Strip | Body) -> dict[str, Any]:
-    return {each.name: getattr(part, each.name) for each in fields(part)}
-
-
-def _shared(path: str, content: Mapping[str, Any], keys: tuple[Key, ...]) -> Mapping[str, Any]:
-    """Return the section that all strips have unless they say otherwise."""
-    given = document.table(path, content, keys[0].section)
-    document.refuse_unknown(path, keys[0].section, given, [key.name for key in keys])
-    return given
+    """Return what the models take of a part; the sides of a section only where they are given."""
+    given = {each.name: getattr(part, each.name) for each in fields(part)}
+    unsaid = [name for name in ("width", "thickness") if given.get(name) is None]
+    return without(given, ["yield_strength", *unsaid])
 
 
 def _each(path: str, content: Mapping[str, Any], section: str) -> list[tuple[str, Mapping[str, Any]]]:
@@ -196,17 +147,9 @@ def _each(path: str, content: Mapping[str, Any], section: str) -> list[tuple[str
 
 def _strip(path: str, given: Mapping[str, Any], label: str, shared: Mapping[str, Any]) -> Strip:
     """Return one strip, its section and material its own or those of all."""
-    own = [
-        Key(section=key.section, name=key.name, attribute=key.attribute, rule=key.rule, optional=True)
-        for key in (*SECTION, *MATERIAL)
-    ]
-    found = dict(shared) | document.values(path, [*STRIP, *own], given, label)
-    for key in own:
-        if key.attribute not in found:
-            raise CaseError(
-                f"{path}: {label}.{key.name}: got no such key there nor in [{key.section}], "
-                f"expected {key.rule.expected}"
-            )
+    own = document.values(path, [*STRIP, *OWN], given, label)
+    refuse_both(path, own, label)
+    found = completed(path, inherited(shared, own), label, label, shared=True)
     found["tip"] = None if found["tip"] == FREE else found["tip"]
     return Strip(**found)
 

@@ -8,9 +8,10 @@ from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
 
-from studies.cases.document import CaseError, missing, parsed, refuse_sections, refuse_unknown, table, value
+from studies.cases.document import CaseError, parsed, refuse_sections, table, values
 from studies.cases.effects import Effects, read_effects
 from studies.cases.keys import KEYS, LOADS_FIRST
+from studies.cases.strips import completed, of_sides
 
 __all__ = ["FOLDER", "CaseError", "Problem", "named_case", "read_case", "read_problem"]
 
@@ -29,7 +30,12 @@ PIVOT_PARAMETERS = (
     "body_mass",
     "body_moment_of_inertia",
     "centre_offset",
+    "orientation",
 )
+#: Those of them that are passed on only where the case gives them: the sides of a rectangular section.
+SIDES = ("width", "thickness")
+#: How far area and second moment may be from those of the sides [1].
+ROUNDED = 1e-9
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -42,12 +48,15 @@ class Problem:
         crossing_ratio: distance of the crossing point from the ground end over L [1].
         area: section area A [m^2].
         second_moment_of_area: I [m^4].
+        width, thickness: of a rectangular section with that A and I [m]; None where only A and I are known.
         youngs_modulus: E [Pa].
         poisson_ratio: nu [1].
         density: rho [kg/m^3].
+        yield_strength: that stresses must stay below [Pa]; None where none is known.
         body_mass: mass of the moving body [kg].
         body_moment_of_inertia: about its centre of mass [kg m^2].
         centre_offset: of the centre of mass from the midpoint of B1 B2, in body axes [m].
+        orientation: of the whole pivot, turned about A1, counter-clockwise [rad].
         rotation: end of the driven path, counter-clockwise positive [rad].
         increments: equal increments of the path [1].
         order: of loads and rotation, "loads first" or "together".
@@ -76,19 +85,36 @@ class Problem:
     increments: int
     order: str = LOADS_FIRST
     section_depth: float | None = None
+    width: float | None = None
+    thickness: float | None = None
+    yield_strength: float | None = None
+    orientation: float = 0.0
     effects: Effects = field(default_factory=Effects)
     history: tuple[tuple[float, float], ...] | None = None
     held: tuple[float, float] | None = None
 
     def __post_init__(self) -> None:
         for key in KEYS:
-            value = getattr(self, key.attribute)
+            value = getattr(self, key.attribute, None)
             if value is None and key.optional:
                 continue
             try:
                 key.rule.verify(value)
             except ValueError as error:
                 raise CaseError(f"{key.section}.{key.name}: {error}") from None
+        self._check_section()
+
+    def _check_section(self) -> None:
+        """Raise CaseError if the sides of the section are not those of its area and second moment."""
+        if self.width is None and self.thickness is None:
+            return
+        if self.section_depth is not None:
+            got = f"strip.section_depth_m: got {self.section_depth:g} beside thickness_m"
+            raise CaseError(f"{got}, expected none: a rectangle's depth is its thickness")
+        made = {} if None in (self.width, self.thickness) else of_sides(self.width, self.thickness)
+        if not made or any(abs(getattr(self, n) / value - 1.0) > ROUNDED for n, value in made.items()):
+            got = f"strip.width_m: got {self.width} by {self.thickness}"
+            raise CaseError(f"{got}, expected both sides of a rectangle with A = {self.area:g} m^2")
 
     @property
     def depth(self) -> float:
@@ -100,12 +126,13 @@ class Problem:
     @property
     def crossing_point(self) -> tuple[float, float]:
         """Where the two strips cross at rest [m], origin at A1."""
-        distance = self.crossing_ratio * self.length
-        return distance * math.cos(self.inclination), distance * math.sin(self.inclination)
+        distance, angle = self.crossing_ratio * self.length, self.inclination + self.orientation
+        return distance * math.cos(angle), distance * math.sin(angle)
 
     def pivot_parameters(self) -> dict[str, Any]:
         """Return the keyword arguments that `cross_axis_pivot` of either model takes."""
-        return {name: getattr(self, name) for name in PIVOT_PARAMETERS}
+        sides = SIDES if self.width is not None else ()
+        return {name: getattr(self, name) for name in (*PIVOT_PARAMETERS, *sides)}
 
     def fingerprint(self) -> str:
         """Return the SHA-256 of the values, whatever the file's layout or comments."""
@@ -133,22 +160,17 @@ def read_problem(path: str, content: Mapping[str, Any], changes: str | None = No
         raise CaseError(f"{path}: [[strips]]: got a mechanism, expected a cross-axis pivot, with [strip]")
     sections = list(dict.fromkeys(key.section for key in KEYS))
     refuse_sections(path, content, [*sections, "scene", "effects"])
+    found: dict[str, Any] = {}
     for section in sections:
-        known = [key.name for key in KEYS if key.section == section]
-        refuse_unknown(path, section, table(path, content, section), known)
-    values: dict[str, Any] = {}
-    for key in KEYS:
-        if key.section not in content:
-            raise CaseError(
-                f"{path}: [{key.section}]: got no such section, expected one with {_names(key.section)}"
-            )
-        given = content[key.section]
-        if key.name in given:
-            values[key.attribute] = value(path, key, given[key.name], key.section)
-        elif not key.optional:
-            raise missing(path, key, key.section)
-    return Problem(**values, effects=read_effects(path, content, changes))
-
-
-def _names(section: str) -> str:
-    return ", ".join(key.name for key in KEYS if key.section == section and not key.optional)
+        keys = [key for key in KEYS if key.section == section]
+        given = table(path, content, section)
+        if section not in content:
+            needed = ", ".join(key.name for key in [key for key in keys if not key.optional] or keys)
+            raise CaseError(f"{path}: [{section}]: got no such section, expected one with {needed}")
+        found |= values(path, keys, given, section)
+    whole = completed(path, found, "strip", "material")
+    try:
+        return Problem(**whole, effects=read_effects(path, content, changes))
+    except CaseError as error:
+        text = str(error)
+        raise error if text.startswith(path) else CaseError(f"{path}: {text}") from None

@@ -1,11 +1,14 @@
 """Rules for the values of a case file: type, admissible range, and what they are in SI units."""
 
 import math
+import re
 from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any
 
+#: What stands in place of a number that is not prescribed.
+FREE = "free"
 #: Bits of the longest whole number that an error shows in full.
 LONGEST = 64
 
@@ -88,6 +91,20 @@ class Pair:
 
 
 @dataclass(frozen=True, kw_only=True)
+class FreePair(Pair):
+    """Two finite numbers [x, y], or one of them and "free" in place of the other, which is then None."""
+
+    def parse(self, value: Any) -> tuple[float | None, float | None]:  # type: ignore[override]
+        """Return `value` as a tuple; raises ValueError that says what was got and expected."""
+        parts = list(value) if isinstance(value, list | tuple) else []
+        free = [part in (FREE, None) for part in parts]
+        if not any(free) or all(free):
+            return super().parse(value)
+        x, y = super().parse([0.0 if is_free else part for part, is_free in zip(parts, free, strict=True)])
+        return (None, y) if free[0] else (x, None)
+
+
+@dataclass(frozen=True, kw_only=True)
 class Text:
     """A text that is not empty."""
 
@@ -98,6 +115,28 @@ class Text:
         if not isinstance(value, str) or not value:
             raise ValueError(f"got {shown(value)}, expected {self.expected}")
         return value
+
+    def verify(self, value: Any) -> None:
+        """Raise ValueError unless `value` is admissible."""
+        self.parse(value)
+
+
+@dataclass(frozen=True, kw_only=True)
+class NumberOr:
+    """A number, or one word in its place."""
+
+    expected: str
+    word: str
+    number: Number
+
+    def parse(self, value: Any) -> float | str:
+        """Return `value`; raises ValueError that says what was got and expected."""
+        if value == self.word:
+            return self.word
+        try:
+            return self.number.parse(value)
+        except ValueError:
+            raise ValueError(f"got {shown(value)}, expected {self.expected}") from None
 
     def verify(self, value: Any) -> None:
         """Raise ValueError unless `value` is admissible."""
@@ -164,18 +203,39 @@ class Interval:
         self.parse(value)
 
 
-Rule = Number | Whole | Pair | Text | Choice | History | Interval
+Rule = Number | NumberOr | Whole | Pair | Text | Choice | History | Interval
 
 
 @dataclass(frozen=True, kw_only=True)
 class Key:
-    """One key of a case file, the attribute or parameter it fills and the rule for its value."""
+    """One key of a case file: what is read, refused, shown in a template and told on the page of case files.
+
+    Args:
+        section: table that it stands in; name: in the file; attribute: or parameter that it fills.
+        rule: for its value. optional: whether it may be left out.
+        meaning: what it is, in a few words. default: what holds where it is left out.
+        example: a value that a template may show, as it stands in the file.
+    """
 
     section: str
     name: str
     attribute: str
     rule: Rule
     optional: bool = False
+    meaning: str
+    default: str = ""
+    example: str
+
+    @property
+    def unit(self) -> str:
+        """Unit of the value in the file, "" of one that has none."""
+        found = re.search(r"\[([^\[\]]+)\]$", self.rule.expected)
+        return found[1] if found else ""
+
+    @property
+    def admitted(self) -> str:
+        """What the rule admits, without the unit."""
+        return self.rule.expected.removesuffix(f" [{self.unit}]")
 
 
 def _as_float(value: float) -> float:

@@ -1,15 +1,15 @@
-"""Say which setting of each model meets an error at the least cost, on one pivot.
+"""Say which setting of each model meets an error at the least cost, on one pivot or mechanism.
 
     python -m studies advise cross_axis_pivot --accuracy 1e-3
     python -m studies advise my_pivot.toml --accuracy 1e-2 --dynamic --json -
 
 Every setting of every model is tried on the case itself: the spline, the finite elements without and with
-shear, the surrogate models in closed form, and the other codes that are installed. Without --dynamic the
-error is that of path and torque over the static path; with it, that of the rotation (over the rotation at the
-start) and of the frequency in the first four swings after the release. Each model is held against the limit
-of its own theory, whose own error is printed. A setting counts when finer ones keep the error. Times are of
-the increments or steps alone, measured here, on one thread. Exit code 0: done; 2: bad input; 3: there is no
-reference, or no model meets the error.
+shear, and of a pivot the surrogate models in closed form and the other codes that are installed. Without
+--dynamic the error is that of path and torque over the static path; with it, that of the rotation (over the
+rotation at the start) and of the frequency in the first four swings after the release. Each model is held
+against the limit of its own theory, whose own error is printed. A setting counts when finer ones keep the
+error. Times are of the increments or steps alone, measured here, on one thread. Exit code 0: done; 2: bad
+input; 3: there is no reference, or no model meets the error.
 """
 
 import argparse
@@ -20,9 +20,9 @@ from typing import Any
 import pandas as pd
 
 from studies.answers.reference import NoReference
-from studies.cases.problem import Problem
+from studies.cases.design import Design
 from studies.commands.answer import deliver, not_converged, number, require_target
-from studies.commands.arguments import ACCURACY, CASE, JSON, turned_pivot
+from studies.commands.arguments import ACCURACY, CASE, JSON, turned_design
 from studies.commands.parser import Argument, command
 from studies.record.progress import Bar
 from studies.work_precision.advice import MOTION_ERRORS, PATH_ERRORS, advise_motion, advise_path
@@ -36,7 +36,7 @@ from studies.work_precision.advice import MOTION_ERRORS, PATH_ERRORS, advise_mot
 )
 def main(arguments: argparse.Namespace) -> int:
     """Try, report; return the exit code."""
-    problem = turned_pivot(arguments, "rotation to relate errors to")
+    problem = turned_design(arguments, "rotation to relate errors to")
     require_target(arguments)
     advise, columns = (advise_motion, MOTION_ERRORS) if arguments.dynamic else (advise_path, PATH_ERRORS)
     try:
@@ -66,10 +66,11 @@ def as_document(found: pd.DataFrame, columns: Sequence[str], error: float) -> di
     return {"accuracy": error, "models": rows}
 
 
-def _readable(problem: Problem, found: pd.DataFrame, columns: Sequence[str], error: float) -> Iterator[str]:
+def _readable(problem: Design, found: pd.DataFrame, columns: Sequence[str], error: float) -> Iterator[str]:
     """Yield the lines of a table, the cheapest model that meets the error first."""
     names = [name.removeprefix("error_") for name in columns]
-    yield f"error {error:g} in {' and '.join(names)}, from 0 to {math.degrees(problem.rotation):.4g} deg"
+    turned = math.degrees(problem.rotation or 0.0)
+    yield f"error {error:g} in {' and '.join(names)}, from 0 to {turned:.4g} deg"
     yield f"error of the references: at most {found['uncertainty'].max():.1e}"
     head = "".join(f"{name:>12}" for name in names)
     yield f"{'model':<27}{'setting':<20}{head}{'time':>12}{'x fastest':>11}"

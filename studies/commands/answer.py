@@ -4,12 +4,15 @@ import argparse
 import json
 import math
 import sys
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from studies.answers.response import Critical, MechanismResponse, Response
+from studies.answers.response import MechanismResponse, Response
 from studies.record.files import require_writable_file, write_whole
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 NOT_CONVERGED = 3
 
@@ -18,34 +21,49 @@ CHOSEN = ("control_points", "trials", "meshes")
 
 
 def require_target(arguments: argparse.Namespace) -> None:
-    """Raise OutputError unless the file that the answer is to go to can be written: asked before solving."""
-    if arguments.json not in (None, "-"):
-        require_writable_file(Path(arguments.json))
+    """Raise OutputError unless the files that the answer is to go to can be written: asked before solving."""
+    for target in (arguments.json, getattr(arguments, "csv", None)):
+        if target not in (None, "-"):
+            require_writable_file(Path(target))
 
 
 def deliver(
-    arguments: argparse.Namespace, document: Mapping[str, Any], table: Iterable[str], *, failure: str | None
+    arguments: argparse.Namespace,
+    document: Mapping[str, Any],
+    table: Iterable[str],
+    *,
+    failure: str | None,
+    frame: "Callable[[], pd.DataFrame] | None" = None,
 ) -> int:
-    """Write `document` where `--json` says, or print `table`; return the exit code.
+    """Write `document` where `--json` says and `frame` where `--csv` does, else print `table`; return the
+    exit code.
 
     Args:
         arguments: of the command.
         document: the answer as a JSON object.
         table: the answer in lines to read.
         failure: why the answer is not complete; None when it is.
+        frame: makes the answer as a table of numbers, of a command that has `--csv`.
     """
-    if arguments.json is None:
+    csv = getattr(arguments, "csv", None)
+    if arguments.json is not None:
+        _put(arguments.json, json.dumps(document, allow_nan=False, indent=1) + "\n", "the answer as JSON")
+    if csv is not None and frame is not None:
+        _put(csv, frame().to_csv(index=False, float_format="%.12g", lineterminator="\n"), "the answer as CSV")
+    if arguments.json is None and csv is None:
         print("\n".join(table))
-    else:
-        text = json.dumps(document, allow_nan=False, indent=1) + "\n"
-        if arguments.json == "-":
-            sys.stdout.write(text)
-        else:
-            write_whole(Path(arguments.json), text.encode())
-            print(f"{arguments.json}: the answer as JSON")
     if failure is None:
         return 0
     return not_converged(failure)
+
+
+def _put(target: str, text: str, what: str) -> None:
+    """Write a text to a file and say so, or to the output stream."""
+    if target == "-":
+        sys.stdout.write(text)
+    else:
+        write_whole(Path(target), text.encode())
+        print(f"{target}: {what}")
 
 
 def not_converged(why: object) -> int:
@@ -57,8 +75,6 @@ def not_converged(why: object) -> int:
 def headed(answer: Any) -> dict[str, Any]:
     """Return how an answer ended and what it is of, as its JSON begins; modes pass nothing on their way."""
     found = {"status": answer.status, "message": answer.message}
-    if hasattr(answer, "critical_points"):
-        found["critical_points"] = _passed(answer.critical_points)
     if hasattr(answer, "resolution"):
         found["resolution"] = answer.resolution
     about = {"model": answer.model, "settings": answer.settings, "effects": list(answer.effects)}
@@ -93,14 +109,6 @@ def estimated(estimate: Mapping[str, Any] | None) -> Iterator[str]:
         what = "elements" if "meshes" in estimate else "control points"
         tried = ", ".join(map(str, estimate.get("meshes") or estimate["trials"]))
         yield f"estimated error: {listed}; {what} tried: {tried}"
-
-
-def _passed(points: Iterable[Critical]) -> list[dict[str, Any]]:
-    """Return critical points as JSON has them."""
-    return [
-        {"kind": point.kind, "load_factor": point.load_factor, "rotation_rad": number(point.rotation)}
-        for point in points
-    ]
 
 
 def ending(status: str, counters: Mapping[str, int], wall_s: float) -> str:

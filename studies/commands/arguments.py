@@ -1,6 +1,7 @@
 """The arguments that commands share: a design and its effects, a model, its settings, a path, the output."""
 
 import argparse
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TypeVar
@@ -10,7 +11,15 @@ from studies.cases import keys
 from studies.cases.design import Design, read_design
 from studies.cases.document import nearest
 from studies.cases.problem import FOLDER, Problem, read_case
-from studies.commands.parser import Argument, degrees, not_negative, positive, ruled, whole_number
+from studies.commands.parser import (
+    Argument,
+    degrees,
+    names_of,
+    not_negative,
+    positive,
+    ruled,
+    whole_number,
+)
 from studies.errors import BadInput
 
 Some = TypeVar("Some", bound=Design)
@@ -82,15 +91,25 @@ SPLINE = (
     ),
 )
 ELEMENTS = Argument("--elements", type=int, metavar="N", help="elements a strip (fe, fe-shear; default 20)")
+_MODEL_HELP = "spline (default), corotational or shear-deformable FE"
 #: A design, a model and its settings: what `chosen_design` and `chosen_settings` read.
 MODEL = (
     CASE,
     EFFECTS,
+    Argument("--model", choices=MODELS, default="spline", help=_MODEL_HELP),
+    *SPLINE,
+    ELEMENTS,
+)
+#: The same of one model or several: what `all_settings` reads.
+SEVERAL_MODELS = (
+    CASE,
+    EFFECTS,
     Argument(
         "--model",
-        choices=MODELS,
-        default="spline",
-        help="spline (default), corotational or shear-deformable FE",
+        type=names_of(MODELS),
+        default=("spline",),
+        metavar="LIST",
+        help=f"{_MODEL_HELP}: spline, fe, fe-shear, or several with commas",
     ),
     *SPLINE,
     ELEMENTS,
@@ -113,7 +132,9 @@ REPEAT = Argument(
     metavar="R",
     help="wall_s is the median of R solves, default 1",
 )
-DURATION = Argument("--duration", type=positive, metavar="T", help="of the motion, in s, default 0.05")
+DURATION = Argument(
+    "--duration", type=positive, metavar="T", help="of the motion, in s (default: four swings of the design)"
+)
 STEP = Argument("--step", type=positive, metavar="S", help="of the integrator, in s (default: its own)")
 INTEGRATOR = Argument(
     "--integrator",
@@ -126,6 +147,11 @@ JSON = Argument(
     "--json",
     metavar="FILE|-",
     help="write the answer as JSON to FILE or the output stream (default: a table to read)",
+)
+CSV = Argument(
+    "--csv",
+    metavar="FILE|-",
+    help="write a row a state as CSV to FILE or the output stream (default: a table to read)",
 )
 OUT = Argument("--out", type=Path, metavar="FOLDER")
 NAMES = Argument("names", nargs="+", metavar="NAME", help="studies, groups, or all; `list` names them")
@@ -149,6 +175,15 @@ def driven(design: Some, arguments: argparse.Namespace) -> Some:
     return replace(design, **{name: each for name, each in given.items() if each is not None})
 
 
+def turned_design(arguments: argparse.Namespace, why: str) -> Design:
+    """Return the pivot or mechanism of the case with its path; BadInput without a rotation, for `why`."""
+    design = driven(read_design(arguments.case), arguments)
+    if not design.rotation:
+        got = "none" if design.rotation is None else "0"
+        raise BadInput(f"{arguments.case}: drive.rotation_deg: got {got}, expected a {why}")
+    return design
+
+
 def turned_pivot(arguments: argparse.Namespace, why: str) -> Problem:
     """Return the pivot of the case with its path; BadInput without a rotation, for `why`."""
     problem = driven(read_case(arguments.case), arguments)
@@ -159,14 +194,30 @@ def turned_pivot(arguments: argparse.Namespace, why: str) -> Problem:
 
 def chosen_settings(arguments: argparse.Namespace) -> Settings:
     """Return the settings of the chosen model; an option of the other model is an error."""
-    spline = arguments.model == "spline"
+    return _settings(arguments, (arguments.model,))[0]
+
+
+def all_settings(arguments: argparse.Namespace) -> list[Settings]:
+    """Return the settings of every chosen model; an option that none of them has is an error."""
+    return _settings(arguments, arguments.model)
+
+
+def _settings(arguments: argparse.Namespace, models: Sequence[str]) -> list[Settings]:
     points, elements = tuple(map(filled, SPLINE)), (filled(ELEMENTS),)
-    own, other = (points, elements) if spline else (elements, points)
-    refuse(arguments, other, own)
-    given = {name: getattr(arguments, name) for name in own if getattr(arguments, name) is not None}
-    if spline:
-        return SplineSettings(**given)
-    return FeSettings(element="reissner" if arguments.model == "fe-shear" else "corotational", **given)
+    if "spline" not in models:
+        refuse(arguments, points, elements)
+    elif set(models) == {"spline"}:
+        refuse(arguments, elements, points)
+    given = {name: value for name in (*points, *elements) if (value := getattr(arguments, name)) is not None}
+    return [
+        SplineSettings(**{name: value for name, value in given.items() if name in points})
+        if model == "spline"
+        else FeSettings(
+            element="reissner" if model == "fe-shear" else "corotational",
+            **{name: value for name, value in given.items() if name in elements},
+        )
+        for model in models
+    ]
 
 
 def refuse(arguments: argparse.Namespace, unusable: tuple[str, ...], usable: tuple[str, ...]) -> None:
@@ -179,7 +230,8 @@ def refuse(arguments: argparse.Namespace, unusable: tuple[str, ...], usable: tup
     for name in unusable:
         if getattr(arguments, name) is not None:
             expected = ", ".join(map(option, usable))
-            raise BadInput(f"{option(name)}: got it with --model {arguments.model}, expected only {expected}")
+            model = arguments.model if isinstance(arguments.model, str) else ",".join(arguments.model)
+            raise BadInput(f"{option(name)}: got it with --model {model}, expected only {expected}")
 
 
 def filled(argument: Argument) -> str:

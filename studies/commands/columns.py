@@ -75,6 +75,17 @@ def quantity(
     )
 
 
+def wide(unit: str, digits: int, *, floor: float = 0.0, **values: ArrayLike) -> tuple[Column, ...]:
+    """Return columns over many powers of ten: every number with its significant digits, a prefix a column."""
+    columns = []
+    for name, value in values.items():
+        given = _above(floor, value)
+        power = _power(float(np.nanmax(np.abs(given), initial=0.0)), 6)
+        cells = tuple(one(each / 10.0**power, digits) for each in given)
+        columns.append(Column(name=name, unit=PREFIXES[power] + unit, cells=cells))
+    return tuple(columns)
+
+
 def angle(radians: ArrayLike, *, group: str = "", name: str = "rotation") -> Column:
     """Return a column of angles in degrees."""
     degrees = np.degrees(_above(ANGLE_FLOOR, radians))
@@ -96,6 +107,16 @@ def fixed(value: float, decimals: int) -> str:
 def significant(value: float) -> str:
     """Return a number with its significant digits, for columns over many powers of ten; a dash for NaN."""
     return f"{value + 0.0:.{DIGITS}g}" if math.isfinite(value) else NOTHING
+
+
+def one(value: float, digits: int) -> str:
+    """Return a number for a sentence, without a power of ten where it is readable; a dash for NaN."""
+    if not math.isfinite(value):
+        return NOTHING
+    exponent = math.floor(math.log10(abs(value))) if value else 0
+    if -4 <= exponent < 9:
+        return f"{value:.{max(0, digits - 1 - exponent)}f}" if value else "0"
+    return f"{value:.{digits}g}"
 
 
 def table(columns: Sequence[Column]) -> Iterator[str]:

@@ -27,7 +27,7 @@ from studies.commands.arguments import (
     MEASURE,
     OUT,
     STRETCH,
-    turned_pivot,
+    turned_design,
 )
 from studies.commands.parser import command, counts
 from studies.convergence.sweep import (
@@ -65,7 +65,7 @@ ACCURACIES = (1e-3, 1e-4, 1e-6)
 )
 def main(arguments: argparse.Namespace) -> int:
     """Refine, print, store and draw; return the exit code."""
-    problem = turned_pivot(arguments, "rotation to relate errors to")
+    problem = turned_design(arguments, "rotation to relate errors to")
     meshes = _doubled(*arguments.elements)
     first, last = arguments.control_points
     settings = [

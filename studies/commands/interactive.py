@@ -3,12 +3,14 @@
     python -m studies interactive
     python -m studies interactive --film demo
     python -m studies interactive --camera none --preset table-1
+    python -m studies interactive my_pivot.toml
     python -m studies interactive --replay session.jsonl
 
 Two printed markers (`python -m studies markers`) before the browser's camera drive the pivot; without a
-camera mouse, touch and keys do. The server is open to this machine only. It needs the extra `interactive`,
-which `make interactive` installs. Exit code 0: stopped with Ctrl-C, or a replay that gave the recorded
-states; 1: a replay that did not; 2: bad input.
+camera mouse, touch and keys do. A case file of one's own joins the presets; its dimensions must be those that
+the sliders reach, and no loads act here. The server is open to this machine only. It needs the extra
+`interactive`, which `make interactive` installs. Exit code 0: stopped with Ctrl-C, or a replay that gave the
+recorded states; 1: a replay that did not; 2: bad input.
 """
 
 import argparse
@@ -18,7 +20,7 @@ import sys
 import webbrowser
 from pathlib import Path
 
-from studies.commands.arguments import OUT
+from studies.commands.arguments import CASE, OUT
 from studies.commands.parser import Argument, command, whole_number
 from studies.errors import BadInput
 from studies.record.files import require_writable_file, write_whole
@@ -33,6 +35,9 @@ EXTRA = {
 
 
 @command(
+    CASE.but(
+        nargs="?", help="a design of one's own to start with, a file or the name of one that comes along"
+    ),
     Argument(
         "--port", type=whole_number(0), default=0, metavar="P", help="of the server, default any free one"
     ),
@@ -49,7 +54,6 @@ EXTRA = {
     ),
     Argument(
         "--preset",
-        default="polymer",
         metavar="NAME",
         help="design to start with: polymer (default) or table-1",
     ),
@@ -60,14 +64,20 @@ EXTRA = {
 )
 def main(arguments: argparse.Namespace) -> int:
     """Serve until interrupted, or replay; return the exit code."""
+    from studies.interactive.pivot import presets
+
+    if arguments.case is not None:
+        if arguments.preset is not None:
+            raise BadInput(f"--preset: got {arguments.preset} beside a case, expected one of them")
+        presets.bring(arguments.case)
     if arguments.replay is not None:
         return _replay(arguments.replay)
     _require_extra("interactive")
-    from studies.interactive.pivot import presets
     from studies.interactive.tracking.calibration import Camera
     from studies.interactive.web.server import Server, Settings, warm_up
 
-    presets.preset(arguments.preset)
+    preset = arguments.preset or ("polymer" if arguments.case is None else presets.OWN)
+    presets.preset(preset)
     source, camera = _source(arguments)
     stream = _stream(arguments.record)
     server = Server(
@@ -76,7 +86,7 @@ def main(arguments: argparse.Namespace) -> int:
             camera=camera,
             source=source,
             calibration=None if arguments.calibration is None else Camera.read(arguments.calibration),
-            preset=arguments.preset,
+            preset=preset,
             keep=None if stream is None else stream.write,
         )
     )

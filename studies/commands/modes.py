@@ -35,6 +35,7 @@ from studies.commands.arguments import (
 )
 from studies.commands.columns import plain, significant, table
 from studies.commands.parser import command
+from studies.commands.picture import PLOT, pictured
 from studies.kinds import Array
 
 #: Of displacement and rotation at unit modal mass; and what is round-off of the largest of all modes.
@@ -51,6 +52,7 @@ SHAPE_UNITS, NOISE = ("kg^-0.5", "kg^-0.5", "kg^-0.5/m"), 1e-7
         "with --control-points) or doubles the elements (default: none is asked for)"
     ),
     JSON,
+    PLOT,
 )
 def main(arguments: argparse.Namespace) -> int:
     """Solve and report; return the exit code."""
@@ -62,6 +64,7 @@ def main(arguments: argparse.Namespace) -> int:
     failure = (
         None if answer.converged else f"at {math.degrees(arguments.rotation or 0.0):g} deg: {answer.message}"
     )
+    pictured(arguments, design, answer)
     return deliver(arguments, as_document(answer), _readable(answer), failure=failure)
 
 

@@ -1,15 +1,17 @@
-"""Rewrite the tables of the README and of the page of findings from the stored results.
+"""Rewrite the tables of the README, of the page of findings and of that of case files.
 
     python -m studies readme
 
-In README.md and docs/findings.md only what stands between marks is written, all of it from results/data. Exit
-code 0: done; 2: a study it needs was never run, or a file has no marks.
+Only what stands between marks is written: in README.md and docs/findings.md from results/data, in
+docs/cases.md from the declarations that read case files. Exit code 0: done; 2: a study it needs was never
+run, or a file has no marks.
 """
 
 import argparse
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 
+from studies.cases import page
 from studies.commands import tables
 from studies.commands.parser import command
 from studies.errors import BadInput
@@ -24,6 +26,10 @@ def _digits(store: Store) -> Iterable[str]:
     return tables.digits(*(tables.stored(store, study, "digits_of_time") for study in studies))
 
 
+def _published(store: Store) -> Iterable[str]:
+    return tables.published_values(tables.stored(store, "published/problems", "values"))
+
+
 #: File -> block -> the lines that stand between its marks.
 BLOCKS: dict[Path, Mapping[str, Callable[[Store], Iterable[str]]]] = {
     ROOT / "README.md": {"agreement": tables.short},
@@ -34,6 +40,13 @@ BLOCKS: dict[Path, Mapping[str, Callable[[Store], Iterable[str]]]] = {
         "digits": _digits,
         "hard cases": lines,
         "sized": tables.sized,
+        "published": _published,
+    },
+    ROOT / "docs" / "cases.md": {
+        "keys of a pivot": lambda store: page.pivot(),
+        "keys of a mechanism": lambda store: page.mechanism(),
+        "effects": lambda store: page.effects(),
+        "materials": lambda store: page.materials(),
     },
 }
 

@@ -12,6 +12,9 @@ and by a `history`, whose change times rotation_deg it is led through from where
 value times history(t), constant before its first and after its last time. A mechanism without a rotation
 starts where all of this settles it: under constant loads it stands still, and `message` says so.
 
+Without --duration four swings of the first natural mode at rest are followed, after all histories, and
+without --step the implicit splines take 256 steps to a swing, or more where another of the first modes asks
+for it; a design without such a mode has 0.05 s.
 Of a pivot coordinates have their origin at A1, the ground clamp of strip 1; rotation is counter-clockwise.
 The arrays of the JSON run over the instants, the release first, and effects are those that were assembled.
 frequency_Hz is of the swing about its rest, ripples not counted; null without a whole swing, and
@@ -28,6 +31,8 @@ from typing import Any
 
 from studies.answers.adapters import answer_release
 from studies.answers.motion import Motion
+from studies.answers.pace import pace
+from studies.answers.settings import Settings
 from studies.cases.design import Design, flexural_scale
 from studies.cases.effects import DEFAULT
 from studies.cases.problem import Problem
@@ -55,6 +60,7 @@ from studies.commands.arguments import (
 )
 from studies.commands.columns import ENERGY_FLOOR, angle, plain, quantity, table
 from studies.commands.parser import Argument, command, whole_number
+from studies.commands.picture import PLOT, pictured
 
 #: Options of the motion that only the finite elements have, and those of both models.
 FE_OPTIONS = ("most_steps",)
@@ -70,7 +76,7 @@ LINES = 20
 @command(
     *MODEL,
     ROTATION.but(help="at the release, in deg (default: the case's)"),
-    DURATION.but(default=0.05),
+    DURATION,
     STEP,
     INTEGRATOR,
     ACCURACY.but(
@@ -90,6 +96,7 @@ LINES = 20
         help="explicit steps that are not too many to begin with (finite elements; default 20000000)",
     ),
     JSON,
+    PLOT,
 )
 def main(arguments: argparse.Namespace) -> int:
     """Release and report; return the exit code."""
@@ -99,17 +106,36 @@ def main(arguments: argparse.Namespace) -> int:
         refuse(arguments, FE_OPTIONS, OPTIONS)
     require_target(arguments)
     options = {name: getattr(arguments, name) for name in (*OPTIONS, *FE_OPTIONS)}
+    duration, options["step"] = _pace(arguments, design, settings)
     answer = answer_release(
         design,
         settings,
         start=design.rotation if arguments.rotation is None else arguments.rotation,
-        duration=arguments.duration,
+        duration=duration,
         repeat=arguments.repeat,
         check=not arguments.no_check,
         **options,
     )
     failure = None if answer.converged else answer.message
+    pictured(arguments, design, answer)
     return deliver(arguments, as_document(design, answer), _readable(design, answer), failure=failure)
+
+
+def _pace(arguments: argparse.Namespace, design: Design, settings: Settings) -> tuple[float, float | None]:
+    """Return duration and step [s] as given, or as the design's first frequency asks for.
+
+    A step only of the implicit splines: what is explicit, or has an accuracy, has steps of its own, and so
+    have the elements.
+    """
+    implicit = arguments.integrator in (None, "energy", "generalised-alpha") and arguments.accuracy is None
+    free = settings.model == "spline" and implicit and arguments.step is None
+    if arguments.duration is not None and not free:
+        return arguments.duration, arguments.step
+    usual = pace(design, settings)
+    duration = usual.duration if arguments.duration is None else arguments.duration
+    if not free or usual.step is None:
+        return duration, arguments.step
+    return duration, min(usual.step, duration)
 
 
 def as_document(design: Design, answer: Motion) -> dict[str, Any]:

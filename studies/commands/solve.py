@@ -2,7 +2,8 @@
 
     python -m studies solve cross_axis_pivot --control-points 8
     python -m studies solve cross_axis_pivot --model fe --elements 40 --json -
-    python -m studies solve four_bar_of_flexures --effects=-gravity
+    python -m studies solve four_bar_of_flexures --effects=-gravity --plot four_bar.svg --csv path.csv
+    python -m studies solve cross_axis_pivot --model spline,fe
 
 Of a pivot coordinates have their origin at A1, the ground clamp of strip 1; rotation is counter-clockwise.
 Control points of the spline are added until the estimated error of path, torque, stiffness, stress and
@@ -14,65 +15,50 @@ load factor 0 first, and effects are those that were assembled. Critical points 
 model remarks on the path, stand below the table. A mechanism without a rotation follows the loads of its
 scene. Exit code 0: converged; 2: bad input; 3: not converged, and then the converged part of the path is
 reported with where and why it stopped.
+
+The shift is the distance of the body's point that lies at the strips' crossing at rest from that place. The
+stiffness of the body is the change of forces and moment at its centre by its x, y and turn in the axes of
+the ground, the other two held, loads fixed and drives let go; "x over" and "y over" are those of x and y
+times the square of a strip's length over the stiffness of the rotation. It is shown at some of the states,
+and of all of them in JSON and CSV. With a yield_strength_Pa in the case the answer says how safe it is, and
+from which angle or load on it yields. Several models, as in --model spline,fe, are answered one after
+another, with their largest differences over the path, each in parts of the largest value by the first.
 """
 
 import argparse
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Any
 
-import numpy as np
-
-from studies.answers.adapters import answer_mechanism, answer_static
+from studies.answers.adapters import answer_path
+from studies.answers.differences import differences
 from studies.answers.response import MechanismResponse, Response
-from studies.cases.design import Design, flexural_scale
+from studies.answers.settings import Settings
+from studies.cases.design import Design
 from studies.cases.problem import Problem
-from studies.commands.answer import (
-    deliver,
-    described,
-    ending,
-    estimated,
-    headed,
-    number,
-    places,
-    remarks,
-    require_target,
-)
+from studies.commands.answer import deliver, require_target
 from studies.commands.arguments import (
     ACCURACY,
+    CSV,
     INCREMENTS,
     JSON,
-    MODEL,
     REPEAT,
     ROTATION,
+    SEVERAL_MODELS,
+    all_settings,
     chosen_design,
-    chosen_settings,
     driven,
 )
-from studies.commands.columns import (
-    ENERGY_FLOOR,
-    FORCE_FLOOR,
-    STRAIN_FLOOR,
-    Column,
-    angle,
-    plain,
-    quantity,
-    table,
-)
 from studies.commands.parser import command
+from studies.commands.path_output import as_document, as_frame, readable
+from studies.commands.picture import PLOT, pictured
 from studies.record.progress import Bar
 
-#: Effects whose share a table shows beside the rotation.
-LOADS = {"applied_force", "applied_moment", "tip_force", "driven_displacement"}
-
-
-def share(answer: Response | MechanismResponse) -> Column:
-    """Return the column of the share of the loads that acts."""
-    return plain("load", (f"{factor:.3f}" for factor in answer.load_factor))
+Path = Response | MechanismResponse
 
 
 @command(
-    *MODEL,
+    *SEVERAL_MODELS,
     ROTATION.but(help="end of the path, in deg (default: the case's)"),
     INCREMENTS,
     REPEAT,
@@ -82,80 +68,67 @@ def share(answer: Response | MechanismResponse) -> Column:
         "the elements (default: none is asked for)"
     ),
     JSON,
+    CSV,
+    PLOT,
 )
 def main(arguments: argparse.Namespace) -> int:
     """Solve and report; return the exit code."""
     design = driven(chosen_design(arguments), arguments)
-    settings = chosen_settings(arguments)
+    every = all_settings(arguments)
     require_target(arguments)
+    answers = [_answer(arguments, design, settings) for settings in every]
+    stopped = [_stopped(design, answer) for answer in answers if not answer.converged]
+    pictured(arguments, design, *answers)
+    return deliver(
+        arguments,
+        _document(design, answers),
+        _table(design, answers),
+        failure="; ".join(stopped) or None,
+        frame=lambda: _frame(design, answers),
+    )
+
+
+def _answer(arguments: argparse.Namespace, design: Design, settings: Settings) -> Path:
+    """Return the path by one model."""
     with Bar(f"solve {settings.model}") as bar:
         how = {"repeat": arguments.repeat, "accuracy": arguments.accuracy}
-        answer: Response | MechanismResponse
-        if isinstance(design, Problem):
-            answer = answer_static(design, settings, progress=bar, **how)
-            failure = None if answer.converged else _stopped(design, answer)
-        else:
-            answer = answer_mechanism(design, settings, progress=bar, **how)
-            failure = None if answer.converged else answer.message
-    return deliver(arguments, as_document(answer), _readable(design, answer), failure=failure)
+        return answer_path(design, settings, progress=bar, **how)
 
 
-def as_document(answer: Response | MechanismResponse) -> dict[str, Any]:
-    """Return the answer as the JSON object of the command: of a pivot the one body, of a mechanism all."""
-    if isinstance(answer, Response):
-        place = {
-            "rotation_rad": answer.rotation.tolist(),
-            "com_x_m": answer.centre[:, 0].tolist(),
-            "com_y_m": answer.centre[:, 1].tolist(),
-        }
-        beside = {"max_stress_Pa": answer.max_stress.tolist()}
-    else:
-        place = {"bodies": places(answer.bodies)}
-        beside = {"gravity_energy_J": answer.gravity_energy.tolist(), "work_J": answer.work.tolist()}
+def _stopped(design: Design, answer: Path) -> str:
+    """Return how far a path came, why it stopped, and what mends a discretisation that is too coarse."""
+    given = answer.resolution and not answer.estimate
+    mend = "; without --control-points their number is chosen" if given else ""
+    if isinstance(answer, Response) and isinstance(design, Problem) and design.rotation:
+        last = math.degrees(answer.rotation[-1]) if len(answer.rotation) else 0.0
+        mend = f"{answer.message}{mend}"
+        return f"reached {last:.3f} of {math.degrees(design.rotation):.3f} deg: {mend}"
+    return f"{answer.message}{mend}"
+
+
+def _document(design: Design, answers: Sequence[Path]) -> dict[str, Any]:
+    """Return the JSON object: of one answer, or of several with their differences."""
+    if len(answers) == 1:
+        return as_document(design, answers[0])
     return {
-        **headed(answer),
-        "load_factor": answer.load_factor.tolist(),
-        **place,
-        "torque_Nm": [number(value) for value in answer.torque.tolist()],
-        "stiffness_Nm_per_rad": [number(value) for value in answer.stiffness.tolist()],
-        "strain_energy_J": answer.strain_energy.tolist(),
-        **beside,
-        **({} if answer.estimate is None else {"estimate": answer.estimate}),
-        "counters": answer.counters,
-        "wall_s": answer.wall_s,
+        "answers": [as_document(design, answer) for answer in answers],
+        "differences": {answer.model: differences(answer, answers[0]) for answer in answers[1:]},
     }
 
 
-def _stopped(problem: Problem, answer: Response) -> str:
-    """Return how far a path came, why it stopped, and what mends a discretisation that is too coarse."""
-    last = math.degrees(answer.rotation[-1]) if len(answer.rotation) else 0.0
-    given = answer.resolution and not answer.estimate
-    mend = "; without --control-points their number is chosen" if given else ""
-    return f"reached {last:.3f} of {math.degrees(problem.rotation):.3f} deg: {answer.message}{mend}"
+def _frame(design: Design, answers: Sequence[Path]) -> Any:
+    """Return the rows of all answers as a table of pandas, which only who asks for one waits for."""
+    import pandas as pd
+
+    return pd.concat([as_frame(design, answer) for answer in answers])
 
 
-def _readable(design: Design, answer: Response | MechanismResponse) -> Iterator[str]:
-    """Yield the lines of a short table: torque and energy, and the place of the body, or of every one."""
-    yield described(answer.model, answer.settings, answer.effects)
-    scale = flexural_scale(design)
-    pivot = isinstance(answer, Response)
-    columns = [] if pivot and not LOADS & set(answer.effects) else [share(answer)]
-    if isinstance(answer, Response):
-        columns.append(angle(answer.rotation))
-        columns += quantity("m", highest=-3, x=answer.centre[:, 0], y=answer.centre[:, 1])
-    if pivot or np.isfinite(answer.torque).any():
-        columns += quantity("N m", floor=FORCE_FLOOR * scale, torque=answer.torque)
-    if pivot:
-        columns += quantity("N m/rad", floor=FORCE_FLOOR * scale, stiffness=answer.stiffness)
-    columns += quantity("J", floor=ENERGY_FLOOR * scale, energy=answer.strain_energy)
-    if isinstance(answer, Response) and isinstance(design, Problem):
-        floor = STRAIN_FLOOR * design.youngs_modulus
-        columns += quantity("Pa", floor=floor, highest=6, digits=6, stress=answer.max_stress)
-    elif isinstance(answer, MechanismResponse):
-        for name, place in answer.bodies.items():
-            columns += quantity("m", highest=-3, group=name, x=place[:, 0], y=place[:, 1])
-            columns.append(angle(place[:, 2], group=name))
-    yield from table(columns)
-    yield from estimated(answer.estimate)
-    yield from remarks(answer)
-    yield ending(answer.status, answer.counters, answer.wall_s)
+def _table(design: Design, answers: Sequence[Path]) -> Iterator[str]:
+    """Yield the lines to read: every answer, and how far those after the first are from it."""
+    for answer in answers:
+        yield from readable(design, answer)
+        yield from [""] * (len(answers) > 1)
+    for answer in answers[1:]:
+        apart = differences(answer, answers[0])
+        told = (f"{name.replace('_', ' ')} {value:.1e}" for name, value in apart.items() if value is not None)
+        yield f"{answer.model} differs from {answers[0].model} by: {', '.join(told)}"

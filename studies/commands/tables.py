@@ -109,6 +109,26 @@ def claims(store: Store) -> Iterator[str]:
         yield f"| {claim} | " + " | ".join(cells) + " |"
 
 
+def published_values(values: pd.DataFrame) -> Iterator[str]:
+    """Yield the table of published problems: of each and each kind of answer the value that is met worst.
+
+    values: table of the study; the splines' rows where they answer.
+    """
+    yield "| published problem | asked | in print | ours | difference | limit |"
+    yield "|---|---|---|---|---|---|"
+    for _, every in values.groupby(["problem", "answer"], sort=False):
+        rows = every[every["model"] == "spline"] if (every["model"] == "spline").any() else every
+        row = rows.iloc[int(rows["error"].abs().argmax())]
+        name = row["problem"] if row["answer"] == "beam" else f"{row['problem']}, {row['answer']}"
+        bound = "" if row["bound"] == "equal" else f"{row['bound']} "
+        unit = "" if row["unit"] == "1" else f" {row['unit']}"
+        printed = f"{bound}{row['published']:.6g} ± {row['uncertainty']:.1g}{unit}"
+        difference = f"{100 * row['error']:+.2g} %"
+        asked = row["quantity"].replace("_", " ")
+        limit = f"{100 * row['limit']:.2g} %"
+        yield f"| {name} | {asked} | {printed} | {row['found']:.6g}{unit} | {difference} | {limit} |"
+
+
 def stored(store: Store, study: str, name: str) -> pd.DataFrame:
     """Return one stored table of a study.
 

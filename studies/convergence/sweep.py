@@ -7,12 +7,12 @@ import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
-from studies.answers.adapters import answer_static
+from studies.answers.adapters import answer_path
 from studies.answers.metrics import observed_order
 from studies.answers.reference import Reference, errors, limit_of
-from studies.answers.response import Response
+from studies.answers.response import MechanismResponse, Response
 from studies.answers.settings import FeSettings, SplineSettings
-from studies.cases.problem import Problem
+from studies.cases.design import Design
 from studies.kinds import Progress
 from studies.record.progress import silent
 from studies.record.style import LOOKS, page, uncertain
@@ -25,7 +25,7 @@ FINEST = 160
 
 
 def spline_sweep(
-    problem: Problem, settings: Sequence[SplineSettings], against: Reference, progress: Progress = silent
+    problem: Design, settings: Sequence[SplineSettings], against: Reference, progress: Progress = silent
 ) -> pd.DataFrame:
     """Return the rows of `spline_row` for each of `settings`."""
     rows = []
@@ -36,18 +36,18 @@ def spline_sweep(
     return pd.DataFrame(rows)
 
 
-def spline_row(problem: Problem, setting: SplineSettings, against: Reference) -> dict[str, Any]:
+def spline_row(problem: Design, setting: SplineSettings, against: Reference) -> dict[str, Any]:
     """Return what a spline is, how it ended, its errors, its work.
 
     Columns: basis, measure, stretch, control_points, axial_modes (none for consistent stretch), status,
     reached_rad (end of the converged part of the path), error_trajectory, error_torque, error_stiffness
     (largest magnitudes over the path; empty when the path was not completed), newton_iterations, message.
     """
-    return _described(setting) | _outcome(answer_static(problem, setting), against)
+    return _described(setting) | _outcome(answer_path(problem, setting), against)
 
 
 def element_sweep(
-    problem: Problem, elements: Iterable[int], element: str, progress: Progress = silent
+    problem: Design, elements: Iterable[int], element: str, progress: Progress = silent
 ) -> tuple[pd.DataFrame, Reference]:
     """Return one row a mesh with its errors against the limit of the meshes themselves, and that limit.
 
@@ -61,7 +61,7 @@ def element_sweep(
     answers = []
     for done, count in enumerate(counts):
         progress(done, len(counts))
-        answers.append(answer_static(problem, FeSettings(elements=count, element=element)))
+        answers.append(answer_path(problem, FeSettings(elements=count, element=element)))
     progress(len(counts), len(counts))
     limit = limit_of([answer for answer in answers if answer.settings["elements"] <= FINEST])
     rows = [
@@ -107,7 +107,7 @@ def _described(setting: SplineSettings) -> dict[str, Any]:
     }
 
 
-def _outcome(answer: Response, against: Reference) -> dict[str, Any]:
+def _outcome(answer: Response | MechanismResponse, against: Reference) -> dict[str, Any]:
     row: dict[str, Any] = {"status": answer.status, "reached_rad": answer.rotation[-1]}
     row |= dict.fromkeys(ERROR_COLUMNS, np.nan)
     if answer.converged:

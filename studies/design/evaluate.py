@@ -1,17 +1,18 @@
 """A design's answers with exact gradients, and what checks them: differences, and the finite elements."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
+from spline_model.sensitivity.result import Quantity, Sensitivities
 from spline_model.sensitivity.solve import sensitivities
 from studies.answers.models import built, model_of, refusals
 from studies.answers.reference import reference
 from studies.answers.response import Response, centre_shift
 from studies.answers.settings import SplineSettings
 from studies.cases.problem import Problem
-from studies.design.task import CENTRE_SHIFT, VARIABLES, VARIATION, Task, variables_of
+from studies.design.task import CENTRE_SHIFT, VARIABLES, VARIATION, Task, sides_of, variables_of
 from studies.kinds import Array
 
 #: Control points of the strips: an optimum's answers nearly cancel, and 8 miss the least variation by 8 %.
@@ -28,14 +29,17 @@ class PathEnds(RuntimeError):
 
 @dataclass(frozen=True, kw_only=True)
 class Answers:
-    """What a design answers over its range of S states behind rest, with gradients by the variables (5,).
+    """What a design answers over S states of its range behind the first, with gradients by variables (5,).
+
+    The first state has rotation 0, and all loads; under loads the states of the other side follow.
 
     Attributes:
-        stiffness: at rest [N m / rad]; by_stiffness (5,).
-        square_shift: (S,) square of the centre shift [m^2]; by_square_shift (S, 5).
-        variation: (S,) change of stiffness over that at rest, signed [1]; by_variation (S, 5).
-        stress: (F,) signed fibre stresses at the end of the range [Pa]; by_stress (F, 5).
-        rotation: (S + 1,) from rest [rad]; largest_stress (S + 1,) [Pa].
+        stiffness: at the first state [N m / rad]; by_stiffness (5,).
+        square_shift: (S,) square of the centre shift since then [m^2]; by_square_shift (S, 5).
+        variation: (S,) change of stiffness over that of the first state, signed [1]; by_variation (S, 5).
+        stress: (F,) signed fibre stresses at the end of each side, of the first state too under loads [Pa];
+            by_stress (F, 5).
+        rotation: (S + 1,) from the first state [rad]; largest_stress (S + 1,) [Pa].
         evaluations: factorisations and back-substitutions of the gradients.
     """
 
@@ -62,36 +66,71 @@ def answers(problem: Problem, control_points: int = CONTROL_POINTS) -> Answers:
     """Solve a design to the end of its range, with exact gradients.
 
     Raises:
-        PathEnds: the static path does not reach the end of the range.
+        PathEnds: the static path does not reach the end of the range, or buckles on its way under the loads.
         BadInput: an effect or value that the model, or its sensitivities, refuse; one line.
     """
-    settings = SplineSettings(control_points=control_points)
-    model = model_of(settings)
-    pivot, _ = built(model, problem, settings, moving=False)
-    with refusals(model, settings):
-        try:
-            path = model.statics.solve_statics(
-                pivot, rotation=problem.rotation, increments=problem.increments
-            )
-        except model.errors.ConvergenceError as error:
-            raise PathEnds(str(error)) from None
-        found = sensitivities(pivot, path, parameters=VARIABLES, stations=STATIONS)
-    shift, stiffness, stress = found.centre_shift, found.stiffness, found.fibre_stress
-    at_rest, by_rest = stiffness.value[0], stiffness.derivative[0]
-    ratio = stiffness.value[1:] / at_rest
+    sides = sides_of(problem)
+    solved = [_to_one_side(problem, sign * problem.rotation, control_points) for sign in sides]
+    found = [each for _, each in solved]
+    begin = first_state(problem, len(solved[0][0]))
+    at_rest, by_rest = _at(begin, found[0].stiffness)
+    shift, by_shift = _behind(begin, [each.centre_shift for each in found])
+    shift_0, by_shift_0 = _at(begin, found[0].centre_shift)
+    shift, by_shift = shift - shift_0, by_shift - by_shift_0
+    stiffness, by_stiffness = _behind(begin, [each.stiffness for each in found])
+    ratio = stiffness / at_rest
+    stress = [_at(-1, each.fibre_stress) for each in found]
+    stress += [_at(begin, found[0].fibre_stress)] if len(sides) > 1 else []
     return Answers(
         stiffness=float(at_rest),
         by_stiffness=by_rest,
-        square_shift=np.sum(shift.value[1:] ** 2, axis=1),
-        by_square_shift=2.0 * np.einsum("si,sip->sp", shift.value[1:], shift.derivative[1:]),
+        square_shift=np.sum(shift**2, axis=1),
+        by_square_shift=2.0 * np.einsum("si,sip->sp", shift, by_shift),
         variation=ratio - 1.0,
-        by_variation=(stiffness.derivative[1:] - ratio[:, None] * by_rest) / at_rest,
-        stress=stress.value[-1].ravel(),
-        by_stress=stress.derivative[-1].reshape(-1, len(VARIABLES)),
-        rotation=path.rotation,
-        largest_stress=found.largest_stress().value,
-        counters=found.counters,
+        by_variation=(by_stiffness - ratio[:, None] * by_rest) / at_rest,
+        stress=np.concatenate([value.ravel() for value, _ in stress]),
+        by_stress=np.concatenate([by.reshape(-1, len(VARIABLES)) for _, by in stress]),
+        rotation=behind_first(begin, [rotation for rotation, _ in solved]),
+        largest_stress=behind_first(begin, [each.largest_stress().value for each in found]),
+        counters=found[0].counters,
     )
+
+
+def _at(state: int, quantity: Quantity) -> tuple[Array, Array]:
+    """Return value and derivative of a quantity at one state."""
+    return quantity.value[state], quantity.derivative[state]
+
+
+def _behind(begin: int, sides: list[Quantity]) -> tuple[Array, Array]:
+    """Return values and derivatives behind the first state, those of each side."""
+    values = np.concatenate([side.value[begin + 1 :] for side in sides])
+    return values, np.concatenate([side.derivative[begin + 1 :] for side in sides])
+
+
+def first_state(problem: Problem, states: int) -> int:
+    """Return the state of a path at which the body begins to turn: loads have come on before."""
+    return states - 1 - problem.increments
+
+
+def behind_first(begin: int, sides: list[Array]) -> Array:
+    """Return the values of a path from the state at which the body begins to turn, those of each side."""
+    return np.concatenate([sides[0][begin : begin + 1], *(side[begin + 1 :] for side in sides)])
+
+
+def _to_one_side(problem: Problem, rotation: float, control_points: int) -> tuple[Array, Sensitivities]:
+    """Return the rotations of the path to one side, and its derivatives; errors as of `answers`."""
+    settings = SplineSettings(control_points=control_points)
+    model = model_of(settings)
+    pivot, _ = built(model, problem, settings, moving=False)
+    how = {"rotation": rotation, "increments": problem.increments, "order": problem.order}
+    with refusals(model, settings):
+        try:
+            path = model.statics.solve_statics(pivot, **how)
+        except model.errors.ConvergenceError as error:
+            raise PathEnds(str(error)) from None
+        if path.critical_points and len(sides_of(problem)) > 1:
+            raise PathEnds(path.message)
+        return path.rotation, sensitivities(pivot, path, parameters=VARIABLES, stations=STATIONS)
 
 
 #: First step of the differences, of a variable's bounds, and how often it is halved.
@@ -139,14 +178,16 @@ def by_elements(problem: Problem) -> tuple[Measured, Response]:
     Raises:
         NoReference: they do not reach the end of the range.
     """
-    limit = reference(problem)
+    limits = [reference(replace(problem, rotation=sign * problem.rotation)) for sign in sides_of(problem)]
+    begin = first_state(problem, len(limits[0].rotation))
+    shifts = [centre_shift(problem, limit.rotation, limit.centre) for limit in limits]
     measured = Measured(
-        rotation=limit.rotation,
-        shift=np.hypot(*centre_shift(problem, limit.rotation, limit.centre).T),
-        stiffness=limit.stiffness,
-        stress=limit.finest.max_stress,
+        rotation=behind_first(begin, [limit.rotation for limit in limits]),
+        shift=behind_first(begin, [np.hypot(*(shift - shift[begin]).T) for shift in shifts]),
+        stiffness=behind_first(begin, [limit.stiffness for limit in limits]),
+        stress=behind_first(begin, [limit.finest.max_stress for limit in limits]),
     )
-    return measured, limit.finest
+    return measured, limits[0].finest
 
 
 def gradient_error(task: Task, problem: Problem, levels: int = LEVELS) -> float:

@@ -56,7 +56,8 @@ class Outcome:
 
 def starts(task: Task, count: int, seed: int = 8) -> Array:
     """Return scaled starts (count, 5): the task's own design, clipped to the bounds, and Sobol's points."""
-    own = np.clip((variables_of(task.start) - task.low) / task.span, 0.0, 1.0)
+    held = task.span == 0.0
+    own = np.clip((variables_of(task.start) - task.low) / np.where(held, 1.0, task.span), 0.0, 1.0)
     spread = qmc.Sobol(5, seed=seed).random_base2(int(np.ceil(np.log2(max(count - 1, 1)))))
     return np.vstack((own, spread[: count - 1]))
 

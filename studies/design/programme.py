@@ -75,10 +75,12 @@ class Programme:
 
     def row_names(self) -> list[str]:
         """Return what each row of `inequalities` holds."""
-        states = self.task.start.increments
+        sides = len(self.task.sides)
+        states = self.task.start.increments * sides
+        stressed = sides if sides == 1 else sides + 1
         counts = {name: states if name == CENTRE_SHIFT else 2 * states for name in self._held()}
         rows = [name for name, count in counts.items() for _ in range(count)]
-        return [*rows, *["stress"] * 2 * FIBRES, "slenderness", "aspect"]
+        return [*rows, *["stress"] * 2 * FIBRES * stressed, "slenderness", "aspect"]
 
     def _held(self) -> list[str]:
         """Return the objectives with rows: the one to be least and those with a limit."""
@@ -182,6 +184,8 @@ def _active(programme: Programme, y: Array) -> tuple[list[str], list[Array]]:
     reached = np.flatnonzero(rows < ACTIVE)
     names, gradients = [labels[i] for i in reached], list(jacobian[reached])
     for i, name in enumerate(VARIABLES):
+        if programme.task.span[i] == 0.0:
+            continue
         for end, where in ((0.0, "at its least"), (1.0, "at its most")):
             if abs(y[i] - end) < ACTIVE:
                 names.append(f"{name} {where}")

@@ -7,7 +7,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from studies.cases.effects import MOTION_ONLY
 from studies.cases.problem import Problem, named_case
+from studies.cases.strips import of_sides
 
 #: Variables of a sizing, as keywords of the sensitivities; both strips are alike.
 VARIABLES = ("length", "inclination", "crossing_ratio", "thickness", "width")
@@ -20,17 +22,24 @@ OBJECTIVES: Mapping[str, str] = {
 }
 
 
+#: Effects under which both sides of a range are mirror images, as both strips are alike.
+PLAIN = {"bending", "stretching", "clamped_width", "anticlastic", "root_compliance", *MOTION_ONLY}
+
+
+def sides_of(problem: Problem) -> tuple[float, ...]:
+    """Return the signs of the rotations that a range needs solved: both under loads, one without."""
+    return (1.0,) if set(problem.effects.names) <= PLAIN else (1.0, -1.0)
+
+
 @dataclass(frozen=True, kw_only=True)
 class Task:
     """One question about one pivot.
 
-    The path goes to one side only: both strips are alike, so the other side is its mirror image.
-
     Args:
-        start: the design to compare with; its material, range (`rotation`) and increments hold for all.
+        start: the design to compare with; all have its material, range (`rotation`), increments and loads.
         objective: a key of `OBJECTIVES`.
-        stiffness: wanted rotational stiffness at rest [N m / rad].
-        allowable_stress: of the extreme fibres at the end of the range [Pa].
+        stiffness: wanted rotational stiffness at rotation 0, under the loads [N m / rad].
+        allowable_stress: of the extreme fibres at the ends of the range, and before it under loads [Pa].
         bounds: lowest and highest value of every variable, SI and radians.
         least_slenderness: of the strips, L / h [1]: below, shear counts, which the strips do not have.
         largest_aspect: of the strips, b / L [1]: above, a strip is a plate.
@@ -47,13 +56,18 @@ class Task:
     limits: Mapping[str, float]
 
     @property
+    def sides(self) -> tuple[float, ...]:
+        """Signs of the rotations that are solved, as of `sides_of`."""
+        return sides_of(self.start)
+
+    @property
     def low(self) -> NDArray[np.float64]:
         """Lowest values of the variables (5,)."""
         return np.array([self.bounds[name][0] for name in VARIABLES])
 
     @property
     def span(self) -> NDArray[np.float64]:
-        """Widths of the bounds (5,)."""
+        """Widths of the bounds (5,), 0 of a variable that is held."""
         return np.array([self.bounds[name][1] for name in VARIABLES]) - self.low
 
     def problem(self, variables: NDArray[np.float64]) -> Problem:
@@ -64,9 +78,9 @@ class Task:
             length=length,
             inclination=inclination,
             crossing_ratio=ratio,
-            area=thickness * width,
-            second_moment_of_area=thickness**3 * width / 12.0,
-            section_depth=None,
+            width=width,
+            thickness=thickness,
+            **of_sides(width, thickness),
         )
 
 

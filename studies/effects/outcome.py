@@ -123,7 +123,11 @@ def answered(design: Design, run: Run, full: Answer | None = None) -> Answer:
     """
     static = _reached(answer_path(design, run.settings))
     mode = float(_reached(answer_modes(design, run.settings, count=1)).frequency[0])
-    answer = Answer(path=static.centres, torque=static.torque, mode=mode)
+    turned = slice(
+        -design.increments - 1, None
+    )  # as the body turns: a scene without loads has no states before
+    path = {name: each[turned] for name, each in static.centres.items()}
+    answer = Answer(path=path, torque=static.torque[turned], mode=mode)
     if full is not None and abs(mode / full.mode - 1.0) > LOST:
         return replace(answer, note="no motion: the first mode is another")
     motion = answer_release(design, run.settings, duration=run.duration, step=run.step)
@@ -188,7 +192,7 @@ def _reached(answer: Reached) -> Reached:
 
 
 def _rest(design: Design, full: Answer) -> dict[str, Array]:
-    """Return the centres before weight and drives act [m]; of a pivot the first state, which hardly sags."""
+    """Return the centres before weight and drives act [m]; of a pivot before it turns, which hardly sags."""
     if isinstance(design, Problem):
         return {name: path[0] for name, path in full.path.items()}
     return {body.name: np.array(body.centre) for body in design.bodies}

@@ -2,19 +2,14 @@
 
 from typing import Any
 
-import numpy as np
-
-from studies.answers.fields import Fields, blocks_of, parts_of, strip_arrays
-from studies.answers.models import as_solved, built, effects_of, is_given, model_of, refusals
+from studies.answers.fields import Fields
+from studies.answers.models import as_solved, built, is_given, model_of, refusals
 from studies.answers.moving import drive_of, state_of
-from studies.answers.response import assembled
 from studies.answers.settings import Settings
 from studies.cases.design import Design
 from studies.cases.problem import Problem
-from studies.kinds import Array, Progress
-
-#: Arrays of the design, not of its states.
-GIVEN = ("arc_length", "rest_shape", "rest_bodies")
+from studies.exchange.solutions import described, solved_fields
+from studies.kinds import Progress
 
 
 class NoState(ValueError):
@@ -38,15 +33,7 @@ def static_fields(design: Design, settings: Settings, *, progress: Progress | No
             drive = {"body": design.body, "rotation": design.rotation}
             result = model.statics.solve_mechanism(asked, **drive, **how)
     asked, keywords = as_solved(model, design, settings, result, moving=False)
-    return Fields(
-        **_identity("static", design, settings, keywords),
-        **_ended(result),
-        effects=assembled(effects_of(asked)),
-        series="load_factor",
-        values=np.asarray(result.load_factor),
-        torque=None if np.isnan(result.torque).all() else np.asarray(result.torque),
-        **strip_arrays(model.static_fields(asked, result.states)),
-    )
+    return solved_fields(model, asked, result, _about(design, settings, keywords))
 
 
 def release_fields(
@@ -65,7 +52,7 @@ def release_fields(
         NoState: statics does not reach the start.
     """
     model = model_of(settings)
-    asked, keywords = built(model, design, settings, moving=True)
+    asked, _ = built(model, design, settings, moving=True)
     given = {name: value for name, value in options.items() if value is not None} | model.release_options
     given |= {"duration": duration, model.records: records, "check": False}
     with refusals(model, settings):
@@ -78,14 +65,8 @@ def release_fields(
                 result = model.dynamics.solve_motion(asked, start=begin, body=design.body, **given)
         except model.errors.ConvergenceError as error:
             raise NoState(f"statics does not reach the start: {error}") from None
-    return Fields(
-        **_identity("release", design, settings, keywords | dict(result.settings)),
-        **_ended(result),
-        effects=effects_of(asked),
-        series="time_s",
-        values=np.asarray(result.time),
-        **strip_arrays(model.moving_fields(asked, result.states)),
-    )
+    asked, keywords = as_solved(model, design, settings, result, moving=True)
+    return solved_fields(model, asked, result, _about(design, settings, keywords | dict(result.settings)))
 
 
 def mode_fields(design: Design, settings: Settings, *, count: int, held: bool) -> Fields:
@@ -110,46 +91,8 @@ def mode_fields(design: Design, settings: Settings, *, count: int, held: bool) -
         except model.errors.ConvergenceError as error:
             raise NoState(f"statics does not reach the state: {error}") from None
     asked, keywords = as_solved(model, design, settings, result, moving=True)
-    count = len(result.frequency)
-    still = strip_arrays(model.static_fields(asked, np.asarray(result.state)[None]))
-    moving = {name: np.repeat(array, count, axis=0) for name, array in still.items() if name not in GIVEN}
-    return Fields(
-        **_identity("modes", design, settings, keywords),
-        status="converged",
-        message="",
-        effects=effects_of(asked),
-        series="mode",
-        values=np.arange(1.0, count + 1.0),
-        frequency=np.asarray(result.frequency),
-        mode_shape=np.asarray(result.shapes),
-        mode_bodies=_all_bodies(result, [block.name for block in blocks_of(design)]),
-        **(still | moving),
-    )
+    return solved_fields(model, asked, result, _about(design, settings, keywords))
 
 
-def _identity(analysis: str, design: Design, settings: Settings, keywords: dict[str, Any]) -> dict[str, Any]:
-    return {
-        "analysis": analysis,
-        "model": settings.model,
-        "settings": keywords,
-        "parts": parts_of(design),
-        "blocks": blocks_of(design),
-        "driven": 0 if isinstance(design, Problem) or design.body is None else _place(design.body, design),
-    }
-
-
-def _place(body: str, design: Design) -> int:
-    return [block.name for block in blocks_of(design)].index(body)
-
-
-def _ended(result: Any) -> dict[str, Any]:
-    return {"status": str(result.status.value), "message": result.message}
-
-
-def _all_bodies(result: Any, names: list[str]) -> Array:
-    """Return the modal displacements of all bodies (C, B, 3), which one model holds by name, one by place."""
-    count = len(result.frequency)
-    if hasattr(result, "bodies"):
-        shapes = np.array([result.bodies[name] for name in names]).reshape(-1, count, 3)
-        return shapes.swapaxes(0, 1)
-    return np.asarray(result.body_shapes, dtype=float).reshape(count, -1, 3)
+def _about(design: Design, settings: Settings, keywords: dict[str, Any]) -> dict[str, Any]:
+    return described(design) | {"model": settings.model, "settings": keywords}

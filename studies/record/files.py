@@ -10,6 +10,9 @@ from typing import BinaryIO
 
 from studies.errors import BadInput
 
+#: Endings of the files that a picture is written to.
+PICTURES = ("svg", "png", "pdf")
+
 
 class OutputError(BadInput):
     """A file or folder that cannot be written."""

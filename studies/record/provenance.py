@@ -3,6 +3,7 @@
 import datetime
 import hashlib
 import importlib.metadata
+import json
 import os
 import platform
 from collections.abc import Iterable, Mapping
@@ -11,7 +12,8 @@ from pathlib import Path
 from typing import Any
 
 from studies.cases.design import named_design
-from studies.record.source import source_hash
+from studies.cases.document import parsed
+from studies.record.source import ROOT, source_hash
 
 #: Packages whose version can change a number or a figure.
 DEPENDENCIES = ("numpy", "scipy", "numba", "scikit-fem", "pandas", "matplotlib")
@@ -34,8 +36,16 @@ def inputs(module: str, cases: Iterable[str]) -> dict[str, Any]:
     """Return the hashes of what a study is made from: its source and its cases."""
     return {
         "source_sha256": source_hash(module),
-        "cases": {name: named_design(name).fingerprint() for name in cases},
+        "cases": {name: _fingerprint(name) for name in cases},
     }
+
+
+def _fingerprint(name: str) -> str:
+    """Return the hash of a design by its name, of the values of another file by its path below studies/."""
+    if "/" not in name:
+        return named_design(name).fingerprint()
+    content = parsed(ROOT / "studies" / f"{name}.toml")
+    return sha256(json.dumps(content, sort_keys=True).encode())
 
 
 def surroundings() -> dict[str, Any]:

@@ -11,7 +11,7 @@ ROOT = Path(__file__).parents[2]
 PACKAGES = ("spline_model", "fe_reference", "studies")
 
 #: Modules that move or draw numbers and cannot change them, so that results stay fresh when these are edited.
-WITHOUT_INFLUENCE = ("studies.record",)
+WITHOUT_INFLUENCE = ("studies.record", "studies.pictures")
 
 #: Fields of a syntax node that differ between versions of Python while the code is the same.
 _VERSIONED = {"ctx", "kind", "type_comment", "type_params"}
@@ -67,7 +67,7 @@ def _read(name: str, root: Path) -> Module:
 def _analysed(text: str, name: str, package: bool) -> Module:
     tree = ast.parse(text)
     names = tuple(imports(tree, name, package=package))
-    return Module(code=_canonical(_without_docstrings(tree)), imports=names)
+    return Module(code=_canonical(_Silent().visit(tree)), imports=names)
 
 
 def imports(tree: ast.AST, module: str, *, package: bool) -> Iterator[str]:
@@ -100,17 +100,13 @@ def _file(name: str, root: Path) -> Path | None:
     return None
 
 
-def _without_docstrings(tree: ast.Module) -> ast.Module:
-    for node in ast.walk(tree):
-        if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef):
-            first = node.body[0] if node.body else None
-            if (
-                isinstance(first, ast.Expr)
-                and isinstance(first.value, ast.Constant)
-                and isinstance(first.value.value, str)
-            ):
-                node.body = node.body[1:]
-    return tree
+class _Silent(ast.NodeTransformer):
+    """Takes out strings that stand alone: docstrings of modules, classes, functions and names."""
+
+    def visit_Expr(self, node: ast.Expr) -> ast.Expr | None:
+        """Return the statement, or nothing for a string that stands alone."""
+        alone = isinstance(node.value, ast.Constant) and isinstance(node.value.value, str)
+        return None if alone else node
 
 
 def _canonical(node: object) -> str:

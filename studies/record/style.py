@@ -16,6 +16,9 @@ from PIL import Image
 BLACK, GREY, ORANGE, SKY = "#000000", "#808080", "#e69f00", "#56b4e9"
 GREEN, YELLOW, BLUE, RED, PURPLE = "#009e73", "#d6c400", "#0072b2", "#d55e00", "#cc79a7"
 
+#: Width of a page's text [inch].
+PAGE_WIDTH = 160.0 / 25.4
+
 #: Colours of a figure in pixels.
 COLOURS = 96
 
@@ -93,10 +96,23 @@ STRETCH: dict[tuple[str, str], Look] = {
 }
 
 
+#: What differs at the width of a page: letters of 8 points, 200 pixels an inch.
+PRINTED: Any = {
+    "font.size": 8.0,
+    "axes.labelsize": 8.0,
+    "axes.titlesize": 8.0,
+    "xtick.labelsize": 8.0,
+    "ytick.labelsize": 8.0,
+    "figure.titlesize": 9.0,
+    "savefig.dpi": 200,
+    "path.simplify_threshold": 0.1,
+}
+
+
 @contextmanager
-def applied() -> Iterator[None]:
-    """Draw in the suite's style within this context."""
-    with mpl.rc_context(SETTINGS):
+def applied(**more: Any) -> Iterator[None]:
+    """Draw in the suite's style within this context, with `more` settings of matplotlib."""
+    with mpl.rc_context(SETTINGS | more):
         yield
 
 
@@ -126,10 +142,16 @@ def vector(figure: Figure) -> bytes:
     return _short(_saved(figure, "svg", "Date"))
 
 
-def _saved(figure: Figure, kind: str, unsaid: str) -> bytes:
+def printed(figure: Figure, kind: str) -> bytes:
+    """Return a picture at the width of a page as one of `PICTURES`: the same bytes for the same figure."""
+    unsaid = {"svg": "Date", "png": "Software", "pdf": "CreationDate"}[kind]
+    return _saved(figure, kind, unsaid, **PRINTED)
+
+
+def _saved(figure: Figure, kind: str, unsaid: str, **settings: Any) -> bytes:
     """Return `figure` in a format, without what differs from one day or machine to the next."""
     stream = io.BytesIO()
-    with applied():
+    with applied(**settings):
         figure.savefig(stream, format=kind, metadata={unsaid: None})
     return stream.getvalue()
 

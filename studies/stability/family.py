@@ -14,6 +14,8 @@ from studies.engine.study import Answer, Part, Study
 from studies.errors import BadInput
 
 DEFAULT = "spline, default"
+#: The locking-free spline where control points, axial modes or Gauss points are what a family varies.
+VARIED = "spline, settings varied"
 SIX = "spline n = 6"
 PAPER = "spline n = 4, as the paper"
 PRINTED = "spline n = 4, printed forces"
@@ -45,7 +47,7 @@ GENERALISED_ALPHA = "spline, generalised-alpha"
 EXPLICIT = "spline, explicit"
 
 #: All columns, in the order of tables and figures.
-ORDER = (*PATHS, GENERALISED_ALPHA, EXPLICIT, *FINER)
+ORDER = (*PATHS, VARIED, GENERALISED_ALPHA, EXPLICIT, *FINER)
 
 #: Columns that show the paper's own choices: what this suite has an answer say of its resolution does not
 #: count there, as the paper has no such check.

@@ -13,7 +13,7 @@ from studies.answers.settings import Settings, SplineSettings
 from studies.cases.problem import Problem, named_case
 from studies.engine.study import Answer, Part
 from studies.stability import maps
-from studies.stability.family import CASE, DEFAULT, Found, family, judged
+from studies.stability.family import CASE, DEFAULT, VARIED, Found, family, judged
 
 EXAMPLES, SEED = 400, 20260101
 #: Largest error of torque at the ends of the legs, over the largest of them, that is right [1]: the distance
@@ -21,8 +21,8 @@ EXAMPLES, SEED = 400, 20260101
 TOLERANCE, BOOKS = 0.05, 1e-8
 #: Torque and energy below this are those of an unloaded pivot [EI/L]: states are solved to 1e-11.
 UNLOADED = 1e-6
-#: Control points and increments of the reference.
-REFINED, REFINED_INCREMENTS = 12, 24
+#: Least control points and increments of the reference; control points of that of the default.
+REFINED, REFINED_INCREMENTS, FINEST = 12, 24, 17
 #: Steps of a motion.
 STEPS = 6
 STATIC, MOTION = "path", "motion"
@@ -35,8 +35,9 @@ class Example:
     Attributes:
         length [m]; inclination [rad]; crossing_ratio, slenderness [1]; youngs_modulus [Pa]: of the design;
             the section is square to the eye, of depth L over slenderness.
-        control_points [1]; targets: rotations [rad] of a path's legs, in `increments` each; a motion is let
-            go at the first; step: of the motion, over the first period at rest [1]; None asks for a path.
+        control_points: of the model with varied settings [1]; targets: rotations [rad] of a path's legs, in
+            `increments` each; a motion is let go at the first; step: of the motion, over the first period at
+            rest [1]; None asks for a path.
     """
 
     length: float
@@ -79,16 +80,24 @@ def examples() -> list[tuple[int, Example]]:
     return [(number, drawn(generator)) for number in range(EXAMPLES)]
 
 
-def _outcome(number: int, example: Example) -> Answer:
-    """Return how one example ends."""
+def _outcomes(number: int, example: Example) -> Answer:
+    """Return how one example ends with its own control points, and with the default settings."""
     place = {
         "case": f"example {number:03d}",
         "kind": example.kind,
-        "model": DEFAULT,
         "x": math.degrees(max(example.targets, key=abs)),
         "y": example.slenderness,
     }
-    return {"outcomes": {**place, **judged(partial(asked, example), TOLERANCE).row()}}
+    models = {
+        VARIED: SplineSettings(control_points=example.control_points),
+        DEFAULT: SplineSettings(),
+    }
+    rows = [
+        {**place, "model": model, "panel": f"{model}: {example.kind}", **found.row()}
+        for model, settings in models.items()
+        for found in [judged(partial(asked, example, settings), TOLERANCE)]
+    ]
+    return {"outcomes": rows}
 
 
 def drawn(generator: np.random.Generator) -> Example:
@@ -114,14 +123,9 @@ def drawn(generator: np.random.Generator) -> Example:
     return example
 
 
-def asked(example: Example) -> Found:
+def asked(example: Example, settings: SplineSettings) -> Found:
     """Ask the spline for what the example says and compare it with what is known to be right."""
-    if example.control_points < 4 or not example.targets:
-        raise ValueError("examples have four control points and a target at least")
-    settings = SplineSettings(control_points=example.control_points)
-    if example.step is None:
-        return _path(example, settings)
-    return _motion(example, settings)
+    return _path(example, settings) if example.step is None else _motion(example, settings)
 
 
 def _path(example: Example, settings: SplineSettings) -> Found:
@@ -134,7 +138,8 @@ def _path(example: Example, settings: SplineSettings) -> Found:
     stored = np.abs(path.bending_energy + path.axial_energy).max()
     if not np.isfinite(path.torque).all():
         return Found(error=math.inf, fault="the torque is not a finite number")
-    refined = replace(settings, control_points=max(REFINED, settings.points + 3))
+    points = settings.control_points
+    refined = replace(settings, control_points=FINEST if points is None else max(REFINED, points + 3))
     reference = _legs(example, refined, max(REFINED_INCREMENTS, example.increments))
     known = _ends(reference.rotation, example)
     both = min(len(ends), len(known))
@@ -204,12 +209,12 @@ def _motion(example: Example, settings: SplineSettings) -> Found:
 
 
 STUDY = family(
-    Part(at=examples, ask=_outcome),
+    Part(at=examples, ask=_outcomes),
     figures={
         "stability_fuzz": lambda tables: maps.outcome_map(
             tables["outcomes"],
-            panels_by="kind",
-            order=(STATIC, MOTION),
+            panels_by="panel",
+            order=[f"{model}: {kind}" for kind in (STATIC, MOTION) for model in (DEFAULT, VARIED)],
             title="Random designs and commands, spline",
             xlabel="largest rotation [deg]",
             ylabel="slenderness L/h [1]",

@@ -8,10 +8,12 @@ import pyarrow as pa
 from numpy.typing import NDArray
 
 from studies.answers.models import model_of
+from studies.answers.validity import Strip
 from studies.cases import keys as case_keys
 from studies.cases.effects import DEFAULT, MOTION_ONLY
-from studies.cases.problem import PIVOT_PARAMETERS, Problem
+from studies.cases.problem import PIVOT_PARAMETERS, SIDES, Problem
 from studies.cases.rules import Pair
+from studies.cases.strips import of_sides
 from studies.kinds import Array
 from studies.sweep import keys, points, quantities
 from studies.sweep.plan import Task
@@ -23,7 +25,7 @@ LEAST_COMPLIANCE = 1.01e-9
 PLAIN = {"bending", "stretching"}
 
 Columns = dict[str, Array]
-_KEYS = {f"{key.section}.{key.name}": key for key in case_keys.KEYS}
+_KEYS = {f"{key.section}.{key.name}": key for key in case_keys.KEYS if key is not case_keys.NAMED}
 _PARTS = {
     f"{name}.{part}" for name, key in _KEYS.items() if isinstance(key.rule, Pair) for part in keys.PARTS
 }
@@ -108,9 +110,11 @@ def _solve_batch(
 
 
 def _attributes(task: Task, design: Problem, columns: Mapping[str, list[Any]], count: int) -> Columns:
-    """Return what the kernel asks for as columns in SI, (count,) or (count, 2)."""
-    names = (*PIVOT_PARAMETERS, "rotation", "depth")
+    """Return what the kernel and the ratios ask for as columns in SI, (count,) or (count, 2)."""
+    sides = () if design.width is None else SIDES
+    names = (*PIVOT_PARAMETERS, *sides, "rotation", "depth")
     given = {name: np.array([getattr(design, name)] * count, dtype=float) for name in names}
+    given["yield_strength"] = np.full(count, design.yield_strength or np.inf)
     depth = np.full(count, np.nan if design.section_depth is None else design.section_depth)
     for name, column in columns.items():
         if name in _KEYS:
@@ -123,7 +127,12 @@ def _attributes(task: Task, design: Problem, columns: Mapping[str, list[Any]], c
         elif name in _PARTS:
             pair, _, part = name.rpartition(".")
             given[_KEYS[pair].attribute][:, keys.PARTS[part]] = column
-    if keys.SLENDERNESS in columns:
+    if sides:
+        width, thickness = (given.pop(name) for name in sides)
+        if keys.SLENDERNESS in columns:
+            thickness = given["length"] / np.array(columns[keys.SLENDERNESS], dtype=float)
+        given |= of_sides(width, thickness)
+    elif keys.SLENDERNESS in columns:
         section = design.area, design.second_moment_of_area
         slenderness = np.array(columns[keys.SLENDERNESS], dtype=float)
         given["area"], given["second_moment_of_area"] = keys.of_slenderness(
@@ -184,17 +193,31 @@ def _paths(
         iterations=sides * batch.iterations,
         shift=_shift(given, batch.rotation, batch.centre),
         places={},
+        strips=(_strip(given).bent(batch.strain.max(axis=1)),),
+        effects=tuple(PLAIN),
     )
     sure = batch.converged & (unstable == 0) & ~turning
     return sure, quantities.values(points.stored(task), task.quantities, paths)
 
 
+def _strip(given: Columns) -> Strip:
+    """Return the strips of all designs as one of arrays."""
+    return Strip(
+        length=given["length"],
+        thickness=given["depth"],
+        width=given["area"] / given["depth"],
+        youngs_modulus=given["youngs_modulus"],
+        poisson_ratio=given["poisson_ratio"],
+        density=given["density"],
+        yield_strength=given["yield_strength"],
+    )
+
+
 def _shift(given: Columns, rotation: Array, centre: Array) -> Array:
     """Return g + R (x_c - g_0) - x_c of the crossing point x_c, (D, S, 2), as `response.centre_shift`."""
     reach = given["crossing_ratio"] * given["length"]
-    crossing = np.column_stack((reach * np.cos(given["inclination"]), reach * np.sin(given["inclination"])))[
-        :, None
-    ]
+    angle = given["inclination"] + given["orientation"]
+    crossing = np.column_stack((reach * np.cos(angle), reach * np.sin(angle)))[:, None]
     arm = crossing - centre[:, :1]
     cos, sin = np.cos(rotation), np.sin(rotation)
     turned = np.stack((cos * arm[..., 0] - sin * arm[..., 1], sin * arm[..., 0] + cos * arm[..., 1]), axis=-1)

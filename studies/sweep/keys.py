@@ -6,7 +6,7 @@ from dataclasses import dataclass, fields
 from typing import Any
 
 from studies.answers.settings import FeSettings, SplineSettings
-from studies.cases import effects, keys, mechanism
+from studies.cases import effect_keys, effects, keys, mechanism_keys
 from studies.cases.rules import Number, Pair, Rule, Text, Whole, not_negative, positive, shown
 
 SETTINGS = "settings"
@@ -15,10 +15,11 @@ MODELS: dict[str, type[SplineSettings] | type[FeSettings]] = {
     "fe": FeSettings,
     "fe-shear": FeSettings,
 }
-#: L over the depth of a rectangular section of the case's width: sets area and second moment.
+#: L over the thickness of a rectangular section of the case's width: sets the thickness, or area and second
+#: moment where the case gives these.
 SLENDERNESS = "strip.slenderness"
 #: What it takes the place of.
-SECTION = ("strip.area_m2", "strip.second_moment_m4", "strip.section_depth_m")
+SECTION = ("strip.area_m2", "strip.second_moment_m4", "strip.thickness_m", "strip.section_depth_m")
 #: Parts of a key that holds two numbers.
 PARTS = {"x": 0, "y": 1}
 #: The list of a scene's effects, as names with commas.
@@ -56,7 +57,7 @@ def known(document: Mapping[str, Any], model: str) -> dict[str, Rule | Names]:
     else:
         found = {f"{key.section}.{key.name}": key.rule for key in keys.KEYS}
         found[SLENDERNESS] = positive("1")
-    for rows in effects.KEYS.values():
+    for rows in effect_keys.KEYS.values():
         found |= {f"{key.section}.{key.name}": key.rule for key in rows}
     for name, rule in list(found.items()):
         if isinstance(rule, Pair):
@@ -71,9 +72,9 @@ def known(document: Mapping[str, Any], model: str) -> dict[str, Rule | Names]:
 
 def _of_mechanism(document: Mapping[str, Any]) -> dict[str, Rule]:
     """Return the keys of a mechanism: `strips.NAME.key`, `bodies.NAME.key` and those of its sections."""
-    shared = (*mechanism.SECTION, *mechanism.MATERIAL)
-    found = {f"{key.section}.{key.name}": key.rule for key in (*shared, *mechanism.DRIVE)}
-    own = {"strips": (*mechanism.STRIP, *shared), "bodies": mechanism.BODY}
+    shared = (*keys.SECTION, *keys.MATERIAL, *mechanism_keys.DRIVE)
+    found = {f"{key.section}.{key.name}": key.rule for key in shared}
+    own = {"strips": (*mechanism_keys.STRIP, *mechanism_keys.OWN), "bodies": mechanism_keys.BODY}
     for section, rows in own.items():
         for part in document.get(section, []):
             found |= {f"{section}.{part['name']}.{key.name}": key.rule for key in rows}
@@ -120,6 +121,9 @@ def put_all(document: dict[str, Any], values: Mapping[str, Any]) -> None:
             put(document, key, value)
     if SLENDERNESS in values:
         strip = document["strip"]
+        if "width_m" in strip:
+            strip["thickness_m"] = strip["length_m"] / values[SLENDERNESS]
+            return
         area, second = of_slenderness(
             values[SLENDERNESS], strip["length_m"], strip["area_m2"], strip["second_moment_m4"]
         )

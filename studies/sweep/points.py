@@ -9,8 +9,10 @@ import numpy as np
 
 from studies.answers.adapters import answer_modes, answer_release
 from studies.answers.models import built, model_of, refusals
-from studies.answers.response import centre_shift, extreme_fibre_strain
+from studies.answers.response import centre_shift
 from studies.answers.settings import FeSettings, Settings, SplineSettings
+from studies.answers.strength import extreme_fibre_strain
+from studies.answers.validity import strips_of
 from studies.cases.design import Design
 from studies.cases.mechanism import Mechanism, read_mechanism
 from studies.cases.problem import Problem, read_problem
@@ -61,11 +63,15 @@ def _paths_of(design: Design, result: Any) -> Paths:
         shift = centre_shift(design, result.rotation, result.centre)
         strain = extreme_fibre_strain(design, result.axial_force, result.bending_moment)
         stress = design.youngs_modulus * strain.max(axis=(1, 2))
+        strips = [strip.bent(np.array([strain.max()])) for strip in strips_of(design)]
     else:
         places = {name: np.asarray(place)[None] for name, place in result.bodies.items()}
         rotation = result.bodies[design.body][:, 2] if design.body else np.full(states, np.nan)
         shift = np.full((states, 2), np.nan)
-        stress = _stress(design, result)
+        each = _strain(design, result)
+        stress = (each * [strip.youngs_modulus for strip in design.strips]).max(axis=1)
+        most = each.max(axis=0)
+        strips = [strip.bent(most[i : i + 1]) for i, strip in enumerate(strips_of(design))]
     return Paths(
         rest=0,
         rotation=np.asarray(rotation)[None],
@@ -78,18 +84,20 @@ def _paths_of(design: Design, result: Any) -> Paths:
         iterations=np.array([result.counters["newton_iterations"]]),
         shift=shift[None],
         places=places,
+        strips=tuple(strips),
+        effects=tuple(design.effects.names),
     )
 
 
-def _stress(mechanism: Mechanism, result: Any) -> Array:
-    """Return |N| / A + |M| d / (2 I) of a rectangle, the largest over the strips, (S,) [Pa]."""
+def _strain(mechanism: Mechanism, result: Any) -> Array:
+    """Return |N| / (E A) + |M| d / (2 E I) of rectangles, the largest along each strip, (S, G) [1]."""
     each = []
     for i, strip in enumerate(mechanism.strips):
         depth = np.sqrt(12.0 * strip.second_moment_of_area / strip.area)
         axial = np.abs(result.axial_force[:, i]) / strip.area
         bending = np.abs(result.bending_moment[:, i]) * depth / (2.0 * strip.second_moment_of_area)
-        each.append((axial + bending).max(axis=1))
-    return np.asarray(np.max(each, axis=0))
+        each.append((axial + bending).max(axis=1) / strip.youngs_modulus)
+    return np.stack(each, axis=1)
 
 
 def joined(one: Paths, other: Paths) -> Paths:
@@ -105,6 +113,11 @@ def joined(one: Paths, other: Paths) -> Paths:
         unstable=unstable,
         iterations=one.iterations + other.iterations,
         places=one.places,
+        strips=tuple(
+            strip.bent(np.maximum(strip.strain, twin.strain))
+            for strip, twin in zip(one.strips, other.strips, strict=True)
+        ),
+        effects=one.effects,
         **{name: both(name) for name in arrays},
     )
 

@@ -10,8 +10,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from studies.answers import validity
 from studies.answers.motion import Motion
 from studies.answers.spectrum import Spectrum
+from studies.answers.validity import Strip
 from studies.kinds import Array
 
 
@@ -34,7 +36,8 @@ class Paths:
 
     torque [N m]; stiffness [N m/rad]; shift (D, S, 2) of the crossing point [m]; stress the largest of the
     strips [Pa]; energy of strain [J]; defect of the moments [1]; unstable (D,) states, -1 where the model
-    cannot tell; iterations (D,) of Newton; places (D, S, 3) of the bodies by name [m, m, rad].
+    cannot tell; iterations (D,) of Newton; places (D, S, 3) of the bodies by name [m, m, rad];
+    strips with the most that happens to them, arrays (D,); effects that were assembled.
     """
 
     rest: int
@@ -48,12 +51,33 @@ class Paths:
     iterations: NDArray[np.int64]
     shift: Array
     places: Mapping[str, Array]
+    strips: tuple[Strip, ...]
+    effects: tuple[str, ...]
 
 
 def _shift(paths: Paths) -> Array:
     return np.hypot(paths.shift[..., 0], paths.shift[..., 1])
 
 
+def _most(ratio: Callable[[Strip], Any]) -> Callable[[Paths], Array]:
+    """Return what takes the largest of a ratio over the strips."""
+    return lambda paths: np.max([np.asarray(ratio(strip), dtype=float) for strip in paths.strips], axis=0)
+
+
+#: What an answer is worth; the curvature is taken as high as the strain allows.
+VALIDITY = {
+    "width_ratio": Quantity(meaning="b/L, largest of the strips", of=_most(lambda s: s.width_ratio)),
+    "curvature_ratio": Quantity(
+        meaning="b^2/(R t), largest of strips and states, at most", of=_most(lambda s: s.curvature_ratio)
+    ),
+    "thickness_ratio": Quantity(meaning="t/L, largest of the strips", of=_most(lambda s: s.thickness_ratio)),
+    "strain_max": Quantity(meaning="largest strain of strips and states", of=_most(lambda s: s.strain)),
+    "outside": Quantity(
+        meaning="limits of the model that the answer lies beyond",
+        of=lambda p: validity.passed(p.strips, p.effects),
+        whole=True,
+    ),
+}
 PATH = {
     "rotation_rad": Quantity(meaning="rotation at the end", of=lambda p: p.rotation[:, -1]),
     "torque_Nm": Quantity(meaning="driving torque at the end", of=lambda p: p.torque[:, -1]),
@@ -90,6 +114,7 @@ PATH = {
     "stress_end_Pa": Quantity(
         meaning="largest stress of the strips at the end", of=lambda p: p.stress[:, -1], usual=False
     ),
+    **VALIDITY,
 }
 SHIFT = {
     "centre_shift_end_m": Quantity(

@@ -129,7 +129,7 @@ def _refuse_overlaps(where: str, varied: list[str], case: Mapping[str, Any]) -> 
         both = [key for key in keys.SECTION if key in varied]
         given = "section_depth_m" in case.get("strip", {})
         if both or given:
-            other = both[0] if both else keys.SECTION[2]
+            other = both[0] if both else keys.SECTION[-1]
             raise CaseError(f"{where}: vary.{keys.SLENDERNESS}: got it beside {other}, which it sets itself")
 
 

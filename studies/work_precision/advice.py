@@ -10,6 +10,7 @@ import pandas as pd
 from studies.answers.adapters import answer_modes
 from studies.answers.reference import NoReference
 from studies.answers.settings import SplineSettings
+from studies.cases.design import Design
 from studies.cases.problem import Problem
 from studies.kinds import Progress
 from studies.record.progress import silent
@@ -34,7 +35,7 @@ PERIOD = 1.0 / 76.0
 REFERENCE = (16, 14)
 
 
-def advise_path(problem: Problem, error: float, progress: Progress = silent) -> pd.DataFrame:
+def advise_path(problem: Design, error: float, progress: Progress = silent) -> pd.DataFrame:
     """Return the advice for the static path of `problem`, each model against the limit of its own theory.
 
     A row a model: series, setting, meets (whether trajectory and torque are within `error` over the path, and
@@ -47,7 +48,7 @@ def advise_path(problem: Problem, error: float, progress: Progress = silent) -> 
     """
     models = [each for each in series.own_series() if each.name in OWN]
     models[0] = series.splines(series.SPLINE, models[0].look, counts=COUNTS)
-    models += series.other_series()
+    models += series.other_series() if isinstance(problem, Problem) else []
     total = sum(len(each.members) for each in models) + len(models)
     limits, members = {}, {}
     rows: list[dict[str, Any]] = []
@@ -75,7 +76,7 @@ def advise_path(problem: Problem, error: float, progress: Progress = silent) -> 
     return found
 
 
-def advise_motion(problem: Problem, error: float, progress: Progress = silent) -> pd.DataFrame:
+def advise_motion(problem: Design, error: float, progress: Progress = silent) -> pd.DataFrame:
     """Return the advice for the motion of `problem` after its release from the end of its path.
 
     Columns as of `advise_path`, with error_rotation (largest over the motion, over the rotation at the start)
@@ -86,9 +87,9 @@ def advise_motion(problem: Problem, error: float, progress: Progress = silent) -
     """
     frequency = float(answer_modes(problem, SplineSettings(control_points=6), count=1).frequency[0])
     duration = PERIODS / frequency
-    scale = 1.0 / frequency / PERIOD
+    scale, start = 1.0 / frequency / PERIOD, abs(problem.rotation or 0.0)
     models = series.moving_series(scale)
-    models += series.moving_others(scale)
+    models += series.moving_others(scale) if isinstance(problem, Problem) else []
     total = len(REFERENCE) + sum(len(each.members) for each in models)
     instants = np.linspace(0.0, duration, INSTANTS)
     integrator = _integrator(problem, duration)
@@ -100,7 +101,7 @@ def advise_motion(problem: Problem, error: float, progress: Progress = silent) -
         if not motion.converged:
             raise NoReference(f"reference with {n} control points: {motion.message}")
         rotations.append(at(motion, np.minimum(instants, motion.time[-1])))
-    uncertainty = float(np.abs(rotations[0] - rotations[1]).max()) / abs(problem.rotation)
+    uncertainty = float(np.abs(rotations[0] - rotations[1]).max()) / start
     rows: list[dict[str, Any]] = []
     for model in models:
         for rank, member in enumerate(model.members):
@@ -109,7 +110,7 @@ def advise_motion(problem: Problem, error: float, progress: Progress = silent) -
             off = motion_errors(motion, rotations[0], instants)
             rows.append(
                 {"series": model.name, "family": member.family, "setting": member.setting, "rank": rank}
-                | {"error_rotation": off["error_rotation_rad"] / abs(problem.rotation)}
+                | {"error_rotation": off["error_rotation_rad"] / start}
                 | {"error_frequency": off["error_frequency"], "uncertainty": uncertainty}
                 | {"solve_s": motion.solve_s, "wall_s": math.nan, "message": motion.message}
             )
@@ -117,7 +118,7 @@ def advise_motion(problem: Problem, error: float, progress: Progress = silent) -
     return chosen(pd.DataFrame(rows), MOTION_ERRORS, error)
 
 
-def _integrator(problem: Problem, duration: float) -> str:
+def _integrator(problem: Design, duration: float) -> str:
     """Return the spline's most accurate integrator that the scene allows, by trying."""
     trial = moving(SplineSettings(control_points=4), "trial", "", integrator="leapfrog")
     return "leapfrog" if trial.solve(problem, 0.1 * duration).converged else "energy"

@@ -7,11 +7,12 @@ from typing import Any
 
 import numpy as np
 
-from studies.answers.adapters import answer_static
+from studies.answers.adapters import answer_path
 from studies.answers.metrics import relative_error, trajectory_error
 from studies.answers.reference import MESHES, limit_of
 from studies.answers.settings import FeSettings, Settings, SplineSettings
 from studies.baselines.answer import BaselineFailed, SolvedPath
+from studies.cases.design import Design
 from studies.cases.problem import Problem
 from studies.errors import BadInput
 from studies.work_precision.work import work_of
@@ -45,7 +46,7 @@ class Member:
     """
 
     setting: str
-    solve: Callable[[Problem, Any], Any]
+    solve: Callable[[Any, Any], Any]
     count: int = 0
     family: str = "all"
     step: float = math.nan
@@ -54,8 +55,8 @@ class Member:
 def of_settings(settings: Settings, setting: str, count: int) -> Member:
     """Return the member of one of the suite's own models."""
 
-    def solve(problem: Problem, repeat: int) -> SolvedPath:
-        answer = answer_static(problem, settings, repeat=repeat)
+    def solve(problem: Design, repeat: int) -> SolvedPath:
+        answer = answer_path(problem, settings, repeat=repeat)
         return SolvedPath(
             status=answer.status,
             message=answer.message,
@@ -143,7 +144,7 @@ class Limit:
     source: str
 
 
-def limit_of_theory(problem: Problem, theory: str) -> Limit:
+def limit_of_theory(problem: Design, theory: str) -> Limit:
     """Return the limit of a theory on a problem.
 
     Material and shear: the elements' limit of refinement, which shares no code with the splines. Spatial: no
@@ -155,7 +156,7 @@ def limit_of_theory(problem: Problem, theory: str) -> Limit:
     if theory == "spatial":
         return _spatial(problem)
     element = "corotational" if theory == "material" else "reissner"
-    answers = [answer_static(problem, FeSettings(elements=count, element=element)) for count in MESHES]
+    answers = [answer_path(problem, FeSettings(elements=count, element=element)) for count in MESHES]
     limit = limit_of(answers)
     return Limit(
         path=replace(
@@ -170,7 +171,7 @@ def limit_of_theory(problem: Problem, theory: str) -> Limit:
     )
 
 
-def _spatial(problem: Problem) -> Limit:
+def _spatial(problem: Design) -> Limit:
     fine, coarse = (
         of_settings(SplineSettings(control_points=n, measure="spatial"), "", n).solve(problem, 1)
         for n in SPATIAL

@@ -38,7 +38,7 @@ from studies.answers.settings import FeSettings, Settings, SplineSettings
 
 STRIPS = 2
 #: Operations of one element (see above): its forces and energy, and its tangent beside them.
-ELEMENT_FORCES, ELEMENT_TANGENT = 71, 39
+ELEMENT_FORCES, ELEMENT_TANGENT = 74, 43
 #: Operations of one Gauss point that depend neither on the control points nor on the axial forces.
 POINT = 157
 #: The sparse LU of a long B-spline: from so many unknowns on, and operations and entries of it for each.

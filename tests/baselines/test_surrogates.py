@@ -9,6 +9,8 @@ import pytest
 from studies.baselines import one_coordinate, spline
 from studies.baselines.answer import SolvedMotion, SolvedPath
 from studies.baselines.comparison.surrogates import first_above
+from studies.baselines.constraint_model import chained_constraint_model, constraint_model, with_beams
+from studies.baselines.constraint_strips import guide, placed
 from studies.baselines.four_bar import four_bar, link_length, spring
 from studies.baselines.linear_pivot import (
     linear_pivot,
@@ -20,11 +22,13 @@ from studies.baselines.registry import SURROGATES
 from studies.cases.effects import Effects
 from studies.cases.problem import named_case
 from studies.errors import BadInput
+from studies.published.solve import moved
 from tests import gates
 
 CASE = named_case("cross_axis_pivot")
 UNEVEN = replace(CASE, crossing_ratio=0.3, inclination=0.6, centre_offset=(0.01, 0.02))
 LAWS = (linear_pivot, pin_joint, four_bar)
+BEAMS = (constraint_model, chained_constraint_model)
 SMALL = 1e-3
 TURNS = np.linspace(0.0, math.pi / 2, 21)
 
@@ -119,6 +123,76 @@ def test_four_bar_keeps_its_links_and_its_derivatives(problem):
     assert np.sqrt(law._speed(p, arm)) == pytest.approx(speed, rel=1e-8, abs=1e-10)
 
 
+@pytest.mark.parametrize("model", BEAMS, ids=lambda model: model.model)
+def test_constraint_model_has_the_exact_stiffness_at_rest(model):
+    """Requirement: beams in closed form are exact at rest, however many, stretch included."""
+    law, limit = model.law_of(UNEVEN), spline.static_path(UNEVEN, [0.0, SMALL], control_points=8)
+    rest = np.zeros(1)
+    assert law.centre(rest)[0] == pytest.approx(limit.centre[0], abs=1e-15)
+    gates.check("constraint_model_stiffness", abs(law.stiffness(rest)[0] / limit.stiffness[0] - 1.0))
+
+
+def test_constraint_model_gate_has_teeth():
+    """Requirement: the check notices rotations at which a single beam is no longer exact."""
+    angle = np.array([gates.teeth("constraint_model_stiffness")["angle"]])
+    limit = spline.static_path(UNEVEN, [0.0, angle[0]], control_points=8)
+    with pytest.raises(AssertionError, match="x the gate"):
+        found = constraint_model.law_of(UNEVEN).stiffness(angle)[0]
+        gates.check("constraint_model_stiffness", abs(found / limit.stiffness[-1] - 1.0))
+
+
+def test_beam_in_closed_form_is_a_beam_column():
+    """Requirement: force, moment and shortening are the published polynomials of the axial force."""
+    p, y, turn, c = 2.5, 0.06, -0.08, 1e-3
+    v = np.array([y, turn])
+    u = c * p - (0.6 * y**2 - 0.1 * y * turn + turn**2 / 15.0)
+    u += p * (y**2 / 700.0 - y * turn / 700.0 + 11.0 * turn**2 / 6300.0)
+    start = np.zeros((1, 3))
+    _, force, _ = placed(start, np.array([[1.0 + u, y, turn]]), 0.0, 1.0, c)
+    stiff = [12 + 1.2 * p - p**2 / 700, -6 - p / 10 + p**2 / 1400, 4 + 2 * p / 15 - 11 * p**2 / 6300]
+    expected = [p, stiff[0] * v[0] + stiff[1] * v[1], stiff[1] * v[0] + stiff[2] * v[1]]
+    assert force[0, 3:] == pytest.approx(expected, rel=1e-12)
+    assert force[0, :2] == pytest.approx(-force[0, 3:5], rel=1e-12)  # forces balance
+
+
+@pytest.mark.parametrize("problem", [CASE, UNEVEN], ids=["Table 1", "uneven"])
+@pytest.mark.parametrize("model", BEAMS, ids=lambda model: model.model)
+def test_constraint_model_has_its_derivatives(problem, model):
+    """Requirement: torque and stiffness are derivatives of the energy along the path."""
+    law, p, h = model.law_of(problem), np.array([-0.9, 0.7]), 1e-4
+    scale = small_angle_stiffness(problem)
+    slope = (law.energy(p + h) - law.energy(p - h)) / (2.0 * h)
+    assert law.torque(p) == pytest.approx(slope, abs=1e-7 * scale)
+    rate = (law.torque(p + h) - law.torque(p - h)) / (2.0 * h)
+    assert law.stiffness(p) == pytest.approx(rate, abs=1e-7 * scale)
+    still = replace(problem, body_moment_of_inertia=1e-12, density=1e-12)
+    moved = np.linalg.norm(model.law_of(still).centre(p + h) - model.law_of(still).centre(p - h), axis=1)
+    speed = problem.body_mass * (moved / (2.0 * h)) ** 2
+    assert model.law_of(still).inertia(p) == pytest.approx(speed, rel=1e-6, abs=1e-10)
+
+
+def test_chained_constraint_model_tends_to_the_elastica():
+    """Requirement: with twice the beams the torque's error at 60 degrees falls by the fourth order."""
+    turns = np.array([0.0, math.pi / 3.0])
+    limit = spline.static_path(CASE, turns, control_points=14).torque[-1]
+    errors = [abs(with_beams(n)(CASE).torque(turns)[-1] / limit - 1.0) for n in (2, 4, 8)]
+    orders = np.log2(np.array(errors[:-1]) / errors[1:])
+    assert orders.min() > 4.0 - 0.15, (errors, orders)
+
+
+def test_constraint_model_of_a_guide():
+    """Requirement: a guide has Awtar's closed form for small forces, and chained tends to a beam."""
+    small = guide(30.0, 50.0, 1).pushed(np.array([0.0, 0.01]))
+    assert small[1] == pytest.approx(0.01 / 24.0, rel=1e-4)
+    assert small[0] == pytest.approx(-0.6 * (0.01 / 24.0) ** 2, rel=1e-3)
+    limit = moved("parallelogram", "spline", "beam", 5.0)[1] / 0.25
+    errors = [abs(guide(0.6, 50.0, n).pushed(np.array([0.0, 5.0]))[1] / limit - 1.0) for n in (1, 2, 4, 8)]
+    assert errors == sorted(errors, reverse=True)
+    gates.check("constraint_model_guide", errors[-1])
+    with pytest.raises(AssertionError, match="x the gate"):
+        gates.check("constraint_model_guide", errors[gates.teeth("constraint_model_guide")["place"]])
+
+
 def test_pin_joint_polynomial():
     """Requirement: K_Theta is the published polynomial, at n = 1 the sum of its coefficients."""
     assert stiffness_coefficient(1.0) == pytest.approx(4.307926, abs=1e-12)
@@ -140,15 +214,15 @@ def energy_drift(model, step, duration=0.05):
     series = one_coordinate.series_of(law, start)
     tables = (series.reach, series.inertia, series.inertia_rate, series.torque)
     one_coordinate.integrate(start, step, states, *tables)
-    p, v = states.T
+    p, v = states[:: len(states) // 250].T
     energy = 0.5 * law.inertia(p) * v**2 + law.energy(p)
     return np.abs(energy / energy[0] - 1.0).max()
 
 
-@pytest.mark.parametrize("model", LAWS, ids=lambda model: model.model)
+@pytest.mark.parametrize("model", LAWS + BEAMS, ids=lambda model: model.model)
 def test_swings_keep_their_energy(model):
     """Requirement: the energy of a swing is constant up to the error of its integrator."""
-    gates.check("surrogate_energy", energy_drift(model, 1e-5))
+    gates.check("surrogate_energy", energy_drift(model, 5e-6 if model in BEAMS else 1e-5))
 
 
 def test_energy_gate_has_teeth():

@@ -5,7 +5,8 @@ import json
 import pytest
 
 from studies.__main__ import main
-from studies.cases.problem import FOLDER
+from studies.cases.problem import FOLDER, named_case, read_case
+from studies.design.evaluate import answers, of_spline
 from tests.exchange.test_data_page import described
 
 CASE = str(FOLDER / "cross_axis_pivot.toml")
@@ -53,9 +54,18 @@ def test_no_design_meets_the_constraints(capsys):
     [
         ([CASE], "size: the following arguments are required: --objective"),
         ([CASE, "--objective", "shift"], "argument --objective: invalid choice: 'shift'"),
-        ([CASE, *QUICK, "--width-mm", "20:5"], "--width-mm: got 20:5, expected LOW:HIGH with 0 < LOW < HIGH"),
-        ([CASE, *QUICK, "--crossing-ratio", "0.5:1.5"], "expected LOW:HIGH with 0 < LOW < HIGH < 1"),
-        ([CASE, *QUICK, "--inclination-deg", "10"], "--inclination-deg: got 10, expected LOW:HIGH"),
+        (
+            [CASE, *QUICK, "--width-mm", "20:5"],
+            "--width-mm: got 20:5, expected a value, or LOW:HIGH with 0 < LOW",
+        ),
+        ([CASE, *QUICK, "--crossing-ratio", "0.5:1.5"], "LOW:HIGH with 0 < LOW <= HIGH < 1"),
+        ([CASE, *QUICK, "--inclination-deg", "x"], "--inclination-deg: got x, expected a value, or LOW:HIGH"),
+        ([CASE, *QUICK, "--safety-factor", "2"], "--safety-factor: got 2 without a yield strength, expected"),
+        (
+            ["titanium_pivot", *QUICK, "--safety-factor", "2", "--max-stress-MPa", "9"],
+            "--safety-factor: got 2 beside --max-stress-MPa, expected one of them",
+        ),
+        ([CASE, *QUICK, "--out", "/nowhere/x.toml"], "/nowhere/x.toml: cannot be written"),
         ([CASE, *QUICK, "--rotation-deg", "0"], "drive.rotation_deg: got 0, expected a range to size for"),
         ([CASE, *QUICK, "--rotation-deg", "400"], "--rotation-deg: got 400.0, expected a number from -360"),
         (
@@ -73,20 +83,48 @@ def test_bad_input_in_one_line(arguments, message, capsys):
     assert message in err and err.count("\n") == 1
 
 
+LED = """effects = ["+driven_displacement"]
+[effects.driven_displacement]
+displacement_m = [0, 0]
+[strip]"""
+
+
 @pytest.mark.parametrize(
-    ("addition", "message"),
+    ("begin", "instead", "message"),
     [
-        ("[strip]", "strip.section_depth_m: got 0.005, expected none"),
+        ("[strip]", "[strip]\nsection_depth_m = 0.005", "strip.section_depth_m: got 0.005, expected none"),
+        ("[strip]", f"[scene]\n{LED}", "got driven_displacement, expected a body that is free to shift"),
+        (
+            "[drive]",
+            '[scene]\neffects = ["+gravity"]\n[drive]\norder = "together"',
+            'drive.order: got "together", expected "loads first"',
+        ),
     ],
 )
-def test_cases_that_cannot_be_sized(addition, message, tmp_path, capsys):
-    """Loads, and sections that are not rectangles, are refused in one line."""
+def test_cases_that_cannot_be_sized(begin, instead, message, tmp_path, capsys):
+    """Sections that are no rectangles, bodies that are led, and loads that grow are refused in one line."""
     text = (FOLDER / "cross_axis_pivot.toml").read_text()
     path = tmp_path / "case.toml"
-    if addition == "[strip]":
-        path.write_text(text.replace("[strip]", "[strip]\nsection_depth_m = 0.005"))
-    else:
-        path.write_text(text + "\n" + addition + "\n")
+    path.write_text(text.replace(begin, instead))
     assert main(["size", str(path), *QUICK]) == 2
     err = capsys.readouterr().err
     assert message in err and err.count("\n") == 1
+
+
+@pytest.mark.slow
+def test_optimum_as_a_case_file_with_what_is_held(tmp_path, capsys):
+    """Under a load the optimum is written as a case, with dimensions held, stiffness and stress as asked."""
+    path = tmp_path / "best.toml"
+    given = ("--objective", "centre-shift", "--starts", "6", "--safety-factor", "2", "--out", str(path))
+    held = ("--length-mm", "300", "--inclination-deg", "45", "--width-mm", "50")
+    assert main(["size", "large_steel_pivot", *given, *held]) == 0
+    out, err = capsys.readouterr()
+    assert "under applied_force" in out and "held as asked: length, inclination, width" in out
+    assert f"{path}: the optimum as a case file" in err
+    case, best = named_case("large_steel_pivot"), read_case(path)
+    assert (best.length, best.width) == (pytest.approx(0.3), pytest.approx(0.05))
+    assert best.effects == case.effects
+    sized, own = of_spline(answers(best)).quantities(), of_spline(answers(case)).quantities()
+    assert sized["centre-shift"] < 0.5 * own["centre-shift"]
+    assert sized["stiffness"] == pytest.approx(own["stiffness"], rel=2e-6)
+    assert sized["stress"] <= 0.5 * best.yield_strength * (1.0 + 1e-6)

@@ -5,8 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from studies.cases.effects import Effects
 from studies.design import task as questions
-from studies.design.evaluate import answers, by_elements, gradient_error, of_spline
+from studies.design.evaluate import FIBRES, PathEnds, answers, by_elements, gradient_error, of_spline
 from studies.design.optimise import best, numbered, optimise, search, starts
 from studies.design.programme import OUTSIDE, Programme
 from studies.design.task import CENTRE_SHIFT, OBJECTIVES, VARIATION
@@ -194,3 +195,37 @@ def test_the_gate_of_the_finite_elements_has_teeth(own):
     coarse = answers(problem, **gates.teeth("sizing_finite_elements"))
     with pytest.raises(AssertionError, match="x the gate"):
         gates.check("sizing_finite_elements", _difference(problem, coarse))
+
+
+@pytest.mark.slow
+def test_gradients_under_a_sideways_load(own):
+    """Under loads both sides and the loaded state before the range count, with gradients as exact."""
+    table_one, _ = own
+    force = Effects(
+        names=(*table_one.effects.names, "applied_force"),
+        tables={"applied_force": {"force": (2000.0, -1000.0)}},
+    )
+    start = replace(table_one, effects=force, increments=4, rotation=0.3)
+    found = answers(start)
+    assert found.stress.shape == (3 * FIBRES,)
+    assert found.rotation.tolist() == pytest.approx(
+        [0.0, *(side * k / 4 for side in (0.3, -0.3) for k in range(1, 5))]
+    )
+    assert np.abs(found.square_shift[:4] / found.square_shift[4:] - 1.0).max() > 1e-3
+    task = _task((start, found))
+    assert set(Programme(task=task, scale=dict.fromkeys(OBJECTIVES, 1.0)).row_names()) >= {"stress"}
+    gates.check("sizing_gradients", gradient_error(task, start))
+    spline, elements = of_spline(found).quantities(), by_elements(start)[0].quantities()
+    apart = max(abs(spline[name] / elements[name] - 1.0) for name in spline)
+    gates.check("sizing_finite_elements", apart)
+
+
+def test_a_load_that_buckles_a_design_leaves_it_without_an_answer(own):
+    """A design that buckles before or while the body turns is outside, as one whose path ends."""
+    table_one, _ = own
+    force = Effects(
+        names=(*table_one.effects.names, "applied_force"),
+        tables={"applied_force": {"force": (0.0, -1e6)}},
+    )
+    with pytest.raises(PathEnds):
+        answers(replace(table_one, effects=force, rotation=0.1, increments=2))

@@ -191,7 +191,6 @@ def test_full_disk_leaves_the_former_export(tmp_path, monkeypatch, capsys):
         (["--draw-deg", "0,ninety"], "got ninety, expected a finite number of degrees"),
         (["--formats", "vtk", "--draw-deg", "0"], "--draw-deg: got it without"),
         (["--elements", "5"], "--elements: got it with --model spline"),
-        (["--rotation-deg", "0"], "rotation: got 0"),
         (["--out", "/proc/out"], "/proc: cannot be written"),
         (["--out", PIVOT], "expected a folder"),
         (["--out", "."], "expected a folder below"),

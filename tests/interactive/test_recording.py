@@ -6,7 +6,11 @@ import sys
 
 import pytest
 
+from spline_model.modes import natural_frequencies
+from studies.cases.problem import FOLDER, read_case
 from studies.errors import BadInput
+from studies.interactive.pivot import presets
+from studies.interactive.pivot.design import build
 from studies.interactive.session.recording import Recorder, line, mark, replay
 from studies.interactive.session.session import Session
 from studies.record.source import ROOT
@@ -34,6 +38,22 @@ def test_a_session_replays_to_the_same_states(preset):
     same = [good for _, good in replay(lines)]
     assert all(same)
     assert len(same) == len(lines)
+
+
+def test_a_design_of_ones_own_is_one_more_preset(monkeypatch):
+    """Requirement: a case file joins the presets, swings once a second, and its session replays alone."""
+    monkeypatch.setattr(presets, "PRESETS", dict(presets.PRESETS))
+    problem = read_case(FOLDER / "spring_steel_pivot.toml")
+    presets.bring(str(FOLDER / "spring_steel_pivot.toml"))
+    values = presets.preset(presets.OWN).values()
+    assert (values["length"], values["thickness"]) == (problem.length, pytest.approx(1e-3))
+    frequency = natural_frequencies(build(values), rotation=0.0, count=1).frequency[0]
+    assert values["time_scale"] * frequency == pytest.approx(1.0)
+    lines = recorded(presets.OWN)
+    monkeypatch.undo()
+    assert all(good for _, good in replay(lines))
+    with pytest.raises(BadInput, match="preset: got 'own', expected its case file beside the command"):
+        presets.preset(presets.OWN)
 
 
 def test_a_changed_event_is_noticed():

@@ -6,6 +6,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
+from studies.answers.settings import SplineSettings
 from studies.stability.family import judged
 from studies.stability.fuzz import TOLERANCE, Example, asked
 
@@ -38,10 +39,11 @@ EXAMPLES = st.builds(
 
 
 def hold(example):
-    """Ask the spline, and refuse the outcome that must not be."""
-    verdict = judged(lambda: asked(example), TOLERANCE)
-    assert verdict.outcome in ("right", "refused", "bad input"), (example, verdict)
-    assert verdict.outcome == "right" or len(verdict.reason) > 10, (example, verdict)
+    """Ask the spline with both settings, and refuse the outcome that must not be."""
+    for settings_ in (SplineSettings(control_points=example.control_points), SplineSettings()):
+        verdict = judged(lambda: asked(example, settings_), TOLERANCE)  # noqa: B023 - called at once
+        assert verdict.outcome in ("right", "refused", "bad input"), (example, verdict)
+        assert verdict.outcome == "right" or len(verdict.reason) > 10, (example, verdict)
 
 
 @settings(max_examples=60, deadline=None, derandomize=True, database=None)

@@ -153,7 +153,7 @@ def test_no_model_meets_an_impossible_error(capsys, monkeypatch):
 @pytest.mark.parametrize(
     ("words", "expected"),
     [
-        ([str(FOLDER / "four_bar_of_flexures.toml")], "got a mechanism, expected a cross-axis pivot"),
+        ([str(FOLDER / "parallel_strip_guide.toml")], "got none, expected a rotation to relate errors to"),
         ([CASE, "--accuracy", "0"], "expected a finite number above 0"),
         ([CASE, "--accuracy", "no"], "expected a finite number above 0"),
         (["nowhere.toml"], "nowhere.toml"),

@@ -97,6 +97,32 @@ BAD_VALUES = {
         "section_depth_m = 0\n[material]",
         "strip.section_depth_m: got 0, expected a positive",
     ),
+    "both pairs": (
+        "area_m2 = 5e-5",
+        "area_m2 = 5e-5\nwidth_m = 0.01",
+        "strip.width_m: got it beside area_m2, expected width_m and thickness_m, or area_m2 and",
+    ),
+    "one of a pair": (
+        "area_m2 = 5e-5",
+        "",
+        "strip.area_m2: got no such key, expected a positive number [m^2]",
+    ),
+    "one side": (
+        "second_moment_m4 = 1.041e-10",
+        "",
+        "strip.second_moment_m4: got no such key, expected a positive number [m^4]",
+    ),
+    "material that is not there": (
+        "[material]",
+        '[material]\nname = "steel"',
+        'material.name: got the text "steel", expected one of "spring_steel", "titanium_6al_4v"',
+    ),
+    "gravity twice": (
+        "[drive]",
+        '[scene]\neffects = ["+gravity"]\n[effects.gravity]\nacceleration_m_per_s2 = [0, 1]\n'
+        "direction_deg = 0\n[drive]",
+        "effects.gravity.direction_deg: got it beside acceleration_m_per_s2, expected one of them",
+    ),
     "not TOML": ("[strip]", "[strip", "got text that is not TOML"),
     "400 digits": (
         "= 90 ",
@@ -141,7 +167,10 @@ def test_missing_section_names_what_it_needs(case, command, table_1):
 
 #: Words after `solve CASE.toml`, and what the one line must say.
 BAD_OPTIONS = {
-    "unknown model": (["--model", "rod"], "invalid choice: 'rod' (choose from"),
+    "unknown model": (
+        ["--model", "rod"],
+        "argument --model: got rod, expected one or more of spline, fe, fe-shear",
+    ),
     "three control points": (
         ["--model", "spline", "--control-points", "3"],
         "control_points: got 3, expected",

@@ -195,11 +195,11 @@ def test_bad_scene_is_one_line(name, tmp_path, command):
     assert text in outcome.err
 
 
-def test_commands_of_pivots_refuse_mechanisms(command):
-    """Refining is for cross-axis pivots: a mechanism is refused in one line."""
+def test_refining_needs_a_rotation(command):
+    """Errors are related to a rotation: a mechanism that follows its loads is refused in one line."""
     outcome = command("converge", FOLDER / "parallel_strip_guide.toml")
     assert outcome.code == 2
-    assert "[[strips]]: got a mechanism, expected a cross-axis pivot, with [strip]" in outcome.err
+    assert "drive.rotation_deg: got none, expected a rotation to relate errors to" in outcome.err
 
 
 @pytest.mark.parametrize("head", ["strips = []", "strips = [1]"])

@@ -29,11 +29,14 @@ def test_small_designs_print_digits(name, case, command):
     first = next(place for place, line in enumerate(lines) if re.fullmatch(r"[\s\-\d.e+]+", line))
     rows = [line.split() for line in lines[first:] if re.fullmatch(r"[\s\-\d.e+]+", line)]
     assert len(rows) >= 3
+    if name == "solve":  # a second table stands below
+        assert all(len(row) == len(rows[-1]) for row in rows[3:])
+        rows = rows[:3]
     for column in zip(*rows, strict=True):
         assert any(float(cell) != 0.0 for cell in column)
         assert not [cell for cell in column if re.fullmatch(r"-0(\.0*)?", cell)]
     if name == "solve":
-        units = ["deg", "um", "um", "uN", "m", "uN", "m/rad", "nJ", "MPa"]
+        units = ["deg", "um", "um", "nm", "uN", "m", "uN", "m/rad", "nJ", "MPa"]
         assert lines[first - 1].split() == units
         assert all(len(cell.replace(".", "").strip("-0")) >= 5 for cell in rows[-1][1:-1])
 

@@ -32,6 +32,16 @@ def test_table_orders_and_counts(short):
     assert re.search(r"\nelements +\d+ +\d+ +> 40\n", outcome.out)
 
 
+def test_a_mechanism_is_refined_too(command, tmp_path):
+    """A driven mechanism has its errors, with the torque that is none at rest, and orders of the elements."""
+    words = ["converge", "four_bar_of_flexures", "--control-points", "4:5", "--elements", "5:20"]
+    outcome = command(*words, "--out", tmp_path)
+    assert outcome.code == 0
+    rows = [line.split() for line in outcome.out.splitlines() if re.match(r" +\d", line)]
+    assert [float(cell) for cell in rows[-1][2:7:2]] == pytest.approx([2.0, 2.0, 2.0], abs=0.05)
+    assert float(rows[1][3]) < 1e-4
+
+
 def test_folder_holds_tables_and_figure(short):
     """The folder holds both tables and the figure, and nothing that was there is touched on a second run."""
     _, folder = short

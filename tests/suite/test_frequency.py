@@ -23,8 +23,8 @@ def swing(frequency=42.0, time=TIME):
 
 def test_frequency_of_a_known_swing():
     """Passages of a cosine are found between records, its frequency from them; less than a swing has none."""
-    assert passages(TIME, swing(), 0.0)[:2] == pytest.approx([1.0 / 168.0, 3.0 / 168.0], rel=1e-4)
-    assert swing_frequency(TIME, swing()).value == pytest.approx(42.0, rel=1e-6)
+    assert passages(TIME, swing(), 0.0)[:2] == pytest.approx([1.0 / 168.0, 3.0 / 168.0], rel=1e-8)
+    assert swing_frequency(TIME, swing()).value == pytest.approx(42.0, rel=1e-8)
     short = swing_frequency(TIME[:600], swing()[:600])
     assert math.isnan(short.value)
     assert "not a whole swing" in short.reason
@@ -32,7 +32,7 @@ def test_frequency_of_a_known_swing():
 
 def test_half_a_swing_is_enough_where_it_turns_as_far_to_both_sides():
     """One swing from its turning point has two passages; a swing cut short has them too, but no frequency."""
-    assert swing_frequency(TIME[:953], swing()[:953]).value == pytest.approx(42.0, rel=1e-4)
+    assert swing_frequency(TIME[:953], swing()[:953]).value == pytest.approx(42.0, rel=1e-8)
     assert math.isnan(swing_frequency(TIME[:800], 0.2 + swing()[:800]).value)
 
 
@@ -41,14 +41,22 @@ def test_frequency_is_of_the_swing_about_its_rest(rest):
     """A swing about another rest than zero has the same frequency, and its rest is found."""
     found = swing_frequency(TIME, rest + swing())
     assert found.value == pytest.approx(42.0, rel=1e-6)
-    assert found.rest == pytest.approx(rest, abs=1e-3)
+    assert found.rest == pytest.approx(rest, abs=1e-10)
+
+
+def rippled(decay, ripple_hertz=511.0):
+    """Relative error of the frequency of a swing with a ripple of a quarter of its amplitude."""
+    ripple = 0.25 * np.cos(2.0 * np.pi * ripple_hertz * TIME + 1.0)
+    swung = swing_frequency(TIME, np.exp(-decay * TIME) * (swing() + ripple) - 0.1)
+    return abs(swung.value / 42.0 - 1.0)
 
 
 @pytest.mark.parametrize("decay", [0.0, 8.0])
 def test_ripples_are_not_counted(decay):
-    """A ripple of a quarter of the amplitude at twelve times the frequency leaves the frequency as it is."""
-    rippled = np.exp(-decay * TIME) * (swing() + 0.25 * np.cos(2.0 * np.pi * 511.0 * TIME + 1.0)) - 0.1
-    assert swing_frequency(TIME, rippled).value == pytest.approx(42.0, rel=5e-3)
+    """A ripple of twelve times the frequency leaves it as it is; one of less than five times does not."""
+    gates.check("frequency_of_ripples", rippled(decay))
+    with pytest.raises(AssertionError, match="x the gate"):
+        gates.check("frequency_of_ripples", rippled(decay, **gates.teeth("frequency_of_ripples")))
 
 
 def test_what_stands_still_has_no_frequency():

@@ -132,19 +132,22 @@ def test_check_passes_and_names_unknown_gates(sound_gate):
         gates.check("unsound", 1e-6)
 
 
-#: Folders whose tests hold accuracies to gates alone, and what a literal limit looks like: an identity to
-#: round-off, or to what a solver's tolerance leaves, is no accuracy.
-HELD = ("agreement", "fe")
-LITERAL = re.compile(r"(?:<=?|rel=|abs=|tol=) *-?\d*\.?\d*e-0?[1-7]\b")
+#: Folders whose tests hold accuracies to gates alone, and the power of ten from which a literal limit is one:
+#: what is smaller is an identity to round-off, or to what a solver's tolerance leaves.
+HELD = {"agreement": 7, "fe": 7, "baselines": 5, "design": 5, "interactive": 5}
 #: Solutions of one model that stand for the same state, to the tolerance of its paths and motions.
 SAME = {"test_loads_release.py": 2, "test_watched_paths.py": 1}
+#: What theory leaves: the next order of a closed form, a difference for a derivative.
+THEORY = {"test_surrogates.py": 3, "test_readout.py": 3}
+#: What the page promises of what it shows, coarser than it is.
+PROMISED = {"test_browser_hand.py": 1, "test_clock.py": 1, "test_commands.py": 1, "test_server.py": 2}
 
 
-def test_accuracies_of_the_models_are_gates():
-    """No test of the elements or of both models' agreement has an accuracy limit beside `gates.toml`."""
-    found = {
-        path.name: len(LITERAL.findall(path.read_text(encoding="utf-8")))
-        for folder in HELD
-        for path in sorted((ROOT / "tests" / folder).glob("test_*.py"))
-    }
-    assert {name: count for name, count in found.items() if count} == SAME
+def test_accuracies_of_answers_are_gates():
+    """No test in these folders has an accuracy limit beside `gates.toml`; what looks like one is counted."""
+    found = {}
+    for folder, power in HELD.items():
+        literal = re.compile(rf"(?:<=?|rel=|abs=|tol=) *-?\d*\.?\d*e-0?[1-{power}]\b")
+        for path in sorted((ROOT / "tests" / folder).glob("test_*.py")):
+            found[path.name] = len(literal.findall(path.read_text(encoding="utf-8")))
+    assert {name: count for name, count in found.items() if count} == SAME | THEORY | PROMISED

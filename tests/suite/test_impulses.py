@@ -26,6 +26,7 @@ def test_a_motion_by_impulses_is_a_neutral_answer():
     assert answer.settings == {
         "integrator": "sequential impulses, stable",
         "step_s": 0.01,
+        "control_points": run.control_points,
         "impulses": "direct",
     }
     assert answer.rotation[0] == pytest.approx(0.5)

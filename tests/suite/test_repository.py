@@ -74,7 +74,9 @@ def test_no_machine_is_named():
 WRITTEN = [
     "my_pivot.toml",
     "my_pivot.json",
-    "my_pivot.png",
+    "my_pivot.svg",
+    "my_pivot_swing.png",
+    "my_pivot_beside.pdf",
     "designs.toml",
     "designs/designs.parquet",
     "designs/sweep.json",
@@ -84,6 +86,11 @@ WRITTEN = [
     "answer.json",
     "modes.json",
     "swing.json",
+    "design.svg",
+    "swing.png",
+    "crossings.svg",
+    "models.svg",
+    "sized.json",
 ]
 
 

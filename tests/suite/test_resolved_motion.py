@@ -83,6 +83,23 @@ def test_companion_of_a_loaded_motion():
     assert 0.0 < motion.rotation_error < 0.01
 
 
+@pytest.mark.parametrize(
+    "effects",
+    [
+        ("bending", "stretching", "body_inertia"),
+        ("bending", "stretching", "strip_inertia", "body_inertia", "body_damping"),
+    ],
+    ids=["massless strips", "damping"],
+)
+def test_motion_without_explicit_steps_is_checked_too(effects):
+    """A scene that the leapfrog does not take has a companion of its own integrator and step."""
+    parameters = {"body_damping": {"rotation": 1e-3}} if "body_damping" in effects else {}
+    pivot = cross_axis_pivot(**TABLE_ONE, effects=effects, parameters=parameters)
+    motion = solve_release(pivot, start=0.5, duration=0.005)
+    assert motion.resolution == ""
+    assert 0.0 < motion.rotation_error < 0.01
+
+
 def test_companion_that_fails_is_told(monkeypatch):
     """A companion without an answer leaves the motion as it is and says that it was not checked."""
     monkeypatch.setattr(

@@ -7,9 +7,11 @@ import pytest
 
 from spline_model.effects import registry
 from studies.cases.design import named_design
-from studies.cases.effects import DEFAULT, KEYS, MOTION_ONLY
+from studies.cases.effect_keys import KEYS
+from studies.cases.effects import DEFAULT, MOTION_ONLY
 from studies.cases.mechanism import Mechanism
 from studies.cases.problem import FOLDER, Problem
+from tests import gates
 
 MECHANISMS = ("parallel_strip_guide", "cantilever_with_body", "four_bar_of_flexures")
 SCENES = ("cross_axis_pivot", *MECHANISMS)
@@ -65,22 +67,36 @@ def test_both_models_release_every_mechanism_alike(name, command):
     assert np.abs(np.subtract(*places)).max() < 1e-4  # m: a thousandth of the size
 
 
+def modes_apart(command, name, elements=8):
+    """Relative difference of the first frequencies of both models."""
+    words = {"spline": [], "fe": ["--elements", elements]}
+    one, other = (
+        answer(command, "modes", FOLDER / f"{name}.toml", "--model", model, *coarse, "--count", 1)
+        for model, coarse in words.items()
+    )
+    assert one["effects"] == other["effects"]
+    return abs(one["frequency_Hz"][0] / other["frequency_Hz"][0] - 1.0)
+
+
 @pytest.mark.parametrize("name", SCENES)
 def test_both_models_have_the_modes_of_every_scene(name, command):
-    """The first frequency about the state under weight and loads in full is the same to 1e-3."""
-    first = [
-        answer(command, "modes", FOLDER / f"{name}.toml", "--model", model, *coarse, "--count", 1)
-        for model, coarse in COARSE.items()
-    ]
-    assert first[0]["frequency_Hz"][0] == pytest.approx(first[1]["frequency_Hz"][0], rel=1e-3)
-    assert first[0]["effects"] == first[1]["effects"]
+    """The first frequency about the state under weight and loads in full is that of the other model."""
+    gates.check("scenes_first_mode", modes_apart(command, name))
+
+
+def test_scenes_mode_gate_has_teeth(command):
+    """Few elements on a strip do not pass."""
+    with pytest.raises(AssertionError, match="x the gate"):
+        coarse = gates.teeth("scenes_first_mode")
+        gates.check("scenes_first_mode", modes_apart(command, "parallel_strip_guide", **coarse))
 
 
 def test_mechanisms_have_tables_to_read(command):
     """Without --json every body has its columns; the pivot keeps its own table."""
     lines = command("solve", FOLDER / "four_bar_of_flexures.toml", "--model", "spline").out.splitlines()
     assert lines[2].replace("|", " ").split() == ["crank", "coupler", "rocker"]
-    assert len(lines) == 5 + 21 + 1 + 1  # the estimated error and the ending
+    assert sum("|" in line for line in lines) == 3 + 21  # names, columns and units, and a row a state
+    assert "estimated error" in lines[-2] and lines[-1].startswith("converged")
     released = command(
         "release", FOLDER / "four_bar_of_flexures.toml", "--model", "spline", "--duration", 1e-3
     )

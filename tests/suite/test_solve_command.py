@@ -11,19 +11,25 @@ from studies.answers import adapters
 from studies.answers.response import Critical
 from studies.cases.problem import FOLDER
 from studies.commands import solve
+from studies.commands.path_output import ENTRIES
 
 ARRAYS = {
     "load_factor",
     "rotation_rad",
     "com_x_m",
     "com_y_m",
+    "centre_shift_x_m",
+    "centre_shift_y_m",
     "torque_Nm",
     "stiffness_Nm_per_rad",
     "strain_energy_J",
     "max_stress_Pa",
+    *(f"body_stiffness_{name}" for name in ENTRIES),
+    "off_axis_ratio_x",
+    "off_axis_ratio_y",
 }
 KEYS = ARRAYS | {"status", "message", "critical_points", "resolution", "model", "settings", "effects"}
-KEYS |= {"counters", "wall_s"}
+KEYS |= {"strength", "validity", "counters", "wall_s"}
 
 
 @pytest.mark.parametrize("model", ["spline", "fe", "fe-shear"])
@@ -83,11 +89,13 @@ def test_table_is_short_and_readable(case, command):
     outcome = command("solve", case(), "--model", "fe", "--rotation-deg", 45, "--increments", 3)
     lines = outcome.out.splitlines()
     assert outcome.code == 0
-    assert len(lines) == 4 + 4 + 1
+    assert len(lines) == 4 + 4 + 3 + 4 + 1 + 3 + 1
     assert lines[1] == "effects: bending, stretching"
     assert "N m/rad" in lines[3]
-    assert lines[-2].split()[0] == "45.000"
-    assert max(map(len, lines[:-1])) <= 90
+    assert lines[7].split()[0] == lines[14].split()[0] == "45.000"
+    assert lines[15].startswith("largest stress 6357.5 MPa, of strip_1 at its root, at 45 deg")
+    assert all(line.startswith("beyond the model: ") for line in lines[16:-1])
+    assert max(map(len, lines[:15])) <= 90
 
 
 def test_repeat_takes_the_median_after_a_warm_up(case, command, monkeypatch):
@@ -262,6 +270,7 @@ def test_what_a_converged_path_passed_is_told(command, tmp_path):
     (point,) = answer["critical_points"]
     euler = (math.pi / 2) ** 2 * 206e9 * 1e-13 / 0.1**2  # one end free
     assert point["kind"] == "bifurcation"
+    assert point["force_N"] == pytest.approx(euler, rel=1e-3)
     assert point["rotation_rad"] is None
     assert point["load_factor"] == pytest.approx(euler / 8.0, rel=1e-3)
     assert f"bifurcation: load factor {point['load_factor']:.6g}" in outcome.out
@@ -280,14 +289,14 @@ def test_heading_names_the_effects(model, command, tmp_path):
 
 def test_critical_points_of_a_pivot_have_their_angle(case, command, monkeypatch):
     """Of a pivot the line of a critical point has degrees, and the message stands beside it."""
-    genuine = solve.answer_static
+    genuine = solve.answer_path
 
     def passing(*arguments, **keywords):
         point = Critical(kind="limit point", load_factor=0.5, rotation=math.radians(15))
         answer = genuine(*arguments, **keywords)
         return dataclasses.replace(answer, message="the torque has a limit", critical_points=(point,))
 
-    monkeypatch.setattr(solve, "answer_static", passing)
+    monkeypatch.setattr(solve, "answer_path", passing)
     out = command("solve", case(), "--model", "fe", "--rotation-deg", 30, "--increments", 1).out
     assert out.splitlines()[-3:-1] == ["the torque has a limit", "limit point: load factor 0.5, 15 deg"]
 

@@ -41,6 +41,7 @@ def test_closure_follows_every_import(root):
     [
         ("studies/study.py", FILES["studies/study.py"].replace("What it shows", "Something else")),
         ("studies/part.py", "# a remark\nimport   spline_model.deep\n\n\nVALUE = 1  # another\n"),
+        ("studies/part.py", 'import spline_model.deep\n\nVALUE = 1\n"""What it is."""\n'),
         (
             "spline_model/deep.py",
             FILES["spline_model/deep.py"].replace("():\n", '():\n    """Say so."""\n', 1),

@@ -53,6 +53,7 @@ def error_of_batch(**settings):
             "stiffness_rest_Nm_per_rad": answer.stiffness[0],
             "stiffness_end_Nm_per_rad": answer.stiffness[-1],
             "stress_max_Pa": answer.max_stress.max(),
+            "strain_max": answer.max_stress.max() / named_case("cross_axis_pivot").youngs_modulus,
             "energy_J": answer.strain_energy[-1],
             "centre_shift_end_m": shift[-1],
             "centre_shift_max_m": shift.max(),
@@ -60,6 +61,8 @@ def error_of_batch(**settings):
         errors += [abs(row[name] / value - 1.0) for name, value in expected.items()]
         variation = np.ptp(answer.stiffness) / answer.stiffness[0]
         errors.append(abs(row["stiffness_variation"] - variation))
+        section = row["width_ratio"] / row["thickness_ratio"]
+        assert row["curvature_ratio"] == pytest.approx(2.0 * row["strain_max"] * section**2)
         assert settings or row["iterations"] == answer.counters["newton_iterations"]
     return max(errors)
 
@@ -82,7 +85,8 @@ def test_batch_gate_has_teeth():
         "drive.rotation_deg = [-40, 20]",
         "drive.increments = [3, 5]\nstrip.section_depth_m = [0.002, 0.005]",
         "strip.slenderness = [15, 40]\nstrip.length_m = [0.05, 0.1]",
-        "material.youngs_modulus_Pa = [1e9, 2e11]\nstrip.area_m2 = [2e-5, 5e-5]",
+        "material.youngs_modulus_Pa = [1e9, 2e11]\nstrip.area_m2 = [2e-5, 5e-5]\n"
+        "material.yield_strength_Pa = [1e8, 1e12]",
     ],
 )
 def test_the_kernel_and_single_solves_give_the_same_row(more):

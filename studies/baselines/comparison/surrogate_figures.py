@@ -7,13 +7,15 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from studies.record.style import BLACK, GREEN, LOOKS, ORANGE, PURPLE, page
+from studies.record.style import BLACK, GREEN, LOOKS, ORANGE, PURPLE, SKY, YELLOW, page
 
 #: Model -> label, colour and line.
 MODELS = {
     "linear pivot": ("linear pivot", ORANGE, "-"),
     "pin joint": ("pin joint", PURPLE, "-"),
     "four-bar": ("four-bar (fitted)", GREEN, "-"),
+    "beam constraint model": ("beam constraint model", YELLOW, "-"),
+    "chained constraint model": ("the same, chained", SKY, "-"),
 }
 SPLINES = {
     name: (LOOKS[name].label, LOOKS[name].colour, "--")

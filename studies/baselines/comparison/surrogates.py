@@ -4,6 +4,7 @@ The four-bar's link length and spring are fitted to the small-angle limit: its p
 not found.
 """
 
+import math
 from dataclasses import replace
 from typing import Any
 
@@ -17,6 +18,8 @@ from studies.answers.settings import SplineSettings
 from studies.baselines import spline
 from studies.baselines.answer import SolvedPath
 from studies.baselines.comparison import surrogate_figures
+from studies.baselines.constraint_model import CHAINED, chained_constraint_model, constraint_model
+from studies.baselines.constraint_strips import guide
 from studies.baselines.four_bar import four_bar, link_length, spring
 from studies.baselines.linear_pivot import (
     linear_pivot,
@@ -24,14 +27,19 @@ from studies.baselines.linear_pivot import (
     shift_coefficient,
     small_angle_stiffness,
 )
-from studies.baselines.registry import SURROGATES
+from studies.baselines.registry import PSEUDO_RIGID, SURROGATES
+from studies.cases.mechanism import Mechanism
 from studies.cases.problem import Problem, named_case
 from studies.engine.findings import Claim, Tables
 from studies.engine.study import Answer, Part, Study
 from studies.kinds import Array
 from studies.paper import formulations
+from studies.published.case import published
+from studies.published.solve import moved
 
-CASE = "cross_axis_pivot"
+CASE, GUIDE = "cross_axis_pivot", "parallelogram"
+#: Loads on the guide [EI/L^2].
+LOADS = (0.5, 1.0, 2.0, 5.0, 10.0, 20.0)
 
 #: Splines beside them: what the paper wrote, the same count without locking, and the default.
 SPLINES = (formulations.PAPER, formulations.LOCKING_FREE, "n = 6")
@@ -177,6 +185,24 @@ def _swung(part: float) -> Answer:
     return {"swings": rows}
 
 
+def _guided(load: float) -> Answer:
+    """Return the displacement of a parallelogram under a load across it [EI/L^2], and that of its beams."""
+    given = published(GUIDE).design
+    assert isinstance(given, Mechanism)
+    upper, lower = given.strips
+    length = math.dist(upper.start, upper.end)
+    apart = math.dist(upper.start, lower.start) / length
+    slenderness = length / math.sqrt(12.0 * upper.second_moment_of_area / upper.area)
+    limit = np.array(moved(GUIDE, "spline", "beam", load)) / (length, length, 1.0)
+    rows = []
+    for model, count in ((constraint_model.model, 1), (chained_constraint_model.model, CHAINED)):
+        place = guide(apart, slenderness, count).pushed(np.array([0.0, load]))
+        for quantity, found, known in zip(("displacement_x", "displacement_y"), place, limit, strict=False):
+            row = {"model": model, "load": load, "quantity": quantity, "found": found, "reference": known}
+            rows.append({**row, "error": found / known - 1.0})
+    return {"guide": rows}
+
+
 def _parameters(problem: Problem) -> list[dict[str, Any]]:
     """Return what the surrogates were made with, and whether published or fitted."""
     rigidity = problem.youngs_modulus * problem.second_moment_of_area / problem.length
@@ -193,6 +219,8 @@ def _parameters(problem: Problem) -> list[dict[str, Any]]:
         (pin_joint, "stiffness over EI/L", pin / rigidity, "published"),
         (four_bar, "link length over L", link_length(problem), fitted),
         (four_bar, "spring over EI/L", spring(problem) / rigidity, fitted),
+        (constraint_model, "beams a strip", 1, "published"),
+        (chained_constraint_model, "beams a strip", CHAINED, "chosen"),
     ]
     return [
         {"model": each.model, "parameter": name, "value": value, "origin": origin}
@@ -201,9 +229,9 @@ def _parameters(problem: Problem) -> list[dict[str, Any]]:
 
 
 def _over_the_best(tables: Tables) -> list[dict[str, Any]]:
-    """Return the largest error of each spline and quantity over that of the best surrogate."""
+    """Return the largest error of each spline and quantity over that of the best pseudo-rigid body."""
     largest = tables["errors"].set_index("model")[list(QUANTITIES)].abs().groupby("model").max().T
-    best = largest[list(SURROGATES)].min(axis=1)
+    best = largest[list(PSEUDO_RIGID)].min(axis=1)
     return [
         {"model": name, "of": quantity, "ratio": largest[name][quantity] / best[quantity]}
         for name in SPLINES
@@ -212,11 +240,12 @@ def _over_the_best(tables: Tables) -> list[dict[str, Any]]:
 
 
 STUDY = Study(
-    cases=(CASE,),
+    cases=(CASE, f"published/cases/{GUIDE}"),
     parts=(
         Part(ask=_paths, alone=True),
         Part(ask=_released, alone=True),
         Part(at=lambda: AMPLITUDES, ask=_swung),
+        Part(at=lambda: LOADS, ask=_guided),
         Part(ask=lambda: {"parameters": _parameters(named_case(CASE))}),
     ),
     made={"thresholds": _thresholds},
@@ -224,7 +253,7 @@ STUDY = Study(
         Claim(
             claim="Dynamic splines are more accurate than pseudo-rigid-body models",
             formulation="{model}",
-            quantity="the largest error of the {of} over the best surrogate's",
+            quantity="the largest error of the {of} over the best such model's",
             rows=_over_the_best,
             value="ratio",
             holds=lambda row: row["ratio"] < 1.0,

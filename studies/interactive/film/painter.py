@@ -13,14 +13,14 @@ from numpy.typing import NDArray
 
 from studies.interactive.pivot.design import SIDE
 from studies.interactive.tracking.calibration import Camera
+from studies.interactive.tracking.planar import BITS, cells
 from studies.kinds import Array
 
 Picture = NDArray[np.uint8]
 
-#: Bits of a marker's side with its black border, and the white margin around it in bits.
-BITS = 8
+#: White margin around a marker in its cells.
 MARGIN = 1.5
-WHITE, BLACK, TABLE = 225.0, 25.0, 150.0
+WHITE, BLACK, TABLE, SKIN, WHITEST = 225.0, 25.0, 150.0, 105.0, 255.0
 #: Blocks of the frame counter in the upper left corner: side [px], and how many bits.
 BLOCK, COUNTER_BITS = 6, 16
 
@@ -32,7 +32,8 @@ class Optics:
     Attributes:
         width, height, focal [px]; distance [m] to the point `target` (2,) [m] of the plane; tilt, roll [rad].
         blur, noise: standard deviations [px], [grey levels]; light: change of brightness across the picture;
-        k1: of the lens; mirrored: left and right exchanged.
+        k1: of the lens; mirrored: left and right exchanged; gamma: light, blurred by the lens, becomes a
+        value by the power 1/gamma; exposure: of light, what is brighter than the largest value being clipped.
     """
 
     width: int = 640
@@ -47,6 +48,8 @@ class Optics:
     light: float = 0.25
     k1: float = 0.0
     mirrored: bool = False
+    gamma: float = 2.2
+    exposure: float = 1.0
 
     @property
     def camera(self) -> Camera:
@@ -119,7 +122,7 @@ class Painter:
         import cv2
 
         optics = self.optics
-        picture = self._ground.copy()
+        picture = WHITEST * (self._ground / WHITEST) ** optics.gamma
         for marker in markers:
             self._marker(picture, marker)
         for finger in fingers:
@@ -127,9 +130,11 @@ class Painter:
         if optics.blur > 0:
             picture = np.asarray(cv2.GaussianBlur(picture, (0, 0), optics.blur), dtype=float)
         ramp = 1.0 - optics.light * np.arange(optics.width) / optics.width  # never brighter than white
+        light = optics.exposure * picture * ramp**optics.gamma / WHITEST
+        seen = WHITEST * np.clip(light, 0.0, None) ** (1.0 / optics.gamma)
         rng = np.random.default_rng((self.seed, number))
         noise = rng.standard_normal(picture.shape, dtype=np.float32) * np.float32(optics.noise)
-        done = np.clip(np.rint(picture * ramp + noise), 0, 255).astype(np.uint8)
+        done = np.clip(np.rint(seen + noise), 0, 255).astype(np.uint8)
         if optics.mirrored:
             done = np.ascontiguousarray(done[:, ::-1])
         _burn_in(done, number)
@@ -160,7 +165,7 @@ class Painter:
         inside = (np.abs(u) < half) & (np.abs(v) < half)
         i = np.clip(np.floor((0.5 - v) * BITS), -1, BITS).astype(int)
         j = np.clip(np.floor((u + 0.5) * BITS), -1, BITS).astype(int)
-        values = np.pad(bits(marker.number), 1, constant_values=WHITE)[i + 1, j + 1]
+        values = np.pad(np.where(cells(marker.number), WHITE, BLACK), 1, constant_values=WHITE)[i + 1, j + 1]
         self._mix(picture, rows, columns, values, inside)
 
     def _finger(self, picture: Array, finger: Finger) -> None:
@@ -176,12 +181,13 @@ class Painter:
         )
         gap = image[..., :2] / image[..., 2:] - finger.centre
         inside = np.hypot(gap[..., 0], gap[..., 1]) < finger.radius
-        self._mix(picture, rows, columns, np.full(inside.shape, 105.0), inside)
+        self._mix(picture, rows, columns, np.full(inside.shape, SKIN), inside)
 
     def _mix(
         self, picture: Array, rows: slice, columns: slice, values: Array, inside: NDArray[np.bool_]
     ) -> None:
-        """Put the mean of the samples over the picture where they are inside."""
+        """Put the mean light of the samples' values over the picture where they are inside."""
+        values = WHITEST * (values / WHITEST) ** self.optics.gamma
         height, width = rows.stop - rows.start, columns.stop - columns.start
         shape = (height, self.samples, width, self.samples)
         cover = inside.reshape(shape).mean(axis=(1, 3))
@@ -221,15 +227,6 @@ class Painter:
 def _seen(plane: Array, points: Array) -> Array:
     image = points @ plane[:, :2].T + plane[:, 2]
     return np.asarray(image[:, :2] / image[:, 2:])
-
-
-def bits(number: int) -> Array:
-    """Return the grey levels (8, 8) of a marker of the family 36h11, black border included."""
-    import cv2
-
-    family = cv2.aruco.getPredefinedDictionary(cv2.aruco.DICT_APRILTAG_36h11)
-    image = cv2.aruco.generateImageMarker(family, number, BITS)
-    return np.where(image > 127, WHITE, BLACK)
 
 
 def _burn_in(picture: Picture, number: int) -> None:

@@ -7,9 +7,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
-from studies.interactive.film.painter import BITS, MARGIN, bits
+from studies.interactive.film.painter import MARGIN
 from studies.interactive.pivot.design import SIDE, Placing, build
 from studies.interactive.pivot.presets import PRESETS
+from studies.interactive.tracking.planar import BITS, cells
 
 #: A4, and the pivot's origin on it [mm].
 PAGE = (210.0, 297.0)
@@ -53,9 +54,9 @@ def _marker(axes: Axes, number: int, centre: np.ndarray, words: str, side: int) 
     size = 1e3 * SIDE
     bit = size / BITS
     left, top = centre[0] - size / 2, centre[1] + size / 2
-    for row, values in enumerate(bits(number)):
-        for column, value in enumerate(values):
-            if value < 128:
+    for row, lights in enumerate(cells(number)):
+        for column, light in enumerate(lights):
+            if not light:
                 # a hair wider than the bit, so that no viewer draws a gap between neighbours
                 place = (left + column * bit, top - (row + 1) * bit)
                 axes.add_patch(

@@ -268,7 +268,8 @@ class Bench:
         return True
 
     def _build(self, preset: str, values: Mapping[str, object]) -> None:
-        presets.preset(preset)
+        if preset != presets.OWN:  # a recorded one brings its values
+            presets.preset(preset)
         self.mechanics = Mechanics(presets.checked(values))
         self.placing = Placing.of(self.mechanics.pivot)
         if self._rest is not None:

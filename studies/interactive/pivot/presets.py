@@ -2,10 +2,13 @@
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from pathlib import Path
 
-from studies.cases.problem import named_case
+from spline_model.modes import natural_frequencies
+from studies.cases.problem import named_case, read_case
 from studies.errors import BadInput
+from studies.interactive.pivot.design import build
 
 #: Simulated time of one step over the time scale [s]: four of them make a frame of 25 Hz (section 4.1).
 STEP = 0.01
@@ -88,7 +91,7 @@ PARAMETERS: dict[str, Parameter] = {
 
 @dataclass(frozen=True, kw_only=True)
 class Preset:
-    """A design by the name of its case, what the case leaves open, and how fast its time runs.
+    """A design by the name of its case or its file, what the case leaves open, and how fast its time runs.
 
     Attributes:
         yield_strength: of the material [Pa], a choice; relaxation_time: of the strips' damping [s], a choice.
@@ -104,7 +107,7 @@ class Preset:
 
     def values(self) -> dict[str, float]:
         """Return all parameters of the design by name, in SI units."""
-        problem = named_case(self.case)
+        problem = read_case(self.case) if self.case.endswith(".toml") else named_case(self.case)
         thickness = math.sqrt(12.0 * problem.second_moment_of_area / problem.area)
         values = {
             "thickness": thickness,
@@ -138,6 +141,38 @@ PRESETS: dict[str, Preset] = {
 }
 
 
+#: Name of the design of one's own, which a command may bring.
+OWN = "own"
+
+
+def bring(case: str) -> None:
+    """Add the design of a case file to the presets, as `OWN`; its time runs so that it swings once a second.
+
+    Of its scene the damping of the strips acts here, nothing else beside what always does.
+
+    Raises:
+        BadInput: the file cannot be used, or a number of the design is beyond what a slider may set.
+    """
+    problem = read_case(case)
+    damping = problem.effects.parameters().get("strip_damping", {})
+    strength = problem.yield_strength
+    own = Preset(
+        case=case,
+        title=Path(case).stem.replace("_", " "),
+        yield_strength=PARAMETERS["yield_strength"].high if strength is None else strength,
+        relaxation_time=damping.get("relaxation_time", 0.0),
+        time_scale=1.0,
+        note="of one's own" if strength is not None else "of one's own; its yield strength is not known",
+    )
+    try:
+        values = checked(own.values())
+    except BadInput as error:
+        raise BadInput(f"{case}: {error}") from None
+    frequency = float(natural_frequencies(build(values), rotation=0.0, count=1).frequency[0])
+    slow = PARAMETERS["time_scale"]
+    PRESETS[OWN] = replace(own, time_scale=min(max(1.0 / frequency, slow.low), slow.high))
+
+
 def checked(values: Mapping[str, object]) -> dict[str, float]:
     """Return all parameters in SI units, each checked; BadInput names an unknown, missing or bad one."""
     for name in values:
@@ -151,6 +186,8 @@ def checked(values: Mapping[str, object]) -> dict[str, float]:
 
 def preset(name: object) -> Preset:
     """Return the preset of that name; BadInput lists the names."""
+    if name == OWN and OWN not in PRESETS:
+        raise BadInput(f"preset: got {OWN!r}, expected its case file beside the command")
     if not isinstance(name, str) or name not in PRESETS:
         raise BadInput(f"preset: got {name!r}, expected one of {', '.join(PRESETS)}")
     return PRESETS[name]

@@ -72,7 +72,7 @@ class Session(Instant):
         """Begin anew with these settings; the first event of a session file."""
         drive, solver = choice(event, "drive", DRIVES), choice(event, "solver", tuple(MOTIONS))
         rest, values = three(event, "rest"), presets.checked(mapping(event, "values"))
-        preset = choice(event, "preset", tuple(presets.PRESETS))
+        preset = choice(event, "preset", (*presets.PRESETS, presets.OWN))
         self._begin(preset, values, event.get("lock_step") is not False)
         self.drive, self.solver = drive, solver
         if not np.array_equal(rest, self.placing.rest):

@@ -121,6 +121,7 @@ SENTENCES = {
     "refused": "The markers fit no plane: this pose was left out.",
     "sizes": "The two markers have different sizes: print both at 100 % and measure the ruler.",
     "blurred": "The edges are blurred or dark: hold still, more light.",
+    "over-exposed": "The paper's white is over-exposed: less light, or a shorter exposure.",
     "followed": "A corner is covered: the marker is followed by its edges.",
     "no-picture": "A picture could not be read.",
 }

@@ -1,10 +1,12 @@
 """Sub-pixel corners of dark squares: a line through each edge, corners where lines meet. Pixel centres are
 whole.
 
-One edge is compiled: grey-level profiles across it, the place of the edge on each, and a line through the
-places. The place is at first where the area under the profile says, which a symmetric blur of any width does
-not shift, and in the last pass where a blurred step of the edge's own width fits best, which has the least
-noise.
+One edge is compiled: grey-level profiles across it, made linear in light, the place of the edge on each, and
+a line through the places. A lens blurs light and the camera encodes it, by about the power 1/2.2: edges of
+encoded values lie too far in the dark. What is left of that by another camera, by clipped light and by ink
+that spreads is one offset of all edges (`studies.interactive.tracking.shrinkage`). The place is at first
+where the area under the profile says, which a symmetric blur of any width does not shift, and in the last
+pass where a blurred step of the edge's own width fits best, which has the least noise.
 """
 
 import math
@@ -32,6 +34,10 @@ LEAST_STEP = 15.0
 #: neighbours, half covered perhaps, go with it.
 OUTLIER_PX, OUTLIER = 0.15, 3.0
 NEIGHBOURS = 2
+#: Power of a camera's values that light is: of those that encode it, as nearly all do.
+GAMMA = 2.2
+#: Light of the dark, over that of the white, below which no noise is less.
+DARKEST = 0.05
 #: Least distance from the line of levels at which a station is covered by something else [grey levels].
 LEAST_SPREAD = 12.0
 
@@ -70,9 +76,9 @@ def smooth(level: Array) -> NDArray[np.bool_]:
 
 
 @njit(cache=True)
-def normalised(values: Array) -> tuple[NDArray[np.bool_], float]:
-    """Profiles (S, P) in place to 0 in the dark and 1 in the light; which of them are edges, and the median
-    step."""
+def normalised(values: Array, gamma: float) -> tuple[NDArray[np.bool_], float]:
+    """Profiles (S, P) in place to 0 in the dark and 1 in the light, linear in it; which are edges, and the
+    median step of their values."""
     count, size = values.shape
     dark, light = np.empty(count), np.empty(count)
     good = np.zeros(count, dtype=np.bool_)
@@ -86,8 +92,10 @@ def normalised(values: Array) -> tuple[NDArray[np.bool_], float]:
         for p in range(size - 1):
             rough += abs(values[s, p + 1] - values[s, p])
         good[s] = clear[s] and step > LEAST_STEP and rough < 4.0 * step
+        low, high = max(dark[s], 0.0) ** gamma, max(light[s], 1.0) ** gamma
         for p in range(size):
-            values[s, p] = min(max((values[s, p] - dark[s]) / step, -0.3), 1.3) if good[s] else 0.0
+            share = (values[s, p] ** gamma - low) / (high - low) if good[s] else 0.0
+            values[s, p] = min(max(share, -0.3), 1.3)
     return good, float(np.median(light - dark))
 
 
@@ -101,9 +109,11 @@ def _by_area(level: Array, half: float, place: Array) -> None:
 
 
 @njit(cache=True)
-def _by_step(level: Array, good: NDArray[np.bool_], half: float, near: Array, place: Array) -> None:
+def _by_step(
+    level: Array, good: NDArray[np.bool_], half: float, near: Array, place: Array, gamma: float
+) -> None:
     """Places (S,) by the blurred step that fits best, in one step of Gauss and Newton from those of a line,
-    near (S,)."""
+    near (S,); noise that is even in values grows with light, and weighs the less there."""
     count, size = level.shape
     spacing = 2.0 * half / (size - 1)
     total = first = second = 1e-9
@@ -125,8 +135,9 @@ def _by_step(level: Array, good: NDArray[np.bool_], half: float, near: Array, pl
             weight = math.exp(-0.5 * x * x) / (math.sqrt(2.0 * math.pi) * blur)
             # the levels were taken at the ends of the profile
             step = (0.5 * math.erfc(-x / math.sqrt(2.0)) - low) / max(high - low, 0.1)
-            top += weight * (level[s, p] - step)
-            bottom += weight * weight
+            trust = 1.0 / (max(step, 0.0) + DARKEST) ** (2.0 - 2.0 / gamma)
+            top += trust * weight * (level[s, p] - step)
+            bottom += trust * weight * weight
         place[s] = near[s] - top / bottom
 
 
@@ -176,7 +187,14 @@ def line(u: Array, place: Array, good: NDArray[np.bool_], a: float, b: float) ->
 
 @njit(cache=True)
 def edge(
-    picture: Picture, p: Array, q: Array, normal: Array, reach: float, first: bool, last: bool
+    picture: Picture,
+    p: Array,
+    q: Array,
+    normal: Array,
+    reach: float,
+    first: bool,
+    last: bool,
+    gamma: float,
 ) -> tuple[float, float, float, float]:
     """The edge near the line from p to q (2,): its offsets along `normal` at both, share of stations,
     step."""
@@ -189,7 +207,7 @@ def edge(
         for k in range(size):
             r = -half + 2.0 * half * k / (size - 1)
             level[s, k] = grey(picture, x + r * normal[0], y + r * normal[1])
-    good, step = normalised(level)
+    good, step = normalised(level, gamma)
     place = np.empty(STATIONS)
     _by_area(level, half, place)
     for s in range(STATIONS):
@@ -204,7 +222,7 @@ def edge(
     a, b, share = line(u, place, good, a, b)
     if last and share > 0.0:
         for _ in range(FITS):
-            _by_step(level, good, half, a + b * u, place)
+            _by_step(level, good, half, a + b * u, place, gamma)
             a, b, share = line(u, place, good, a, b)
     return a, a + b, share, step
 
@@ -228,19 +246,23 @@ class Refined:
     step: Array
 
 
-def refine(picture: NDArray[np.uint8], quads: Array) -> Refined:
-    """Return the squares near `quads` (Q, 4, 2) [px], corners in their order; a lost edge has share 0."""
+def refine(picture: NDArray[np.uint8], quads: Array, gamma: float = GAMMA) -> Refined:
+    """Return the squares near `quads` (Q, 4, 2) [px], corners in their order; a lost edge has share 0.
+
+    Args:
+        gamma: power of the picture's values that light is.
+    """
     corners = np.array(quads, dtype=float)
     share, step = np.zeros(corners.shape[:2]), np.zeros(corners.shape[:2])
     last = len(REACHES) - 1
     for k, reach in enumerate(REACHES):
         for q in range(len(corners)):
-            corners[q], share[q], step[q] = _pass(picture, corners[q], reach, k == 0, k == last)
+            corners[q], share[q], step[q] = _pass(picture, corners[q], reach, k == 0, k == last, gamma)
     return Refined(corners=corners, share=share, step=step)
 
 
 def _pass(
-    picture: NDArray[np.uint8], corners: Array, reach: float, first: bool, last: bool
+    picture: NDArray[np.uint8], corners: Array, reach: float, first: bool, last: bool, gamma: float
 ) -> tuple[Array, Array, Array]:
     """One pass over the edges of a square (4, 2)."""
     end = np.roll(corners, -1, axis=0)
@@ -250,7 +272,9 @@ def _pass(
     normal = np.column_stack((along[:, 1], -along[:, 0])) / side[:, None]
     outward = np.einsum("ei,ei->e", normal, (corners + end) / 2 - corners.mean(axis=0))
     normal *= np.sign(outward)[:, None]
-    found = np.array([edge(picture, corners[e], end[e], normal[e], half, first, last) for e in range(4)])
+    found = np.array(
+        [edge(picture, corners[e], end[e], normal[e], half, first, last, gamma) for e in range(4)]
+    )
     p, q = corners + found[:, :1] * normal, end + found[:, 1:2] * normal
     crossing = _crossings(np.roll(p, 1, axis=0), np.roll(q, 1, axis=0), p, q)
     lost = ~np.isfinite(crossing).all(axis=1) | (np.hypot(*(crossing - corners).T) > 2.0 * reach)

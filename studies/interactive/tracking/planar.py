@@ -7,8 +7,10 @@ residual can tell is the printed size.
 
 import math
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
+from numpy.typing import NDArray
 
 from studies.interactive.tracking.calibration import Camera
 from studies.interactive.tracking.edges import INSET
@@ -17,6 +19,8 @@ from studies.kinds import Array
 #: Corners of a square of side 1 in its own frame (x right, y up), in the detector's order: from the upper
 #: left on, clockwise as seen from the front.
 CORNERS = np.array([[-0.5, 0.5], [0.5, 0.5], [0.5, -0.5], [-0.5, -0.5]])
+#: Cells of a marker's side with its black border.
+BITS = 8
 ITERATIONS = 12
 #: Standard deviation of an edge's offset that is expected before the residuals are seen [px], and how many of
 #: them it is worth.
@@ -41,6 +45,15 @@ class Fit:
     sd: Array
     size_ratio: tuple[float, float]
     rms_sized: float
+
+
+@cache
+def cells(number: int) -> NDArray[np.bool_]:
+    """Return which cells (8, 8) of a marker of the family 36h11 are light, its black border included."""
+    import cv2
+
+    family = cv2.aruco.getPredefinedDictionary(cv2.aruco.DICT_APRILTAG_36h11)
+    return np.asarray(cv2.aruco.generateImageMarker(family, number, BITS) > 127)
 
 
 def project(plane: Array, points: Array) -> Array:

@@ -10,16 +10,26 @@ from studies.interactive.pivot.design import SIDE
 from studies.interactive.tracking import edges, planar
 from studies.interactive.tracking.calibration import Camera
 from studies.interactive.tracking.detector import Detector, Picture, Squares
+from studies.interactive.tracking.shrinkage import Shrinkage
 from studies.kinds import Array
 
 #: Residuals of the fit [px] from which it is doubted, and refused.
 DOUBT_PX, REFUSE_PX = 0.12, 0.25
+#: Side [px] below which all pixels are looked at where a marker is missed.
+FAR_PX = 50.0
 #: Longest that a marker is followed by its edges without its id being read [s].
 FOLLOW = 1.0
 #: Time without any marker after which a mirrored picture is tried [s].
 BLIND = 1.0
 #: Share of good stations below which an edge is called blurred, and least that a followed one keeps.
 CLEAR, KEPT = 0.6, edges.LEAST_SHARE
+#: Places in the white around a marker, in sides; the value from which they are clipped, and their share that
+#: is named.
+MARGIN = np.array(
+    [[x, s * 0.56] for s in (-1, 1) for x in np.linspace(-0.5, 0.5, 9)]
+    + [[s * 0.56, y] for s in (-1, 1) for y in np.linspace(-0.5, 0.5, 9)]
+)
+WHITEST, CLIPPED = 254, 0.5
 #: Difference of the sides that is named, and how many standard deviations it must be.
 ODD_SIZE, ODD_SIGMA = 0.01, 6.0
 
@@ -47,6 +57,7 @@ class Tracker:
         self._detector = Detector()
         self._known: dict[int, _Known] = {}
         self._fit: planar.Fit | None = None
+        self._shrinkage = Shrinkage()
         self._blind_since: float | None = None
         self._mirrored = False
         self._tries = 0
@@ -56,7 +67,7 @@ class Tracker:
         squares = self._detector.find(picture)
         if len(squares.corners) < 2 and not squares.doubles:
             self._tries += 1
-            if not self._known or self._tries % 5 == 0:  # far away: look at every pixel, now and then
+            if not self._known or self._far() or self._tries % 5 == 0:  # look at every pixel, now and then
                 squares = self._detector.find(picture, whole=True)
         else:
             self._tries = 0
@@ -67,6 +78,11 @@ class Tracker:
             return self._missing(picture, squares, quads, time)
         self._blind_since = None
         return self._fitted(picture, quads, followed, time)
+
+    def _far(self) -> bool:
+        """Whether a marker was too small, when last seen, for a part of the pixels."""
+        sides = [np.hypot(*(known.corners[1] - known.corners[0])) for known in self._known.values()]
+        return bool(min(sides) < FAR_PX)
 
     def _quads(self, squares: Squares, time: float) -> tuple[dict[int, Array], set[int]]:
         """Corners of both squares, found or predicted, and which were predicted."""
@@ -81,16 +97,17 @@ class Tracker:
     def _fitted(
         self, picture: Picture, quads: dict[int, Array], followed: set[int], time: float
     ) -> dict[str, Any]:
-        refined = edges.refine(picture, np.stack((quads[0], quads[1])))
-        fit = self._fit_to(refined.corners)
+        refined = edges.refine(picture, np.stack((quads[0], quads[1])), self._shrinkage.gamma)
+        lit = {n: planar.cells(n) for n in (0, 1) if n not in followed and refined.share[n].min() >= KEPT}
+        fit = self._fit_to(self._shrinkage.taken_out(picture, refined.corners, lit))
         torn = fit is None or fit.rms > REFUSE_PX
         if torn and not followed:  # a corner that is covered pulls the square: take the last one instead
             predicted = {n: k for n, k in self._known.items() if time - k.read <= FOLLOW}
             for number, known in predicted.items():
                 other = dict(quads)
                 other[number] = known.corners + known.velocity * (time - known.time)
-                again = edges.refine(picture, np.stack((other[0], other[1])))
-                second = self._fit_to(again.corners)
+                again = edges.refine(picture, np.stack((other[0], other[1])), self._shrinkage.gamma)
+                second = self._fit_to(self._shrinkage.taken_out(picture, again.corners, {}))
                 if second is not None and second.rms <= REFUSE_PX:
                     refined, fit, followed, torn = again, second, {number}, False
                     break
@@ -103,7 +120,7 @@ class Tracker:
             return _unseen("sizes" if sized else "refused")
         self._remember(refined.corners, followed, time)
         self._fit = fit
-        return self._seen(fit, refined, followed)
+        return self._seen(picture, fit, refined, followed)
 
     def _fit_to(self, corners: Array) -> planar.Fit | None:
         try:
@@ -121,8 +138,12 @@ class Tracker:
             read = time if number not in followed or known is None else known.read
             self._known[number] = _Known(corners=now, velocity=velocity, time=time, read=read)
 
-    def _seen(self, fit: planar.Fit, refined: edges.Refined, followed: set[int]) -> dict[str, Any]:
+    def _seen(
+        self, picture: Picture, fit: planar.Fit, refined: edges.Refined, followed: set[int]
+    ) -> dict[str, Any]:
         faults = []
+        if _clipped(picture, fit) > CLIPPED:
+            faults.append("over-exposed")
         if followed:
             faults.append("followed")
         if fit.rms > DOUBT_PX:
@@ -132,14 +153,17 @@ class Tracker:
         if _odd_sizes(fit):
             faults.append("sizes")
         scale = np.array([self.side, self.side, 1.0])
+        size = np.hypot(*(refined.corners - np.roll(refined.corners, 1, axis=1)).reshape(-1, 2).T).min()
+        # an offset that is wrong changes the size of both squares, and with it all distances
+        sized = np.abs(fit.pose) * [1.0, 1.0, 0.0] * (2.0 * self._shrinkage.sd / size)
         return {
             "do": "seen",
             "marker": (fit.pose * scale).tolist(),
-            "sd": (fit.sd * scale).tolist(),
+            "sd": (np.hypot(fit.sd, sized) * scale).tolist(),
             "rms": fit.rms,
             "state": "followed" if followed else "found",
             "plane": (fit.plane @ np.diag([1.0 / self.side, 1.0 / self.side, 1.0])).ravel().tolist(),
-            "quads": refined.corners.tolist(),
+            "quads": self._shrinkage.taken_out(picture, refined.corners, {}).tolist(),
             "faults": faults,
         }
 
@@ -158,6 +182,14 @@ class Tracker:
         if time - self._blind_since >= BLIND and (self._mirrored or self._tries % 5 == 0):
             self._mirrored = bool(self._detector.find(np.ascontiguousarray(picture[:, ::-1])).corners)
         return _unseen("mirrored" if self._mirrored else "lost-both")
+
+
+def _clipped(picture: Picture, fit: planar.Fit) -> float:
+    """Return the share of places in the white around marker 0 that have the largest value."""
+    places = np.rint(planar.project(fit.plane, MARGIN)).astype(int)
+    height, width = picture.shape
+    there = places[((places >= 0) & (places < (width, height))).all(axis=1)]
+    return float(np.mean(picture[there[:, 1], there[:, 0]] >= WHITEST)) if len(there) else 0.0
 
 
 def _odd_sizes(fit: planar.Fit) -> bool:

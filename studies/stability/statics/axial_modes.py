@@ -10,7 +10,7 @@ from studies.answers.settings import SplineSettings
 from studies.cases.problem import Problem, named_case
 from studies.engine.study import Answer, Part
 from studies.stability import maps
-from studies.stability.family import CASE, DEFAULT, FE, INDEPENDENT, PAPER, REFINED, family, judged
+from studies.stability.family import CASE, FE, INDEPENDENT, PAPER, REFINED, VARIED, family, judged
 from studies.stability.statics.paths import TOLERANCE, StaticPath, attempted, distance
 
 COUNTS = (4, 5, 6, 8, 10)
@@ -64,12 +64,12 @@ def settings() -> Iterator[Setting]:
         plain = SplineSettings(control_points=n)
         for m in range(1, n):
             modes = replace(plain, axial_modes=m)
-            yield Setting(panel=MODES, model=DEFAULT, count=n, other=m, settings=modes)
+            yield Setting(panel=MODES, model=VARIED, count=n, other=m, settings=modes)
             floating = replace(modes, slide_stiffness=0.0)
-            yield Setting(panel=FLOATING, model=DEFAULT, count=n, other=m, settings=floating)
+            yield Setting(panel=FLOATING, model=VARIED, count=n, other=m, settings=floating)
         for points in range(1, n + 3):
             few = replace(plain, gauss_points=points)
-            yield Setting(panel=POINTS, model=DEFAULT, count=n, other=points, settings=few)
+            yield Setting(panel=POINTS, model=VARIED, count=n, other=points, settings=few)
             paper = replace(few, stretch="consistent", measure="spatial")
             yield Setting(panel=PAPER_POINTS, model=PAPER, count=n, other=points, settings=paper)
 

@@ -33,14 +33,15 @@ def element_arc(frame: Frame, settings: FeSettings) -> Arc:
 def led(model: Model, frame: Frame) -> Control:
     """Return the control of a frame: its pins held, its load or the displacement of its body growing."""
     structure = structure_of(model)
-    ways = {name: (0.0, 0.0) for name in frame.pins}
+    ways: dict[str, tuple[float | None, float | None]] = {name: (0.0, 0.0) for name in frame.pins}
     named = model.effects.find(DrivenDisplacement)
     if named is not None:
         ways[frame.body] = named.displacement
     ends = {
-        structure.body_slice(model.body_index(name)).start + k: way[k]
+        structure.body_slice(model.body_index(name)).start + k: part
         for name, way in ways.items()
-        for k in range(2)
+        for k, part in enumerate(way)
+        if part is not None
     }
     held = np.array(sorted(ends), dtype=np.int64)
     values = np.array([[0.0] * len(held), [ends[int(at)] for at in held]])

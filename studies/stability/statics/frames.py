@@ -9,15 +9,15 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import ellipe, ellipk
 
-from spline_model.effects import DrivenDisplacement
-from spline_model.estimate import resolution
-from spline_model.statics import solve_loads
-from studies.answers.models import built, model_of
+from spline_model.proportional import solve_mechanism
+from studies.answers.models import built, model_of, refusals
 from studies.answers.settings import SplineSettings
 from studies.cases.effects import Effects
-from studies.cases.mechanism import GROUND, Body, Mechanism, Strip
+from studies.cases.mechanism import Body, Mechanism, Strip
+from studies.cases.mechanism_keys import GROUND
 from studies.cases.problem import named_case
 from studies.kinds import Array
+from studies.published.case import published
 from studies.stability.statics.geometry import as_mechanism
 
 CASE = "cross_axis_pivot"
@@ -133,11 +133,8 @@ def _loaded(
 #: Euler load of a cantilever [EI/L^2].
 EULER = math.pi**2 / 4.0
 
-#: Tip angle [deg] -> load over the Euler load [1] as printed, found by tables of integrals, good to 2e-3:
-#: S. P. Timoshenko, J. M. Gere, Theory of Elastic Stability, 2nd ed. (1961), section 2.7.
-PUBLISHED = {
-    20: 1.015, 40: 1.063, 60: 1.152, 80: 1.293, 100: 1.518, 120: 1.884, 140: 2.541, 160: 4.029, 176: 9.116
-}  # fmt: skip
+#: Tip angle [deg] -> load over the Euler load [1] as printed.
+PUBLISHED = {int(value.at): value.published for value in published("column").values}
 
 
 def load_ratio(angle: float) -> float:
@@ -161,9 +158,6 @@ def extensible_euler(slenderness: float) -> float:
     slenderness: L sqrt(EA / EI) [1].
     """
     return slenderness**2 / 2.0 * (1.0 - math.sqrt(1.0 - 4.0 * EULER / slenderness**2))
-
-
-HERE = (0.0, 0.0)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -204,14 +198,21 @@ def spline_arc(frame: Frame, settings: SplineSettings, *, branch: str = "primary
 
     branch: "primary" or "follow" at a bifurcation.
     """
-    asked, _ = built(model_of(settings), frame.design, settings, moving=False)
-    scene = asked.with_effects(*(DrivenDisplacement(body=name, displacement=HERE) for name in frame.pins))
-    system, path = solve_loads(scene, increments=frame.design.increments, control="arc-length", branch=branch)
-    at = system.layout.body(frame.body)
+    model = model_of(settings)
+    asked, _ = built(model, frame.design, settings, moving=False)
+    with refusals(model, settings):
+        path = solve_mechanism(
+            asked.pinned(*frame.pins),
+            increments=frame.design.increments,
+            control="arc-length",
+            branch=branch,
+            raise_on_failure=False,
+        )
+    at = path.along.system.layout.body(frame.body)
     return Arc(
         load=frame.load * path.load_factor,
-        place=path.states[:, at],
-        energy=path.energies.sum(axis=1),
+        place=path.bodies[frame.body],
+        energy=path.bending_energy + path.axial_energy,
         inertia=path.inertia,
         critical=tuple(
             Critical(kind=point.kind, load=frame.load * point.load_factor, place=point.z[at])
@@ -219,6 +220,6 @@ def spline_arc(frame: Frame, settings: SplineSettings, *, branch: str = "primary
         ),
         reached=path.status.value == "converged",
         message=path.message,
-        warning=resolution(path.moment_defect),
+        warning=path.resolution,
         counters=path.counters,
     )

@@ -8,6 +8,7 @@ from functools import partial
 from studies.answers.settings import FeSettings, Settings, SplineSettings
 from studies.engine.study import Answer
 from studies.errors import BadInput
+from studies.published.case import Value, published
 from studies.stability.family import CHECK, COLUMNS, FE, FINER, INDEPENDENT, REFINED, UNCHECKED, Found, judged
 from studies.stability.statics.element_arcs import element_arc, tilted_state
 from studies.stability.statics.frames import (
@@ -86,18 +87,18 @@ def cases() -> Iterator[BucklingCase]:
     )
     for degrees in PUBLISHED:
         yield post_buckling(degrees)
-    for place, published in enumerate((33.9, 31.3)):
-        yield _limit(TOGGLE, toggle(rise=0.386), place, published, "lb")
+    for place, value in enumerate(published("williams_toggle").values):
+        yield _limit(TOGGLE, toggle(rise=0.386), place, value)
     yield BucklingCase(
         name="toggle of rise 0.32 in: limit points",
         part=TOGGLE,
         frame=toggle(rise=0.32),
         quantity="limit points [1]",
         value=lambda arc: float(len(arc.critical)),
-        published=0.0,
+        published=published("williams_shallow_toggle").values[0].published,
     )
-    for place, published in enumerate((1.85, -0.94)):
-        yield _limit(LEE, lees_frame(), place, published, "t")
+    for place, value in enumerate(published("lees_frame").values):
+        yield _limit(LEE, lees_frame(), place, value)
     yield from _pushed()
 
 
@@ -156,14 +157,14 @@ def _pushed() -> Iterator[BucklingCase]:
         yield pushed(depth)
 
 
-def _limit(part: str, frame: Frame, place: int, published: float, unit: str) -> BucklingCase:
+def _limit(part: str, frame: Frame, place: int, value: Value) -> BucklingCase:
     return BucklingCase(
         name=f"{part}: {('upper', 'lower')[place]} limit load",
         part=part,
         frame=frame,
-        quantity=f"limit load [{unit}]",
+        quantity=f"limit load [{value.unit}]",
         value=_critical(LIMIT, place),
-        published=published,
+        published=value.published,
     )
 
 

@@ -1,0 +1,127 @@
+"""What the material says to an answer: stress at the outer fibres, where it is largest, where it yields."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from studies.cases.design import Design
+from studies.cases.mechanism import Strip
+from studies.cases.problem import Problem
+from studies.kinds import Array
+
+if TYPE_CHECKING:
+    from studies.answers.response import StaticAnswer
+
+#: Part of a strip within which a place is its root, its middle or its tip.
+NEAR = 0.02
+#: Part of a stress below which two are the same: the strips of a symmetric pivot.
+SAME = 1e-9
+
+
+@dataclass(frozen=True, kw_only=True)
+class Strength:
+    """The largest stress on a path, and how far it is from yield.
+
+    Attributes:
+        stress: at an outer fibre [Pa]. strip: its name. station: arc length from its root over L [1].
+        load_factor [1], rotation [rad]: of the state; NaN where no body turns.
+        yield_strength: of that strip [Pa], None where none is given; safety: least of all strips, yield
+            strength over largest stress [1].
+        yields: load factor [1] and rotation [rad] from which on some strip yields; None where none does.
+    """
+
+    stress: float
+    strip: str
+    station: float
+    load_factor: float
+    rotation: float
+    yield_strength: float | None
+    safety: float | None
+    yields: tuple[float, float] | None
+
+    @property
+    def place(self) -> str:
+        """Where along the strip it is, in words."""
+        for at, word in ((0.0, "at its root"), (0.5, "in its middle"), (1.0, "at its tip")):
+            if abs(self.station - at) <= NEAR:
+                return word
+        return f"at {self.station:.2f} of its length"
+
+
+def strength(design: Design, answer: "StaticAnswer") -> Strength:
+    """Return the largest stress of an answer to a design, and what of its path the material bears.
+
+    Between states the share of the yield strength is interpolated monotonically, by cubics.
+    """
+    stress, limits = answer.extreme_fibre_stress, yield_strengths(design)
+    first = int(np.argmax(stress >= (1.0 - SAME) * stress.max()))
+    state, strip, station = map(int, np.unravel_index(first, stress.shape))
+    places = np.stack((answer.load_factor, _turns(answer)), axis=1)
+    known = all(limit is not None for limit in limits)
+    share = (stress.max(axis=2) / np.array(limits, dtype=float)).max(axis=1) if known else None
+    return Strength(
+        stress=float(stress.max()),
+        strip=_names(design)[strip],
+        station=float(answer.stations[station]),
+        load_factor=float(places[state, 0]),
+        rotation=float(places[state, 1]),
+        yield_strength=limits[strip],
+        safety=float(1.0 / share.max()) if share is not None and share.max() > 0.0 else None,
+        yields=None if share is None else _crossed(share, places),
+    )
+
+
+def yield_strengths(design: Design) -> Sequence[float | None]:
+    """Return the yield strength of every strip [Pa]; None where none is given."""
+    parts: tuple[Any, ...] = (design, design) if isinstance(design, Problem) else design.strips
+    return tuple(part.yield_strength for part in parts)
+
+
+def extreme_fibre_strain(strip: Problem | Strip, axial_force: Array, bending_moment: Array) -> Array:
+    """Return max |N/(EA) +- M d/(2 EI)|, the larger magnitude of the two extreme fibres (d: depth of the
+    section).
+
+    Exact for plane sections and small strain; leaves out shear, the strips' initial curvature and the clamps'
+    notches.
+
+    Args:
+        strip: gives E, A, I and d, that of the rectangle with its A and I where it does not say.
+        axial_force: N, any shape [N].
+        bending_moment: M, the same shape [N m].
+    """
+    modulus, inertia = strip.youngs_modulus, strip.second_moment_of_area
+    depth = strip.depth if isinstance(strip, Problem) else np.sqrt(12.0 * inertia / strip.area)
+    axial = axial_force / (modulus * strip.area)
+    bending = bending_moment * depth / (2.0 * modulus * inertia)
+    return np.asarray(np.abs(axial) + np.abs(bending))
+
+
+def _names(design: Design) -> tuple[str, ...]:
+    if isinstance(design, Problem):
+        return "strip_1", "strip_2"
+    return tuple(strip.name for strip in design.strips)
+
+
+def _turns(answer: "StaticAnswer") -> Array:
+    """Return the rotation of the body that is driven or may be (S,); NaN without a body."""
+    if answer.driven is None:
+        return np.full(len(answer.load_factor), np.nan)
+    return np.asarray(answer.bodies[answer.driven][:, 2])
+
+
+def _crossed(share: Array, places: Array) -> tuple[float, float] | None:
+    """Return load factor and rotation at which the share (S,) of the strength first is 1; None if never."""
+    beyond = np.flatnonzero(share >= 1.0)
+    if not beyond.size:
+        return None
+    at = float(beyond[0])
+    if at > 0.0:
+        from scipy.interpolate import PchipInterpolator  # only a path that yields waits for them
+        from scipy.optimize import brentq
+
+        states = np.arange(len(share))
+        at = brentq(PchipInterpolator(states, share - 1.0), at - 1.0, at)
+        places = np.array([[np.interp(at, states, column) for column in places.T]])
+    return float(places[0, 0]), float(places[0, 1])

@@ -1,0 +1,249 @@
+"""Hold two to five designs, or models, against one another: a table of what counts, and curves on one page.
+
+    python -m studies compare cross_axis_pivot spring_steel_pivot --rotation-deg 15
+    python -m studies compare spring_steel_pivot --model spline,fe --plot models.svg
+    python -m studies compare four_bar_of_flexures parallel_strip_guide --json -
+
+Every case is solved by every model, as `solve` does, to the end of its own path unless --rotation-deg is
+given; frequencies are those of `modes` at rest. A, B ... are the designs in their order, and the columns at
+the right are over A. Variation is the largest less the smallest stiffness of the path over that at its
+begin; safety, and from which rotation on a strip yields, are of cases with a yield strength. A dash: the
+design has no such number. Exit code 0: all converged; 2: bad input; 3: one did not, and is told up to where
+it came.
+"""
+
+import argparse
+import math
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from studies.answers.adapters import answer_modes, answer_path
+from studies.answers.response import MechanismResponse, Response
+from studies.answers.settings import Settings
+from studies.answers.strength import strength
+from studies.cases.design import Design, read_design
+from studies.commands.answer import deliver, number, require_target
+from studies.commands.arguments import (
+    ACCURACY,
+    CASE,
+    INCREMENTS,
+    JSON,
+    ROTATION,
+    SEVERAL_MODELS,
+    all_settings,
+    driven,
+)
+from studies.commands.columns import NOTHING, PREFIXES, plain, quantity, table
+from studies.commands.parser import Argument, command
+from studies.commands.picture import PLOT, called, draw, weakest
+from studies.errors import BadInput
+from studies.exchange.solutions import fields_of
+from studies.kinds import Array
+from studies.pictures.shown import LETTERS, Shown
+from studies.record.progress import Bar
+
+#: Digits of a number.
+DIGITS = 5
+
+
+@dataclass(frozen=True, kw_only=True)
+class Compared:
+    """One design by one model.
+
+    Attributes:
+        name: in the key of table and picture; case, design: it is of; answer: its path.
+        shown: what follows from it; None of a path without a state.
+        beside: values of the lines that are not of what is shown, by their keys.
+    """
+
+    name: str
+    case: str
+    design: Design
+    answer: Response | MechanismResponse
+    shown: Shown | None
+    beside: dict[str, float]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Row:
+    """A line of the table: what it is called there and in JSON, its unit, and what it is of what is shown."""
+
+    name: str
+    key: str
+    unit: str = ""
+    highest: int = 0
+    of: Callable[[Shown], float] = lambda each: math.nan
+
+
+def _last(values: Array | None) -> float:
+    return math.nan if values is None else float(values[-1])
+
+
+def _largest(values: Array | None) -> float:
+    return math.nan if values is None else float(values.max())
+
+
+def _variation(shown: Shown) -> float:
+    stiffness = shown.fields.stiffness
+    return math.nan if stiffness is None else float(np.ptp(stiffness) / abs(stiffness[0]))
+
+
+def _first_stiffness(shown: Shown) -> float:
+    stiffness = shown.fields.stiffness
+    return math.nan if stiffness is None else float(stiffness[0])
+
+
+ROWS = (
+    Row(name="rotation, end", key="rotation_rad", unit="deg", of=lambda each: _last(each.rotation)),
+    Row(name="torque, end", key="torque_Nm", unit="N m", of=lambda each: _last(each.fields.torque)),
+    Row(name="stiffness, begin", key="stiffness_begin_Nm_per_rad", unit="N m/rad", of=_first_stiffness),
+    Row(
+        name="stiffness, end",
+        key="stiffness_end_Nm_per_rad",
+        unit="N m/rad",
+        of=lambda each: _last(each.fields.stiffness),
+    ),
+    Row(name="stiffness, variation", key="stiffness_variation", of=_variation),
+    Row(
+        name="centre shift, largest",
+        key="largest_centre_shift_m",
+        unit="m",
+        highest=-3,
+        of=lambda each: _largest(each.shift),
+    ),
+    Row(
+        name="stress, largest",
+        key="max_stress_Pa",
+        unit="Pa",
+        highest=6,
+        of=lambda each: _largest(each.stress),
+    ),
+    Row(
+        name="strain energy, end", key="strain_energy_J", unit="J", of=lambda each: _last(each.strain_energy)
+    ),
+)
+#: Lines that are not of what a picture shows.
+SAFETY, YIELDS, FREQUENCY = BESIDE = (
+    Row(name="safety to yield", key="safety"),
+    Row(name="yields from", key="yield_rotation_rad", unit="deg"),
+    Row(name="first frequency", key="first_frequency_Hz", unit="Hz"),
+)
+
+
+@command(
+    Argument(
+        "cases",
+        metavar="CASE",
+        nargs="+",
+        type=CASE.keywords["type"],
+        help="the designs: files, or names of those that come with the suite",
+    ),
+    *(each for each in SEVERAL_MODELS if each is not CASE),
+    ROTATION.but(help="end of the paths, in deg (default: the cases')"),
+    INCREMENTS,
+    ACCURACY.but(help="wanted relative error of the paths, as of `solve` (default: that of `solve`)"),
+    JSON,
+    PLOT,
+)
+def main(arguments: argparse.Namespace) -> int:
+    """Solve all, report and draw; return the exit code."""
+    asked = [(case, settings) for case in arguments.cases for settings in all_settings(arguments)]
+    if not 2 <= len(asked) <= len(LETTERS):
+        got = f"{len(arguments.cases)} of {len(arguments.model)} models"
+        raise BadInput(f"compare: got {got}, expected 2 to {len(LETTERS)} designs times models")
+    require_target(arguments)
+    with Bar("compare") as bar:
+        found = []
+        for done, (case, settings) in enumerate(asked, start=1):
+            found.append(_solved(case, settings, arguments))
+            bar(done, len(asked))
+    if arguments.plot is not None and all(each.shown is not None for each in found):
+        draw(arguments, [each.shown for each in found if each.shown is not None])
+    failed = (
+        f"{LETTERS[k]}: {each.answer.message}" for k, each in enumerate(found) if not each.answer.converged
+    )
+    return deliver(arguments, as_document(found), _readable(found), failure="; ".join(failed) or None)
+
+
+def as_document(found: Sequence[Compared]) -> dict[str, Any]:
+    """Return the answer as the JSON object of the command."""
+    return {
+        "designs": [
+            {
+                "name": each.name,
+                "case": Path(each.case).name,
+                "model": each.answer.model,
+                "settings": each.answer.settings,
+                "status": each.answer.status,
+                "message": each.answer.message,
+                **{row.key: number(_value(row, each)) for row in (*ROWS, *BESIDE)},
+            }
+            for each in found
+        ]
+    }
+
+
+def _solved(case: str, settings: Settings, arguments: argparse.Namespace) -> Compared:
+    design = driven(read_design(case, changes=arguments.effects), arguments)
+    accuracy = arguments.accuracy
+    answer = answer_path(design, settings, accuracy=accuracy)
+    spectrum = answer_modes(design, settings, count=1)
+    name, shown, beside = called(case, answer), None, {}
+    if len(answer.load_factor):
+        shown = Shown(name=name, fields=fields_of(answer, design), yield_strength=weakest(design))
+        found = strength(design, answer)
+        beside[SAFETY.key] = math.nan if found.safety is None else found.safety
+        beside[YIELDS.key] = math.nan if found.yields is None else found.yields[1]
+    if len(spectrum.frequency):
+        beside[FREQUENCY.key] = float(spectrum.frequency[0])
+    return Compared(name=name, case=case, design=design, answer=answer, shown=shown, beside=beside)
+
+
+def _value(row: Row, each: Compared) -> float:
+    if row in BESIDE:
+        return each.beside.get(row.key, math.nan)
+    return math.nan if each.shown is None else row.of(each.shown)
+
+
+def _readable(found: Sequence[Compared]) -> Iterator[str]:
+    """Yield the lines of the table: the key, then a row a quantity, and what the others are over A."""
+    letters = LETTERS[: len(found)]
+    for letter, each in zip(letters, found, strict=True):
+        yield f"{letter}: {each.name}, {each.answer.status.replace('_', ' ')}"
+    rows = [(row, [_value(row, each) for each in found]) for row in (*ROWS, *BESIDE)]
+    rows = [(row, values) for row, values in rows if np.isfinite(values).any()]
+    cells = [_cells(row, values) for row, values in rows]
+    columns = [
+        plain("", (f"{row.name:<22}" for row, _ in rows)),
+        plain("unit", (unit for unit, _ in cells)),
+        *(plain(letter, (texts[k] for _, texts in cells)) for k, letter in enumerate(letters)),
+        *(
+            plain(f"{letter}/A", (_ratio(values[k], values[0]) for _, values in rows))
+            for k, letter in enumerate(letters)
+            if k
+        ),
+    ]
+    yield from (line for line in table(columns) if line.strip())
+
+
+def _cells(row: Row, values: list[float]) -> tuple[str, list[str]]:
+    """Return the unit of a row, with its prefix, and its numbers."""
+    if row.unit == "deg":
+        return row.unit, [_short(math.degrees(value)) for value in values]
+    if not row.unit:
+        return "", [_short(value) for value in values]
+    (column,) = quantity(row.unit, highest=row.highest, values=values)
+    power = {prefix: power for power, prefix in PREFIXES.items()}[column.unit.removesuffix(row.unit)]
+    return column.unit, [_short(value / 10.0**power) for value in values]
+
+
+def _short(value: float) -> str:
+    return f"{value:.{DIGITS}g}" if math.isfinite(value) else NOTHING
+
+
+def _ratio(value: float, first: float) -> str:
+    return f"{value / first:.4g}" if math.isfinite(value) and math.isfinite(first) and first else NOTHING

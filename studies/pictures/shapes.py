@@ -1,0 +1,136 @@
+"""Drawings of a design to scale, in millimetres: at rest, deformed at chosen states, in its modes."""
+
+import math
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+from studies.answers.fields import Fields
+from studies.cases.mechanism_keys import GROUND
+from studies.exchange.vtk import mode_scale
+from studies.kinds import Array
+from studies.record import style
+from studies.record.style import BLACK, BLUE, GREEN
+
+#: Colours of the models as in the figures of the studies: elements black, with shear green, splines blue.
+COLOURS = {"spline": BLUE, "fe": BLACK, "fe-shear": GREEN}
+NAMES = {"spline": "spline", "fe": "FE, corotational", "fe-shear": "FE, with shear"}
+#: Colours of what is at rest, and of bodies.
+REST, BODY = "#aaaaaa", "#e0e0e0"
+#: Modes in a row, modes that are drawn at most, and height of a row [inch].
+ROW, MOST_MODES, ROW_HEIGHT = 3, 12, 2.1
+
+
+def states_over_rest(
+    panel: Axes, fields: Fields, states: Sequence[int], *, colour: str = "", line: Any = "-"
+) -> list[Line2D]:
+    """Draw states over the shape at rest, later ones stronger; return what a legend says of them."""
+    at_rest(panel, fields, fields.rest_shape, fields.rest_bodies)
+    handles = [Line2D([], [], color=REST, linestyle="--", label="at rest")]
+    for state, strength in zip(states, _strengths(len(states)), strict=True):
+        look: dict[str, Any] = {
+            "color": colour or COLOURS[fields.model],
+            "alpha": strength,
+            "linestyle": line,
+            "linewidth": 1.8,
+        }
+        deformed(panel, fields, fields.shape[state], fields.bodies[state, :, :2], **look)
+        handles.append(Line2D([], [], label=_named(fields, state), **look))
+    return handles
+
+
+def modes(fields: Fields, states: Sequence[int]) -> Figure:
+    """Return the drawings of modes, the first `MOST_MODES` of them, over the state that they are about."""
+    chosen = list(states)[:MOST_MODES]
+    columns = min(ROW, len(chosen))
+    rows = math.ceil(len(chosen) / columns)
+    figure = style.page(style.PAGE_WIDTH, rows * ROW_HEIGHT + 0.3)
+    panels = figure.subplots(rows, columns, squeeze=False).ravel()
+    for panel in panels[len(chosen) :]:
+        panel.set_axis_off()
+    for panel, state in zip(panels, chosen, strict=False):
+        scale = mode_scale(fields, state)
+        shape = fields.shape[state] + scale * np.asarray(fields.mode_shape)[state]
+        moved = fields.bodies[state, :, :2] + scale * np.asarray(fields.mode_bodies)[state, :, :2]
+        at_rest(panel, fields, fields.shape[state], fields.bodies[state, :, :2])
+        deformed(panel, fields, shape, moved, color=COLOURS[fields.model], linewidth=1.8)
+        frequency = float(np.asarray(fields.frequency)[state])
+        panel.set_title(f"mode {fields.values[state]:.0f}: {frequency:.5g} Hz")
+    for place, panel in enumerate(panels[: len(chosen)]):
+        left, bottom = place % columns == 0, place + columns >= len(chosen)
+        to_scale(panel, x="x [mm]" if bottom else "", y="y [mm]" if left else "")
+    return figure
+
+
+def to_scale(panel: Axes, x: str = "x [mm]", y: str = "y [mm]") -> None:
+    """Give a panel the same scale along both axes, and their names."""
+    panel.set(aspect="equal", xlabel=x, ylabel=y)
+    panel.set_adjustable("datalim")
+
+
+def at_rest(panel: Axes, fields: Fields, shape: Array, bodies: Array) -> None:
+    """Draw ground and the shape that the others are held against: strips (G, P, 2), bodies (B, 2) [m]."""
+    _bodies(panel, fields, shape, bodies, color=REST, linewidth=2.0, linestyle="--")
+    for strip in shape:
+        panel.plot(*(1e3 * strip.T), color=REST, linestyle="--", linewidth=1.0)
+    size = 0.03 * float(np.ptp(np.concatenate([*shape, bodies]), axis=0).max())
+    for on, strip in _ends(fields, shape):
+        if on == GROUND:
+            _clamp(panel, strip[0], strip[0] - strip[1], size)
+
+
+def deformed(panel: Axes, fields: Fields, shape: Array, bodies: Array, **look: Any) -> None:
+    """Draw strips (G, P, 2) and bodies (B, 2) of a state [m], the strips in the look of `Axes.plot`."""
+    _bodies(panel, fields, shape, bodies, color=BODY, linewidth=6.0, linestyle="-")
+    for strip in shape:
+        panel.plot(*(1e3 * strip.T), **look)
+    dots: dict[str, Any] = {"color": "#444444", "linestyle": "", "marker": "o", "markersize": 3.5}
+    panel.plot(*(1e3 * bodies.T), alpha=look.get("alpha"), **dots)
+
+
+def _ends(fields: Fields, shape: Array) -> Iterator[tuple[str | None, Array]]:
+    """Yield what every end of a strip is on, and the strip's points, that end first."""
+    for part, strip in zip(fields.parts, shape, strict=True):
+        yield part.root, strip
+        yield part.tip, strip[::-1]
+
+
+def _bodies(panel: Axes, fields: Fields, shape: Array, bodies: Array, **look: Any) -> None:
+    """Draw every body as the lines from its centre to the ends of strips it carries."""
+    names = [block.name for block in fields.blocks]
+    for on, strip in _ends(fields, shape):
+        if on in names:
+            line = np.array([bodies[names.index(on)], strip[0]])
+            panel.plot(*(1e3 * line.T), solid_capstyle="round", zorder=1.0, **look)
+
+
+def _clamp(panel: Axes, point: Array, outward: Array, size: float) -> None:
+    """Draw the ground at an end: a bar across the strip, hatched on the outer side."""
+    out = outward / np.hypot(*outward) * size
+    across = np.array([-out[1], out[0]])
+    bar = np.array([point - across, point + across])
+    panel.plot(*(1e3 * bar.T), color="#444444", linewidth=2.0)
+    for part in (-0.8, -0.3, 0.2, 0.7):
+        foot = point + part * across
+        hatch = np.array([foot, foot + 0.6 * out + 0.3 * across])
+        panel.plot(*(1e3 * hatch.T), color="#444444", linewidth=0.8)
+
+
+def _strengths(count: int) -> list[float]:
+    """Return the opacities of `count` states: later ones stand out."""
+    return np.linspace(0.45, 1.0, count).tolist() if count > 1 else [1.0]
+
+
+def _named(fields: Fields, state: int) -> str:
+    """Return what a state is called: the rotation of the driven body, its time, or its load factor."""
+    value = fields.values[state]
+    if fields.series == "load_factor" and fields.torque is None:
+        return f"load factor {value:.3g}"
+    if not fields.blocks:
+        return f"{1e3 * value:.4g} ms"
+    turn = f"{math.degrees(fields.bodies[state, fields.driven, 2]):.4g}°".replace("-", "−")
+    return turn if fields.series == "load_factor" else f"{1e3 * value:.4g} ms, {turn}"

@@ -1,0 +1,205 @@
+"""Read a published problem: its design, and the values that are in print, each with source and uncertainty.
+
+A case file has [problem], [[values]] and a design as any case file has one, or [design] with the name of a
+frame of `studies.stability.statics.frames` in the units of its source.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from studies.cases import document
+from studies.cases.design import Design
+from studies.cases.document import CaseError
+from studies.cases.mechanism import Mechanism, read_mechanism
+from studies.cases.problem import read_problem
+from studies.cases.rules import Choice, Key, Text, finite, not_negative, positive, shown
+
+FOLDER = Path(__file__).parent / "cases"
+
+DISPLACEMENT_X, DISPLACEMENT_Y, ROTATION = "displacement_x", "displacement_y", "rotation"
+LIMIT_LOAD, LIMIT_POINTS, LOAD_AT_ROTATION = "limit_load", "limit_points", "load_at_rotation"
+CENTRE_SHIFT = "centre_shift"
+#: Asked of a path, without pins; the others of a path in arc length, or of a pivot.
+PLACES = (DISPLACEMENT_X, DISPLACEMENT_Y, ROTATION)
+QUANTITIES = (*PLACES, LIMIT_LOAD, LIMIT_POINTS, LOAD_AT_ROTATION, CENTRE_SHIFT)
+EQUAL, AT_MOST, AT_LEAST = "equal", "at most", "at least"
+MODELS = ("spline", "fe", "fe-shear")
+#: Kinds of answer: the plain beam, and beams with one effect more.
+BEAM, CLAMPED_WIDTH = "beam", "clamped_width"
+ANSWERS = (BEAM, CLAMPED_WIDTH)
+
+
+def _key(section: str, name: str, rule: Any, *, attribute: str = "", optional: bool = False) -> Key:
+    return Key(
+        section=section, name=name, attribute=attribute or name, rule=rule, optional=optional,
+        meaning=rule.expected, example="",
+    )  # fmt: skip
+
+
+@dataclass(frozen=True, kw_only=True)
+class Names:
+    """A list of different names out of some."""
+
+    known: tuple[str, ...] = ()
+
+    @property
+    def expected(self) -> str:
+        """What is in the list."""
+        return f"a list of {', '.join(self.known) or 'names'}"
+
+    def parse(self, value: Any) -> tuple[str, ...]:
+        """Return the names; ValueError says what was got and expected."""
+        good = isinstance(value, list) and all(isinstance(name, str) for name in value)
+        if not good or len(set(value)) < len(value) or (self.known and set(value) - set(self.known)):
+            raise ValueError(f"got {shown(value)}, expected {self.expected}")
+        return tuple(value)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Limits:
+    """The largest relative difference of each kind of answer."""
+
+    expected: str = f"a table of the largest relative difference by answer: {', '.join(ANSWERS)}"
+
+    def parse(self, value: Any) -> dict[str, float]:
+        """Return the limits; ValueError says what was got and expected."""
+        if not isinstance(value, dict) or not value or set(value) - set(ANSWERS):
+            raise ValueError(f"got {shown(value)}, expected {self.expected}")
+        return {name: not_negative("1").parse(limit) for name, limit in value.items()}
+
+
+PROBLEM = (
+    _key("problem", "title", Text(expected="a title")),
+    _key("problem", "source", Text(expected="where the values are in print")),
+    _key("problem", "body", Text(expected="the name of the body whose place is asked"), optional=True),
+    _key("problem", "pins", Names(), optional=True),
+    _key("problem", "models", Names(known=MODELS)),
+    _key("problem", "answers", Names(known=ANSWERS)),
+)
+VALUE = (
+    _key("values", "quantity", Choice(names=QUANTITIES)),
+    _key("values", "at", finite("1 or deg"), optional=True),
+    _key("values", "load", positive("load of the design"), optional=True),
+    _key("values", "published", finite("unit")),
+    _key("values", "unit", Text(expected="the printed unit")),
+    _key("values", "unit_SI", positive("SI"), attribute="scale"),
+    _key("values", "uncertainty", not_negative("unit")),
+    _key("values", "bound", Choice(names=(EQUAL, AT_MOST, AT_LEAST)), optional=True),
+    _key("values", "limit", Limits(), attribute="limits"),
+)
+FRAME = (
+    _key("design", "frame", Choice(names=("column", "toggle", "lees_frame"))),
+    _key("design", "load", positive("load"), optional=True),
+    _key("design", "slenderness", positive("1"), optional=True),
+    _key("design", "rise", positive("in"), optional=True),
+)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Value:
+    """A value in print.
+
+    Attributes:
+        quantity: of `QUANTITIES`. at: which of the limit points, 1 the first; of a load or a pivot at which
+            rotation [deg].
+        load: times the load of the design that acts, or up to which critical points are looked for [1].
+        published, uncertainty: in `unit`; that of the print or its reading, or of the source's own method.
+        scale: what the unit is in that of the answer. bound: whether equal, or at most or least that.
+        limits: largest relative difference beside the uncertainty, by kind of answer [1].
+    """
+
+    quantity: str
+    at: float = 1.0
+    load: float = 1.0
+    published: float
+    unit: str
+    scale: float
+    uncertainty: float
+    bound: str = EQUAL
+    limits: Mapping[str, float]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Published:
+    """A published problem: what is asked, of whom, and of which design.
+
+    Attributes:
+        name: of its file. title, source: in words. values: in print.
+        models, answers: who is asked, and for which kinds of answer.
+        design: None where `frame` names one with its parameters. body: whose place is reported; pins: bodies
+            that are held and free to turn.
+    """
+
+    name: str
+    title: str
+    source: str
+    values: tuple[Value, ...]
+    models: tuple[str, ...]
+    answers: tuple[str, ...]
+    design: Design | None = None
+    frame: Mapping[str, Any] = field(default_factory=dict)
+    body: str = ""
+    pins: tuple[str, ...] = ()
+
+
+def names() -> tuple[str, ...]:
+    """Return the names of all published problems."""
+    return tuple(sorted(path.stem for path in FOLDER.glob("*.toml")))
+
+
+@cache
+def published(name: str) -> Published:
+    """Return the published problem of that name."""
+    return read_published(FOLDER / f"{name}.toml")
+
+
+def read_published(path: Path) -> Published:
+    """Read the case file of a published problem.
+
+    Raises:
+        CaseError: one line: file, key, got, expected.
+    """
+    where, content = str(path), document.parsed(path)
+    about = document.values(where, PROBLEM, document.table(where, content, "problem"), "problem")
+    given = content.get("values", [])
+    if not isinstance(given, list) or not given:
+        raise CaseError(f"{where}: values: got {shown(given)}, expected tables [[values]]")
+    values = tuple(
+        Value(**document.values(where, VALUE, each, f"values number {i}"))
+        for i, each in enumerate(given, start=1)
+    )
+    for i, value in enumerate(values, start=1):
+        without = set(about["answers"]) - set(value.limits)
+        if without:
+            raise CaseError(
+                f"{where}: values number {i}.limit: got none of {', '.join(without)}, expected one"
+            )
+    rest = {key: part for key, part in content.items() if key not in ("problem", "values", "design")}
+    if "design" in content:
+        frame = document.values(where, FRAME, document.table(where, content, "design"), "design")
+        return Published(name=path.stem, values=values, frame=frame, **about)
+    design: Design
+    if isinstance(rest.get("strips"), list):
+        design = read_mechanism(where, rest)
+        _require_bodies(where, design, about, values)
+    else:
+        design = read_problem(where, rest)
+    return Published(name=path.stem, values=values, design=design, **about)
+
+
+def _require_bodies(
+    where: str, design: Mechanism, about: Mapping[str, Any], values: tuple[Value, ...]
+) -> None:
+    """Raise CaseError unless the body that is asked for, and the pinned ones, are there and can be asked."""
+    known = [body.name for body in design.bodies]
+    pins = about.get("pins", ())
+    for name in (about.get("body", ""), *pins):
+        if name not in known:
+            expected = document.nearest(name, known)
+            raise CaseError(f"{where}: problem.body: got {name or 'no such key'}, expected {expected}")
+    moved = [value.quantity for value in values if value.quantity in PLACES]
+    if pins and moved:
+        raise CaseError(f"{where}: problem.pins: got them beside {moved[0]}, expected limit loads alone")

@@ -1,0 +1,122 @@
+"""Published problems: case files that say what is in print and where, and our answers beside it."""
+
+import pandas as pd
+import pytest
+
+from studies.cases.document import CaseError
+from studies.commands.tables import published_values
+from studies.engine.answer import answered
+from studies.published import problems
+from studies.published.case import AT_LEAST, AT_MOST, EQUAL, FOLDER, Value, names, published, read_published
+from studies.published.solve import ours
+
+
+@pytest.mark.parametrize("name", names())
+def test_every_case_file_is_whole(name):
+    """Requirement: a case file has a source, and a limit for each kind of answer to each value."""
+    problem = published(name)
+    assert len(problem.source) > 20
+    for value in problem.values:
+        assert set(problem.answers) <= set(value.limits)
+
+
+def test_every_case_file_is_a_problem_of_the_study():
+    """Requirement: a case file that the study does not ask is a mistake, and so is a name without a file."""
+    assert sorted(problems.PROBLEMS) == list(names())
+
+
+@pytest.mark.parametrize(
+    "key",
+    ["source =", "published =", "unit =", "unit_SI =", "uncertainty =", "limit =", "quantity =", "title ="],
+)
+def test_what_is_missing_is_said(tmp_path, key):
+    """Requirement: a case file without value, unit, source, uncertainty or limit is refused by the key."""
+    lines = (FOLDER / "own_weight.toml").read_text(encoding="utf-8").splitlines()
+    path = tmp_path / "without.toml"
+    path.write_text("\n".join(line for line in lines if not line.startswith(key)), encoding="utf-8")
+    with pytest.raises(CaseError, match=rf"{key.split()[0]}: got no such key, expected"):
+        read_published(path)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        ('body = "tip"', 'body = "top"', "problem.body: got top"),
+        ('answers = ["beam"]', 'answers = ["bean"]', "problem.answers"),
+        ('answers = ["beam"]', 'answers = ["beam", "clamped_width"]', "limit: got none of clamped_width"),
+        ('body = "tip"', 'body = "tip"\npins = ["tip"]', "problem.pins"),
+        ("[[values]]", "[[numbers]]", "values: got"),
+    ],
+)
+def test_what_is_wrong_is_said(tmp_path, old, new, said):
+    """Requirement: names that stand for nothing, and answers without a limit, are refused in one line."""
+    text = (FOLDER / "own_weight.toml").read_text(encoding="utf-8")
+    path = tmp_path / "wrong.toml"
+    path.write_text(text.replace(old, new), encoding="utf-8")
+    with pytest.raises(CaseError, match=said.replace("[", r"\[")):
+        read_published(path)
+
+
+@pytest.mark.parametrize(
+    ("bound", "found", "within"),
+    [
+        (EQUAL, 10.29, True),
+        (EQUAL, 9.69, False),
+        (AT_MOST, 10.29, True),
+        (AT_MOST, 10.31, False),
+        (AT_MOST, 1.0, True),
+        (AT_LEAST, 9.69, False),
+        (AT_LEAST, 20.0, True),
+        (EQUAL, float("nan"), False),
+    ],
+)
+def test_when_a_value_is_met(bound, found, within):
+    """Requirement: uncertainty and limit add up; bounds hold on one side; NaN is no answer."""
+    value = Value(
+        quantity="rotation", published=10.0, unit="rad", scale=1.0, uncertainty=0.1, bound=bound, limits={}
+    )
+    assert problems.met(value, found, 0.02) is within
+
+
+@pytest.mark.parametrize("name", ["tip_force", "princeton_edgewise", "lees_frame", "catalogue_pivot"])
+def test_splines_meet_what_is_in_print(name):
+    """Requirement: the spline's answers to problems of milliseconds are those in print."""
+    for value in published(name).values:
+        assert problems.met(value, ours(name, "spline", "beam", value), value.limits["beam"])
+
+
+@pytest.mark.slow
+def test_all_values_are_met():
+    """Requirement: every value in print is met by every model that is asked, and the check has teeth."""
+    values = answered(problems.STUDY)["values"]
+    missed = values[values["within"] != "yes"]
+    assert missed.empty, missed[["case", "model", "answer", "quantity", "published", "found"]].to_string()
+    solids = values[(values["case"] == "parallelogram") & (values["answer"] == "beam")]
+    assert (solids["error"].abs() > solids["limit"] / 2).all()  # a plain beam is seen to be too soft
+
+
+def test_table_of_published_values():
+    """Requirement: the table has the worst value of each problem and kind of answer, of the splines."""
+    row = {
+        "unit": "mm",
+        "bound": EQUAL,
+        "uncertainty": 0.1,
+        "answer": "beam",
+        "model": "spline",
+        "limit": 0.02,
+    }
+    rows = [
+        {**row, "problem": "A", "quantity": "limit_load", "published": 10.0, "found": 10.1, "error": 0.01},
+        {**row, "problem": "A", "quantity": "rotation", "published": 20.0, "found": 20.6, "error": 0.03},
+        {**row, "problem": "A", "quantity": "rotation", "published": 1.0, "found": 2.0, "error": 1.0,
+         "model": "fe"},
+        {**row, "problem": "B", "quantity": "rotation", "published": 1.0, "found": 0.5, "error": -0.5,
+         "bound": AT_MOST, "model": "fe-shear"},
+    ]  # fmt: skip
+    lines = list(published_values(pd.DataFrame(rows)))
+    assert lines == [
+        "| published problem | asked | in print | ours | difference | limit |",
+        "|---|---|---|---|---|---|",
+        "| A | rotation | 20 ± 0.1 mm | 20.6 mm | +3 % | 2 % |",
+        "| B | rotation | at most 1 ± 0.1 mm | 0.5 mm | -50 % | 2 % |",
+    ]

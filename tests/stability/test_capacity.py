@@ -1,0 +1,156 @@
+"""The load that a pivot bears: Euler's and Haringx' closed forms, both models, and the command that tells."""
+
+import cmath
+import json
+import math
+from dataclasses import replace
+
+import pytest
+from scipy.optimize import brentq
+
+from studies.__main__ import main
+from studies.answers.adapters import answer_path
+from studies.answers.capacity import capacity
+from studies.answers.settings import FeSettings, SplineSettings
+from studies.cases.design import named_design
+from studies.cases.effects import Effects
+from studies.cases.problem import named_case
+from tests import gates
+
+pytestmark = pytest.mark.slow
+
+DOWN = -0.5 * math.pi
+#: Slender strips, so that what they shorten before they buckle does not count: a share of 1e-5 of the load.
+LENGTH, RIGIDITY, INCLINATION = 0.1, 206e9 * 1e-14, math.radians(60.0)
+PIVOT = replace(
+    named_case("cross_axis_pivot"),
+    length=LENGTH,
+    inclination=INCLINATION,
+    area=1e-5,
+    second_moment_of_area=1e-14,
+    rotation=0.0,
+    increments=2,
+)
+EULER = 4.0 * math.pi**2 * RIGIDITY / LENGTH**2
+MODELS = SplineSettings(), FeSettings(elements=20)
+BY_MODEL = pytest.mark.parametrize("settings", MODELS, ids=lambda s: s.model)
+
+
+def stiffness(pull, ratio, inclination=INCLINATION):
+    """Haringx' and Wittrick's stiffness under a force through the crossing, tension positive, exact in it."""
+    u = LENGTH * cmath.sqrt(pull / (2.0 * math.sin(inclination)) / RIGIDITY)
+    c, s = cmath.cosh(u), cmath.sinh(u)
+    d = 2.0 - 2.0 * c + u * s
+    value = u * (u * c - s) / d - 2.0 * ratio * u**2 * (c - 1.0) / d + ratio**2 * u**3 * s / d - ratio * u**2
+    return 2.0 * RIGIDITY / LENGTH * value.real
+
+
+def loaded(ratio, pull):
+    """A pivot whose centre of mass is at the strips' crossing, pulled away from the ground."""
+    height = -(1.0 - ratio) * LENGTH * math.sin(INCLINATION)
+    effects = Effects(
+        names=("bending", "stretching", "applied_force"), tables={"applied_force": {"force": (0.0, pull)}}
+    )
+    return replace(PIVOT, crossing_ratio=ratio, centre_offset=(0.0, height), effects=effects)
+
+
+@BY_MODEL
+@pytest.mark.parametrize("ratio", [0.127322, 0.3, 0.5])
+@pytest.mark.parametrize("share", [-0.4, -0.1, 0.1, 0.4])
+def test_stiffness_under_load_is_haringx_and_wittricks(settings, ratio, share):
+    """Requirement: pushed and pulled through its crossing, a pivot has the stiffness of the beam-column."""
+    pull = share * EULER
+    answer = answer_path(loaded(ratio, pull), settings, accuracy=1e-6)
+    expected = stiffness(pull, ratio)
+    gates.check("haringx", abs(answer.stiffness[-1] - expected) / (RIGIDITY / LENGTH))
+
+
+def test_haringx_gate_has_teeth():
+    """Requirement: few elements without their limit do not pass."""
+    answer = answer_path(loaded(0.3, -0.4 * EULER), FeSettings(**gates.teeth("haringx")))
+    with pytest.raises(AssertionError, match="x the gate"):
+        gates.check("haringx", abs(answer.stiffness[-1] - stiffness(-0.4 * EULER, 0.3)) * LENGTH / RIGIDITY)
+
+
+@BY_MODEL
+@pytest.mark.parametrize("inclination", [45.0, 60.0])
+def test_held_strips_bear_eulers_load(settings, inclination):
+    """Requirement: with the rotation held two strips bear 4 pi^2 EI / L^2 each, along their directions."""
+    found = capacity(
+        replace(PIVOT, inclination=math.radians(inclination)), settings, direction=DOWN, held=True
+    )
+    expected = 2.0 * math.sin(math.radians(inclination)) * EULER
+    gates.check("capacity", abs(found.force / expected - 1.0))
+    assert found.uncertainty < 1e-4
+
+
+@BY_MODEL
+def test_a_free_body_tips_where_its_stiffness_vanishes(settings):
+    """Requirement: let go, the pivot tips where the stiffness of its columns is that of the lever."""
+    lever = 0.5 * LENGTH * math.sin(INCLINATION)  # of the centre above the crossing
+    tips = brentq(lambda push: stiffness(-push, 0.5) - lever * push, 1e-3 * EULER, EULER)
+    found = capacity(PIVOT, settings, direction=DOWN)
+    gates.check("capacity", abs(found.force / tips - 1.0))
+
+
+@BY_MODEL
+def test_pulled_through_the_crossing_it_gives_way_in_tension(settings):
+    """Requirement: at N L^2 / EI = 5.757 of tension the stiffness of the symmetric pivot is gone."""
+    found = capacity(loaded(0.5, 1.0), settings, direction=-DOWN)
+    expected = 5.757 * RIGIDITY / LENGTH**2 * 2.0 * math.sin(INCLINATION)
+    assert found.force == pytest.approx(expected, rel=2e-4)  # the digits that are known
+
+
+@pytest.mark.parametrize("gate", ["capacity", "capacity_models"])
+def test_capacity_gates_have_teeth(gate):
+    """Requirement: few control points do not pass."""
+    found = capacity(PIVOT, SplineSettings(**gates.teeth(gate)), direction=DOWN, held=True)
+    expected = 2.0 * math.sin(INCLINATION) * EULER
+    with pytest.raises(AssertionError, match="x the gate"):
+        gates.check(gate, abs(found.force / expected - 1.0))
+
+
+@pytest.mark.parametrize("held", [False, True])
+@pytest.mark.parametrize("degrees", [-90.0, -60.0, 0.0])
+def test_both_models_bear_the_same(held, degrees):
+    """Requirement: in any direction the models agree; a free body that turns aside loses nothing."""
+    first, second = (capacity(PIVOT, each, direction=math.radians(degrees), held=held) for each in MODELS)
+    if held or degrees == -90.0:
+        gates.check("capacity_models", abs(first.force / second.force - 1.0))
+    else:
+        assert (first.force, second.force) == (None, None)
+        assert first.turned == pytest.approx(second.turned, rel=0.02)
+
+
+def test_capacity_of_a_guide_is_sway():
+    """Requirement: a body on parallel strips that is kept from turning sways at pi^2 EI / L^2 a strip."""
+    design = named_design("parallel_strip_guide")
+    design = replace(design, effects=design.effects.renamed(["bending", "stretching"]))
+    found = capacity(design, SplineSettings(), direction=DOWN, held=True)
+    loads = (
+        math.pi**2
+        * strip.youngs_modulus
+        * strip.second_moment_of_area
+        / math.dist(strip.start, strip.end) ** 2
+        for strip in design.strips
+    )
+    assert found.force == pytest.approx(sum(loads), rel=1e-3)
+
+
+def test_command_tells_the_capacity(capsys):
+    """Requirement: the command names force, rotation held or free, error and difference, and has JSON."""
+    words = ["capacity", "spring_steel_pivot", "--model", "spline,fe", "--held"]
+    assert main(words) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[2].startswith("force at -90 deg, rotation held: buckles at ")
+    assert lines[-1].startswith("fe differs from spline by ")
+    assert main([*words, "--json", "-"]) == 0
+    one, other = json.loads(capsys.readouterr().out)["answers"]
+    assert one["capacity_N"] == pytest.approx(other["capacity_N"], rel=1e-5)
+    assert (one["held"], one["kind"], one["status"]) == (True, "bifurcation", "converged")
+
+
+def test_a_body_that_is_not_there_is_refused(capsys):
+    """Requirement: an unknown body is one line with what there is."""
+    assert main(["capacity", "four_bar_of_flexures", "--body", "wing"]) == 2
+    assert capsys.readouterr().err == "studies: body: got wing, expected one of crank, coupler, rocker\n"

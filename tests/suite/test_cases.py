@@ -1,0 +1,258 @@
+"""Case files as a designer writes them: sections by their sides, named materials, directions, templates."""
+
+import json
+import math
+import tomllib
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from studies.cases import page
+from studies.cases.design import named_design, read_design
+from studies.cases.effect_keys import EFFECTS
+from studies.cases.effect_keys import KEYS as EFFECT_KEYS
+from studies.cases.effects import Effects
+from studies.cases.materials import MATERIALS
+from studies.cases.mechanism import Mechanism
+from studies.cases.mechanism_keys import OWN
+from studies.cases.problem import FOLDER, CaseError, Problem, read_case
+from studies.cases.write import as_toml
+
+DECLARED = [
+    *(key for each in (page.PIVOT, page.MECHANISM, EFFECT_KEYS) for keys in each.values() for key in keys),
+    *OWN,
+]
+AREA, MOMENT = "area_m2 = 5e-5 ", "second_moment_m4 = 1.041e-10 "
+
+
+def test_every_key_says_what_it_is():
+    """A key has a meaning and an example that its own rule admits, and a default if it may be left out."""
+    assert set(EFFECT_KEYS) == set(EFFECTS)
+    for key in DECLARED:
+        key.rule.parse(tomllib.loads(f"value = {key.example}")["value"])
+        assert key.meaning, key
+        assert bool(key.default) == key.optional, key
+
+
+@pytest.mark.parametrize("kind", ["pivot", "mechanism"])
+@pytest.mark.parametrize("model", [["--model", "spline"], ["--model", "fe", "--elements", "8"]])
+def test_template_is_solved_as_it_is(kind, model, command, tmp_path):
+    """What `case` prints is a case file that either model solves; every line of it is explained."""
+    path = tmp_path / "my.toml"
+    assert command("case", f"--{kind}", "--out", path).code == 0
+    assert path.read_text(encoding="utf-8") == command("case", f"--{kind}").out
+    assert json.loads(command("solve", path, *model, "--json", "-").out)["status"] == "converged"
+    assert isinstance(read_design(path), Problem) == (kind == "pivot")
+
+
+def test_template_is_of_one_kind(command):
+    """Both kinds at once are refused in one line."""
+    outcome = command("case", "--pivot", "--mechanism")
+    assert outcome.err == "studies: case: got --pivot and --mechanism, expected one of them\n"
+
+
+def test_sides_are_area_and_second_moment(case):
+    """A rectangle by its sides has A = b h and I = b h^3 / 12, keeps the sides and hands them on."""
+    found = read_design(case((AREA, "width_m = 0.01 "), (MOMENT, "thickness_m = 0.004 ")))
+    assert isinstance(found, Problem)
+    assert (found.width, found.thickness, found.depth) == (0.01, 0.004, pytest.approx(0.004))
+    assert found.area == pytest.approx(4e-5, rel=1e-15)
+    assert found.second_moment_of_area == pytest.approx(0.01 * 0.004**3 / 12.0, rel=1e-15)
+    given = found.pivot_parameters()
+    assert (given["width"], given["thickness"]) == (0.01, 0.004)
+    assert "width" not in named_design("cross_axis_pivot").pivot_parameters()
+
+
+@pytest.mark.parametrize("name", MATERIALS)
+def test_named_material_fills_what_no_key_gives(name, case):
+    """A named material gives every value that the case leaves out, and a key beside it is taken as it is."""
+    keys = ("youngs_modulus_Pa = 206e9", "poisson_ratio = 0.29", "density_kg_m3 = 7800")
+    found = read_design(case((keys[0], f'name = "{name}"'), (keys[1], ""), (keys[2], "density_kg_m3 = 1234")))
+    given = MATERIALS[name]
+    assert isinstance(found, Problem)
+    assert (found.youngs_modulus, found.poisson_ratio) == (given.youngs_modulus, given.poisson_ratio)
+    assert (found.yield_strength, found.density) == (given.yield_strength, 1234.0)
+
+
+GUIDE = """
+[[strips]]
+name = "own"
+start_m = [0, 0]
+end_m = [0.1, 0]
+tip = "free"
+area_m2 = 1e-5
+second_moment_m4 = 1e-12
+material = "peek"
+
+[[strips]]
+name = "shared"
+start_m = [0, 1]
+end_m = [0.1, 1]
+tip = "free"
+thickness_m = 0.002
+
+[section]
+width_m = 0.01
+thickness_m = 0.001
+
+[material]
+name = "titanium_6al_4v"
+density_kg_m3 = 1000
+
+[drive]
+increments = 1
+"""
+
+
+def test_a_strip_has_its_own_section_and_material(tmp_path):
+    """A strip's own pair replaces the pair that all have, a side this side, a named material all values."""
+    path = tmp_path / "guide.toml"
+    path.write_text(GUIDE, encoding="utf-8")
+    found = read_design(path)
+    assert isinstance(found, Mechanism)
+    own, shared = found.strips
+    assert (own.area, own.width, own.youngs_modulus, own.density) == (1e-5, None, 4.0e9, 1300.0)
+    assert (shared.width, shared.thickness, shared.area) == (0.01, 0.002, pytest.approx(2e-5))
+    assert (shared.youngs_modulus, shared.density, shared.yield_strength) == (113.8e9, 1000.0, 880e6)
+    strips = found.mechanism_parameters()["strips"]
+    assert all("yield_strength" not in each for each in strips)
+    assert [each.get("width") for each in strips] == [None, 0.01]
+
+
+def test_both_sides_of_a_rectangle_belong_to_its_area():
+    """Sides that are not those of area and second moment, or one side alone, are refused in one line."""
+    given = vars(named_design("cross_axis_pivot"))
+    for width, thickness in ((0.02, 0.005), (0.01, None)):
+        with pytest.raises(CaseError, match=r"strip\.width_m: got .*expected both sides of a rectangle"):
+            Problem(**given | {"width": width, "thickness": thickness})
+
+
+def test_a_material_is_a_table(tmp_path, command, table_1):
+    """A material as one text, or half a section, is refused in a line that says what to write."""
+    path = tmp_path / "case.toml"
+    keys = table_1[table_1.index("[material]") : table_1.index("[body]")]
+    path.write_text('material = "peek"\n' + table_1.replace(keys, ""), encoding="utf-8")
+    assert 'expected a table [material] with name = "peek"' in command("solve", path).err
+    path.write_text(GUIDE.replace("width_m = 0.01\nthickness_m = 0.001", ""), encoding="utf-8")
+    assert "strips.shared.width_m: got no such key there nor in [section]" in command("solve", path).err
+
+
+@pytest.mark.parametrize(
+    ("table", "expected"),
+    [
+        ("direction_deg = 0", (9.81, 0.0)),
+        ("direction_deg = 120\nmagnitude_m_per_s2 = 2", (-1.0, math.sqrt(3.0))),
+        ("magnitude_m_per_s2 = 1.62", (0.0, -1.62)),
+        ("", (0.0, -9.81)),
+    ],
+)
+def test_gravity_by_its_direction(table, expected, case):
+    """Gravity is given by its direction or its size as well as by its two parts, downwards if unsaid."""
+    path = case(("[drive]", f'[scene]\neffects = ["+gravity"]\n[effects.gravity]\n{table}\n[drive]'))
+    found = read_design(path).effects.parameters()["gravity"]["acceleration"]
+    assert found == pytest.approx(expected, abs=1e-14)
+
+
+@pytest.mark.parametrize("model", [["--model", "spline"], ["--model", "fe", "--elements", "4"]])
+def test_a_pivot_turned_with_its_gravity_answers_the_same(model, case, command):
+    """Turned with its gravity, a pivot has the same torque and stress, and its centre turns with it."""
+    answers = []
+    for angle in (0.0, 70.0):
+        gravity = f'[scene]\neffects = ["+gravity"]\n[effects.gravity]\ndirection_deg = {angle - 90}'
+        path = case(
+            ("[material]", f"orientation_deg = {angle}\n[material]"),
+            ("[drive]", f"{gravity}\n[drive]"),
+            ("increments = 20", "increments = 2"),
+        )
+        answers.append(json.loads(command("solve", path, *model, "--json", "-").out))
+    plain, turned = answers
+    for name in ("torque_Nm", "max_stress_Pa", "stiffness_Nm_per_rad"):
+        assert np.allclose(turned[name], plain[name], rtol=1e-7, atol=1e-7 * max(map(abs, plain[name])))
+    place = [np.array(each["com_x_m"]) + 1j * np.array(each["com_y_m"]) for each in answers]
+    assert np.allclose(place[1], place[0] * np.exp(1j * math.radians(70.0)), atol=1e-10)
+
+
+@pytest.mark.parametrize("name", ["titanium_pivot", "large_steel_pivot", "living_hinge", "silicon_pivot"])
+def test_designs_of_every_size_are_solved(name, command):
+    """From a millimetre of silicon to a third of a metre of steel, both models solve the design alike."""
+    found = [
+        json.loads(command("solve", name, "--model", *model, "--json", "-").out)
+        for model in (["spline"], ["fe", "--elements", "20"])
+    ]
+    assert [each["status"] for each in found] == ["converged", "converged"]
+    torques = [each["torque_Nm"][-1] for each in found]
+    assert torques[0] == pytest.approx(torques[1], rel=2e-3)  # 20 elements are off by less than a thousandth
+
+
+SHIPPED = [
+    design for path in sorted(FOLDER.glob("*.toml")) if isinstance(design := read_design(path), Problem)
+]
+LOADED = Effects(
+    names=("bending", "stretching", "gravity", "applied_force"),
+    tables={
+        "gravity": {"acceleration": (1.0, -9.81)},
+        "applied_force": {"force": (0.0, -2.5), "history": ((0.0, 0.0), (0.01, 1.0))},
+    },
+)
+OTHER = {
+    "effects": LOADED,
+    "orientation": 0.3,
+    "held": (0.0, 0.5),
+    "order": "together",
+    "yield_strength": 5e8,
+}
+
+
+@pytest.mark.parametrize("design", [*SHIPPED, replace(SHIPPED[0], **OTHER)])
+def test_a_pivot_that_is_written_is_read_as_it_was(design, tmp_path):
+    """A pivot written as a case file is read as the same pivot, to the digits that a file has."""
+    path = tmp_path / "written.toml"
+    path.write_text(as_toml(design, ["one", "two"]), encoding="utf-8")
+    assert path.read_text(encoding="utf-8").startswith("# one\n# two\n\n[strip]\n")
+    found = read_case(path)
+    assert found.effects == design.effects
+    assert found.effects.parameters() == design.effects.parameters()
+    for name, value in vars(design).items():
+        if name != "effects":
+            exact = value is None or isinstance(value, str)
+            assert getattr(found, name) == (value if exact else pytest.approx(value, rel=1e-14))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("led", ['[5e-3, "free"]', '["free", -2e-5]', "[5e-3, -1.5e-4]"])
+def test_a_body_is_led_in_one_direction_or_both(led, command, tmp_path):
+    """A body that is led one way is free the other: both models find it at one place, there and in motion."""
+    text = (FOLDER / "parallel_strip_guide.toml").read_text(encoding="utf-8")
+    begin = text.index("[effects.gravity]")
+    scene = text[:begin].replace('"gravity", "applied_force"', '"driven_displacement"')
+    path = tmp_path / "guide.toml"
+    path.write_text(f"{scene}[effects.driven_displacement]\ndisplacement_m = {led}\n", encoding="utf-8")
+    places, swings = [], []
+    for model in (["spline", "--control-points", "8"], ["fe", "--elements", "20"]):
+        found = json.loads(command("solve", path, "--model", *model, "--json", "-").out)
+        place = found["bodies"]["platform"]
+        places.append([place[key][-1] for key in ("x_m", "y_m", "rotation_rad")])
+        moved = json.loads(
+            command("release", path, "--model", *model, "--duration", "1e-3", "--json", "-").out
+        )
+        swings.append([moved["bodies"]["platform"][key][-1] for key in ("x_m", "y_m")])
+    assert np.abs(np.subtract(*places)).max() < 2e-6
+    for start, part, found in zip(
+        (0.03, 0.11), tomllib.loads(f"led = {led}")["led"], places[0], strict=False
+    ):
+        assert part == "free" or found == pytest.approx(start + part, abs=1e-12)
+    if led.startswith("[5e-3"):  # led along the stiff strips alone, they ring at once
+        assert np.abs(np.subtract(*swings)).max() < 2e-6
+    if led.endswith('"free"]'):  # clamped strips of length L shorten by 3/5 of the square of the way over L
+        assert places[0][1] - 0.11 == pytest.approx(-0.6 * 5e-3**2 / 0.1, rel=5e-3)
+
+
+@pytest.mark.parametrize("led", ['["free", "free"]', '[1, "fre"]', "[1]"])
+def test_a_body_that_is_not_led_is_refused(led, case, command):
+    """A displacement without a number, or with another word than free, is refused in one line."""
+    named = '[scene]\neffects = ["+driven_displacement"]\n'
+    scene = f"{named}[effects.driven_displacement]\ndisplacement_m = {led}\n"
+    outcome = command("solve", case(("[drive]", f"{scene}[drive]")))
+    assert outcome.code == 2
+    assert 'expected two finite numbers [x, y], one of them or "free" [m]\n' in outcome.err

@@ -1,0 +1,215 @@
+"""Pictures of answers show what was solved, at the width of a page, with nothing clipped."""
+
+import json
+import math
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+from matplotlib.text import Text
+
+import fe_reference
+import spline_model
+import studies
+from studies.__main__ import main
+from studies.answers.adapters import answer_modes, answer_path, answer_release
+from studies.answers.settings import FeSettings, SplineSettings
+from studies.cases.design import named_design
+from studies.errors import BadInput
+from studies.exchange.solutions import fields_of, own_fields
+from studies.pictures.charts import APART, WITHIN, apart
+from studies.pictures.page import picture
+from studies.pictures.shown import Shown
+from studies.record import style
+from tests.table_one import SIX, TABLE_ONE
+
+SPLINE, ELEMENTS = SplineSettings(control_points=6), FeSettings(elements=4)
+PIVOT, FOUR_BAR = "spring_steel_pivot", "four_bar_of_flexures"
+
+
+@cache
+def shown(kind):
+    """What a picture shows of each kind of answer, by both models."""
+    name, settings = {
+        "path": (PIVOT, SPLINE),
+        "path of elements": (PIVOT, ELEMENTS),
+        "mechanism": (FOUR_BAR, SPLINE),
+        "loads": ("parallel_strip_guide", SPLINE),
+        "release": (PIVOT, SPLINE),
+        "modes": (FOUR_BAR, ELEMENTS),
+    }[kind]
+    design = replace(named_design(name), increments=4)
+    if kind == "release":
+        answer = answer_release(design, settings, duration=5e-3, records=20)
+    elif kind == "modes":
+        answer = answer_modes(design, settings, count=3)
+    else:
+        answer = answer_path(design, settings)
+    return Shown(name=kind, fields=fields_of(answer, design), yield_strength=1.1e9), answer
+
+
+SEVERAL = [
+    ("path of elements",),
+    ("mechanism",),
+    ("release",),
+    ("modes",),
+    ("path", "path of elements", "mechanism"),
+    ("path",) * 5,
+]
+KINDS = pytest.mark.parametrize(
+    "kinds", [("path",), ("loads",), *(pytest.param(each, marks=pytest.mark.slow) for each in SEVERAL)]
+)
+
+
+@KINDS
+def test_nothing_is_clipped_and_letters_have_eight_points(kinds):
+    """All that is written lies within a page of 160 mm, in letters of 8 points and more."""
+    figure = picture([shown(kind)[0] for kind in kinds])
+    style.printed(figure, "svg")
+    assert figure.get_figwidth() == pytest.approx(160.0 / 25.4)
+    drawn = figure.get_tightbbox()  # of all that is visible, in inches
+    width, height = figure.get_size_inches()
+    assert min(drawn.x0, drawn.y0) >= 0.0
+    assert drawn.x1 <= width
+    assert drawn.y1 <= height
+    for text in figure.findobj(Text):
+        assert not text.get_text() or text.get_fontsize() >= 8.0, text.get_text()
+    named = [panel.get_xlabel() + panel.get_ylabel() for panel in figure.axes if panel.get_ylabel()]
+    assert named
+    assert all("[" in label for label in named)
+
+
+@pytest.mark.parametrize("kind", ["path", "path of elements"])
+def test_curves_are_the_answer(kind):
+    """Shift, stress, energy and torque in a picture are those that the answer tells."""
+    drawn, answer = shown(kind)
+    assert drawn.stress == pytest.approx(answer.max_stress)
+    assert drawn.shift == pytest.approx(np.hypot(*answer.centre_shift.T), abs=1e-15)
+    assert drawn.strain_energy == pytest.approx(answer.strain_energy)
+    assert np.array_equal(drawn.fields.torque, answer.torque)
+    panels = {panel.get_ylabel().split(" [")[0]: panel for panel in picture([drawn]).axes}
+    (line,) = panels["torque"].lines
+    assert np.allclose(line.get_ydata(), answer.torque)
+    assert {"stiffness", "centre shift", "largest stress", "energy"} < set(panels)
+    assert any("yield 1100" in text.get_text() for text in panels["largest stress"].texts)
+
+
+def test_a_mechanism_without_crossing_strips_has_no_centre_shift():
+    """Only one body on two strips from the ground that cross has a centre to shift."""
+    assert shown("mechanism")[0].shift is None
+    assert shown("loads")[0].shift is None
+
+
+@pytest.mark.parametrize("count", [0, 1, 2, 5])
+def test_names_at_the_ends_of_curves_are_apart(count):
+    """Names of curves that end together stand apart in their order, within the axis, and others stay."""
+    found = apart(np.full(count, 0.99))
+    assert np.all(np.diff(found) >= APART - 1e-12)
+    assert np.all((found >= WITHIN - 1e-12) & (found <= 1.0 - WITHIN + 1e-12))
+    assert apart(np.array([0.8, 0.1, 0.4])) == pytest.approx([0.8, 0.1, 0.4])
+
+
+@pytest.mark.slow
+def test_a_models_own_solution_is_drawn_as_the_answer():
+    """`studies.plot` takes what either model returned: the fields are those of the answer."""
+    path = spline_model.solve_statics(spline_model.cross_axis_pivot(**TABLE_ONE), rotation=0.3, increments=3)
+    fine = spline_model.cross_axis_pivot(**TABLE_ONE, control_points=path.control_points)
+    for pivot in (spline_model.cross_axis_pivot(**TABLE_ONE), fine):
+        assert own_fields(path, pivot).bodies[:, 0, 2] == pytest.approx(path.rotation)
+    pivot = fe_reference.cross_axis_pivot(**TABLE_ONE, elements=3, element="reissner")
+    rough = fe_reference.solve_statics(pivot, rotation=0.3, increments=3, accuracy=1e-2)
+    fields = own_fields(rough, pivot)
+    assert fields.model == "fe-shear"
+    assert fields.shape.shape[2] == rough.estimate.elements + 1
+    assert [part.tip for part in fields.parts] == ["body", "body"]
+    assert b"svg" in style.printed(studies.overlay({"a": (path, fine), "b": (rough, pivot)}).figure, "svg")
+
+
+def test_states_of_another_design_are_refused():
+    """A solution and a design that do not go together are one line, in both models and between them."""
+    pivot = fe_reference.cross_axis_pivot(**TABLE_ONE, elements=3)
+    path = fe_reference.solve_statics(pivot, rotation=0.1, increments=1)
+    with pytest.raises(fe_reference.InvalidParameter, match=r"states: got .*number of elements"):
+        studies.plot(path, fe_reference.cross_axis_pivot(**TABLE_ONE, elements=4))
+    splines = spline_model.cross_axis_pivot(**SIX)
+    with pytest.raises(spline_model.InvalidParameter, match=r"states: got .*control points"):
+        spline_model.static_fields(splines, np.zeros((1, 5)))
+    with pytest.raises(BadInput, match="got StaticSolution and Pivot, expected"):
+        studies.plot(path, splines)
+
+
+def test_what_does_not_go_over_one_another_is_refused():
+    """Six answers, kinds that differ, and a path of one state are one line."""
+    path, motion = shown("path")[0], shown("release")[0]
+    with pytest.raises(BadInput, match="got 6 of static"):
+        picture([path] * 6)
+    with pytest.raises(BadInput, match="got 2 of release, static"):
+        picture([path, motion])
+    start = replace(path, fields=replace(path.fields, values=path.fields.values[:1]))
+    with pytest.raises(BadInput, match="too few states"):
+        picture([start])
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("words", "kind"),
+    [
+        (["solve", PIVOT, "--control-points", "6"], "svg"),
+        (["modes", PIVOT, "--count", "2", "--control-points", "6"], "pdf"),
+        (["release", PIVOT, "--duration", "1e-3", "--no-check"], "png"),
+    ],
+)
+def test_command_writes_a_picture_beside_its_answer(words, kind, tmp_path, capsys):
+    """--plot writes a file of its ending and says so on the stream that holds no JSON."""
+    begin = {"svg": b"<?xml", "pdf": b"%PDF", "png": b"\x89PNG"}[kind]
+    path = tmp_path / f"drawn.{kind}"
+    assert main([*words, "--plot", str(path), "--json", "-"]) == 0
+    assert path.read_bytes().startswith(begin)
+    said = capsys.readouterr()
+    assert json.loads(said.out)["status"] == "converged"
+    assert f"{path}: the picture" in said.err
+
+
+@pytest.mark.parametrize(
+    ("name", "expected"), [("a.gif", ".svg, .png or .pdf"), ("no/a.svg", "writable place")]
+)
+def test_a_picture_that_cannot_be_written_is_refused_before_solving(name, expected, tmp_path, capsys):
+    """A wrong ending or a missing folder is one line, and nothing is solved."""
+    assert main(["solve", PIVOT, "--plot", str(tmp_path / name)]) == 2
+    said = capsys.readouterr()
+    assert (said.out, expected in said.err) == ("", True)
+
+
+@pytest.mark.slow
+def test_compare_tells_what_the_answers_tell(tmp_path, capsys):
+    """A table and JSON of the designs hold the numbers of `solve` and `modes`; a picture is drawn beside."""
+    words = ["compare", PIVOT, "cross_axis_pivot", "--control-points", "6", "--rotation-deg", "10"]
+    assert main([*words, "--json", "-"]) == 0
+    first, second = json.loads(capsys.readouterr().out)["designs"]
+    design = replace(named_design(PIVOT), rotation=math.radians(10))
+    answer, spectrum = answer_path(design, SPLINE), answer_modes(design, SPLINE, count=1)
+    assert first["torque_Nm"] == answer.torque[-1]
+    assert first["max_stress_Pa"] == pytest.approx(answer.max_stress.max())
+    assert first["largest_centre_shift_m"] == pytest.approx(np.hypot(*answer.centre_shift.T).max())
+    assert first["first_frequency_Hz"] == spectrum.frequency[0]
+    assert main([*words, "--plot", str(tmp_path / "both.svg")]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    (line,) = (line.split() for line in lines if line.startswith("torque, end"))
+    assert float(line[-1]) == pytest.approx(second["torque_Nm"] / first["torque_Nm"], rel=1e-3)
+    assert (tmp_path / "both.svg").exists()
+
+
+@pytest.mark.parametrize(
+    ("words", "expected"),
+    [
+        ([PIVOT], "expected 2 to 5 designs times models"),
+        ([PIVOT, FOUR_BAR, "--model", "spline,fe,fe-shear"], "expected 2 to 5 designs times models"),
+        ([PIVOT, FOUR_BAR, "--elements", "4"], "--elements: got it with --model spline"),
+        ([PIVOT, FOUR_BAR, "--model", "fe", "--control-points", "6"], "--control-points: got it with"),
+    ],
+)
+def test_compare_refuses_in_a_line(words, expected, capsys):
+    """Too few or many designs, and options that no model takes, are one line."""
+    assert main(["compare", *words]) == 2
+    assert expected in capsys.readouterr().err

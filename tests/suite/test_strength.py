@@ -1,0 +1,101 @@
+"""The largest stress of an answer, where it is, and from where on the material yields."""
+
+import csv
+import io
+import json
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from studies.answers.adapters import answer_path
+from studies.answers.differences import differences
+from studies.answers.settings import FeSettings, SplineSettings
+from studies.answers.strength import strength
+from studies.cases.design import named_design
+from studies.cases.problem import named_case
+
+TABLE_1, SIX = named_case("cross_axis_pivot"), SplineSettings(control_points=6)
+YIELD = 500e6
+
+
+def yielding(limit):
+    """Table 1 of a material of that yield strength."""
+    return replace(TABLE_1, yield_strength=limit)
+
+
+def test_the_range_ends_where_the_stress_is_that_of_yield():
+    """Requirement: a path to the rotation from which on the material yields ends at its yield strength."""
+    design = yielding(YIELD)
+    found = strength(design, answer_path(design, SIX))
+    assert found.safety == pytest.approx(YIELD / found.stress)
+    there = answer_path(replace(TABLE_1, rotation=found.yields[1]), SIX)
+    assert there.max_stress[-1] == pytest.approx(YIELD, rel=2e-3)
+
+
+def test_a_design_that_bears_its_path_has_no_end_of_range():
+    """Requirement: below the yield strength all along there is a safety above one and no such angle."""
+    design = yielding(1e12)
+    found = strength(design, answer_path(design, SIX))
+    assert (found.yields, found.safety > 1.0) == (None, True)
+    assert found.yield_strength == 1e12
+
+
+def test_without_a_yield_strength_there_is_the_stress_alone():
+    """Requirement: what is largest has its strip, its place in words, and its state."""
+    found = strength(TABLE_1, answer_path(TABLE_1, SIX))
+    assert (found.strip, found.place, found.safety, found.yields) == ("strip_1", "at its root", None, None)
+    assert math.degrees(found.rotation) == pytest.approx(90.0)
+
+
+def test_solve_says_how_safe_it_is(case, command):
+    """Requirement: a yield strength is told with the safety and the angle from which on it yields."""
+    path = case(("poisson_ratio = 0.29", "poisson_ratio = 0.29\nyield_strength_Pa = 500e6"))
+    lines = command("solve", path, "--increments", 40, "--control-points", 6).out.splitlines()
+    assert any(line.startswith("safety 0.03") and "500.0 MPa: it yields from 4.54" in line for line in lines)
+
+
+@pytest.mark.parametrize("settings", [SIX, FeSettings(elements=20)], ids=lambda s: s.model)
+def test_stress_of_a_strip_bent_by_a_moment(settings, command):
+    """Requirement: a mechanism's stress is M / W of the rectangle with its A and I, by both models."""
+    design = named_design("cantilever_with_body")
+    effects = replace(design.effects, names=("bending", "stretching", "applied_moment"))
+    effects = replace(effects, tables={"applied_moment": {"moment": 0.1}})
+    answer = answer_path(replace(design, rotation=None, effects=effects, increments=2), settings)
+    (strip,) = design.strips
+    modulus = math.sqrt(strip.area * strip.second_moment_of_area / 3.0)
+    assert answer.max_stress[-1] == pytest.approx(0.1 / modulus, rel=1e-5)
+
+
+def test_several_models_are_answered_with_their_differences(case, command):
+    """Requirement: --model spline,fe answers both, and says how far the second is from the first."""
+    words = ["solve", case(), "--model", "spline,fe", "--increments", 2, "--rotation-deg", 30]
+    found = json.loads(command(*words, "--json", "-").out)
+    assert [answer["model"] for answer in found["answers"]] == ["spline", "fe"]
+    torque = [np.array(answer["torque_Nm"]) for answer in found["answers"]]
+    expected = np.abs(torque[1] - torque[0]).max() / np.abs(torque[0]).max()
+    assert found["differences"]["fe"]["torque"] == pytest.approx(expected)
+    assert 0.0 < max(found["differences"]["fe"].values()) < 5e-3
+    assert command(*words).out.splitlines()[-1].startswith("fe differs from spline by: path ")
+
+
+def test_what_does_not_differ_from_nothing_is_left_out():
+    """Requirement: quantities that are zero in both are not compared, and an answer is as itself."""
+    design = replace(named_design("parallel_strip_guide"), increments=2)
+    answer = answer_path(design, SIX)
+    found = differences(answer, answer)
+    assert found["path"] == 0.0
+    assert found["torque"] is None or found["torque"] == 0.0
+
+
+def test_csv_is_a_row_a_state_of_every_model(case, command, tmp_path):
+    """Requirement: --csv writes what the JSON has by state, in order, with units in the column names."""
+    words = ["solve", case(), "--model", "fe,spline", "--increments", 2]
+    outcome = command(*words, "--csv", tmp_path / "path.csv")
+    assert outcome.out == f"{tmp_path / 'path.csv'}: the answer as CSV\n"
+    rows = list(csv.DictReader(io.StringIO((tmp_path / "path.csv").read_text(encoding="utf-8"))))
+    assert [row["model"] for row in rows] == ["fe"] * 3 + ["spline"] * 3
+    answer = json.loads(command(*words, "--json", "-").out)["answers"][1]
+    for name in set(rows[0]) - {"model"}:
+        assert [float(row[name]) for row in rows[3:]] == pytest.approx(answer[name], rel=1e-9, abs=1e-6)

@@ -1,0 +1,148 @@
+"""What an answer says of its own worth: ratios, what is left out, and slips of units that solve as well."""
+
+from dataclasses import replace
+from functools import cache
+from math import sqrt
+
+import numpy as np
+import pytest
+
+from studies.answers.adapters import answer_static
+from studies.answers.settings import SplineSettings
+from studies.answers.validity import (
+    ANTICLASTIC,
+    CLAMPED_WIDTH,
+    ROOTS,
+    Strip,
+    anticlastic_factor,
+    doubts,
+    validity,
+)
+from studies.cases.design import named_design
+from studies.cases.problem import named_case
+from studies.model_form.plate import RITZ
+from studies.sweep.points import _static_result
+from tests import gates
+
+SIX = SplineSettings(control_points=6)
+#: b^2/(R t) -> moment over that of the beam, nu = 0.3: Ashwell's solution to its printed digits.
+ASHWELL = {1: 1.0029, 2: 1.0106, 5: 1.0402, 10: 1.0634, 50: 1.0826, 1000: 1.0953}
+
+
+@cache
+def solved(name):
+    """Return a case and its answer."""
+    given = named_case(name)
+    return given, answer_static(given, SIX)
+
+
+def test_ratios_of_table_one():
+    """Requirement: width, thickness, curvature and strain are those of the section and of the answer."""
+    given, answer = solved("cross_axis_pivot")
+    found = validity(given, answer, effects=answer.effects)
+    thickness = sqrt(12.0 * given.second_moment_of_area / given.area)
+    width = given.area / thickness
+    bending = given.youngs_modulus * given.second_moment_of_area
+    curvature = np.abs(answer.bending_moment).max() / bending
+    assert found.width_ratio == pytest.approx(width / given.length)
+    assert found.thickness_ratio == pytest.approx(thickness / given.length)
+    assert found.curvature_ratio == pytest.approx(width**2 * curvature / thickness)
+    assert found.strain == pytest.approx(answer.max_stress.max() / given.youngs_modulus)
+
+
+def test_what_is_left_out_is_said_until_an_effect_takes_it_in():
+    """Requirement: plate action, flattening, roots and strain are told, those of named effects not."""
+    given, answer = solved("polymer_pivot")
+    thin = validity(given, answer, effects=answer.effects).outside
+    assert [line.split()[0] for line in thin] == ["b/L", "b^2/(R"]
+    assert validity(given, answer, effects=(CLAMPED_WIDTH, ANTICLASTIC)).outside == ()
+    given, answer = solved("cross_axis_pivot")
+    thick = validity(given, answer, effects=answer.effects).outside
+    assert [line.split()[0] for line in thick] == ["b/L", "t/L", "strain"]
+    assert len(validity(given, answer, effects=(CLAMPED_WIDTH, ROOTS)).outside) == 1
+
+
+def test_yield():
+    """Requirement: stress over the yield strength is told, with both; below it nothing is."""
+    given, answer = solved("spring_steel_pivot")
+    stress = answer.max_stress.max()
+    none = validity(given, answer, effects=answer.effects).outside
+    over = validity(given, answer, effects=answer.effects, yield_strength=0.9 * stress).outside
+    assert over[:-1] == none == validity(given, answer, effects=(), yield_strength=1.1 * stress).outside
+    assert validity(replace(given, yield_strength=0.9 * stress), answer, effects=()).outside == over
+    assert f"{stress / 1e6:.4g} MPa" in over[-1]
+    assert "yield" in over[-1]
+
+
+def test_the_strip_that_is_worst_speaks():
+    """Requirement: of a mechanism's strips the one that is furthest outside is the one that is told of."""
+    given = named_design("parallel_strip_guide")
+    short = replace(given.strips[1], start=(0.06, 0.05))
+    design = replace(given, strips=(given.strips[0], short))
+    result = _static_result(design, SIX)
+    found = validity(design, result, effects=result.effects)
+    assert found.width_ratio == pytest.approx(0.01 / 0.05)
+    assert found.outside[0].startswith("b/L 0.2:")
+
+
+@pytest.mark.parametrize(
+    ("slip", "word"),
+    [
+        ({"length": 84.85}, "millimetres"),
+        ({"youngs_modulus": 206.0}, "GPa"),
+        ({"density": 7.8}, "g/cm^3"),
+        ({"second_moment_of_area": 5e-5 * 0.01**2 / 12.0}, "exchanged"),
+        ({"length": 0.04}, "no beam"),
+    ],
+)
+def test_slips_of_units_are_doubted(slip, word):
+    """Requirement: metres for millimetres, GPa for Pa, b for t and stubby strips are told before solving."""
+    given = named_case("cross_axis_pivot")
+    assert doubts(given) == ()
+    assert any(word in line for line in doubts(replace(given, **slip)))
+
+
+def test_cases_of_the_suite_are_not_doubted():
+    """Requirement: no design that comes with the suite looks like a slip."""
+    for name in ("spring_steel_pivot", "polymer_pivot", "parallel_strip_guide", "four_bar_of_flexures"):
+        assert doubts(named_design(name)) == ()
+
+
+def flattening_error(**other):
+    """Return the largest difference of the factor to the printed ones."""
+    nu = other.get("poisson_ratio", 0.3)
+    return max(abs(float(anticlastic_factor(ratio, nu)) - known) for ratio, known in ASHWELL.items())
+
+
+def test_flattening_of_a_strip():
+    """Requirement: what strong bending adds is Ashwell's, to the printed digits, between both its limits."""
+    gates.check("validity_anticlastic", flattening_error())
+    assert anticlastic_factor(0.0, 0.3) == pytest.approx(1.0, abs=1e-9)
+    assert anticlastic_factor(1e9, 0.3) == pytest.approx(1.0 / 0.91, rel=1e-3)
+
+
+def plate_error(**other):
+    """Return the largest share by which the estimate of the clamps' plate action is off."""
+    errors = []
+    for width, nu, constant, linear in RITZ:
+        strip = Strip(
+            length=1.0, width=width, thickness=0.01, youngs_modulus=1e9, density=1e3,
+            poisson_ratio=other.get("poisson_ratio", nu),
+        )  # fmt: skip
+        pairs = zip(strip.clamped, (constant - 1.0, linear - 1.0), strict=True)
+        errors += [abs(found / known - 1.0) for found, known in pairs]
+    return max(errors)
+
+
+def test_estimate_of_plate_action():
+    """Requirement: what clamps over the whole width add is told within an eighth of the plate's solution."""
+    gates.check("validity_plate", plate_error())
+
+
+@pytest.mark.parametrize(
+    ("gate", "error"), [("validity_anticlastic", flattening_error), ("validity_plate", plate_error)]
+)
+def test_gates_of_validity_have_teeth(gate, error):
+    """Requirement: another Poisson ratio does not pass."""
+    with pytest.raises(AssertionError, match="x the gate"):
+        gates.check(gate, error(**gates.teeth(gate)))
