@@ -48,18 +48,14 @@ nitpick_ignore = [
         "SuperLU",
         # type variables
         *("spline_model.accuracy.Found", "spline_model.scene.Kind"),
-        *("fe_reference.effects.T", "fe_reference.refined.Answer", "studies.record.timing.Result"),
+        *("fe_reference.effects.T", "fe_reference.refined.Answer", "fe_reference.refined.Solved"),
+        "studies.record.timing.Result",
     )
 ]
 
 highlight_language = "text"
-html_theme = "alabaster"
-html_theme_options = {
-    "page_width": "1300px",
-    "sidebar_width": "270px",
-    "body_max_width": "1000px",
-    "code_font_size": "0.85em",
-}
+html_theme = "furo"
+html_title = project
 html_show_sourcelink = False
 
 
@@ -67,5 +63,6 @@ def setup(app):
     """Import what the pages show; hand docstrings and signatures to `prose` before Sphinx reads them."""
     for package in prose.PACKAGES[:2]:
         import_whole(package)
+    app.connect("include-read", prose.process_included)
     app.connect("autodoc-process-docstring", prose.process_docstring)
     app.connect("autodoc-process-signature", prose.process_signature)

@@ -11,6 +11,7 @@ import textwrap
 PACKAGES = ("spline_model", "fe_reference", "studies")
 SECTIONS = "Args|Parameters|Attributes|Returns|Yields|Raises"
 
+_LINK = re.compile(r"\](?:\((?!https?:|#)([\w./-]+))")
 _CODE = re.compile(r"(?<!`)(`{1,2})(?!`)(.+?)(?<!`)\1(?!`)")
 _OWN = re.compile(rf"(?:{'|'.join(PACKAGES)})(?:\.[A-Za-z]\w*)+")
 _HEAD = re.compile(rf"({SECTIONS})(:|\s*\n-+)\s*(?=\n|$)")
@@ -32,6 +33,19 @@ def process_signature(app, what, name, obj, options, signature, returns):
         signature = re.sub(r"<[^<>]*>", "...", signature)
     return tuple(
         text and _ARRAY.sub(r"~numpy.typing.NDArray[~numpy.\1]", text) for text in (signature, returns)
+    )
+
+
+def process_included(app, path, parent, content):
+    """Let links of a page that another one shows lead where they led (Sphinx's event)."""
+    content[0] = _LINK.sub(lambda link: f"]({_seen_from_here(link[1])}", content[0])
+
+
+def _seen_from_here(target: str) -> str:
+    """Return a file of the repository, named from its root, as a page of this folder names it."""
+    pages = {"README.md": "overview.md", "CONTRIBUTING.md": "contributing.md"}
+    return pages.get(target) or (
+        target.removeprefix("docs/") if target.startswith("docs/") else f"../{target}"
     )
 
 
