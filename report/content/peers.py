@@ -19,6 +19,8 @@ SIMPLE = {
     "linear pivot": "linear pivot",
     "pin joint": "pin joint with a spring",
     "four-bar": "four-bar with springs",
+    "beam constraint model": "beam constraint model",
+    "chained constraint model": "the same, chained",
 }
 #: Splines of four control points that the path of the four-bar is compared with.
 FOUR_POINTS = {"paper": "n = 4, as the paper", "free": "n = 4, locking-free"}
@@ -129,7 +131,7 @@ FACTS = {
         at(
             "value",
             formulation="n = 4, as the paper",
-            quantity="the largest error of the torque over the best surrogate's",
+            quantity="the largest error of the torque over the best such model's",
         ),
         times,
     ),
