@@ -67,7 +67,8 @@ def test_discrete_gradient_gate_has_teeth():
 @pytest.mark.parametrize("measure", [MATERIAL, SPATIAL])
 def test_force_of_stretching_does_the_work_of_its_energy(measure):
     """Between two states the force does the change of energy, natural strain among it."""
+    force_of, law = (getattr(each, "py_func", each) for each in (stretching_between, stretching_law))
     v0, v1, given = 1.03, 0.98, (1.01, 0.02, 7.0)
-    force = stretching_between.py_func(v0, v1, *given, 0.0, measure)[0]
-    energies = [stretching_law.py_func(v, *given, measure)[0] for v in (v0, v1)]
+    force = force_of(v0, v1, *given, 0.0, measure)[0]
+    energies = [law(v, *given, measure)[0] for v in (v0, v1)]
     assert force * (v1 - v0) == pytest.approx(energies[1] - energies[0], rel=1e-13)
