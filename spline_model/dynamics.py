@@ -211,9 +211,9 @@ def checked(
 
 
 def _settled(mechanism: Mechanism, start: float | None, body: str) -> tuple[Mechanism, Array]:
-    """The mechanism as it swings, and the state (..., ) that it starts from.
+    """The mechanism as it swings, and the unknowns of ``static_state`` that it starts from.
 
-    Where its control points are left open it gets more until statics reaches the start.
+    Where its control points are left open it gets more until statics reaches the start, or ConvergenceError.
     """
     grid, chosen = mechanism.design.discretisation, mechanism.in_motion()
     points, most = grid.points, grid.points if grid.control_points is not None else MOST[grid.basis]

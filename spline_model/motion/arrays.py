@@ -24,8 +24,7 @@ class Flexures(NamedTuple):
     d1 d2, d2 d1, d2 d2; weight (G,); speed, curvature, rigidity (S, G), curl (S, G, 2): the numbers of
     ``curl_law``, stretching, strain (S,), modes (S, G, K), compliance and gain (S, K), roots, tips (S,),
     root, tip (S, 3), reach (S, 2) as in ``spline_model.strip.element``; outer: leading axial forces that stay
-    beside the bodies; free_from: the first body that is a free end; relaxation (S,) [s]; mass, drag (S, n,
-    n); dead (S, 2, n) dead load; measure: of all.
+    beside the bodies; free_from: first free end; relaxation (S,) [s]; mass, drag (S, n, n); dead (S, 2, n).
     """
 
     first: Places
