@@ -2,13 +2,12 @@
 
 Data flow one way, and so do the imports:
 
-    effects -> model (pivot, mechanism) -> mesh -> structure (law, bending, matrix) -> control -> path
-    path -> statics
-    control -> newton -> response -> path, arc_length, critical
+    effects -> model (pivot, mechanism) -> mesh -> structure (law, bending, rigid, matrix) -> control -> path
+    control (with Newton's method) -> response -> path, arc_length, critical -> follow -> statics
     structure -> mass, loads -> drives, actions -> motion -> explicit, implicit -> dynamics
-    statics -> modes; all -> solution
+    statics -> modes; all -> solution, trajectory
     solution -> refined (meshes to a wanted accuracy) -> statics, modes, dynamics
-    plate: one strip as a plate, which says what beams leave out -> clamped_width -> mesh
+    plate: one strip as a plate, which says what beams leave out, and the rigidity that has it -> mesh
 
 What is scikit-fem's, and what is not: the mesh of the strips, the basis of three linear fields on it, the
 numbering of its degrees of freedom and the pattern of the assembled matrices are scikit-fem's. The energies

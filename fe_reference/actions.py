@@ -10,19 +10,20 @@ Every effect has its own table, of length zero where the scene does not name it:
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from .arrays import Array, Indices, kernel
 from .effects import BodyDamping, StripDamping, StripDrag
-from .kernel import kernel
-from .law import FORCES, MATERIAL, elements
-from .loads import applied, load_forces, load_power, load_tables, put_loads
+from .law import FORCES, MATERIAL, Written, elements
+from .loads import Histories, applied, load_forces, load_power, load_tables, put_loads
 from .mass import body_blocks
 from .matrix import Symmetric
-from .rigid import body_forces, carry, carry_velocity, gravity_energy, put_weight
-from .structure import Structure
+from .rigid import RESULTANTS, body_forces, carry, carry_velocity, gravity_energy, put_weight, turned
+from .structure import Structure, Tables
 
-Array = NDArray[np.float64]
-Indices = NDArray[np.int64]
+Pair = tuple[Array, Array]
+#: What acts in a motion, and the displacements and velocities of nodes and of bodies that it acts at.
+Acting = tuple[Tables, tuple[Array, Array, Array], Histories, Written, Pair]
+State = tuple[Array, Array, Array, Array]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -44,7 +45,8 @@ class Actions:
 
     Attributes:
         dissipative: relaxation (E,), drag (nodes,), grip (B, 4). histories: tables of the loads.
-        arrays: forces on nodes (nodes, 3) and bodies (B, 3), ends and matrices of the elements, of the loads.
+        written: as of `law.elements`. resultants: of the bodies (B, 5), and the forces (K, 3) of the loads.
+        acting: all of it, for `act`.
     """
 
     def __init__(self, structure: Structure) -> None:
@@ -58,11 +60,11 @@ class Actions:
         self.damped = any(len(table) for table in self.dissipative)
         pulls = [pull for pull in applied(structure) if pull.row[:3].any()]
         self.named = self.damped or bool(pulls)
-        self.histories = load_tables(pulls)
-        force, resultants, scratch = structure.work
-        matrices = np.zeros((len(relaxation), 6, 6))
-        self.arrays = (force, resultants, np.zeros((many, 5)), matrices, scratch, np.zeros((len(pulls), 3)))
-        self.given = (*structure.given, *structure.carried, *structure.weight)
+        self.histories, (force, scratch) = load_tables(pulls), structure.work
+        self.written = (force, np.zeros((many, 5)), np.zeros((len(relaxation), 6, 6)), scratch)
+        self.resultants = (np.zeros((len(structure.points), RESULTANTS)), np.zeros((len(pulls), 3)))
+        tables = (structure.tables, self.dissipative, self.histories)
+        self.acting: Acting = (*tables, self.written, self.resultants)
 
     def _grip(self) -> Array:
         model, points = self.structure.model, self.structure.points
@@ -77,10 +79,9 @@ class Actions:
         """Return what resists at coordinates y, velocities v and an instant [s]."""
         s, u = self.structure, self.structure.displacement(y)
         bodies, rates = (part[s.first_body :].reshape(-1, 3) for part in (y, v))
-        tables = (self.given, self.dissipative, self.histories, self.arrays)
-        strain, loads, loss = act(*tables, u, s.velocity(y, v), bodies, rates, time)
-        force = np.concatenate([self.arrays[0][s.free_nodes].ravel(), self.arrays[1].ravel()])
-        gravity = float(gravity_energy(*s.weight, bodies, u))
+        strain, loads, loss = act(self.acting, (u, s.velocity(y, v), bodies, rates), time)
+        force = np.concatenate([self.written[0][s.free_nodes].ravel(), self.resultants[0][:, :3].ravel()])
+        gravity = float(gravity_energy(s.tables[2], bodies, u))
         return Resistance(force=force, strain=strain, gravity=gravity, load_power=loads, loss_power=loss)
 
     def damping_matrix(self, y: Array) -> Symmetric:
@@ -117,11 +118,6 @@ class Actions:
         return rate
 
 
-Given = tuple[bool, Array, Indices, Indices, Indices, Array, Array, Array]
-Histories = tuple[Indices, Array, Indices, Array, Array]
-Arrays = tuple[Array, Array, Array, Array, Array, Array]
-
-
 @kernel()
 def _viscous_forces(relaxation: Array, first: Indices, matrices: Array, v: Array, force: Array) -> float:
     """Add the forces of Kelvin-Voigt strips at velocities v (nodes, 3); return the power they take [W]."""
@@ -153,45 +149,31 @@ def _grip_forces(grip: Array, bodies: Array, bodies_v: Array, out: Array) -> flo
     """Add the dampers of the bodies to their resultants (B, 3); return the power they take [W]."""
     power = 0.0
     for b in range(len(grip)):
-        c, s = np.cos(bodies[b, 2]), np.sin(bodies[b, 2])
-        arm_x, arm_y = c * grip[b, 2] - s * grip[b, 3], s * grip[b, 2] + c * grip[b, 3]
-        v_x, v_y = bodies_v[b, 0] - bodies_v[b, 2] * arm_y, bodies_v[b, 1] + bodies_v[b, 2] * arm_x
+        x, y = turned(bodies[b, 2], grip[b, 2], grip[b, 3])
+        v_x, v_y = bodies_v[b, 0] - bodies_v[b, 2] * y, bodies_v[b, 1] + bodies_v[b, 2] * x
         moment = grip[b, 1] * bodies_v[b, 2]
         out[b, 0] += grip[b, 0] * v_x
         out[b, 1] += grip[b, 0] * v_y
-        out[b, 2] += moment + grip[b, 0] * (arm_x * v_y - arm_y * v_x)
+        out[b, 2] += moment + grip[b, 0] * (x * v_y - y * v_x)
         power += grip[b, 0] * (v_x * v_x + v_y * v_y) + moment * bodies_v[b, 2]
     return power
 
 
 @kernel()
-def act(
-    given: Given,
-    dissipative: tuple[Array, Array, Array],
-    histories: Histories,
-    arrays: Arrays,
-    u: Array,
-    v: Array,
-    bodies: Array,
-    bodies_v: Array,
-    time: float,
-) -> tuple[float, float, float]:
+def act(acting: Acting, state: State, time: float) -> tuple[float, float, float]:
     """Write all that resists on nodes and bodies; return strain energy, power of the loads, power lost."""
-    shear, table, first, attached, carrier, offsets, weight, body_weight = given
-    relaxation, drag, grip = dissipative
-    targets, loads, begins, instants, factors = histories
-    force, resultants, ends, matrices, scratch, pulls = arrays
-    asked = MATERIAL if len(relaxation) else FORCES
-    bending, axial, sliding = elements(shear, table, first, 1.0, asked, u, force, ends, matrices, scratch)
-    loss = 0.0
+    (given, carried, weights), (relaxation, drag, grip), histories, written, (resultants, pulls) = acting
+    u, v, bodies, bodies_v = state
+    (_, _, first), (force, _, matrices, _), targets, loss = given, written, histories[0], 0.0
+    strain = elements(given, 1.0, MATERIAL if len(relaxation) else FORCES, u, written)
     if len(relaxation) or len(drag):
         loss += _viscous_forces(relaxation, first, matrices, v, force) + _drag_forces(drag, v, force)
-    body_forces(bodies, attached, carrier, offsets, force, resultants)
-    put_weight(1.0, weight, body_weight, bodies, force, resultants)
+    body_forces(bodies, carried, force, resultants)
+    put_weight(1.0, weights, bodies, force, resultants)
     loss += _grip_forces(grip, bodies, bodies_v, resultants)
-    load_forces(targets, loads, begins, instants, factors, time, bodies, pulls)
+    load_forces(histories, time, bodies, pulls)
     put_loads(targets, pulls, force, resultants)
-    return bending + axial + sliding, load_power(targets, pulls, v, bodies_v), loss
+    return strain[0] + strain[1] + strain[2], load_power(targets, pulls, v, bodies_v), loss
 
 
 @kernel()
@@ -205,40 +187,27 @@ def _move(compliance: Array, force: Array, step: float, v: Array, u: Array) -> N
 
 @kernel()
 def advance(
-    given: Given,
-    dissipative: tuple[Array, Array, Array],
-    histories: Histories,
-    arrays: Arrays,
-    compliance: Array,
-    body_compliance: Array,
-    u: Array,
-    v: Array,
-    bodies: Array,
-    bodies_v: Array,
-    totals: Array,
-    time: float,
-    step: float,
-    steps: int,
+    acting: Acting, compliance: Pair, state: State, totals: Array, time: float, step: float, steps: int
 ) -> None:
     """Make `steps` steps of the central difference scheme in place: v is half a step behind u.
 
-    v += h a(u, v), u += h v for the free nodes (`compliance` (nodes, 3) is 1/mass there, else 0) and the
+    v += h a(u, v), u += h v for the free nodes (`compliance`: 1/mass (nodes, 3) there, else 0) and the
     bodies, whose rows of zero are led; dampers act at the velocities before the step. `totals` gathers the
     work of loads and drives, exactly that of the scheme, and what the dampers take [J].
     """
-    _, _, _, attached, carrier, offsets, _, _ = given
+    (_, carried, _), dissipative, histories, written, (resultants, pulls) = acting
+    u, v, bodies, bodies_v = state
     viscous = len(dissipative[0]) > 0 or len(dissipative[1]) > 0
     for n in range(steps):
         if viscous:
-            carry_velocity(bodies, bodies_v, attached, carrier, offsets, v)
-        at = time + n * step
-        _, power, loss = act(given, dissipative, histories, arrays, u, v, bodies, bodies_v, at)
+            carry_velocity(bodies, bodies_v, carried, v)
+        _, power, loss = act(acting, state, time + n * step)
         for b in range(len(bodies)):
             for k in range(3):
-                if body_compliance[b, k] == 0.0:
-                    totals[0] += step * arrays[1][b, k] * bodies_v[b, k]
-        _move(compliance, arrays[0], step, v, u)
-        _move(body_compliance, arrays[1], step, bodies_v, bodies)
-        totals[0] += 0.5 * step * (power + load_power(histories[0], arrays[5], v, bodies_v))
+                if compliance[1][b, k] == 0.0:
+                    totals[0] += step * resultants[b, k] * bodies_v[b, k]
+        _move(compliance[0], written[0], step, v, u)
+        _move(compliance[1], resultants, step, bodies_v, bodies)
+        totals[0] += 0.5 * step * (power + load_power(histories[0], pulls, v, bodies_v))
         totals[1] += step * loss
-        carry(bodies, attached, carrier, offsets, u)
+        carry(bodies, carried, u)

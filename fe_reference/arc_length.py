@@ -11,17 +11,14 @@ from dataclasses import dataclass, field, replace
 from itertools import islice
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.interpolate import CubicHermiteSpline
 
-from .control import Balance, Control
+from .arrays import Array, Indices
+from .control import Balance, Control, Outcome, equilibrate
 from .errors import ConvergenceError, InvalidParameter, count
 from .matrix import Factors
-from .newton import Outcome, equilibrate
 from .path import ROUND_OFF
-from .response import respond
-
-Array = NDArray[np.float64]
+from .response import Response, respond
 
 #: Longest step, shortest part of the first one, and how many there may be.
 LONGEST, SHORTEST, MOST = 0.5, 2.0**-14, 2000
@@ -37,21 +34,16 @@ BISECTIONS = 22
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Place:
-    """A state on the path: y (size,), p; tangent dy/ds (size,) and dp/ds; number of negative eigenvalues.
+    """A state on the path: what Newton's method found there, how that changes with p, and dp/ds."""
 
-    torque, steepness: of the watched turn and its derivative in p, nan if none is watched.
-    potential [J]; conjugate: its derivative in p along the path, and the derivative of that in s.
-    """
-
-    y: Array
-    parameter: float
-    rate: Array
+    found: Outcome
+    response: Response
     slope: float
-    negative: int
-    torque: float
-    steepness: float
-    potential: float
-    conjugate: tuple[float, float]
+
+    @property
+    def rate(self) -> Array:
+        """The tangent dy/ds (size,)."""
+        return self.slope * self.response.rate
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -88,7 +80,7 @@ class ArcPath:
     parameter: Array
     y: Array
     torque: Array
-    negative: NDArray[np.int64]
+    negative: Indices
     critical: tuple[Critical, ...]
 
     @property
@@ -122,26 +114,15 @@ class Walk:
     def place(self, found: Outcome, along: tuple[Array, float]) -> Place:
         """Complete a state in equilibrium; the tangent goes with `along`; raises Singular."""
         response = respond(self.control, found)
-        rate, slope = response.rate, 1.0
-        size = np.sqrt(self.product((rate, slope), (rate, slope)))
-        scale = float(np.copysign(1.0 / size, self.product((rate, slope), along)))
-        return Place(
-            y=found.y,
-            parameter=found.parameter,
-            rate=scale * rate,
-            slope=scale * slope,
-            negative=response.inertia,
-            torque=response.torque,
-            steepness=response.stiffness,
-            potential=found.balance.potential,
-            conjugate=(response.conjugate, scale * response.slope),
-        )
+        size = np.sqrt(self.product((response.rate, 1.0), (response.rate, 1.0)))
+        way = self.product((response.rate, 1.0), along)
+        return Place(found=found, response=response, slope=float(np.copysign(1.0 / size, way)))
 
     def step(self, here: Place, length: float, bend: Array) -> tuple[Place | None, int]:
         """Return the state on the plane at `length` along the tangent, or None, and the iterations."""
         control, normal = self.control, (here.rate, here.slope)
-        y = here.y + length * here.rate + 0.5 * length**2 * bend
-        parameter = here.parameter + length * here.slope
+        y = here.found.y + length * here.rate + 0.5 * length**2 * bend
+        parameter = here.found.parameter + length * here.slope
         start = (y.copy(), parameter)
 
         def correct(y: Array, parameter: float, balance: Balance, factors: Factors) -> tuple[Array, float]:
@@ -162,7 +143,7 @@ class Walk:
 
     def onward(self, here: Place, length: float, longest: float = LONGEST) -> Iterator[Stride]:
         """Yield the steps from a state on, the first of a length; it ends where they become too short."""
-        shortest, bend = SHORTEST * length, np.zeros_like(here.y)
+        shortest, bend = SHORTEST * length, np.zeros_like(here.rate)
         while length > shortest:
             there, iterations = self.step(here, length, bend)
             if there is None:
@@ -188,16 +169,18 @@ class Walk:
 
     def balanced(self, here: Place, there: Place) -> bool:
         """Return whether the potential gained is what its rate gives along a path between two states."""
-        moved = (there.y - here.y, there.parameter - here.parameter)
+        one, other = here.found, there.found
+        moved = (other.y - one.y, other.parameter - one.parameter)
         ends = (0.0, np.sqrt(self.product(moved, moved)))
-        pairs = [(at.parameter, at.slope, *at.conjugate) for at in (here, there)]
-        p, slope, conjugate, bend = np.array(pairs).T
+        p, slope = [one.parameter, other.parameter], [here.slope, there.slope]
+        conjugate = [at.response.conjugate for at in (here, there)]
+        bend = [at.slope * at.response.slope for at in (here, there)]
         nodes, weights = np.polynomial.legendre.leggauss(4)
         s = 0.5 * ends[1] * (nodes + 1.0)
         rate = CubicHermiteSpline(ends, p, slope)(s, 1) * CubicHermiteSpline(ends, conjugate, bend)(s)
-        done, gained = 0.5 * ends[1] * float(weights @ rate), there.potential - here.potential
+        done, gained = 0.5 * ends[1] * float(weights @ rate), other.balance.potential - one.balance.potential
         scale = max(abs(gained), 0.5 * ends[1] * float(weights @ np.abs(rate)))
-        unit = self.control.structure.moment_unit + abs(there.potential)
+        unit = self.control.structure.moment_unit + abs(other.balance.potential)
         return bool(abs(gained - done) <= WORK_MISMATCH * scale + ROUND_OFF * unit)
 
 
@@ -221,14 +204,14 @@ def follow_arc(control: Control, *, increments: int = 20) -> ArcPath:
     for stride in islice(walk.onward(here, min(length, LONGEST)), MOST):
         here, there = stride.begin, stride.end
         critical += _critical(walk, stride)
-        if (there.parameter - end) * (here.parameter - end) <= 0.0:
+        if (there.found.parameter - end) * (here.found.parameter - end) <= 0.0:
             places.append(_last(walk, here, there))
             return _packed(places, critical)
         places.append(there)
     raise ConvergenceError(
-        f"p = {end:g} is not reached from {places[-1].parameter:.6g}",
+        f"p = {end:g} is not reached from {places[-1].found.parameter:.6g}",
         solution=_packed(places, critical),
-        load_factor=places[-1].parameter,
+        load_factor=places[-1].found.parameter,
         history=(),
     )
 
@@ -236,32 +219,34 @@ def follow_arc(control: Control, *, increments: int = 20) -> ArcPath:
 def _critical(walk: Walk, stride: Stride) -> list[Critical]:
     """Return the critical points of a step."""
     found, here, there = [], stride.begin, stride.end
-    if here.negative != there.negative:
+    if here.response.inertia != there.response.inertia:
         turn = "limit point" if walk.control.watched is None else "turning point"
-        at = walk.before(stride, lambda place: place.negative == here.negative)
+        at = walk.before(stride, lambda place: place.response.inertia == here.response.inertia)
         kind = turn if stride.turned else "bifurcation"
-        found.append(Critical(kind=kind, parameter=at.parameter, y=at.y))
-    if here.steepness * there.steepness < 0.0 and not stride.turned:
-        at = walk.before(stride, lambda place: place.steepness * here.steepness > 0.0)
-        found.append(Critical(kind="limit point", parameter=at.parameter, y=at.y))
+        found.append(Critical(kind=kind, parameter=at.found.parameter, y=at.found.y))
+    stiff = here.response.stiffness
+    if stiff * there.response.stiffness < 0.0 and not stride.turned:
+        at = walk.before(stride, lambda place: place.response.stiffness * stiff > 0.0)
+        found.append(Critical(kind="limit point", parameter=at.found.parameter, y=at.found.y))
     return found
 
 
 def _last(walk: Walk, here: Place, there: Place) -> Place:
     """Return the state at the end of the span, between two others."""
     end = walk.control.span[1]
-    share = (end - here.parameter) / (there.parameter - here.parameter)
-    outcome = equilibrate(walk.control, here.y + share * (there.y - here.y), end, walk.counters)
+    one, other = here.found, there.found
+    share = (end - one.parameter) / (other.parameter - one.parameter)
+    outcome = equilibrate(walk.control, one.y + share * (other.y - one.y), end, walk.counters)
     if outcome.factors is None:
-        return replace(there, parameter=end, y=np.full_like(there.y, np.nan))
+        return replace(there, found=replace(other, parameter=end, y=np.full_like(other.y, np.nan)))
     return walk.place(outcome, (there.rate, there.slope))
 
 
 def _packed(places: list[Place], critical: list[Critical]) -> ArcPath:
     return ArcPath(
-        parameter=np.array([place.parameter for place in places]),
-        y=np.array([place.y for place in places]),
-        torque=np.array([place.torque for place in places]),
-        negative=np.array([place.negative for place in places]),
+        parameter=np.array([place.found.parameter for place in places]),
+        y=np.array([place.found.y for place in places]),
+        torque=np.array([place.response.torque for place in places]),
+        negative=np.array([place.response.inertia for place in places]),
         critical=tuple(critical),
     )

@@ -1,7 +1,7 @@
 """The moment of a strip whose section curls across its width no more than clamps and curvature let it.
 
 A section that is free to curl (anticlastic bending) has the rigidity EI, one that is held flat
-EI / (1 - nu^2). With g the share of its curl that the clamps leave (`clamped_width`) and f that which its own
+EI / (1 - nu^2). With g the share of its curl that the clamps leave (`plate`) and f that which its own
 curvature leaves, the energy per length and what follows from it are
 
     U = (1/2) D kappa^2 (1 - nu^2 g f),    D = EI / (1 - nu^2),    M = dU/dkappa
@@ -19,12 +19,8 @@ Solids (2021).
 
 import math
 
-import numpy as np
-from numpy.typing import NDArray
+from .arrays import Array, kernel
 
-from .kernel import kernel
-
-Array = NDArray[np.float64]
 Shares = tuple[float, float, float]
 Bent = tuple[float, float, float, float, float, float]
 
@@ -35,8 +31,6 @@ P = tuple(1.0 / math.factorial(4 * k + 2) for k in reversed(range(TERMS)))
 Q = tuple(1.0 / math.factorial(4 * k + 1) for k in reversed(range(TERMS)))
 #: At most so many Newton steps to the curvature of a moment, and to the turns of an element's roots.
 STEPS = 50
-#: Relative size of a Newton step that is round-off.
-ROUND_OFF = 1e-15
 #: Two Gauss points of an element, whose end turns a, b make the curvature ((6 xi - 4) a + (6 xi - 2) b) / l.
 ROOT_3 = math.sqrt(3.0)
 
@@ -87,7 +81,7 @@ def section(rigidity: float, held: float, reach: float, curvature: float) -> Sha
 
 
 @kernel()
-def _between(row: Array, first: float, second: float) -> Bent:
+def bent_element(row: Array, first: float, second: float) -> Bent:
     """Return energy [J], both end moments [N m] and their slopes 11, 12, 22 of an element with two points.
 
     Args:
@@ -103,32 +97,6 @@ def _between(row: Array, first: float, second: float) -> Bent:
         energy, m_1, m_2 = energy + 0.5 * length * parts[0], m_1 + a * moment, m_2 + b * moment
         k_11, k_12, k_22 = k_11 + a * a * slope, k_12 + a * b * slope, k_22 + b * b * slope
     return energy, m_1, m_2, k_11, k_12, k_22
-
-
-@kernel()
-def bent_element(row: Array, natural: float, first: float, second: float) -> Bent:
-    """Return the same for turns of the nodes, which roots hold the end sections to.
-
-    The energy is the least over the turns of the sections, that of the springs included. The end moments are
-    without those of the natural curvature, -EI k0 and EI k0, which the roots feel as well; natural: EI k0.
-    """
-    if row[12] == 0.0 and row[13] == 0.0:
-        return _between(row, first, second)
-    c_1, c_2, a, b, last = row[12], row[13], first, second, math.inf
-    for _ in range(STEPS):
-        energy, m_1, m_2, k_11, k_12, k_22 = _between(row, a, b)
-        r_1, r_2 = a - first + c_1 * (m_1 + natural), b - second + c_2 * (m_2 - natural)
-        p, q = 1.0 + c_1 * k_11, 1.0 + c_2 * k_22
-        whole = p * q - c_1 * c_2 * k_12 * k_12
-        step_1, step_2 = (q * r_1 - c_1 * k_12 * r_2) / whole, (p * r_2 - c_2 * k_12 * r_1) / whole
-        size = max(abs(step_1), abs(step_2))
-        if not ROUND_OFF * max(abs(first), abs(second)) < size < last:
-            break
-        a, b, last = a - step_1, b - step_2, size
-    f_1, f_2 = m_1 + natural, m_2 - natural
-    energy += c_1 * f_1 * (0.5 * f_1 - natural) + c_2 * f_2 * (0.5 * f_2 + natural)
-    k_11, k_22 = (k_11 * q - c_2 * k_12 * k_12) / whole, (k_22 * p - c_1 * k_12 * k_12) / whole
-    return energy, m_1, m_2, k_11, k_12 / whole, k_22
 
 
 @kernel()

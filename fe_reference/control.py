@@ -1,4 +1,4 @@
-"""How a structure is led along an equilibrium path: what is held and what is loaded.
+"""How a structure is led along an equilibrium path, what is held and loaded, and Newton's method to it.
 
 The path is followed in one parameter p. On a span p_0 to p_1 the held coordinates go linearly from their
 values at its beginning to those at its end, and so does the load a F, whose share a is p itself unless the
@@ -6,18 +6,25 @@ span says otherwise. The residual is r = f(y) - a F, with f the gradient of the 
 settles, p is the share of gravity and natural strains instead, and nothing else acts.
 """
 
-from collections.abc import Sequence
+from collections import Counter
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
-from .matrix import Factors
+from .arrays import Array, Flags, Indices
+from .matrix import Factors, Singular
 from .structure import Evaluation, Structure
 
-Array = NDArray[np.float64]
-Indices = NDArray[np.int64]
+#: Newton's iterations of one increment; from a tangent predictor a sound increment takes one to four.
+ITERATIONS = 25
+#: Dimensionless residual (forces over EI/L^2, moments over EI/L) taken as equilibrium where round-off allows
+#: it.
+TOLERANCE = 1e-10
+#: The factors at the end give one more correction, unless it is longer than this [strip lengths, rad]: then
+#: it is the round-off of the residual over a stiffness that vanishes.
+LAST = 1e-9
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -68,7 +75,7 @@ class Control:
         return parameter if self.shares is None else self.shares[0] + self.growth * (parameter - self.span[0])
 
     @cached_property
-    def is_held(self) -> NDArray[np.bool_]:
+    def is_held(self) -> Flags:
         """Which coordinates are held (size,)."""
         held = np.zeros(self.structure.size, dtype=bool)
         held[self.held] = True
@@ -175,3 +182,81 @@ def spans(
         )
         for leg in range(legs)
     ]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Outcome:
+    """What Newton's method left.
+
+    Attributes:
+        y, parameter: coordinates and where. norms: of the residuals. failure: "" or the reason.
+        balance, factors: at the last iterate; no factors after a failure.
+    """
+
+    y: Array
+    parameter: float
+    norms: tuple[float, ...]
+    failure: str
+    balance: Balance
+    factors: Factors | None = None
+
+
+#: Changes of coordinates and parameter that correct a state, from these, the balance there and its factors.
+Correct = Callable[[Array, float, Balance, Factors], tuple[Array, float]]
+
+
+def at_the_parameter(y: Array, parameter: float, balance: Balance, factors: Factors) -> tuple[Array, float]:
+    """Return Newton's correction with the parameter as it is."""
+    return -factors.solve(balance.residual), 0.0
+
+
+def equilibrate(
+    control: Control,
+    start: Array,
+    parameter: float,
+    counters: Counter[str],
+    correct: Correct = at_the_parameter,
+) -> Outcome:
+    """Iterate from `start` to equilibrium at `parameter`, with the consistent tangent at every iteration.
+
+    One compiled call gives residual and tangent; the factors at the equilibrium serve what is asked there.
+    """
+    tolerance = max(TOLERANCE, control.structure.round_off)
+    y, norms = start.copy(), []
+    while True:
+        y[control.held] = control.prescribed(parameter)
+        for counted in ("residual_evaluations", "tangent_evaluations"):
+            counters[counted] += 1
+        balance, factors = control.balance(y, parameter), None
+        norms.append(control.unbalanced(balance.residual))
+        failure = "" if np.isfinite(norms[-1]) else "the residual is not finite"
+        if len(norms) > ITERATIONS and norms[-1] > tolerance:
+            failure = f"no equilibrium in {ITERATIONS} iterations"
+        if not failure:
+            counters["factorisations"] += 1
+            try:
+                factors = control.factors(balance)
+            except Singular as error:
+                failure = str(error)
+        if factors is not None and norms[-1] <= tolerance:
+            last = factors.solve(balance.residual)
+            y = y - last if np.abs(control.structure.measure * last).max(initial=0.0) <= LAST else y
+        if factors is None or norms[-1] <= tolerance:
+            return Outcome(
+                y=y,
+                parameter=parameter,
+                norms=tuple(norms),
+                failure=failure,
+                balance=balance,
+                factors=factors,
+            )
+        counters["newton_iterations"] += 1
+        move, change = correct(y, parameter, balance, factors)
+        y, parameter = y + move, parameter + change
+
+
+def taken(control: Control, y: Array, parameter: float) -> Outcome:
+    """Return coordinates that are in equilibrium as such; raises Singular."""
+    balance = control.balance(y, parameter)
+    factors = control.factors(balance)
+    return Outcome(y=y, parameter=parameter, norms=(0.0,), failure="", balance=balance, factors=factors)

@@ -5,19 +5,17 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import brentq
 
-from .control import Control
+from .arrays import Array, Flags
+from .control import Control, equilibrate
 from .matrix import Symmetric
-from .newton import equilibrate
 from .response import respond
 from .solution import CriticalPoint
 
 if TYPE_CHECKING:
     from .path import State
 
-Array = NDArray[np.float64]
 
 #: Largest motion of a body over that of the nodes in a mode of the strips alone.
 STANDS = 0.25
@@ -44,7 +42,7 @@ def critical_point(control: Control, before: "State", after: "State") -> Critica
     return point(control, "bifurcation", y, parameter, inertia, f"bifurcation: {what}")
 
 
-def critical_mode(tangent: Symmetric, held: NDArray[np.bool_]) -> tuple[float, Array]:
+def critical_mode(tangent: Symmetric, held: Flags) -> tuple[float, Array]:
     """Return the eigenvalue nearest to zero of the tangent, scaled to units on its diagonal, and its mode.
 
     The mode (size,) is in the coordinates of the tangent, of any size, and zero at those that are held.

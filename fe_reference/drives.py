@@ -7,27 +7,27 @@ drive exerts. At the beginning of a span velocities change at once, by impulses 
 """
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
+from typing import Annotated
 
 import numpy as np
-from numpy.typing import NDArray
 
-from .effects import DrivenDisplacement, History, factor_of, read_history
-from .errors import InvalidParameter, finite
+from .arrays import Array, Flags
+from .effects import ALWAYS_FULL, DrivenDisplacement, factor_of
+from .errors import Checked, History, InvalidParameter, finite, read_history
 from .mass import RigidBodies
 from .model import Model, rotation_matrix
 from .structure import Structure
 
-Array = NDArray[np.float64]
 #: Instants nearer than this part of the motion are the same.
 SAME = 1e-12
 ALWAYS = (0.0, math.inf)
 
 
 @dataclass(frozen=True, kw_only=True)
-class DrivenRotation:
+class DrivenRotation(Checked):
     """The rotation of a body led through angle [rad] times the change of a history, from where it is.
 
     It acts between the two instants `held` [s]. A body that is caught loses the velocity that the drive does
@@ -35,13 +35,12 @@ class DrivenRotation:
     """
 
     body: str | None = None
-    angle: float
-    history: History = ((0.0, 1.0),)
+    angle: Annotated[float, finite, "rad"]
+    history: Annotated[History, read_history] = ALWAYS_FULL
     held: tuple[float, float] = ALWAYS
 
     def __post_init__(self) -> None:
-        finite("angle", self.angle, "rad")
-        object.__setattr__(self, "history", read_history(self.history))
+        super().__post_init__()
         begin, end = self.held
         if not begin < end:
             raise InvalidParameter("held", self.held, "two instants, the first before the second [s]")
@@ -66,7 +65,7 @@ class Span:
         """The bodies whose centres are led."""
         return tuple(sorted({at // 3 for at in self.rates if at % 3 < 2}))
 
-    def held(self, structure: Structure) -> NDArray[np.bool_]:
+    def held(self, structure: Structure) -> Flags:
         """Return which coordinates of a structure are led (size,)."""
         held = np.zeros(structure.size, dtype=bool)
         held[[structure.first_body + at for at in self.rates]] = True
@@ -121,39 +120,28 @@ def drive_spans(model: Model, drive: DrivenRotation | None, duration: float) -> 
 
 
 @dataclass(frozen=True, kw_only=True)
-class Leg:
-    """Steps of one length from an instant on [s]; after each chunk of them, if it is `kept`, is a sample."""
+class Piece:
+    """Equal steps [s] of a motion from an instant on [s]; `kept`: a sample is at their end."""
 
     time: float
     step: float
-    chunks: tuple[int, ...]
+    steps: int
     kept: bool
 
 
-def legs(span: Span, step: float, chunks: list[int]) -> list[Leg]:
-    """Return the legs of a span of a motion whose samples are `chunks` of steps [s] apart.
+def pieces(span: Span, step: float, chunks: Sequence[int]) -> Iterator[Piece]:
+    """Yield the pieces of a span of a motion whose samples are `chunks` of steps [s] apart.
 
     Chunks within which a span begins or ends are cut there, in whole steps of their own.
     """
-    found: list[Leg] = []
-    whole: list[int] = []
-    close, done, first = SAME * step * sum(chunks), 0, 0.0
-    for count in chunks:
-        low, high = step * done, step * (done + count)
-        done += count
+    close, done = SAME * step * sum(chunks), 0
+    for many in chunks:
+        low, high = step * done, step * (done + many)
+        done += many
         begin, end = max(low, span.begin), min(high, span.end)
-        if end - begin <= close:
-            continue
         if end - begin >= high - low - close:
-            first = first if whole else low
-            whole.append(count)
-            continue
-        if whole:
-            found.append(Leg(time=first, step=step, chunks=tuple(whole), kept=True))
-            whole = []
-        parts = max(1, math.ceil((end - begin) / step * (1.0 - SAME)))
-        kept = end >= high - close
-        found.append(Leg(time=begin, step=(end - begin) / parts, chunks=(parts,), kept=kept))
-    if whole:
-        found.append(Leg(time=first, step=step, chunks=tuple(whole), kept=True))
-    return found
+            yield Piece(time=low, step=step, steps=many, kept=True)
+        elif end - begin > close:
+            steps = max(1, math.ceil((end - begin) / step * (1.0 - SAME)))
+            kept = end >= high - close
+            yield Piece(time=begin, step=(end - begin) / steps, steps=steps, kept=kept)

@@ -2,20 +2,19 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import cache
+from functools import cache, partial
 from math import ceil
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from .companion import with_companion
+from .arrays import Array
 from .drives import DrivenRotation, drive_spans
 from .effects import DEFAULT_EFFECTS, DrivenDisplacement, needs_inertia, read_effects
-from .errors import InvalidParameter, choice, count, finite, positive, within
+from .errors import Checked, InvalidParameter, choice, count, finite, optional, positive, within
 from .explicit import Explicit, critical_step
 from .implicit import Implicit
-from .loads import start_load
+from .loads import full_load
 from .mass import about_mass_centre, carried_over
 from .model import Model
 from .modes import natural_frequencies
@@ -23,10 +22,9 @@ from .motion import Progress, Samples, course, sampling
 from .refined import limit_of
 from .solution import Stopwatch
 from .statics import settled_state
-from .structure import Structure, structure_of
-from .trajectory import ENERGIES, Trajectory, trajectory
+from .structure import structure_of
+from .trajectory import ENERGIES, Trajectory, trajectory, with_companion
 
-Array = NDArray[np.float64]
 INTEGRATORS = ("central-difference", "generalised-alpha")
 #: Default of the implicit step: so many in the first period of small motion; strips are fifty times as fast.
 STEPS_PER_PERIOD = 6000
@@ -36,32 +34,59 @@ MOST_NUMBERS = 200_000_000
 
 
 @dataclass(frozen=True, kw_only=True)
-class Run:
-    """How a motion is integrated; the arguments of `solve_motion` of the same names."""
+class Run(Checked):
+    """What is asked of a motion.
 
-    duration: float
-    step: float | None
-    integrator: str
-    safety: float
-    spectral_radius: float
-    samples: int
-    most_steps: int
-    progress: Progress | None
+    Attributes:
+        duration: [s].
+        start: rotation at which a body is held until the start [rad]; None: none is held, and under loads
+            without a history the mechanism stands still.
+        body: name of the held body; None: the only one.
+        drive: a rotation that is held or driven in a part of the motion, if any.
+        settled: whether the start is in equilibrium; if not it is the shape at rest, where gravity, natural
+            strains and loads act at once.
+        increments: of the static path to the start.
+        step: time step [s]. Default: for "central-difference" the smaller critical step of the start and of
+            rest, times `safety`; for "generalised-alpha" a 6000th of the first period of small motion about
+            the shape at rest, without gravity and loads. The default is shortened so that whole steps fill
+            the duration.
+        integrator: "central-difference" (explicit) or "generalised-alpha" (implicit, with `spectral_radius`).
+        samples: states kept beside the start, at most.
+        most_steps: beyond which a run is refused before it begins.
+        accuracy: wanted error of rotations [rad] and of places in strip lengths; the mesh is doubled until
+            the estimate is below it, and the motion is the limit, at equal instants. Each mesh takes eight
+            times as long as the one before.
+        progress: called as progress(done, total) after every sample.
+    """
+
+    duration: Annotated[float, positive, "s"]
+    start: Annotated[float | None, optional, finite, "rad"] = None
+    body: str | None = None
+    drive: DrivenRotation | None = None
+    settled: bool = True
+    increments: Annotated[int, count] = 20
+    step: Annotated[float | None, optional, positive, "s"] = None
+    integrator: Annotated[str, choice, INTEGRATORS] = INTEGRATORS[0]
+    safety: Annotated[float, positive, "1"] = 0.9
+    spectral_radius: Annotated[float, within, 0.0, 1.0 + 1e-12, "1"] = 0.9
+    samples: Annotated[int, count] = 1000
+    most_steps: Annotated[int, count] = MOST_STEPS
     accuracy: float | None = None
+    progress: Progress | None = None
 
     def __post_init__(self) -> None:
-        choice("integrator", self.integrator, INTEGRATORS)
-        positive("duration", self.duration, "s")
-        if self.step is not None:
-            positive("step", self.step, "s")
-        count("samples", self.samples)
-        count("most_steps", self.most_steps)
-        positive("safety", self.safety, "1")
-        within("spectral_radius", self.spectral_radius, 0.0, 1.0 + 1e-12, "1")
-        if self.accuracy is not None and (self.step is not None or self.integrator != INTEGRATORS[0]):
+        super().__post_init__()
+        if self.start is not None and not self.settled:
+            raise InvalidParameter("settled", self.settled, "True for a start at a held rotation [1]")
+        if self.accuracy is not None and (self.step is not None or not self.explicit):
             raise InvalidParameter(
                 "accuracy", self.accuracy, f"no step beside it, and the integrator {INTEGRATORS[0]}"
             )
+
+    @property
+    def explicit(self) -> bool:
+        """Whether the integrator is the explicit one."""
+        return self.integrator == INTEGRATORS[0]
 
 
 def solve_release(pivot: Model, *, start: float | None, duration: float, **options: Any) -> Trajectory:
@@ -71,24 +96,7 @@ def solve_release(pivot: Model, *, start: float | None, duration: float, **optio
 
 
 def solve_motion(
-    mechanism: Model,
-    *,
-    start: float | None = None,
-    body: str | None = None,
-    drive: DrivenRotation | None = None,
-    settled: bool = True,
-    duration: float,
-    step: float | None = None,
-    integrator: str = INTEGRATORS[0],
-    safety: float = 0.9,
-    spectral_radius: float = 0.9,
-    samples: int = 1000,
-    increments: int = 20,
-    most_steps: int = MOST_STEPS,
-    accuracy: float | None = None,
-    check: bool = True,
-    raise_on_failure: bool = True,
-    progress: Progress | None = None,
+    mechanism: Model, *, check: bool = True, raise_on_failure: bool = True, **asked: Any
 ) -> Trajectory:
     """Let a mechanism go at rest from a static state, and follow the motion of all its bodies.
 
@@ -101,28 +109,11 @@ def solve_motion(
     Args:
         mechanism: strips, bodies and effects; both elements and both integrators go together. Masses are
             lumped.
-        start: rotation at which a body is held until the start [rad]; None: none is held, and under loads
-            without a history the mechanism stands still.
-        body: name of the held body; None: the only one.
-        drive: a rotation that is held or driven in a part of the motion, if any.
-        settled: whether the start is in equilibrium; if not it is the shape at rest, where gravity, natural
-            strains and loads act at once.
-        duration: [s].
-        step: time step [s]. Default: for "central-difference" the smaller critical step of the start and of
-            rest, times `safety`; for "generalised-alpha" a 6000th of the first period of small motion about
-            the shape at rest, without gravity and loads. The default is shortened so that whole steps fill
-            the duration.
-        integrator: "central-difference" (explicit) or "generalised-alpha" (implicit, with `spectral_radius`).
-        samples: states kept beside the start, at most.
-        increments: of the static path to the start.
-        most_steps: beyond which a run is refused before it begins.
-        accuracy: wanted error of rotations [rad] and of places in strip lengths; the mesh is doubled until
-            the estimate is below it, and the motion is the limit, at equal instants. Each mesh takes eight
-            times as long as the one before.
         check: whether a motion with fewer elements says how far the rotation is uncertain: `rotation_error`,
             and in `resolution` where that is much. It costs an eighth of the motion, half an implicit one;
             none is made with an accuracy.
-        progress: called as progress(done, total) after every sample.
+        raise_on_failure: whether a motion that ends early raises, or is returned with its status.
+        asked: duration [s], and what else a `Run` knows.
 
     Unless the scene names the rotary inertia of the sections, the
     corotational element has none but a numerical one (see `mass`).
@@ -133,60 +124,33 @@ def solve_motion(
         ConvergenceError: statics does not reach the start; or (unless `raise_on_failure` is False) the motion
             blew up, a step had no solution or the accuracy was not reached: carries what there is.
     """
-    run = Run(
-        duration=duration,
-        step=step,
-        integrator=integrator,
-        safety=safety,
-        spectral_radius=spectral_radius,
-        samples=samples,
-        most_steps=most_steps,
-        progress=progress,
-        accuracy=accuracy,
-    )
-    if start is not None:
-        finite("start", start, "rad")
-    if start is not None and not settled:
-        raise InvalidParameter("settled", settled, "True for a start at a held rotation [1]")
-
-    def solve(model: Model) -> Trajectory:
-        return _moved(model, start, body, drive, settled, increments, run)
-
-    if accuracy is not None:
-        return _limit(mechanism, accuracy, solve).checked(raise_on_failure)
-    motion = solve(mechanism).checked(raise_on_failure)
-    if not check or not settled:
+    run = Run(**asked)
+    if run.accuracy is not None:
+        return _limit(mechanism, run, run.accuracy).checked(raise_on_failure)
+    motion = _moved(mechanism, run).checked(raise_on_failure)
+    if not check or not run.settled:
         return motion
-    return checked(mechanism, motion, start=start, body=body, drive=drive)
+    return checked(mechanism, motion, start=run.start, body=run.body, drive=run.drive)
 
 
-def _limit(model: Model, accuracy: float, solve: Callable[[Model], Trajectory]) -> Trajectory:
+def _limit(model: Model, run: Run, accuracy: float) -> Trajectory:
     """Return the limit of a motion's meshes at the same instants; its rotations and places are judged."""
     units = {**dict.fromkeys((*ENERGIES, "bodies", "rates"), 1.0), "shape": structure_of(model).length}
     turns: dict[str, Callable[[Array], Array]] = {"rotation": lambda places: places[..., 2]}
-    motion = limit_of(model, accuracy, solve, units, turns, ("rotation", "shape"), relative=False)
+    judged = ("rotation", "shape")
+    motion = limit_of(model, accuracy, partial(_moved, run=run), units, turns, judged, relative=False)
     errors = {} if motion.estimate is None else motion.estimate.errors
     return replace(motion, rotation_error=errors.get("rotation", np.nan))
 
 
-def _moved(
-    model: Model,
-    start: float | None,
-    body: str | None,
-    drive: DrivenRotation | None,
-    settled: bool,
-    increments: int,
-    run: Run,
-) -> Trajectory:
+def _moved(model: Model, run: Run) -> Trajectory:
     """Return the motion of a model, however it ended."""
     watch = Stopwatch()
-    rest = np.zeros(structure_of(model).size)
-    y, remark = _start(model, start, body, increments) if settled else (rest, "")
+    y, remarks = _start(model, run) if run.settled else (np.zeros(structure_of(model).size), [])
     watch.stop("start")
-    structure, samples, settings = _integrate(model, y, drive, run, watch)
-    begin: dict[str, float | str] = {} if start is None else {"start_rad": start}
-    samples.remarks += [remark] if remark else []
-    return trajectory(structure, samples, begin | settings, watch)
+    samples, settings = _integrate(model, y, run, watch)
+    begin: dict[str, float | str] = {} if run.start is None else {"start_rad": run.start}
+    return trajectory(samples, begin | settings, remarks, watch)
 
 
 def checked(
@@ -206,42 +170,36 @@ def checked(
     settings: dict[str, Any] = {name: motion.settings[name] for name in names if name in motion.settings}
     if not model.bodies or (body is None and len(model.bodies) > 1):
         return motion
-
-    def run(chosen: Model, **more: Any) -> Trajectory:
-        return solve_motion(chosen, start=start, body=body, drive=drive, check=False, **settings, **more)
-
-    return with_companion(model, motion, body, run)
+    settings |= {"start": start, "body": body, "drive": drive, "check": False}
+    return with_companion(model, motion, body, partial(solve_motion, **settings))
 
 
-def _start(model: Model, rotation: float | None, body: str | None, increments: int) -> tuple[Array, str]:
+def _start(model: Model, run: Run) -> tuple[Array, list[str]]:
     """Return the coordinates of the start about the bodies' centres, and what is to be said of them."""
     needs_inertia(model.effects)
-    load = start_load(structure_of(model))
+    load = full_load(structure_of(model), time=0.0)
     led = model.effects.find(DrivenDisplacement)
     if led is not None:
         model = replace(model, effects=model.effects.changed("driven_displacement", led.at(0.0)))
-    y, remark = settled_state(model, rotation, body, count("increments", increments), load)
-    return y, f"the way to the start: {remark}" if remark else ""
+    y, remark = settled_state(model, run.start, run.body, run.increments, load)
+    return y, [f"the way to the start: {remark}"] if remark else []
 
 
-def _integrate(
-    model: Model, y: Array, drive: DrivenRotation | None, run: Run, watch: Stopwatch
-) -> tuple[Structure, Samples, dict[str, float | str]]:
-    """Integrate from rest at y; return the structure the samples belong to, the samples and the settings."""
+def _integrate(model: Model, y: Array, run: Run, watch: Stopwatch) -> tuple[Samples, dict[str, float | str]]:
+    """Integrate from rest at y; return the samples and the settings."""
     needs_inertia(model.effects)
     own = structure_of(model)
-    explicit = run.integrator == INTEGRATORS[0]
 
     @cache
     def scheme_of(led: tuple[int, ...]) -> Explicit | Implicit:
         about = about_mass_centre(own, led)
-        return Explicit(*about) if explicit else Implicit(*about, run.spectral_radius)
+        return Explicit(*about) if run.explicit else Implicit(*about, run.spectral_radius)
 
     home = scheme_of(()).structure
     choices: dict[str, float] = {"spectral_radius": run.spectral_radius}
     longest = run.duration
-    if explicit:
-        schemes = [scheme_of(span.led) for span in drive_spans(model, drive, run.duration)]
+    if run.explicit:
+        schemes = [scheme_of(span.led) for span in drive_spans(model, run.drive, run.duration)]
         limit = min(
             critical_step(scheme.structure, scheme.bodies, carried_over(own, state, scheme.structure))
             for scheme in {scheme_of(()), *schemes}
@@ -252,13 +210,13 @@ def _integrate(
         longest = 1.0 / (STEPS_PER_PERIOD * _first_frequency(model))
     h, steps = _steps(run, longest)
     _affordable(model, run, h, steps, y.size)
-    spans = drive_spans(model, drive, steps * h)
+    spans = drive_spans(model, run.drive, steps * h)
     watch.stop("compile")
     began = carried_over(own, y, home), np.zeros_like(y)
-    motion = course(scheme_of, spans, *began, h, sampling(steps, run.samples), run.progress)
+    samples = course(scheme_of, spans, *began, h, sampling(steps, run.samples), run.progress)
     watch.stop("solve")
     settings: dict[str, float | str] = {"integrator": run.integrator, "duration_s": run.duration, "step_s": h}
-    return home, motion, settings | choices
+    return samples, settings | choices
 
 
 def _first_frequency(model: Model) -> float:
@@ -274,7 +232,7 @@ def _first_frequency(model: Model) -> float:
 def _cheaper(model: Model, run: Run) -> str:
     """Return what to do about a run of too many steps."""
     allow = "allow more by --most-steps (most_steps)"
-    if run.integrator == "generalised-alpha":
+    if not run.explicit:
         return f"take longer steps, or {allow}"
     steps = run.duration * STEPS_PER_PERIOD * _first_frequency(model)
     return f"--integrator generalised-alpha takes about {max(steps, 1.0):.2g}; or {allow}"

@@ -3,19 +3,28 @@
 A scene names its effects; what is not named is not assembled. Parameters are frozen values in SI units.
 """
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from dataclasses import MISSING, dataclass, field, fields, replace
-from itertools import pairwise
-from typing import Any, Self, TypeVar
+from typing import Annotated, Any, Self, TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 
-from .errors import InvalidParameter, finite, not_negative, pair, partly
+from .arrays import Array
+from .errors import (
+    Checked,
+    History,
+    InvalidParameter,
+    Pair,
+    finite,
+    not_negative,
+    optional,
+    pair,
+    partly,
+    read_history,
+)
 
-Array = NDArray[np.float64]
-Pair = tuple[float, float]
-History = tuple[Pair, ...]
+#: The history of what does not change.
+ALWAYS_FULL: History = ((0.0, 1.0),)
 #: Extra length of a strip cut from one block with its body: a half-plane at a sharp corner, plane stress.
 #: W. J. O'Donnell measured 0.44, J. Appl. Mech. 27 (1960) 461-464.
 MONOLITHIC = 0.416
@@ -25,88 +34,68 @@ CURL = SIDES[:2]
 
 
 @dataclass(frozen=True, kw_only=True)
-class Effect:
+class Effect(Checked):
     """An effect without parameters."""
 
     def turned(self, turn: Array) -> Self:
-        """Return the same effect in a frame turned by the matrix `turn` (2, 2)."""
-        return self
+        """Return the same effect with its vectors turned by the matrix `turn` (2, 2)."""
+        own = {}
+        for each in fields(self):
+            read, *unit = getattr(each.type, "__metadata__", (None,))
+            if read in (pair, partly):
+                vector = getattr(self, each.name)
+                if None in vector:
+                    expected = f"two numbers in a model that turns [{unit[0]}]"
+                    raise InvalidParameter(each.name, vector, expected)
+                own[each.name] = tuple((turn @ np.array(vector)).tolist())
+        return replace(self, **own)
 
 
 @dataclass(frozen=True, kw_only=True)
 class Gravity(Effect):
     """Weight of strips and bodies: acceleration (g_x, g_y) [m/s^2]. Acts whether or not they have inertia."""
 
-    acceleration: Pair
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "acceleration", pair("acceleration", self.acceleration, "m/s^2"))
-
-    def turned(self, turn: Array) -> Self:
-        """Return the same effect with its acceleration turned by the matrix `turn` (2, 2)."""
-        return replace(self, acceleration=_turned(turn, self.acceleration))
+    acceleration: Annotated[Pair, pair, "m/s^2"]
 
 
 @dataclass(frozen=True, kw_only=True)
 class StripDamping(Effect):
     """Kelvin-Voigt material: stress E (strain + b d strain/dt) with relaxation time b [s] in every strain."""
 
-    relaxation_time: float
-
-    def __post_init__(self) -> None:
-        not_negative("relaxation_time", self.relaxation_time, "s")
+    relaxation_time: Annotated[float, not_negative, "s"]
 
 
 @dataclass(frozen=True, kw_only=True)
 class StripDrag(Effect):
     """Force -a mu v per unit length on the strips, in proportion to their mass, with the rate a [1/s]."""
 
-    rate: float
-
-    def __post_init__(self) -> None:
-        not_negative("rate", self.rate, "1/s")
+    rate: Annotated[float, not_negative, "1/s"]
 
 
 @dataclass(frozen=True, kw_only=True)
 class BodyDamping(Effect):
     """Damper between every body and ground: translation of its centre [N s/m] and rotation [N m s]."""
 
-    translation: float = 0.0
-    rotation: float = 0.0
-
-    def __post_init__(self) -> None:
-        not_negative("translation", self.translation, "N s/m")
-        not_negative("rotation", self.rotation, "N m s")
+    translation: Annotated[float, not_negative, "N s/m"] = 0.0
+    rotation: Annotated[float, not_negative, "N m s"] = 0.0
 
 
 @dataclass(frozen=True, kw_only=True)
 class AppliedForce(Effect):
     """Dead force (f_x, f_y) [N] at the centre of a body, times load factor or history."""
 
-    force: Pair
+    force: Annotated[Pair, pair, "N"]
     body: str | None = None
-    history: History = ((0.0, 1.0),)
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "force", pair("force", self.force, "N"))
-        object.__setattr__(self, "history", read_history(self.history))
-
-    def turned(self, turn: Array) -> Self:
-        """Return the same effect with its force turned by the matrix `turn` (2, 2)."""
-        return replace(self, force=_turned(turn, self.force))
+    history: Annotated[History, read_history] = ALWAYS_FULL
 
 
 @dataclass(frozen=True, kw_only=True)
 class AppliedMoment(Effect):
     """Moment [N m] on a body, times load factor or history."""
 
-    moment: float
+    moment: Annotated[float, finite, "N m"]
     body: str | None = None
-    history: History = ((0.0, 1.0),)
-
-    def __post_init__(self) -> None:
-        finite("moment", self.moment, "N m")
-        object.__setattr__(self, "history", read_history(self.history))
+    history: Annotated[History, read_history] = ALWAYS_FULL
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -114,16 +103,8 @@ class TipForce(Effect):
     """Dead force (f_x, f_y) [N] at the free end of a strip, times load factor or history."""
 
     strip: str
-    force: Pair
-    history: History = ((0.0, 1.0),)
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "force", pair("force", self.force, "N"))
-        object.__setattr__(self, "history", read_history(self.history))
-
-    def turned(self, turn: Array) -> Self:
-        """Return the same effect with its force turned by the matrix `turn` (2, 2)."""
-        return replace(self, force=_turned(turn, self.force))
+    force: Annotated[Pair, pair, "N"]
+    history: Annotated[History, read_history] = ALWAYS_FULL
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -135,27 +116,15 @@ class DrivenDisplacement(Effect):
     with a history goes on leading, times that.
     """
 
-    displacement: tuple[float | None, float | None]
+    displacement: Annotated[tuple[float | None, float | None], partly, "m"]
     body: str | None = None
-    history: History | None = None
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "displacement", partly("displacement", self.displacement, "m"))
-        if self.history is not None:
-            object.__setattr__(self, "history", read_history(self.history))
+    history: Annotated[History | None, optional, read_history] = None
 
     def at(self, time: float) -> Self:
         """Return the same effect with the displacement that it has at an instant [s]."""
         part = 1.0 if self.history is None else factor_of(self.history, time)
         x, y = (None if moved is None else part * moved for moved in self.displacement)
         return replace(self, displacement=(x, y))
-
-    def turned(self, turn: Array) -> Self:
-        """Return the same effect with its displacement turned by the matrix `turn` (2, 2)."""
-        x, y = self.displacement
-        if x is None or y is None:
-            raise InvalidParameter("displacement", self.displacement, "two numbers in a model that turns [m]")
-        return replace(self, displacement=_turned(turn, (x, y)))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -166,23 +135,20 @@ class PreStrain(Effect):
     N = EA (eps - strain), with kappa the change of curvature from the shape at rest.
     """
 
-    curvature: float = 0.0
-    strain: float = 0.0
+    curvature: Annotated[float, finite, "1/m"] = 0.0
+    strain: Annotated[float, finite, "1"] = 0.0
 
-    def __post_init__(self) -> None:
-        finite("curvature", self.curvature, "1/m")
-        finite("strain", self.strain, "1")
+
+def root_length(name: str, value: Any) -> float:
+    """Return the extra length of a root in thicknesses of the strip, by number or by name."""
+    return MONOLITHIC if value == "monolithic" else not_negative(name, value, "thicknesses")
 
 
 @dataclass(frozen=True, kw_only=True)
 class RootCompliance(Effect):
     """Clamped ends turn against springs of EI / (root t) [N m]; root: number, or "monolithic": MONOLITHIC."""
 
-    root: float | str
-
-    def __post_init__(self) -> None:
-        own = MONOLITHIC if self.root == "monolithic" else not_negative("root", self.root, "thicknesses")
-        object.__setattr__(self, "root", own)
+    root: Annotated[float, root_length]
 
 
 #: Every effect that these elements can have.
@@ -286,20 +252,6 @@ def _made(name: str, parameters: Mapping[str, Any]) -> Effect:
     return KNOWN[name](**parameters)
 
 
-def _turned(turn: Array, vector: Pair) -> Pair:
-    x, y = (turn @ np.array(vector)).tolist()
-    return x, y
-
-
-def read_history(history: Sequence[Sequence[float]]) -> History:
-    """Return the pairs of instant [s] and factor [1] that a piecewise linear history passes through."""
-    points = tuple(pair("history", point, "s, 1") for point in history)
-    times = [time for time, _ in points]
-    if not points or any(b <= a for a, b in pairwise(times)):
-        raise InvalidParameter("history", history, "pairs of ascending instants [s] and factors [1]")
-    return points
-
-
-def factor_of(history: History, time: float) -> float:
+def factor_of(points: History, time: float) -> float:
     """Return the factor at an instant [s]: constant before the first and after the last."""
-    return float(np.interp(time, *np.transpose(history)))
+    return float(np.interp(time, *np.transpose(points)))

@@ -1,8 +1,14 @@
-"""Refusals of this package: bad parameters, and a solve that stopped, with what it found until then."""
+"""Refusals: a solve that stopped, with what it found until then, and parameters that are read and refused."""
 
 import math
+from collections.abc import Callable, Sequence
+from dataclasses import fields
+from itertools import pairwise
 from numbers import Integral
 from typing import Any
+
+Pair = tuple[float, float]
+History = tuple[Pair, ...]
 
 
 class InvalidParameter(ValueError):
@@ -31,23 +37,28 @@ class ConvergenceError(RuntimeError):
         self.history = history
 
 
+class Checked:
+    """A frozen dataclass that reads its fields as they are annotated, or refuses them by their names.
+
+    `mass: Annotated[float, positive, "kg"]` is read by `positive("mass", mass, "kg")`.
+    """
+
+    def __post_init__(self) -> None:
+        for each in fields(self):  # type: ignore[arg-type]  # every subclass is a dataclass
+            read, *domain = getattr(each.type, "__metadata__", (None,))
+            if read is not None:
+                object.__setattr__(self, each.name, read(each.name, getattr(self, each.name), *domain))
+
+
 def finite(name: str, value: Any, unit: str) -> float:
     """Return `value` as a float, or refuse it if it is not a finite real number."""
-    plain = float_or_same(value)
+    plain = value.item() if getattr(value, "ndim", 1) == 0 else value  # a number of numpy's
     try:
         if isinstance(plain, bool) or not isinstance(plain, int | float) or not math.isfinite(plain):
-            raise InvalidParameter(name, value, f"a finite number [{unit}]")
+            raise InvalidParameter(name, plain, f"a finite number [{unit}]")
     except OverflowError:  # a whole number that no float holds
         raise InvalidParameter(name, value, f"a finite number [{unit}]") from None
     return float(plain)
-
-
-def several(name: str, value: Any, unit: str) -> list[float]:
-    """Return a number, or a sequence of such, as a list of floats; refuse anything else, and none at all."""
-    parts = list(value) if isinstance(value, list | tuple) or getattr(value, "ndim", 0) == 1 else [value]
-    if not parts:
-        raise InvalidParameter(name, value, f"at least one finite number [{unit}]")
-    return [finite(name, part, unit) for part in parts]
 
 
 def positive(name: str, value: Any, unit: str) -> float:
@@ -85,12 +96,25 @@ def choice(name: str, value: Any, known: tuple[str, ...]) -> str:
     return str(value)
 
 
-def pair(name: str, value: Any, unit: str) -> tuple[float, float]:
+def optional(name: str, value: Any, read: Callable[..., Any], *domain: object) -> Any:
+    """Return None for None, and else what `read` makes of the value."""
+    return None if value is None else read(name, value, *domain)
+
+
+def several(name: str, value: Any, unit: str) -> list[float]:
+    """Return a number, or a sequence of such, as a list of floats; refuse anything else, and none at all."""
+    parts = list(value) if isinstance(value, list | tuple) or getattr(value, "ndim", 0) == 1 else [value]
+    if not parts:
+        raise InvalidParameter(name, value, f"at least one finite number [{unit}]")
+    return [finite(name, part, unit) for part in parts]
+
+
+def pair(name: str, value: Any, unit: str) -> Pair:
     """Return `value` as two floats, or refuse it if it is not two finite numbers."""
     parts = list(value) if isinstance(value, list | tuple) or hasattr(value, "tolist") else []
     if len(parts) != 2:
         raise InvalidParameter(name, value, f"two finite numbers [{unit}]")
-    return finite(name, float_or_same(parts[0]), unit), finite(name, float_or_same(parts[1]), unit)
+    return finite(name, parts[0], unit), finite(name, parts[1], unit)
 
 
 def partly(name: str, value: Any, unit: str) -> tuple[float | None, float | None]:
@@ -98,10 +122,12 @@ def partly(name: str, value: Any, unit: str) -> tuple[float | None, float | None
     parts = list(value) if isinstance(value, list | tuple) or hasattr(value, "tolist") else []
     if len(parts) != 2 or parts == [None, None]:
         raise InvalidParameter(name, value, f"two finite numbers [{unit}], or one and None where it is free")
-    x, y = (None if part is None else finite(name, float_or_same(part), unit) for part in parts)
-    return x, y
+    return optional(name, parts[0], finite, unit), optional(name, parts[1], finite, unit)
 
 
-def float_or_same(value: Any) -> Any:
-    """Return a numpy number as a plain one; anything else as it is."""
-    return value.item() if getattr(value, "ndim", 1) == 0 else value
+def read_history(name: str, value: Sequence[Sequence[float]]) -> History:
+    """Return the pairs of instant [s] and factor [1] that a piecewise linear history passes through."""
+    points = tuple(pair(name, point, "s, 1") for point in value)
+    if not points or any(b <= a for (a, _), (b, _) in pairwise(points)):
+        raise InvalidParameter(name, value, "pairs of ascending instants [s] and factors [1]")
+    return points

@@ -14,17 +14,15 @@ ch. 6.
 """
 
 import numpy as np
-from numpy.typing import NDArray
 
 from .actions import Actions, advance
-from .drives import Leg
+from .arrays import Array
+from .drives import Piece
 from .errors import InvalidParameter
 from .law import TANGENT
-from .mass import RigidBodies, lumped_diagonal, lumped_elements
-from .motion import BLOW_UP, Keep, Samples
+from .mass import RigidBodies, lumped_elements
+from .motion import Instant, Samples, Scheme
 from .structure import Structure
-
-Array = NDArray[np.float64]
 
 
 def critical_step(structure: Structure, bodies: RigidBodies, y: Array) -> float:
@@ -43,26 +41,22 @@ def critical_step(structure: Structure, bodies: RigidBodies, y: Array) -> float:
     root = np.sqrt(lumped).T
     tangents = structure.element_matrices(y, TANGENT) / (root[:, :, None] * root[:, None, :])
     highest = float(np.linalg.eigvalsh(tangents)[:, -1].max())
-    curvature = structure.evaluate(y).curvature[0]
+    curvature = structure.evaluate(y).curvature[:, 0]
     square = highest + float(np.max(curvature / bodies.moment_of_inertia, initial=0.0))
     actions = Actions(structure)
     decay = actions.fastest_decay(y, lumped, bodies.mass, bodies.moment_of_inertia) if actions.damped else 0.0
     return float(4.0 / (decay + np.sqrt(decay**2 + 4.0 * square)))
 
 
-class Explicit:
+class Explicit(Scheme):
     """The scheme for one structure, reduced about the centres of mass of its `bodies`.
 
     Raises:
         InvalidParameter: a coordinate without inertia, which no explicit step can follow.
     """
 
-    blow_up = BLOW_UP
-
     def __init__(self, structure: Structure, bodies: RigidBodies) -> None:
-        self.structure, self.bodies = structure, bodies
-        self.actions = Actions(structure)
-        self.mass = lumped_diagonal(structure, bodies)
+        super().__init__(structure, bodies)
         if not np.all(self.mass > 0.0):
             raise InvalidParameter(
                 "integrator",
@@ -72,38 +66,27 @@ class Explicit:
         self.compliance = np.zeros((structure.strips * structure.stations, 3))
         self.compliance[structure.free_nodes] = 1.0 / self.mass[: structure.first_body].reshape(-1, 3)
 
-    def go(
-        self, leg: Leg, y: Array, v: Array, held: NDArray[np.bool_], samples: Samples, keep: Keep
-    ) -> tuple[Array, Array] | None:
-        """Go through a leg from coordinates y and velocities v, the held ones led at theirs."""
-        s, actions, h, done = self.structure, self.actions, leg.step, 0
-        inverse = np.where(held, 0.0, 1.0 / self.mass)
-        first, before, totals = actions.resist(y, v, leg.time), samples.books.copy(), np.zeros(2)
-        late = v + 0.5 * h * inverse * first.force  # half a step before the start
-        nodal_v, bodies = np.zeros((s.strips * s.stations, 3)), y[s.first_body :].reshape(-1, 3).copy()
+    def go(self, now: Instant, piece: Piece, samples: Samples) -> Instant:
+        """Return the instant after a piece of steps."""
+        s, actions, h, totals = self.structure, self.actions, piece.step, np.zeros(2)
+        late = now.v - 0.5 * h * now.a  # half a step before
+        nodal_v, bodies = np.zeros((s.strips * s.stations, 3)), now.y[s.first_body :].reshape(-1, 3).copy()
         nodal_v[s.free_nodes] = late[: s.first_body].reshape(-1, 3)
-        state = (s.displacement(y), nodal_v, bodies, late[s.first_body :].reshape(-1, 3).copy())
-        masses = (self.compliance, inverse[s.first_body :].reshape(-1, 3))
-        for steps in leg.chunks:
-            tables = (actions.given, actions.dissipative, actions.histories, actions.arrays)
-            advance(*tables, *masses, *state, totals, leg.time + done * h, h, steps)
-            done += steps
-            time = leg.time + done * h
-            y, late = (
-                np.concatenate([nodes[s.free_nodes].ravel(), carried.ravel()])
-                for nodes, carried in (state[::2], state[1::2])
-            )
-            acting = actions.resist(y, late, time)
-            v = late - 0.5 * h * inverse * acting.force
-            # what the loop gathered is brought from mid-step to the sample
-            given = acting.load_power - first.load_power + float((acting.force - first.force)[held] @ v[held])
-            samples.books[:] = before + totals
-            samples.books += 0.5 * h * given, h * (acting.loss_power - first.loss_power)
-            samples.counters.update(steps=steps, force_evaluations=steps + 1)
-            if leg.kept and not keep(time, y, v, acting):
-                return None
-        return y, v
-
-    def remarks(self, samples: Samples, step: float) -> list[str]:
-        """Return what the step leaves unresolved: nothing, as it is stable."""
-        return []
+        state = (s.displacement(now.y), nodal_v, bodies, late[s.first_body :].reshape(-1, 3).copy())
+        compliance = (self.compliance, self.inverse[s.first_body :].reshape(-1, 3))
+        advance(actions.acting, compliance, state, totals, now.time, h, piece.steps)
+        y, late = (
+            np.concatenate([nodes[s.free_nodes].ravel(), carried.ravel()])
+            for nodes, carried in (state[::2], state[1::2])
+        )
+        time, first = now.time + piece.steps * h, now.acting
+        acting = actions.resist(y, late, time)
+        a = -self.inverse * acting.force
+        v = late + 0.5 * h * a
+        # what the loop gathered is brought from mid-step to the sample
+        led = float((acting.force - first.force)[self.held] @ v[self.held])
+        given = acting.load_power - first.load_power + led
+        samples.books += totals
+        samples.books += 0.5 * h * given, h * (acting.loss_power - first.loss_power)
+        samples.counters.update(steps=piece.steps, force_evaluations=piece.steps + 1)
+        return Instant(time=time, y=y, v=v, a=a, acting=acting)

@@ -7,17 +7,14 @@ from collections.abc import Callable, Sequence
 from itertools import islice
 
 import numpy as np
-from numpy.typing import NDArray
 
 from .arc_length import Stride, Walk
-from .control import Control
+from .control import Control, taken
 from .critical import bodies_stand, point
 from .matrix import Singular
-from .newton import taken
 from .path import Path
 from .solution import CriticalPoint
 
-Array = NDArray[np.float64]
 Progress = Callable[[int, int], None]
 COUNTERS = (
     "increments",
@@ -97,7 +94,7 @@ def limit_point(path: Path, toward: float) -> CriticalPoint | None:
     for stride in islice(walk.onward(here, FIRST, LONGEST), MOST):
         if stride.turned:
             return _turned(walk, stride)
-        if abs(stride.end.parameter - last.parameter) > NEAR:
+        if abs(stride.end.found.parameter - last.parameter) > NEAR:
             return None
     return None
 
@@ -110,4 +107,4 @@ def _turned(walk: Walk, stride: Stride) -> CriticalPoint:
     kind = "turning point" if driven else "limit point"
     strips = bodies_stand(control, at.rate)
     what = "the strips buckle" if strips else "the strips give way with the body"
-    return point(control, kind, at.y, at.parameter, at.negative + 1, f"{kind}: {what}")
+    return point(control, kind, at.found.y, at.found.parameter, at.response.inertia + 1, f"{kind}: {what}")

@@ -15,19 +15,16 @@ the strips stay in equilibrium with the bodies if they start there, and else rea
 Source: J. Chung, G. M. Hulbert, J. Appl. Mech. 60 (1993) 371-375.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
-from .actions import Actions, Resistance
-from .drives import Leg
-from .mass import RigidBodies, lumped_diagonal
+from .arrays import Array, Flags
+from .drives import Piece
+from .mass import RigidBodies
 from .matrix import Factors, Singular
-from .motion import Keep, Samples
+from .motion import Instant, Samples, Scheme
 from .structure import Structure
-
-Array = NDArray[np.float64]
 
 #: Iterations of one step. The tangent of an earlier step serves until the residual falls less than tenfold.
 ITERATIONS = 20
@@ -42,45 +39,39 @@ GAIN = LOST = 0.01
 COARSEST = 20.0
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Instant:
-    """The state at an instant of a motion.
-
-    Attributes:
-        time [s]. y, v, a (size,): coordinates, velocities, accelerations. acting: what resists there.
-    """
-
-    time: float
-    y: Array
-    v: Array
-    a: Array
-    acting: Resistance
-
-
-class Implicit:
+class Implicit(Scheme):
     """The scheme at a spectral radius, for a structure reduced about the centres of mass of its `bodies`."""
 
     blow_up = GAIN
 
     def __init__(self, structure: Structure, bodies: RigidBodies, spectral_radius: float) -> None:
+        super().__init__(structure, bodies)
         r = spectral_radius
-        self.structure, self.bodies = structure, bodies
-        self.mass = lumped_diagonal(structure, bodies)
         self.am, self.af = (2.0 * r - 1.0) / (r + 1.0), r / (r + 1.0)
         self.gamma = 0.5 - self.am + self.af
         self.beta = 0.25 * (1.0 - self.am + self.af) ** 2
         self.tolerance = max(TOLERANCE, structure.round_off)
+        self._factor: tuple[float, Factors] | None = None
 
-        self.actions = Actions(structure)
-        self._factor: Factors | None = None
-        self._factor_step = 0.0
-        self._held = np.zeros(structure.size, dtype=bool)
+    def start(self, time: float, y: Array, v: Array, held: Flags) -> Instant:
+        """Return an instant as any scheme does, without the factors of what was held before."""
+        self._factor = None
+        return super().start(time, y, v, held)
 
-    def start(self, time: float, y: Array, v: Array) -> Instant:
-        """Return an initial instant with its consistent acceleration, zero where there is no inertia."""
-        acting, inert = self.actions.resist(y, v, time), (self.mass > 0.0) & ~self._held
-        a = np.where(inert, -acting.force / np.where(inert, self.mass, 1.0), 0.0)
-        return Instant(time=time, y=y, v=v, a=a, acting=acting)
+    def go(self, now: Instant, piece: Piece, samples: Samples) -> Instant | None:
+        """Return the instant after a piece of steps, or None where one has no solution."""
+        begin = now.time
+        for done in range(1, piece.steps + 1):
+            after = self.step(now, piece.step, samples)
+            if after is None:
+                samples.message = f"no solution of the step of {piece.step:.3g} s at {now.time:.6g} s"
+                return None
+            powers = np.array([self._powers(at) for at in (now, after)])
+            samples.books += 0.5 * piece.step * powers.sum(axis=0)
+            samples.content += self.mass @ after.a**2, self.mass @ after.v**2
+            samples.counters["steps"] += 1
+            now = replace(after, time=begin + done * piece.step)
+        return now
 
     def step(self, now: Instant, h: float, samples: Samples, depth: int = 0) -> Instant | None:
         """Return the instant after h [s], in halved steps where needed; None if those fail too."""
@@ -106,7 +97,7 @@ class Implicit:
             y, v = coasting + reach * a, drifting + self.gamma * h * a
             acting = self.actions.resist(y, v, time)
             residual = (1.0 - self.am) * mass * a + (1.0 - self.af) * acting.force + held
-            residual[self._held] = 0.0
+            residual[self.held] = 0.0
             norms.append(float(np.abs(residual / scale).max()))
             samples.counters["force_evaluations"] += 1
             if norms[-1] <= self.tolerance:
@@ -114,19 +105,18 @@ class Implicit:
             if not np.isfinite(norms[-1]):
                 break
             samples.counters["iterations"] += 1
-            factor = self._factor
-            if factor is None or h != self._factor_step or norms[-1] > SLOW * norms[-2]:
+            if self._factor is None or h != self._factor[0] or norms[-1] > SLOW * norms[-2]:
                 try:
-                    factor = self._factorise(y, h, samples)
+                    self._factor = h, self._factorise(y, h, samples)
                 except Singular:
                     break
-            a -= factor.solve(residual) / reach
+            a -= self._factor[1].solve(residual) / reach
         samples.history.append(tuple(norms[1:]))
         self._factor = None
         return None
 
     def _factorise(self, y: Array, h: float, samples: Samples) -> Factors:
-        """Factorise the tangent of a step of h [s] at y, and keep the factors for the steps that follow.
+        """Return the factors of the tangent of a step of h [s] at y, kept for the steps that follow.
 
         What the dampers' forces change with the place is left out: the iteration is a modified one anyway.
         """
@@ -135,54 +125,24 @@ class Implicit:
             tangent.data += self.gamma / (self.beta * h) * self.actions.damping_matrix(y).data
         tangent.data *= 1.0 - self.af
         tangent.data[tangent.pattern.diagonal] += (1.0 - self.am) / (self.beta * h**2) * self.mass
-        self._factor, self._factor_step = tangent.factors(self._held), h
         samples.counters["factorisations"] += 1
-        return self._factor
-
-    def go(
-        self, leg: Leg, y: Array, v: Array, held: NDArray[np.bool_], samples: Samples, keep: Keep
-    ) -> tuple[Array, Array] | None:
-        """Go through a leg from coordinates y and velocities v, the held ones led at theirs."""
-        if (held != self._held).any():
-            self._held, self._factor = held, None
-        now, done = self.start(leg.time, y, v), 0
-        for steps in leg.chunks:
-            for _ in range(steps):
-                after = self.step(now, leg.step, samples)
-                if after is None:
-                    samples.message = f"no solution of the step of {leg.step:.3g} s at {now.time:.6g} s"
-                    return None
-                powers = np.array([self._powers(at) for at in (now, after)])
-                samples.books += 0.5 * leg.step * powers.sum(axis=0)
-                samples.content += self.mass @ after.a**2, self.mass @ after.v**2
-                samples.counters["steps"] += 1
-                done += 1
-                now = replace(after, time=leg.time + done * leg.step)
-            if leg.kept and not keep(now.time, now.y, now.v, now.acting):
-                return None
-        return now.y, now.v
+        return tangent.factors(self.held)
 
     def _powers(self, at: Instant) -> tuple[float, float]:
         """Return the power of loads and drives, and of the dampers [W]."""
-        led = float(at.acting.force[self._held] @ at.v[self._held])
+        led = float(at.acting.force[self.held] @ at.v[self.held])
         return at.acting.load_power + led, at.acting.loss_power
 
     def remarks(self, samples: Samples, step: float) -> list[str]:
-        """Return what the step [s] leaves unresolved."""
-        return _unresolved(step, samples.content, samples.lost())
+        """Return what the step h [s] leaves unresolved.
 
-
-def _unresolved(step: float, content: Array, lost: float) -> list[str]:
-    """Return what the step leaves unresolved.
-
-    Args:
-        step: h [s]. content: sums of a.M a and v.M v over the steps, whose ratio is the mean square of the
-            circular frequencies by their kinetic energy. lost: part of the energy that the scheme damped.
-    """
-    remarks = []
-    if content[0] * step**2 * COARSEST**2 > 4.0 * np.pi**2 * content[1]:
-        each = 2.0 * np.pi * np.sqrt(content[1] / content[0]) / step
-        remarks.append(f"only {each:.3g} steps in a mean period of what moves: take shorter steps")
-    if lost > LOST:
-        remarks.append(f"the scheme damped {lost:.1%} of the energy away: take shorter steps")
-    return remarks
+        The ratio of a.M a and v.M v, summed over the steps, is the mean square of the circular frequencies by
+        their kinetic energy.
+        """
+        remarks, content, lost = [], samples.content, samples.lost()
+        if content[0] * step**2 * COARSEST**2 > 4.0 * np.pi**2 * content[1]:
+            each = 2.0 * np.pi * np.sqrt(content[1] / content[0]) / step
+            remarks.append(f"only {each:.3g} steps in a mean period of what moves: take shorter steps")
+        if lost > LOST:
+            remarks.append(f"the scheme damped {lost:.1%} of the energy away: take shorter steps")
+        return remarks

@@ -41,15 +41,15 @@ Mech. Eng. 58 (1986) 79-116.
 
 import math
 
-import numpy as np
-from numpy.typing import NDArray
-
+from .arrays import Array, Indices, kernel
 from .bending import STEPS, bent_element, section
-from .kernel import kernel
 
-Array = NDArray[np.float64]
-Indices = NDArray[np.int64]
-
+Energies = tuple[float, float, float]
+#: The step of the displacement over an element [m], and the turns of its end sections [rad].
+Moved = tuple[float, float, float, float]
+#: What `elements` is given and what it writes.
+Given = tuple[bool, Array, Indices]
+Written = tuple[Array, Array, Array, Array]
 #: What is asked of the law: forces, with the tangent, or with the part of it that comes from the change of
 #: the strains alone.
 FORCES, TANGENT, MATERIAL = 0, 1, 2
@@ -58,14 +58,13 @@ QUADRATIC = 1e-9
 
 
 @kernel()
-def _corotational(
-    row: Array, share: float, x: float, y: float, turn_1: float, turn_2: float, asked: int, f: Array, h: Array
-) -> tuple[float, float, float]:
+def _corotational(row: Array, share: float, moved: Moved, asked: int, f: Array, h: Array) -> Energies:
     """Write force x, y at the second node, both moments and the largest turn of an end from the element (5,).
 
-    Also the tangent (4, 4), if it is asked for; return bending, axial and shear energy.
+    Also the tangent (4, 4) in `moved`, if it is asked for; return bending, axial and shear energy.
     """
-    step_x, step_y, length_0, rate = x, y, row[2], row[4] / row[2]
+    step_x, step_y, turn_1, turn_2 = moved
+    length_0, rate = row[2], row[4] / row[2]
     x, y = row[0] + step_x, row[1] + step_y
     length = math.sqrt(x * x + y * y)
     # (l^2 - l0^2) / (l + l0) from the displacements: no cancellation of two nearly equal lengths
@@ -77,12 +76,12 @@ def _corotational(
     first -= 2.0 * math.pi * math.floor(first / (2.0 * math.pi) + 0.5)
     second -= 2.0 * math.pi * math.floor(second / (2.0 * math.pi) + 0.5)
     axial, natural = row[3] * strain / length, share * row[4] * row[7]
-    if row[8] == 0.0 and row[12] == 0.0 and row[13] == 0.0:
+    if row[8] == 0.0:
         moment_1, moment_2 = rate * (4.0 * first + 2.0 * second), rate * (2.0 * first + 4.0 * second)
         bending = 0.5 * (moment_1 * first + moment_2 * second)
         k_11, k_12, k_22 = 4.0 * rate, 2.0 * rate, 4.0 * rate
     else:
-        bending, moment_1, moment_2, k_11, k_12, k_22 = bent_element(row, natural, first, second)
+        bending, moment_1, moment_2, k_11, k_12, k_22 = bent_element(row, first, second)
     shear = (moment_1 + moment_2) / (length * length)
     f[0], f[1] = axial * x + shear * y, axial * y - shear * x
     f[2], f[3] = moment_1 + natural, moment_2 - natural
@@ -105,10 +104,9 @@ def _corotational(
 
 
 @kernel()
-def _reissner(
-    row: Array, share: float, x: float, y: float, turn_1: float, turn_2: float, asked: int, f: Array, h: Array
-) -> tuple[float, float, float]:
+def _reissner(row: Array, share: float, moved: Moved, asked: int, f: Array, h: Array) -> Energies:
     """Write the same for the shear-deformable element."""
+    x, y, turn_1, turn_2 = moved
     length, half = row[2], 0.25 * (turn_1 + turn_2)
     sine, less = 2.0 * math.sin(half) * math.cos(half), 2.0 * math.sin(half) ** 2
     cosine = 1.0 - less
@@ -145,14 +143,21 @@ def _reissner(
 
 
 @kernel()
-def _rooted(
-    row: Array, share: float, x: float, y: float, turn_1: float, turn_2: float, asked: int, f: Array, h: Array
-) -> tuple[float, float, float]:
-    """Write the same for a shear-deformable element whose end sections are held to its nodes by roots."""
+def _law(shear: bool, row: Array, share: float, moved: Moved, asked: int, f: Array, h: Array) -> Energies:
+    """Write the same for either element."""
+    if shear:
+        return _reissner(row, share, moved, asked, f, h)
+    return _corotational(row, share, moved, asked, f, h)
+
+
+@kernel()
+def _rooted(shear: bool, row: Array, share: float, moved: Moved, asked: int, f: Array, h: Array) -> Energies:
+    """Write the same for an element whose end sections are held to its nodes by roots."""
+    x, y, turn_1, turn_2 = moved
     c_1, c_2, last, psi_1, psi_2 = row[12], row[13], math.inf, turn_1, turn_2
     # psi - phi + c M(psi) = 0
     for _ in range(STEPS):
-        _reissner(row, share, x, y, psi_1, psi_2, TANGENT, f, h)
+        _law(shear, row, share, (x, y, psi_1, psi_2), TANGENT, f, h)
         r_1, r_2 = psi_1 - turn_1 + c_1 * f[2], psi_2 - turn_2 + c_2 * f[3]
         a, b, c, d = 1.0 + c_1 * h[2, 2], c_1 * h[2, 3], c_2 * h[2, 3], 1.0 + c_2 * h[3, 3]
         whole = a * d - b * c
@@ -161,7 +166,7 @@ def _rooted(
         if not QUADRATIC < size < last:
             break
         last = size
-    parts = _reissner(row, share, x, y, psi_1, psi_2, asked, f, h)
+    parts = _law(shear, row, share, (x, y, psi_1, psi_2), asked, f, h)
     if asked != FORCES:
         _condense(c_1, c_2, h)
     return parts[0] + 0.5 * (c_1 * f[2] * f[2] + c_2 * f[3] * f[3]), parts[1], parts[2]
@@ -186,44 +191,35 @@ def _condense(c_1: float, c_2: float, h: Array) -> None:
 
 
 @kernel()
-def elements(
-    shear: bool,
-    table: Array,
-    first: Indices,
-    share: float,
-    asked: int,
-    u: Array,
-    force: Array,
-    ends: Array,
-    matrices: Array,
-    h: Array,
-) -> tuple[float, float, float]:
+def elements(given: Given, share: float, asked: int, u: Array, written: Written) -> Energies:
     """Evaluate all elements at once.
 
     Args:
-        shear: whether they are Reissner's. table (E, 14), first nodes (E,); the second node is the next one.
+        given: whether they are Reissner's, the table (E, 14), first nodes (E,); the second is the next one.
         share: of the natural strains that acts. asked: FORCES, TANGENT or MATERIAL.
-        u (nodes, 3): displacements and turns. force (nodes, 3): written, what holds the elements.
-        ends (E, 5): written, force x, y [N] at the second node, the moments [N m] at both, and the largest
-            turn of an end from the element [rad].
-        matrices (E, 6, 6): written where a tangent is asked for. h (4, 4): scratch.
+        u (nodes, 3): displacements and turns.
+        written: the force (nodes, 3) that holds the elements; ends (E, 5): force x, y [N] at the second node,
+            the moments [N m] at both, and the largest turn of an end from the element [rad]; matrices
+            (E, 6, 6), where a tangent is asked for; scratch (4, 4).
 
     Returns:
         Bending, axial and shear energy [J].
     """
+    (shear, table, first), (force, ends, matrices, h) = given, written
     for i in range(len(force)):
         force[i, 0] = force[i, 1] = force[i, 2] = 0.0
     bending, axial, sliding = 0.0, 0.0, 0.0
     for e in range(len(first)):
         i = first[e]
         j, f = i + 1, ends[e]
-        x, y = u[j, 0] - u[i, 0], u[j, 1] - u[i, 1]
-        if not shear:
-            parts = _corotational(table[e], share, x, y, u[i, 2], u[j, 2], asked, f, h)
-        elif table[e, 12] == 0.0 and table[e, 13] == 0.0:
-            parts = _reissner(table[e], share, x, y, u[i, 2], u[j, 2], asked, f, h)
+        moved = (u[j, 0] - u[i, 0], u[j, 1] - u[i, 1], u[i, 2], u[j, 2])
+        # told apart here, as every call deeper costs as much as the element itself
+        if table[e, 12] != 0.0 or table[e, 13] != 0.0:
+            parts = _rooted(shear, table[e], share, moved, asked, f, h)
+        elif shear:
+            parts = _reissner(table[e], share, moved, asked, f, h)
         else:
-            parts = _rooted(table[e], share, x, y, u[i, 2], u[j, 2], asked, f, h)
+            parts = _corotational(table[e], share, moved, asked, f, h)
         bending, axial, sliding = bending + parts[0], axial + parts[1], sliding + parts[2]
         force[i, 0] -= f[0]
         force[i, 1] -= f[1]

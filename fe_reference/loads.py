@@ -4,14 +4,15 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from .effects import AppliedForce, AppliedMoment, History, TipForce, factor_of
-from .kernel import kernel
+from .arrays import Array, Indices, kernel
+from .effects import ALWAYS_FULL, AppliedForce, AppliedMoment, TipForce, factor_of
+from .errors import History
+from .rigid import turned
 from .structure import Structure
 
-Array = NDArray[np.float64]
-Indices = NDArray[np.int64]
+#: Loads while time passes, as `load_tables` makes them.
+Histories = tuple[Indices, Array, Indices, Array, Array]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -26,7 +27,7 @@ class Pull:
 
     target: int
     row: Array
-    history: History = ((0.0, 1.0),)
+    history: History = ALWAYS_FULL
 
 
 def applied(structure: Structure) -> list[Pull]:
@@ -49,7 +50,7 @@ def on_body(
     *,
     force: Sequence[float] = (0.0, 0.0),
     moment: float = 0.0,
-    history: History = ((0.0, 1.0),),
+    history: History = ALWAYS_FULL,
 ) -> Pull:
     """Return a dead force [N] at the centre of a body (None: the only one) and a moment [N m] on it."""
     k = structure.model.body_index(name)
@@ -57,32 +58,27 @@ def on_body(
     return Pull(target=k, row=np.array([*force, moment, *offset]), history=history)
 
 
-def load_vector(structure: Structure, pulls: Sequence[Pull], factors: Sequence[float] | None = None) -> Array:
+def load_vector(structure: Structure, pulls: Sequence[Pull], time: float | None = None) -> Array:
     """Return the generalised force of loads (size,) of a structure about the centres of its bodies.
 
-    It is constant: the loads act at centres and free ends, where they have no arm that turns.
+    It is constant: the loads act at centres and free ends, where they have no arm that turns. They act in
+    full, or as their histories are at an instant [s].
     """
     vector = np.zeros(structure.size)
-    for pull, factor in zip(pulls, factors or [1.0] * len(pulls), strict=True):
+    for pull in pulls:
         free = np.flatnonzero(structure.free_nodes == -1 - pull.target)
         at = structure.first_body + 3 * pull.target if pull.target >= 0 else 3 * int(free[0])
-        vector[at : at + 3] += factor * pull.row[:3]
+        vector[at : at + 3] += (1.0 if time is None else factor_of(pull.history, time)) * pull.row[:3]
     return vector
 
 
-def full_load(structure: Structure, *more: Pull) -> Array | None:
-    """Return all named loads at load factor 1, and more, as one (size,); None if there are none."""
+def full_load(structure: Structure, *more: Pull, time: float | None = None) -> Array | None:
+    """Return all named loads and more as one (size,), as of `load_vector`; None if there are none."""
     pulls = [*applied(structure), *more]
-    return load_vector(structure, pulls) if pulls else None
+    return load_vector(structure, pulls, time) if pulls else None
 
 
-def start_load(structure: Structure) -> Array | None:
-    """Return the loads as they are at the start of a motion; None if none is named."""
-    pulls = applied(structure)
-    return load_vector(structure, pulls, [factor_of(pull.history, 0.0) for pull in pulls]) if pulls else None
-
-
-def load_tables(pulls: Sequence[Pull]) -> tuple[Indices, Array, Indices, Array, Array]:
+def load_tables(pulls: Sequence[Pull]) -> Histories:
     """Return targets (K,), rows (K, 5), begins (K + 1,) of the histories in instants and factors (H,)."""
     points = np.array([point for pull in pulls for point in pull.history]).reshape(-1, 2)
     instants, factors = np.ascontiguousarray(points.T)
@@ -102,23 +98,14 @@ def _factor_at(instants: Array, factors: Array, begin: int, end: int, time: floa
 
 
 @kernel()
-def load_forces(
-    targets: Indices,
-    rows: Array,
-    begins: Indices,
-    instants: Array,
-    factors: Array,
-    time: float,
-    bodies: Array,
-    pulls: Array,
-) -> None:
+def load_forces(histories: Histories, time: float, bodies: Array, pulls: Array) -> None:
     """Write the generalised forces (K, 3) of the loads at an instant."""
+    targets, rows, begins, instants, factors = histories
     for k in range(len(targets)):
         factor, moment = _factor_at(instants, factors, begins[k], begins[k + 1], time), rows[k, 2]
         if targets[k] >= 0:
-            c, s = np.cos(bodies[targets[k], 2]), np.sin(bodies[targets[k], 2])
-            arm_x, arm_y = c * rows[k, 3] - s * rows[k, 4], s * rows[k, 3] + c * rows[k, 4]
-            moment += arm_x * rows[k, 1] - arm_y * rows[k, 0]
+            x, y = turned(bodies[targets[k], 2], rows[k, 3], rows[k, 4])
+            moment += x * rows[k, 1] - y * rows[k, 0]
         pulls[k, 0], pulls[k, 1], pulls[k, 2] = factor * rows[k, 0], factor * rows[k, 1], factor * moment
 
 

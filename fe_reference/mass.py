@@ -26,12 +26,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from .arrays import Array
 from .matrix import Symmetric
+from .rigid import swept, turned
 from .structure import Structure
 
-Array = NDArray[np.float64]
 MASSES = ("consistent", "lumped")
 #: Integrals of the products of the slopes of the four cubics, times 30 l.
 SLOPES = np.array([[36, 3, -36, 3], [3, 4, -3, -1], [-36, -3, 36, -3], [3, -1, -3, 4]], dtype=float)
@@ -117,13 +117,10 @@ def carried_over(before: Structure, y: Array, after: Structure, v: Array | None 
     With velocities v return those instead.
     """
     moved = y.copy() if v is None else v.copy()
-    for k in range(len(before.points)):
+    for k in range(0 if after is before else len(before.points)):
         at, offset = before.body_slice(k), after.points[k] - before.points[k]
-        sine, less = np.sin(y[at][2]), 2.0 * np.sin(0.5 * y[at][2]) ** 2
-        across = np.array([-less * offset[0] - sine * offset[1], sine * offset[0] - less * offset[1]])
-        if v is not None:
-            across = v[at][2] * np.array([-across[1] - offset[1], across[0] + offset[0]])
-        moved[at.start : at.start + 2] += across
+        arm, way = turned(y[at][2], *offset), swept(y[at][2], *offset)
+        moved[at.start : at.start + 2] += way if v is None else (-v[at][2] * arm[1], v[at][2] * arm[0])
     return moved
 
 
@@ -152,11 +149,10 @@ def body_blocks(structure: Structure, y: Array, values: Array, whole: Symmetric)
 
     They are masses and moments of inertia, or the coefficients of dampers.
     """
-    theta = y[structure.turns]
     for k, (translation, rotation) in enumerate(values):
-        c, s = np.cos(theta[k]), np.sin(theta[k])
-        gx, gy = structure.model.bodies[k].centre - structure.points[k]
-        slope = np.array([[1.0, 0.0, -s * gx - c * gy], [0.0, 1.0, c * gx - s * gy]])
+        at, offset = structure.body_slice(k), structure.model.bodies[k].centre - structure.points[k]
+        arm = turned(y[at][2], *offset)
+        slope = np.array([[1.0, 0.0, -arm[1]], [0.0, 1.0, arm[0]]])
         block = translation * slope.T @ slope
         block[2, 2] += rotation
         whole.data[structure.pattern.blocks[k]] += block

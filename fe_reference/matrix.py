@@ -12,14 +12,14 @@ Source: A. George, J. W. H. Liu, Computer Solution of Large Sparse Positive Defi
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.sparse import csc_matrix
 from skfem.assembly.form.coo_data import COOData
 
-from .kernel import kernel
+from .arrays import Array, Flags, Indices, kernel
+from .rigid import Carried, turned
 
-Array = NDArray[np.float64]
-Indices = NDArray[np.int64]
+#: Where the entries of the rows of a matrix are, and where its factors have theirs.
+Lines = tuple[Indices, Indices, Indices, Indices]
 
 
 class Singular(ArithmeticError):
@@ -28,13 +28,7 @@ class Singular(ArithmeticError):
 
 @kernel()
 def assemble(
-    matrices: Array,
-    ends: Indices,
-    carrier: Indices,
-    offsets: Array,
-    turns: Array,
-    places: Indices,
-    data: Array,
+    matrices: Array, ends: Indices, carried: Carried, turns: Array, places: Indices, data: Array
 ) -> None:
     """Add element matrices (E, 6, 6) to the entries of a matrix; the ends on bodies are reduced in place.
 
@@ -42,20 +36,17 @@ def assemble(
         ends (E, 2): which attached node the ends are, or -1. turns (B,): of the bodies.
         places (E, 6, 6): of the entries in data, or -1.
     """
+    _, carrier, offsets = carried
     for e in range(len(matrices)):
         matrix = matrices[e]
         for end in range(2):
             k, row = ends[e, end], 3 * end
             if k >= 0:
-                c, s = np.cos(turns[carrier[k]]), np.sin(turns[carrier[k]])
-                slope_x, slope_y = (
-                    -s * offsets[k, 0] - c * offsets[k, 1],
-                    c * offsets[k, 0] - s * offsets[k, 1],
-                )
+                x, y = turned(turns[carrier[k]], offsets[k, 0], offsets[k, 1])
                 for j in range(6):
-                    matrix[row + 2, j] += slope_x * matrix[row, j] + slope_y * matrix[row + 1, j]
+                    matrix[row + 2, j] += x * matrix[row + 1, j] - y * matrix[row, j]
                 for j in range(6):
-                    matrix[j, row + 2] += slope_x * matrix[j, row] + slope_y * matrix[j, row + 1]
+                    matrix[j, row + 2] += x * matrix[j, row + 1] - y * matrix[j, row]
         for i in range(6):
             for j in range(6):
                 if places[e, i, j] >= 0:
@@ -74,20 +65,12 @@ def _times(starts: Indices, rows: Indices, data: Array, x: Array, out: Array) ->
 
 
 @kernel()
-def _factorise(
-    starts: Indices,
-    rows: Indices,
-    data: Array,
-    held: NDArray[np.bool_],
-    begin: Indices,
-    first: Indices,
-    low: Array,
-    d: Array,
-) -> int:
+def _factorise(lines: Lines, data: Array, held: Flags, low: Array, d: Array) -> int:
     """Write L within the envelope and D; return the number of negative entries of D, -1 if one is zero.
 
     Row i of L begins in column first[i], at low[begin[i]].
     """
+    starts, rows, begin, first = lines
     negative = 0
     for i in range(len(d)):
         at = begin[i] - first[i]
@@ -188,11 +171,11 @@ class Symmetric:
         _times(p.starts, p.rows, self.data, np.atleast_2d(x), out.reshape(-1, p.size))
         return out
 
-    def factors(self, held: NDArray[np.bool_]) -> "Factors":
+    def factors(self, held: Flags) -> "Factors":
         """Return the factors of its rows and columns that are not held (size,); raises Singular."""
         p = self.pattern
         low, d = np.empty(int(np.sum(np.arange(p.size) - p.first))), np.empty(p.size)
-        negative = _factorise(p.starts, p.rows, self.data, held, p.begin, p.first, low, d)
+        negative = _factorise((p.starts, p.rows, p.begin, p.first), self.data, held, low, d)
         if negative < 0:
             raise Singular("the tangent is singular")
         return Factors(p, held, low, d, negative)
@@ -203,7 +186,7 @@ class Factors:
     """Factors of a matrix; negative: the number of its negative eigenvalues, the held rows left out."""
 
     pattern: Envelope
-    held: NDArray[np.bool_]
+    held: Flags
     low: Array
     d: Array
     negative: int

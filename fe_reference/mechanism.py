@@ -1,38 +1,27 @@
 """Mechanisms of any number of strips and rigid bodies, from designs that name what is joined to what."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from .arrays import Array
 from .effects import DEFAULT_EFFECTS, read_effects
 from .errors import InvalidParameter, count, finite, pair
-from .model import FREE, GROUND, NOT_GIVEN, Body, Model, Section, Strip
+from .model import FREE, GROUND, Body, Model, Section, Strip
 
-Array = NDArray[np.float64]
-
-
-@dataclass(frozen=True, kw_only=True)
-class BodyDesign:
-    """A rigid body: name, centre of mass at rest [m], mass [kg], moment of inertia about it [kg m^2]."""
-
-    name: str
-    centre: Sequence[float]
-    mass: float = 0.0
-    moment_of_inertia: float = 0.0
+#: A body is its own design.
+BodyDesign = Body
 
 
 @dataclass(frozen=True, kw_only=True)
-class StripDesign:
-    """A strip of constant section between two points.
+class StripDesign(Section):
+    """A section, and the two points between which a strip has it.
 
     Attributes:
         name: what it is called. start, end: of its axis at rest [m].
         root, tip: "ground" or the name of the body that its start and its end are on; None if it is free.
-        youngs_modulus [Pa], poisson_ratio [1], density [kg/m^3].
-        area [m^2], second_moment_of_area [m^4]; or width and thickness [m], which make them, or all four.
         rise: sagitta of the circular arc it is at rest [m], to the left of start to end; 0: straight.
     """
 
@@ -41,14 +30,7 @@ class StripDesign:
     end: Sequence[float]
     root: str | None = "ground"
     tip: str | None
-    area: float = NOT_GIVEN
-    second_moment_of_area: float = NOT_GIVEN
-    youngs_modulus: float
-    poisson_ratio: float
-    density: float
     rise: float = 0.0
-    width: float | None = None
-    thickness: float | None = None
 
 
 def mechanism(
@@ -75,30 +57,14 @@ def mechanism(
         raise InvalidParameter("bodies", "ground", "another name for a body that moves [name]")
     return Model(
         strips=tuple(_strip(design, names, elements) for design in strips),
-        bodies=tuple(
-            Body(
-                name=body.name,
-                centre=np.array(pair("centre", body.centre, "m")),
-                mass=body.mass,
-                moment_of_inertia=body.moment_of_inertia,
-            )
-            for body in bodies
-        ),
+        bodies=tuple(bodies),
         element=element,
         effects=read_effects(effects, parameters or {}),
     )
 
 
 def _strip(design: StripDesign, bodies: Sequence[str], elements: int) -> Strip:
-    section = Section(
-        area=design.area,
-        second_moment_of_area=design.second_moment_of_area,
-        youngs_modulus=design.youngs_modulus,
-        poisson_ratio=design.poisson_ratio,
-        density=design.density,
-        width=design.width,
-        thickness=design.thickness,
-    )
+    section = Section(**{each.name: getattr(design, each.name) for each in fields(Section)})
     return Strip(
         name=design.name,
         section=section,

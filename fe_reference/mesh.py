@@ -16,15 +16,12 @@ of theta, with f the force of the element on the end.
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from skfem import Basis, ElementLineP1, ElementVector, MeshLine
 
-from .clamped_width import left_by_clamps, shares
+from .arrays import Array, Indices
 from .effects import CURL, PreStrain, RootCompliance
 from .model import FREE, Model, Strip
-
-Array = NDArray[np.float64]
-Indices = NDArray[np.int64]
+from .plate import left_by_clamps, shares
 
 #: One-point rule: what the shear-deformable element is free of locking by.
 MIDPOINT = (np.array([[0.5]]), np.array([1.0]))

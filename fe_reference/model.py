@@ -6,10 +6,11 @@ radians.
 
 import math
 from dataclasses import dataclass, field, replace
+from typing import Annotated
 
 import numpy as np
-from numpy.typing import NDArray
 
+from .arrays import Array
 from .effects import (
     CURL,
     SIDES,
@@ -20,9 +21,8 @@ from .effects import (
     PreStrain,
     TipForce,
 )
-from .errors import InvalidParameter, choice, not_negative, positive, within
+from .errors import Checked, InvalidParameter, choice, not_negative, pair, positive, within
 
-Array = NDArray[np.float64]
 ELEMENTS = ("corotational", "reissner")
 #: What an end of a strip is on, where it is not on a body: clamped to ground, or on nothing.
 GROUND, FREE = -1, -2
@@ -39,7 +39,7 @@ def rotation_matrix(angle: float) -> Array:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Section:
+class Section(Checked):
     """Cross-section and material of a strip: a linear elastic, homogeneous beam section.
 
     Symbols: A [m^2], I [m^4], E [Pa], nu [1], rho [kg/m^3], shear factor k [1].
@@ -51,23 +51,18 @@ class Section:
     where they are given they hold, and must be those of the sides to ROUNDING.
     """
 
-    area: float = NOT_GIVEN
-    second_moment_of_area: float = NOT_GIVEN
-    youngs_modulus: float
-    poisson_ratio: float
-    density: float
-    shear_factor: float = 5.0 / 6.0
+    area: Annotated[float, positive, "m^2"] = NOT_GIVEN
+    second_moment_of_area: Annotated[float, positive, "m^4"] = NOT_GIVEN
+    youngs_modulus: Annotated[float, positive, "Pa"]
+    poisson_ratio: Annotated[float, within, -1.0, 0.5, "1"]
+    density: Annotated[float, positive, "kg/m^3"]
+    shear_factor: Annotated[float, positive, "1"] = 5.0 / 6.0
     width: float | None = None
     thickness: float | None = None
 
     def __post_init__(self) -> None:
         self._read_sides()
-        positive("area", self.area, "m^2")
-        positive("second_moment_of_area", self.second_moment_of_area, "m^4")
-        positive("youngs_modulus", self.youngs_modulus, "Pa")
-        within("poisson_ratio", self.poisson_ratio, -1.0, 0.5, "1")
-        positive("density", self.density, "kg/m^3")
-        positive("shear_factor", self.shear_factor, "1")
+        super().__post_init__()
 
     def _read_sides(self) -> None:
         """Fill in what the sides make of the section; refuse what contradicts them, and half a section."""
@@ -172,10 +167,7 @@ class Body:
     def __post_init__(self) -> None:
         not_negative("body_mass", self.mass, "kg")
         not_negative("body_moment_of_inertia", self.moment_of_inertia, "kg m^2")
-        centre = np.array(self.centre, dtype=float)
-        if centre.shape != (2,) or not np.isfinite(centre).all():
-            raise InvalidParameter("centre", self.centre, "two finite coordinates [m]")
-        object.__setattr__(self, "centre", centre)
+        object.__setattr__(self, "centre", np.array(pair("centre", self.centre, "m")))
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -1,14 +1,13 @@
 """Natural frequencies and shapes of small motion about a static state: K x = omega^2 M x."""
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.linalg import eigh
 from scipy.sparse import csc_matrix
 from scipy.sparse.linalg import eigsh, splu
 
+from .arrays import Array, Flags
 from .effects import DrivenDisplacement, needs_inertia
 from .errors import ConvergenceError, InvalidParameter, choice
 from .errors import count as at_least_one
@@ -16,10 +15,8 @@ from .mass import MASSES, mass_matrix
 from .model import Model
 from .refined import Quantities, refine
 from .solution import ErrorEstimate
-from .statics import static_state
+from .statics import settled_state
 from .structure import Structure, structure_of
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -87,58 +84,37 @@ def natural_frequencies(
         raise InvalidParameter("held", held, "a driven rotation to hold [1]")
 
     def solve(model: Model) -> Modes:
-        return _modes(model, rotation, count, held, kind, increments, body)
+        structure = structure_of(model)
+        y, _ = settled_state(model, rotation, body, increments)
+        values, full = _lowest(structure, y, ~_held(structure, body, held), kind, count)
+        moves = np.array([structure.velocity(y, mode)[:, :2] for mode in full])
+        return Modes(
+            rotation=np.nan if rotation is None else float(rotation),
+            held=held,
+            mass=kind,
+            frequency=np.sign(values) * np.sqrt(np.abs(values)) / (2.0 * np.pi),
+            shapes=moves.reshape(len(full), structure.strips, structure.stations, 2),
+            body_shapes=full[:, structure.first_body :],
+            state=y,
+        )
 
-    return solve(pivot) if accuracy is None else _limit(pivot, accuracy, solve)
-
-
-def _limit(model: Model, accuracy: float, solve: Callable[[Model], Modes]) -> Modes:
-    """Return the modes of the finest mesh, with the limits of their frequencies."""
-
-    def quantities(modes: Modes) -> Quantities:
-        largest = float(np.abs(modes.frequency).max())
-        return {f"frequency_{k}": (value, largest) for k, value in enumerate(modes.frequency, start=1)}
-
-    refined = refine(model, accuracy, solve, quantities)
-    modes = replace(
-        refined.answer, frequency=np.array(list(refined.limits.values())), estimate=refined.estimate
-    )
+    if accuracy is None:
+        return solve(pivot)
+    refined = refine(pivot, accuracy, solve, _frequencies)
+    limits = np.array(list(refined.limits.values()))
+    modes = replace(refined.answer, frequency=limits, estimate=refined.estimate)
     if refined.message:
         raise ConvergenceError(refined.message, solution=modes, load_factor=1.0, history=())
     return modes
 
 
-def _modes(
-    pivot: Model,
-    rotation: float | None,
-    count: int,
-    held: bool,
-    kind: str,
-    increments: int,
-    body: str | None,
-) -> Modes:
-    """Return the modes of one mesh."""
-    structure = structure_of(pivot)
-    y = static_state(pivot, rotation, body, increments)
-    kept = np.flatnonzero(~_held(structure, body, held))
-    stiffness = structure.evaluate(y).tangent.sparse()[:, kept][kept].tocsc()
-    inertia = mass_matrix(structure, y, kind).sparse()[:, kept][kept].tocsc()
-    values, vectors = _lowest(structure, stiffness, inertia, count)
-    full = np.zeros((len(values), structure.size))
-    full[:, kept] = vectors.T
-    full *= np.sign(full[np.arange(len(full)), np.abs(full).argmax(axis=1)])[:, None]
-    return Modes(
-        rotation=np.nan if rotation is None else float(rotation),
-        held=held,
-        mass=kind,
-        frequency=np.sign(values) * np.sqrt(np.abs(values)) / (2.0 * np.pi),
-        shapes=_nodal_shapes(structure, full, y),
-        body_shapes=full[:, structure.first_body :],
-        state=y,
-    )
+def _frequencies(modes: Modes) -> Quantities:
+    """Return the frequencies by name, each with the largest as its unit."""
+    largest = float(np.abs(modes.frequency).max())
+    return {f"frequency_{k}": (value, largest) for k, value in enumerate(modes.frequency, start=1)}
 
 
-def _held(structure: Structure, body: str | None, turn: bool) -> NDArray[np.bool_]:
+def _held(structure: Structure, body: str | None, turn: bool) -> Flags:
     """Return which coordinates a release does not let go (size,): what is led on, and a held turn."""
     held, model = np.zeros(structure.size, dtype=bool), structure.model
     if turn:
@@ -150,26 +126,31 @@ def _held(structure: Structure, body: str | None, turn: bool) -> NDArray[np.bool
     return held
 
 
-def _lowest(
-    structure: Structure, stiffness: csc_matrix, mass: csc_matrix, wanted: int
-) -> tuple[Array, Array]:
-    """Return the `wanted` lowest eigenvalues [1/s^2], ascending, and vectors of unit modal mass.
+def _lowest(structure: Structure, y: Array, free: Flags, kind: str, wanted: int) -> tuple[Array, Array]:
+    """Return the `wanted` lowest eigenvalues [1/s^2], ascending, and modes (C, size) of unit modal mass.
 
     Inverse iteration (Lanczos) keeps the lowest modes free of the round-off of the stiffest ones. It is
     shifted a little below zero, so that rigid motions do not make it singular. What has no mass is condensed.
     """
+    kept = np.flatnonzero(free)
+    matrices = (structure.evaluate(y).tangent, mass_matrix(structure, y, kind))
+    stiffness, mass = (matrix.sparse()[:, kept][kept].tocsc() for matrix in matrices)
     if "strip_inertia" not in structure.model.effects:
-        return _condensed(structure.first_body, stiffness, mass, wanted)
-    _available(wanted, stiffness.shape[0])
-    if wanted >= stiffness.shape[0] - 1:
-        values, vectors = eigh(stiffness.toarray(), mass.toarray())
-        return values[:wanted], vectors[:, :wanted]
-    shift = -0.01 * structure.force_unit / float(np.abs(mass.diagonal()[0::3]).sum())
-    shift /= structure.length
-    start = np.ones(stiffness.shape[0])
-    values, vectors = eigsh(stiffness, wanted, mass, sigma=shift, which="LM", v0=start, tol=0.0)
-    order = np.argsort(values)
-    return values[order], vectors[:, order]
+        values, vectors = _condensed(structure.first_body, stiffness, mass, wanted)
+    elif _available(wanted, len(kept)) >= len(kept) - 1:
+        values, vectors = eigh(stiffness.toarray(), mass.toarray(), subset_by_index=(0, wanted - 1))
+    else:
+        shift = -0.01 * structure.force_unit / float(np.abs(mass.diagonal()[0::3]).sum())
+        start = np.ones(len(kept))
+        values, vectors = eigsh(
+            stiffness, wanted, mass, sigma=shift / structure.length, which="LM", v0=start, tol=0.0
+        )
+        order = np.argsort(values)
+        values, vectors = values[order], vectors[:, order]
+    full = np.zeros((len(values), structure.size))
+    full[:, kept] = vectors.T
+    full *= np.sign(full[np.arange(len(full)), np.abs(full).argmax(axis=1)])[:, None]
+    return values, full
 
 
 def _condensed(strips: int, stiffness: csc_matrix, mass: csc_matrix, wanted: int) -> tuple[Array, Array]:
@@ -185,12 +166,8 @@ def _condensed(strips: int, stiffness: csc_matrix, mass: csc_matrix, wanted: int
     return values, shapes @ vectors[:, order] * np.sqrt(values)
 
 
-def _available(wanted: int, available: int) -> None:
+def _available(wanted: int, available: int) -> int:
+    """Return the wanted number of modes, or refuse it if there are not as many."""
     if at_least_one("count", wanted) > available:
         raise InvalidParameter("count", wanted, f"at most {available} modes of this mesh [1]")
-
-
-def _nodal_shapes(structure: Structure, full: Array, y: Array) -> Array:
-    """Return the displacements (C, G, P, 2) of the nodes for modes (C, size) at the state y."""
-    moves = np.array([structure.velocity(y, mode)[:, :2] for mode in full])
-    return moves.reshape(len(full), structure.strips, structure.stations, 2)
+    return wanted

@@ -1,26 +1,68 @@
-"""Samples of a motion, kept while it is computed, and its course: from span to span, whatever the scheme."""
+"""A motion from span to span, whatever the scheme: its samples, and where the energy of each comes from."""
 
 from collections import Counter
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
-from typing import Protocol
+from dataclasses import dataclass, field, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from .actions import Actions, Resistance
-from .drives import Leg, Span, legs
-from .mass import RigidBodies, carried_over
+from .arrays import Array, Flags
+from .drives import Piece, Span, pieces
+from .mass import RigidBodies, carried_over, lumped_diagonal
 from .structure import Structure
 
-Array = NDArray[np.float64]
 Progress = Callable[[int, int], None]
-#: Keeps a sample: an instant [s], coordinates, velocities and what resists there; whether to go on.
-Keep = Callable[[float, Array, Array, Resistance], bool]
 #: Relative gain of energy above which a motion is called unstable: a sound one keeps within a thousandth.
 BLOW_UP = 0.1
 #: Part of EI/L that is at stake in any motion.
 FLOOR = 1e-12
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Instant:
+    """The state at an instant of a motion.
+
+    Attributes:
+        time [s]. y, v, a (size,): coordinates, velocities, accelerations. acting: what resists there.
+    """
+
+    time: float
+    y: Array
+    v: Array
+    a: Array
+    acting: Resistance
+
+
+class Scheme:
+    """A way to integrate the motion of a structure reduced about the centres of mass of its `bodies`.
+
+    Attributes:
+        blow_up: relative gain of energy that stops a motion. mass (size,): lumped. held (size,): what is led;
+        inverse (size,): of the mass, zero where there is none and where it is led.
+    """
+
+    blow_up = BLOW_UP
+
+    def __init__(self, structure: Structure, bodies: RigidBodies) -> None:
+        self.structure, self.bodies = structure, bodies
+        self.mass, self.actions = lumped_diagonal(structure, bodies), Actions(structure)
+        self.held = np.zeros(structure.size, dtype=bool)
+
+    def start(self, time: float, y: Array, v: Array, held: Flags) -> Instant:
+        """Return an instant with its consistent acceleration, from which what is `held` is led at its v."""
+        self.held, inert = held, (self.mass > 0.0) & ~held
+        self.inverse = np.where(inert, 1.0 / np.where(inert, self.mass, 1.0), 0.0)
+        acting = self.actions.resist(y, v, time)
+        return Instant(time=time, y=y, v=v, a=-self.inverse * acting.force, acting=acting)
+
+    def go(self, now: Instant, piece: Piece, samples: "Samples") -> Instant | None:
+        """Return the instant after a piece of steps, or None where the motion stopped; books their work."""
+        raise NotImplementedError
+
+    def remarks(self, samples: "Samples", step: float) -> list[str]:
+        """Return what the step [s] leaves unresolved: nothing where it is stable."""
+        return []
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -52,15 +94,15 @@ class Samples:
     """States of a motion in the reduced coordinates at the sampled instants, the start first.
 
     Attributes:
+        home: the scheme in whose coordinates they are.
         time [s], y (size,), v (size,), energy: instants, coordinates, velocities, energies.
         unstable: whether the motion was stopped because its energy blew up.
         message: why and when the motion stopped early ("" if it did not).
-        floor: energy that is at stake in any motion [J]: what loads put into a rest at first is held against
-            it. blow_up: relative gain of energy that stops the motion. remarks: on what it leaves unresolved.
         books: work of loads and drives, and what dampers took, until now [J]. content: sums of a.M a and
             v.M v over implicit steps.
     """
 
+    home: Scheme
     time: list[float] = field(default_factory=list)
     y: list[Array] = field(default_factory=list)
     v: list[Array] = field(default_factory=list)
@@ -69,12 +111,40 @@ class Samples:
     history: list[tuple[float, ...]] = field(default_factory=list)
     unstable: bool = False
     message: str = ""
-    floor: float = 0.0
-    blow_up: float = BLOW_UP
-    remarks: list[str] = field(default_factory=list)
     books: Array = field(default_factory=lambda: np.zeros(2))
     content: Array = field(default_factory=lambda: np.zeros(2))
     _stake: float = 0.0
+
+    @property
+    def floor(self) -> float:
+        """Energy that is at stake in any motion [J]: what loads put into a rest is held against it."""
+        return FLOOR * self.home.structure.moment_unit
+
+    def kinetic(self, scheme: Scheme, y: Array, v: Array) -> float:
+        """Return the kinetic energy of a state of a scheme [J]."""
+        return 0.5 * float(self.home.mass @ carried_over(scheme.structure, y, self.home.structure, v) ** 2)
+
+    def beside(self, scheme: Scheme, at: Instant) -> float:
+        """Return the kinetic energy beside the scheme's, of bodies with a mass off the point that is led."""
+        if scheme is self.home:
+            return 0.0
+        return self.kinetic(scheme, at.y, at.v) - 0.5 * float(scheme.mass @ at.v**2)
+
+    def take(self, scheme: Scheme, at: Instant, begun: float) -> bool:
+        """Keep an instant if its energy is sound; begun: `beside` at the beginning of the span.
+
+        At constant rates drives do the work of what is beside the scheme's energy as well.
+        """
+        work, dissipated = self.books
+        energy = Energy(
+            kinetic=self.kinetic(scheme, at.y, at.v),
+            strain=at.acting.strain,
+            gravity=at.acting.gravity,
+            work=float(work) + self.beside(scheme, at) - begun,
+            dissipated=float(dissipated),
+        )
+        places = (scheme.structure, at.y, self.home.structure)
+        return self.keep(at.time, carried_over(*places), carried_over(*places, at.v), energy)
 
     def keep(self, time: float, y: Array, v: Array, energy: Energy) -> bool:
         """Keep a state if its energy is sound; otherwise note when it was lost and return False.
@@ -84,7 +154,7 @@ class Samples:
         start = self.energy[0] if self.time else energy
         self._stake = max(self._stake, (self.energy[-1] if self.time else energy).scale)
         at_stake = max(self._stake, abs(energy.work), abs(energy.gravity), self.floor)
-        if not np.isfinite(energy.balance) or energy.balance - start.balance > self.blow_up * at_stake:
+        if not np.isfinite(energy.balance) or energy.balance - start.balance > self.home.blow_up * at_stake:
             self.unstable = True
             self.message = (
                 f"the energy grew from {start.balance:.6g} J to {energy.balance:.6g} J"
@@ -114,34 +184,13 @@ def sampling(steps: int, samples: int) -> list[int]:
     return [every] * whole + ([rest] if rest else [])
 
 
-class Scheme(Protocol):
-    """A way to integrate the motion of a structure reduced about points of its bodies.
-
-    blow_up: relative gain of energy that stops a motion. bodies: about these points. mass (size,): lumped.
-    """
-
-    blow_up: float
-    structure: Structure
-    bodies: RigidBodies
-    mass: Array
-    actions: Actions
-
-    def go(
-        self, leg: Leg, y: Array, v: Array, held: NDArray[np.bool_], samples: Samples, keep: Keep
-    ) -> tuple[Array, Array] | None:
-        """Return coordinates and velocities after a leg, or None where the motion stopped."""
-
-    def remarks(self, samples: Samples, step: float) -> list[str]:
-        """Return what the step [s] leaves unresolved."""
-
-
 def course(
     scheme_of: Callable[[tuple[int, ...]], Scheme],
     spans: Sequence[Span],
     y: Array,
     v: Array,
     step: float,
-    chunks: list[int],
+    chunks: Sequence[int],
     progress: Progress | None = None,
 ) -> Samples:
     """Integrate from coordinates y and velocities v through the spans of a motion.
@@ -152,49 +201,25 @@ def course(
         step: [s]. chunks: steps between samples.
         progress: called as progress(done, total) after every sample.
     """
-    home = scheme = scheme_of(())
-    samples = Samples(floor=FLOOR * home.structure.moment_unit, blow_up=home.blow_up)
-    own, rates = y, v
-
-    def kinetic(y: Array, v: Array) -> float:
-        return 0.5 * float(home.mass @ carried_over(scheme.structure, y, home.structure, v) ** 2)
-
-    def beside(y: Array, v: Array) -> float:
-        """Kinetic energy that a body has beside the scheme's, as its mass is off the point that is led."""
-        return kinetic(y, v) - 0.5 * float(scheme.mass @ v**2)
-
-    def keep(time: float, y: Array, v: Array, acting: Resistance) -> bool:
-        work, dissipated = samples.books
-        energy = Energy(
-            kinetic=kinetic(y, v),
-            strain=acting.strain,
-            gravity=acting.gravity,
-            work=float(work) + beside(y, v) - apart,  # at constant rates drives do that work as well
-            dissipated=float(dissipated),
-        )
-        place, speed = (carried_over(scheme.structure, y, home.structure, *rate) for rate in ((), (v,)))
-        sound = samples.keep(time, place, speed, energy)
-        if progress is not None and sound and time > 0.0:
-            progress(len(samples.time) - 1, len(chunks))
-        return sound
-
+    scheme = scheme_of(())
+    samples = Samples(home=scheme)
     for span in spans:
-        before = scheme.structure
-        scheme = scheme_of(span.led)
-        own, rates = (carried_over(before, own, scheme.structure, *rate) for rate in ((), (rates,)))
-        caught = span.caught(scheme.structure, scheme.bodies, own, rates)
-        gained = kinetic(own, caught) - kinetic(own, rates)
+        before, scheme = scheme.structure, scheme_of(span.led)
+        y, v = carried_over(before, y, scheme.structure), carried_over(before, y, scheme.structure, v)
+        caught = span.caught(scheme.structure, scheme.bodies, y, v)
+        gained = samples.kinetic(scheme, y, caught) - samples.kinetic(scheme, y, v)
         samples.books += (0.0, -gained) if span.begins else (gained, 0.0)
-        rates, held = caught, span.held(scheme.structure)
-        apart = beside(own, rates)
+        now = scheme.start(span.begin, y, caught, span.held(scheme.structure))
+        begun = samples.beside(scheme, now)
         if not samples.time:
-            keep(0.0, own, rates, scheme.actions.resist(own, rates, 0.0))
-        for leg in legs(span, step, chunks):
-            after = scheme.go(leg, own, rates, held, samples, keep)
-            if after is None:
-                samples.remarks += home.remarks(samples, step)
+            samples.take(scheme, now, begun)
+        for piece in pieces(span, step, chunks):
+            after = scheme.go(replace(now, time=piece.time), piece, samples)
+            if after is None or (piece.kept and not samples.take(scheme, after, begun)):
                 return samples
-            own, rates = after
-        samples.books[0] += beside(own, rates) - apart
-    samples.remarks += home.remarks(samples, step)
+            now = after
+            if piece.kept and progress is not None:
+                progress(len(samples.time) - 1, len(chunks))
+        samples.books[0] += samples.beside(scheme, now) - begun
+        y, v = now.y, now.v
     return samples

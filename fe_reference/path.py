@@ -12,17 +12,14 @@ from collections import Counter
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
-from .control import Balance, Control
+from .arrays import Array
+from .control import LAST, Balance, Control, Outcome, equilibrate, taken
 from .critical import critical_point, tipping
 from .errors import InvalidParameter
 from .matrix import Singular
-from .newton import LAST, Outcome, equilibrate, taken
 from .response import Response, respond
 from .solution import CriticalPoint
-
-Array = NDArray[np.float64]
 
 #: An increment is halved at least so often before it is given up, and until it is this part of the path.
 HALVINGS, SMALLEST = 6, 2.0**-20

@@ -5,10 +5,11 @@ from typing import Any
 
 import numpy as np
 
+from .arrays import Array
 from .effects import DEFAULT_EFFECTS
-from .errors import InvalidParameter, finite, positive, within
+from .errors import finite, pair, positive, within
 from .mechanism import BodyDesign, StripDesign, mechanism
-from .model import NOT_GIVEN, Model, rotation_matrix
+from .model import Model, rotation_matrix
 
 
 def cross_axis_pivot(
@@ -16,21 +17,15 @@ def cross_axis_pivot(
     length: float,
     inclination: float,
     crossing_ratio: float,
-    area: float = NOT_GIVEN,
-    second_moment_of_area: float = NOT_GIVEN,
-    youngs_modulus: float,
-    poisson_ratio: float,
-    density: float,
     body_mass: float,
     body_moment_of_inertia: float,
     centre_offset: Sequence[float] = (0.0, 0.0),
     orientation: float = 0.0,
-    width: float | None = None,
-    thickness: float | None = None,
     effects: Sequence[str] = DEFAULT_EFFECTS,
     parameters: Mapping[str, Mapping[str, Any]] | None = None,
     elements: int = 20,
     element: str = "corotational",
+    **section: Any,
 ) -> Model:
     """Return the pivot at rest, with the ground end A1 of the first strip at the origin.
 
@@ -42,36 +37,24 @@ def cross_axis_pivot(
 
     Args:
         length: L [m]. inclination: a [rad], between 0 and pi/2. crossing_ratio: r, between 0 and 1.
-        area [m^2], second_moment_of_area [m^4], youngs_modulus [Pa], poisson_ratio [1], density [kg/m^3]: of
-        strips. body_mass [kg], body_moment_of_inertia about its centre [kg m^2]; zero is legal.
-        width, thickness [m]: of strips, in place of area and second moment of area, or beside them.
+        body_mass [kg], body_moment_of_inertia about its centre [kg m^2]; zero is legal.
         centre_offset: (2,) [m]. orientation: of the whole, counter-clockwise [rad].
         effects: names of the effects of the scene. parameters: of those that have any, by name.
         elements: number of elements a strip. element: "corotational" or "reissner".
+        section: of both strips, as of `model.Section`: youngs_modulus [Pa], poisson_ratio [1], density
+            [kg/m^3], and area [m^2] with second_moment_of_area [m^4], or width with thickness [m].
 
     Raises:
         InvalidParameter: a value outside its domain; one line with name, value, expectation and unit.
     """
-    span = positive("length", length, "m")
-    angle = within("inclination", inclination, 0.0, 0.5 * np.pi, "rad")
-    ratio = within("crossing_ratio", crossing_ratio, 0.0, 1.0, "1")
-    if len(centre_offset) != 2:
-        raise InvalidParameter("centre_offset", centre_offset, "two coordinates [m]")
-    offset = np.array([finite("centre_offset", part, "m") for part in centre_offset])
-    run, rise = span * np.cos(angle), span * np.sin(angle)
-    ground = np.array([[0.0, 0.0], [2.0 * ratio * run, 0.0]])
-    ends = ground + np.array([[run, rise], [-run, rise]])
+    ground, ends = _clamps(
+        positive("length", length, "m"),
+        within("inclination", inclination, 0.0, 0.5 * np.pi, "rad"),
+        within("crossing_ratio", crossing_ratio, 0.0, 1.0, "1"),
+    )
     turn = rotation_matrix(finite("orientation", orientation, "rad")).T
+    offset = np.array(pair("centre_offset", centre_offset, "m"))
     ground, ends, offset = ground @ turn, ends @ turn, offset @ turn
-    given: dict[str, Any] = {
-        "area": area,
-        "second_moment_of_area": second_moment_of_area,
-        "youngs_modulus": youngs_modulus,
-        "poisson_ratio": poisson_ratio,
-        "density": density,
-        "width": width,
-        "thickness": thickness,
-    }
     body = BodyDesign(
         name="body",
         centre=ends.mean(axis=0) + offset,
@@ -79,7 +62,7 @@ def cross_axis_pivot(
         moment_of_inertia=body_moment_of_inertia,
     )
     strips = [
-        StripDesign(name=f"strip_{number}", start=a, end=b, tip=body.name, **given)
+        StripDesign(name=f"strip_{number}", start=a, end=b, tip=body.name, **section)
         for number, (a, b) in enumerate(zip(ground, ends, strict=True), start=1)
     ]
     return mechanism(
@@ -90,3 +73,10 @@ def cross_axis_pivot(
         elements=elements,
         element=element,
     )
+
+
+def _clamps(length: float, angle: float, ratio: float) -> tuple[Array, Array]:
+    """Return the ends of both strips on ground and on the body (2, 2) [m]."""
+    run, rise = length * np.cos(angle), length * np.sin(angle)
+    ground = np.array([[0.0, 0.0], [2.0 * ratio * run, 0.0]])
+    return ground, ground + np.array([[run, rise], [-run, rise]])

@@ -10,14 +10,13 @@ from dataclasses import dataclass, fields, replace
 from typing import Any, Generic, TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 
+from .arrays import Array
 from .errors import positive
 from .model import Model, Strip
 from .solution import ErrorEstimate, StaticSolution, Status
 from .trajectory import Trajectory
 
-Array = NDArray[np.float64]
 Answer = TypeVar("Answer")
 Solved = TypeVar("Solved", StaticSolution, Trajectory)
 #: Quantities by name: values at the same places on every mesh, and a unit, below which all is round-off.

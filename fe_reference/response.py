@@ -1,19 +1,19 @@
-"""How an equilibrium changes along its path: rates, work, and torque and stiffness of the watched turn."""
+"""How an equilibrium changes: rates, torque and stiffness along its path, and the stiffness of a body."""
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from .control import Control
-from .law import kernel
+from .arrays import Array, kernel
+from .control import Control, Outcome
+from .effects import DrivenDisplacement
+from .law import Written
 from .matrix import Singular
-from .newton import Outcome
-from .structure import Evaluation, Structure
+from .model import Model
+from .rigid import turned
+from .structure import Evaluation, Structure, Tables, structure_of
 
-Array = NDArray[np.float64]
-Indices = NDArray[np.int64]
+Rates = tuple[float, float, float, float]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -68,7 +68,7 @@ def respond(control: Control, found: Outcome) -> Response:
             move = factors.solve(unit)
             move /= move[control.watched]
         left = factors.solve(balance.residual)
-        stiffness = stiffness_along(control.structure, balance.at, y, move, left)
+        stiffness = stiffness_between(control.structure, balance.at, y, move, move, left)
     return Response(
         rate=rate,
         conjugate=first + float(drive @ control.slope),
@@ -79,38 +79,39 @@ def respond(control: Control, found: Outcome) -> Response:
     )
 
 
-def stiffness_along(structure: Structure, at: Evaluation, y: Array, rate: Array, left: Array) -> float:
-    """Return the second derivative of the potential at y along a rate (size,), by its elements.
+def stiffness_between(
+    structure: Structure, at: Evaluation, y: Array, one: Array, other: Array, left: Array
+) -> float:
+    """Return the second derivative of the potential at y along two rates (size,), by its elements.
 
     Nodes move far where elements strain little: the tangent times the rate loses the digits by which EA l^2
     exceeds EI. What is `left` to equilibrium (size,) takes the round-off of places out of the forces.
     """
-    nodes = (structure.displacement(y), structure.velocity(y, rate), structure.velocity(y, left))
-    (_, table, first), (attached, _, offsets) = structure.given, structure.carried
-    own = _along(table, first, attached, offsets, at.ends, at.matrices, *nodes, structure.work[0])
-    return own + float(at.curvature[1] @ rate[structure.turns] ** 2)
+    u, (v, w, rest) = structure.displacement(y), (structure.velocity(y, rate) for rate in (one, other, left))
+    written = (structure.work[0], at.ends, at.matrices, structure.work[1])
+    own = _between(structure.tables, u, v, w, rest, written)
+    return own + float(at.curvature[:, 1] @ (one[structure.turns] * other[structure.turns]))
 
 
 @kernel()
-def _along(
-    table: Array,
-    first: Indices,
-    attached: Indices,
-    offsets: Array,
-    ends: Array,
-    matrices: Array,
-    u: Array,
-    v: Array,
-    left: Array,
-    force: Array,
-) -> float:
-    """Return the same of the elements and of the nodes on bodies; force (nodes, 3): scratch.
+def _strained(x: float, y: float, rate: Array, i: int) -> tuple[float, Rates]:
+    """Return how fast the chord (x, y) of an element turns, and the rest of the rates of its nodes."""
+    j = i + 1
+    step_x, step_y = rate[j, 0] - rate[i, 0], rate[j, 1] - rate[i, 1]
+    w = (x * step_y - y * step_x) / (x * x + y * y)
+    return w, (rate[i, 2] - w, step_x + w * y, step_y - w * x, rate[j, 2] - w)
 
-    With w the turn of an element's chord (x, y), its own change d = v - w (-y, x, 1) strains it, and of the
-    rest it is known that the force (X, Y) turns along:
 
-        d.H d + 2 w (X d_y - Y d_x) + w^2 (X x + Y y)        [N m]
+@kernel()
+def _between(tables: Tables, u: Array, one: Array, other: Array, left: Array, written: Written) -> float:
+    """Return the same of the elements and of the nodes on bodies; of what is written forces are scratch.
+
+    With v the turn of an element's chord (x, y), its own change c = rate - v (-y, x, 1) strains it, and of
+    the rest it is known that the force (X, Y) turns along. With w and d for the other rate it is
+
+        c.H d + w (X c_y - Y c_x) + v (X d_y - Y d_x) + v w (X x + Y y)        [N m]
     """
+    ((_, table, first), (attached, _, offsets), _), (force, ends, matrices, _) = tables, written
     total = 0.0
     force[:] = 0.0
     for e in range(len(first)):
@@ -120,18 +121,56 @@ def _along(
             pull_x -= h[3, k] * left[i, k] + h[3, 3 + k] * left[j, k]
             pull_y -= h[4, k] * left[i, k] + h[4, 3 + k] * left[j, k]
         x, y = table[e, 0] + (u[j, 0] - u[i, 0]), table[e, 1] + (u[j, 1] - u[i, 1])
-        step_x, step_y = v[j, 0] - v[i, 0], v[j, 1] - v[i, 1]
-        w = (x * step_y - y * step_x) / (x * x + y * y)
-        own = (0.0, 0.0, v[i, 2] - w, step_x + w * y, step_y - w * x, v[j, 2] - w)
-        for a in range(2, 6):
-            for b in range(2, 6):
-                total += own[a] * h[a, b] * own[b]
-        total += 2.0 * w * (pull_x * own[4] - pull_y * own[3]) + w * w * (pull_x * x + pull_y * y)
+        v, c = _strained(x, y, one, i)
+        w, d = _strained(x, y, other, i)
+        for a in range(4):
+            for b in range(4):
+                total += c[a] * h[2 + a, 2 + b] * d[b]
+        total += w * (pull_x * c[2] - pull_y * c[1]) + v * (pull_x * d[2] - pull_y * d[1])
+        total += v * w * (pull_x * x + pull_y * y)
         force[i, 0], force[i, 1] = force[i, 0] - pull_x, force[i, 1] - pull_y
         force[j, 0], force[j, 1] = force[j, 0] + pull_x, force[j, 1] + pull_y
     for k in range(len(attached)):
         i = attached[k]
-        c, s = math.cos(u[i, 2]), math.sin(u[i, 2])
-        x, y = c * offsets[k, 0] - s * offsets[k, 1], s * offsets[k, 0] + c * offsets[k, 1]
-        total -= v[i, 2] * v[i, 2] * (x * force[i, 0] + y * force[i, 1])
+        x, y = turned(u[i, 2], offsets[k, 0], offsets[k, 1])
+        total -= one[i, 2] * other[i, 2] * (x * force[i, 0] + y * force[i, 1])
     return total
+
+
+def body_stiffness(
+    model: Model, states: Array, body: str | None = None, *, driven: str | None = None
+) -> Array:
+    """Return the stiffness (S, 3, 3) of a body's x, y and turn about its centre at balanced states (S, size).
+
+    It is the change of what must be exerted on the body, forces [N] and a moment [N m], by displacements [m]
+    and a turn [rad] in the axes of the ground: each of the three is prescribed in turn, the others held, and
+    all other coordinates follow by the consistent tangent, under loads that stay. What is prescribed to the
+    body is let go, what is prescribed to others holds them.
+
+    Args:
+        model: the mesh that the states belong to. body: its name; None: the only one. driven: name of the
+            body whose turn is led, if there is one.
+
+    Exact for the mesh: dead loads act at centres and have no stiffness there. nan where the tangent is
+    singular.
+    """
+    structure = structure_of(model)
+    place, held = structure.body_slice(model.body_index(body)), np.zeros(structure.size, dtype=bool)
+    held[place] = True
+    if driven is not None:
+        held[structure.turns[model.body_index(driven)]] = True
+    led = model.effects.find(DrivenDisplacement)
+    if led is not None and led.body is not None:  # without a name it is of the body that is asked for
+        other = structure.body_slice(model.body_index(led.body))
+        held[other.start : other.start + 2] = True
+    prescribed, nothing = np.zeros((3, structure.size)), np.zeros(structure.size)
+    prescribed[:, place] = np.eye(3)
+    found = np.full((len(states), 3, 3), np.nan)
+    for k, y in enumerate(np.asarray(states)):
+        at = structure.evaluate(y)
+        try:
+            moves = prescribed - at.tangent.factors(held).solve(at.tangent.times(prescribed))
+        except Singular:
+            continue
+        found[k] = [[stiffness_between(structure, at, y, a, b, nothing) for b in moves] for a in moves]
+    return found

@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from .arrays import Array
 from .bending import curve
 from .effects import PreStrain
 from .errors import InvalidParameter
@@ -12,8 +12,6 @@ from .law import FORCES
 from .mesh import nodal_shares
 from .model import Model
 from .structure import Structure, structure_of
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

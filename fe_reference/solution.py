@@ -6,17 +6,13 @@ from enum import StrEnum
 from time import perf_counter
 from typing import TYPE_CHECKING, Self
 
-import numpy as np
-from numpy.typing import NDArray
-
-from .body_stiffness import body_stiffness
+from .arrays import Array, Indices
 from .errors import ConvergenceError, InvalidParameter
 from .model import Model
+from .response import body_stiffness
 
 if TYPE_CHECKING:
     import pandas as pd
-
-Array = NDArray[np.float64]
 
 
 class Status(StrEnum):
@@ -148,7 +144,7 @@ class StaticSolution(Answer):
 
     status: Status
     message: str
-    inertia: NDArray[np.int64]
+    inertia: Indices
     critical_points: tuple[CriticalPoint, ...]
     load_factor: Array
     bodies: Mapping[str, Array]

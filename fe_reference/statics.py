@@ -5,8 +5,9 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from .arrays import Array
 from .control import Control, spans
 from .effects import DrivenDisplacement
 from .errors import InvalidParameter, choice, count, finite, pair, several
@@ -19,8 +20,6 @@ from .refined import limit_of
 from .section_forces import outer_stress, strip_fields
 from .solution import ENERGIES, StaticSolution, Status, Stopwatch
 from .structure import structure_of
-
-Array = NDArray[np.float64]
 
 #: How loads and a rotation meet.
 LOADS_FIRST, TOGETHER = ORDERS = ("loads first", "together")
@@ -134,28 +133,17 @@ def _answered(
     return replace(found, stations=found.stations[::every]).checked(raise_on_failure)
 
 
-def static_state(
+def settled_state(
     model: Model,
     rotation: float | None,
     body: str | None = None,
     increments: int = 20,
     load: Array | None = None,
-) -> Array:
-    """Return the coordinates (size,) of the model in equilibrium at a driven rotation [rad].
+) -> tuple[Array, str]:
+    """Return the coordinates (size,) in equilibrium at a driven rotation [rad], and a remark on the path.
 
     The load (size,) is by default that of the scene in full, as is its driven displacement. Errors as above.
     """
-    return settled_state(model, rotation, body, increments, load)[0]
-
-
-def settled_state(
-    model: Model,
-    rotation: float | None,
-    body: str | None,
-    increments: int,
-    load: Array | None,
-) -> tuple[Array, str]:
-    """Return the same, and what is to be said of the path to it, or ""."""
     structure = structure_of(model)
     load = full_load(structure) if load is None else load
     ends = None if rotation is None else [finite("rotation", rotation, "rad")]

@@ -13,18 +13,27 @@ from dataclasses import dataclass
 from functools import cached_property, lru_cache
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from .arrays import Array, Indices, kernel
 from .effects import Gravity, PreStrain
-from .kernel import kernel
-from .law import FORCES, TANGENT, elements
+from .law import FORCES, TANGENT, Energies, Given, Written, elements
 from .matrix import Envelope, Symmetric, assemble
 from .mesh import Attachments, reference_elements, strip_basis
 from .model import GROUND, Model
-from .rigid import body_forces, carry, carry_velocity, gravity_energy, put_weight
+from .rigid import (
+    RESULTANTS,
+    Carried,
+    Weights,
+    body_forces,
+    carry,
+    carry_velocity,
+    gravity_energy,
+    put_weight,
+)
 
-Array = NDArray[np.float64]
-Indices = NDArray[np.int64]
+#: What is known of a structure where all its elements are run through: elements, carried nodes, weights.
+Tables = tuple[Given, Carried, Weights]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -36,7 +45,7 @@ class Evaluation:
         strain (3,): bending, axial and shear energy [J]. gravity: energy of the full weight [J].
         ends (E, 5): force x, y [N] at the second node of the elements, moments [N m] at both, and the largest
             turn of an end from its element [rad].
-        matrices (E, 6, 6): tangents of the elements, none if they were not asked for. curvature (2, B): what
+        matrices (E, 6, 6): tangents of the elements, none if they were not asked for. curvature (B, 2): what
             the carrying of nodes and of the weight adds to the stiffness of the turns [N m].
     """
 
@@ -79,9 +88,9 @@ class Structure:
         self.carried = (ends.node, ends.body, ends.offsets)
         first = np.ascontiguousarray(self.basis.mesh.t[0], dtype=np.int64)
         self.given = (self.shear, self.elements.table(model.effects.find(PreStrain) or PreStrain()), first)
-        self.weight = self._weight()
+        self.tables = (self.given, self.carried, self._weight())
         nodes = self.strips * self.stations
-        self.work = (np.zeros((nodes, 3)), np.zeros((len(self.points), 3)), np.zeros((4, 4)))
+        self.work = (np.zeros((nodes, 3)), np.zeros((4, 4)))
 
     def _number(self) -> None:
         """Number the reduced coordinates; -1 marks what is clamped."""
@@ -106,7 +115,7 @@ class Structure:
         return Envelope(self.numbers, bodies, self.size)
 
     def _weight(self) -> tuple[Array, Array]:
-        """Return the weight of nodes (nodes, 3) and bodies (B, 4) as in `law.put_weight`, empty if not named.
+        """Return the weight of nodes (nodes, 3) and bodies (B, 4) as in `rigid`, empty if not named.
 
         Half of every element is at each of its nodes: an error of second order in the element length. What
         hangs on a clamp is not felt.
@@ -169,7 +178,7 @@ class Structure:
         """Return displacement and turn of all nodes, (nodes, 3) [m, rad]."""
         full = np.zeros((self.strips * self.stations, 3))
         full[self.free_nodes] = y[: self.first_body].reshape(-1, 3)
-        carry(y[self.first_body :].reshape(-1, 3), *self.carried, full)
+        carry(y[self.first_body :].reshape(-1, 3), self.carried, full)
         return full
 
     def velocity(self, y: Array, v: Array) -> Array:
@@ -177,23 +186,22 @@ class Structure:
         full = np.zeros((self.strips * self.stations, 3))
         bodies, rates = (part[self.first_body :].reshape(-1, 3) for part in (y, v))
         full[self.free_nodes] = v[: self.first_body].reshape(-1, 3)
-        carry_velocity(bodies, rates, *self.carried, full)
+        carry_velocity(bodies, rates, self.carried, full)
         return full
 
     def evaluate(self, y: Array, share: float = 1.0, asked: int = TANGENT) -> Evaluation:
         """Return gradient, tangent and energies at y under a share of weight and natural strains."""
         many = len(self.numbers)
         matrices = np.empty((many if asked != FORCES else 0, 6, 6))
-        tangent, gradient = self.pattern.zero(), np.empty(self.size)
-        ends, curvature, bodies = np.empty((many, 5)), np.empty((2, len(self.points))), y[self.first_body :]
-        u = self.displacement(y)
-        tables = (self.given, self.carried, self.weight, self.work)
-        written = (ends, matrices, gradient, curvature)
-        strain, gravity = _evaluate(*tables, share, asked, u, bodies.reshape(-1, 3), self.free_nodes, written)
+        tangent, gradient, ends = self.pattern.zero(), np.empty(self.size), np.empty((many, 5))
+        u, bodies = self.displacement(y), y[self.first_body :].reshape(-1, 3)
+        resultants, (force, scratch) = np.empty((len(bodies), RESULTANTS)), self.work
+        written, out = (force, ends, matrices, scratch), (gradient, resultants)
+        strain, gravity = _evaluate(self.tables, share, asked, u, bodies, self.free_nodes, written, out)
         if asked != FORCES:
             self._assemble(matrices, y, tangent)
         if asked == TANGENT:
-            tangent.data[self.pattern.diagonal[self.turns]] += curvature.sum(axis=0)
+            tangent.data[self.pattern.diagonal[self.turns]] += resultants[:, 3:].sum(axis=1)
         return Evaluation(
             gradient=gradient,
             tangent=tangent,
@@ -201,12 +209,12 @@ class Structure:
             gravity=gravity,
             ends=ends,
             matrices=matrices,
-            curvature=curvature,
+            curvature=resultants[:, 3:],
         )
 
     def _assemble(self, matrices: Array, y: Array, into: Symmetric) -> None:
         ends, places, turns = self.attachments.ends, self.pattern.places, y[self.turns]
-        assemble(matrices.copy(), ends, *self.carried[1:], turns, places, into.data)
+        assemble(matrices.copy(), ends, self.carried, turns, places, into.data)
 
     def reduced_matrix(self, matrices: Array, y: Array) -> Symmetric:
         """Assemble element matrices (E, 6, 6) into the reduced coordinates as P^T K P."""
@@ -216,9 +224,10 @@ class Structure:
 
     def element_matrices(self, y: Array, asked: int) -> Array:
         """Return the tangents of the elements, or the part that is asked for, (E, 6, 6)."""
-        many, (force, _, scratch) = len(self.numbers), self.work
-        matrices, u = np.empty((many, 6, 6)), self.displacement(y)
-        elements(*self.given, 1.0, asked, u, force, np.empty((many, 5)), matrices, scratch)
+        many, (force, scratch) = len(self.numbers), self.work
+        matrices = np.empty((many, 6, 6))
+        written = (force, np.empty((many, 5)), matrices, scratch)
+        elements(self.given, 1.0, asked, self.displacement(y), written)
         return matrices
 
     def energies(self, y: Array, share: float = 1.0) -> tuple[float, float, float]:
@@ -253,34 +262,20 @@ def structure_of(model: Model) -> Structure:
 
 @kernel()
 def _evaluate(
-    given: tuple[bool, Array, Indices],
-    carried: tuple[Indices, Indices, Array],
-    weights: tuple[Array, Array],
-    work: tuple[Array, Array, Array],
+    tables: Tables,
     share: float,
     asked: int,
     u: Array,
     bodies: Array,
     free_nodes: Indices,
-    written: tuple[Array, Array, Array, Array],
-) -> tuple[tuple[float, float, float], float]:
-    """Write what `Structure.evaluate` returns; return energies of the strips and of the full weight."""
-    (shear, table, first), (attached, carrier, offsets), (weight, body_weight) = given, carried, weights
-    (force, resultants, scratch), (ends, matrices, gradient, curvature) = work, written
-    strain = elements(shear, table, first, share, asked, u, force, ends, matrices, scratch)
-    for b in range(len(bodies)):
-        curvature[0, b] = curvature[1, b] = 0.0
-    for k in range(len(attached)):
-        i, b = attached[k], carrier[k]
-        c, s = math.cos(bodies[b, 2]), math.sin(bodies[b, 2])
-        x, y = offsets[k, 0], offsets[k, 1]
-        curvature[0, b] -= (c * x - s * y) * force[i, 0] + (s * x + c * y) * force[i, 1]
-    body_forces(bodies, attached, carrier, offsets, force, resultants)
-    put_weight(share, weight, body_weight, bodies, force, resultants)
-    for b in range(len(body_weight)):
-        w_x, w_y, x, y = body_weight[b, 0], body_weight[b, 1], body_weight[b, 2], body_weight[b, 3]
-        c, s = math.cos(bodies[b, 2]), math.sin(bodies[b, 2])
-        curvature[1, b] += share * (w_x * (c * x - s * y) + w_y * (s * x + c * y))
+    written: Written,
+    out: tuple[Array, Array],
+) -> tuple[Energies, float]:
+    """Write gradient and resultants `out`; return energies of the strips and of the full weight."""
+    (given, carried, weights), (gradient, resultants), force = tables, out, written[0]
+    strain = elements(given, share, asked, u, written)
+    body_forces(bodies, carried, force, resultants)
+    put_weight(share, weights, bodies, force, resultants)
     at = 0
     for i in free_nodes:
         for k in range(3):
@@ -290,4 +285,4 @@ def _evaluate(
         for k in range(3):
             gradient[at] = resultants[b, k]
             at += 1
-    return strain, gravity_energy(weight, body_weight, bodies, u)
+    return strain, gravity_energy(weights, bodies, u)

@@ -11,23 +11,13 @@ import pytest
 from fe_reference.model import Body, Model, Section, Strip
 from fe_reference.pivot import cross_axis_pivot
 from tests import gates
+from tests.table_one import TABLE_ONE
 
 QUICK_ELEMENTS = ("corotational", pytest.param("reissner", marks=pytest.mark.slow))
 """Both elements where the interpreted forms of the second take seconds."""
 
-LENGTH = 0.06 * np.sqrt(2.0)
-TABLE_1: dict[str, Any] = {
-    "length": LENGTH,
-    "inclination": np.pi / 4.0,
-    "crossing_ratio": 0.5,
-    "area": 5e-5,
-    "second_moment_of_area": 1.041e-10,
-    "youngs_modulus": 206e9,
-    "poisson_ratio": 0.29,
-    "density": 7800.0,
-    "body_mass": 0.2,
-    "body_moment_of_inertia": 0.002,
-}
+TABLE_1: dict[str, Any] = TABLE_ONE
+LENGTH = TABLE_1["length"]
 SECTION = Section(
     **{
         name: TABLE_1[name]

@@ -17,6 +17,8 @@ SECTION: dict[str, float] = {
 }
 #: Length of the guide's strips [m], distance between them, and length of the links of the four-bar.
 GUIDE, APART, LINK = 0.1, 0.05, 0.06
+#: Effects of bodies on strips without inertia.
+MASSLESS = ("bending", "stretching", "body_inertia")
 #: Every effect that has a parameter, at a value that matters in the four-bar; its coupler is the loaded body.
 PARAMETERS: dict[str, dict[str, Any]] = {
     "gravity": {"acceleration": (300.0, -981.0)},

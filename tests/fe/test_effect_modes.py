@@ -1,14 +1,17 @@
-"""Rotary inertia of the sections against the Rayleigh beam."""
+"""Modes with effects: rotary inertia of the sections, strips without mass, weight."""
 
 from itertools import pairwise
 
 import numpy as np
+import pytest
 from scipy.optimize import brentq
 
 from fe_reference.effects import DEFAULT_EFFECTS
+from fe_reference.errors import InvalidParameter
+from fe_reference.mechanism import BodyDesign, StripDesign, mechanism
 from fe_reference.modes import natural_frequencies
-from tests.fe.cases import hold
-from tests.fe.scenes import GUIDE, SECTION, free_cantilever
+from tests.fe.cases import EI, MOMENT, TABLE_1, hold, pivot
+from tests.fe.scenes import GUIDE, MASSLESS, SECTION, free_cantilever
 
 #: A thick section, so that its rotary inertia is felt; stretching is put out of the way at the same rho A.
 THICK = SECTION | {"second_moment_of_area": SECTION["area"] * (0.02 * GUIDE) ** 2}
@@ -60,3 +63,45 @@ def test_section_rotary_inertia() -> None:
         return float(worst)
 
     hold("fe_rayleigh_beam", error)
+
+
+def test_body_on_massless_strips() -> None:
+    """Bodies on strips without inertia have their own modes only, at the closed-form frequency."""
+    inertia = TABLE_1["body_moment_of_inertia"] + TABLE_1["body_mass"] * 0.03**2
+    exact = np.sqrt(2.0 * MOMENT / inertia) / (2.0 * np.pi)
+
+    def error(area: float = 1e3) -> float:
+        model = pivot(effects=MASSLESS, area=area * TABLE_1["area"])
+        return abs(natural_frequencies(model, count=1).frequency[0] / exact - 1.0)
+
+    hold("fe_massless_strips", error)
+    with pytest.raises(InvalidParameter, match="count: got 4, expected at most 3 modes"):
+        natural_frequencies(pivot(effects=MASSLESS), count=4)
+
+
+def test_hanging_body() -> None:
+    """A point mass on a strip of no mass swings as a tensioned beam lets it.
+
+    With the tension T = m g and n^2 = T / EI the lateral stiffness of the end, free to turn, is
+    T / (L - tanh(n L) / n).
+    """
+    tension = 4.0 * EI / GUIDE**2
+    number = np.sqrt(tension / EI)
+    exact = np.sqrt(tension / (GUIDE - np.tanh(number * GUIDE) / number) / 0.5) / (2.0 * np.pi)
+
+    def error(elements: tuple[int, int] = (20, 40)) -> float:
+        section = SECTION | {"area": 1e3 * SECTION["area"], "density": 1e-12}
+        strip = StripDesign(name="strip", start=(0.0, 0.0), end=(0.0, -GUIDE), tip="bob", **section)
+        seen = []
+        for n in elements:
+            model = mechanism(
+                strips=[strip],
+                bodies=[BodyDesign(name="bob", centre=(0.0, -GUIDE), mass=0.5)],
+                effects=(*MASSLESS, "gravity"),
+                parameters={"gravity": {"acceleration": (0.0, -tension / 0.5)}},
+                elements=n,
+            )
+            seen.append(natural_frequencies(model, rotation=None, count=1).frequency[0])
+        return float(abs((4.0 * seen[1] - seen[0]) / 3.0 / exact - 1.0))
+
+    hold("fe_hanging_body", error)

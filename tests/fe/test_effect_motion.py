@@ -7,20 +7,20 @@ import pytest
 
 from fe_reference.actions import Actions
 from fe_reference.control import Control
-from fe_reference.drives import DrivenRotation, drive_spans
+from fe_reference.drives import drive_spans
 from fe_reference.dynamics import INTEGRATORS, solve_motion, solve_release
-from fe_reference.errors import InvalidParameter
 from fe_reference.explicit import Explicit, critical_step
 from fe_reference.follow import follow
-from fe_reference.mass import about_mass_centre, lumped_diagonal, mass_matrix
+from fe_reference.mass import about_mass_centre, lumped_diagonal
 from fe_reference.mechanism import BodyDesign, StripDesign, mechanism
 from fe_reference.model import ELEMENTS, Model
 from fe_reference.modes import natural_frequencies
 from fe_reference.motion import course
 from fe_reference.structure import structure_of
-from tests.fe.cases import EI, MOMENT, TABLE_1, hold, pivot
+from tests.fe.cases import EI, hold, pivot
 from tests.fe.scenes import (
     GUIDE,
+    MASSLESS,
     PARAMETERS,
     SECTION,
     SIDED_SCENE,
@@ -31,7 +31,6 @@ from tests.fe.scenes import (
 )
 
 EXPLICIT, IMPLICIT = INTEGRATORS
-MASSLESS = ("bending", "stretching", "body_inertia")
 #: A force that bends the cantilever by a millionth of its length, let go within the first step.
 PLUCK = {"strip": "strip", "force": (0.0, 3e-6 * EI / GUIDE**2), "history": ((0.0, 1.0), (1e-9, 0.0))}
 
@@ -100,20 +99,6 @@ def test_body_damping() -> None:
     hold("fe_body_damping_ratio", error)
 
 
-def test_body_on_massless_strips() -> None:
-    """Bodies on strips without inertia have their own modes only, at the closed-form frequency."""
-    inertia = TABLE_1["body_moment_of_inertia"] + TABLE_1["body_mass"] * 0.03**2
-    exact = np.sqrt(2.0 * MOMENT / inertia) / (2.0 * np.pi)
-
-    def error(area: float = 1e3) -> float:
-        model = pivot(effects=MASSLESS, area=area * TABLE_1["area"])
-        return abs(natural_frequencies(model, count=1).frequency[0] / exact - 1.0)
-
-    hold("fe_massless_strips", error)
-    with pytest.raises(InvalidParameter, match="count: got 4, expected at most 3 modes"):
-        natural_frequencies(pivot(effects=MASSLESS), count=4)
-
-
 def test_massless_strips_stay_in_equilibrium() -> None:
     """In a large motion strips without inertia are in equilibrium with the body at every instant."""
 
@@ -149,34 +134,6 @@ def statically(model: Model, bodies: dict[str, np.ndarray]) -> np.ndarray:
     assert path.message == ""
     rest = np.concatenate([strip.nodes for strip in model.strips])
     return rest + structure.displacement(path.states[-1].y)[:, :2]
-
-
-def test_hanging_body() -> None:
-    """A point mass on a strip of no mass swings as a tensioned beam lets it.
-
-    With the tension T = m g and n^2 = T / EI the lateral stiffness of the end, free to turn, is
-    T / (L - tanh(n L) / n).
-    """
-    tension = 4.0 * EI / GUIDE**2
-    number = np.sqrt(tension / EI)
-    exact = np.sqrt(tension / (GUIDE - np.tanh(number * GUIDE) / number) / 0.5) / (2.0 * np.pi)
-
-    def error(elements: tuple[int, int] = (20, 40)) -> float:
-        section = SECTION | {"area": 1e3 * SECTION["area"], "density": 1e-12}
-        strip = StripDesign(name="strip", start=(0.0, 0.0), end=(0.0, -GUIDE), tip="bob", **section)
-        seen = []
-        for n in elements:
-            model = mechanism(
-                strips=[strip],
-                bodies=[BodyDesign(name="bob", centre=(0.0, -GUIDE), mass=0.5)],
-                effects=(*MASSLESS, "gravity"),
-                parameters={"gravity": {"acceleration": (0.0, -tension / 0.5)}},
-                elements=n,
-            )
-            seen.append(natural_frequencies(model, rotation=None, count=1).frequency[0])
-        return float(abs((4.0 * seen[1] - seen[0]) / 3.0 / exact - 1.0))
-
-    hold("fe_hanging_body", error)
 
 
 @pytest.mark.parametrize("integrator", INTEGRATORS)
@@ -258,44 +215,6 @@ def test_integrators_agree_on_a_scene() -> None:
         )
 
     hold("fe_scene_integrators_agree", error)
-
-
-def led_off_its_mass(elements: int = 3) -> Model:
-    """Return the pivot with a body whose centre, far from the strips' ends, is led on and back."""
-    history = ((0.0, 0.0), (1.03e-4, 1.0), (1.61e-4, 0.5))
-    led = {"displacement": (2e-4, -1e-4), "history": history}
-    names = ("bending", "stretching", "strip_inertia", "body_inertia", "driven_displacement")
-    given = {"effects": names, "parameters": {"driven_displacement": led}}
-    return pivot(elements=elements, centre_offset=(0.03, 0.02), body_mass=0.02, **given)
-
-
-def test_a_catch_gives_momentum_to_what_is_led_alone() -> None:
-    """Requirement: impulses act on led coordinates alone, though a body's mass is off the led point."""
-    model = led_off_its_mass()
-    (span, *_), own = drive_spans(model, None, 1e-3), structure_of(model)
-    structure, bodies = about_mass_centre(own, span.led)
-    y, v = 1e-2 * np.random.default_rng(5).standard_normal((2, structure.size))
-    y[structure.turns] = 1.1
-    change = span.caught(structure, bodies, y, v) - v
-    momentum = mass_matrix(structure, y, "lumped").sparse() @ change
-    held = span.held(structure)
-    assert np.abs(momentum[held]).min() > 1e-3 * np.abs(momentum).max()
-    assert np.abs(momentum[~held]).max() < 1e-13 * np.abs(momentum).max()
-
-
-def test_books_of_a_driven_motion() -> None:
-    """Requirement: drives of rotation and centre that begin and end balance with the energies, the led body's
-    own off the led point among them."""
-
-    def error(step: float = 5e-7) -> float:
-        drive = DrivenRotation(angle=0.02, history=((3.3e-5, 0.0), (7.7e-5, 1.0)), held=(3.3e-5, 1.2e-4))
-        motion = solve_motion(
-            led_off_its_mass(), start=0.0, drive=drive, duration=2e-4, step=step, samples=10, check=False
-        )
-        assert motion.work.max() > 0.1 * motion.kinetic_energy.max() > 0.0
-        return motion.energy_error
-
-    hold("fe_drive_books", error)
 
 
 @pytest.mark.parametrize("name", ["strip_damping", "strip_drag", "body_damping"])

@@ -74,7 +74,7 @@ def test_tables_of_absent_effects_have_no_length() -> None:
     """Nothing is kept for effects that are not named."""
     structure, _ = about_mass_centre(structure_of(four_bar()))
     acting = Actions(structure)
-    assert [len(table) for table in (*structure.weight, *acting.dissipative)] == [0] * 5
+    assert [len(table) for table in (*structure.tables[2], *acting.dissipative)] == [0] * 5
     assert len(acting.histories[0]) == 0
     assert not acting.named
 

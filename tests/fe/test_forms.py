@@ -109,8 +109,8 @@ def test_elements_are_what_scikit_fem_assembles(element: str) -> None:
     def error(move: float = 0.0) -> float:
         u, many = bent(structure), len(structure.numbers)
         nodal, ends, own = np.empty_like(u), np.empty((many, 5)), np.empty((many, 6, 6))
-        scratch = np.empty((4, 4))
-        energies = elements(*structure.given, 1.0, TANGENT, u + move * LENGTH * u, nodal, ends, own, scratch)
+        written = (nodal, ends, own, np.empty((4, 4)))
+        energies = elements(structure.given, 1.0, TANGENT, u + move * LENGTH * u, written)
         vector, dofs = np.zeros(basis.N), basis.element_dofs
         vector[basis.nodal_dofs] = u.T
         given = fields(structure, basis, vector)

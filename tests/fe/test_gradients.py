@@ -95,7 +95,7 @@ def test_rigid_motion_costs_nothing(element: str) -> None:
         field, many = np.full((len(rest), 3), turn), len(structure.numbers)
         field[:, :2] = (1.0 + stretch) * rest @ rotation_matrix(turn).T - rest + 0.3 * LENGTH
         force, ends, none = np.empty_like(field), np.empty((many, 5)), np.empty((0, 6, 6))
-        elements(*structure.given, 1.0, FORCES, field, force, ends, none, np.empty((4, 4)))
+        elements(structure.given, 1.0, FORCES, field, (force, ends, none, np.empty((4, 4))))
         return float(np.abs(ends[:, :4]).max() / FORCE)
 
     hold("fe_rigid_motion", error)

@@ -9,9 +9,10 @@ import pytest
 
 from fe_reference.errors import ConvergenceError, InvalidParameter
 from fe_reference.model import FREE, Body, Model, Section, Strip
+from fe_reference.pivot import cross_axis_pivot
 from fe_reference.solution import Status
 from fe_reference.statics import solve_loads, solve_statics
-from tests.fe.cases import SECTION, cantilever, flat_strip, pivot
+from tests.fe.cases import SECTION, TABLE_1, cantilever, flat_strip, pivot
 
 BAD = [
     ("length", 0.0, "length: got 0.0, expected a number above 0 [m]"),
@@ -30,7 +31,7 @@ BAD = [
         -1.0,
         "body_moment_of_inertia: got -1.0, expected a number not below 0 [kg m^2]",
     ),
-    ("centre_offset", (0.0,), "centre_offset: got (0.0,), expected two coordinates [m]"),
+    ("centre_offset", (0.0,), "centre_offset: got (0.0,), expected two finite numbers [m]"),
     ("elements", 0, "elements: got 0, expected an integer of at least 1 [1]"),
     ("elements", 2.5, "elements: got 2.5, expected an integer of at least 1 [1]"),
     ("element", "shell", "element: got 'shell', expected one of corotational, reissner [name]"),
@@ -62,6 +63,38 @@ def test_bad_path_is_one_clear_line(arguments: dict[str, Any], message: str) -> 
     assert str(refusal.value) == message
 
 
+SIDES = {"width": 0.01, "thickness": 0.005}
+BARE = {name: value for name, value in TABLE_1.items() if name not in ("area", "second_moment_of_area")}
+
+
+def test_sides_make_the_section() -> None:
+    """Width and thickness give area and second moment; printed ones beside them hold."""
+    section = cross_axis_pivot(**BARE, **SIDES).strips[0].section
+    assert (section.area, section.second_moment_of_area) == (0.01 * 0.005, 0.01 * 0.005**3 / 12.0)
+    rounded = cross_axis_pivot(**TABLE_1, **SIDES).strips[0].section
+    assert rounded.flexural_rigidity == cross_axis_pivot(**TABLE_1).strips[0].section.flexural_rigidity
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        ({"width": 0.01}, "thickness: got None, expected a finite number [m]"),
+        ({"width": -1.0, "thickness": 1.0}, "width: got -1.0, expected a number above 0 [m]"),
+        (
+            SIDES | {"second_moment_of_area": 1.05e-10},
+            "second_moment_of_area: got 1.05e-10, expected 1.04167e-10, that of width and thickness [m^4]",
+        ),
+        ({"area": 5e-5}, "second_moment_of_area: got 'nothing', expected it, or width and thickness of a"),
+        ({}, "area: got 'nothing', expected it, or width and thickness of a rectangle [m]"),
+    ],
+)
+def test_sides_that_make_no_section_are_refused(given: dict[str, Any], message: str) -> None:
+    """One side alone, none, or a section that contradicts its sides is refused in one line."""
+    with pytest.raises(InvalidParameter) as refusal:
+        cross_axis_pivot(**BARE, **given)
+    assert str(refusal.value).startswith(message)
+
+
 def test_bad_load_and_geometry_are_refused() -> None:
     """Loads of the wrong shape, folded meshes and unequal strips are refused."""
     with pytest.raises(InvalidParameter, match=r"force: got .*, expected two components \[N\]"):
@@ -70,7 +103,7 @@ def test_bad_load_and_geometry_are_refused() -> None:
         Strip(section=SECTION, nodes=np.zeros((3, 2)))
     with pytest.raises(InvalidParameter, match="finite positions"):
         Strip(section=SECTION, nodes=np.zeros(3))
-    with pytest.raises(InvalidParameter, match="two finite coordinates"):
+    with pytest.raises(InvalidParameter, match="centre: got nan, expected a finite number"):
         Body(centre=np.array([np.nan, 0.0]))
     with pytest.raises(InvalidParameter, match="above 0"):
         Section(area=1.0, second_moment_of_area=1.0, youngs_modulus=1.0, poisson_ratio=0.3, density=0.0)

@@ -21,36 +21,7 @@ from tests.fe.cases import LENGTH, TABLE_1, extrapolated, hold, with_shear_facto
 from tests.fe.scenes import BARE as BARE_SECTION
 from tests.fe.scenes import GUIDE, SIDED, WIDE, four_bar, free_cantilever, guide
 
-SIDES = {"width": 0.01, "thickness": 0.005}
 BARE = {name: value for name, value in TABLE_1.items() if name not in ("area", "second_moment_of_area")}
-
-
-def test_sides_make_the_section() -> None:
-    """Width and thickness give area and second moment; printed ones beside them hold."""
-    section = cross_axis_pivot(**BARE, **SIDES).strips[0].section
-    assert (section.area, section.second_moment_of_area) == (0.01 * 0.005, 0.01 * 0.005**3 / 12.0)
-    rounded = cross_axis_pivot(**TABLE_1, **SIDES).strips[0].section
-    assert rounded.flexural_rigidity == cross_axis_pivot(**TABLE_1).strips[0].section.flexural_rigidity
-
-
-@pytest.mark.parametrize(
-    ("given", "message"),
-    [
-        ({"width": 0.01}, "thickness: got None, expected a finite number [m]"),
-        ({"width": -1.0, "thickness": 1.0}, "width: got -1.0, expected a number above 0 [m]"),
-        (
-            SIDES | {"second_moment_of_area": 1.05e-10},
-            "second_moment_of_area: got 1.05e-10, expected 1.04167e-10, that of width and thickness [m^4]",
-        ),
-        ({"area": 5e-5}, "second_moment_of_area: got 'nothing', expected it, or width and thickness of a"),
-        ({}, "area: got 'nothing', expected it, or width and thickness of a rectangle [m]"),
-    ],
-)
-def test_sides_that_make_no_section_are_refused(given: dict[str, Any], message: str) -> None:
-    """One side alone, none, or a section that contradicts its sides is refused in one line."""
-    with pytest.raises(InvalidParameter) as refusal:
-        cross_axis_pivot(**BARE, **given)
-    assert str(refusal.value).startswith(message)
 
 
 #: Width over length and Poisson ratio of clamped strips.

@@ -1,8 +1,14 @@
-"""How the functions of this package that run over all elements are compiled."""
+"""The arrays of this package, and how its functions that run over all elements are compiled."""
 
 from functools import partial
 
+import numpy as np
 from numba import njit
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+Indices = NDArray[np.int64]
+Flags = NDArray[np.bool_]
 
 #: Without numba's runtime there are no references of arrays and slices to count, which takes half of the time
 #: of a small kernel; what allocates does not compile.
