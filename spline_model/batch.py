@@ -166,9 +166,8 @@ def _require_shape(base: Mechanism, given: Given) -> None:
 def _model(mechanism: Mechanism, body: str | None) -> Reduced:
     """The element's scene of a mechanism, one body turned; refused where a batch does not know it."""
     model = reduced(compile_scene(mechanism.driven(1.0, body)))
-    if model is None or model.yields:
-        unknown = "printed forces, long splines or root_compliance"
-        raise InvalidParameter("discretisation", unknown, "what the elements know")
+    if model is None:
+        raise InvalidParameter("discretisation", "printed forces or long splines", "what the elements know")
     return model
 
 

@@ -195,7 +195,7 @@ class HeldPivot:
         shape, points = self.model.shape, self._local.points
         ordered = np.empty((len(points), len(shape.order), 2))
         ordered[:, shape.order] = points.reshape(ordered.shape) * self.model.length
-        return ordered
+        return ordered[:, : len(shape.order) - self.model.yields]  # the turns of roots are on no curve
 
     def full_state(self, system: System) -> Array:
         """The unknowns z (N,) of a compiled scene of the same mechanism, clamp reactions included."""
@@ -211,7 +211,7 @@ def _held_model(mechanism: Mechanism) -> Reduced | None:
         return None
     system = compile_scene(mechanism.driven(1.0))
     model = reduced(system)
-    if model is None or model.yields or model.strips.measure != MATERIAL or model.strips.stretching.any():
+    if model is None or model.strips.measure != MATERIAL or model.strips.stretching.any():
         return None
     if (model.strips.compliance < LEAST_HELD_COMPLIANCE).any():
         return None

@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 
 from spline_model.basis import AxialModes, SplineBasis
 from spline_model.effects import MEASURES, Bending, MixedStretching, Stretching, StripDamping
-from spline_model.effects.curl import curl_factors
 from spline_model.layout import Layout
 from spline_model.scene import Scene, Strip
+from spline_model.strip.laws import curl_factors
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
@@ -56,7 +56,8 @@ class PointTable(NamedTuple):
 
     def moments(self, strain: Array) -> Array:
         """Bending moments (P,) [N m] of curvatures that are counted from the stress-free ones [1/m]."""
-        factor = curl_factors(strain, self.numbers[:, DROP], self.numbers[:, CURL])
+        drop, curl = self.numbers[:, DROP], self.numbers[:, CURL]
+        factor = curl_factors(strain, drop, curl)[1] if curl.any() else 1.0
         return np.asarray(self.rigidity * strain * factor)
 
     def derivatives(self, z: Array) -> Array:

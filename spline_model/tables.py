@@ -201,6 +201,10 @@ def load_table(scene: Scene, layout: Layout) -> LoadTable:
             parts = _components(load, layout)
             rows += parts
             histories += [load.history] * len(parts)
+    return _table_of_loads(rows, histories) if rows else NO_LOADS
+
+
+def _table_of_loads(rows: Sequence[tuple[int, float, int]], histories: Sequence[History]) -> LoadTable:
     return LoadTable(
         coordinate=np.array([row[0] for row in rows], dtype=np.int64),
         value=np.array([row[1] for row in rows], dtype=float),
@@ -230,6 +234,9 @@ def _histories(histories: Sequence[History]) -> dict[str, Any]:
         "times": np.array([time for time, _ in pairs], dtype=float),
         "factors": np.array([factor for _, factor in pairs], dtype=float),
     }
+
+
+NO_LOADS = _table_of_loads((), ())
 
 
 def steady_loads(scene: Scene, layout: Layout) -> list[tuple[int, float]]:

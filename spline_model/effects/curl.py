@@ -11,8 +11,7 @@ from numpy.typing import NDArray
 
 from spline_model.basis import SplineBasis
 from spline_model.errors import InvalidParameter
-from spline_model.plate.profile import rigidity_of
-from spline_model.strip.laws import curl_law
+from spline_model.plate.profile import rigidity_of, rigidity_rate
 
 if TYPE_CHECKING:
     from spline_model.design import Design, StripDesign
@@ -50,21 +49,15 @@ class Curl:
             return np.ones(len(u))
         return rigidity_of(self.clamped, self.poisson_ratio, basis, u)
 
+    def rigidity_rate(self, basis: SplineBasis, u: Array) -> Array:
+        """Its derivative by log(b/L) at u (P,)."""
+        if self.clamped == 0.0:
+            return np.zeros(len(u))
+        return rigidity_rate(self.clamped, self.poisson_ratio, basis, u)
+
     def drop(self, basis: SplineBasis, u: Array) -> Array:
         """nu^2 g at u (P,): the part of the plate's rigidity that the curl takes at small curvature."""
         return np.asarray(1.0 - (1.0 - self.poisson_ratio**2) * self.rigidity(basis, u))
-
-
-def curl_factors(strain: Array, drop: Array, flattening: Array | float) -> Array:
-    """What the curl makes of a moment that is linear in the curvature ``strain`` [1/m]."""
-    if not np.any(flattening):
-        return np.ones(())
-    return np.asarray(_factor(strain, drop, flattening))
-
-
-@np.vectorize
-def _factor(strain: float, drop: float, flattening: float) -> float:
-    return float(getattr(curl_law, "py_func", curl_law)(strain, drop, flattening)[1])
 
 
 def curl_of(design: Design, strip: StripDesign) -> Curl | None:

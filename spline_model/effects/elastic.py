@@ -10,8 +10,9 @@ from numpy.typing import NDArray
 
 from spline_model.basis import AxialModes, SplineBasis
 from spline_model.effects.base import Potential
-from spline_model.effects.curl import Curl, curl_factors
+from spline_model.effects.curl import Curl
 from spline_model.errors import require_choice, require_count, require_not_negative, require_positive
+from spline_model.strip.laws import curl_factors
 
 Array = NDArray[np.float64]
 
@@ -43,7 +44,10 @@ class Bending(Potential):
 
     Exact for: material: the geometrically exact (extensible, unshearable) elastica.
     spatial differs from it by the order of the axial strain.
-    Left out: shear, cross-section warping, coupling with stretching over the depth.
+    Left out: cross-section warping, coupling with stretching over the depth; shear (-0.24 % of the torque of
+    Table 1), which takes the turn of the sections as a field beside the curve, by whose derivative the
+    bending goes: a constant one adds as the roots' springs do, but along a strip in large rotations it
+    varies by as much as it is. ``fe_reference`` has it (element "reissner").
     Source: paper Eqs 10 to 12; Antman, Nonlinear Problems of Elasticity (2005), ch. 4.
     """
 
@@ -68,8 +72,8 @@ class Bending(Potential):
     def moment_at(self, strain: Array, basis: SplineBasis, u: Array) -> Array:
         """Bending moments (P, ...) [N m] at u (P,) of curvatures from the stress-free ones [1/m]."""
         moment = self.rigidity_at(basis, u)[:, None] * strain
-        if self.curl is not None:
-            moment *= curl_factors(strain, self.curl.drop(basis, u)[:, None], self.curl.flattening)
+        if self.curl is not None and self.curl.flattening > 0.0:
+            moment *= curl_factors(strain, self.curl.drop(basis, u)[:, None], self.curl.flattening)[1]
         return np.asarray(moment)
 
 

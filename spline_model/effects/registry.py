@@ -51,6 +51,9 @@ MOTION_ONLY = (*INERTIA, "strip_damping", "strip_drag", "body_damping")
 def check_names(names: Sequence[str], parameters: Parameters) -> None:
     """Refuse unknown, doubled, contradictory and missing effects, and parameters of absent ones."""
     for name in (*names, *parameters):
+        if name == "shear":
+            kept = 'none: sections stay normal to the curve; fe_reference has it, element="reissner"'
+            raise InvalidParameter("effects", name, kept)
         if name not in REGISTRY:
             near = difflib.get_close_matches(name, REGISTRY, n=1)
             hint = f" (nearest: {near[0]})" if near else ""

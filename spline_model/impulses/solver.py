@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.compile import System
+from spline_model.effects import RootCompliance
 from spline_model.effects.curl import ANTICLASTIC
 from spline_model.errors import InvalidParameter, require_choice, require_count, require_positive
 from spline_model.impulses.arrays import (
@@ -105,8 +106,11 @@ class ImpulseSolver:
         require_positive("tolerance", tolerance, "1")
         require_count("sweeps", sweeps, 1)
         require_compiled(system, "sequential impulses")
+        held = "another one for sequential impulses"
         if ANTICLASTIC in mechanism.design.curling:
-            raise InvalidParameter("effects", ANTICLASTIC, "another one for sequential impulses")
+            raise InvalidParameter("effects", ANTICLASTIC, held)
+        if system.scene.of(RootCompliance):
+            raise InvalidParameter("effects", "root_compliance", held)
         self.mechanism, self.system, self.form = mechanism, system, form
         self.motion, soft = set_in_motion(system), form == "stable"
         self.problem = make_problem(

@@ -16,64 +16,11 @@ from __future__ import annotations
 
 import math
 
-from spline_model.motion.forces import add_forces, add_ties
+from spline_model.motion.forces import add_forces, add_ties, move, place, turn_roots
 from spline_model.motion.grid import INNER_ROOT, INNER_TIP, ROOT, TIP
 from spline_model.reduced.assembly import scatter
 from spline_model.strip.compiled import part
 from spline_model.strip.condense import eliminate
-
-
-@part()
-def place_end(body, frame, turns, end, lever, at, s):
-    """Arm and s-direction of an end; how its inner and outer points turn with its body: lever[at:at + 4]."""
-    if body < 0:
-        for i in range(4):
-            end[i] = frame[i]
-            lever[at + i] = 0.0
-    else:
-        c, d = turns[body, 0], turns[body, 1]
-        end[0], end[1] = c * frame[0] - d * frame[1], d * frame[0] + c * frame[1]
-        end[2], end[3] = c * frame[2] - d * frame[3], d * frame[2] + c * frame[3]
-        lever[at], lever[at + 1] = -end[1] - s * end[3], end[0] + s * end[2]
-        lever[at + 2], lever[at + 3] = -end[1], end[0]
-
-
-@part()
-def place(s, at, r, grid, strips, room):
-    """Control points of a strip, its ends and their levers."""
-    n, points = strips.mass.shape[1], room.points[s]
-    last = at + 2 * n - 8
-    for i in range(2, n - 2):
-        points[0, i], points[1, i] = r[at + 2 * i - 4], r[at + 2 * i - 3]
-    for e in range(2):
-        body = strips.roots[s] if e == 0 else strips.tips[s]
-        outer, inner = (0, 1) if e == 0 else (n - 1, n - 2)
-        end, reach = room.ends[s, e], r[last + e]
-        place_end(body, grid.frames[s, e], room.turns, end, room.lever[s], 4 - 4 * e, reach)
-        x, y = end[0], end[1]
-        if body >= 0:
-            x, y = x + r[3 * body], y + r[3 * body + 1]
-        points[0, outer], points[1, outer] = x, y
-        points[0, inner], points[1, inner] = x + reach * end[2], y + reach * end[3]
-
-
-@part()
-def move(s, at, w, strips, room):
-    """Velocities of the control points of a strip that was placed."""
-    n, speed, lever = strips.mass.shape[1], room.speed[s], room.lever[s]
-    last = at + 2 * n - 8
-    for i in range(2, n - 2):
-        speed[0, i], speed[1, i] = w[at + 2 * i - 4], w[at + 2 * i - 3]
-    for e in range(2):
-        body = strips.roots[s] if e == 0 else strips.tips[s]
-        outer, inner = (0, 1) if e == 0 else (n - 1, n - 2)
-        rate, turn = w[last + e], 4 - 4 * e
-        for k in range(2):
-            speed[k, outer], speed[k, inner] = 0.0, rate * room.ends[s, e, 2 + k]
-            if body >= 0:
-                spin = w[3 * body + 2]
-                speed[k, outer] += w[3 * body + k] + spin * lever[turn + 2 + k]
-                speed[k, inner] += w[3 * body + k] + spin * lever[turn + k]
 
 
 @part()
@@ -136,7 +83,7 @@ def mass_of_ends(m, ends, lever, tip, root, first, h):
 @part()
 def set_drift(s, at, w, strips, room):
     """Accelerations (2, 4) of the end points that the rates make."""
-    drift, ends, lever, last = room.drift[s], room.ends[s], room.lever[s], at + 2 * strips.mass.shape[1] - 8
+    drift, ends, lever, last = room.drift[s], room.ends[s], room.lever[s], at + strips.own - 2
     for e in range(2):
         body = strips.roots[s] if e == 0 else strips.tips[s]
         inner, outer, turn = (INNER_ROOT, ROOT, 4) if e == 0 else (INNER_TIP, TIP, 0)
@@ -148,28 +95,33 @@ def set_drift(s, at, w, strips, room):
 
 
 @part()
-def gather_ends(v, follow, c):
+def gather_ends(v, lead, follow, c):
     """The four end points' entries of a covector (n,), inner points condensed by W."""
     n = v.size
     c[INNER_ROOT], c[INNER_TIP], c[TIP], c[ROOT] = v[1], v[n - 2], v[n - 1], v[0]
+    if lead == 1:
+        c[INNER_ROOT] = c[INNER_TIP] = 0.0
     for p in range(4):
         total = 0.0
-        for i in range(n - 4):
-            total += follow[p, i] * v[i + 2]
+        for i in range(follow.shape[1]):
+            total += follow[p, i] * v[i + lead]
         c[p] -= total
 
 
 @part()
 def strip_system(s, tied, grid, strips, room):
     """The equations of a strip's ends in g and h, and their size; its inner points are eliminated."""
-    n, force, follow, drift = strips.mass.shape[1], room.force[s], grid.follow[s], room.drift[s]
+    lead, force, follow, drift = strips.lead, room.force[s], grid.follow[s], room.drift[s]
+    count = follow.shape[1]
     tip, root, m = strips.tips[s] >= 0, strips.roots[s] >= 0, grid.ends[s]
     first, g, h, c = 2 + max(tied - 1, 0), room.g[s], room.h[s], room.covector
     ends, lever, line, inner = room.ends[s], room.lever[s], room.line, room.inner
     outer = 2 + 3 * tip + 3 * root
     mass_of_ends(m, ends, lever, tip, root, first, h)
+    if lead == 1:  # the first two unknowns are none
+        h[0, 0] = h[1, 1] = 1.0
     for k in range(2):
-        gather_ends(force[k], follow, c[k])
+        gather_ends(force[k], lead, follow, c[k])
         d0, d1, d2, d3 = drift[k, 0], drift[k, 1], drift[k, 2], drift[k, 3]
         for p in range(4):
             c[k, p] = -(c[k, p] + m[p, 0] * d0 + m[p, 1] * d1 + m[p, 2] * d2 + m[p, 3] * d3)
@@ -178,17 +130,17 @@ def strip_system(s, tied, grid, strips, room):
         g[i if i < 2 else first + i - 2] = line[i]
     if tied > 0:
         for k in range(2):
-            for i in range(n - 4):
+            for i in range(count):
                 inner[k, i] = 0.0
-                for j in range(n - 4):
-                    inner[k, i] += grid.white[s, i, j] * force[k, j + 2]
+                for j in range(count):
+                    inner[k, i] += grid.white[s, i, j] * force[k, j + lead]
     for a in range(tied):
         row, mine = room.rows[s, a], (first + outer - 2 if a == 0 else a + 1)
         left = -room.rest[a]
         for k in range(2):
             for p in range(4):
                 left -= row[k, p] * drift[k, p]
-            for i in range(n - 4):
+            for i in range(count):
                 left += row[k, i + 4] * inner[k, i]
         g[mine] = left
         to_ends(row, ends, lever, tip, root, line)
@@ -198,7 +150,7 @@ def strip_system(s, tied, grid, strips, room):
         for b in range(a, tied):
             other, total = (first + outer - 2 if b == 0 else b + 1), 0.0
             for k in range(2):
-                for i in range(4, n):
+                for i in range(4, 4 + count):
                     total -= row[k, i] * room.rows[s, b, k, i]
             h[min(mine, other), max(mine, other)] = total
     return first + outer - 2 + (1 if tied > 0 else 0)
@@ -207,9 +159,9 @@ def strip_system(s, tied, grid, strips, room):
 @part()
 def follow_ends(s, at, tied, size, poses, grid, strips, room, push):
     """Accelerations of a strip from those of the bodies, in place of the rest of its equations."""
-    n, g, h, y = strips.mass.shape[1], room.g[s], room.h[s], room.y
+    lead, count, g, h, y = strips.lead, grid.follow.shape[2], room.g[s], room.h[s], room.y
     tip, root, first = strips.tips[s] >= 0, strips.roots[s] >= 0, 2 + max(tied - 1, 0)
-    k, last, force, drift = first, at + 2 * n - 8, room.force[s], room.drift[s]
+    k, last, force, drift = first, at + strips.own - 2, room.force[s], room.drift[s]
     if tip:
         for i in range(3):
             y[k + i] = push[3 * strips.tips[s] + i]
@@ -227,7 +179,8 @@ def follow_ends(s, at, tied, size, poses, grid, strips, room, push):
         y[i] = total / h[i, i]
     for a in range(1, tied):
         room.axial[s, a] = y[a + 1]
-    push[last], push[last + 1] = y[0], y[1]
+    if lead == 2:
+        push[last], push[last + 1] = y[0], y[1]
     c, lever, ends, pull = room.covector, room.lever[s], room.ends[s], room.inner
     for i in range(2):
         c[i, INNER_ROOT] = drift[i, INNER_ROOT] + y[0] * ends[0, 2 + i]
@@ -241,14 +194,14 @@ def follow_ends(s, at, tied, size, poses, grid, strips, room, push):
             shift, spin = push[3 * strips.roots[s] + i], push[3 * strips.roots[s] + 2]
             c[i, INNER_ROOT] += shift + spin * lever[4 + i]
             c[i, ROOT] += shift + spin * lever[6 + i]
-        for q in range(n - 4):
+        for q in range(count):
             pull[i, q] = 0.0
             for a in range(tied):
                 pull[i, q] += room.axial[s, a] * room.rows[s, a, i, q + 4]
-        for j in range(n - 4):
+        for j in range(count):
             total = 0.0
-            for q in range(n - 4):
-                total -= grid.inverse[s, j, q] * force[i, q + 2] + grid.white[s, q, j] * pull[i, q]
+            for q in range(count):
+                total -= grid.inverse[s, j, q] * force[i, q + lead] + grid.white[s, q, j] * pull[i, q]
             for p in range(4):
                 total -= grid.follow[s, p, j] * c[i, p]
             push[at + 2 * j + i] = total
@@ -257,7 +210,7 @@ def follow_ends(s, at, tied, size, poses, grid, strips, room, push):
 @part()
 def accelerate(r, w, sharpness, grid, strips, masses, room, push):
     """Fill the accelerations (R,) at r with rates w; sharpness [1/s]: as of ``add_ties``."""
-    poses, own = masses.inertia.size, 2 * strips.mass.shape[1] - 6
+    poses, own = masses.inertia.size, strips.own
     tangent, load = room.tangent, room.load
     for b in range(poses // 3):
         room.turns[b, 0], room.turns[b, 1] = math.cos(r[3 * b + 2]), math.sin(r[3 * b + 2])
@@ -270,6 +223,8 @@ def accelerate(r, w, sharpness, grid, strips, masses, room, push):
         at, tied = poses + s * own, grid.tied[s]
         place(s, at, r, grid, strips, room)
         add_forces(s, tied, strips, grid, room.points[s], room.at, room.axial[s], room.force[s])
+        if strips.lead == 1:
+            turn_roots(s, strips, room, tangent, load)
         set_drift(s, at, w, strips, room)
         if tied > 0:
             move(s, at, w, strips, room)

@@ -5,7 +5,8 @@ All is dimensionless but time: lengths over L, energy over EI/L, masses in s^2 a
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from functools import cache
+from typing import Annotated, Any, NamedTuple, TypeVar, get_type_hints
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,7 +24,8 @@ class Flexures(NamedTuple):
     first (G,) of the basis functions; d1, d2 (G, W) their derivatives, pairs (G, 4, W W) the products d1 d1,
     d1 d2, d2 d1, d2 d2; weight (G,); speed, curvature, rigidity (S, G), curl (S, G, 2): the numbers of
     ``curl_law``, stretching, strain (S,), modes (S, G, K), compliance and gain (S, K), roots, tips (S,),
-    root, tip (S, 3), reach (S, 2) as in ``spline_model.strip.element``; outer: leading axial forces that stay
+    root, tip (S, 3), reach (S, 2) as in ``spline_model.strip.element``; own: W; lead: the first control point
+    among them, 2, or 1 where roots turn by spring (S, 2) in EI/L; outer: leading axial forces that stay
     beside the bodies; free_from: first free end; relaxation (S,) [s]; mass, drag (S, n, n); dead (S, 2, n).
     """
 
@@ -41,6 +43,9 @@ class Flexures(NamedTuple):
     modes: Array
     compliance: Array
     gain: Array
+    own: int
+    lead: int
+    spring: Array
     outer: int
     free_from: int
     relaxation: Array
@@ -126,175 +131,132 @@ def masses_of(system: System, motion: Motion, poses: int) -> Masses:
 
 
 class State(NamedTuple):
-    """Where the mechanism is, and how it came there.
+    """Where the mechanism is, and how it came there; S strips, Q coordinates of bodies, Y of all.
 
-    y (Y,): the bodies' poses (Q,), own coordinates (S, W) and axial forces (S, K) of the strips;
-    points, velocity, acceleration (S, 2, n) of the control points; rate, push (Q,) velocity and
-    acceleration of the bodies; at (S, G, 5) C', C'' and |C'|; ends (S, 2, 4) arm and s-direction of the
-    clamps; clamped (S, 2, 3) force and moment of each clamp on its strip; totals (2,) work of loads and
-    drives and energy dissipated; reaction (D,) of drives.
+    y: the bodies' poses, own coordinates and axial forces of the strips; points, velocity, acceleration of
+    the control points; rate, push: velocity and acceleration of the bodies; at: C', C'' and |C'|; ends: arm
+    and s-direction of the clamps; clamped: force and moment of each clamp on its strip; totals: work of loads
+    and drives and energy dissipated; reaction of drives.
     """
 
-    y: Array
-    points: Array
-    velocity: Array
-    acceleration: Array
-    rate: Array
-    push: Array
-    at: Array
-    ends: Array
-    clamped: Array
-    totals: Array
-    reaction: Array
+    y: Annotated[Array, "Y"]
+    points: Annotated[Array, "S 2 n"]
+    velocity: Annotated[Array, "S 2 n"]
+    acceleration: Annotated[Array, "S 2 n"]
+    rate: Annotated[Array, "Q"]
+    push: Annotated[Array, "Q"]
+    at: Annotated[Array, "S G 5"]
+    ends: Annotated[Array, "S 2 4"]
+    clamped: Annotated[Array, "S 2 3"]
+    totals: Annotated[Array, "2"]
+    reaction: Annotated[Array, "D"]
 
 
 class Scratch(NamedTuple):
     """Working arrays of a step; E = W + 6 + outer element coordinates, Q' = Q + S outer at the bodies.
 
-    dy (Y,): changes, 2 tan(dphi / 2) of rotations, and the means of the axial forces; pose (Q,), points,
-    move (S, 2, n), at (S, G, 5), ends (S, 2, 4): of the step's end; steady, force (S, 2, n), stiff
-    (S, n, n): inertia, drag and loads; maps (S, 2, 16): D, and derivatives at the end; blocks (4, n n) xx,
-    xy, yx, yy of the tangent; half (2 n, E) of it in element coordinates; pull, along (K, 2 n) of the axial
-    forces and of their strains; g (S, E), h (S, E, E), left (K, E), right (S, K, E), gap (S, K);
-    residual (Y,), reduced (Q',) of it at the bodies with the strips condensed, tangent (Q', Q'); load (Q,);
-    system (Q', Q') and x, free (Q',): what is solved; ends_change (E,), mix (4,), energies (2,); held (Q,)
-    1 where a drive holds.
+    dy: changes, 2 tan(dphi / 2) of rotations, and the means of the axial forces; pose, points, move, at,
+    ends: of the step's end; steady, force, stiff: inertia, drag and loads; maps: D, and derivatives at the
+    end; roots: as of ``spline_model.motion.roots``; blocks xx, xy, yx, yy of the tangent; half of it in
+    element coordinates; pull, along: of the axial forces and of their strains; residual, reduced: of it at
+    the bodies with the strips condensed; system and x, free: what is solved; held: 1 where a drive holds.
     """
 
-    dy: Array
-    pose: Array
-    points: Array
-    move: Array
-    at: Array
-    ends: Array
-    steady: Array
-    force: Array
-    stiff: Array
-    maps: Array
-    blocks: Array
-    half: Array
-    pull: Array
-    along: Array
-    g: Array
-    h: Array
-    left: Array
-    right: Array
-    gap: Array
-    tangent: Array
-    residual: Array
-    reduced: Array
-    load: Array
-    system: Array
-    x: Array
-    ends_change: Array
-    mix: Array
-    energies: Array
-    free: Places
-    held: Places
+    dy: Annotated[Array, "Y"]
+    pose: Annotated[Array, "Q"]
+    points: Annotated[Array, "S 2 n"]
+    move: Annotated[Array, "S 2 n"]
+    at: Annotated[Array, "S G 5"]
+    ends: Annotated[Array, "S 2 4"]
+    steady: Annotated[Array, "S 2 n"]
+    force: Annotated[Array, "S 2 n"]
+    stiff: Annotated[Array, "S n n"]
+    maps: Annotated[Array, "S 2 16"]
+    roots: Annotated[Array, "S 2 7"]
+    blocks: Annotated[Array, "4 nn"]
+    half: Annotated[Array, "2n E"]
+    pull: Annotated[Array, "K 2n"]
+    along: Annotated[Array, "K 2n"]
+    g: Annotated[Array, "S E"]
+    h: Annotated[Array, "S E E"]
+    left: Annotated[Array, "K E"]
+    right: Annotated[Array, "S K E"]
+    gap: Annotated[Array, "S K"]
+    tangent: Annotated[Array, "Q' Q'"]
+    residual: Annotated[Array, "Y"]
+    reduced: Annotated[Array, "Q'"]
+    load: Annotated[Array, "Q"]
+    system: Annotated[Array, "Q' Q'"]
+    x: Annotated[Array, "Q'"]
+    ends_change: Annotated[Array, "E"]
+    mix: Annotated[Array, "4"]
+    energies: Annotated[Array, "2"]
+    free: Annotated[Places, "Q'"]
+    held: Annotated[Places, "Q"]
 
 
-def state_of(strips: Flexures, masses: Masses) -> State:
-    """An empty state."""
-    s, g, k = strips.modes.shape
-    n, q = strips.mass.shape[1], len(masses.inertia)
-    size = q + s * (2 * n - 6 + k)
-    return State(
-        y=np.zeros(size),
-        points=np.zeros((s, 2, n)),
-        velocity=np.zeros((s, 2, n)),
-        acceleration=np.zeros((s, 2, n)),
-        rate=np.zeros(q),
-        push=np.zeros(q),
-        at=np.zeros((s, g, 5)),
-        ends=np.zeros((s, 2, 4)),
-        clamped=np.zeros((s, 2, 3)),
-        totals=np.zeros(2),
-        reaction=np.zeros(len(masses.drive_at)),
+Kind = TypeVar("Kind", bound=tuple[Any, ...])
+
+
+@cache
+def shapes_of(kind: type) -> dict[str, tuple[type, list[str]]]:
+    """Type of number and sizes, by letters, of each array of a record that names them in its annotations."""
+    hints = get_type_hints(kind, include_extras=True)
+    return {
+        name: (np.int64 if hint.__origin__ == Places else np.float64, hint.__metadata__[0].split())
+        for name, hint in hints.items()
+    }
+
+
+def zeros(kind: type[Kind], sizes: dict[str, int]) -> Kind:
+    """A record of arrays at zero; sizes: of what its letters stand for."""
+    return kind(
+        **{
+            name: np.zeros([int(sizes.get(size, size)) for size in shape], dtype=number)
+            for name, (number, shape) in shapes_of(kind).items()
+        }
     )
 
 
-def scratch_of(strips: Flexures, masses: Masses) -> Scratch:
-    """Working arrays."""
+def sizes_of(strips: Flexures, masses: Masses) -> dict[str, int]:
+    """What the letters of ``State`` and ``Scratch`` stand for."""
     s, g, k = strips.modes.shape
-    n, q = strips.mass.shape[1], len(masses.inertia)
-    own, outer = 2 * n - 6, strips.outer
-    size, element, bodies = q + s * (own + k), own + 6 + outer, q + s * outer
-    return Scratch(
-        dy=np.zeros(size),
-        pose=np.zeros(q),
-        points=np.zeros((s, 2, n)),
-        move=np.zeros((s, 2, n)),
-        at=np.zeros((s, g, 5)),
-        ends=np.zeros((s, 2, 4)),
-        steady=np.zeros((s, 2, n)),
-        force=np.zeros((s, 2, n)),
-        stiff=np.zeros((s, n, n)),
-        maps=np.zeros((s, 2, 16)),
-        blocks=np.zeros((4, n * n)),
-        half=np.zeros((2 * n, element)),
-        pull=np.zeros((k, 2 * n)),
-        along=np.zeros((k, 2 * n)),
-        g=np.zeros((s, element)),
-        h=np.zeros((s, element, element)),
-        left=np.zeros((k, element)),
-        right=np.zeros((s, k, element)),
-        gap=np.zeros((s, k)),
-        tangent=np.zeros((bodies, bodies)),
-        residual=np.zeros(size),
-        reduced=np.zeros(bodies),
-        load=np.zeros(q),
-        system=np.zeros((bodies, bodies)),
-        x=np.zeros(bodies),
-        ends_change=np.zeros(element),
-        mix=np.zeros(4),
-        energies=np.zeros(2),
-        free=np.zeros(bodies, dtype=np.int64),
-        held=np.zeros(q, dtype=np.int64),
-    )
+    n, q, own = strips.mass.shape[1], len(masses.inertia), strips.own
+    sizes = {"S": s, "G": g, "K": k, "n": n, "2n": 2 * n, "nn": n * n, "Q": q, "D": len(masses.drive_at)}
+    return sizes | {"Y": q + s * (own + k), "E": own + 6 + strips.outer, "Q'": q + s * strips.outer}
 
 
 class Poses(NamedTuple):
     """State of the bodies, Q coordinates and Q' with the axial forces beside them, and working arrays.
 
-    y (Y,) with the strips' coordinates; rate (Q,) velocities; energy (2,) W and the next one; pull, next
-    (Q',) reactions g, slope (Q',) derivative of the gap; totals (2,) work and losses; trial (Y,), dx, load
-    (Q,); ahead (Y,) the strips' change along the tangent, bent (Y,) what the last step's, of length last (1,)
-    [s], left out; system (Q', Q'), x, free (Q',); still: places of what has no mass.
+    y with the strips' coordinates; rate: velocities; energy: W and the next one; pull, next: reactions g,
+    slope: derivative of the gap; totals: work and losses; ahead: the strips' change along the tangent, bent:
+    what the last step's, of length last [s], left out; system, x, free; still: places of what has no mass.
     """
 
-    y: Array
-    rate: Array
-    energy: Array
-    pull: Array
-    next: Array
-    slope: Array
-    totals: Array
-    trial: Array
-    dx: Array
-    load: Array
-    ahead: Array
-    bent: Array
-    last: Array
-    system: Array
-    x: Array
-    free: Places
-    still: Places
+    y: Annotated[Array, "Y"]
+    rate: Annotated[Array, "Q"]
+    energy: Annotated[Array, "2"]
+    pull: Annotated[Array, "Q'"]
+    next: Annotated[Array, "Q'"]
+    slope: Annotated[Array, "Q'"]
+    totals: Annotated[Array, "2"]
+    trial: Annotated[Array, "Y"]
+    dx: Annotated[Array, "Q"]
+    load: Annotated[Array, "Q"]
+    ahead: Annotated[Array, "Y"]
+    bent: Annotated[Array, "Y"]
+    last: Annotated[Array, "1"]
+    system: Annotated[Array, "Q' Q'"]
+    x: Annotated[Array, "Q'"]
+    free: Annotated[Places, "Q'"]
+    still: Annotated[Places, "0"]
 
 
 def poses_of(y: Array, rate: Array, inertia: Array, all_bodies: int) -> Poses:
     """A state with these coordinates and velocities; inertia (Q,)."""
-    count, q = all_bodies, len(rate)
-    return Poses(
-        y=y,
-        rate=rate,
-        energy=np.zeros(2),
-        totals=np.zeros(2),
-        last=np.ones(1),
-        trial=y.copy(),
-        **{name: np.zeros_like(y) for name in ("ahead", "bent")},
-        **{name: np.zeros(count) for name in ("pull", "next", "slope", "x")},
-        **{name: np.zeros(q) for name in ("dx", "load")},
-        system=np.zeros((count, count)),
-        free=np.zeros(count, dtype=np.int64),
-        still=np.array([*np.flatnonzero(inertia == 0.0), *range(q, count)], dtype=np.int64),
+    still = [*np.flatnonzero(inertia == 0.0), *range(len(rate), all_bodies)]
+    poses = zeros(Poses, {"Y": len(y), "Q": len(rate), "Q'": all_bodies})
+    return poses._replace(
+        y=y, trial=y.copy(), rate=rate, last=np.ones(1), still=np.array(still, dtype=np.int64)
     )

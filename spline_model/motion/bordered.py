@@ -8,14 +8,18 @@ coordinates; here are potentials in Python, which have no reduced form.
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from scipy.linalg import get_lapack_funcs
 
 from spline_model.bordered import evaluate, open_energy
 from spline_model.checks import refuse
 from spline_model.compile import System
-from spline_model.motion.records import MOST_GAIN_OF_OTHERS, Records, first_gain, records_of, rows_of
+from spline_model.motion.energy_consistent import Moves
+from spline_model.motion.records import ENERGIES, MOST_GAIN_OF_OTHERS, rows_of
 from spline_model.motion.start import Array, Motion
+from spline_model.motion.step import FACTORISATIONS, HALVED, NEWTON, STEPS
 
 (gesv,) = get_lapack_funcs(("gesv",))  # without the checks and warnings of scipy.linalg.solve
 
@@ -24,8 +28,13 @@ MOST_ITERATIONS = 15
 SMALLEST_STEP = 2.0**-8
 
 
-class Stepper:
-    """One system's arrays and the scheme's constants; holds the state while it is advanced."""
+class Stepper(Moves):
+    """One system's arrays and the scheme's constants; holds the state while it is advanced.
+
+    A record is the bodies' poses, unknowns (N,), velocities (Q,) and energies (5,) in EI/L.
+    """
+
+    most_gain = MOST_GAIN_OF_OTHERS
 
     def __init__(
         self, system: System, motion: Motion, z: Array, v: Array, acceleration: Array, constants: Array
@@ -36,23 +45,30 @@ class Stepper:
         size = len(z)
         self.gradient, self.hessian = np.empty(size), np.empty((size, size))
         self.energies = evaluate(system, self.z, 1.0, self.gradient, self.hessian)
-        self.counters = {"steps": 0, "halved_steps": 0, "newton_iterations": 0, "factorisations": 0}
+        self.counters = np.zeros(6, dtype=np.int64)
+        self.poses = (motion.turns[:, None] + np.arange(-2, 1)).ravel()
+        self.unit, self.width = np.ones(3), len(self.poses) + size + len(v) + ENERGIES
 
-    def advance(self, duration: float, step: float) -> bool:
-        """Advance by ``duration``; steps whose Newton fails are halved; False if none succeeds."""
-        done, h = 0.0, step
-        while duration - done > 1e-9 * duration:
-            h = min(h, duration - done)
-            if self._try(h):
-                self.counters["steps"] += 1
-                done += h
-                h = min(2 * h, step)
-                continue
-            self.counters["halved_steps"] += 1
-            h /= 2
-            if h < SMALLEST_STEP * step:
-                return False
-        return True
+    def take(
+        self, time: float, step: float, begin: int, end: int, every: int, smallest: float, records: Array
+    ) -> int:
+        """The next step's number; at any time, as nothing that acts has a history."""
+        for number in range(begin, end):
+            done, h = 0.0, step
+            while step - done > 1e-9 * step:
+                h = min(h, step - done)
+                if self._try(h):
+                    self.counters[STEPS] += 1
+                    done += h
+                    h = min(2 * h, step)
+                    continue
+                self.counters[HALVED] += 1
+                h /= 2
+                if h < max(smallest, SMALLEST_STEP * step):
+                    return number
+            if (number + 1) % every == 0:
+                records[(number + 1) // every - begin // every - 1] = self.record()
+        return end
 
     def _try(self, h: float) -> bool:
         count, motion = len(self.v), self.motion
@@ -85,33 +101,28 @@ class Stepper:
 
     def _solve(self) -> Array | None:
         unit, energy = self.motion.unit, self.motion.energy
-        self.counters["newton_iterations"] += 1
-        self.counters["factorisations"] += 1
+        self.counters[[NEWTON, FACTORISATIONS]] += 1
         matrix = self.hessian * (unit[:, None] * unit / energy)
         _, _, change, failed = gesv(matrix, self.gradient * unit / energy)
         return None if failed else np.asarray(-unit * change)
 
-    def row(self) -> Array:
-        """The row of the present state (5,); the axial forces are those that its strains give."""
+    def record(self) -> Array:
+        """The present state's record (W,); the axial forces are those that its strains give."""
         strain = sum(self.energies) + open_energy(self.system, self.z)
-        rows = rows_of(self.motion, self.z[None], self.v[None], np.array([[strain, 0.0, 0.0]]))
-        return np.asarray(rows[0])
+        (row,) = rows_of(self.motion, self.z[None], self.v[None], np.array([[strain, 0.0, 0.0]]))
+        return np.concatenate((self.z[self.poses], self.z, self.v, row / self.motion.energy))
 
+    def unknowns(self, records: Array) -> tuple[Array, Array]:
+        """Unknowns (R, N) and velocities (R, Q) of records."""
+        first, middle = len(self.poses), len(self.poses) + len(self.z)
+        return records[:, first:middle], records[:, middle:-ENERGIES]
 
-def carry(stepper: Stepper, step: float, steps: int, every: int) -> Records:
-    """Take ``steps`` steps, recording every ``every``-th one."""
-    states, rates, rows, message = [stepper.z], [stepper.v], [stepper.row()], ""
-    for k in range(1, steps + 1):
-        if not stepper.advance(step, step):
-            message = f"stopped at {(k - 1) * step:.6g} s: Newton fails at any step"
-            break
-        if k % every == 0:
-            states.append(stepper.z)
-            rates.append(stepper.v)
-            rows.append(stepper.row())
-            if first_gain(np.array((rows[0], rows[-1])), stepper.motion.energy, MOST_GAIN_OF_OTHERS) < 2:
-                message = f"stopped at {k * step:.6g} s: the energy grows; take a shorter step"
-                states, rates, rows = states[:-1], rates[:-1], rows[:-1]
-                break
-    z, v, energies = (np.array(each) for each in (states, rates, rows))
-    return records_of(stepper.motion, step * every, z, v, energies, message, stepper.counters)
+    def switch(self, time: float, span: float) -> None:
+        """Nothing begins or ends."""
+
+    def reason(self) -> str:
+        """Why the last step was given up, and what helps."""
+        angles = [f"{math.degrees(self.z[at]):.3g}" for at in self.motion.turns]
+        return (
+            f"no step, however short, goes on from {' and '.join(angles)} degrees; take more control points"
+        )

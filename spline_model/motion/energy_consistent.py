@@ -16,6 +16,7 @@ from __future__ import annotations
 import math
 from abc import ABC, abstractmethod
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,6 +28,7 @@ from spline_model.motion.records import ENERGIES, MOST_GAIN, Records, compact, f
 from spline_model.motion.run import MOST_HALVED, MOST_HALVED_A_STEP, run, store
 from spline_model.motion.start import Array, Motion, require_compiled
 from spline_model.motion.step import FACTORISATIONS, FOLDS, HALVED, NEWTON, REFUSED, STEPS, WHOLE
+from spline_model.scene import Scene
 
 TOLERANCE = 1e-11
 """Residual of a step, in EI/L^2, EI/L, L and rad; the energy of a step is exact to this."""
@@ -67,11 +69,22 @@ def carry(stepper: Moves, z: Array | None, step: float, steps: int, every: int) 
     return compact(stepper.motion, stepper, records, z, step * every, mover.message, counters)
 
 
-def why(counters: NDArray[np.int64]) -> str:
-    """Why a step was given up, by what was counted."""
+def turned(scene: Scene, strips: Any, y: Array, s: int) -> str:
+    """At how many degrees the bodies stand that a strip joins, in a state y (Y,)."""
+    bodies = [i for i in (strips.roots[s], strips.tips[s]) if 0 <= i < len(scene.bodies)]
+    angles = [f"{math.degrees(y[3 * i + 2]):.3g} degrees of {scene.bodies[i].name}" for i in bodies]
+    return " and ".join(angles) or "its free end"
+
+
+def why(counters: NDArray[np.int64], scene: Scene, strips: Any, y: Array, s: int) -> str:
+    """Why a step from y (Y,) was given up, by what was counted, and what helps; s: the first to fold."""
+    strip, where = scene.strips[s], turned(scene, strips, y, s)
+    helps = f"take a shorter step, or more control points than {strip.basis.control_points}"
     if counters[HALVED] > MOST_HALVED + MOST_HALVED_A_STEP * counters[WHOLE]:
-        return "steps are halved too often; take a shorter one"
-    return "a strip folds; take a shorter step" if counters[REFUSED] == FOLDS else "Newton fails at any step"
+        return f"steps at {where} are halved too often; {helps}"
+    if counters[REFUSED] == FOLDS:
+        return f"{strip.name} folds at {where}; {helps}"
+    return f"no step, however short, goes on from {where}, where {strip.name} is nearest to fold; {helps}"
 
 
 class Moves(ABC):
@@ -114,9 +127,9 @@ class Moves(ABC):
     def switch(self, time: float, span: float) -> None:
         """Let drives begin, change or end at ``time``; they then hold for at least ``span`` [s]."""
 
+    @abstractmethod
     def reason(self) -> str:
-        """Why the last step was given up."""
-        return why(self.counters)
+        """Why the last step was given up, and what helps."""
 
 
 class Stepper(Moves):
@@ -150,6 +163,16 @@ class Stepper(Moves):
     def unknowns(self, records: Array) -> tuple[Array, Array]:
         """Unknowns (R, N) and velocities (R, Q) of records."""
         return self._model.unknowns(records)
+
+    def reason(self) -> str:
+        """Why the last step was given up, and what helps."""
+        model, own = self._model, self._model.strips.own
+        slowest = np.nan_to_num(self._work.at[:, :, 4] / model.strips.speed).min(axis=1)
+        if model.strips.lead == 2:
+            after = (self._state.y + self._work.dy)[len(model.masses.inertia) :]
+            ends = after.reshape(len(slowest), -1)[:, own - 2 : own]
+            slowest = np.minimum(slowest, np.nan_to_num(ends).min(axis=1))
+        return why(self.counters, model.system.scene, model.strips, self._state.y, int(np.argmin(slowest)))
 
     def look(self) -> tuple[Array, Array, Array]:
         """Unknowns (1, N), velocities (1, Q) and energies (1, 5) [J] of the present state."""

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from spline_model.bordered import assemble
 from spline_model.effects.history import factor_at
 from spline_model.motion.start import Motion
+from spline_model.tables import YIELDING
 
 Array = NDArray[np.float64]
 
@@ -65,7 +66,8 @@ def catch(
     gradient, hessian = np.empty(size), np.empty((size, size))
     points, clamps = motion.tables.points, motion.tables.clamps
     assemble(z, points, clamps, gradient, hessian, np.empty((5, 4)))
-    rows = np.concatenate([clamps.row + i for i in range(3)] + [drives.row[held]]).astype(int)
+    holding = clamps.row[clamps.numbers[:, YIELDING] == 0.0]
+    rows = np.concatenate((clamps.row, clamps.row + 1, holding + 2, drives.row[held])).astype(int)
     hessian[drives.row, drives.coordinate] = -1.0
     jacobian = -hessian[rows][:, :count]
     rate = np.zeros(len(rows))

@@ -37,7 +37,7 @@ from spline_model.motion.records import ENERGIES, MOST_GAIN_OF_OTHERS, Records, 
 from spline_model.motion.run import SLOWEST_SPEED, store
 from spline_model.motion.start import Motion, require_compiled, require_conservative
 from spline_model.motion.strip import curve_at
-from spline_model.strip.compiled import kernel, part
+from spline_model.strip.compiled import copy, kernel, part
 
 Array = NDArray[np.float64]
 
@@ -95,7 +95,7 @@ def end_stage(scheme, stage, last, h, r, w, push, room):
 def show(r, w, grid, strips, masses, room, state):
     """The state at r with rates w, axial forces of the last evaluation; False if it is no strip's."""
     poses, n, modes = masses.inertia.size, strips.mass.shape[1], strips.compliance.shape[1]
-    own, fine = 2 * n - 6, True
+    own, fine = strips.own, True
     for i in range(poses):
         state.y[i], state.rate[i] = r[i], w[i]
     for b in range(poses // 3):
@@ -113,8 +113,9 @@ def show(r, w, grid, strips, masses, room, state):
                 state.points[s, k, i] = room.points[s, k, i]
                 state.velocity[s, k, i] = room.speed[s, k, i]
         for e in range(2):
+            copy(room.ends[s, e], state.ends[s, e])
             body = strips.roots[s] if e == 0 else strips.tips[s]
-            fine = fine and (body >= strips.free_from or r[at + own - 2 + e] > 0.0)
+            fine = fine and (strips.lead == 1 or body >= strips.free_from or r[at + own - 2 + e] > 0.0)
         for p in range(strips.weight.size):
             curve_at(p, state.points[s], strips.first, strips.d1, strips.d2, state.at[s, p])
             fine = fine and state.at[s, p, 4] > SLOWEST_SPEED * strips.speed[s, p]
@@ -243,7 +244,7 @@ def require_explicit(system: System, motion: Motion, integrator: str) -> None:
 def _reduced(model: Moving, state: State) -> tuple[Array, Array]:
     """Reduced coordinates r and rates w, (R,) each, of a state with its velocities."""
     strips, q, n = model.strips, len(model.masses.inertia), model.strips.mass.shape[1]
-    own, modes = 2 * n - 6, strips.compliance.shape[1]
+    own, lead, modes = strips.own, strips.lead, strips.compliance.shape[1]
     y, rate = state.y, state.rate.copy()
     places, rates = [y[:q]], [rate]
     for s in range(len(strips.roots)):
@@ -254,8 +255,9 @@ def _reduced(model: Moving, state: State) -> tuple[Array, Array]:
             along = state.ends[s, e, 2:]
             chord, square = velocity[:, inner] - velocity[:, outer], along @ along
             reaches.append(along @ chord / square)
-            if body >= strips.free_from:  # a free end is its own body
-                turn = (along[0] * chord[1] - along[1] * chord[0]) / (square * y[at + own - 2 + e])
+            if body >= strips.free_from:  # a free end is its own body, without an angle where roots turn
+                turn = along[0] * chord[1] - along[1] * chord[0]
+                turn = turn / (square * y[at + own - 2 + e]) if lead == 2 else 0.0
                 rate[3 * body : 3 * body + 3] = *velocity[:, outer], turn
-        rates += [velocity[:, 2 : n - 2].T.ravel(), np.array(reaches)]
+        rates += [velocity[:, lead : n - lead].T.ravel(), np.array(reaches if lead == 2 else ())]
     return np.concatenate(places), np.concatenate(rates)

@@ -1,4 +1,4 @@
-"""The elastic force of one strip, without tangent: what an explicit time step asks for.
+"""One strip in an explicit time step: its points and velocities, and its elastic force, without tangent.
 
 Axial forces follow at each mode from its strain over its compliance. Of a strip that cannot stretch they
 are unknown, and what a mode of them asks of the accelerations of the control points,
@@ -14,12 +14,69 @@ from __future__ import annotations
 
 import math
 
+from spline_model.motion.roots import root_turn
 from spline_model.strip.compiled import part
 from spline_model.strip.laws import bending_law, stretching_law
 
 X1, Y1, X2, Y2, SPEED, STRETCH, G0, G1, G2, G3 = range(10)
 """Rows of what is known at the Gauss points: C', C'', |C'|, the stretch that axial forces see, and the
 derivatives of the energy in C' and C''. Inner loops only read: a store in them costs a check for aliases."""
+
+
+@part()
+def place_end(body, frame, turns, end, lever, at, s):
+    """Arm and s-direction of an end; how its inner and outer points turn with its body: lever[at:at + 4]."""
+    if body < 0:
+        for i in range(4):
+            end[i] = frame[i]
+            lever[at + i] = 0.0
+    else:
+        c, d = turns[body, 0], turns[body, 1]
+        end[0], end[1] = c * frame[0] - d * frame[1], d * frame[0] + c * frame[1]
+        end[2], end[3] = c * frame[2] - d * frame[3], d * frame[2] + c * frame[3]
+        lever[at], lever[at + 1] = -end[1] - s * end[3], end[0] + s * end[2]
+        lever[at + 2], lever[at + 3] = -end[1], end[0]
+
+
+@part()
+def place(s, at, r, grid, strips, room):
+    """Control points of a strip, its ends and their levers."""
+    n, lead, points, last = strips.mass.shape[1], strips.lead, room.points[s], at + strips.own - 2
+    for i in range(lead, n - lead):
+        points[0, i], points[1, i] = r[at + 2 * (i - lead)], r[at + 2 * (i - lead) + 1]
+    for e in range(2):
+        body = strips.roots[s] if e == 0 else strips.tips[s]
+        outer, inner = (0, 1) if e == 0 else (n - 1, n - 2)
+        end, reach = room.ends[s, e], r[last + e]
+        place_end(body, grid.frames[s, e], room.turns, end, room.lever[s], 4 - 4 * e, reach)
+        x, y = end[0], end[1]
+        if body >= 0:
+            x, y = x + r[3 * body], y + r[3 * body + 1]
+        points[0, outer], points[1, outer] = x, y
+        if lead == 2:
+            points[0, inner], points[1, inner] = x + reach * end[2], y + reach * end[3]
+
+
+@part()
+def move(s, at, w, strips, room):
+    """Velocities of the control points of a strip that was placed."""
+    n, lead, speed, lever = strips.mass.shape[1], strips.lead, room.speed[s], room.lever[s]
+    last = at + strips.own - 2
+    for i in range(lead, n - lead):
+        speed[0, i], speed[1, i] = w[at + 2 * (i - lead)], w[at + 2 * (i - lead) + 1]
+    for e in range(2):
+        body = strips.roots[s] if e == 0 else strips.tips[s]
+        outer, inner = (0, 1) if e == 0 else (n - 1, n - 2)
+        rate, turn = w[last + e], 4 - 4 * e
+        for k in range(2):
+            speed[k, outer] = 0.0
+            if lead == 2:
+                speed[k, inner] = rate * room.ends[s, e, 2 + k]
+            if body >= 0:
+                spin = w[3 * body + 2]
+                speed[k, outer] += w[3 * body + k] + spin * lever[turn + 2 + k]
+            if body >= 0 and lead == 2:
+                speed[k, inner] += w[3 * body + k] + spin * lever[turn + k]
 
 
 @part()
@@ -74,7 +131,7 @@ def add_forces(s, tied, strips, grid, points, at, axial, force):
 
 @part()
 def add_ties(s, tied, sharpness, strips, grid, speed, at, rows, rest):
-    """Rows (K, 2, n) and rests (K,) of what the ``tied`` axial forces keep; at: as left by ``add_forces``.
+    """Rows (K, 2, 4 + I) and rests (K,) of what the ``tied`` axial forces keep; at: from ``add_forces``.
 
     The rows are those b of the four end points with the inner ones eliminated, and a root of B_ii^-1 times
     those of the inner ones.
@@ -97,9 +154,29 @@ def add_ties(s, tied, sharpness, strips, grid, speed, at, rows, rest):
         rest[k] = 0.0
         for p in range(strips.weight.size):
             rest[k] += grid.modes[s, k, p] * at[G2, p]
-        for i in range(speed.shape[1]):
+        for i in range(rows.shape[2]):
             x = y = 0.0
             for p in range(strips.weight.size):
                 x += grid.ties[s, k, i, p] * at[G0, p]
                 y += grid.ties[s, k, i, p] * at[G1, p]
             rows[k, 0, i], rows[k, 1, i] = x, y
+
+
+@part()
+def turn_roots(s, strips, room, tangent, load):
+    """Add the springs of both roots (``spline_model.motion.roots``); a free end's body has no angle."""
+    points, force, n = room.points[s], room.force[s], strips.mass.shape[1]
+    for e in range(2):
+        end, inner, body = (0, 1, strips.roots[s]) if e == 0 else (n - 1, n - 2, strips.tips[s])
+        if body >= strips.free_from:
+            tangent[3 * body + 2, 3 * body + 2] = 1.0
+            continue
+        x, y = points[0, inner] - points[0, end], points[1, inner] - points[1, end]
+        moment = strips.spring[s, e] * root_turn(room.ends[s, e], x, y)
+        push = moment / (x * x + y * y)
+        force[0, inner] -= push * y
+        force[1, inner] += push * x
+        force[0, end] += push * y
+        force[1, end] -= push * x
+        if body >= 0:
+            load[3 * body + 2] += moment

@@ -118,7 +118,7 @@ def begin(h, alpha, state, strips, masses, work):
     for i in range(alpha.q.size):
         alpha.target[i] = h * alpha.v[i] + 0.5 * h * h * alpha.target[i]
     guess_step(h, state, strips, masses, work)
-    modes, own = strips.compliance.shape[1], 2 * strips.mass.shape[1] - 6
+    modes, own = strips.compliance.shape[1], strips.own
     for i in range(masses.inertia.size):
         alpha.moved[i] = 2.0 * math.atan(0.5 * work.dy[i]) if i % 3 == 2 else work.dy[i]
         state.y[i] += alpha.moved[i]
@@ -132,7 +132,7 @@ def begin(h, alpha, state, strips, masses, work):
 def equilibrium(stiffness, h, alpha, state, strips, masses, work):
     """Residual and tangent at y, with the inertia of a1 = stiffness (q1 - target); the largest residual."""
     n, modes, poses = strips.mass.shape[1], strips.compliance.shape[1], masses.inertia.size
-    own = 2 * n - 6
+    own = strips.own
     set_points(state, strips, masses)
     for i in range(poses):  # so that 2 m / h (0 - rate) is the inertia
         state.rate[i] = -0.5 * h * stiffness * (alpha.moved[i] - alpha.target[i])
@@ -161,7 +161,7 @@ def equilibrium(stiffness, h, alpha, state, strips, masses, work):
 @part()
 def solve(stiffness, alpha, state, strips, masses, work, counters):
     """Newton for y; True if the residual came below TOLERANCE."""
-    modes, own = strips.compliance.shape[1], 2 * strips.mass.shape[1] - 6
+    modes, own = strips.compliance.shape[1], strips.own
     poses, h, before = masses.inertia.size, 2.0 / math.sqrt(stiffness), math.inf
     for _ in range(MOST_ITERATIONS):
         norm = equilibrium(stiffness, h, alpha, state, strips, masses, work)
@@ -244,13 +244,13 @@ class Stepper(energy_consistent.Stepper):
     most_gain = MOST_GAIN_OF_OTHERS
 
     def __init__(
-        self, system: System, motion: Motion, z: Array, v: Array, acceleration: Array, spectral_radius: float
+        self, system: System, motion: Motion, z: Array, v: Array, acceleration: Array, constants: Array
     ) -> None:
         super().__init__(system, motion, z, v, acceleration)
         state = self._state
         size = state.rate.size + state.points.size
         self._alpha = Alpha(
-            constants=constants(spectral_radius),
+            constants=constants,
             y=state.y.copy(),
             **{name: np.zeros(size) for name in ("q", "v", "a", "p", "moved", "target")},
         )
@@ -290,9 +290,6 @@ def integrate(
     require_conservative(motion, "generalised-alpha")
     if not 0.0 <= spectral_radius <= 1.0:
         raise InvalidParameter("spectral_radius", spectral_radius, "a number from 0 to 1")
-    if system.open_potentials:
-        stepper = bordered.Stepper(system, motion, z, v, acceleration, constants(spectral_radius))
-        return bordered.carry(stepper, step, steps, every)
-    return energy_consistent.carry(
-        Stepper(system, motion, z, v, acceleration, spectral_radius), z, step, steps, every
-    )
+    form = bordered.Stepper if system.open_potentials else Stepper
+    stepper = form(system, motion, z, v, acceleration, constants(spectral_radius))
+    return energy_consistent.carry(stepper, z, step, steps, every)

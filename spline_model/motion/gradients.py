@@ -24,12 +24,13 @@ from spline_model.strip.element import (
     RIGIDITY,
     SECOND,
     SPEED,
+    SPRING,
     STRAIN,
     STRETCHING,
     WEIGHT,
     place_points,
 )
-from spline_model.strip.ends import to_ends
+from spline_model.strip.ends import by_roots, to_ends
 from spline_model.strip.laws import bending_law, mixed_law, stretching_law
 
 
@@ -44,6 +45,11 @@ def add_gradient(s, a, shape, strips, local, out):
     for i in range(points.size):
         gradient[i] = -numbers[ON_POINTS + i]
         fallen -= numbers[ON_POINTS + i] * points[i]
+    if numbers[SPRING] > 0.0:  # of roots that turn
+        for i in range(2):
+            push = numbers[SPRING + i] * points[i]
+            bending += 0.5 * push * points[i]
+            gradient[i] += push
     for k in range(a.size):
         gap[k] = -compliance[k] * a[k]
         axial += 0.5 * compliance[k] * a[k] * a[k]
@@ -128,6 +134,8 @@ def take_gradients(y, bodies, strips, shape, local, space):
         for i in range(own - 2):
             g[i] = gradient[i]
         to_ends(gradient, own - 2, local.map[s], tip >= 0, root >= 0, g, own - 2, last)
+        if strips.numbers[s, SPRING] > 0.0:
+            by_roots(gradient, own - 2, local.nodal[s, POINTS], g)
         for i in range(own):
             norm = max(norm, abs(g[i]))
         for k in range(modes):

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from spline_model.motion.arrays import Flexures, Masses
+from spline_model.motion.arrays import Flexures, Masses, sizes_of, zeros
 
 Array = NDArray[np.float64]
 Places = NDArray[np.int64]
@@ -20,8 +20,9 @@ class Grid(NamedTuple):
     """Constants of S strips.
 
     d1, d2 (n, G) derivatives of the basis, not zero from begin to end (n,); modes (S, K, G) and stiffness
-    (S, K) of the axial forces; inverse (S, n - 4, n - 4) B_ii^-1, white its root C^T, C C^T = B_ii^-1; follow
-    (S, 4, n - 4) W^T, ends (S, 4, 4) the end points' mass; ties (S, K, n, G) d1 times the modes, of the end
+    (S, K) of the axial forces; inverse (S, I, I) B_ii^-1, white its root C^T, C C^T = B_ii^-1; follow
+    (S, 4, I) W^T, ends (S, 4, 4) the end points' mass, of which 1 and n - 2 are none where roots turn, but
+    inner ones; ties (S, K, 4 + I, G) d1 times the modes, of the end
     points less W^T of the inner ones, and C^T of these; frames (S, 2, 4) point and s-direction of root and
     tip in the frame of their body or the ground; tied (S,) leading axial forces that hold the length; outer:
     1 with any, the first of which stays with the bodies.
@@ -44,54 +45,53 @@ class Grid(NamedTuple):
 
 
 class Room(NamedTuple):
-    """Working arrays: x, u, push (R,) where accelerations are asked for, rates and the accelerations;
-    mean, dr, dw (R,) of a step; turns (B, 2) cosine and sine; points, speed, force (S, 2, n); ends (S, 2, 4)
-    arm and s-direction, lever (S, 8) how inner and outer points of tip and root turn; drift (S, 2, 4);
-    at (10, G); axial (S, K), rows (S, K, 2, n), rest (K,); covector (2, 4), line (8,), inner (2, n);
-    g (S, E), h (S, E, E), y (E,) of a strip; tangent (Q', Q'), load (Q',) of the bodies.
+    """Working arrays: x, u, push where accelerations are asked for, rates and the accelerations; mean, dr, dw
+    of a step; turns: cosine and sine; ends: arm and s-direction, lever: how inner and outer points of tip and
+    root turn; g, h, y of a strip; tangent, load of the bodies. T = 4 + I.
     """
 
-    x: Array
-    u: Array
-    push: Array
-    mean: Array
-    dr: Array
-    dw: Array
-    turns: Array
-    points: Array
-    speed: Array
-    force: Array
-    ends: Array
-    lever: Array
-    drift: Array
-    at: Array
-    axial: Array
-    rows: Array
-    rest: Array
-    covector: Array
-    line: Array
-    inner: Array
-    g: Array
-    h: Array
-    y: Array
-    tangent: Array
-    load: Array
+    x: Annotated[Array, "R"]
+    u: Annotated[Array, "R"]
+    push: Annotated[Array, "R"]
+    mean: Annotated[Array, "R"]
+    dr: Annotated[Array, "R"]
+    dw: Annotated[Array, "R"]
+    turns: Annotated[Array, "B 2"]
+    points: Annotated[Array, "S 2 n"]
+    speed: Annotated[Array, "S 2 n"]
+    force: Annotated[Array, "S 2 n"]
+    ends: Annotated[Array, "S 2 4"]
+    lever: Annotated[Array, "S 8"]
+    drift: Annotated[Array, "S 2 4"]
+    at: Annotated[Array, "10 G"]
+    axial: Annotated[Array, "S K"]
+    rows: Annotated[Array, "S K 2 T"]
+    rest: Annotated[Array, "K"]
+    covector: Annotated[Array, "2 4"]
+    line: Annotated[Array, "8"]
+    inner: Annotated[Array, "2 n"]
+    g: Annotated[Array, "S E"]
+    h: Annotated[Array, "S E E"]
+    y: Annotated[Array, "E"]
+    tangent: Annotated[Array, "Q' Q'"]
+    load: Annotated[Array, "Q'"]
 
 
 def grid_of(strips: Flexures) -> Grid:
     """The constants of strips with mass."""
     n, (gauss, width) = strips.mass.shape[1], strips.d1.shape
-    inner, ends = np.arange(2, n - 2), np.array([1, n - 2, n - 1, 0])
+    inner, ends = np.arange(strips.lead, n - strips.lead), np.array([1, n - 2, n - 1, 0])
+    held = np.array([strips.lead == 2, strips.lead == 2, True, True])
     places, points = strips.first[:, None] + np.arange(width), np.arange(gauss)[:, None]
     d1, d2 = np.zeros((2, n, gauss))
     d1[places, points], d2[places, points] = strips.d1, strips.d2
     seen = (np.arange(n)[:, None] >= strips.first) & (np.arange(n)[:, None] < strips.first + width)
     inverse = np.array([np.linalg.inv(b[np.ix_(inner, inner)]) for b in strips.mass])
-    across = strips.mass[:, inner[:, None], ends]
+    across = strips.mass[:, inner[:, None], ends] * held
     follow = inverse @ across
     white = np.linalg.cholesky(inverse).transpose(0, 2, 1)
     stretch = strips.modes.transpose(0, 2, 1)[:, :, None] * d1
-    at_ends = stretch[:, :, ends] - np.einsum("sip,skig->skpg", follow, stretch[:, :, inner])
+    at_ends = stretch[:, :, ends] * held[:, None] - np.einsum("sip,skig->skpg", follow, stretch[:, :, inner])
     whitened = np.einsum("sij,skjg->skig", white, stretch[:, :, inner])
     frames = np.zeros((len(strips.roots), 2, 4))
     for e, (frame, reach) in enumerate(
@@ -110,7 +110,9 @@ def grid_of(strips: Flexures) -> Grid:
         inverse=np.ascontiguousarray(inverse),
         white=np.ascontiguousarray(white),
         follow=np.ascontiguousarray(follow.transpose(0, 2, 1)),
-        ends=np.ascontiguousarray(strips.mass[:, ends[:, None], ends] - across.transpose(0, 2, 1) @ follow),
+        ends=np.ascontiguousarray(
+            strips.mass[:, ends[:, None], ends] * held[:, None] * held - across.transpose(0, 2, 1) @ follow
+        ),
         ties=np.concatenate((at_ends, whitened), axis=2),
         frames=frames,
         tied=tied,
@@ -120,25 +122,12 @@ def grid_of(strips: Flexures) -> Grid:
 
 def room_of(strips: Flexures, masses: Masses, grid: Grid) -> Room:
     """Working arrays."""
-    (s, gauss, k), n, q = strips.modes.shape, strips.mass.shape[1], len(masses.inertia)
-    size, element, bodies = q + s * (2 * n - 6), 8 + k, q + s * grid.outer
-    return Room(
-        **{name: np.zeros(size) for name in ("x", "u", "push", "mean", "dr", "dw")},
-        turns=np.zeros((q // 3, 2)),
-        **{name: np.zeros((s, 2, n)) for name in ("points", "speed", "force")},
-        ends=np.zeros((s, 2, 4)),
-        lever=np.zeros((s, 8)),
-        drift=np.zeros((s, 2, 4)),
-        at=np.zeros((10, gauss)),
-        axial=np.zeros((s, k)),
-        rows=np.zeros((s, k, 2, n)),
-        rest=np.zeros(k),
-        covector=np.zeros((2, 4)),
-        line=np.zeros(8),
-        inner=np.zeros((2, n)),
-        g=np.zeros((s, element)),
-        h=np.zeros((s, element, element)),
-        y=np.zeros(element),
-        tangent=np.zeros((bodies, bodies)),
-        load=np.zeros(bodies),
-    )
+    (s, _, k), q = strips.modes.shape, len(masses.inertia)
+    sizes = {
+        "R": q + s * strips.own,
+        "B": q // 3,
+        "T": grid.ties.shape[2],
+        "E": 8 + k,
+        "Q'": q + s * grid.outer,
+    }
+    return zeros(Room, sizes_of(strips, masses) | sizes)

@@ -26,9 +26,9 @@ from spline_model.strip.laws import MATERIAL
 ROUND_OFF = 1e-14
 """Part of the energy below which the gap between its change and the mean gradient's work is round-off: the
 gap goes with the third power of a step, and divided by the second it would drown a short one."""
-NEARLY = 1e-6
-"""Residual from which one more correction ends below round-off, so that nothing is evaluated behind it; with
-an older tangent, if it shrinks fast enough for that."""
+NEARLY, CLOSE = 1e-6, 1e-4
+"""Residuals from which one more correction ends below round-off, so that nothing is evaluated behind it: with
+a new tangent, and with an older one, if it shrinks fast enough for that."""
 AFTER = 1e-9
 """Residual that the last correction with an older tangent may leave: its work in a step is round-off."""
 POOR = 0.1
@@ -197,7 +197,7 @@ def solve(h, moving, poses, masses, bodies, strips, shape, local, space, toleran
             return False
         move_all(1.0, count, poses, bodies, strips, shape, local, space)
         counters[NEWTON] += 1
-        small = norm <= NEARLY and (fresh or norm * norm <= AFTER * before)
+        small = norm <= NEARLY if fresh else norm <= CLOSE and norm * norm <= AFTER * before
         if moving > 0.0 and small and strips.coupled == 0:
             look_ahead(poses, strips, shape, local, space)
             return True

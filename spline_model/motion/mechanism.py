@@ -11,20 +11,24 @@ from numpy.typing import NDArray
 
 from spline_model.basis import SplineBasis
 from spline_model.compile import System
-from spline_model.effects import Bending, Clamp, MixedStretching, Stretching, StripDamping
+from spline_model.effects import Bending, Clamp, MixedStretching, RootCompliance, Stretching, StripDamping
 from spline_model.effects.base import Constraint
-from spline_model.effects.elastic import MEASURES
 from spline_model.errors import InvalidParameter
-from spline_model.motion.arrays import Flexures, Masses, Scratch, State, masses_of, scratch_of, state_of
+from spline_model.motion.arrays import Flexures, Masses, Scratch, State, masses_of, sizes_of, zeros
 from spline_model.motion.records import ENERGIES
 from spline_model.motion.run import set_points
 from spline_model.motion.start import Motion
-from spline_model.quadrature import CURL, DROP
-from spline_model.reduced.axial import len_modes, natural_strain, orthonormal_modes
-from spline_model.reduced.ends import Ends, ends_of, frames_of
-from spline_model.reduced.model import GAIN, LEAST_COMPLIANCE
+from spline_model.reduced.ends import Ends, ends_of
+from spline_model.reduced.model import GAIN, LEAST_COMPLIANCE, shape_of, strips_of
+from spline_model.strip.element import CURL, DROP
 
 Array = NDArray[np.float64]
+
+AS_IN_STATICS = (
+    "speed", "curvature", "rigidity", "modes", "compliance", "stretching", "strain", "roots", "tips", "root",
+    "tip", "reach",
+)  # fmt: skip
+"""Arrays of a motion's strips that are those of statics."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -44,7 +48,7 @@ class Moving:
     @property
     def width(self) -> int:
         """Numbers in a record (``spline_model.motion.run.store``)."""
-        state = state_of(self.strips, self.masses)
+        state = zeros(State, sizes_of(self.strips, self.masses))
         shown = (state.y, state.rate, state.points, state.velocity, state.clamped, state.reaction)
         return sum(array.size for array in shown) + ENERGIES
 
@@ -55,7 +59,8 @@ class Moving:
 
     def arrays(self, z: Array, v: Array, acceleration: Array) -> tuple[State, Scratch]:
         """The state of unknowns z (N,) with velocity v and acceleration (Q,), and working arrays."""
-        state, work = state_of(self.strips, self.masses), scratch_of(self.strips, self.masses)
+        sizes = sizes_of(self.strips, self.masses)
+        state, work = zeros(State, sizes), zeros(Scratch, sizes)
         state.y[:] = self._coordinates(z)
         set_points(state, self.strips, self.masses)
         self.set_velocity(state, v)
@@ -98,11 +103,11 @@ class Moving:
                     turn = np.arctan2(chord[1], chord[0]) - frame[2]
                     turn = np.arctan2(np.sin(turn), np.cos(turn))
                     pose[3 * body : 3 * body + 3] = *points[at], turn
-            reach = np.hypot(*np.transpose(chords)) / strips.reach[s]
+            reach = np.hypot(*np.transpose(chords)) / strips.reach[s] if strips.lead == 2 else ()
             effects = [i for i, e in enumerate(system.scene.of(MixedStretching)) if e.strip == strip.name]
             forces = np.concatenate([z[system.layout.axial_modes(i)] for i in effects] or [np.zeros(0)])
             own += [
-                points[2:-2].ravel(),
+                points[strips.lead : -strips.lead].ravel(),
                 reach,
                 np.linalg.solve(self.to_modes[s], forces) * self.length / self.energy,
             ]
@@ -116,7 +121,7 @@ class Moving:
         system, count = self.system, len(records)
         scene, layout, drives = system.scene, system.layout, system.drives
         (s_count, n), k = self.strips.mass.shape[:2], self.strips.modes.shape[2]
-        q, own = len(self.masses.inertia), 2 * n - 6
+        q, own = len(self.masses.inertia), self.strips.own
         z, v = np.zeros((count, layout.size)), np.zeros((count, layout.coordinate_count))
         at = 2 * q + s_count * (own + k)
         for i, body in enumerate(scene.bodies):
@@ -152,7 +157,7 @@ class Moving:
 def moving(system: System, motion: Motion) -> Moving:
     """The reduced coordinates of a system in motion, whose strips have one basis and one quadrature."""
     ends = ends_of(system)
-    poses = _poses(system)
+    poses = 3 * max(len(system.scene.bodies), 1 + max(end.body for end in ends.values()))
     return Moving(
         system=system,
         masses=masses_of(system, motion, poses),
@@ -162,76 +167,37 @@ def moving(system: System, motion: Motion) -> Moving:
     )
 
 
-def _poses(system: System) -> int:
-    """Number of the bodies' coordinates, free strip ends among the bodies."""
-    free = sum(
-        system.scene.clamp_of(strip.name, end) is None
-        for strip in system.scene.strips
-        for end in ("start", "end")
-    )
-    return 3 * (len(system.scene.bodies) + free)
-
-
 def _strips(system: System, motion: Motion, ends: Ends) -> dict[str, Any]:
+    """Those of statics with a banded basis, and what they have in motion."""
     scene, tables, layout = system.scene, system.tables, system.layout
-    length, energy = system.scales.length, system.scales.energy
+    length, energy, names = system.scales.length, system.scales.energy, [s.name for s in scene.strips]
     basis, points = _grid(system)
-    grid = _tables(basis, points)
-    gauss, n, count = len(grid["weight"]), basis.control_points, len(scene.strips)
-    order = {e.strip: i for i, e in enumerate(scene.of(Bending))}
-    rows = [slice(order[s.name] * gauss, (order[s.name] + 1) * gauss) for s in scene.strips]
-    speed = np.array([tables.points.speed[r] for r in rows]) / length
-    mixed = [[e for e in scene.of(MixedStretching) if e.strip == s.name] for s in scene.strips]
-    consistent = {e.strip: e for e in scene.of(Stretching)}
-    parts = [tuple(e.modes for e in each) for each in mixed]
-    modes, to_modes = orthonormal_modes(parts, basis, points, speed)
-    compliances = [[e.axial_compliance for e in parts for _ in range(e.modes.count)] for parts in mixed]
-    c = np.array(compliances).reshape(count, -1) * energy / length
-    small, split = c < LEAST_COMPLIANCE, len_modes(mixed[0], slide=False)
-    outer = c.shape[1] if small[:, split:].any() else split if small.any() else 0
+    yields = {(e.strip, e.end): 1.0 / e.compliance for e in scene.of(RootCompliance)}
+    made, _, to_modes = strips_of(system, shape_of(basis, points, False), basis, points, ends)
+    n, count, c = basis.control_points, len(names), made.compliance
+    small = c < LEAST_COMPLIANCE
+    outer = c.shape[1] if small[:, made.split :].any() else made.split if small.any() else 0
     small[:, :outer] = True
     time = {e.strip: e.relaxation_time for e in scene.of(StripDamping)}
-    places = [layout.strip(s.name) for s in scene.strips]
+    places = [layout.strip(name) for name in names]
     weight = tables.weight if tables.weight.size else np.zeros(layout.coordinate_count)
-    mass = length**2 / energy
-    drag = motion.drag if motion.drag.size else np.zeros_like(motion.mass)
-    names = [s.name for s in scene.strips]
+    mass, drag = length**2 / energy, motion.drag if motion.drag.size else np.zeros_like(motion.mass)
+    springs = [[yields.get((name, end), energy) / energy for end in ("start", "end")] for name in names]
     strips = Flexures(
-        first=grid["first"],
-        d1=grid["d1"],
-        d2=grid["d2"],
-        pairs=grid["pairs"],
-        weight=grid["weight"],
-        speed=speed,
-        curvature=np.array([tables.points.curvature[r] for r in rows]) * length,
-        rigidity=np.array([tables.points.rigidity[r] for r in rows]) / (energy * length),
-        curl=np.array([tables.points.numbers[r, DROP : CURL + 1] for r in rows]) / [1.0, length],
-        stretching=np.array([consistent[s].axial_rigidity if s in consistent else 0.0 for s in names])
-        / (energy / length),
-        strain=np.array(
-            [natural_strain(parts, consistent.get(s)) for s, parts in zip(names, mixed, strict=True)]
-        ),
-        modes=modes,
-        compliance=c,
+        **_tables(basis, points),
+        **{name: np.ascontiguousarray(getattr(made, name)) for name in AS_IN_STATICS},
+        curl=np.ascontiguousarray(made.along[..., DROP : CURL + 1]),
         gain=np.where(small, GAIN, 1.0 / np.where(small, 1.0, c)),
+        own=2 * (n - 2) if yields else 2 * n - 6,
+        lead=1 if yields else 2,
+        spring=np.array(springs),
         outer=outer,
         free_from=len(scene.bodies),
-        relaxation=np.array([time.get(s, 0.0) for s in names]),
+        relaxation=np.array([time.get(name, 0.0) for name in names]),
         mass=np.array([motion.mass[at, at][::2, ::2] for at in places]) * mass,
         drag=np.array([drag[at, at][::2, ::2] for at in places]) * mass,
-        dead=np.array([weight[at].reshape(n, 2).T for at in places]) / (energy / length),
-        roots=np.array([ends[s, "start"].body for s in names], dtype=np.int64),
-        tips=np.array([ends[s, "end"].body for s in names], dtype=np.int64),
-        root=frames_of([ends[s, "start"] for s in names], length),
-        tip=frames_of([ends[s, "end"] for s in names], length),
-        reach=np.array(
-            [
-                [np.hypot(*(p[1] - p[0])), np.hypot(*(p[-1] - p[-2]))]
-                for p in (s.control_points for s in scene.strips)
-            ]
-        )
-        / length,
-        measure=min(1, MEASURES.index(scene.of(Bending)[0].measure)),  # printed forces: of the spatial energy
+        dead=np.array([weight[at].reshape(n, 2).T for at in places]).reshape(count, 2, n) / (energy / length),
+        measure=min(1, made.measure),  # printed forces: of the spatial energy
     )
     return {"strips": strips, "to_modes": to_modes}
 
@@ -260,11 +226,5 @@ def _tables(basis: SplineBasis, points: int) -> dict[str, Any]:
     places = first[:, None] + np.arange(width)
     d1, d2 = (np.take_along_axis(basis.evaluate(u, k), places, axis=1) for k in (1, 2))
     pairs = [np.einsum("gi,gj->gij", a, b).reshape(len(u), -1) for a in (d1, d2) for b in (d1, d2)]
-    return {
-        "u": u,
-        "weight": weight,
-        "first": first,
-        "d1": np.ascontiguousarray(d1),
-        "d2": np.ascontiguousarray(d2),
-        "pairs": np.ascontiguousarray(np.stack(pairs, axis=1)),
-    }
+    whole = {"d1": d1, "d2": d2, "pairs": np.stack(pairs, axis=1)}
+    return {"first": first, "weight": weight} | {name: np.ascontiguousarray(t) for name, t in whole.items()}

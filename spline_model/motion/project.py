@@ -10,21 +10,22 @@ from spline_model.strip.compiled import called, part
 
 
 @called()
-def project(x, y, root, tip, roots, tips, out):
+def project(x, y, root, tip, lead, roots, tips, out):
     """A covector of the control points in (w, tip, root) by the maps of both ends (8,)."""
     n = x.size
-    own = 2 * n - 6
-    for i in range(2, n - 2):
-        out[2 * i - 4], out[2 * i - 3] = x[i], y[i]
-    out[own - 2] = root[0] * x[1] + root[1] * y[1]
-    out[own - 1] = tip[0] * x[n - 2] + tip[1] * y[n - 2]
-    k = own
+    k, held = 2 * (n - 2 * lead), 1.0 if lead == 2 else 0.0
+    for i in range(lead, n - lead):
+        out[2 * (i - lead)], out[2 * (i - lead) + 1] = x[i], y[i]
+    if lead == 2:
+        out[k] = root[0] * x[1] + root[1] * y[1]
+        out[k + 1] = tip[0] * x[n - 2] + tip[1] * y[n - 2]
+        k += 2
     if tips >= 0:
-        out[k], out[k + 1] = x[n - 1] + x[n - 2], y[n - 1] + y[n - 2]
+        out[k], out[k + 1] = x[n - 1] + held * x[n - 2], y[n - 1] + held * y[n - 2]
         out[k + 2] = tip[2] * x[n - 2] + tip[3] * y[n - 2] + tip[4] * x[n - 1] + tip[5] * y[n - 1]
         k += 3
     if roots >= 0:
-        out[k], out[k + 1] = x[0] + x[1], y[0] + y[1]
+        out[k], out[k + 1] = x[0] + held * x[1], y[0] + held * y[1]
         out[k + 2] = root[2] * x[1] + root[3] * y[1] + root[4] * x[0] + root[5] * y[0]
 
 
@@ -54,16 +55,9 @@ def to_reduced(s, strips, work):
 
     The inertia is added to the tangent on the way.
     """
-    n, count = strips.mass.shape[1], strips.compliance.shape[1]
-    own, roots, tips = 2 * n - 6, strips.roots[s], strips.tips[s]
-    root, tip, half, g, h, force = (
-        work.maps[s, 0],
-        work.maps[s, 1],
-        work.half,
-        work.g[s],
-        work.h[s],
-        work.force[s],
-    )
+    n, count, lead, own = strips.mass.shape[1], strips.compliance.shape[1], strips.lead, strips.own
+    roots, tips, root, tip = strips.roots[s], strips.tips[s], work.maps[s, 0], work.maps[s, 1]
+    half, g, h, force, held = work.half, work.g[s], work.h[s], work.force[s], 1.0 if lead == 2 else 0.0
     by_root, by_tip = root[8:], tip[8:]
     blocks, stiff = work.blocks, work.stiff[s]
     for i in range(n):
@@ -73,45 +67,47 @@ def to_reduced(s, strips, work):
     size = own + (3 if tips >= 0 else 0) + (3 if roots >= 0 else 0)
     for i in range(n):
         begin, end = i * n, i * n + n
-        project(blocks[0, begin:end], blocks[1, begin:end], by_root, by_tip, roots, tips, half[i])
-        project(blocks[2, begin:end], blocks[3, begin:end], by_root, by_tip, roots, tips, half[n + i])
-    for i in range(2, n - 2):
+        project(blocks[0, begin:end], blocks[1, begin:end], by_root, by_tip, lead, roots, tips, half[i])
+        project(blocks[2, begin:end], blocks[3, begin:end], by_root, by_tip, lead, roots, tips, half[n + i])
+    for i in range(lead, n - lead):
         for j in range(size):
-            h[2 * i - 4, j] = half[i, j]
-            h[2 * i - 3, j] = half[n + i, j]
+            h[2 * (i - lead), j] = half[i, j]
+            h[2 * (i - lead) + 1, j] = half[n + i, j]
     m = work.mix
-    m[2] = m[3] = 0.0
-    m[0], m[1] = root[0], root[1]
-    combine(own - 2, 1, 0, half, n, m, size, h)
-    m[0], m[1] = tip[0], tip[1]
-    combine(own - 1, n - 2, n - 1, half, n, m, size, h)
+    if lead == 2:
+        m[2] = m[3] = 0.0
+        m[0], m[1] = root[0], root[1]
+        combine(own - 2, 1, 0, half, n, m, size, h)
+        m[0], m[1] = tip[0], tip[1]
+        combine(own - 1, n - 2, n - 1, half, n, m, size, h)
     k = own
-    project(force[0], force[1], root, tip, roots, tips, g)
+    project(force[0], force[1], root, tip, lead, roots, tips, g)
     if tips >= 0:
-        combine_end(k, n - 2, n - 1, half, n, tip, size, h, m)
+        combine_end(k, n - 2, n - 1, half, n, tip, held, size, h, m)
         add_turning(
-            own - 1, k + 2, tip, work.ends[s, 1], force[0, n - 2], force[1, n - 2], force[0, n - 1],
-            force[1, n - 1], h,
+            own - 1, k + 2, tip, work.ends[s, 1], held * force[0, n - 2], held * force[1, n - 2],
+            force[0, n - 1], force[1, n - 1], h,
         )  # fmt: skip
         k += 3
     if roots >= 0:
-        combine_end(k, 1, 0, half, n, root, size, h, m)
+        combine_end(k, 1, 0, half, n, root, held, size, h, m)
         add_turning(
-            own - 2, k + 2, root, work.ends[s, 0], force[0, 1], force[1, 1], force[0, 0], force[1, 0], h
-        )
+            own - 2, k + 2, root, work.ends[s, 0], held * force[0, 1], held * force[1, 1], force[0, 0],
+            force[1, 0], h,
+        )  # fmt: skip
     for c in range(count):
         pull, along = work.pull[c], work.along[c]
-        project(pull[:n], pull[n:], root, tip, roots, tips, work.left[c])
-        project(along[:n], along[n:], by_root, by_tip, roots, tips, work.right[s, c])
+        project(pull[:n], pull[n:], root, tip, lead, roots, tips, work.left[c])
+        project(along[:n], along[n:], by_root, by_tip, lead, roots, tips, work.right[s, c])
     return size
 
 
 @called()
-def combine_end(row, inner, outer, half, n, maps, size, h, m):
-    """The three rows of an end that moves."""
-    m[0], m[1], m[2], m[3] = 1.0, 0.0, 1.0, 0.0
+def combine_end(row, inner, outer, half, n, maps, held, size, h, m):
+    """The three rows of an end that moves, its inner point with it or not."""
+    m[0], m[1], m[2], m[3] = held, 0.0, 1.0, 0.0
     combine(row, inner, outer, half, n, m, size, h)
-    m[0], m[1], m[2], m[3] = 0.0, 1.0, 0.0, 1.0
+    m[0], m[1], m[2], m[3] = 0.0, held, 0.0, 1.0
     combine(row + 1, inner, outer, half, n, m, size, h)
     m[0], m[1], m[2], m[3] = maps[2], maps[3], maps[4], maps[5]
     combine(row + 2, inner, outer, half, n, m, size, h)
@@ -123,7 +119,7 @@ def condense(s, size, strips, work):
 
     Outer axial forces follow behind the ends, their rows combined exactly (``spline_model.strip.condense``).
     """
-    count, outer, own = strips.compliance.shape[1], strips.outer, 2 * strips.mass.shape[1] - 6
+    count, outer, own = strips.compliance.shape[1], strips.outer, strips.own
     g, h, left, right, gap = work.g[s], work.h[s], work.left, work.right[s], work.gap[s]
     for k in range(count):
         gain = strips.gain[s, k]

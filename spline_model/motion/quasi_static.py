@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 from scipy.linalg import eigh
 
@@ -11,7 +9,7 @@ from spline_model.compile import System
 from spline_model.errors import InvalidParameter
 from spline_model.motion import energy_consistent
 from spline_model.motion.arrays import masses_of, poses_of
-from spline_model.motion.energy_consistent import why
+from spline_model.motion.energy_consistent import turned, why
 from spline_model.motion.massless import settle
 from spline_model.motion.massless_run import run, store
 from spline_model.motion.records import ENERGIES, Records
@@ -107,14 +105,9 @@ class Stepper(energy_consistent.Moves):
         least = [softness(model, y, s) for s in range(len(strips.roots))]
         soft = int(np.argmin(least))
         if self.counters[REFUSED] == FOLDS or least[soft] > SOFT:
-            return why(self.counters)
-        turned = [
-            f"{math.degrees(y[3 * i + 2]):.3g} degrees of {scene.bodies[i].name}"
-            for i in (strips.roots[soft], strips.tips[soft])
-            if 0 <= i < len(scene.bodies)
-        ]
+            return why(self.counters, scene, strips, y, soft)
         return (
-            f"{scene.strips[soft].name} snaps through at {' and '.join(turned) or 'its free end'}: without "
+            f"{scene.strips[soft].name} snaps through at {turned(scene, strips, y, soft)}: without "
             "mass it goes from equilibrium to equilibrium, and there is none to go on to; give the strips "
             "their inertia (strip_inertia)"
         )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+from spline_model.motion.roots import PUSH, root_energy
 from spline_model.motion.step import FOLDS, HALVED, REFUSED, STEPS, WHOLE, cayley, load_at, newton
 from spline_model.motion.strip import curve_at, look_at, place_strip
 from spline_model.strip.compiled import kernel, part
@@ -18,12 +19,12 @@ SLOWEST_SPEED = 0.1
 @part()
 def forward(state, strips, masses, work):
     """True if every clamped end's tangent points forwards and |C'| is above a tenth of that at rest."""
-    n, modes = strips.mass.shape[1], strips.compliance.shape[1]
+    own, modes = strips.own, strips.compliance.shape[1]
     for s in range(strips.roots.size):
-        at = masses.inertia.size + s * (2 * n - 6 + modes) + 2 * n - 8
+        at = masses.inertia.size + s * (own + modes) + own - 2
         for e in range(2):
             body = strips.roots[s] if e == 0 else strips.tips[s]
-            if body < strips.free_from and not state.y[at + e] + work.dy[at + e] > 0.0:
+            if strips.lead == 2 and body < strips.free_from and not state.y[at + e] + work.dy[at + e] > 0.0:
                 return False
         for p in range(strips.weight.size):
             if not work.at[s, p, 4] > SLOWEST_SPEED * strips.speed[s, p]:
@@ -44,13 +45,15 @@ def clamp_forces(s, state, strips, work):
         state.clamped[s, e, 2] = (maps[0] * force[1, inner] - maps[1] * force[0, inner]) / (
             maps[7] if body >= 0 else 1.0
         )
+        if strips.lead == 1:
+            state.clamped[s, e, 2] = -work.roots[s, e, PUSH]
 
 
 @part()
 def accept(time, h, active, state, strips, masses, work):
     """Take the solved step: books of work and losses, velocities, coordinates."""
     poses, n, modes = masses.inertia.size, strips.mass.shape[1], strips.compliance.shape[1]
-    own, dy, y, totals = 2 * n - 6, work.dy, state.y, state.totals
+    own, dy, y, totals = strips.own, work.dy, state.y, state.totals
     for f in range(masses.load_value.size):
         value, i = load_at(f, time + 0.5 * h, masses), masses.load_body[f]
         if i >= 0:
@@ -99,9 +102,9 @@ def accept(time, h, active, state, strips, masses, work):
 @kernel()
 def set_points(state, strips, masses):
     """What a state's coordinates y make of its control points, end frames and curve."""
-    n, modes = strips.mass.shape[1], strips.compliance.shape[1]
+    modes = strips.compliance.shape[1]
     for s in range(strips.roots.size):
-        at = masses.inertia.size + s * (2 * n - 6 + modes)
+        at = masses.inertia.size + s * (strips.own + modes)
         place_strip(s, state.y, at, strips, state.points[s], state.ends[s])
         for p in range(strips.weight.size):
             curve_at(p, state.points[s], strips.first, strips.d1, strips.d2, state.at[s, p])
@@ -123,6 +126,8 @@ def store(state, strips, masses, work, row):
     work.energies[0] = 0.0
     for s in range(strips.roots.size):
         look_at(s, state.at[s], state.at[s], 0.0, strips, work.energies)
+        if strips.lead == 1:
+            work.energies[0] += root_energy(s, state.points[s], state.ends[s], strips)
         for i in range(n):
             for k in range(2):
                 row[at], row[at + 1] = state.points[s, k, i], state.velocity[s, k, i]

@@ -11,12 +11,12 @@ from numpy.typing import NDArray
 
 from spline_model.bordered import evaluate
 from spline_model.compile import System
-from spline_model.effects import MixedStretching, RootCompliance, StripDamping
+from spline_model.effects import MixedStretching, StripDamping
 from spline_model.effects.base import Inertia
 from spline_model.effects.history import factor_at
 from spline_model.errors import InvalidParameter
 from spline_model.mass import drag_matrix, mass_matrix
-from spline_model.tables import Tables
+from spline_model.tables import YIELDING, Tables
 
 Array = NDArray[np.float64]
 
@@ -72,8 +72,6 @@ def set_in_motion(system: System) -> Motion:
     scene, layout, rest = system.scene, system.layout, system.rest
     if not scene.of(Inertia):
         raise InvalidParameter("effects", "no inertia", "strip_inertia and body_inertia for a motion")
-    if scene.of(RootCompliance):
-        raise InvalidParameter("effects", "root_compliance", "statics or modes: a motion holds its clamps")
     if any(effect.measure != "material" for effect in scene.of(MixedStretching)):
         raise InvalidParameter("measure", "spatial", "material for the motion of mixed strips")
     mixed = scene.of(MixedStretching)
@@ -126,8 +124,13 @@ def initial_acceleration(system: System, motion: Motion, z: Array, v: Array) -> 
     free[rest] = 0.0
     evaluate(system, free, 1.0, gradient, hessian)
     free[axial] = motion.rigidity @ gradient[axial]
-    evaluate(system, free, 1.0, gradient, hessian)
     fixed = np.concatenate((np.diag(motion.rigidity) == 0, np.ones(size - layout.multiplier_start, bool)))
+    for row, compliance in zip(
+        system.tables.clamps.row + 2, system.tables.clamps.numbers[:, YIELDING], strict=True
+    ):
+        if compliance > 0.0:
+            free[row], fixed[row - layout.coordinate_count] = gradient[row] / compliance, False
+    evaluate(system, free, 1.0, gradient, hessian)
     rows = np.arange(size)[rest][fixed]
     jacobian, force = hessian[rows][:, q].copy(), -gradient[q].copy()
 

@@ -9,6 +9,7 @@ import math
 
 from spline_model.effects.history import factor_at
 from spline_model.motion.project import condense, to_reduced
+from spline_model.motion.roots import turn_bodies, turn_roots
 from spline_model.motion.strip import add_points, move_strip
 from spline_model.strip.compiled import called, part
 
@@ -83,7 +84,7 @@ def assemble(h, state, strips, masses, work):
     In EI/L^2, EI/L and L, by the places of y; those of held coordinates are what holds them and do not count.
     """
     poses, n, modes = masses.inertia.size, strips.mass.shape[1], strips.compliance.shape[1]
-    own, dy, raw, reduced, tangent = 2 * n - 6, work.dy, work.residual, work.reduced, work.tangent
+    own, dy, raw, reduced, tangent = strips.own, work.dy, work.residual, work.reduced, work.tangent
     for i in range(reduced.size):
         reduced[i] = 0.0
         for j in range(reduced.size):
@@ -113,7 +114,11 @@ def assemble(h, state, strips, masses, work):
                     total += work.stiff[s, i, j] * move[k, j]
                 force[k, i] = total
         add_points(s, dy[at + own : at + own + modes], h, state, strips, work)
+        if strips.lead == 1:
+            turn_roots(s, dy, state, strips, work)
         size, g, hessian = to_reduced(s, strips, work), work.g[s], work.h[s]
+        if strips.lead == 1:
+            turn_bodies(s, strips, work)
         behind = poses + s * strips.outer
         for i in range(own):
             raw[at + i] = g[i]
@@ -164,8 +169,8 @@ def solve_rows(count, matrix, x):
 @called(no_cpython_wrapper=False)
 def improve(strips, masses, work):
     """Newton's correction of dy from the assembled step; False if the bodies' system is singular."""
-    poses, n, modes = masses.inertia.size, strips.mass.shape[1], strips.compliance.shape[1]
-    own, outer, dy, free, x = 2 * n - 6, strips.outer, work.dy, work.free, work.x
+    poses, modes = masses.inertia.size, strips.compliance.shape[1]
+    own, outer, dy, free, x = strips.own, strips.outer, work.dy, work.free, work.x
     count = 0
     for i in range(work.reduced.size):
         if i >= poses or work.held[i] == 0:
@@ -210,7 +215,7 @@ def improve(strips, masses, work):
 def guess_step(h, state, strips, masses, work):
     """Initial dy from velocities and accelerations."""
     poses, n, modes = masses.inertia.size, strips.mass.shape[1], strips.compliance.shape[1]
-    own, dy = 2 * n - 6, work.dy
+    own, lead, dy = strips.own, strips.lead, work.dy
     for i in range(poses):
         dy[i] = h * (state.rate[i] + 0.5 * h * state.push[i])
         if i % 3 == 2:
@@ -220,8 +225,8 @@ def guess_step(h, state, strips, masses, work):
         for k in range(2):
             for i in range(n):
                 work.move[s, k, i] = h * (state.velocity[s, k, i] + 0.5 * h * state.acceleration[s, k, i])
-        for i in range(2, n - 2):
-            dy[at + 2 * i - 4], dy[at + 2 * i - 3] = work.move[s, 0, i], work.move[s, 1, i]
+        for i in range(lead, n - lead):
+            dy[at + 2 * (i - lead)], dy[at + 2 * (i - lead) + 1] = work.move[s, 0, i], work.move[s, 1, i]
         for e in range(2):
             end, inner, body = (0, 1, strips.roots[s]) if e == 0 else (n - 1, n - 2, strips.tips[s])
             tx, ty = state.ends[s, e, 2], state.ends[s, e, 3]
@@ -238,7 +243,8 @@ def guess_step(h, state, strips, masses, work):
                 angle = 2.0 * math.atan(0.5 * dy[3 * body + 2])
                 c, d = math.cos(angle), math.sin(angle)
                 along = (c * tx - d * ty) * cx + (d * tx + c * ty) * cy
-            dy[at + own - 2 + e] = along / square - state.y[at + own - 2 + e]
+            if lead == 2:
+                dy[at + own - 2 + e] = along / square - state.y[at + own - 2 + e]
         for k in range(modes):
             dy[at + own + k] = state.y[at + own + k]
 

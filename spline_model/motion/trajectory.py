@@ -147,7 +147,10 @@ def trajectory_of(
         unresolved=Remark(unresolved),
         effects=effects,
         counters=run.counters,
-        settings={"control_points": max(s.basis.control_points for s in system.scene.strips), **settings},
+        settings={
+            "control_points": max((s.basis.control_points for s in system.scene.strips), default=0),
+            **settings,
+        },
         seconds=laps.lap("recover"),
     )
 

@@ -11,22 +11,22 @@ z makes the energy least, a(z, v) = -a(w0, v), and the factors on EI of a beam a
 
 of a constant moment and of one that is linear with zero mean. By Ritz: even Legendre polynomials
 across the width, splines along one half of the length, whose knots come closer to the clamp in
-proportion, where the corners have their singularities. Source: Timoshenko and Woinowsky-Krieger,
+proportion, where the corners have their singularities. A complex width gives complex factors, by which
+``spline_model.plate.profile`` has their derivative. Source: Timoshenko and Woinowsky-Krieger,
 Theory of Plates and Shells (1959), chapter 10.
 """
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.polynomial import legendre
 from numpy.typing import NDArray
-from scipy.interpolate import BSpline
 
 from spline_model.basis import gauss_legendre
 
-Array = NDArray[np.float64]
+Array = NDArray[Any]
 
 ACROSS = 12
 """Even polynomials across the width, up to degree 2 ACROSS; factors stand to 1e-5 for b/L of 0.05 to 2."""
@@ -42,10 +42,10 @@ class Factors(NamedTuple):
     linear: float
 
 
-def plate_factors(ratio: float, poisson_ratio: float) -> Factors:
+def plate_factors(ratio: complex, poisson_ratio: float) -> Factors:
     """The factors of a plate of width over length ``ratio`` > 0; upper bounds, by some 1e-6."""
     nu, (x, weight, along), (mass, bent, cross, sheared, area) = poisson_ratio, _along(ratio), _across(ratio)
-    found = []
+    found: list[Any] = []
     for middle, moment in ((_even, np.ones_like(x)), (_odd, x - 0.5)):
         functions = [middle(values[:, 2:]) for values in along]  # the first two do not vanish at the clamp
         value, slope, curvature = functions
@@ -58,22 +58,36 @@ def plate_factors(ratio: float, poisson_ratio: float) -> Factors:
             (weight * moment) @ value, cross[0]
         )
         saved = pull @ np.linalg.solve(stiffness, pull) / (weight @ moment**2 * area)
-        found.append(float(1.0 - saved) / (1.0 - nu * nu))
+        found.append((1.0 - saved).item() / (1.0 - nu * nu))
     return Factors(*found)
 
 
-def _along(ratio: float) -> tuple[Array, Array, list[Array]]:
+def _along(ratio: complex) -> tuple[Array, Array, list[Array]]:
     """Points and weights on half the length, and there the splines with two derivatives."""
-    near = min(0.5, 3.0 * ratio)
+    near = 3.0 * ratio if 3.0 * ratio.real < 0.5 else 0.5
     breaks = [0.0, *near * 0.5 ** np.arange(CELLS - 1, -1, -1)]
-    if near < 0.5:
+    if near != 0.5:
         breaks += [0.5 * (near + 0.5), 0.5]
     nodes, weights = gauss_legendre(DEGREE + 1)
     width = np.diff(breaks)[:, None]
     x = (np.array(breaks[:-1])[:, None] + width * (nodes + 1.0) / 2.0).ravel()
     knots = np.concatenate((np.zeros(DEGREE), breaks, np.full(DEGREE, 0.5)))
-    spline = BSpline(knots, np.eye(len(knots) - DEGREE - 1), DEGREE)
-    return x, (width * weights / 2.0).ravel(), [np.asarray(spline(x, nu=order)) for order in range(3)]
+    span = DEGREE + np.repeat(np.arange(len(width)), len(nodes))
+    return x, (width * weights / 2.0).ravel(), [_splines(knots, x, span, order) for order in range(3)]
+
+
+def _splines(knots: Array, x: Array, span: NDArray[np.int64], order: int) -> Array:
+    """That derivative of all splines at x in the spans (P,), by Cox and de Boor: knots may be complex."""
+    values: Array = np.eye(len(knots) - 1)[span]
+    for degree in range(1, DEGREE + 1):
+        gap = knots[degree:] - knots[:-degree]
+        over = np.divide(1.0, gap, out=np.zeros_like(gap), where=gap != 0.0)
+        if degree <= DEGREE - order:
+            left, right = (x[:, None] - knots[:-degree]) * over, (knots[degree:] - x[:, None]) * over
+            values = left[:, :-1] * values[:, :-1] + right[:, 1:] * values[:, 1:]
+        else:
+            values = degree * (over[:-1] * values[:, :-1] - over[1:] * values[:, 1:])
+    return values
 
 
 def _even(values: Array) -> Array:
@@ -86,7 +100,7 @@ def _odd(values: Array) -> Array:
     return values[:, :-1]
 
 
-def _across(ratio: float) -> tuple[Array, Array, Array, Array, float]:
+def _across(ratio: complex) -> tuple[Array, Array, Array, Array, complex]:
     """int Y Y, Y'' Y'', Y Y'' and Y' Y' of the polynomials over the width, and the width; Y_0 = 1."""
     nodes, weights = gauss_legendre(2 * ACROSS + 2)
     even = np.eye(2 * ACROSS + 1)[:, ::2]
@@ -98,5 +112,5 @@ def _across(ratio: float) -> tuple[Array, Array, Array, Array, float]:
         (ddy * w) @ ddy.T / half**4,
         (y * w) @ ddy.T / half**2,
         (dy * w) @ dy.T / half**2,
-        float(w.sum()),
+        w.sum(),
     )

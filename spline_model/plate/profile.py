@@ -17,9 +17,9 @@ so that nothing is fitted to an answer. Left out: what the plate does beyond the
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
 from numpy.polynomial import legendre
@@ -28,19 +28,22 @@ from numpy.typing import NDArray
 from spline_model.basis import SplineBasis, gauss_legendre
 from spline_model.plate.factors import plate_factors
 
-Array = NDArray[np.float64]
+Array = NDArray[Any]
 
 MOST_STEPS = 30
 TOLERANCE = 1e-13
 """Of the two compliances, 1 / f; round-off is some 1e-15."""
+STEP = 1e-40
+"""Of derivatives by a complex step: its square is beyond any round-off."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Profile:
-    """g(s) of a strip by its size A, its reach l over L and its Poisson ratio."""
+    """g(s) of a strip by its size A, its reach l over L, both complex for a complex width, and its Poisson
+    ratio."""
 
-    size: float
-    reach: float
+    size: complex
+    reach: complex
     poisson_ratio: float
 
     def share(self, s: Array) -> Array:
@@ -53,10 +56,10 @@ class Profile:
         return np.asarray((1.0 - square) / (1.0 - square * self.share(s)))
 
 
-def _decay(s: Array, reach: float) -> Array:
+def _decay(s: Array, reach: complex) -> Array:
     """alpha cosh(u/l) + beta (u/l) sinh(u/l): 1 with zero slope at both ends; relative to e^(1/2l)."""
     half, u = 0.5 / reach, np.abs(s - 0.5) / reach
-    small, grown = math.exp(-2.0 * half), 0.5 * np.exp(u - half)
+    small, grown = np.exp(-2.0 * half), 0.5 * np.exp(u - half)
     cosh, sinh = grown * (1.0 + np.exp(-2.0 * u)), grown * (1.0 - np.exp(-2.0 * u))
     cosh_end, sinh_end = 0.5 * (1.0 + small), 0.5 * (1.0 - small)
     determinant = cosh_end * sinh_end + half * (cosh_end**2 - sinh_end**2)
@@ -65,25 +68,35 @@ def _decay(s: Array, reach: float) -> Array:
 
 
 @lru_cache(maxsize=256)
-def profile_of(ratio: float, poisson_ratio: float) -> Profile:
+def profile_of(ratio: complex, poisson_ratio: float) -> Profile:
     """The profile of a strip of width over length ``ratio``; kept, for the plate takes some milliseconds.
 
-    Newton's method in log A and log l.
+    Newton's method in log A and log l; of a complex ratio in the real part, and one step more for the rest.
     """
-    factors = plate_factors(ratio, poisson_ratio)
-    aim, logs = 1.0 / np.array(factors), np.log([1.0, 0.2 * ratio])
+    aim = 1.0 / np.array(plate_factors(ratio, poisson_ratio))
+    if ratio.imag != 0.0:
+        own = profile_of(ratio.real, poisson_ratio)
+        logs = np.log([own.size, own.reach]).astype(complex)
+        if poisson_ratio > 0.0:
+            logs += 1j * np.linalg.solve(_rates(logs, ratio.real, poisson_ratio), aim.imag)
+        return Profile(size=np.exp(logs[0]), reach=np.exp(logs[1]), poisson_ratio=poisson_ratio)
+    ratio, logs = ratio.real, np.log([1.0, 0.2 * ratio.real])
     square = poisson_ratio**2
     for _ in range(MOST_STEPS if square > 0.0 else 0):
         found = _compliances(logs, ratio, poisson_ratio)
         if np.abs(found - aim).max() < TOLERANCE:
             break
-        step = 1e-6
-        rates = [(_compliances(logs + step * e, ratio, poisson_ratio) - found) / step for e in np.eye(2)]
-        change = np.linalg.solve(np.transpose(rates), aim - found)
+        change = np.linalg.solve(_rates(logs, ratio, poisson_ratio), aim - found)
         logs += change * min(1.0, 0.5 / np.abs(change).max())
     else:
         assert square == 0.0, f"no profile for b/L = {ratio:g}, nu = {poisson_ratio:g}"
-    return Profile(size=math.exp(logs[0]), reach=math.exp(logs[1]), poisson_ratio=poisson_ratio)
+    return Profile(size=np.exp(logs[0]), reach=np.exp(logs[1]), poisson_ratio=poisson_ratio)
+
+
+def _rates(logs: Array, ratio: float, poisson_ratio: float) -> Array:
+    """Derivatives (2, 2) of both compliances by log A and log l."""
+    moved = [_compliances(logs + 1j * STEP * e, ratio, poisson_ratio).imag / STEP for e in np.eye(2)]
+    return np.transpose(moved)
 
 
 def _compliances(logs: Array, ratio: float, poisson_ratio: float) -> Array:
@@ -104,7 +117,7 @@ def _graded(ratio: float, breakpoints: tuple[float, ...], points: int) -> tuple[
     return (edges[:-1, None] + width * (nodes + 1.0) / 2.0).ravel(), (width * weights / 2.0).ravel()
 
 
-def rigidity_of(ratio: float, poisson_ratio: float, basis: SplineBasis, u: Array) -> Array:
+def rigidity_of(ratio: complex, poisson_ratio: float, basis: SplineBasis, u: Array) -> Array:
     """R / EI at u (P,) as a strip of that basis can follow it.
 
     The compliance EI / R in each knot span is projected on polynomials of the degree of the curvature under
@@ -114,8 +127,13 @@ def rigidity_of(ratio: float, poisson_ratio: float, basis: SplineBasis, u: Array
     return _rigidity(ratio, poisson_ratio, basis, u.tobytes())
 
 
+def rigidity_rate(ratio: float, poisson_ratio: float, basis: SplineBasis, u: Array) -> Array:
+    """Its derivative by log(b/L) at u (P,): that of the plate's discrete solution, exact to round-off."""
+    return np.asarray(rigidity_of(ratio * (1.0 + 1j * STEP), poisson_ratio, basis, u).imag / STEP)
+
+
 @lru_cache(maxsize=256)
-def _rigidity(ratio: float, poisson_ratio: float, basis: SplineBasis, at: bytes) -> Array:
+def _rigidity(ratio: complex, poisson_ratio: float, basis: SplineBasis, at: bytes) -> Array:
     coefficients, u = _projected(ratio, poisson_ratio, basis), np.frombuffer(at)
     span = basis.first_of_support(u)
     left, width = basis.breakpoints[span], np.diff(basis.breakpoints)[span]
@@ -126,14 +144,14 @@ def _rigidity(ratio: float, poisson_ratio: float, basis: SplineBasis, at: bytes)
 
 
 @lru_cache(maxsize=256)
-def _projected(ratio: float, poisson_ratio: float, basis: SplineBasis) -> Array:
+def _projected(ratio: complex, poisson_ratio: float, basis: SplineBasis) -> Array:
     """Legendre coefficients (spans, degree + 1) of EI / R."""
     profile, degree = profile_of(ratio, poisson_ratio), max(2, basis.degree - 3)
-    s, w = _graded(ratio, tuple(basis.breakpoints), 16 + degree)
+    s, w = _graded(ratio.real, tuple(basis.breakpoints), 16 + degree)
     span = basis.first_of_support(s)
     left, long = basis.breakpoints[span], np.diff(basis.breakpoints)[span]
     values = legendre.legvander(2.0 * (s - left) / long - 1.0, degree)
-    spans = len(basis.breakpoints) - 1
-    found = np.zeros((spans, degree + 1))
-    np.add.at(found, span, (w * profile.compliance(s) / long)[:, None] * values)
+    shares = (w * profile.compliance(s) / long)[:, None] * values
+    found = np.zeros((len(basis.breakpoints) - 1, degree + 1), dtype=shares.dtype)
+    np.add.at(found, span, shares)
     return found * (2.0 * np.arange(degree + 1) + 1.0)

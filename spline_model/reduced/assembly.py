@@ -15,6 +15,7 @@ from spline_model.strip.element import (
     GRADIENT,
     LAST,
     LEVER,
+    MOMENT_AT,
     PER_U,
     POINTS,
     RIGIDITY,
@@ -267,7 +268,7 @@ def moment_defect(y, strips, shape, local):
     tip, inner = n - 2, n - 3
     for s in range(strips.roots.size):
         points, gradient, lever = local.nodal[s, POINTS], local.nodal[s, GRADIENT], local.nodal[s, LEVER]
-        numbers, along = strips.numbers[s], strips.along[s]
+        numbers, along, moments = strips.numbers[s], strips.along[s], local.lanes[s, MOMENT_AT]
         fx = gradient[2 * tip] + gradient[2 * inner]
         fy = gradient[2 * tip + 1] + gradient[2 * inner + 1]
         x, y0 = points[2 * tip], points[2 * tip + 1]
@@ -277,7 +278,7 @@ def moment_defect(y, strips, shape, local):
         for i in range(n):
             lever[i] = (x - points[2 * i]) * fy - (y0 - points[2 * i + 1]) * fx + moment
         for p in range(rule.shape[1]):
-            left, cx, cy, ax, ay = local.moment[s, p], 0.0, 0.0, 0.0, 0.0
+            left, cx, cy, ax, ay = moments[p], 0.0, 0.0, 0.0, 0.0
             for i in range(n):
                 left -= tables[VALUE, p, i] * lever[i]
                 cx += tables[VALUE, p, i] * points[2 * i]
@@ -289,7 +290,7 @@ def moment_defect(y, strips, shape, local):
             if along[p, RIGIDITY] > 0.0:
                 ds = rule[WEIGHT, p] * along[p, SPEED] / along[p, RIGIDITY]
                 wrong += ds * left * left
-                stored += ds * local.moment[s, p] ** 2
+                stored += ds * moments[p] ** 2
     return wrong, stored
 
 

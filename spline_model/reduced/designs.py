@@ -53,9 +53,9 @@ class Given:
         return np.asarray(self.section[..., 0] ** 1.5 / np.sqrt(12.0 * self.section[..., 1]))
 
     @property
-    def flatness(self) -> Array:
-        """Square of the width over the thickness (D, S) [m]."""
-        return np.asarray(self.width**3 / self.section[..., 0])
+    def thickness(self) -> Array:
+        """Thickness of that rectangle (D, S) [m]."""
+        return np.asarray(self.section[..., 0] / self.width)
 
     @property
     def compliance(self) -> Array:
@@ -101,11 +101,14 @@ def designs_of(model: Reduced, base: Given, given: Given, rotation: Array) -> De
     force = (energy / length)[:, None] * (model.length / model.energy)
     area, _, modulus = np.moveaxis(given.section / base.section, -1, 0)
     speed = longer * (model.length / wide)
+    thicker = given.thickness / base.thickness
     rigid = given.rigidity / base.rigidity / (energy * length)[:, None] * (model.energy * model.length)
     numbers = np.repeat(strips.numbers[None], count, axis=0)
     numbers[..., STRETCHING] *= area * modulus / force
     numbers[..., PER_U:] *= (area * longer / force)[..., None]
     numbers[..., REACH:SPRING] *= speed[..., None]
+    springs = given.rigidity / base.rigidity / thicker * (model.energy / energy)[:, None]
+    numbers[..., SPRING:PER_U] *= springs[..., None]
     for end, (place, carriers) in enumerate(((ROOT, strips.roots), (TIP, strips.tips))):
         numbers[..., place + 2] += np.angle(turn)
         for s, body in enumerate(carriers):
@@ -122,7 +125,7 @@ def designs_of(model: Reduced, base: Given, given: Given, rotation: Array) -> De
         w, inner = model.places(s)[0], strip.control_points[2:-2] - base.ends[0, s, 0]
         moved = turn[:, s, None] * (inner[:, 0] + 1j * inner[:, 1])
         points = (np.stack((moved.real, moved.imag), axis=-1) + given.ends[:, s, None, 0]) / wide[..., None]
-        start[:, w.start : w.stop - 2] = points.reshape(count, -1)
+        start[:, w.start + 2 * model.yields : w.stop - 2] = points.reshape(count, -1)
         for end, carriers in enumerate((strips.roots, strips.tips)):
             if carriers[s] >= own:  # a free end is its own body
                 place = 3 * carriers[s]
@@ -143,7 +146,7 @@ def designs_of(model: Reduced, base: Given, given: Given, rotation: Array) -> De
                 np.broadcast_to(wide / model.length, speed.shape),
                 rigid,
                 np.ones_like(speed),
-                given.flatness / base.flatness * (model.length / wide),
+                (given.width / base.width) ** 2 / thicker * (model.length / wide),
                 speed**-0.5,
             ),
             axis=-1,

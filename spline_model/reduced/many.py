@@ -12,6 +12,7 @@ from spline_model.basis import all_modes
 from spline_model.effects import MixedStretching
 from spline_model.reduced.equilibrium import ITERATIONS
 from spline_model.reduced.model import Reduced
+from spline_model.reduced.numbers import in_order
 from spline_model.reduced.path import follow
 from spline_model.strip.compiled import called, copy, kernel
 from spline_model.strip.element import CURVATURE, MODES, ON_POINTS, POINTS, SPEED, place_points
@@ -33,11 +34,12 @@ class Stations(NamedTuple):
 
 def stations_of(model: Reduced, stations: Array) -> Stations:
     """Tables at the stations u in [0, 1], with working arrays of their own."""
-    scene, order = model.system.scene, model.shape.order
+    scene = model.system.scene
     basis, mine = scene.strips[0].basis, scene.strips[0].name
     parts = [all_modes(e.modes, stations) for e in scene.of(MixedStretching) if e.strip == mine]
     modes = np.column_stack(parts) if parts else np.zeros((len(stations), 0))
-    d1, d2 = (np.ascontiguousarray(basis.evaluate(stations, k)[:, order].T) for k in (1, 2))
+    tables = (in_order(basis.evaluate(stations, k)[..., None], model.shape)[..., 0] for k in (1, 2))
+    d1, d2 = (np.ascontiguousarray(table.T) for table in tables)
     axial = np.ascontiguousarray((modes @ model.to_modes[0]).T)
     return Stations(d1=d1, d2=d2, modes=axial, work=np.zeros((5, len(stations))))
 

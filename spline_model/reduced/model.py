@@ -123,9 +123,9 @@ def _reduced(system: System) -> Reduced | None:
     bending = {e.strip: e for e in scene.of(Bending)}
     basis, points = scene.strips[0].basis, next(iter(bending.values())).gauss_points
     length, energy = system.scales.length, system.scales.energy
-    shape = _shape(basis, points, bool(scene.of(RootCompliance)))
+    shape = shape_of(basis, points, bool(scene.of(RootCompliance)))
     ends = ends_of(system)
-    strips, rest, to_modes = _strips(system, shape, basis, points, ends)
+    strips, rest, to_modes = strips_of(system, shape, basis, points, ends)
     bodies = bodies_of(system, ends, strips.outer * len(scene.strips))
     if bodies is None:
         return None
@@ -157,8 +157,8 @@ def _known(scene: Scene, system: System, longest: float) -> bool:
 
 
 @lru_cache(maxsize=64)
-def _shape(basis: SplineBasis, points: int, yields: bool) -> Shape:
-    """yields: whether there is a point on no curve, for the turns of the roots."""
+def shape_of(basis: SplineBasis, points: int, yields: bool) -> Shape:
+    """The basis at the Gauss points; yields: whether roots turn, by a point more that is on no curve."""
     n = basis.control_points
     order = np.array([*range(2, n - 2), 1, n - 2, n - 1, 0], dtype=np.int64)
     u, weight = basis.gauss_rule(points)
@@ -168,10 +168,10 @@ def _shape(basis: SplineBasis, points: int, yields: bool) -> Shape:
     if yields:
         order = np.concatenate(([n], order))
         tables = np.concatenate((np.zeros((*tables.shape[:2], 1)), tables), axis=2)
-    return Shape(order=order, tables=tables, rule=np.array((u, weight)))
+    return Shape.of(order, tables, np.array((u, weight)))
 
 
-def _strips(
+def strips_of(
     system: System, shape: Shape, basis: SplineBasis, points: int, ends: Ends
 ) -> tuple[Strips, Array, Array]:
     """The strips' arrays, their curvature at rest (S, G), and the scene's axial forces from theirs."""

@@ -30,8 +30,8 @@ Array = NDArray[np.float64]
 
 
 def in_order(points: Array, shape: Shape) -> Array:
-    """Values at control points (..., n, 2) in the order of elimination, zero at one on no curve."""
-    on_none = np.zeros((*points.shape[:-2], 1, 2))
+    """Values at control points (..., n, k) in the order of elimination, zero at one on no curve."""
+    on_none = np.zeros((*points.shape[:-2], 1, points.shape[-1]))
     return np.asarray(np.concatenate((points, on_none), axis=-2)[..., shape.order, :])
 
 

@@ -19,7 +19,7 @@ from spline_model.reduced.assembly import AXIAL, BENDING, SLOWEST, condensed, el
 from spline_model.reduced.equilibrium import EVALUATIONS, HALVED, ITERATIONS
 from spline_model.strip.compiled import called, copy, kernel
 from spline_model.strip.condense import SINGULAR
-from spline_model.strip.element import LAST, ROOT, TIP
+from spline_model.strip.element import LAST, ROOT, SPRING, TIP
 from spline_model.strip.ends import end_frame
 
 Array = NDArray[np.float64]
@@ -176,12 +176,13 @@ def settle(s, at, own, y, strips, shape, local, room, tolerance, counters):
     for turn in range(2):
         for i in range(size):
             y[at + i] = room.saddle[i]
-        count = own // 2 - 1
+        first = 2 if strips.numbers[s, SPRING] > 0.0 else 0  # behind the turns of roots
+        count = (own - first) // 2 - 1
         for i in range(count):
-            u = (i + 1) / (count + 1)
+            u, place = (i + 1) / (count + 1), at + first + 2 * i
             push = (1.0 - 2.0 * turn) * NUDGE * 16.0 * (u * (1.0 - u)) ** 2
-            y[at + 2 * i] -= push * room.place[3]
-            y[at + 2 * i + 1] += push * room.place[2]
+            y[place] -= push * room.place[3]
+            y[place + 1] += push * room.place[2]
         if descend(s, at, own, y, strips, shape, local, room, tolerance, counters) == 0:
             energy = energy_at(s, at, own, y, strips, shape, local, room)
             if energy < least - 1e-9 * abs(energy):

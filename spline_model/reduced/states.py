@@ -15,7 +15,7 @@ from spline_model.reduced.path import Answer
 from spline_model.solution import Later
 from spline_model.strip.compiled import kernel
 from spline_model.strip.element import GRADIENT, POINTS, place_points
-from spline_model.strip.points import evaluate_points
+from spline_model.strip.points import evaluate_gradient
 
 Array = NDArray[np.float64]
 
@@ -34,7 +34,7 @@ def place_all(y, poses, shape, strips, local, out, points, forces):
             at = poses + s * (own + modes)
             state = y[row]
             place_points(s, state[at : at + own], state, strips, local)
-            evaluate_points(s, state[at + own : at + own + modes], n, shape, strips, local, out)
+            evaluate_gradient(s, state[at + own : at + own + modes], n, shape, strips, local, out)
             p, g = local.nodal[s, POINTS], local.nodal[s, GRADIENT]
             for i in range(2 * n):
                 points[row, s, i] = p[i]

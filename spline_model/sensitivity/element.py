@@ -18,8 +18,10 @@ from numpy.typing import NDArray
 from spline_model.basis import all_modes
 from spline_model.effects import Bending, MixedStretching
 from spline_model.reduced.model import Reduced
+from spline_model.reduced.numbers import in_order
 from spline_model.sensitivity.varied import Varied
 from spline_model.strip import laws
+from spline_model.strip.element import WHERE
 
 Array = NDArray[Any]
 
@@ -64,8 +66,9 @@ class Elements:
     y: Array
 
     def _own(self, y: Array) -> tuple[Array, Array, Array, Array]:
-        """Free control points (n - 4, 2, ...), shares of the ends' reach (2, 1, ...), axial forces (K, ...)
-        and poses (2, 3, ...) of what carries root and tip; the ground's is zero."""
+        """Free control points (n - 4, 2, ...), first the turns of the roots where they yield, shares of the
+        ends' reach (2, 1, ...), axial forces (K, ...) and poses (2, 3, ...) of what carries root and tip; the
+        ground's is zero."""
         y = np.concatenate((np.moveaxis(y, -1, 0), np.zeros((3, *y.shape[:-1]))))
         w = y[self._places[0]]
         return (
@@ -94,10 +97,14 @@ class Elements:
     def _ends(self) -> tuple[Array, Array, Array]:
         """Arms from the bodies' centres to the clamped points, and sticks from there to the inner control
         points at rest, (2, 2, ...); shares of these (2, 1, ...)."""
-        _, share, _, pose = self._state
+        free, share, _, pose = self._state
         frames, angle = self.varied.frames, pose[:, 2]
         arm = turned(angle, frames[:, 0], frames[:, 1])
-        return arm, turned(angle + frames[:, 2], self.varied.reach, 0.0), share
+        return arm, turned(angle + self._turns(free) + frames[:, 2], self.varied.reach, 0.0), share
+
+    def _turns(self, free: Array) -> Array | float:
+        """Of the free control points those that are the turns of the roots, (2, ...)."""
+        return free[0] if self.model.yields else 0.0
 
     @cached_property
     def points(self) -> Array:
@@ -120,8 +127,14 @@ class Elements:
     @cached_property
     def _bending(self) -> tuple[Array, ...]:
         strips, curve = self.model.strips, self.curve
-        given = (self.varied.speed, strips.curvature.T[..., None, None], self.varied.rigidity)
-        return tuple(bending_law(curve.turning, curve.speed, *given, 0.0, 0.0, strips.measure))
+        rigidity, drop = self.varied.along(self.model, self.model.shape.rule[WHERE])
+        given = (self.varied.speed, strips.curvature.T[..., None, None], rigidity)
+        found = bending_law(curve.turning, curve.speed, *given, 0.0, 0.0, strips.measure)
+        if self.varied.curl.any():  # which the material measure alone knows
+            strain = curve.turning / self.varied.speed - given[1]
+            by = laws.curl_factors(strain, drop, self.varied.curl)
+            found = (*(value * factor for value, factor in zip(found, by, strict=False)), *found[3:])
+        return tuple(found)
 
     @cached_property
     def _stretching(self) -> tuple[Array, ...]:
@@ -148,7 +161,11 @@ class Elements:
         """Bending and axial energy (P, S) of all strips [EI/L]."""
         weight = self.model.shape.weight
         bending, axial = (np.tensordot(weight, law[0], 1) for law in (self._bending, self._stretching))
-        return bending.sum(axis=0), axial.sum(axis=0)
+        return bending.sum(axis=0) + self._of_roots(self._state[0]), axial.sum(axis=0)
+
+    def _of_roots(self, free: Array) -> Array:
+        """1/2 k psi^2 (P, S) of the roots' turns psi, the first of ``free``."""
+        return np.asarray(0.5 * (self.varied.springs * self._turns(free) ** 2).sum(axis=(0, 1)))
 
     def residual(self) -> tuple[Array, Array]:
         """Derivative of the strips' energy by y (P, S, Y); force and moment of the clamps at root and tip on
@@ -162,6 +179,8 @@ class Elements:
         g = _times(shape.d1.T, first) + _times(shape.d2.T, m * _across(curve.first)) - self.varied.dead
         inner, clamped = g[n - 4 : n - 2], g[: n - 3 : -1]
         force, moment = inner + clamped, share[:, 0] * _cross(stick, inner)
+        if self.model.yields:
+            g[0] = self.varied.springs * self._turns(self._state[0]) + moment
         w, a, poses = self._places
         out = np.zeros((self.model.size + 3, *g.shape[3:]), dtype=complex)
         out[w[:-2]] = g[: n - 4].reshape(len(w) - 2, *g.shape[2:])
@@ -188,9 +207,10 @@ class Elements:
         shape, varied, curve = self.model.shape, self.varied, self.curve
         (arm, stick, share), (free, push, pull, pose) = self._ends, self._own(rate)
         spin = pose[:, 2:]
-        clamped, turn = pose[:, :2] + spin * _across(arm), spin * _across(stick)
+        swing = spin + (free[0][:, None] if self.model.yields else 0.0)
+        clamped, turn = pose[:, :2] + spin * _across(arm), swing * _across(stick)
         back = -(spin**2) * arm
-        bent = back + 2.0 * push * turn - share * spin**2 * stick
+        bent = back + 2.0 * push * turn - share * swing**2 * stick
         twice = _ordered(0.0 * free, bent, back)
         by = Curve.of(shape.d1, shape.d2, _ordered(free, clamped + push * stick + share * turn, clamped))
         by2 = Curve.of(shape.d1, shape.d2, twice)
@@ -210,7 +230,7 @@ class Elements:
                 density = density + by_force * (2.0 * by_nv * v1 - c * by_force * length)
                 density = density - 2.0 * c * by_force * force * longer
         total = np.tensordot(shape.weight, density, 1) - (varied.dead * twice).sum(axis=(0, 1))
-        return np.asarray(total.sum(axis=0))
+        return np.asarray(total.sum(axis=0) + 2.0 * self._of_roots(free))
 
     def fibre_stress(self, stations: Array) -> Array:
         """Stress [Pa] at both extreme fibres of G strips at Q stations, (P, S, G, Q, 2).
@@ -219,17 +239,19 @@ class Elements:
         so that both are smooth in state and design. Plane sections, without the clamps' notches.
         """
         model, varied, strips = self.model, self.varied, self.model.strips
-        scene, order = model.system.scene, model.shape.order
-        d1, d2 = (scene.strips[0].basis.evaluate(stations, k)[:, order] for k in (1, 2))
-        rest_points = np.stack([s.control_points[order] for s in scene.strips], axis=-1) / model.length
-        rest, curve = Curve.of(d1, d2, rest_points[..., None, None]), Curve.of(d1, d2, self.points)
+        scene, basis = model.system.scene, model.system.scene.strips[0].basis
+        d1, d2 = (in_order(basis.evaluate(stations, k)[..., None], model.shape)[..., 0] for k in (1, 2))
+        still = np.stack([in_order(s.control_points, model.shape) for s in scene.strips], axis=-1)
+        at_rest = still[..., None, None] / model.length
+        rest, curve = Curve.of(d1, d2, at_rest), Curve.of(d1, d2, self.points)
         natural = {e.strip: model.length * e.natural_curvature for e in scene.of(Bending)}
         curvature = np.array([natural[s.name] for s in scene.strips])[:, None, None]
         curvature, speed = curvature + rest.turning / rest.speed, rest.speed * varied.longer
         bend = curve.turning / (curve.speed if strips.measure else speed) - curvature
-        side = bend * (
-            varied.rigidity[:1] * model.energy * np.sqrt(3.0 / (varied.area * varied.second_moment))
-        )
+        rigidity, drop = varied.along(model, stations)
+        curled = laws.curl_factors(bend, drop, varied.curl)[1] if varied.curl.any() else 1.0
+        moment = rigidity * bend * curled
+        side = moment * model.energy * np.sqrt(3.0 / (varied.area * varied.second_moment))
         force: Any = 0.0
         if strips.stretching.any():
             force = varied.stretching * (curve.speed / speed - 1.0 - strips.strain[:, None, None])

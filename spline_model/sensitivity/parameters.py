@@ -19,9 +19,9 @@ Array = NDArray[np.float64]
 SHAPE = ("length", "inclination", "crossing_ratio")
 MATERIAL = ("area", "second_moment_of_area", "youngs_modulus")
 KEYWORDS = (*SHAPE, *MATERIAL)
-"""Keywords of ``cross_axis_pivot`` that the statics of both strips alike depends on. Poisson's ratio,
-density and the inertias do not enter, but by weight; ``centre_offset`` and ``orientation`` move what is
-reported rigidly."""
+"""Keywords of ``cross_axis_pivot`` that the statics of both strips alike depends on. Of the others density
+and the inertias do not enter, but by weight, nor Poisson's ratio, but by the section's curl;
+``centre_offset`` and ``orientation`` move what is reported rigidly."""
 
 SECTION = ("thickness", "width")
 """Sides of a rectangular section h x b, A = b h and I = b h^3 / 12, in place of A and I."""

@@ -15,13 +15,14 @@ from spline_model.errors import InvalidParameter
 from spline_model.layout import Layout
 from spline_model.mechanism import Mechanism
 from spline_model.pivot import Pivot
+from spline_model.plate.profile import STEP
 from spline_model.reduced.model import from_unknowns, reduced
 from spline_model.reduced.states import gathered
 from spline_model.reduced.whole import whole_tangents
 from spline_model.sensitivity.element import Elements, turned
 from spline_model.sensitivity.parameters import KEYWORDS, Rates, crossing_reach, rates_of
 from spline_model.sensitivity.result import Quantity, Sensitivities
-from spline_model.sensitivity.varied import STEP, held_rates, varied_strips
+from spline_model.sensitivity.varied import held_rates, varied_strips
 from spline_model.solution import StaticSolution
 from spline_model.statics import STATIONS
 
@@ -53,25 +54,22 @@ def sensitivities(
     where dT/dp and dK/dp count the change of the state too: one factorisation a state, one
     back-substitution a parameter and one for the rate y_t. The parameters enter through the end frames,
     reach, speed, EI, compliance and dead load of the strips, by a complex step: exact to round-off for
-    the discrete answer, in either measure, under loads and pre-strain. The slide stiffness goes with the
-    design. Bodies keep their mass. Refuses what the elements do not know: printed forces, own potentials; and
-    effects of the section's curl, whose rates are not among these.
+    the discrete answer, in either measure, under loads and pre-strain, with clamps over the whole width (by
+    the plate's own solution), sections that flatten and roots that turn. The slide stiffness goes with the
+    design. Bodies keep their mass. Refuses what the elements do not know: printed forces, own potentials.
     Source: implicit function theorem; Haftka and Guerdal, Elements of Structural Optimization
     (1992), ch. 7.
     """
     if asked.design.discretisation.control_points is None:
         asked = asked.with_control_points(solution.control_points)
-    if asked.design.curling:
-        raise InvalidParameter("effects", list(asked.design.curling), "none of them for sensitivities")
     rates = rates_of(asked, parameters)
     mechanism = asked
     driven = not np.isnan(solution.torque).all()
     system = compile_scene(mechanism.driven(1.0, body) if driven else mechanism.scene)
     model = reduced(system, longest=math.inf)
-    if model is None or model.yields:
-        raise InvalidParameter(
-            "effects", "printed forces, root_compliance or an own potential", "what the strips' elements know"
-        )
+    if model is None:
+        unknown = "printed forces or an own potential"
+        raise InvalidParameter("effects", unknown, "what the strips' elements know")
     z = solution.states
     if z.shape[1:] != (system.layout.size,):
         got = f"{z.shape[1:]} unknowns"
@@ -118,8 +116,10 @@ def _differentiate(still: Elements, solution: StaticSolution, held: Array) -> tu
     left = force[0].real.copy()
     left[:, :poses] -= np.multiply.outer(solution.load_factor, bodies.load[:poses]) + bodies.weight[:poses]
     at = [solution.states[:, model.system.layout.strip(strip.name)] for strip in scene.strips]
-    given = np.stack(at, axis=-1).reshape(len(y), -1, 2, len(at))[:, model.shape.order] / model.length
-    apart = still.points[..., 0, :].real.transpose(3, 0, 1, 2) - given
+    on_curve = slice(int(model.yields), None)
+    order = model.shape.order[on_curve]
+    given = np.stack(at, axis=-1).reshape(len(y), -1, 2, len(at))[:, order] / model.length
+    apart = still.points[on_curve, ..., 0, :].real.transpose(3, 0, 1, 2) - given
     free = np.setdiff1d(np.arange(model.size), bodies.held)
     wrong = np.maximum(np.abs(left[:, free]).max(axis=1), np.abs(apart).max(axis=(1, 2, 3)))
     if not wrong.max() <= LARGEST_RESIDUAL:

@@ -8,25 +8,30 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.design import Design
+from spline_model.effects import Bending
+from spline_model.plate.profile import STEP
 from spline_model.reduced.model import Reduced
 from spline_model.sensitivity.parameters import Rates
+from spline_model.strip.element import CURL, PER_U, SPRING
 
 Array = NDArray[Any]
-
-STEP = 1e-40
-"""Its square is beyond any round-off."""
 
 
 class Varied(NamedTuple):
     """What of ``Strips`` knows the design, (..., G, P, 1) each: by P parameters, the same at all states.
 
-    speed, rigidity (Q, ...), stretching; compliance (2, ...) of stretching and sliding; frames (2, 3, ...)
-    of root and tip; reach (2, ...), away from the clamp; dead (n, 2, ...); area [m^2], second_moment [m^4];
-    longer: the length over that of the design. All else is over L and EI/L of the design.
+    speed, stretching; bending, the rigidity EI, and aspect, the width over the length over that of the
+    design, which ``along`` takes; curl as in ``Strips``; springs (2, ...) of the roots; compliance (2, ...)
+    of stretching and sliding; frames (2, 3, ...) of root and tip; reach (2, ...), away from the clamp; dead
+    (n, 2, ...); area [m^2], second_moment [m^4]; longer: the length over that of the design. All else is
+    over L and EI/L of the design.
     """
 
     speed: Array
-    rigidity: Array
+    bending: Array
+    aspect: Array
+    curl: Array
+    springs: Array
     stretching: Array
     compliance: Array
     frames: Array
@@ -36,6 +41,19 @@ class Varied(NamedTuple):
     second_moment: Array
     longer: Array
 
+    def along(self, model: Reduced, u: Array) -> tuple[Array, Array]:
+        """The rigidity at small curvature and the drop of ``curl_law`` at u (Q,), (Q, G, P, 1)."""
+        scene = model.system.scene
+        basis, bends = scene.strips[0].basis, {e.strip: e.curl for e in scene.of(Bending)}
+        curls = [bends[strip.name] for strip in scene.strips]
+        stiffer, rate = np.ones((len(u), len(curls))), np.zeros((len(u), len(curls)))
+        for s, curl in enumerate(curls):
+            if curl is not None:
+                stiffer[:, s], rate[:, s] = curl.rigidity(basis, u), curl.rigidity_rate(basis, u)
+        plate = _spread(np.array([0.0 if curl is None else curl.poisson_ratio**2 for curl in curls]))
+        found = _spread(stiffer) + _spread(rate) * (self.aspect - 1.0)
+        return found * self.bending, 1.0 - (1.0 - plate) * found
+
 
 def varied_strips(model: Reduced, design: Design, rates: Rates) -> Varied:
     """The strips of a design, which ``model`` is of."""
@@ -44,6 +62,9 @@ def varied_strips(model: Reduced, design: Design, rates: Rates) -> Varied:
     area, second_moment, modulus = 1.0 + step * (rates.section / given).T[..., None]
     lengthening, turning = (each.T[..., None] for each in rates.by_length(design.strips))
     longer = 1.0 + step * lengthening
+    thickness = np.sqrt(second_moment / area)
+    width = area / thickness
+    rigidity = np.array([s.flexural_rigidity for s in design.strips]) / (model.energy * model.length)
     compliance = np.zeros((2, len(given)))
     for k, part in enumerate((slice(strips.split), slice(strips.split, None))):
         if strips.compliance[:, part].size:
@@ -53,7 +74,10 @@ def varied_strips(model: Reduced, design: Design, rates: Rates) -> Varied:
     moved = np.concatenate((points, np.stack((turning, turning))[:, None]), axis=1)
     return Varied(
         speed=_spread(strips.speed.T) * longer,
-        rigidity=_spread(strips.rigidity.T) * second_moment * modulus,
+        bending=_spread(rigidity) * second_moment * modulus,
+        aspect=width / longer,
+        curl=_spread(strips.along[:, 0, CURL]) * width**2 / thickness,
+        springs=_spread(strips.numbers[:, SPRING:PER_U].T) * second_moment * modulus / thickness,
         stretching=_spread(strips.stretching) * area * modulus,
         compliance=_spread(compliance) * np.stack((1.0 / area, longer**2 / second_moment)) / modulus,
         frames=frames + step * moved,

@@ -8,29 +8,72 @@ reassociate but keeps nan and infinity, by which a failed solve is seen.
 
 from __future__ import annotations
 
-from functools import partial
+import math
+from functools import lru_cache, partial
 
+import numpy as np
 from numba import njit
+from numba.core.codegen import ll
 from numba.core.compiler import Compiler
 from numba.core.registry import CPUDispatcher
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
 
 FAST = {"contract", "reassoc", "nsz"}
 
+
+class Short(Compiler):
+    """Numba's compiler, optimising once and for short loops: of eight Gauss points, not of eighty.
+
+    Numba optimises twice, around the pruning of reference counts that are not there, and lets a vectorised
+    loop do four vectors at a time, of which a short one fills none.
+    """
+
+    def define_pipelines(self):
+        """The usual passes, into a library that optimises its code so."""
+        library = self.state.targetctx.codegen().create_library(self.state.func_id.func_qualname)
+        library.enable_object_caching()
+        library._optimize_final_module = partial(self.optimise, library)
+        self.state.library = library
+        return super().define_pipelines()
+
+    @staticmethod
+    def optimise(library):
+        """Optimise the code of a library in place."""
+        options = ll.create_pipeline_tuning_options(speed_level=3)
+        options.loop_vectorization, options.loop_interleaving = True, False
+        builder = ll.create_pass_builder(library.codegen._tm, options)
+        builder.getModulePassManager().run(library._final_module, builder)
+
+
 kernel = partial(
-    njit, cache=True, nogil=True, fastmath=FAST, error_model="numpy", _nrt=False, no_cfunc_wrapper=True
+    njit,
+    cache=True,
+    nogil=True,
+    fastmath=FAST,
+    error_model="numpy",
+    pipeline_class=Short,
+    _nrt=False,
+    no_cfunc_wrapper=True,
 )
 """Decorator ``@kernel()`` of a function that works on given arrays only and is called from Python."""
 
 
-class Parts(Compiler):
-    """Numba's compiler, but for its last pass: a part is optimised where it ends up, and not before."""
+class Parts(Short):
+    """The same, but for the last pass: a part is optimised where it ends up, and not before."""
+
+    @staticmethod
+    def optimise(library):
+        """Leave the code as it is."""
+
+
+class Lanes(Parts):
+    """The same for arguments that share no element of an array, which lets their loops fill vectors."""
 
     def define_pipelines(self):
-        """The usual passes, into a library that leaves its code as it is."""
-        library = self.state.targetctx.codegen().create_library(self.state.func_id.func_qualname)
-        library.enable_object_caching()
-        library._optimize_final_module = lambda: None
-        self.state.library = library
+        """The usual passes, with the arguments told apart."""
+        self.state.flags.noalias = True
         return super().define_pipelines()
 
 
@@ -42,11 +85,12 @@ class Inside(CPUDispatcher):
         raise TypeError(f"{self.py_func.__qualname__}: got a call from Python, expected one from a kernel")
 
 
-def called(*, no_cpython_wrapper=True, **options):
+def called(*, no_cpython_wrapper=True, pipeline_class=Parts, **options):
     """Decorator of a function that kernels call, and Python does not; ``py_func`` is the plain one."""
 
     def decorated(function):
-        made = kernel(pipeline_class=Parts, no_cpython_wrapper=no_cpython_wrapper, **options)(function)
+        made = kernel(pipeline_class=pipeline_class, no_cpython_wrapper=no_cpython_wrapper, **options)
+        made = made(function)
         if no_cpython_wrapper and isinstance(made, CPUDispatcher):
             made.__class__ = Inside
         return made
@@ -59,6 +103,10 @@ part = partial(called, forceinline=True)
 inlines it, on machine code to be; Numba's own inlining would type and simplify it anew in each caller."""
 
 
+lane = partial(part, pipeline_class=Lanes)
+"""The same for loops over Gauss points, or pairs of control points: no two arguments share an element."""
+
+
 once = partial(kernel, inline="always")
 """The same for a long function with one caller, which Numba inlines: each level of calls is optimised anew,
 with all that is below it."""
@@ -69,3 +117,21 @@ def copy(source, target):
     """Copy a vector; a slice assignment would ask for a buffer."""
     for i in range(source.size):
         target[i] = source[i]
+
+
+def aligned(*shapes: tuple[int, ...]) -> list[Array]:
+    """Arrays of zeros that begin with a line of the cache: a vector of eight across two takes longer."""
+    places, count = _places(shapes)
+    room = np.zeros(count + 8)
+    room = room[-room.ctypes.data % 64 // 8 :]
+    return [room[begin:end].reshape(shape) for begin, end, shape in places]
+
+
+@lru_cache(maxsize=64)
+def _places(shapes: tuple[tuple[int, ...], ...]) -> tuple[list[tuple[int, int, tuple[int, ...]]], int]:
+    """Where arrays begin and end that stand in lines of eight, one behind the other; and where all end."""
+    places, count = [], 0
+    for shape in shapes:
+        places.append((count, count + math.prod(shape), shape))
+        count += -(-math.prod(shape) // 8) * 8
+    return places, count

@@ -21,7 +21,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from spline_model.strip.compiled import part
+from spline_model.strip.compiled import aligned, part
 from spline_model.strip.ends import add_roots, end_frame, to_ends
 
 Array = NDArray[np.float64]
@@ -37,6 +37,9 @@ STRETCHING, STRAIN, ROOT, TIP, REACH, SPRING, PER_U, ON_POINTS = 0, 1, 2, 5, 8, 
 """Places of a strip's numbers."""
 LEVER, GRADIENT, POINTS = -3, -2, -1
 """Last rows of ``Local.nodal``."""
+HESSIAN_AT, TANGENT_AT, SPEED_AT, MOMENT_AT, GIVEN, FORCE_AT, LANES = 8, 18, 20, 21, 24, 30, 32
+"""Rows of ``Local.lanes`` behind x', y', x'', y'' and the derivatives of the energy in them, and their count:
+its second derivatives, the unit tangent, |C'|, the moment, what is given there, and both parts of N."""
 LAST = -1
 """Row of g in ``Local.reduced``, and of the gap in ``Local.axial``."""
 
@@ -45,12 +48,26 @@ class Shape(NamedTuple):
     """Basis at the G Gauss points, the same for all strips, points in the order of elimination.
 
     order (n,) control point at each place; tables (4, G, n) the basis, its first and second derivatives and
-    its integrals from u to 1; rule (2, G) u and weights.
+    its integrals from u to 1; rule (2, G) u and weights; curve (2, n, G) both derivatives once more; products
+    (4, G, P) of derivatives 11, 12, 21 and 22 of pairs i <= j of points, j by j, P filled up to eights.
     """
 
     order: NDArray[np.int64]
     tables: Array
     rule: Array
+    curve: Array
+    products: Array
+
+    @classmethod
+    def of(cls, order: NDArray[np.int64], tables: Array, rule: Array) -> Shape:
+        """With all that follows from the tables."""
+        n, points = len(order), rule.shape[1]
+        curve, products = aligned((2, n, points), (4, points, -(-n * (n + 1) // 16) * 8))
+        curve[:] = tables[FIRST : SECOND + 1].transpose(0, 2, 1)
+        j, i = np.tril_indices(n)
+        for place, (of_i, of_j) in enumerate(((0, 0), (0, 1), (1, 0), (1, 1))):
+            products[place, :, : len(i)] = (curve[of_i, i] * curve[of_j, j]).T
+        return cls(order=order, tables=tables, rule=rule, curve=curve, products=products)
 
     @property
     def d1(self) -> Array:
@@ -156,13 +173,15 @@ class Local(NamedTuple):
     in its last rows LEVER, GRADIENT and POINTS: moment of the tip's reaction about the points (n), gradient
     and the points themselves; reduced (S, E + 2 K + 1, E), in the element's coordinates: h, then b and e, the
     coupling and its combination, and last g; axial (S, K + 1, K): derivative of -gap in a, and last the gap;
-    moment (S, G); map (S, 16) of the ends; scratch (17, 8).
+    lanes (S, LANES, G) at the Gauss points; pairs (4, P) of control points as in ``Shape``; map (S, 16) of
+    the ends; scratch (17, 8).
     """
 
     nodal: Array
     reduced: Array
     axial: Array
-    moment: Array
+    lanes: Array
+    pairs: Array
     map: Array
     scratch: Array
 
@@ -176,14 +195,18 @@ def local_arrays(strips: int, control_points: int, modes: int, gauss_points: int
     """Arrays of that many strips."""
     s, n, k = strips, control_points, modes
     size = 2 * n - 6 + coupled + 7
-    return Local(
-        nodal=np.zeros((s, 2 * n + k + 3, 2 * n)),
-        reduced=np.zeros((s, size + 2 * k + 1, size)),
-        axial=np.zeros((s, k + 1, k)),
-        moment=np.zeros((s, gauss_points)),
-        map=np.zeros((s, 16)),
-        scratch=np.zeros((17, 8)),
+    shapes = (
+        (s, 2 * n + k + 3, 2 * n),
+        (s, size + 2 * k + 1, size),
+        (s, k + 1, k),
+        (s, LANES, gauss_points),
+        (4, -(-n * (n + 1) // 16) * 8),
+        (s, 16),
+        (17, 8),
     )
+    local = Local(*aligned(*shapes))
+    local.lanes[:, GIVEN + 3 : FORCE_AT] = 1.0  # of ``curl_law``, where nothing curls
+    return local
 
 
 @part()

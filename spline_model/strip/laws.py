@@ -8,11 +8,42 @@ over L, energy over EI/L.
 
 from __future__ import annotations
 
-import math
+from typing import Any
+
+import numpy as np
 
 from spline_model.strip.compiled import called, part
 
 MATERIAL, SPATIAL = range(2)
+
+
+@called()
+def nearly_flat(y):
+    """f, h and h + x h' / 2 of ``curl_law`` by y = x^4 below 1: quotients of power series."""
+    n0 = 1.0 + y * (1.0 / 360.0 + y * (1.0 / 1814400.0 + y * (1.0 / 43589145600.0)))
+    n1 = 1.0 / 360.0 + y * (1.0 / 907200.0 + y * (1.0 / 14529715200.0))
+    n2 = 1.0 / 907200.0 + y * (1.0 / 7264857600.0)
+    d0 = 1.0 + y * (1.0 / 120.0 + y * (1.0 / 362880.0 + y * (1.0 / 6227020800.0)))
+    d1 = 1.0 / 120.0 + y * (1.0 / 181440.0 + y * (1.0 / 2075673600.0))
+    d2 = 1.0 / 181440.0 + y * (1.0 / 1037836800.0)
+    f = n0 / d0
+    slope = (n1 - f * d1) / d0
+    bend = (n2 - 2.0 * slope * d1 - f * d2) / d0
+    return f, f + y * slope, f + y * (5.0 * slope + 2.0 * y * bend)
+
+
+@called()
+def curled(x):
+    """The same by x of 1 and more: exponentials over the largest."""
+    small = np.exp(-x)
+    c, s = 2.0 * small * np.cos(x), 2.0 * small * np.sin(x)
+    small *= small
+    even, odd, sinh = 1.0 + small, 1.0 - small, 1.0 - small + s  # over e^x / 2
+    q, d, w = (even - c) / sinh, (even + c) / sinh, (odd - s) / sinh
+    q1, q2 = 1.0 - q * d, 2.0 * q * d * d - d - q * w
+    over = q / x
+    f, first, second = 2.0 * over, 2.0 * (q1 - over), 2.0 * x * q2 - 4.0 * (q1 - over)
+    return f, f + 0.25 * first, f + 0.875 * first + 0.125 * second
 
 
 @called()
@@ -24,34 +55,22 @@ def curl_law(b, drop, curl):
         f = (2 / x) (cosh x - cos x) / (sinh x + sin x),      h = f + x f' / 4,
 
     1 - P h for the moment and 1 - P (h + x h' / 2) for the tangent. P (drop): nu^2, or what clamps leave of
-    it. f is smooth in y = x^4: quotient of power series below 1, exponentials over the largest above.
+    it. f is smooth in y = x^4.
     Source: Ashwell, J R Aeronaut Soc 54 (1950) 708; Audoly and Neukirch, J Mech Phys Solids 153 (2021).
     """
     y = curl * curl * b * b
-    if y < 1.0:
-        n0 = 1.0 + y * (1.0 / 360.0 + y * (1.0 / 1814400.0 + y * (1.0 / 43589145600.0)))
-        n1 = 1.0 / 360.0 + y * (1.0 / 907200.0 + y * (1.0 / 14529715200.0))
-        n2 = 1.0 / 907200.0 + y * (1.0 / 7264857600.0)
-        d0 = 1.0 + y * (1.0 / 120.0 + y * (1.0 / 362880.0 + y * (1.0 / 6227020800.0)))
-        d1 = 1.0 / 120.0 + y * (1.0 / 181440.0 + y * (1.0 / 2075673600.0))
-        d2 = 1.0 / 181440.0 + y * (1.0 / 1037836800.0)
-        f = n0 / d0
-        slope = (n1 - f * d1) / d0
-        bend = (n2 - 2.0 * slope * d1 - f * d2) / d0
-        h, t = f + y * slope, f + y * (5.0 * slope + 2.0 * y * bend)
-    else:
-        x = math.sqrt(math.sqrt(y))
-        small = math.exp(-x)
-        c, s = 2.0 * small * math.cos(x), 2.0 * small * math.sin(x)
-        small *= small
-        even, odd, sinh = 1.0 + small, 1.0 - small, 1.0 - small + s  # over e^x / 2
-        q, d, w = (even - c) / sinh, (even + c) / sinh, (odd - s) / sinh
-        q1, q2 = 1.0 - q * d, 2.0 * q * d * d - d - q * w
-        over = q / x
-        f, first, second = 2.0 * over, 2.0 * (q1 - over), 2.0 * x * q2 - 4.0 * (q1 - over)
-        h, t = f + 0.25 * first, f + 0.875 * first + 0.125 * second
+    f, h, t = nearly_flat(y) if y < 1.0 else curled(np.sqrt(np.sqrt(y)))
     whole = 1.0 / (1.0 - drop)
     return whole * (1.0 - drop * f), whole * (1.0 - drop * h), whole * (1.0 - drop * t)
+
+
+def curl_factors(b: Any, drop: Any, curl: Any) -> Any:
+    """``curl_law`` of arrays, real or complex: factors (3, ...) of energy, moment and tangent."""
+    near, far = (getattr(each, "py_func", each) for each in (nearly_flat, curled))
+    y = np.asarray(curl * curl * b * b)
+    small = y.real < 1.0
+    parts = np.where(small, near(np.where(small, y, 0.0)), far(np.sqrt(np.sqrt(np.where(small, 1.0, y)))))
+    return (1.0 - drop * parts) / (1.0 - drop)
 
 
 @part()

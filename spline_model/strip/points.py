@@ -1,4 +1,9 @@
-"""A strip's energy, gradient and Hessian in its control points, summed over the Gauss points."""
+"""A strip's energy, gradient and Hessian in its control points, summed over the Gauss points.
+
+What is done alike at all Gauss points is done in lanes: a row of ``Local.lanes`` holds one number at each
+of them, the rows come one by one to functions that know them apart (``compiled.lane``), and a processor's
+vectors are full. The Hessian is summed by pairs of control points, again in lanes, and laid out at the end.
+"""
 
 from __future__ import annotations
 
@@ -6,159 +11,281 @@ import math
 
 import numpy as np
 
-from spline_model.strip.compiled import part
+from spline_model.strip.compiled import lane, part
 from spline_model.strip.element import (
     CURL,
     CURVATURE,
     DROP,
-    FIRST,
+    FORCE_AT,
+    GIVEN,
     GRADIENT,
+    HESSIAN_AT,
     LAST,
     MODES,
     ON_POINTS,
     POINTS,
     RIGIDITY,
-    SECOND,
     SPEED,
+    SPEED_AT,
     SPRING,
     STRAIN,
     STRETCHING,
+    TANGENT_AT,
     WEIGHT,
 )
-from spline_model.strip.laws import MATERIAL, bending_law, mixed_law, stretching_law
+from spline_model.strip.laws import MATERIAL, bending_law, curl_law, mixed_law, stretching_law
 
 
 @part()
-def evaluate_points(s, a, moving, shape, strips, local, out):
-    """Fill gradient, upper Hessian, coupling and gap of the first ``moving`` places of strip s.
+def four(lanes, first):
+    """Four rows from one on, apart."""
+    return lanes[first], lanes[first + 1], lanes[first + 2], lanes[first + 3]
 
-    Adds bending and axial energy to out[0] and out[1], the dead load's to out[2]; out[3] becomes the
-    least v / J0.
+
+@lane()
+def curve_at(points, d1, d2, curve):
+    """x', y', x'', y'' at the Gauss points from the control points; d1, d2 (n, G)."""
+    x1, y1, x2, y2 = curve
+    for p in range(x1.size):
+        x1[p] = y1[p] = x2[p] = y2[p] = 0.0
+    for i in range(d1.shape[0]):
+        x, y = points[2 * i], points[2 * i + 1]
+        for p in range(x1.size):
+            x1[p] += d1[i, p] * x
+            y1[p] += d1[i, p] * y
+            x2[p] += d2[i, p] * x
+            y2[p] += d2[i, p] * y
+
+
+@part()
+def given_at(s, a, strips, lanes):
+    """What is given at the Gauss points: J0, curvature, EI, factors of ``curl_law``, both parts of N."""
+    along, split = strips.along[s], strips.split
+    for p in range(along.shape[0]):
+        at, force, sliding = along[p], 0.0, 0.0
+        for k in range(split):
+            force += at[MODES + k] * a[k]
+        for k in range(split, a.size):
+            sliding += at[MODES + k] * a[k]
+        lanes[GIVEN, p], lanes[GIVEN + 1, p], lanes[GIVEN + 2, p] = at[SPEED], at[CURVATURE], at[RIGIDITY]
+        lanes[FORCE_AT, p], lanes[FORCE_AT + 1, p] = force, sliding
+        if at[CURL] > 0.0:
+            x1, y1, x2, y2 = lanes[0, p], lanes[1, p], lanes[2, p], lanes[3, p]
+            phi = (x1 * y2 - y1 * x2) / (x1 * x1 + y1 * y1)
+            factors = curl_law(phi / at[SPEED] - at[CURVATURE], at[DROP], at[CURL])
+            lanes[GIVEN + 3, p], lanes[GIVEN + 4, p], lanes[GIVEN + 5, p] = factors
+
+
+@lane()
+def laws_at(
+    measure, count, strain, stretching, soft, slide_soft, weights, x1, y1, x2, y2, g0, g1, g2, g3,
+    h00, h01, h11, h02, h03, h12, h13, h22, h23, h33, tx, ty, lengths, moments, pulls, mixed,
+    speed, curvature, rigidity, by_e, by_m, by_t, stretch, slide,
+):  # fmt: skip
+    """The laws at the Gauss points; returns bending and axial energy.
+
+    soft, slide_soft: compliances of both parts of N. Filled are rows, times the weight: g, h, derivatives
+    in (x', y', x'', y''); the unit tangent; |C'|; the moment; derivatives of the axial energy in N, and
+    that one's in |C'|. Behind them is what ``given_at`` fills.
     """
-    d1, d2, weights, along = shape.tables[FIRST], shape.tables[SECOND], shape.rule[WEIGHT], strips.along[s]
-    numbers, split, compliance, measure = (
-        strips.numbers[s],
-        strips.split,
-        strips.compliance[s],
+    bending = axial = 0.0
+    for p in range(weights.size):
+        a1, b1, a2, b2, weight = x1[p], y1[p], x2[p], y2[p], weights[p]
+        square = a1 * a1 + b1 * b1
+        v, r = math.sqrt(square), 1.0 / square
+        ex, ey = a1 / v, b1 / v
+        phi = (a1 * b2 - b1 * a2) * r
+        density, m, m_phi, m_v, f, f_v = bending_law(
+            phi, v, speed[p], curvature[p], rigidity[p], 0.0, 0.0, measure
+        )
+        m, m_phi = m * by_m[p], m_phi * by_t[p]
+        bending += weight * density * by_e[p]
+        stored = by_n = by_nv = 0.0
+        if count > 0:
+            loss = soft * stretch[p] * stretch[p] + slide_soft * slide[p] * slide[p]
+            density, by_v, by_vv, by_n, by_nv = mixed_law(
+                v, speed[p], strain, stretch[p] + slide[p], loss, measure
+            )
+            f += by_v
+            f_v += by_vv
+            stored = density if measure != MATERIAL else 0.0
+        if stretching > 0.0:
+            density, by_v, by_vv = stretching_law(v, speed[p], strain, stretching, measure)
+            stored += density
+            f += by_v
+            f_v += by_vv
+        axial += weight * stored
+        lengths[p], moments[p], pulls[p], mixed[p] = v, m, weight * by_n, by_nv
+        tx[p], ty[p] = weight * ex, weight * ey
+        # gradient of phi in (x', y', x'', y'')
+        p0, p1 = (b2 - 2.0 * phi * a1) * r, (-a2 - 2.0 * phi * b1) * r
+        p2, p3 = -b1 * r, a1 * r
+        g0[p], g1[p] = weight * (m * p0 + f * ex), weight * (m * p1 + f * ey)
+        g2[p], g3[p] = weight * m * p2, weight * m * p3
+        # Hessian of E(phi, v): the second derivatives of phi and v are those of the curve
+        side, two = f / v, 2.0 * r
+        q0, q1 = m_phi * p0 + m_v * ex, m_phi * p1 + m_v * ey
+        u0, u1 = m_v * p0 + f_v * ex, m_v * p1 + f_v * ey
+        h00[p] = weight * (q0 * p0 + u0 * ex - m * two * (2.0 * a1 * p0 + phi) + side * ey * ey)
+        h11[p] = weight * (q1 * p1 + u1 * ey - m * two * (2.0 * b1 * p1 + phi) + side * ex * ex)
+        h01[p] = weight * (q0 * p1 + u0 * ey - m * two * (a1 * p1 + b1 * p0) - side * ex * ey)
+        h02[p] = weight * (q0 * p2 - m * two * a1 * p2)
+        h03[p] = weight * (q0 * p3 + m * (1.0 - 2.0 * a1 * p3) * r)
+        h12[p] = weight * (q1 * p2 + m * (-1.0 - 2.0 * b1 * p2) * r)
+        h13[p] = weight * (q1 * p3 - m * two * b1 * p3)
+        bend = weight * m_phi
+        h22[p], h23[p], h33[p] = bend * p2 * p2, bend * p2 * p3, bend * p3 * p3
+    return bending, axial
+
+
+@lane()
+def add_pairs(blocks, products, h00, h01, h11, h02, h03, h12, h13, h22, h23, h33):
+    """Add one Gauss point to the blocks xx, xy, yx, yy of all pairs (P,) of control points."""
+    (xx, xy, yx, yy), (t11, t12, t21, t22) = blocks, products
+    for q in range(xx.size):
+        both, mean = t12[q] + t21[q], h01 * t11[q] + h23 * t22[q]
+        xx[q] += h00 * t11[q] + h02 * both + h22 * t22[q]
+        xy[q] += mean + h03 * t12[q] + h12 * t21[q]
+        yx[q] += mean + h12 * t12[q] + h03 * t21[q]
+        yy[q] += h11 * t11[q] + h13 * both + h33 * t22[q]
+
+
+@lane()
+def add_slopes(moving, d1, d2, slopes, gradient):
+    """Add the gradient of the first ``moving`` places."""
+    g0, g1, g2, g3 = slopes
+    for i in range(moving):
+        x = y = 0.0
+        for p in range(g0.size):
+            x += d1[i, p] * g0[p] + d2[i, p] * g2[p]
+            y += d1[i, p] * g1[p] + d2[i, p] * g3[p]
+        gradient[2 * i] += x
+        gradient[2 * i + 1] += y
+
+
+@lane()
+def couple(moving, d1, share, tangent, row):
+    """Coupling of one axial force to the first ``moving`` places."""
+    tx, ty = tangent
+    for i in range(moving):
+        x = y = 0.0
+        for p in range(tx.size):
+            w = d1[i, p] * share[p]
+            x += w * tx[p]
+            y += w * ty[p]
+        row[2 * i], row[2 * i + 1] = x, y
+
+
+@part()
+def add_axial(s, a, moving, shape, strips, local):
+    """Gap, its derivative and coupling of all axial forces; returns their own energy, material measure."""
+    along, split, compliance, measure = strips.along[s], strips.split, strips.compliance[s], strips.measure
+    lanes, gram, count, axial = local.lanes[s], local.axial[s], a.size, 0.0
+    d1, points, gap = shape.curve[0], along.shape[0], gram[LAST]
+    speeds, _, pulls, mixed = four(lanes, SPEED_AT)
+    tangent, share, first = (lanes[TANGENT_AT], lanes[TANGENT_AT + 1]), lanes[0], 2 * d1.shape[0]
+    for k in range(count):
+        c, mode = compliance[k], MODES + k
+        total = 0.0
+        for p in range(points):
+            total += along[p, mode] * pulls[p]
+            share[p] = along[p, mode] * mixed[p]
+        if measure == MATERIAL:
+            gap[k] = total - c * a[k]
+            axial += 0.5 * c * a[k] * a[k]
+        else:
+            begin, end = (0, split) if k < split else (split, count)
+            for j in range(count):
+                gram[k, j] = 0.0
+            mine = lanes[FORCE_AT + (k >= split)]
+            for p in range(points):
+                loss = c * along[p, mode]
+                share[p] -= loss * mine[p]
+                loss *= shape.rule[WEIGHT, p] * speeds[p]
+                total -= loss * mine[p]
+                for j in range(begin, end):
+                    gram[k, j] += loss * along[p, MODES + j]
+            gap[k] = total
+        couple(moving, d1, share, tangent, local.nodal[s, first + k])
+    return axial
+
+
+@part()
+def add_hessian(moving, products, pairs, lanes, hessian):
+    """The upper Hessian of the first ``moving`` places, from what it is at the Gauss points."""
+    count = (moving * (moving + 1) // 2 + 7) // 8 * 8
+    blocks = pairs[0, :count], pairs[1, :count], pairs[2, :count], pairs[3, :count]
+    for block in blocks:
+        for q in range(count):
+            block[q] = 0.0
+    for p in range(lanes.shape[1]):
+        at = products[0, p, :count], products[1, p, :count], products[2, p, :count], products[3, p, :count]
+        (h00, h01, h11, h02), (h03, h12, h13, h22) = four(lanes, HESSIAN_AT), four(lanes, HESSIAN_AT + 4)
+        h23, h33 = lanes[HESSIAN_AT + 8], lanes[HESSIAN_AT + 9]
+        add_pairs(blocks, at, h00[p], h01[p], h11[p], h02[p], h03[p], h12[p], h13[p], h22[p], h23[p], h33[p])
+    q = 0
+    for j in range(moving):
+        for i in range(j + 1):
+            hessian[2 * i, 2 * j], hessian[2 * i, 2 * j + 1] = pairs[0, q], pairs[1, q]
+            hessian[2 * i + 1, 2 * j], hessian[2 * i + 1, 2 * j + 1] = pairs[2, q], pairs[3, q]
+            q += 1
+
+
+@part()
+def evaluate_gradient(s, a, moving, shape, strips, local, out):
+    """Fill the gradient of the first ``moving`` places of strip s, and the rows of its lanes.
+
+    Adds bending and axial energy to out[0] and out[1], the latter but for what the axial forces alone store
+    in the material measure, the dead load's to out[2]; out[3] becomes the least v / J0.
+    """
+    numbers, lanes, compliance = strips.numbers[s], local.lanes[s], strips.compliance[s]
+    d1, d2 = shape.curve[0], shape.curve[1]
+    points, gradient = local.nodal[s, POINTS], local.nodal[s, GRADIENT]
+    curve_at(points, d1, d2, four(lanes, 0))
+    given_at(s, a, strips, lanes)
+    bending, axial = laws_at(
         strips.measure,
+        a.size,
+        numbers[STRAIN],
+        numbers[STRETCHING],
+        compliance[0] if a.size > 0 else 0.0,
+        compliance[strips.split] if strips.split < a.size else 0.0,
+        shape.rule[WEIGHT],
+        *(
+            four(lanes, 0)
+            + four(lanes, 4)
+            + four(lanes, 8)
+            + four(lanes, 12)
+            + four(lanes, 16)
+            + four(lanes, 20)
+            + four(lanes, 24)
+            + four(lanes, 28)
+        ),
     )
-    hessian, gram, moment = local.nodal[s], local.axial[s], local.moment[s]
-    points, gradient, gap = hessian[POINTS], hessian[GRADIENT], gram[LAST]
-    strain, stretching = numbers[STRAIN], numbers[STRETCHING]
-    n, count, slowest = d1.shape[1], a.size, np.inf
-    bending = axial = fallen = 0.0
-    for i in range(2 * n):
+    slowest = np.inf
+    for p in range(lanes.shape[1]):
+        slowest = min(slowest, lanes[SPEED_AT, p] / lanes[GIVEN, p])
+    for i in range(gradient.size):
         gradient[i] = -numbers[ON_POINTS + i]
-        fallen -= numbers[ON_POINTS + i] * points[i]
-    for i in range(2 * moving):
-        for j in range(i, 2 * moving):
-            hessian[i, j] = 0.0
+        out[2] -= numbers[ON_POINTS + i] * points[i]
+    add_slopes(moving, d1, d2, four(lanes, 4), gradient)
     if numbers[SPRING] > 0.0:  # of roots that turn
         for i in range(2):
             push = numbers[SPRING + i] * points[i]
             bending += 0.5 * push * points[i]
             gradient[i] += push
-            hessian[i, i] = numbers[SPRING + i]
-    for k in range(count):
-        for i in range(2 * moving):
-            hessian[2 * n + k, i] = 0.0
-        if measure == MATERIAL:
-            gap[k] = -compliance[k] * a[k]
-            axial += 0.5 * compliance[k] * a[k] * a[k]
-        else:
-            gap[k] = 0.0
-            for j in range(count):
-                gram[k, j] = 0.0
-    for p in range(weights.size):
-        x1 = y1 = x2 = y2 = 0.0
-        for i in range(n):
-            x, y = points[2 * i], points[2 * i + 1]
-            x1 += d1[p, i] * x
-            y1 += d1[p, i] * y
-            x2 += d2[p, i] * x
-            y2 += d2[p, i] * y
-        weight, at = weights[p], along[p]
-        speed, modes = at[SPEED], at[MODES:]
-        square = x1 * x1 + y1 * y1
-        v, r = math.sqrt(square), 1.0 / square
-        slowest = min(slowest, v / speed)
-        tx, ty = x1 / v, y1 / v
-        phi = (x1 * y2 - y1 * x2) * r
-        density, m, m_phi, m_v, f, f_v = bending_law(
-            phi, v, speed, at[CURVATURE], at[RIGIDITY], at[DROP], at[CURL], measure
-        )
-        bending += weight * density
-        moment[p] = m
-        force = sliding = by_nv = 0.0
-        if count > 0:
-            for k in range(split):
-                force += modes[k] * a[k]
-            for k in range(split, count):
-                sliding += modes[k] * a[k]
-            loss = compliance[0] * force * force
-            if split < count:
-                loss += compliance[split] * sliding * sliding
-            density, by_v, by_vv, by_n, by_nv = mixed_law(v, speed, strain, force + sliding, loss, measure)
-            f += by_v
-            f_v += by_vv
-            if measure == MATERIAL:
-                for k in range(count):
-                    gap[k] += weight * modes[k] * by_n
-            else:
-                axial += weight * density
-                for k in range(count):
-                    mine, first, last = (force, 0, split) if k < split else (sliding, split, count)
-                    gap[k] += weight * modes[k] * (by_n - compliance[k] * mine * v)
-                    for j in range(first, last):
-                        gram[k, j] += weight * compliance[k] * v * modes[k] * modes[j]
-        if stretching > 0.0:
-            density, by_v, by_vv = stretching_law(v, speed, strain, stretching, measure)
-            axial += weight * density
-            f += by_v
-            f_v += by_vv
-        # gradient of phi in (x', y', x'', y'')
-        p0, p1 = (y2 - 2.0 * phi * x1) * r, (-x2 - 2.0 * phi * y1) * r
-        p2, p3 = -y1 * r, x1 * r
-        g0, g1 = weight * (m * p0 + f * tx), weight * (m * p1 + f * ty)
-        g2, g3 = weight * m * p2, weight * m * p3
-        # Hessian of E(phi, v): the second derivatives of phi and v are those of the curve
-        side, two = f / v, 2.0 * r
-        q0, q1 = m_phi * p0 + m_v * tx, m_phi * p1 + m_v * ty
-        u0, u1 = m_v * p0 + f_v * tx, m_v * p1 + f_v * ty
-        h00 = weight * (q0 * p0 + u0 * tx - m * two * (2.0 * x1 * p0 + phi) + side * ty * ty)
-        h11 = weight * (q1 * p1 + u1 * ty - m * two * (2.0 * y1 * p1 + phi) + side * tx * tx)
-        h01 = weight * (q0 * p1 + u0 * ty - m * two * (x1 * p1 + y1 * p0) - side * tx * ty)
-        h02 = weight * (q0 * p2 - m * two * x1 * p2)
-        h03 = weight * (q0 * p3 + m * (1.0 - 2.0 * x1 * p3) * r)
-        h12 = weight * (q1 * p2 + m * (-1.0 - 2.0 * y1 * p2) * r)
-        h13 = weight * (q1 * p3 - m * two * y1 * p3)
-        bend = weight * m_phi
-        h22, h23, h33 = bend * p2 * p2, bend * p2 * p3, bend * p3 * p3
-        for i in range(moving):
-            u, q = d1[p, i], d2[p, i]
-            gradient[2 * i] += u * g0 + q * g2
-            gradient[2 * i + 1] += u * g1 + q * g3
-            xx1, xx2 = u * h00 + q * h02, u * h02 + q * h22
-            xy1, xy2 = u * h01 + q * h12, u * h03 + q * h23
-            yx1, yx2 = u * h01 + q * h03, u * h12 + q * h23
-            yy1, yy2 = u * h11 + q * h13, u * h13 + q * h33
-            row0, row1 = hessian[2 * i], hessian[2 * i + 1]
-            for j in range(i, moving):
-                row0[2 * j] += xx1 * d1[p, j] + xx2 * d2[p, j]
-                row0[2 * j + 1] += xy1 * d1[p, j] + xy2 * d2[p, j]
-                row1[2 * j] += yx1 * d1[p, j] + yx2 * d2[p, j]
-                row1[2 * j + 1] += yy1 * d1[p, j] + yy2 * d2[p, j]
-        for k in range(count):
-            factor = by_nv
-            if measure != MATERIAL:
-                factor -= compliance[k] * (force if k < split else sliding)
-            wk = weight * modes[k] * factor
-            row = hessian[2 * n + k]
-            kx, ky = wk * tx, wk * ty
-            for i in range(moving):
-                row[2 * i] += kx * d1[p, i]
-                row[2 * i + 1] += ky * d1[p, i]
     out[0] += bending
     out[1] += axial
-    out[2] += fallen
     out[3] = min(out[3], slowest)
+
+
+@part()
+def evaluate_points(s, a, moving, shape, strips, local, out):
+    """The same with upper Hessian, coupling and gap, and with all of the axial energy."""
+    evaluate_gradient(s, a, moving, shape, strips, local, out)
+    numbers, hessian = strips.numbers[s], local.nodal[s]
+    add_hessian(moving, shape.products, local.pairs, local.lanes[s], hessian)
+    if numbers[SPRING] > 0.0:
+        for i in range(2):
+            hessian[i, i] = numbers[SPRING + i]
+    out[1] += add_axial(s, a, moving, shape, strips, local)

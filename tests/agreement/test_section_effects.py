@@ -5,6 +5,7 @@ import pytest
 
 import fe_reference
 import spline_model
+from spline_model.pivot import swinging_slide_stiffness
 from tests import gates
 from tests.table_one import TABLE_ONE
 
@@ -14,22 +15,24 @@ EFFECTS = ("clamped_width", "anticlastic", "root_compliance")
 #: Width and thickness [m]: Table 1's, and a wide thin strip that flattens as it bends.
 SECTIONS = {"table 1": (0.01, 0.005), "wide": (0.04, 0.0005)}
 INCREMENTS = 18
+#: Explicit steps of 10 and 20 elements [s], below the critical ones, that share instants.
+STEPS = {10: 5e-7, 20: 2e-7}
+
+
+def scene(section, effects):
+    """What both models are given for a section and effects beside the plain ones."""
+    width, thickness = SECTIONS[section]
+    roots = {"root_compliance": {"root": "monolithic"}} if EFFECTS[2] in effects else {}
+    return {"effects": (*PLAIN, *effects), "parameters": roots, "width": width, "thickness": thickness}
 
 
 def torques(section, effects, *, control_points=14):
     """Torque (S,) of the splines, and of the elements in the limit of two meshes, to a quarter turn."""
-    width, thickness = SECTIONS[section]
-    scene = {
-        "effects": (*PLAIN, *effects),
-        "parameters": {"root_compliance": {"root": "monolithic"}} if EFFECTS[2] in effects else {},
-        "width": width,
-        "thickness": thickness,
-    }
-    path = {"rotation": np.pi / 2, "increments": INCREMENTS}
-    spline = spline_model.cross_axis_pivot(**DESIGN, **scene, control_points=control_points)
+    given, path = scene(section, effects), {"rotation": np.pi / 2, "increments": INCREMENTS}
+    spline = spline_model.cross_axis_pivot(**DESIGN, **given, control_points=control_points)
     coarse, fine = (
         fe_reference.solve_statics(
-            fe_reference.cross_axis_pivot(**DESIGN, **scene, elements=elements), **path
+            fe_reference.cross_axis_pivot(**DESIGN, **given, elements=elements), **path
         ).torque
         for elements in (20, 40)
     )
@@ -54,6 +57,42 @@ def test_gate_has_teeth():
     coarse = difference("wide", EFFECTS, **gates.teeth("section_effects_torque"))
     with pytest.raises(AssertionError, match="x the gate"):
         gates.check("section_effects_torque", coarse)
+
+
+def swing_difference(effects, *, control_points=8):
+    """Largest difference of the rotations over 4 ms from 1 rad [rad], of the elements in the limit."""
+    given, release = scene("table 1", effects), {"start": 1.0, "duration": 4e-3}
+    slide = swinging_slide_stiffness(control_points)
+    spline = spline_model.cross_axis_pivot(
+        **DESIGN, **given, control_points=control_points, slide_stiffness=slide
+    )
+    found = spline_model.solve_release(
+        spline, **release, step=1e-6, records=40, integrator="leapfrog", check=False
+    )
+    assert found.status.value == "converged", found.message
+    coarse, fine = (
+        fe_reference.solve_release(
+            fe_reference.cross_axis_pivot(**DESIGN, **given, elements=elements),
+            **release,
+            step=step,
+            samples=40,
+        ).rotation
+        for elements, step in STEPS.items()
+    )
+    return float(np.abs(found.rotation - (4.0 * fine - coarse) / 3.0).max())
+
+
+@pytest.mark.parametrize("effects", [*((name,) for name in EFFECTS), EFFECTS], ids="+".join)
+def test_models_swing_alike(effects):
+    """Requirement: with each effect and all, both models let go swing as they do without."""
+    gates.check("section_effects_swing", swing_difference(effects))
+
+
+def test_swing_gate_has_teeth():
+    """Requirement: the check notices a curve of six control points."""
+    coarse = swing_difference(("root_compliance",), **gates.teeth("section_effects_swing"))
+    with pytest.raises(AssertionError, match="x the gate"):
+        gates.check("section_effects_swing", coarse)
 
 
 def test_effects_are_as_large_as_plates_say():

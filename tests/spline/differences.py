@@ -57,9 +57,9 @@ def exact(
 
 def changed(design: Mapping[str, Any], name: str, factor: float) -> dict[str, Any]:
     """The design with one parameter, or one side of its section, times a factor."""
-    power = {"width": (1, 1), "thickness": (1, 3)}.get(name)
-    if power is None:
+    if name in design:
         return {**design, name: design[name] * factor}
+    power = {"width": (1, 1), "thickness": (1, 3)}[name]
     both = zip(("area", "second_moment_of_area"), power, strict=True)
     return {**design, **{key: design[key] * factor**k for key, k in both}}
 

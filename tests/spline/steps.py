@@ -27,7 +27,7 @@ class Step:
     @property
     def axial(self):
         """Places of the axial forces in y."""
-        own, modes = 2 * self.model.strips.mass.shape[1] - 6, self.model.strips.compliance.shape[1]
+        own, modes = self.model.strips.own, self.model.strips.compliance.shape[1]
         strips, poses = self.model.strips.mass.shape[0], len(self.model.masses.inertia)
         each = poses + np.arange(strips * (own + modes)).reshape(strips, -1)
         return each[:, own:].ravel()

@@ -11,7 +11,7 @@ from spline_model.mechanism import BodyDesign, StripDesign, mechanism
 from spline_model.sequential_impulse import impulse_solver
 from spline_model.statics import solve_mechanism, solve_statics
 from spline_model.strip import two_states
-from spline_model.strip.laws import curl_law
+from spline_model.strip.laws import curl_factors
 from spline_model.strip.two_states import mean_moment
 from tests import gates
 from tests.spline.test_clamped_width import BARE, CLAMPED, thin_pivot
@@ -60,17 +60,16 @@ def test_roll_up_reports_the_moment_that_bends_it():
     """Sections carry the moment of the law, which is that of balance, and the energy is its work."""
     made, path = rolled(20.0)
     assert path.bending_moment[-1] == pytest.approx(np.full_like(path.bending_moment[-1], path.torque[-1]))
-    law = getattr(curl_law, "py_func", curl_law)
     energy = 0.5 * made.design.strips[0].flexural_rigidity * 0.5**2
-    by_energy = law(0.5, 0.09, np.sqrt(3.0 * 0.91) * 20.0 / 0.5)[0]
+    by_energy = curl_factors(0.5, 0.09, np.sqrt(3.0 * 0.91) * 20.0 / 0.5)[0]
     assert path.bending_energy[-1] == pytest.approx(energy * by_energy, rel=1e-10)
 
 
 @pytest.mark.parametrize("strain", [0.3, 0.999999, 1.000001, -4.0, 60.0])
 def test_curl_law_is_one_law(strain):
     """Moment and tangent are derivatives of the energy, over the seam of its two formulas too."""
-    law, drop, step = getattr(curl_law, "py_func", curl_law), 0.09, 1e-5 * abs(strain)
-    factors = np.array([law(strain + k * step, drop, 1.0) for k in (-1, 0, 1)])
+    drop, step = 0.09, 1e-5 * abs(strain)
+    factors = np.array([curl_factors(strain + k * step, drop, 1.0) for k in (-1, 0, 1)])
     b = strain + step * np.array([-1.0, 0.0, 1.0])
     energy, moment = 0.5 * b**2 * factors[:, 0], b * factors[:, 1]
     assert (energy[2] - energy[0]) / (2.0 * step) == pytest.approx(moment[1], rel=1e-9)
@@ -82,9 +81,9 @@ def test_curl_law_is_one_law(strain):
 )
 def test_mean_moment_does_the_work_of_the_energy(before, after, monkeypatch):
     """The mean moment of a step times the change of strain is the change of energy, to round-off."""
-    law, mean = (getattr(each, "py_func", each) for each in (curl_law, mean_moment))
-    monkeypatch.setattr(two_states, "curl_law", law)
-    energy = [0.5 * b * b * law(b, 0.09, 1.0)[0] for b in (before, after)]
+    mean = getattr(mean_moment, "py_func", mean_moment)
+    monkeypatch.setattr(two_states, "curl_law", curl_factors)
+    energy = [0.5 * b * b * curl_factors(b, 0.09, 1.0)[0] for b in (before, after)]
     found, slope = mean(before, after, 0.09, 1.0)
     assert found * (after - before) == pytest.approx(energy[1] - energy[0], rel=1e-12, abs=1e-14)
     near = [mean(before, after + step, 0.09, 1.0)[0] for step in (-1e-6, 1e-6)]

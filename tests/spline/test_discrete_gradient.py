@@ -16,6 +16,12 @@ FORMS = {
     "inextensible": {"stretch": "inextensible"},
     "B-spline": {"basis": "bspline", "control_points": 8},
     "consistent": {"stretch": "consistent", "control_points": 4},
+    "roots": {
+        "width": 0.01,
+        "thickness": 0.005,
+        "effects": ("bending", "stretching", "strip_inertia", "body_inertia", "root_compliance"),
+        "parameters": {"root_compliance": {"root": "monolithic"}},
+    },
     "spatial consistent": {"stretch": "consistent", "measure": "spatial", "control_points": 5},
 }
 

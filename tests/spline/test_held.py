@@ -14,6 +14,12 @@ from tests import gates
 from tests.table_one import SIX, TABLE_ONE
 
 THIN = {"area": 5e-6, "second_moment_of_area": 1.041e-13, "youngs_modulus": 1.4e9}
+ROOTS = {
+    "width": 0.01,
+    "thickness": 0.005,
+    "effects": ("bending", "stretching", "root_compliance"),
+    "parameters": {"root_compliance": {"root": "monolithic"}},
+}
 ROBUST = {"slide_stiffness": 1000.0}
 POSES = ((0.0004, -0.0003, 0.3), (-0.0008, 0.0002, -0.6), (0.0, 0.001, 1.2))
 """Displacement of the centre from where a free turn would have it [m, m], and rotation [rad]."""
@@ -56,10 +62,11 @@ def disagreement(pose, increments=8, slide=None, **settings):
     )
 
 
+@pytest.mark.parametrize("scene", [{}, ROOTS], ids=["clamps", "roots that turn"])
 @pytest.mark.parametrize("pose", POSES, ids=str)
-def test_agrees_with_the_multiplier_path(pose):
+def test_agrees_with_the_multiplier_path(pose, scene):
     """Requirement: forces, moment and shape are those of the driven rotation and displacements to 1e-9."""
-    gates.check("spline_held_pose", disagreement(pose))
+    gates.check("spline_held_pose", disagreement(pose, **scene))
 
 
 def test_held_pose_gate_has_teeth():

@@ -23,6 +23,7 @@ from tests.table_one import SIX, TABLE_ONE
     "effects, parameters, line",
     [
         (("bending", "gravty"), {}, "effects: got 'gravty', expected one of bending, .*nearest: gravity"),
+        (("bending", "stretching", "shear"), {}, "effects: got 'shear', expected none: .* fe_reference"),
         (("bending", "stretching", "inextensible"), {}, "not both"),
         (("bending",), {}, "stretching or inextensible beside bending"),
         (("stretching",), {}, "bending, without which"),

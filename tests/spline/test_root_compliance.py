@@ -1,20 +1,23 @@
 """Roots that turn: a rotational spring at each clamped end."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from spline_model.batch import solve_many
 from spline_model.compile import compile_scene
-from spline_model.dynamics import solve_motion
+from spline_model.design import NOT_GIVEN
+from spline_model.dynamics import INTEGRATORS, solve_motion
 from spline_model.effects.registry import DEFAULT_EFFECTS
 from spline_model.errors import InvalidParameter
 from spline_model.mechanism import BodyDesign, StripDesign, mechanism
 from spline_model.modes import natural_frequencies
 from spline_model.pivot import cross_axis_pivot
-from spline_model.reduced.model import from_unknowns, reduced
+from spline_model.reduced.model import at_rest, reduced
 from spline_model.reduced.whole import whole_tangents
+from spline_model.sequential_impulse import solve_impulses
 from spline_model.statics import solve_mechanism, solve_statics
 from tests import gates
 from tests.table_one import SIX, TABLE_ONE
@@ -22,6 +25,7 @@ from tests.table_one import SIX, TABLE_ONE
 SIDES = {"width": 0.01, "thickness": 0.005}
 EXPECTED = 'expected "monolithic" or a number >= 0, its length over the thickness'
 ROOTS = (*DEFAULT_EFFECTS, "root_compliance")
+GIVEN = {"root_compliance": {"root": "monolithic"}}
 
 
 def rooted(root="monolithic", **changed):
@@ -63,7 +67,7 @@ def test_roots_turn_by_their_moment_at_any_angle():
 
 @pytest.mark.parametrize("measure", ["material", "spatial"])
 def test_element_is_the_bordered_form(measure):
-    """The turns of the roots as coordinates of the elements are the clamps' rows that yield, tangents too."""
+    """The turns of the roots as coordinates of the elements are the clamps' rows that yield."""
     given = {"gravity": {"acceleration": (300.0, -500.0)}, "root_compliance": {"root": "monolithic"}}
     pivot = rooted(measure=measure, effects=(*ROOTS, "gravity"), parameters=given)
     element, bordered = (
@@ -73,12 +77,20 @@ def test_element_is_the_bordered_form(measure):
     assert element.torque == pytest.approx(bordered.torque, rel=1e-10)
     assert element.stiffness == pytest.approx(bordered.stiffness, rel=1e-9)
     assert element.bending_energy == pytest.approx(bordered.bending_energy, rel=1e-10)
-    model = reduced(compile_scene(pivot.driven(1.5)))
-    y = from_unknowns(model, element.states)[-1:]
+
+
+@pytest.mark.parametrize("measure", ["material", "spatial"])
+def test_tangent_is_the_gradients_derivative(measure):
+    """The tangent of strips whose roots turn is the derivative of their gradient, off equilibrium as well.
+
+    In equilibrium the force that turns with a root is none along the stretch of its clamp, and not felt.
+    """
+    model = reduced(compile_scene(rooted(measure=measure).driven(1.5)))
+    y = at_rest(model)[None] + 0.05 * np.random.default_rng(0).standard_normal((1, model.size))
     step = 1e-6 * np.eye(model.size)
+    there, back = (whole_tangents(model, y + sign * step)[0] for sign in (1.0, -1.0))
     tangent = whole_tangents(model, y)[1][0]
-    near = [whole_tangents(model, y + sign * step)[0] for sign in (1.0, -1.0)]
-    assert np.abs((near[0] - near[1]) / 2e-6 - tangent).max() < 1e-6 * np.abs(tangent).max()
+    assert np.abs((there - back) / 2e-6 - tangent).max() < 1e-7 * np.abs(tangent).max()
 
 
 def test_work_is_the_energy_of_strips_and_roots():
@@ -112,6 +124,63 @@ def test_modes_know_the_roots():
     assert (swing[0] / swing[1]) ** 2 == pytest.approx(series, rel=1e-6)
 
 
+def test_a_batch_scales_the_roots():
+    """Designs of other sides, moduli and lengths of strip have their own roots in a batch, stress too."""
+
+    def error(root="monolithic"):
+        changed = {"thickness": 0.004, "width": 0.012, "youngs_modulus": 1.1e11}
+        sides = dict.fromkeys(("area", "second_moment_of_area"), NOT_GIVEN)
+        given = {name: [value] for name, value in changed.items()} | {"strip_1.end_y": [0.061]}
+        found = solve_many(rooted(root, **sides), given, rotation=1.2, increments=4, section_depth=0.004)
+        one, other = rooted(**sides | changed).design.strips
+        strips = [replace(one, end=(one.end[0], 0.061)), other]
+        made = mechanism(
+            strips=strips, bodies=rooted().design.bodies, effects=ROOTS, parameters=GIVEN, control_points=6
+        )
+        path = solve_mechanism(made, rotation=1.2, increments=4)
+        stress = np.abs(path.axial_force) / one.area
+        stress += np.abs(path.bending_moment) * 0.002 / one.second_moment_of_area
+        apart = [
+            np.abs(found.torque[0] - path.torque).max() / path.torque.max(),
+            np.abs(found.stiffness[0] / path.stiffness - 1.0).max(),
+            np.abs(found.strain[0] * one.youngs_modulus - stress.max(axis=(1, 2))).max() / stress.max(),
+        ]
+        return max(apart)
+
+    gates.check("spline_batch_roots", error())
+    with pytest.raises(AssertionError):
+        gates.check("spline_batch_roots", error(**gates.teeth("spline_batch_roots")))
+
+
+def turned(integrator, **given):
+    """Rotation half a millisecond after a release from 1 rad, the energy's largest change over it, run."""
+    run = solve_motion(
+        rooted(**given), start=1.0, duration=5e-4, integrator=integrator, step=1e-6, check=False
+    )
+    assert run.status.value == "converged", run.message
+    energy = run.kinetic_energy + run.strain_energy
+    return run.rotation[-1], np.abs(energy / energy[0] - 1.0).max(), run
+
+
+def test_every_scheme_turns_the_roots_alike():
+    """The integrators agree within their steps, none loses energy, and clamped ends keep their places."""
+    found = {name: turned(name) for name in INTEGRATORS}
+    for name, (rotation, changed, run) in found.items():
+        assert rotation == pytest.approx(found["explicit"][0], abs=2e-7), name
+        assert changed < (1e-10 if name == "energy" else 1e-6), name
+        assert run.constraint_residual.max() < 1e-15
+
+
+def test_massless_strips_turn_their_roots():
+    """Without mass in the strips the body swings on strips and roots, and the energy stays."""
+    light = tuple(name for name in ROOTS if name != "strip_inertia")
+    rotation, changed, run = turned("energy", effects=light)
+    assert changed < 1e-10
+    assert rotation == pytest.approx(turned("energy")[0], abs=2e-3)
+    held = solve_statics(rooted(effects=light), rotation=rotation, increments=10)
+    assert run.strain_energy[-1] == pytest.approx((held.bending_energy + held.axial_energy)[-1], rel=1e-2)
+
+
 @pytest.mark.parametrize(
     ("root", "message"),
     [
@@ -130,10 +199,8 @@ def test_roots_that_are_none_are_refused(root, message):
 
 
 def test_what_holds_its_clamps_refuses_roots():
-    """Strips without thickness, motions and batches refuse roots that turn, each in one line."""
+    """Strips without thickness and impulses refuse roots that turn, each in one line."""
     with pytest.raises(InvalidParameter, match="thickness of strip_1: got None, expected width and"):
         rooted(width=None, thickness=None)
-    with pytest.raises(InvalidParameter, match="effects: got 'root_compliance', expected statics or modes"):
-        solve_motion(rooted(), start=0.5, duration=1e-3)
-    with pytest.raises(InvalidParameter, match="discretisation: got 'printed forces, long splines or root"):
-        solve_many(rooted(), {"thickness": [0.005]}, rotation=0.5)
+    with pytest.raises(InvalidParameter, match="effects: got 'root_compliance', expected another one for"):
+        solve_impulses(rooted(), start=0.5, duration=1e-3)
