@@ -10,7 +10,9 @@ from spline_model.held import HeldPivot
 from studies.interactive.film.painter import Film, Finger, Marker, Optics, Painter
 from studies.interactive.pivot.design import SIDE, Placing, build, turned
 from studies.interactive.pivot.presets import PRESETS
+from studies.interactive.tracking import tracker as tracking
 from studies.interactive.tracking.planar import CORNERS, project
+from studies.interactive.tracking.tracker import Tracker
 
 #: Frames of a period of the moving marker's turn.
 PERIOD = 40
@@ -66,3 +68,25 @@ def error(event: dict, k: int) -> tuple[float, float]:
 def rms(values: list[float]) -> float:
     """Root mean square."""
     return float(np.sqrt(np.mean(np.square(values))))
+
+
+def watch(made, camera=None, **more):
+    """Events of a tracker over a film, one a frame."""
+    follower = Tracker(camera=camera, **more)
+    return [follower.see(picture, k / made.rate) for k, picture in enumerate(made)]
+
+
+def names(event):
+    """What an event says: its code, or its state and faults."""
+    return event.get("code") or " ".join([event["state"], *event["faults"]])
+
+
+def errors(events):
+    """Errors of the frames with a pose: angles [deg], shifts [mm], and their number."""
+    found = [error(event, k) for k, event in enumerate(events) if event["do"] == "seen"]
+    return [angle for angle, _ in found], [shift for _, shift in found], len(found)
+
+
+def raw(picture, quads, gamma):
+    """Corners as the detector gives them."""
+    return tracking.edges.Refined(corners=quads, share=np.ones((2, 4)), step=np.ones((2, 4)))

@@ -33,17 +33,42 @@ def test_clock_that_jumps_back_stops_no_longer_than_it_catches_up():
 
 
 def test_simulated_time_is_added_up_and_begins_anew_with_a_design():
-    """Requirement: a changed time scale does not rewrite what was simulated: a design begins at nought."""
+    """Requirement: a changed time scale does not rewrite what was simulated: it goes on at another pace, and
+    another design begins at nought."""
     made = session()
     turned(made, 20)
     made.feed({"do": "release", "t": 1.0})
     for k in range(10):
         state = made.feed({"do": "tick", "t": 1.0 + (k + 1) * FRAME})
     assert (state["simulated"], state["steps"]) == (pytest.approx(0.4), 40)
-    state = made.feed({"do": "parameter", "name": "time_scale", "value": 0.01, "t": 2.0})
+    before = state["velocity"]
+    state = made.feed({"do": "parameter", "name": "time_scale", "value": 0.01, "t": 1.4})
+    assert (state["mode"], state["velocity"]) == ("released", before)
+    state = made.feed({"do": "tick", "t": 1.4 + FRAME})
+    assert (state["simulated"], state["steps"]) == (pytest.approx(0.4 + 4e-4), 44)
+    state = made.feed({"do": "parameter", "name": "width", "value": 0.012, "t": 2.0})
     assert (state["simulated"], state["steps"]) == (0.0, 0)
-    state = made.feed({"do": "undo", "t": 2.0})
-    assert (state["simulated"], state["steps"]) == (0.0, 0)
+
+
+@pytest.mark.parametrize("solver", ["impulse", "energy"])
+@pytest.mark.parametrize(
+    ("name", "value"), [("width", 0.012), ("length", 0.09), ("relaxation_time", 0.0), ("body_mass", 0.1)]
+)
+def test_a_swing_goes_on_through_a_change_of_the_design(solver, name, value):
+    """Requirement: another design swings on from the pose and with the velocity that the former one had."""
+    made = session()
+    made.feed({"do": "solver", "name": solver, "t": 0.0})
+    turned(made, 20)
+    made.feed({"do": "release", "t": 1.0})
+    for k in range(6):
+        before = made.feed({"do": "tick", "t": 1.0 + (k + 1) * FRAME})
+    after = made.feed({"do": "parameter", "name": name, "value": value, "t": 1.25})
+    assert (after["mode"], codes(after), after["values"][name]) == ("released", [], value)
+    moved = np.subtract(after["pose"][:2], made.placing.centre) - before["displacement"][:2]
+    assert np.abs(moved).max() < (1e-12 if name != "length" else 0.01)
+    assert after["pose"][2] == pytest.approx(before["pose"][2], abs=1e-12)
+    assert after["velocity"] == pytest.approx(before["velocity"], rel=1e-6)
+    assert made.feed({"do": "tick", "t": 1.25 + FRAME})["pose"] != after["pose"]
 
 
 def test_step_that_does_not_resolve_a_swing_is_named_and_its_loss_told_apart():

@@ -100,6 +100,31 @@ def test_parameters_are_undone_and_redone():
     assert codes(made.feed({"do": "redo", "t": 1.0})) == ["empty"]
 
 
+def test_a_drag_of_a_slider_is_one_change():
+    """Requirement: the parts of one drag are undone together."""
+    made = session()
+    first = turned(made, 20)
+    for k in range(8):
+        event = {"do": "parameter", "name": "thickness", "value": (5 + k) * 1e-4, "part": k > 0, "t": 0.1 * k}
+        made.feed(event)
+    assert made.feed({"do": "undo", "t": 1.0})["values"] == first["values"]
+    assert made.feed({"do": "redo", "t": 1.0})["values"]["thickness"] == pytest.approx(12e-4)
+
+
+@pytest.mark.parametrize(
+    ("name", "value"), [("length", 0.1), ("inclination", math.radians(35)), ("crossing_ratio", 0.3)]
+)
+def test_markers_keep_their_places_on_another_design(name, value):
+    """Requirement: markers that lie as printed are those of a pivot at rest, whatever its geometry."""
+    made = Session("polymer")
+    made.feed({**seen(made, np.zeros(2), 0.0), "t": 0.0})
+    state = made.feed({"do": "parameter", "name": name, "value": value, "t": 0.1})
+    for _ in range(2):
+        state = made.feed({"do": "seen", "marker": [0.0, 0.15, 0.0], "t": 0.2})
+        assert codes(state) == []
+        assert state["stress"]["of_yield"] < 1e-9
+
+
 def test_every_parameter_can_be_set_over_its_range():
     """Requirement: both ends of every slider give a design that is solved or a sentence."""
     for name, parameter in PARAMETERS.items():

@@ -44,7 +44,7 @@ def test_a_design_of_ones_own_is_one_more_preset(monkeypatch):
     """Requirement: a case file joins the presets, swings once a second, and its session replays alone."""
     monkeypatch.setattr(presets, "PRESETS", dict(presets.PRESETS))
     problem = read_case(FOLDER / "spring_steel_pivot.toml")
-    presets.bring(str(FOLDER / "spring_steel_pivot.toml"))
+    presets.PRESETS[presets.OWN] = presets.own(str(FOLDER / "spring_steel_pivot.toml"))
     values = presets.preset(presets.OWN).values()
     assert (values["length"], values["thickness"]) == (problem.length, pytest.approx(1e-3))
     frequency = natural_frequencies(build(values), rotation=0.0, count=1).frequency[0]

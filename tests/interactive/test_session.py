@@ -153,12 +153,15 @@ def test_pause_and_single_step():
 
 
 def test_uncertainty_is_carried_to_the_force():
-    """Requirement: the said spread of force and moment is the tangent times that of the pose."""
+    """Requirement: the said spread of force and moment is the tangent times that of the pose, whose place and
+    turn go together: the body's centre lies beside the marker."""
     made = session(drive="pose")
     sd = [3e-5, 3e-5, 5e-4]
     state = made.feed({**seen(made, np.zeros(2), 0.0), "sd": sd, "t": 0.0})
     assert state["sd"][2] == sd[2]
-    assert state["sd"][0] > sd[0]  # the turn moves the centre, which lies beside the marker
-    tangent = made.mechanics.snapshot.tangent
-    expected = [math.sqrt(sum((tangent[i, k] * state["sd"][k]) ** 2 for k in range(3))) for i in range(3)]
-    assert state["force_sd"] == pytest.approx(expected)
+    marker, body = made.placing.marker(made.mechanics.snapshot.pose), made.placing.body
+    ways = [body(marker + way) - body(marker - way) for way in 1e-5 * np.eye(3)]
+    spread = np.array(ways).T / 2e-5 * sd
+    assert state["sd"] == pytest.approx(np.linalg.norm(spread, axis=1).tolist(), rel=1e-7)
+    expected = np.linalg.norm(made.mechanics.snapshot.tangent @ spread, axis=1)
+    assert state["force_sd"][:3] == pytest.approx(expected.tolist(), rel=1e-7)

@@ -1,6 +1,5 @@
 """Tracking of rendered film whose truth is known."""
 
-import math
 from dataclasses import replace
 
 import numpy as np
@@ -8,37 +7,19 @@ import pytest
 
 pytest.importorskip("cv2", reason="the extra `interactive` is not installed")
 
-from studies.errors import BadInput
 from studies.interactive.film.painter import Marker, Optics, counter
 from studies.interactive.pivot.design import SIDE
 from studies.interactive.session.session import Session
 from studies.interactive.tracking import tracker as tracking
-from studies.interactive.tracking.calibration import Camera, calibrated
+from studies.interactive.tracking.calibration import Camera
 from studies.interactive.tracking.detector import Detector
 from studies.interactive.tracking.edges import refine
 from studies.interactive.tracking.planar import fit
 from studies.interactive.tracking.tracker import Tracker
 from tests import gates
-from tests.interactive.films import both, error, film, on_corner, rms, true_corners, truth
+from tests.interactive.films import both, errors, film, names, on_corner, raw, rms, true_corners, truth, watch
 
 HARD = Optics(blur=1.6, noise=8.0, light=0.4, gamma=1.0)
-
-
-def watch(made, camera=None, **more):
-    """Events of a tracker over a film, one a frame."""
-    follower = Tracker(camera=camera, **more)
-    return [follower.see(picture, k / made.rate) for k, picture in enumerate(made)]
-
-
-def names(event):
-    """What an event says: its code, or its state and faults."""
-    return event.get("code") or " ".join([event["state"], *event["faults"]])
-
-
-def errors(events):
-    """Errors of the frames with a pose: angles [deg], shifts [mm], and their number."""
-    found = [error(event, k) for k, event in enumerate(events) if event["do"] == "seen"]
-    return [angle for angle, _ in found], [shift for _, shift in found], len(found)
 
 
 @pytest.fixture(scope="module")
@@ -82,9 +63,6 @@ def test_tracking_gates_have_teeth(name, monkeypatch):
         gates.teeth(f"tracking_{name}_angle") == gates.teeth(f"tracking_{name}_shift") == {"refined": False}
     )
 
-    def raw(picture, quads, gamma):
-        return tracking.edges.Refined(corners=quads, share=np.ones((2, 4)), step=np.ones((2, 4)))
-
     monkeypatch.setattr(tracking.edges, "refine", raw)
     monkeypatch.setattr(tracking, "REFUSE_PX", 10.0)
     made, camera = (fingers(0.010), None) if name == "finger" else FILMS[name]
@@ -92,36 +70,6 @@ def test_tracking_gates_have_teeth(name, monkeypatch):
     for quantity, values in (("angle", angles), ("shift", shifts)):
         with pytest.raises(AssertionError, match="x the gate"):
             gates.check(f"tracking_{name}_{quantity}", rms(values))
-
-
-@pytest.mark.parametrize(
-    "optics",
-    [
-        Optics(gamma=2.2, blur=1.6, noise=3.0),
-        Optics(gamma=1.8, blur=1.2),
-        Optics(gamma=2.4, blur=1.2),
-        Optics(gamma=1.0, blur=1.2),
-        Optics(exposure=2.0),
-        Optics(exposure=3.0, gamma=1.0),
-    ],
-    ids=str,
-)
-def test_camera_that_encodes_or_clips_light(optics):
-    """Requirement: whatever power a camera encodes light with, and over-exposed, the shift is as good."""
-    events = watch(film(optics, frames=12))
-    _, shifts, found = errors(events)
-    assert found == 12
-    gates.check("tracking_encoded_shift", rms(shifts))
-    assert all(("over-exposed" in names(event)) == (optics.exposure > 1.0) for event in events)
-
-
-def test_encoded_gate_has_teeth(monkeypatch):
-    """Requirement: without the common offset of the edges an over-exposed film fails."""
-    assert gates.teeth("tracking_encoded_shift") == {"offset": False}
-    monkeypatch.setattr(tracking.Shrinkage, "taken_out", lambda self, picture, corners, cells: corners)
-    _, shifts, _ = errors(watch(film(Optics(exposure=3.0), frames=6)))
-    with pytest.raises(AssertionError, match="x the gate"):
-        gates.check("tracking_encoded_shift", rms(shifts))
 
 
 def test_corners_have_no_bias():
@@ -249,35 +197,6 @@ def test_lens_is_seen():
     events = watch(made)
     assert rms(errors(watch(made, camera))[0]) < rms(errors(events)[0]) / 3
     assert all("not-flat" in names(event) or event["do"] == "unseen" for event in events)
-
-
-def test_camera_is_calibrated_from_views():
-    """Requirement: five views of both markers at a known distance give the focal length to 1 %."""
-    flat = [Marker(number=0, pose=(0.0, 0.0, 0.0)), Marker(number=1, pose=(0.0, 0.15, 0.0))]
-    points, pictures = [], []
-    for tilt, roll in ((-35, 5), (-15, -40), (10, 30), (25, -10), (40, 15)):
-        optics = Optics(tilt=math.radians(tilt), roll=math.radians(roll))
-        picture = film(optics, frames=1, markers=lambda k: flat).picture(0)
-        quads = Detector().find(picture).corners
-        seen = refine(picture, np.stack((quads[0], quads[1]))).corners
-        own = [np.array([[-1, 1], [1, 1], [1, -1], [-1, -1]]) * SIDE / 2 + m.pose[:2] for m in flat]
-        points.append(np.concatenate(own))
-        pictures.append(seen.reshape(-1, 2))
-    camera = calibrated(points, pictures, (640, 480))
-    assert abs(camera.fx / 600 - 1) < 0.01
-    assert abs(camera.fy / 600 - 1) < 0.01
-    with pytest.raises(BadInput, match="views: got 2"):
-        calibrated(points[:2], pictures[:2], (640, 480))
-
-
-def test_camera_file(tmp_path):
-    """Requirement: a camera is stored and read; what is none is one line."""
-    camera = Camera(fx=600.0, fy=601.0, cx=320.0, cy=240.0, k1=-0.1)
-    camera.write(tmp_path / "camera.json")
-    assert Camera.read(tmp_path / "camera.json") == camera
-    (tmp_path / "bad.json").write_text('{"fx": "wide"}', encoding="utf-8")
-    with pytest.raises(BadInput, match=r"bad.json: got no camera, expected JSON with fx, fy, cx, cy"):
-        Camera.read(tmp_path / "bad.json")
 
 
 def test_swapped_markers_are_named():

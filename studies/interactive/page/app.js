@@ -10,7 +10,7 @@ import { bindKeys } from "./keys.js";
 import * as files from "./files.js";
 
 const at = (id) => document.getElementById(id);
-const studio = { state: null, picture: null, welcome: null, shown: 0, errors: [], trips: [], replaying: false };
+const studio = { state: null, picture: null, welcome: null, curve: null, ghost: null, shown: 0, errors: [], trips: [] };
 window.studio = studio;
 
 const view = new View(at("stage"));
@@ -19,24 +19,32 @@ const ring = new Ring();
 Object.assign(studio, { view, ring });
 const socket = new Socket(received, lost);
 const camera = new Camera(socket, say);
-const controls = new Controls(send);
+const controls = new Controls(send, say);
 const pointer = new Pointer(at("stage"), view, studio, send);
 
 function send(event) {
   if (event.do !== "pose") pointer.forget();
+  if (["preset", "undo", "redo"].includes(event.do) || (event.do === "parameter" && !event.part)) studio.fresh = true;
   socket.send(event);
 }
 function say(text) { at("note").textContent = text; }
 
 function received(message, picture) {
   if (message.kind === "welcome") return welcome(message);
-  if (message.kind === "error") { studio.errors.push(message.text); camera.answered(message.seq); return say(message.text); }
+  if (message.kind === "error") { studio.errors.push(message.text); camera.answered(message.seq); controls.answered(message.seq); return say(message.text); }
+  if (message.kind === "skipped") return camera.skipped(message.seq);
+  if (message.kind === "curve") return curve(message);
+  if (message.kind === "case") return files.save("pivot.toml", message.text, "application/toml");
+  if (message.kind === "replayed") { replaying(false); say(message.text); return send({ do: "tick" }); }
   if (message.kind === "recording") return recorded(message);
   const bitmap = picture ?? camera.picture(message.seq);
   camera.answered(message.seq);
   studio.state = message;
   if (bitmap) { studio.picture?.close?.(); studio.picture = bitmap; }
   if (message.seq !== null && message.seq === pointer.seq) studio.trips = [...studio.trips.slice(-199), performance.now() - message.seq];
+  controls.answered(message.seq);
+  if (message.replay) replaying(true);
+  else keep();
   ring.add(message);
   studio.shown += 1;
   if (ring.live) show(message, studio.picture);
@@ -59,16 +67,35 @@ function show(state, picture) {
   studio.drawn = { seq: state.seq, t: state.t };
 }
 
+// The curve of the design before stays as a ghost: that of before a whole drag.
+function curve(message) {
+  const same = studio.curve && JSON.stringify(studio.curve.moment) === JSON.stringify(message.moment);
+  if (studio.curve && !same && studio.fresh) studio.ghost = studio.curve;
+  studio.fresh = false;
+  studio.curve = message;
+  if (ring.live && studio.state) show(studio.state, studio.picture);
+}
+
+function replaying(on) { at("replay").textContent = on ? "End the replay" : "Replay a file"; studio.replaying = on; }
+
+let soon = 0;
+function keep() {
+  soon ||= setTimeout(() => { soon = 0; if (!studio.state.replay) files.keep(studio.state); }, 300);
+}
+
 function welcome(message) {
   studio.welcome = message;
   controls.build(message);
   at("source").textContent = { browser: "camera", film: "film", none: "no camera", server: "camera of the server" }[message.camera];
   at("camera-box").hidden = message.camera === "none";
+  at("camera-row").hidden = message.camera !== "browser";
   if (message.camera === "browser") camera.start(noCamera);
   if (message.camera === "none") noCamera("");
-  // the link's design is for a page that begins: one that comes back goes on with what it had
-  const design = studio.state ? { preset: studio.state.preset, values: studio.state.values } : files.designOf(location.hash);
-  if (design) send({ do: "preset", name: design.preset, values: design.values });
+  const known = files.kept();  // of a page that is loaded again, or of a server that was away
+  if (!known) return;
+  send({ do: "preset", name: known.preset, values: known.values });
+  send({ do: "drive", by: known.drive });
+  if (message.camera === "none") send({ do: "pose", pose: known.pose });
 }
 
 // Without pictures the page's own hand drives, by the rotation alone: a pull would stretch the strips at once.
@@ -104,13 +131,14 @@ const actions = {
   rest: () => send({ do: "rest" }),
   csv: () => files.save("pivot.csv", files.csv(ring.states), "text/csv"),
   png: () => at("stage").toBlob((blob) => files.save("pivot.png", blob, "image/png")),
-  link: async () => say(await files.copyLink(studio.state)),
+  save: () => send({ do: "save" }),
+  open: () => at("case").click(),
   live: () => { ring.goLive(); if (studio.state) show(studio.state, studio.picture); },
   help: () => at("shortcuts").showModal(),
-  replay: () => at("file").click(),
+  replay: () => (studio.replaying ? send({ do: "live" }) : at("file").click()),
   back: () => scrub(ring.place - 5),
   forth: () => scrub(ring.place + 5),
-  drive: () => send({ do: "drive", by: studio.state?.drive === "pose" ? "rotation" : "pose" }),
+  drive: () => { const all = studio.welcome.drives; send({ do: "drive", by: all[(all.indexOf(studio.state.drive) + 1) % all.length] }); },
   turn: (angle) => pointer.nudge([0, 0, angle]),
   move: (x, y) => (studio.state?.drive === "rotation" ? say("The hand holds the rotation alone: M lets it hold the whole pose.") : pointer.nudge([x, y, 0])),
 };
@@ -121,14 +149,16 @@ function scrub(place) {
   if (state) show(state, ring.live ? studio.picture : null);
 }
 
-for (const id of ["release", "pause", "step", "reset", "undo", "redo", "record", "rest", "csv", "png", "link", "live", "help", "replay"]) {
+for (const id of ["release", "pause", "step", "reset", "undo", "redo", "record", "rest", "csv", "png", "save", "open", "live", "help", "replay"]) {
   at(id).addEventListener("click", actions[id]);
 }
 at("scrub").addEventListener("input", () => scrub(Number(at("scrub").value)));
 at("mirror").addEventListener("change", () => at("stage").classList.toggle("mirrored", at("mirror").checked));
 at("side").addEventListener("change", () => at("side").checkValidity() && send({ do: "size", side_mm: Number(at("side").value) }));
 at("camera").addEventListener("change", () => camera.start(noCamera, at("camera").value));
-at("file").addEventListener("change", async () => { const file = at("file").files[0]; if (file) await files.play(await file.text(), send, say, studio); at("file").value = ""; });
+for (const [id, kind] of [["file", files.REPLAY], ["case", files.DESIGN]]) {
+  at(id).addEventListener("change", async () => { const file = at(id).files[0]; if (file) await files.upload(file, kind, send); at(id).value = ""; });
+}
 bindKeys(actions, at("keys"), at("shortcuts"));
 window.addEventListener("error", (event) => studio.errors.push(String(event.message)));
 window.addEventListener("unhandledrejection", (event) => studio.errors.push(String(event.reason)));

@@ -1,6 +1,5 @@
 // Presets, sliders with typed values in their units, and the hand's three sliders.
 const at = (id) => document.getElementById(id);
-const DELAY = 120;
 const HAND = [
   { name: "rotation", unit: "°", low: -100, high: 100, step: 0.5, place: 2, per: 180 / Math.PI },
   { name: "shift x", unit: "mm", low: -60, high: 60, step: 0.01, place: 0, per: 1e3 },
@@ -8,15 +7,18 @@ const HAND = [
 ];
 
 export class Controls {
-  constructor(send) { this.send = send; this.rows = new Map(); this.hand = []; this.seen = ""; }
+  constructor(send, say) { Object.assign(this, { send, say, rows: new Map(), hand: [], seen: "", count: 0, flying: null, next: null, drag: null }); }
 
   build(welcome) {
     this.welcome = welcome;
     at("preset").replaceChildren(...Object.entries(welcome.presets).map(([name, p]) => new Option(p.title, name)));
-    at("solver").replaceChildren(...welcome.solvers.map((name) => new Option({ energy: "energy-consistent", impulse: "sequential impulses" }[name] ?? name, name)));
+    at("solver").replaceChildren(...welcome.solvers.map((name) => new Option({ energy: "energy-consistent", impulse: "impulses, stable form" }[name] ?? name, name)));
     at("preset").onchange = () => this.send({ do: "preset", name: at("preset").value });
     at("drive").onchange = () => this.send({ do: "drive", by: at("drive").value });
     at("solver").onchange = () => this.send({ do: "solver", name: at("solver").value });
+    this.flying = this.next = this.drag = null;
+    at("material").replaceChildren(new Option("of one's own", ""), ...Object.keys(welcome.materials).map((name) => new Option(name, name)));
+    at("material").onchange = () => at("material").value && this.send({ do: "preset", name: this.state.preset, values: { ...this.state.values, ...welcome.materials[at("material").value] } });
     at("side").value = (welcome.side * 1e3).toFixed(1);
     at("sliders").replaceChildren(...welcome.parameters.map((p) => this.row(p)));
     this.hand = [];
@@ -28,12 +30,36 @@ export class Controls {
     const { line, range, number } = pair(p.label, p.unit);
     Object.assign(range, { min: on(p.low), max: on(p.high), step: (on(p.high) - on(p.low)) / 400 });
     Object.assign(number, { min: p.low * p.per_si, max: p.high * p.per_si, step: "any" });
-    let timer = 0;
-    const change = (si) => { clearTimeout(timer); timer = setTimeout(() => this.send({ do: "parameter", name: p.name, value: si }), DELAY); };
-    range.oninput = () => { const si = Math.min(p.high, Math.max(p.low, back(Number(range.value)))); number.value = tidy(si * p.per_si); change(si); };
-    number.onchange = () => { if (number.checkValidity() && number.value !== "") change(Number(number.value) / p.per_si); };
+    const slid = (end) => { const si = Math.min(p.high, Math.max(p.low, back(Number(range.value)))); number.value = tidy(si * p.per_si); this.change(p.name, si, end); };
+    range.oninput = () => slid(false);
+    range.onchange = () => slid(true);
+    number.onchange = () => {
+      if (number.checkValidity() && number.value !== "") return this.change(p.name, Number(number.value) / p.per_si, true);
+      this.say(`${p.label}: from ${tidy(p.low * p.per_si)} to ${tidy(p.high * p.per_si)} ${p.unit}.`);
+      if (this.state) number.value = tidy(this.state.values[p.name] * p.per_si);
+    };
     this.rows.set(p.name, { range, number, set: (si) => { range.value = on(si); number.value = tidy(si * p.per_si); } });
     return line;
+  }
+
+  // The newest value goes up as soon as the one before is answered; those of one drag are undone together.
+  change(name, value, end) {
+    this.next = { name, value, end };
+    this.flush();
+  }
+
+  flush() {
+    if (this.flying !== null || !this.next) return;
+    const { name, value, end } = this.next, part = this.drag === name;
+    this.next = null;
+    this.drag = end ? null : name;
+    this.send({ do: "parameter", name, value, part, seq: (this.flying = -++this.count) });
+  }
+
+  answered(seq) {
+    if (seq !== this.flying) return;
+    this.flying = null;
+    this.flush();
   }
 
   handRow(h) {
@@ -46,25 +72,32 @@ export class Controls {
       this.send({ do: "pose", pose });
     };
     range.oninput = () => change(Number(range.value));
-    number.onchange = () => { if (number.checkValidity() && number.value !== "") change(Number(number.value)); };
+    number.onchange = () => {
+      if (number.checkValidity() && number.value !== "") change(Number(number.value));
+      else { this.say(`${h.name}: from ${h.low} to ${h.high} ${h.unit}.`); number.value = ""; number.blur(); }
+    };
     this.hand.push({ h, range, number });
     return line;
   }
 
   // Show the server's values, but leave alone what the user is typing or dragging.
   follow(state) {
+    this.state = state;
     for (const { h, range, number } of this.hand) {
-      const value = state.displacement[h.place] * h.per;
+      const value = (state.grip !== null ? state.wanted : state.displacement)[h.place] * h.per;
       if (document.activeElement !== range) range.value = value;
       if (document.activeElement !== number) number.value = (Math.round(100 * value) / 100 + 0).toFixed(2);
-      range.disabled = number.disabled = h.place < 2 && state.drive === "rotation";
+      range.disabled = number.disabled = h.place < 2 ? state.drive === "rotation" : state.drive === "pull";
     }
     at("drive").value = state.drive;
     at("solver").value = state.solver;
+    if (this.flying !== null || this.next) return;
     const seen = JSON.stringify([state.preset, state.values]);
     if (seen === this.seen) return;
     this.seen = seen;
+    if (![...at("preset").options].some((option) => option.value === state.preset)) at("preset").append(new Option("a design of one's own", state.preset));
     at("preset").value = state.preset;
+    at("material").value = Object.entries(this.welcome?.materials ?? {}).find(([, m]) => Object.entries(m).every(([name, value]) => state.values[name] === value))?.[0] ?? "";
     at("preset-note").textContent = this.welcome?.presets[state.preset]?.note ?? "";
     for (const [name, row] of this.rows) row.set(state.values[name]);
   }

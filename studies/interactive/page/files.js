@@ -1,4 +1,4 @@
-// What leaves the page and what comes in: CSV, pictures, links and session files. Nothing is sent anywhere else.
+// What leaves the page and what comes in: CSV, pictures, designs and session files. Nothing is sent anywhere else.
 export function save(name, content, type) {
   const link = document.createElement("a");
   link.href = URL.createObjectURL(content instanceof Blob ? content : new Blob([content], { type }));
@@ -24,31 +24,21 @@ export function csv(states) {
   return [COLUMNS.map(([name]) => name).join(","), ...rows, ""].join("\n");
 }
 
-export async function copyLink(state) {
-  const design = JSON.stringify({ preset: state.preset, values: state.values });
-  const link = `${location.origin}/#design=${encodeURIComponent(btoa(design))}`;
-  history.replaceState(null, "", link);
-  try { await navigator.clipboard.writeText(link); return "Link copied: it holds the whole design."; } catch { return "The address now holds the whole design."; }
+// What a page that is loaded again goes on with.
+export const keep = (state) => sessionStorage.setItem("design", JSON.stringify({ preset: state.preset, values: state.values, drive: state.drive, pose: state.displacement }));
+export function kept() {
+  try { return JSON.parse(sessionStorage.getItem("design")); } catch { return null; }
 }
 
-export function designOf(hash) {
-  const found = /(?:^#|&)design=([^&]+)/.exec(hash);
-  if (!found) return null;
-  try { return JSON.parse(atob(decodeURIComponent(found[1]))); } catch { return null; }
-}
-
-// A session file: its events again, at their times.
-export async function play(text, send, say, studio) {
-  const events = [];
-  for (const line of text.split("\n")) if (line.trim()) try { events.push(JSON.parse(line)); } catch { return say("This is no session file."); }
-  if (events[0]?.do !== "setup") return say("This is no session file.");
-  studio.replaying = true;
-  const begin = performance.now(), first = events[1]?.t ?? 0;
-  for (const { t, mark, ...event } of events) {
-    const wait = ((t ?? first) - first) * 1000 - (performance.now() - begin);
-    if (wait > 0) await new Promise((done) => setTimeout(done, wait));
-    send(event);
+// A file goes up in parts, so that no message is too long: 2 is a session to be replayed, 3 a design.
+export const REPLAY = 2, DESIGN = 3;
+const PART = 500000;
+export async function upload(file, kind, send) {
+  const data = new Uint8Array(await file.arrayBuffer());
+  for (let start = 0; start === 0 || start < data.length; start += PART) {
+    const piece = data.subarray(start, start + PART), message = new Uint8Array(3 + piece.length);
+    message.set([kind, 1, start + PART >= data.length ? 1 : 0]);
+    message.set(piece, 3);
+    send(message);
   }
-  studio.replaying = false;
-  say("The session file has ended.");
 }

@@ -9,7 +9,7 @@ const KEYS = [
   ["ArrowRight", "turn back by 1°; with Shift move by 0.1 mm", (a, s) => (s ? a.move(1e-4, 0) : a.turn(-DEGREE)), "→"],
   ["ArrowUp", "turn by 5°; with Shift move by 0.1 mm", (a, s) => (s ? a.move(0, 1e-4) : a.turn(5 * DEGREE)), "↑"],
   ["ArrowDown", "turn back by 5°; with Shift move by 0.1 mm", (a, s) => (s ? a.move(0, -1e-4) : a.turn(-5 * DEGREE)), "↓"],
-  ["M", "hold the whole pose, or the rotation alone", (a) => a.drive()],
+  ["M", "next of what the hand holds", (a) => a.drive()],
   ["Z", "undo", (a) => a.undo()],
   ["Y", "redo", (a) => a.redo()],
   ["[", "back in the last minute", (a) => a.back()],
@@ -18,7 +18,7 @@ const KEYS = [
   ["V", "begin or end a recording", (a) => a.record()],
   ["C", "save the last minute as CSV", (a) => a.csv()],
   ["P", "save the picture", (a) => a.png()],
-  ["K", "copy a link to this design", (a) => a.link()],
+  ["K", "save the design as a case file", (a) => a.save()],
   ["?", "this list", (a) => a.help()],
 ];
 

@@ -9,23 +9,28 @@ const short = (value, digits = 3) => (value === null || value === undefined ? "�
 const LEAST = 1e-3;
 
 export class Numbers {
-  constructor() { this.times = []; this.spoken = -1000; this.last = ""; }
+  constructor() { this.times = []; this.spoken = -1000; this.drawn = -1000; this.last = ""; }
 
   show(state, ring) {
     this.count(state);
     const held = state.mode === "held", texts = state.texts;
     const rows = [
       ["rotation", texts.rotation],
-      ["shift x, y", texts.shift],
-      ["moment", held ? texts.moment : "released"],
-      ["force x", held ? texts.force_x : "released"],
-      ["force y", held ? texts.force_y : "released"],
-      ["stiffness, centre free", texts.stiffness],
+      ["body's shift x, y", texts.shift],
+      ["centre shift", texts.centre_shift],
+      ...(held ? [
+        ["moment", texts.moment],
+        ["force x", texts.force_x],
+        ["force y", texts.force_y],
+        ["stiffness", texts.stiffness],
+      ] : [
+        ["simulated", texts.simulated],
+        ["kinetic energy", texts.kinetic],
+        ["taken by the strips", texts.dissipated],
+        ["lost by the steps", texts.lost],
+      ]),
       ["strain energy", texts.strain],
-      ["kinetic energy", texts.kinetic],
-      ["taken by the strips", texts.dissipated],
-      ["lost by the steps", texts.lost],
-      ["simulated", texts.simulated],
+      ...(state.grip === null ? [] : [["grip", texts.grip]]),
       ["time scale", state.values.time_scale >= 1 ? "real time" : `1 : ${short(1 / state.values.time_scale)}`],
       ["solver", `${short(state.solve_ms, 2)} ms, ${state.iterations} iterations`],
     ];
@@ -78,7 +83,11 @@ export class Numbers {
     this.spoken = performance.now();
   }
 
+  // Curves that go on by a point are drawn ten times a second.
   plots(ring) {
+    const now = performance.now();
+    if (ring.live && now - this.drawn < 95) return;
+    this.drawn = now;
     const states = ring.states.slice(0, ring.place + 1), end = ring.current?.at ?? 0;
     const recent = states.filter((s) => end - s.at <= 10);
     const scale = ring.current?.scale ?? { energy: 1, moment: 1 };
@@ -87,11 +96,31 @@ export class Numbers {
     at("energy-unit").textContent = unit;
     const line = (value) => recent.map((s) => [s.at - end, per * value(s.energy)]);
     plot(at("energy"), [
-      { points: line((e) => e.strain + e.kinetic), colour: "#ffffff" },
-      { points: line((e) => e.kinetic), colour: "#e69f00" },
-      { points: line((e) => e.strain), colour: "#56b4e9" },
+      { points: line((e) => e.strain + e.kinetic), colour: "--sum" },
+      { points: line((e) => e.kinetic), colour: "--kinetic" },
+      { points: line((e) => e.strain), colour: "--strain" },
     ], { x: [-10, 0], fromZero: true, unitX: "s", least: LEAST * scale.energy * per });
-    const held = states.filter((s) => s.mode === "held").slice(-600);
-    plot(at("moment"), [{ points: held.map((s) => [deg(s.pose[2]), s.force[2]]), colour: "#56b4e9", dots: true }], { unitX: "°", least: LEAST * scale.moment });
+    this.moments(ring, states);
+  }
+
+  // The design's curve, that of the design before, where it yields, what was held of this design, and now.
+  moments(ring, states) {
+    const now = ring.current, { curve, ghost } = window.studio;
+    if (!now || !curve) return;
+    const held = states.filter((s) => s.mode === "held" && s.design === now.design).slice(-600);
+    const last = deg(curve.rotation[curve.rotation.length - 1]), yields = curve.yields ? deg(curve.yields[0]) : last;
+    const reach = Math.min(last, Math.max(30, 1.25 * yields, 1.1 * Math.abs(deg(now.pose[2]))));
+    const within = curve.moment.filter((_, k) => deg(curve.rotation[k]) <= 1.05 * reach);
+    const most = Math.max(...within, 1.05 * Math.abs(now.force[2]), LEAST * now.scale.moment);
+    const [unit, per] = most < 1e-3 ? ["µN m", 1e6] : most < 1 ? ["mN m", 1e3] : most < 1e3 ? ["N m", 1] : ["kN m", 1e-3];
+    at("moment-unit").textContent = unit;
+    const both = (c) => [...c.rotation.map((r, k) => [-deg(r), -per * c.moment[k]]).reverse(), ...c.rotation.map((r, k) => [deg(r), per * c.moment[k]])];
+    plot(at("moment"), [
+      ...(ghost ? [{ points: both(ghost), colour: "--dim", dashed: true }] : []),
+      { points: both(curve), colour: "--quiet" },
+      { points: held.map((s) => [deg(s.pose[2]), per * s.force[2]]), colour: "--strain", dots: true },
+      ...(now.mode === "held" ? [{ points: [[deg(now.pose[2]), per * now.force[2]]], colour: "--strain", now: true }] : []),
+    ], { x: [-reach, reach], y: [-per * most, per * most], unitX: "°", limits: curve.yields ? [-yields, yields] : [] });
+    at("limits").textContent = curve.text + (ghost && ghost.text !== curve.text ? `; before: ${ghost.text}` : "");
   }
 }

@@ -22,7 +22,7 @@ export class Pointer {
     this.begin();
   }
 
-  begin() { this.start = { at: new Map(this.down), wanted: [...this.studio.state.displacement], pose: [...this.studio.state.pose] }; }
+  begin() { this.start = { at: new Map(this.down), wanted: [...(this.studio.state.grip !== null ? this.studio.state.wanted : this.studio.state.displacement)], pose: [...this.studio.state.pose] }; }
 
   move(event) {
     if (!this.down.has(event.pointerId) || !this.held) return;
@@ -34,10 +34,10 @@ export class Pointer {
 
   one(shift) {
     const [id] = this.down.keys(), p = this.start.at.get(id), q = this.down.get(id), [dx, dy, t] = this.start.wanted;
-    if (this.studio.state.drive === "pose" && !shift) return [dx + q[0] - p[0], dy + q[1] - p[1], t];
+    if (this.studio.state.drive !== "rotation" && !shift) return [dx + q[0] - p[0], dy + q[1] - p[1], t];
     const clamps = this.studio.state.placing.clamps;
     const centre = [(clamps[0][0][0] + clamps[1][0][0]) / 2, (clamps[0][0][1] + clamps[0][1][1]) / 2];
-    return [dx, dy, t + turn(p, q, this.studio.state.drive === "pose" ? this.start.pose : centre)];
+    return [dx, dy, t + turn(p, q, this.studio.state.drive === "rotation" ? centre : this.start.pose)];
   }
 
   two() {

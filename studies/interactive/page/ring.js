@@ -1,5 +1,7 @@
 // The last minute of states, to scrub through, to plot and to export.
 const SPAN = 60, MOST = 3000;
+// Part of the largest rate of rotation below which no centre is drawn.
+const SLOW = 0.15;
 
 export class Ring {
   constructor() { this.states = []; this.place = 0; this.live = true; }
@@ -7,11 +9,17 @@ export class Ring {
   get length() { return this.states.length; }
   get current() { return this.states[this.place]; }
   get age() { return this.states.length ? this.states[this.states.length - 1].at - this.current.at : 0; }
-  get centres() { return this.states.slice(Math.max(0, this.place - 300), this.place + 1).filter((s) => s.centre).map((s) => s.centre); }
+  // The path of the centre of rotation in this design; where the body all but stands it is nowhere.
+  get centres() {
+    const now = this.current, recent = this.states.slice(Math.max(0, this.place - 300), this.place + 1).filter((s) => s.centre && s.design === now.design);
+    const most = Math.max(...recent.map((s) => Math.abs(s.velocity[2])));
+    return recent.filter((s) => s.mode === "held" || Math.abs(s.velocity[2]) > SLOW * most).map((s) => s.centre);
+  }
 
   add(state) {
     state.at = performance.now() / 1000;
-    const kept = { ...state, sight: { state: state.sight.state, plane: state.sight.plane } };
+    const { time_scale, ...design } = state.values;
+    const kept = { ...state, design: JSON.stringify(design), sight: { state: state.sight.state, plane: state.sight.plane } };
     this.states.push(kept);
     while (this.states.length > MOST || (this.states.length && state.at - this.states[0].at > SPAN)) {
       this.states.shift();

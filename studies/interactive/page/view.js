@@ -1,6 +1,13 @@
 // The picture with the pivot over it. Places are in the pivot's frame [m]; a homography takes them to pixels.
-const COLOURS = { strips: ["#1e90ff", "#ff9500"], ground: "#00e5ff", moving: "#ff2bd6", plate: "#dfe6ec", path: "#7dff6a" };
+const COLOURS = { ground: "#00e5ff", moving: "#ff2bd6", plate: "#dfe6ec", path: "#7dff6a" };
 const WIDTH = 640, HEIGHT = 480;
+// Least width of a strip on the picture [px], and colours from no stress to yield.
+const THINNEST = 2.5, STRESS = [[47, 127, 214], [64, 190, 170], [242, 209, 60], [255, 59, 48]];
+
+function stressed(share) {
+  const place = 3 * Math.min(0.9999, share), k = Math.floor(place), part = place - k;
+  return `rgb(${STRESS[k].map((low, i) => Math.round(low + part * (STRESS[k + 1][i] - low))).join()})`;
+}
 
 export const multiply = (a, b) => [0, 3, 6].flatMap((r) => [0, 1, 2].map((c) => a[r] * b[c] + a[r + 1] * b[c + 3] + a[r + 2] * b[c + 6]));
 
@@ -24,7 +31,7 @@ export class View {
   // Without a picture: the rest place of both plates in the middle, millimetres alike in x and y.
   own(state) {
     const [a, b] = state.placing.clamps, x = (a[0][0] + b[0][0]) / 2, y = (a[0][1] + a[1][1]) / 2;
-    const zoom = 0.3 * HEIGHT / Math.max(0.02, a[1][1] - a[0][1]);
+    const zoom = 0.4 * HEIGHT / Math.max(0.02, a[1][1] - a[0][1]);
     return [zoom, 0, this.size[0] / 2 - zoom * x, 0, -zoom, this.size[1] * 0.56 + zoom * y, 0, 0, 1];
   }
 
@@ -66,12 +73,36 @@ export class View {
     for (const [x, y] of centres.slice(-150)) this.dot(x, y, 1.3, COLOURS.path);
     state.shape.forEach((strip, s) => {
       c.setLineDash(stale ? [6, 5] : []);
-      this.line(strip, "#000a", 6);
-      this.line(strip, COLOURS.strips[s], 3);
+      this.strip(strip, state.stress.along[s], state.values.thickness);
       c.setLineDash([]);
     });
+    this.pull(state);
     if (state.centre) this.cross(...state.centre, COLOURS.path);
     this.dot(state.pose[0], state.pose[1], 3.5, COLOURS.plate);
+  }
+
+  // A strip at its thickness in the picture, its colour that of the stress at the places along it: a gradient
+  // from end to end, for a stroke by itself for each part takes longer than all else.
+  strip(places, stress, thickness) {
+    const [x, y] = places[Math.floor(places.length / 2)], [u, v] = this.to(x, y), [p, q] = this.to(x + thickness, y);
+    const width = Math.max(THINNEST, Math.hypot(p - u, q - v)), [x0, y0] = this.to(...places[0]), [x1, y1] = this.to(...places[places.length - 1]);
+    const colour = this.context.createLinearGradient(x0, y0, x1, y1), chord = (x1 - x0) ** 2 + (y1 - y0) ** 2;
+    places.forEach(([a, b], k) => {
+      const [m, n] = this.to(a, b), share = ((m - x0) * (x1 - x0) + (n - y0) * (y1 - y0)) / chord;
+      if (k % 3 === 0) colour.addColorStop(Math.min(1, Math.max(0, share)), stressed(stress[k]));
+    });
+    this.line(places, "#000a", width + 3);
+    this.line(places, colour, width);
+  }
+
+  // From the body's centre to where the hand pulls, where that is not the same place.
+  pull(state) {
+    const [x0, y0] = state.placing.centre, [x, y] = state.wanted;
+    if (state.grip === null || Math.hypot(x - state.displacement[0], y - state.displacement[1]) < 5e-4) return;
+    this.context.setLineDash([4, 4]);
+    this.line([[state.pose[0], state.pose[1]], [x0 + x, y0 + y]], COLOURS.moving, 2);
+    this.context.setLineDash([]);
+    this.dot(x0 + x, y0 + y, 3.5, COLOURS.moving);
   }
 
   grid() {

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.polynomial import legendre
@@ -18,6 +18,7 @@ SLIDE_STIFFNESS = 1000.0
 #: Places along a strip where its shape and stress are given, as fractions of its length.
 STATIONS = np.linspace(0.0, 1.0, 25)
 
+POISSON_RATIO = 0.3
 EFFECTS = ("bending", "stretching", "strip_inertia", "body_inertia")
 
 
@@ -32,7 +33,7 @@ def build(values: Mapping[str, float]) -> Pivot:
         area=width * thickness,
         second_moment_of_area=width * thickness**3 / 12.0,
         youngs_modulus=values["youngs_modulus"],
-        poisson_ratio=0.3,
+        poisson_ratio=POISSON_RATIO,
         density=values["density"],
         body_mass=values["body_mass"],
         body_moment_of_inertia=values["body_moment_of_inertia"],
@@ -101,6 +102,14 @@ class Reader:
         return Reading(shape=shape, stress=stress, strain=axial.mean(axis=1))
 
 
+def scales(values: Mapping[str, float]) -> dict[str, float]:
+    """Return the sizes of moment [N m], force [N], energy [J] and stress [Pa] of a design's bending."""
+    length, thickness = values["length"], values["thickness"]
+    bending = values["youngs_modulus"] * values["width"] * thickness**3 / 12.0 / length
+    stress = values["youngs_modulus"] * thickness / length
+    return {"moment": bending, "force": bending / length, "energy": bending, "stress": stress}
+
+
 def pole(pose: Array, velocity: Array, least: float) -> tuple[float, float] | None:
     """Return the instantaneous centre of a body at `pose` (3,) with `velocity` (3,) [m], None below `least`
     rad/s."""
@@ -127,10 +136,12 @@ def wrapped(angle: float) -> float:
     return math.remainder(angle, 2.0 * math.pi)
 
 
-#: Distance of each marker's centre from the clamped plate it is glued to [m], as on the printed sheet.
+#: Distance of the ground's marker from the clamped plate it is glued to [m], as on the printed sheet.
 STANDOFF = 0.045
 #: Side of the black square [m], as printed.
 SIDE = 0.06
+#: Pose of marker 1 in marker 0's frame [m, m, rad] as printed: that of a pivot at rest, whatever the design.
+PRINTED = (0.0, 0.15, 0.0)
 
 
 def turned(angle: float, vector: Array) -> Array:
@@ -152,27 +163,32 @@ class Placing:
     Attributes:
         ground: of marker 0 (2,) [m]; rest: pose (3,) of marker 1 in marker 0's frame when the pivot is at
             rest.
-        centre: of the body at rest (2,) [m].
+        centre: of the body at rest (2,) [m]. crossing: of the strips at rest (2,) [m].
     """
 
     ground: Array
     rest: Array
     centre: Array
+    crossing: Array
 
     @classmethod
     def of(cls, pivot: Pivot) -> "Placing":
         """Return the printed sheet's placing for a design."""
-        ground_plate, body_plate = (
-            pivot.clamp_points[:, 0].mean(axis=0),
-            pivot.clamp_points[:, 1].mean(axis=0),
+        ground = pivot.clamp_points[:, 0].mean(axis=0) - np.array([0.0, STANDOFF])
+        start, along = pivot.clamp_points[:, 0], pivot.clamp_points[:, 1] - pivot.clamp_points[:, 0]
+        crossing = (
+            start[0]
+            + along[0] * np.linalg.solve(np.column_stack((along[0], -along[1])), start[1] - start[0])[0]
         )
-        ground = ground_plate - np.array([0.0, STANDOFF])
-        moving = body_plate + np.array([0.0, STANDOFF])
-        return cls(ground=ground, rest=np.array([*(moving - ground), 0.0]), centre=pivot.centre)
+        return cls(ground=ground, rest=np.array(PRINTED), centre=pivot.centre, crossing=crossing)
+
+    def crossing_shift(self, body: Array) -> float:
+        """Return how far [m] the body's point that lies in the strips' crossing at rest is from there."""
+        return float(np.hypot(*(body[:2] + turned(body[2], self.crossing - self.centre) - self.crossing)))
 
     def with_rest(self, marker: Array) -> "Placing":
         """Return the placing of markers that stand at `marker` (3,) when the pivot is at rest."""
-        return Placing(ground=self.ground, rest=np.array(marker, dtype=float), centre=self.centre)
+        return replace(self, rest=np.array(marker, dtype=float))
 
     def body(self, marker: Array, near: float = 0.0) -> Array:
         """Return the body's pose (3,) for marker 1 at `marker` in marker 0's frame, its turn counted on
@@ -186,10 +202,11 @@ class Placing:
         arm = self.centre - self.ground - self.rest[:2]
         return np.array([*(body[:2] - self.ground - turned(body[2], arm)), body[2] + self.rest[2]])
 
-    def spread(self, sd: Array) -> Array:
-        """Return the standard deviations of the body's pose from those of the marker's, (3,) each."""
-        arm = float(np.hypot(*(self.centre - self.ground - self.rest[:2])))
-        return np.array([math.hypot(sd[0], arm * sd[2]), math.hypot(sd[1], arm * sd[2]), sd[2]])
+    def spread(self, sd: Array, turn: float) -> Array:
+        """Return the body's pose over those of the marker's x, y and turn (3, 3), in standard deviations, at
+        the body's turn [rad]."""
+        arm = turned(turn, self.centre - self.ground - self.rest[:2])
+        return np.array([[1.0, 0.0, -arm[1]], [0.0, 1.0, arm[0]], [0.0, 0.0, 1.0]]) * sd
 
     def looks_swapped(self, marker: Array) -> bool:
         """Return whether the markers fit the mechanism much better the other way round."""

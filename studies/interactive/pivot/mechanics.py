@@ -6,13 +6,12 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from spline_model.content import STEPS_PER_PERIOD
 from spline_model.held import HeldPivot, HeldState
 from spline_model.modes import natural_frequencies
-from studies.interactive.pivot import presets
-from studies.interactive.pivot.design import Placing, Reader, Reading, build, free_stiffness, free_turn, pole
+from studies.interactive.pivot.curve import Curve
+from studies.interactive.pivot.design import Reader, Reading, build, free_stiffness, free_turn, pole, scales
 from studies.interactive.pivot.motion import MOTIONS, Motion, released
 from studies.interactive.pivot.presets import STEP
 from studies.kinds import Array
@@ -20,10 +19,14 @@ from studies.kinds import Array
 #: Time over which strips follow the hand's velocity at a release [s]: short enough that no pose leaves its
 #: branch.
 HAND_STEP = 1e-4
-#: Rotation up to which the path of a free turn is known [rad].
-REACH = 1.8
 #: Rotation rate below which a moving body has no instantaneous centre worth drawing, over the step [rad].
 LEAST_TURN = 2e-4
+
+#: Most steps of the centre in the balance of strips and a spring, the longest over the strips' length, how
+#: often one is halved, and the force that is none, over EI / L^2.
+MOST_PULLS, LONGEST_PULL, HALVINGS, BALANCED = 40, 0.1, 12, 1e-7
+#: Part of a standard deviation over which a stiffness is taken to be linear.
+PART = 1e-3
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -71,6 +74,7 @@ class Mechanics:
         self._system = released(self.pivot)
         self._reader = Reader.of(values)
         self._motion: Motion | None = None
+        self._unheld: Array | None = None
         self.snapshot = self._static(self._held.reset())
 
     @cached_property
@@ -78,6 +82,10 @@ class Mechanics:
         """Longest step [s] that resolves a swing about rest in phase and amplitude."""
         lowest = natural_frequencies(self.pivot).frequency[0]
         return 1.0 / (STEPS_PER_PERIOD * float(lowest)) if lowest > 0.0 else math.inf
+
+    def pace(self, time_scale: float) -> None:
+        """From now on so many simulated seconds in one."""
+        self.values["time_scale"], self.step = time_scale, STEP * time_scale
 
     @property
     def moving(self) -> bool:
@@ -115,27 +123,68 @@ class Mechanics:
             self.snapshot = self._static(state)
         return state.reached
 
-    def off_path(self, pose: Array) -> float:
-        """Distance of `pose` (3,) from where a moment alone would turn the body to [m]; 0 beyond REACH."""
-        if abs(pose[2]) > REACH:
-            return 0.0
-        angles, centres = self._free_path
-        free = [np.interp(pose[2], angles, centres[:, k]) for k in range(2)]
-        return float(np.hypot(*(pose[:2] - free)))
+    def grip(self, pose: Array, stiffness: float, *, turns: bool = False) -> float:
+        """Hold the centre by a spring of `stiffness` [N/m] to `pose` (3,), and the turn unless it `turns`;
+        as `hold`.
+
+        The pose minimises the energy of strips and spring, sought from where no force acts on the centre.
+        """
+        held, known, pull = (
+            self._held,
+            self._held.unknowns,
+            _Pull(pose, stiffness, self.values["length"], turns),
+        )
+        if self._unheld is not None:
+            held.restore(self._unheld)
+        state = held.turn(float(self.snapshot.pose[2] if turns else pose[2]))
+        if not state.solved:
+            held.restore(known)
+            return state.reached
+        self._unheld, work = held.unknowns, state.iterations
+        least = scales(self.values)["force"]
+        for _ in range(MOST_PULLS):
+            force, tangent = pull.force(state)
+            if np.linalg.norm(force) <= BALANCED * (least + stiffness * math.dist(pose[:2], state.pose[:2])):
+                self.snapshot = self._static(state, work)
+                return 1.0
+            values, ways = np.linalg.eigh(tangent)
+            step = -ways @ ((ways.T @ force) / np.abs(values))
+            step *= min(1.0, LONGEST_PULL * self.values["length"] / max(float(np.linalg.norm(step)), 1e-300))
+            state, used = self._lower(state, pull, step)
+            work += used
+            if used == 0:
+                break
+        held.restore(known)
+        return 0.0
+
+    def _lower(self, state: HeldState, pull: "_Pull", step: Array) -> tuple[HeldState, int]:
+        """Return the state after a step of the pose, or the part of it that lowers the energy of strips and
+        spring, or the force; and the iterations, 0 where no part does."""
+        known, before = self._held.unknowns, pull.energy(state)
+        least = np.linalg.norm(pull.force(state)[0])
+        for halved in range(HALVINGS):
+            found = self._held.hold(*pull.moved(state.pose, 0.5**halved * step))
+            lower = found.solved and pull.energy(found) < before
+            if lower or (found.solved and np.linalg.norm(pull.force(found)[0]) < least):
+                return found, max(1, found.iterations)
+            self._held.restore(known)
+        return state, 0
+
+    def stiffness_spread(self, ways: Array) -> float:
+        """Return the standard deviation of the stiffness [N m/rad] where the pose's is the sum of the
+        independent columns of `ways` (3, k), to first order; nan where a state beside is not found."""
+        known, here, total = self._held.unknowns, self.snapshot, 0.0
+        for way in PART * ways.T:
+            state = self._held.hold(*(here.pose + way))
+            change = free_stiffness(state.tangent) - (here.stiffness or 0.0) if state.solved else math.nan
+            total += (change / PART) ** 2
+            self._held.restore(known)
+        return math.sqrt(total)
 
     @cached_property
-    def _free_path(self) -> tuple[Array, Array]:
-        """Rotations (A,) and centres (A, 2) of the body that a moment alone turns."""
-        solver, half = HeldPivot(self.pivot), np.linspace(0.0, REACH, 21)
-        found: dict[float, Array] = {}
-        for side in (1.0, -1.0):
-            solver.reset()
-            for angle in side * half:
-                state = solver.turn(float(angle))
-                if state.solved:
-                    found[float(angle)] = state.pose[:2]
-        angles = sorted(found)
-        return np.array(angles), np.array([found[angle] for angle in angles])
+    def curve(self) -> Curve:
+        """What a moment alone does to the design."""
+        return Curve.of(self.pivot, self._reader)
 
     def release(self, velocity: Array, solver: str) -> None:
         """Let go of the held body with a `velocity` (3,) of its pose; the strips follow it."""
@@ -210,68 +259,30 @@ class Mechanics:
         )
 
 
-#: Designs that can be undone.
-UNDO = 100
+@dataclass(frozen=True, eq=False)
+class _Pull:
+    """A spring of some stiffness [N/m] from the body's centre to `pose` (3,); the turn is measured by the way
+    of a point at `length` [m]."""
 
-Design = tuple[str, dict[str, float]]
+    pose: Array
+    stiffness: float
+    length: float
+    turns: bool
 
+    def force(self, state: HeldState) -> tuple[Array, Array]:
+        """Return the force that is out of balance, (2,) or (3,) where the body turns, and its derivative."""
+        unit, spring = np.array([1.0, 1.0, 1.0 / self.length]), self.stiffness * np.array([1.0, 1.0, 0.0])
+        count = 3 if self.turns else 2
+        force = (state.force + spring * (state.pose - self.pose)) * unit
+        tangent = (state.tangent + np.diag(spring)) * np.outer(unit, unit)
+        return force[:count], tangent[:count, :count]
 
-class Bench:
-    """One design at a time; what cannot be built leaves the former one.
+    def energy(self, state: HeldState) -> float:
+        """Return the energy of strips and spring [J]."""
+        stretch = float(np.sum((state.pose[:2] - self.pose[:2]) ** 2))
+        return state.bending_energy + state.axial_energy + 0.5 * self.stiffness * stretch
 
-    Args:
-        preset: name of the preset that the values began from.
-        values: all parameters in SI units; BadInput for one that does not fit.
-    """
-
-    mechanics: Mechanics
-    placing: Placing
-
-    def __init__(self, preset: str, values: Mapping[str, object]) -> None:
-        self.preset = preset
-        self._past: list[Design] = []
-        self._future: list[Design] = []
-        self._rest: NDArray[np.float64] | None = None
-        self._build(preset, values)
-
-    @property
-    def design(self) -> Design:
-        """Preset and values of the present design."""
-        return self.preset, dict(self.mechanics.values)
-
-    def change(self, preset: str, values: Mapping[str, object]) -> None:
-        """Another design; the present one can be had back by `undo`."""
-        known = self.design
-        self._build(preset, values)
-        self._past = [*self._past[1 - UNDO :], known]
-        self._future = []
-
-    def undo(self) -> bool:
-        """Back to the design before; False if there is none."""
-        return self._swap(self._past, self._future)
-
-    def redo(self) -> bool:
-        """Forth to the design that was undone; False if there is none."""
-        return self._swap(self._future, self._past)
-
-    def set_rest(self, marker: NDArray[np.float64]) -> None:
-        """Markers at `marker` (3,) are those of a pivot at rest, whatever the design."""
-        self._rest = np.array(marker, dtype=float)
-        self.placing = self.placing.with_rest(self._rest)
-
-    def _swap(self, source: list[Design], target: list[Design]) -> bool:
-        if not source:
-            return False
-        known = self.design
-        self._build(*source.pop())
-        target.append(known)
-        return True
-
-    def _build(self, preset: str, values: Mapping[str, object]) -> None:
-        if preset != presets.OWN:  # a recorded one brings its values
-            presets.preset(preset)
-        self.mechanics = Mechanics(presets.checked(values))
-        self.placing = Placing.of(self.mechanics.pivot)
-        if self._rest is not None:
-            self.placing = self.placing.with_rest(self._rest)
-        self.preset = preset
+    def moved(self, pose: Array, step: Array) -> tuple[float, float, float]:
+        """Return a pose after a step as of `force`."""
+        turn = pose[2] + (step[2] / self.length if self.turns else 0.0)
+        return float(pose[0] + step[0]), float(pose[1] + step[1]), float(turn)

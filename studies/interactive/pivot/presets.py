@@ -2,13 +2,18 @@
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
 
 from spline_model.modes import natural_frequencies
-from studies.cases.problem import named_case, read_case
+from studies.cases.effects import Effects
+from studies.cases.materials import MATERIALS
+from studies.cases.problem import Problem, named_case, read_case
+from studies.cases.write import as_toml
 from studies.errors import BadInput
-from studies.interactive.pivot.design import build
+from studies.interactive.pivot.design import EFFECTS, POISSON_RATIO, build
 
 #: Simulated time of one step over the time scale [s]: four of them make a frame of 25 Hz (section 4.1).
 STEP = 0.01
@@ -145,8 +150,8 @@ PRESETS: dict[str, Preset] = {
 OWN = "own"
 
 
-def bring(case: str) -> None:
-    """Add the design of a case file to the presets, as `OWN`; its time runs so that it swings once a second.
+def own(case: str) -> Preset:
+    """Return the design of a case file as a preset; its time runs so that it swings once a second.
 
     Of its scene the damping of the strips acts here, nothing else beside what always does.
 
@@ -156,7 +161,7 @@ def bring(case: str) -> None:
     problem = read_case(case)
     damping = problem.effects.parameters().get("strip_damping", {})
     strength = problem.yield_strength
-    own = Preset(
+    made = Preset(
         case=case,
         title=Path(case).stem.replace("_", " "),
         yield_strength=PARAMETERS["yield_strength"].high if strength is None else strength,
@@ -165,12 +170,42 @@ def bring(case: str) -> None:
         note="of one's own" if strength is not None else "of one's own; its yield strength is not known",
     )
     try:
-        values = checked(own.values())
+        values = checked(made.values())
     except BadInput as error:
         raise BadInput(f"{case}: {error}") from None
     frequency = float(natural_frequencies(build(values), rotation=0.0, count=1).frequency[0])
     slow = PARAMETERS["time_scale"]
-    PRESETS[OWN] = replace(own, time_scale=min(max(1.0 / frequency, slow.low), slow.high))
+    return replace(made, time_scale=min(max(1.0 / frequency, slow.low), slow.high))
+
+
+def values_of(text: str) -> dict[str, float]:
+    """Return the parameters of a design that is given as the text of a case file; BadInput as of `own`."""
+    with TemporaryDirectory() as folder:
+        path = Path(folder) / "design.toml"
+        path.write_text(text, encoding="utf-8")
+        try:
+            return own(str(path)).values()
+        except BadInput as error:
+            raise BadInput(str(error).replace(f"{path}", path.name)) from None
+
+
+def as_case(values: Mapping[str, float]) -> str:
+    """Return the text of the case file of a design, which the other commands read."""
+    width, thickness, time = values["width"], values["thickness"], values["relaxation_time"]
+    damped = Effects(names=(*EFFECTS, "strip_damping"), tables={"strip_damping": {"relaxation_time": time}})
+    given: dict[str, Any] = {
+        name: values[name] for name in PARAMETERS if name not in ("relaxation_time", "time_scale")
+    }
+    problem = Problem(
+        **given,
+        area=width * thickness,
+        second_moment_of_area=width * thickness**3 / 12.0,
+        poisson_ratio=POISSON_RATIO,
+        rotation=math.radians(45),
+        increments=45,
+        effects=damped if time > 0.0 else Effects(names=EFFECTS),
+    )
+    return as_toml(problem, ["a design of the interactive environment"])
 
 
 def checked(values: Mapping[str, object]) -> dict[str, float]:
@@ -191,3 +226,18 @@ def preset(name: object) -> Preset:
     if not isinstance(name, str) or name not in PRESETS:
         raise BadInput(f"preset: got {name!r}, expected one of {', '.join(PRESETS)}")
     return PRESETS[name]
+
+
+def catalogue() -> dict[str, Any]:
+    """Return parameters, presets and what each material that yields sets, for whoever shows them."""
+    designs = {name: {"title": p.title, "note": p.note, "values": p.values()} for name, p in PRESETS.items()}
+    known = {
+        each.title.partition(",")[0]: each.values() for each in MATERIALS.values() if each.yield_strength
+    }
+    return {
+        "parameters": [asdict(parameter) for parameter in PARAMETERS.values()],
+        "presets": designs,
+        "materials": {
+            title: {n: v for n, v in given.items() if n in PARAMETERS} for title, given in known.items()
+        },
+    }

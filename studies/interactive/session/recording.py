@@ -39,9 +39,9 @@ def events(lines: Iterable[str]) -> Iterator[dict[str, Any]]:
         yield event
 
 
-def replay(lines: Iterable[str]) -> Iterator[tuple[dict[str, Any], bool]]:
+def replay(lines: Iterable[str], session: Session | None = None) -> Iterator[tuple[dict[str, Any], bool]]:
     """Feed a session file to a new session; yield each state, and whether it is the one that was recorded."""
-    session = Session()
+    session = session or Session()
     for event in events(lines):
         known = event.pop("mark", None)
         state = session.feed(event)

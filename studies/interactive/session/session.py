@@ -13,10 +13,11 @@ import numpy as np
 from studies.errors import BadInput
 from studies.interactive.pivot import presets
 from studies.interactive.pivot.design import wrapped
+from studies.interactive.pivot.mechanics import Mechanics
 from studies.interactive.pivot.motion import MOTIONS
 from studies.interactive.pivot.presets import STEP
 from studies.interactive.session.input import choice, mapping, number, three, words
-from studies.interactive.session.view import DRIVES, Instant, shown
+from studies.interactive.session.view import DRIVES, SPRUNG, Instant, shown
 from studies.kinds import Array
 
 #: Farthest a pose may lie from rest: shift over the strips' length, and turn [rad].
@@ -24,6 +25,8 @@ FARTHEST_SHIFT, FARTHEST_TURN = 2.0, 3.5
 #: Distance of the body from where the pivot turns by itself, over the strips' length, that is named: few
 #: hands pull so hard, but 1.5 % of a wrong printed size do it.
 OFF_PATH = 0.02
+#: Steps that are due and not taken which are named.
+BEHIND = 25
 
 
 class Session(Instant):
@@ -51,8 +54,11 @@ class Session(Instant):
         self.warnings.begin()
         action(self, event, time)
         self.time = time
+        self.readings.take(self.mechanics, None if self.spread is None else self.ways @ self.spread)
         if self.mechanics.moving and self.mechanics.step > self.mechanics.longest_step:
             self.warnings.say("under-resolved", f"{self.mechanics.longest_step / STEP:.1g} resolves it")
+        if self.mechanics.moving and self.clock.lag > BEHIND:
+            self.warnings.say("behind", f"{self.clock.lag:.0f} steps")
         return shown(self)
 
     def setup(self) -> dict[str, Any]:
@@ -103,7 +109,7 @@ class Session(Instant):
         elif not self._hand.believes(time, pose):
             self.warnings.say("jump")
         else:
-            self.spread = self.placing.spread(three(event, "sd")) if "sd" in event else None
+            self.spread = self.placing.spread(three(event, "sd"), body[2]) if "sd" in event else None
             self._to(pose, time)
 
     def _unseen(self, event: Mapping[str, Any], time: float) -> None:
@@ -138,16 +144,21 @@ class Session(Instant):
 
     def _hold(self) -> None:
         """Static solve at the wanted pose; on failure the last good state stays."""
-        target = np.array([*(self.wanted[:2] + self.placing.centre), self.wanted[2]])
-        by_pose = self.drive == "pose"
-        reached = self.mechanics.hold(target) if by_pose else self.mechanics.turn(float(target[2]))
+        target, mechanics = (
+            np.array([*(self.wanted[:2] + self.placing.centre), self.wanted[2]]),
+            self.mechanics,
+        )
+        if self.drive in SPRUNG:
+            reached = mechanics.grip(target, self.grip, turns=self.drive == "pull")
+        else:
+            reached = mechanics.hold(target) if self.drive == "pose" else mechanics.turn(float(target[2]))
         if reached < 1.0:
             self.warnings.say("no-equilibrium", f"{100 * reached:.0f} % of the way")
-        elif not by_pose:
+        elif self.drive == "rotation":
             self._hand_is_here(turn=self.wanted[2])
-        elif by_pose and self.sight["state"] != "none":
-            gap = self.mechanics.off_path(target)
-            if gap > OFF_PATH * self.mechanics.values["length"]:
+        elif self.sight["state"] != "none":
+            gap = mechanics.curve.gap(self.wanted)
+            if gap > OFF_PATH * mechanics.values["length"]:
                 self.warnings.say("off-path", f"{1e3 * gap:.1f} mm")
 
     def _hand_is_here(self, turn: float) -> None:
@@ -161,7 +172,11 @@ class Session(Instant):
         if self.mechanics.moving:
             return
         velocity = self._hand.velocity if event.get("speed") == "hand" else np.zeros(3)
-        self.mechanics.release(velocity / self.mechanics.values["time_scale"], self.solver)
+        self._let_go(velocity / self.mechanics.values["time_scale"], time)
+
+    def _let_go(self, velocity: Array, time: float) -> None:
+        """Release the held body with a `velocity` (3,)."""
+        self.mechanics.release(velocity, self.solver)
         now = self.mechanics.snapshot
         self.start_energy = now.strain + now.kinetic
         self.clock.begin(time)
@@ -207,23 +222,34 @@ class Session(Instant):
     # -- settings ------------------------------------------------------------------------------------------
 
     def _parameter(self, event: Mapping[str, Any], time: float) -> None:
-        preset, values = self.bench.design
-        self.bench.change(preset, {**values, str(event.get("name")): event.get("value")})
-        self._rebuilt()
+        (preset, values), before = self.bench.design, self.mechanics
+        changed = {**values, str(event.get("name")): event.get("value")}
+        self.bench.change(preset, changed, part=event.get("part") is True)
+        self._rebuilt(before, time)
 
     def _preset(self, event: Mapping[str, Any], time: float) -> None:
-        values = presets.preset(event.get("name")).values() | dict(mapping(event, "values"))
-        self.bench.change(str(event["name"]), values)
-        self._rebuilt()
+        before, given, name = self.mechanics, dict(mapping(event, "values")), event.get("name")
+        known = {} if name == presets.OWN and given else presets.preset(name).values()
+        self.bench.change(str(name), known | given)
+        self._rebuilt(before, time)
 
     def _undo(self, event: Mapping[str, Any], time: float) -> None:
-        self._rebuilt() if self.bench.undo() else self.warnings.say("empty", "to undo")
+        before = self.mechanics
+        self._rebuilt(before, time) if self.bench.undo() else self.warnings.say("empty", "to undo")
 
     def _redo(self, event: Mapping[str, Any], time: float) -> None:
-        self._rebuilt() if self.bench.redo() else self.warnings.say("empty", "to redo")
+        before = self.mechanics
+        self._rebuilt(before, time) if self.bench.redo() else self.warnings.say("empty", "to redo")
 
-    def _rebuilt(self) -> None:
-        """Another design is held where the former was, and its time begins."""
+    def _rebuilt(self, before: Mechanics, time: float) -> None:
+        """Another design goes on where the former one is, held or swinging; its time begins."""
+        if self.mechanics is before:  # at another pace
+            return
+        if before.moving and self.mechanics.hold(before.snapshot.pose) == 1.0:
+            self._let_go(before.snapshot.velocity, time)
+            return
+        if before.moving:
+            self.warnings.say("swing-ended")
         self.clock.begin(None)
         self._hold()
 

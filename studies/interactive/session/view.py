@@ -6,12 +6,17 @@ from typing import Any
 
 import numpy as np
 
-from studies.interactive.pivot.design import Placing, free_stiffness, free_turn
-from studies.interactive.pivot.mechanics import Bench, Mechanics
+from studies.interactive.pivot.bench import Bench
+from studies.interactive.pivot.curve import Curve
+from studies.interactive.pivot.design import Placing, scales
+from studies.interactive.pivot.mechanics import Mechanics
 from studies.interactive.pivot.motion import MOTIONS
 from studies.interactive.session.input import Clock, Hand
+from studies.interactive.session.readings import Readings
 from studies.kinds import Array
 
+#: Least spread that is written, over its value.
+FINEST = 1e-4
 #: What lies below this part of a design's own scale is round-off, and written as nought.
 ROUND_OFF = 1e-6
 PREFIXES = ((1e9, "G"), (1e6, "M"), (1e3, "k"), (1.0, ""), (1e-3, "m"), (1e-6, "µ"), (1e-9, "n"))
@@ -31,10 +36,10 @@ def quantity(value: float | None, unit: str, least: float = 0.0, spread: float |
         value = float(f"{value:.3g}")
         scale, prefix = _prefix(abs(value), unit)
         return f"{value / scale + 0.0:.4g} {prefix}{unit}"
-    spread = float(f"{spread:.2g}")
+    spread = float(f"{max(spread, FINEST * abs(value)):.2g}")
     scale, prefix = _prefix(max(abs(value), spread), unit)
     places = max(0, 1 - math.floor(math.log10(spread / scale))) if spread > 0.0 else 2
-    return f"{fixed(value / scale, places)} ± {spread / scale:.4g} {prefix}{unit}"
+    return f"{fixed(value / scale, places)} ± {spread / scale:.{places}f} {prefix}{unit}"
 
 
 def _prefix(size: float, unit: str) -> tuple[float, str]:
@@ -48,18 +53,11 @@ def fixed(value: float, places: int) -> str:
     return f"{round(value, places) + 0.0:.{places}f}"
 
 
-def scales(values: Mapping[str, float]) -> dict[str, float]:
-    """Return the sizes of moment [N m], force [N], energy [J] and stress [Pa] of a design's bending."""
-    length, thickness = values["length"], values["thickness"]
-    bending = values["youngs_modulus"] * values["width"] * thickness**3 / 12.0 / length
-    stress = values["youngs_modulus"] * thickness / length
-    return {"moment": bending, "force": bending / length, "energy": bending, "stress": stress}
-
-
-def _readout(state: Mapping[str, Any]) -> dict[str, str]:
-    """Return the texts of a state's numbers by what they are."""
+def _readout(state: Mapping[str, Any], reading: Array) -> dict[str, str]:
+    """Return the texts of a state's numbers by what they are; `reading` (4,): force, moment and stiffness."""
     least = {name: ROUND_OFF * scale for name, scale in state["scale"].items()}
-    force, spread = state["force"], state["force_sd"] or (None, None, None)
+    force, spread = reading.tolist(), state["force_sd"] or (None, None, None, None)
+    stiffness = None if state["stiffness"] is None else force[3]
     (dx, dy, turn), sd = state["displacement"], state["sd"]
     shift = "" if sd is None else f" ± {1e3 * max(sd[0], sd[1]):.2f}"
     of_yield = state["stress"]["of_yield"]
@@ -73,10 +71,12 @@ def _readout(state: Mapping[str, Any]) -> dict[str, str]:
         + ("" if sd is None else f" ± {math.degrees(sd[2]):.2f}")
         + " °",
         "shift": f"{fixed(1e3 * dx, 2)}, {fixed(1e3 * dy, 2)}{shift} mm",
+        "centre_shift": f"{fixed(1e3 * state['centre_shift'], 3)} mm",
         "moment": quantity(force[2], "N m", least["moment"], spread[2]),
         "force_x": quantity(force[0], "N", least["force"], spread[0]),
         "force_y": quantity(force[1], "N", least["force"], spread[1]),
-        "stiffness": quantity(state["stiffness"], "N m/rad", least["moment"]),
+        "stiffness": quantity(stiffness, "N m/rad", least["moment"], spread[3]),
+        "grip": quantity(state["grip"], "N/m"),
         "simulated": f"{quantity(state['simulated'], 's')}, {state['steps']} steps",
         "stress": quantity(state["stress"]["max"], "Pa", least["stress"]),
         "of_yield": f"{float(f'{percent:.3g}'):g} %",
@@ -94,8 +94,13 @@ def sentence(state: Mapping[str, Any], texts: Mapping[str, str]) -> str:
     return f"Held at {angle}°{pause}: moment {texts['moment']}, stress {stress} % of yield."
 
 
-#: What the hand holds: the whole pose, or the rotation alone.
-DRIVES = ("pose", "rotation")
+#: What the hand holds: the rotation, and the centre by a spring; the centre alone, by a spring; the rotation
+#: alone; the whole pose.
+DRIVES = ("grip", "pull", "rotation", "pose")
+SPRUNG = ("grip", "pull")
+#: Stiffness of a finger's grip [N/m]; share of EI / L^2 that the spread of a seen place may show as a force;
+#: that spread where a pointer shows the place [m].
+FINGER, SHARE, POINTER = 1e3, 0.04, 2e-4
 #: Fault -> the sentence that explains it and says what to do.
 SENTENCES = {
     "lost": "A marker is not seen: show both markers whole, flat and lit.",
@@ -112,6 +117,8 @@ SENTENCES = {
     "no-equilibrium": "No equilibrium was found for this pose: the last good state is kept.",
     "off-path": "The markers are not where the pivot turns by itself: check their printed size with "
     "the ruler, or take the pose of the unloaded pivot as rest.",
+    "swing-ended": "This design cannot take the swing over: it is held.",
+    "behind": "The solver is slower than time: what is shown comes late.",
     "no-catch": "The moving body could not be held here: try again.",
     "stopped": "The solver stopped: the last good state is kept and time is paused.",
     "under-resolved": "The step is too long for this swing, which it damps: take a slower time scale.",
@@ -125,6 +132,18 @@ SENTENCES = {
     "followed": "A corner is covered: the marker is followed by its edges.",
     "no-picture": "A picture could not be read.",
 }
+
+
+def curved(curve: Curve, strength: float) -> dict[str, Any]:
+    """Return what a moment alone does to a design, and where it yields, as plain numbers and a sentence."""
+    at, end = curve.where(strength), math.degrees(curve.rotation[-1])
+    text = f"yields at ±{math.degrees(at[0]):.1f}° by {quantity(at[1], 'N m')}" if at else ""
+    return {
+        "rotation": plain(curve.rotation),
+        "moment": plain(curve.moment),
+        "yields": at,
+        "text": text or f"does not yield up to ±{end:.0f}°",
+    }
 
 
 class Warnings:
@@ -157,6 +176,27 @@ class Instant:
         self.start_energy, self.wanted = 0.0, np.zeros(3)
         self._marker: Array | None = None
         self._hand = Hand()
+        self.readings = Readings()
+
+    @property
+    def grip(self) -> float:
+        """Stiffness of the spring from the centre to where the hand is seen [N/m]: a finger's, in series with
+        one that turns what the camera cannot tell into no more force than the strips' bending hides."""
+        spread = POINTER if self.spread is None else float(np.linalg.norm(self.spread[:2], axis=1).max())
+        return 1.0 / (1.0 / FINGER + spread / (SHARE * scales(self.mechanics.values)["force"]))
+
+    @property
+    def ways(self) -> Array:
+        """Pose of the body over that of the hand (3, 3), as it is held, to first order."""
+        tangent, rigid = self.mechanics.snapshot.tangent, np.eye(3)
+        if self.drive == "pose" or tangent is None:
+            return rigid
+        spring = self.grip * np.diag([1.0, 1.0, 0.0])
+        if self.drive == "pull":
+            return np.asarray(np.linalg.solve(tangent + spring, spring))
+        spring = spring[:2, :2] if self.drive == "grip" else np.zeros((2, 2))
+        rigid[:2] = np.linalg.solve(tangent[:2, :2] + spring, np.hstack((spring, -tangent[:2, 2:])))
+        return rigid
 
     @property
     def mechanics(self) -> Mechanics:
@@ -173,7 +213,6 @@ def shown(session: Instant) -> dict[str, Any]:
     """Return the state of a session: equal sessions give equal states, digit by digit."""
     mechanics, now = session.mechanics, session.mechanics.snapshot
     reading, values = now.reading, session.mechanics.values
-    sd, force_sd = _spreads(session)
     strip, place = np.unravel_index(int(np.argmax(reading.stress)), reading.stress.shape)
     state: dict[str, Any] = {
         "t": session.time,
@@ -190,6 +229,7 @@ def shown(session: Instant) -> dict[str, Any]:
         "pose": plain(now.pose),
         "displacement": [*plain(now.pose[:2] - session.placing.centre), float(now.pose[2])],
         "wanted": plain(session.wanted),
+        "centre_shift": session.placing.crossing_shift(now.pose),
         "velocity": plain(now.velocity),
         "shape": plain(reading.shape),
         "force": plain(now.force),
@@ -199,6 +239,7 @@ def shown(session: Instant) -> dict[str, Any]:
             "of_yield": float(reading.stress[strip, place]) / values["yield_strength"],
             "strip": int(strip),
             "place": int(place),
+            "along": plain(np.round(reading.stress / values["yield_strength"], 4)),
         },
         "strain": plain(reading.strain),
         "energy": {
@@ -211,8 +252,9 @@ def shown(session: Instant) -> dict[str, Any]:
         "centre": None if now.centre is None else list(now.centre),
         "iterations": now.iterations,
         "sight": session.sight,
-        "sd": sd,
-        "force_sd": force_sd,
+        "sd": None if session.readings.sd is None else plain(session.readings.sd),
+        "force_sd": _force_sd(session),
+        "grip": session.grip if session.drive in SPRUNG and not mechanics.moving else None,
         "scale": scales(values),
         "placing": {
             "ground": plain(session.placing.ground),
@@ -222,7 +264,7 @@ def shown(session: Instant) -> dict[str, Any]:
         },
         "warnings": [{"code": code, "text": text} for code, text in session.warnings.said.items()],
     }
-    state["texts"] = _readout(state)
+    state["texts"] = _readout(state, session.readings.mean(now))
     state["status"] = sentence(state, state["texts"])
     return state
 
@@ -232,15 +274,10 @@ def plain(array: Array) -> Any:
     return np.asarray(array, dtype=float).tolist()
 
 
-def _spreads(session: Instant) -> tuple[list[float] | None, list[float | None] | None]:
-    """Standard deviations of the pose that is shown and of what holds it, to first order.
-
-    A hand that holds the rotation alone has that of the rotation alone: the body goes where no force is
-    needed, forces are nought by construction, and the moment follows with the stiffness of a free centre.
-    """
-    tangent, sd = session.mechanics.snapshot.tangent, session.spread
-    if sd is None or tangent is None:
-        return None, None
-    if session.drive == "rotation":
-        return plain(np.abs(free_turn(tangent)) * sd[2]), [None, None, abs(free_stiffness(tangent)) * sd[2]]
-    return plain(sd), plain(np.sqrt((tangent**2) @ (sd**2)))
+def _force_sd(session: Instant) -> list[float | None] | None:
+    """Standard deviations of force, moment and stiffness; none of forces that are nought by make."""
+    sd = session.readings.force_sd
+    if sd is None:
+        return None
+    known: list[float | None] = [value if np.isfinite(value) else None for value in sd.tolist()]
+    return [None, None, *known[2:]] if session.drive == "rotation" else known

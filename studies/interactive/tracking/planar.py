@@ -25,6 +25,10 @@ ITERATIONS = 12
 #: Standard deviation of an edge's offset that is expected before the residuals are seen [px], and how many of
 #: them it is worth.
 EXPECTED_PX, WORTH = 0.006, 1.5
+#: Part of it that comes back in every picture, of a marker that stands still on the grid of pixels [px].
+STILL_PX = 0.003
+#: Most residuals of the pictures before that the variance of one rests on.
+MOST_WORTH = 30.0
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -37,6 +41,7 @@ class Fit:
         rms: of the corners' residuals [px]; sd (3,): standard deviation of the pose.
         size_ratio: side of the second square over the first one's, and its standard deviation, as the corners
             say; rms_sized: residual that would be left with that ratio [px].
+        variance: of an edge's offset [px^2], and how many residuals it rests on.
     """
 
     pose: Array
@@ -45,6 +50,7 @@ class Fit:
     sd: Array
     size_ratio: tuple[float, float]
     rms_sized: float
+    variance: tuple[float, float]
 
 
 @cache
@@ -98,9 +104,10 @@ def fit(corners: Array, camera: Camera | None = None, start: Fit | None = None) 
     if start is not None and _rms(corner_gap) > 1.0:
         return fit(corners, camera)
     freedom = gap.size - solved.size
-    variance = (WORTH * EXPECTED_PX**2 + float(gap @ gap)) / (WORTH + freedom)
+    known_variance, worth = (EXPECTED_PX**2, WORTH) if start is None else start.variance
+    variance = (worth * known_variance + float(gap @ gap)) / (worth + freedom)
     own = jacobian[:, :-1]
-    covariance = np.linalg.inv(own.T @ own) * variance
+    covariance = np.linalg.inv(own.T @ own) * (variance + STILL_PX**2)
     ratio, left = _size_ratio(jacobian, gap, freedom)
     return Fit(
         pose=solved[-3:],
@@ -109,6 +116,7 @@ def fit(corners: Array, camera: Camera | None = None, start: Fit | None = None) 
         sd=np.sqrt(np.diag(covariance)[-3:]),
         size_ratio=ratio,
         rms_sized=_rms(np.asarray(np.linalg.solve(weigh, left))),
+        variance=(variance, min(worth + freedom, MOST_WORTH)),
     )
 
 

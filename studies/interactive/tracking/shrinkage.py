@@ -23,8 +23,9 @@ Cells = NDArray[np.bool_]
 REACH, END = 0.45, 0.25
 #: Least share of good stations of an edge of cells.
 LEAST_SHARE = 0.5
-#: Offset [px] from which on a camera does not encode its light: edges of light lie too far in the light.
-LINEAR = -0.3
+#: Offset [px] over the step to another power, damped: one that is too large by one makes 0.55; from which one
+#: on it is made; powers that cameras have.
+BY_POWER, OTHER, POWERS = 0.7, 0.04, (1.0, 3.0)
 #: Difference of the offsets of cells and of the square around them that no picture tells [px]: what is left
 #: of it on films of powers from 1 to 1/2.4 and blurs from 0.5 to 1.6 px.
 APART = 0.01
@@ -58,8 +59,9 @@ class Shrinkage:
         if self.offset is None:
             return corners
         moved = np.array([grown(each, self.offset) for each in corners])
-        if self.offset < LINEAR:
-            self.offset, self.gamma, self._pictures = None, 1.0, 0
+        gamma = min(max(self.gamma + self.offset / BY_POWER, POWERS[0]), POWERS[1])
+        if abs(self.offset) > OTHER and gamma != self.gamma:
+            self.offset, self.gamma, self._pictures = None, gamma, 0
         return moved
 
 

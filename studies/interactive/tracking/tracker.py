@@ -21,6 +21,8 @@ FAR_PX = 50.0
 FOLLOW = 1.0
 #: Time without any marker after which a mirrored picture is tried [s].
 BLIND = 1.0
+#: Most powers of light that are tried on one picture.
+POWERS = 3
 #: Share of good stations below which an edge is called blurred, and least that a followed one keeps.
 CLEAR, KEPT = 0.6, edges.LEAST_SHARE
 #: Places in the white around a marker, in sides; the value from which they are clipped, and their share that
@@ -97,9 +99,14 @@ class Tracker:
     def _fitted(
         self, picture: Picture, quads: dict[int, Array], followed: set[int], time: float
     ) -> dict[str, Any]:
-        refined = edges.refine(picture, np.stack((quads[0], quads[1])), self._shrinkage.gamma)
-        lit = {n: planar.cells(n) for n in (0, 1) if n not in followed and refined.share[n].min() >= KEPT}
-        fit = self._fit_to(self._shrinkage.taken_out(picture, refined.corners, lit))
+        for _ in range(POWERS):  # the first pictures tell the power that their values are of light
+            gamma = self._shrinkage.gamma
+            refined = edges.refine(picture, np.stack((quads[0], quads[1])), gamma)
+            lit = {n: planar.cells(n) for n in (0, 1) if n not in followed and refined.share[n].min() >= KEPT}
+            corners = self._shrinkage.taken_out(picture, refined.corners, lit)
+            if self._shrinkage.gamma == gamma:
+                break
+        fit = self._fit_to(corners)
         torn = fit is None or fit.rms > REFUSE_PX
         if torn and not followed:  # a corner that is covered pulls the square: take the last one instead
             predicted = {n: k for n, k in self._known.items() if time - k.read <= FOLLOW}

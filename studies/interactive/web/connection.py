@@ -5,29 +5,29 @@ import asyncio
 import logging
 import time
 from collections.abc import Callable
-from dataclasses import asdict
 from typing import Any
 
 from numpy.linalg import LinAlgError
 from starlette.websockets import WebSocket
 
 from studies.errors import BadInput
+from studies.interactive.pivot import presets
+from studies.interactive.pivot.mechanics import Mechanics
 from studies.interactive.pivot.motion import MOTIONS
-from studies.interactive.pivot.presets import PARAMETERS, PRESETS
 from studies.interactive.session.recording import Recorder, line
 from studies.interactive.session.session import Session
-from studies.interactive.session.view import DRIVES
+from studies.interactive.session.view import DRIVES, curved
 from studies.interactive.tracking.calibration import Camera
 from studies.interactive.tracking.tracker import Tracker
 from studies.interactive.web import protocol
+from studies.interactive.web.player import Player
 from studies.interactive.web.sources import Shot, Source, grey_of
 
 LOG = logging.getLogger(__name__)
 
-#: Time of a frame without pictures [s], and how long pictures may stay away before it counts.
-TICK, STILL = 0.04, 0.2
-#: Pictures down that the page has not yet shown.
-IN_FLIGHT = 2
+#: Time of a frame without pictures [s], how long pictures may stay away before it counts, and how many are
+#: sent before the page has shown one.
+TICK, STILL, IN_FLIGHT = 0.04, 0.2, 2
 #: Printed sides that are taken [m].
 SIDES = (0.01, 0.3)
 
@@ -63,18 +63,20 @@ class Connection:
         self._wake = asyncio.Event()
         self._last_picture = -1e9
         self._offset: float | None = None
-        self._shown = 0
-        self._sent = 0
+        self._shown = self._sent = 0
+        self._player = Player()
+        self._curved: Mechanics | None = None
         self._seen_shown = asyncio.Event()
 
     async def serve(self) -> None:
         """Answer until the socket closes; raises BadInput for a message that is none."""
-        await self._socket.send_text(protocol.text(self._welcome()))
+        await self._say(self._welcome())
         if self._keep is not None:
             recorder = Recorder(self.session)
             for text in recorder.lines:
                 self._keep(text)
         await self._feed({"do": "tick"}, None)
+        await self._show_curve(self.session)
         workers = [asyncio.create_task(self._ticks()), asyncio.create_task(self._pictures())]
         if self._source is not None:
             workers.append(asyncio.create_task(self._play(self._source)))
@@ -84,25 +86,21 @@ class Connection:
             for task in done:
                 task.result()
         finally:
+            self._player.end()
             for task in (receiver, *workers):
                 task.cancel()
-            await asyncio.gather(receiver, *workers, return_exceptions=True)
+            await asyncio.gather(receiver, *workers, self._player.over(), return_exceptions=True)
 
     def _welcome(self) -> dict[str, Any]:
         """What the page needs to know once."""
-        parameters = [asdict(parameter) for parameter in PARAMETERS.values()]
-        designs = {
-            name: {"title": p.title, "note": p.note, "values": p.values()} for name, p in PRESETS.items()
-        }
         return {
             "kind": "welcome",
             "version": protocol.VERSION,
             "camera": self._camera_name,
-            "parameters": parameters,
-            "presets": designs,
             "drives": list(DRIVES),
             "solvers": list(MOTIONS),
             "side": self._tracker.side,
+            **presets.catalogue(),
         }
 
     async def _receive(self) -> None:
@@ -119,7 +117,9 @@ class Connection:
                 continue
             if event.get("do") != "pose" and not meter.passes(time.monotonic()):
                 raise BadInput(f"messages: got too many, expected at most {protocol.RATE:.0f} a second")
-            if data is not None:
+            if data is not None and (part := protocol.sent_part(data)) is not None:
+                await self._part(*part)
+            elif data is not None:
                 self._pending = protocol.sent_picture(data)
                 self._wake.set()
             elif event["do"] == "pose":
@@ -141,6 +141,12 @@ class Connection:
         if name == "shown":
             self._shown += 1
             self._seen_shown.set()
+        elif name == "live":
+            self._player.end()
+        elif self._player.on:
+            return  # a hand that moves while a session is replayed moves nothing
+        elif name == "save":
+            await self._say({"kind": "case", "text": presets.as_case(self.session.mechanics.values)})
         elif name == "record":
             await self._record(event.get("on") is True)
         elif name == "size":
@@ -150,6 +156,35 @@ class Connection:
         else:
             event.pop("t", None)
             await self._feed(event, seq)
+            await self._show_curve(self.session)
+
+    async def _say(self, content: dict[str, Any]) -> None:
+        await self._socket.send_text(protocol.text(content))
+
+    async def _part(self, kind: int, last: bool, data: bytes) -> None:
+        """Take a part of a file; the whole of it is replayed, or opened as a design."""
+        whole = self._player.whole(kind, last, data)
+        if whole is None:
+            return
+        try:
+            if kind == protocol.REPLAY:
+                if self.session.mechanics.moving:
+                    await self._feed({"do": "pause"}, None)
+                self._player.play(whole.splitlines(), self._say, self._show_curve)
+            else:
+                values = await asyncio.to_thread(presets.values_of, whole)
+                await self._text({"do": "preset", "name": presets.OWN, "values": values})
+        except BadInput as error:
+            await self._say({"kind": "error", "text": str(error)})
+
+    async def _show_curve(self, session: Session) -> None:
+        """Send what a moment alone does to a design that is another one than the last."""
+        mechanics = session.mechanics
+        if self._curved is not mechanics:
+            self._curved = mechanics
+            async with self._lock:
+                curve = await asyncio.to_thread(lambda: mechanics.curve)
+            await self._say({"kind": "curve", **curved(curve, mechanics.values["yield_strength"])})
 
     def _set_side(self, side_mm: object) -> None:
         good = isinstance(side_mm, int | float) and not isinstance(side_mm, bool)
@@ -161,15 +196,15 @@ class Connection:
         """Begin a recording, or end it and send its lines."""
         if on:
             self._recorder = Recorder(self.session)
-            await self._socket.send_text(protocol.text({"kind": "recording", "on": True}))
+            await self._say({"kind": "recording", "on": True})
         elif self._recorder is not None:
             lines, self._recorder = self._recorder.lines, None
-            await self._socket.send_text(protocol.text({"kind": "recording", "on": False, "lines": lines}))
+            await self._say({"kind": "recording", "on": False, "lines": lines})
 
     async def _feed(self, event: dict[str, Any], seq: object, **more: Any) -> None:
         """Give one event to the session and send its state."""
         content = await self._state_after(event)
-        await self._socket.send_text(protocol.text({**content, **more, "seq": seq}))
+        await self._say({**content, **more, "seq": seq})
 
     async def _state_after(self, event: dict[str, Any]) -> dict[str, Any]:
         async with self._lock:
@@ -203,9 +238,12 @@ class Connection:
 
     async def _ticks(self) -> None:
         """Drive a released body on where no pictures do."""
+        due = time.monotonic()
         while True:
-            await asyncio.sleep(TICK)
+            due = max(due + TICK, time.monotonic())
+            await asyncio.sleep(due - time.monotonic())
             await self._catch_up()
+            await self._player.over()
             still = time.monotonic() - self._last_picture > STILL
             if still and self.session.mechanics.moving and not self.session.paused:
                 await self._feed({"do": "tick"}, None)
@@ -217,6 +255,9 @@ class Connection:
             self._wake.clear()
             sent, self._pending = self._pending, None
             if sent is None:
+                continue
+            if self._player.on:
+                await self._say({"kind": "skipped", "seq": sent.seq})
                 continue
             self._last_picture = time.monotonic()
             grey = sent.coding == protocol.GREY
@@ -236,13 +277,12 @@ class Connection:
         while True:
             shot: Shot | None = await asyncio.to_thread(next, shots, None)
             if shot is None:
-                await self._socket.send_text(
-                    protocol.text(
-                        {"kind": "error", "text": "camera: got no picture, expected one: is it unplugged?"}
-                    )
+                await self._say(
+                    {"kind": "error", "text": "camera: got no picture, expected one: is it unplugged?"}
                 )
                 await asyncio.Event().wait()  # the page stays open until it is closed
                 continue
+            await self._player.over()
             while self._sent - self._shown >= IN_FLIGHT:
                 self._seen_shown.clear()
                 await self._seen_shown.wait()

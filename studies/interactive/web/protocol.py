@@ -21,6 +21,9 @@ LEAST_SIDE = 64
 HEADER = struct.Struct("<BBBBIHHd")
 PICTURE = 1
 GREY, JPEG = 0, 1
+#: Part of a file, kind, version and whether it is the last; of a session to be replayed, or of a design.
+PART = struct.Struct("<BBB")
+REPLAY, DESIGN = 2, 3
 
 #: Messages a second that a connection may send, and how many at once; so many of them are kept from poses,
 #: of which only the newest counts: they never use up what a key or a button needs.
@@ -40,7 +43,7 @@ FIELDS: dict[str, frozenset[str]] = {
     "resume": frozenset(),
     "step": frozenset(),
     "reset": frozenset(),
-    "parameter": frozenset({"name", "value"}),
+    "parameter": frozenset({"name", "value", "part"}),
     "preset": frozenset({"name", "values"}),
     "undo": frozenset(),
     "redo": frozenset(),
@@ -50,6 +53,8 @@ FIELDS: dict[str, frozenset[str]] = {
     "record": frozenset({"on"}),
     "size": frozenset({"side_mm"}),
     "shown": frozenset(),
+    "save": frozenset(),
+    "live": frozenset(),
 }
 
 
@@ -88,6 +93,16 @@ def event(text: str) -> dict[str, Any]:
             f"{min(odd)[:40]!r}: got an unknown field of {content['do']}, expected {sorted(fields)}"
         )
     return content
+
+
+def sent_part(data: bytes) -> tuple[int, bool, bytes] | None:
+    """Return kind, whether it is the last, and bytes of a file's part in a binary message, None of others."""
+    if len(data) < PART.size or data[0] not in (REPLAY, DESIGN):
+        return None
+    kind, version, last = PART.unpack_from(data)
+    if version != VERSION or last > 1:
+        raise BadInput(f"file: got version {version}, last {last}, expected {VERSION}, 0 or 1")
+    return kind, bool(last), data[PART.size :]
 
 
 def _refuse(constant: str) -> float:

@@ -112,6 +112,7 @@ class Server:
             routes=[
                 Route("/", self._file),
                 Route("/page/{name}", self._file),
+                Route("/markers.pdf", self._sheet),
                 WebSocketRoute("/ws", self._socket),
             ]
         )
@@ -174,6 +175,11 @@ class Server:
         if name not in known or suffix not in KINDS:
             return PlainTextResponse("not found", status_code=404)
         return Response(known[name].read_bytes(), media_type=KINDS[suffix])
+
+    async def _sheet(self, request: Request) -> Response:
+        from studies.interactive.film.sheet import sheet  # matplotlib, for who asks for it
+
+        return Response(await asyncio.to_thread(sheet), media_type="application/pdf")
 
     async def _socket(self, socket: WebSocket) -> None:
         """One socket: hello with the token, then its connection; any fault closes this socket only."""

@@ -1,0 +1,125 @@
+"""Cameras: of unknown and known constants, and what they make of light."""
+
+import math
+from itertools import product
+
+import numpy as np
+import pytest
+
+pytest.importorskip("cv2", reason="the extra `interactive` is not installed")
+
+from studies.errors import BadInput
+from studies.interactive.film.painter import Marker, Optics
+from studies.interactive.pivot.design import SIDE
+from studies.interactive.session.session import Session
+from studies.interactive.tracking import tracker as tracking
+from studies.interactive.tracking.calibration import Camera, calibrated
+from studies.interactive.tracking.detector import Detector
+from studies.interactive.tracking.edges import refine
+from studies.interactive.tracking.tracker import Tracker
+from tests import gates
+from tests.interactive.events import session, turned
+from tests.interactive.films import error, errors, film, names, raw, rms, truth, watch
+
+
+@pytest.mark.parametrize(
+    "optics",
+    [
+        Optics(gamma=2.2, blur=1.6, noise=3.0),
+        Optics(gamma=1.8, blur=1.2),
+        Optics(gamma=2.4, blur=1.2),
+        Optics(gamma=1.0, blur=1.2),
+        Optics(exposure=2.0),
+        Optics(exposure=3.0, gamma=1.0),
+    ],
+    ids=str,
+)
+def test_camera_that_encodes_or_clips_light(optics):
+    """Requirement: whatever power a camera encodes light with, and over-exposed, the shift is as good."""
+    events = watch(film(optics, frames=12))
+    _, shifts, found = errors(events)
+    assert found == 12
+    gates.check("tracking_encoded_shift", rms(shifts))
+    assert all(("over-exposed" in names(event)) == (optics.exposure > 1.0) for event in events)
+
+
+def test_encoded_gate_has_teeth(monkeypatch):
+    """Requirement: without the common offset of the edges an over-exposed film fails."""
+    assert gates.teeth("tracking_encoded_shift") == {"offset": False}
+    monkeypatch.setattr(tracking.Shrinkage, "taken_out", lambda self, picture, corners, cells: corners)
+    _, shifts, _ = errors(watch(film(Optics(exposure=3.0), frames=6)))
+    with pytest.raises(AssertionError, match="x the gate"):
+        gates.check("tracking_encoded_shift", rms(shifts))
+
+
+#: Cameras that encode light by the powers 1/1.8 and 1/2.4, blur it, and expose it too little or too much.
+CAMERAS = [
+    Optics(gamma=gamma, blur=blur, exposure=exposure, noise=1.5)
+    for gamma, blur, exposure in product((1.8, 2.4), (0.5, 1.0, 1.6), (0.5, 1.3))
+]
+
+
+def test_camera_gates_have_teeth(monkeypatch):
+    """Requirement: with corners as the detector gives them both fail."""
+    assert gates.teeth("camera_angle") == gates.teeth("camera_shift") == {"refined": False}
+    monkeypatch.setattr(tracking.edges, "refine", raw)
+    monkeypatch.setattr(tracking, "REFUSE_PX", 10.0)
+    angles, shifts, _ = errors(watch(film(CAMERAS[-1], frames=6, samples=3)))
+    for quantity, values in (("angle", angles), ("shift", shifts)):
+        with pytest.raises(AssertionError, match="x the gate"):
+            gates.check(f"camera_{quantity}", rms(values))
+
+
+@pytest.mark.slow
+def test_unloaded_pivot_before_any_camera():
+    """Requirement: before cameras of any power, blur and exposure, which nobody told, the poses of an
+    unloaded pivot are within 0.05 degrees and 0.1 mm rms in each film, and pose, forces, moment and stiffness
+    that are shown are farther than three stated spreads from the truth in at most 1 % of the frames."""
+    path, angles, shifts, gaps = session(), [], [], []
+    for optics in CAMERAS:
+        made, follower, shown = film(optics, frames=16, samples=3), Tracker(), Session()
+        turns, places = [], []
+        for k, picture in enumerate(made):
+            event = follower.see(picture, k / 25)
+            state = shown.feed({**event, "t": k / 25})
+            turn, place = error(event, k)
+            turns.append(turn)
+            places.append(place)
+            true = turned(path, math.degrees(truth(k)[2]))
+            pose, force = (np.subtract(state[name], true[name]) for name in ("pose", "force"))
+            gap = [*pose, *force, state["stiffness"] - true["stiffness"]]
+            gaps.append(np.array(gap) / [*state["sd"], *state["force_sd"]])
+        angles.append(rms(turns))
+        shifts.append(rms(places))
+    gates.check("camera_angle", max(angles))
+    gates.check("camera_shift", max(shifts))
+    assert (np.mean(np.abs(gaps) > 3.0, axis=0) <= 0.01).all()
+
+
+def test_camera_is_calibrated_from_views():
+    """Requirement: five views of both markers at a known distance give the focal length to 1 %."""
+    flat = [Marker(number=0, pose=(0.0, 0.0, 0.0)), Marker(number=1, pose=(0.0, 0.15, 0.0))]
+    points, pictures = [], []
+    for tilt, roll in ((-35, 5), (-15, -40), (10, 30), (25, -10), (40, 15)):
+        optics = Optics(tilt=math.radians(tilt), roll=math.radians(roll))
+        picture = film(optics, frames=1, markers=lambda k: flat).picture(0)
+        quads = Detector().find(picture).corners
+        seen = refine(picture, np.stack((quads[0], quads[1]))).corners
+        own = [np.array([[-1, 1], [1, 1], [1, -1], [-1, -1]]) * SIDE / 2 + m.pose[:2] for m in flat]
+        points.append(np.concatenate(own))
+        pictures.append(seen.reshape(-1, 2))
+    camera = calibrated(points, pictures, (640, 480))
+    assert abs(camera.fx / 600 - 1) < 0.01
+    assert abs(camera.fy / 600 - 1) < 0.01
+    with pytest.raises(BadInput, match="views: got 2"):
+        calibrated(points[:2], pictures[:2], (640, 480))
+
+
+def test_camera_file(tmp_path):
+    """Requirement: a camera is stored and read; what is none is one line."""
+    camera = Camera(fx=600.0, fy=601.0, cx=320.0, cy=240.0, k1=-0.1)
+    camera.write(tmp_path / "camera.json")
+    assert Camera.read(tmp_path / "camera.json") == camera
+    (tmp_path / "bad.json").write_text('{"fx": "wide"}', encoding="utf-8")
+    with pytest.raises(BadInput, match=r"bad.json: got no camera, expected JSON with fx, fy, cx, cy"):
+        Camera.read(tmp_path / "bad.json")
