@@ -26,7 +26,7 @@ from studies.errors import BadInput
 from studies.record.files import require_writable_file, write_whole
 from studies.record.source import ROOT
 from studies.record.store import Store
-from studies.registry import STUDIES
+from studies.registry import STUDIES, question_of
 
 MAIN = ROOT / "report" / "report.typ"
 OUTPUT = ROOT / "report" / "validation.pdf"
@@ -98,16 +98,15 @@ CONTENT = (
     "paper",
     "convergence",
     "cost",
-    "peers",
     "hard_cases",
     "effects",
-    "impulses",
     "designs",
-    "appendix",
+    "charts",
+    "supplement",
 )
 
 #: What typst compiles: the text, beside the numbers, that a fingerprint must cover.
-SOURCES = ("report.typ", "lib.typ", "references.yml", "sections/*.typ")
+SOURCES = ("report.typ", "lib.typ", "drawing.typ", "references.yml", "sections/*.typ")
 
 
 def entries(kind: str) -> dict[str, Any]:
@@ -141,10 +140,23 @@ def gathered(results: Results) -> dict[str, Any]:
         "holds": {name: held(name, given, results) for name, given in holds.items()},
         "listings": {name: listed(name, given, results) for name, given in listings.items()},
     }
+    content["further"] = _further(results)
     content["date"] = max(results.record(study)["date"] for study in STUDIES)
     content["stale"] = sorted(results.stale)
     content["fingerprint"] = fingerprint(content)
     return content
+
+
+def _further(results: Results) -> list[dict[str, str]]:
+    """Return the figures that no section shows, with what their studies ask; they end the supplement."""
+    sections = sorted((ROOT / "report" / "sections").glob("*.typ"))
+    shown = "".join(path.read_text(encoding="utf-8") for path in sections)
+    return [
+        {"name": Path(file).stem, "question": question_of(study)}
+        for study in STUDIES
+        for file in results.record(study)["figures"]
+        if file.endswith(".svg") and f'#plot("{Path(file).stem}"' not in shown
+    ]
 
 
 def fingerprint(content: dict[str, Any]) -> str:

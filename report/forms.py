@@ -29,10 +29,10 @@ def significant(value: Any, digits: int = 2) -> str:
 
 
 def power(value: Any) -> str:
-    """Return an error as mantissa and power of ten, whatever its size."""
+    """Return an error as mantissa and power of ten; one that is no small number, as it is."""
     value = float(value)
-    if value == 0.0:
-        return "0"
+    if value == 0.0 or 1.0 <= abs(value) < 100.0:
+        return significant(value)
     mantissa, _, exponent = f"{value:.1e}".partition("e")
     raised = str(int(exponent)).translate(_RAISED)
     return f"{mantissa}{SPACE}×{SPACE}10{raised}".replace("-", MINUS)
@@ -47,8 +47,9 @@ def decade(value: Any) -> str:
 
 
 def percent(value: Any) -> str:
-    """Return a ratio in percent."""
-    return f"{significant(100.0 * float(value))}{SPACE}%"
+    """Return a ratio in percent: to two digits, to whole ones from a hundred on."""
+    share = 100.0 * float(value)
+    return f"{significant(share, max(2, len(str(int(abs(share))))))}{SPACE}%"
 
 
 def signed_percent(value: Any) -> str:

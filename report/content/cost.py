@@ -1,97 +1,188 @@
-"""What accuracy costs in time and in counted work."""
+"""What accuracy costs: one comparison of all models, what a user waits for, and the surrogates."""
 
+import math
+import re
+from collections.abc import Callable
 from functools import partial
 from typing import Any
 
+import numpy as np
 import pandas as pd
 
 from report.facts import Cell, Fact, Holds, Rows, Table, fact, unmet
-from report.forms import count, decade, percent, seconds, significant, times, unit
-from report.results import Results, absent, at, where
-from studies.commands.tables import DYNAMICS, STATICS
+from report.forms import count, decade, percent, power, seconds, significant, times, unit
+from report.results import Results, absent, at, largest, where
 
-#: Error of the rotation that the text compares costs at [rad].
-SWING_ERROR = 0.01
+CODES, SURROGATES, WAITS = "baselines/peers", "baselines/surrogates", "work_precision/waits"
 STATIC, MOVING = "work_precision/statics", "work_precision/dynamics"
+#: Groups of the comparison beside the spline, in the order of the table.
+GROUPS = ("finite elements", "Exudyn", "Exudyn as delivered", "OpenSees", "surrogates")
+TASKS = {"path": "statics_ratios", "swing": "swings_ratios"}
+SIMPLE = {
+    "linear pivot": "linear pivot",
+    "pin joint": "pin joint with a spring",
+    "four-bar": "four-bar with springs",
+    "beam constraint model": "beam constraint model",
+    "chained constraint model": "the same, chained",
+}
+#: Splines of four control points that the path of the four-bar is compared with.
+FOUR_POINTS = {"paper": "n = 4, as the paper", "free": "n = 4, locking-free"}
+#: What a setting's words are shortened to.
+SHORT = (
+    (r"control_points=(\d+)", r"n = \1"),
+    (r"elements=(\d+)", r"\1 el."),
+    (r"relative_tolerance=(\S+)", r"tol. \1"),
+    (r"tolerance=(\S+)", r"tol. \1"),
+    (r"spectral_radius=(\S+)", r"ρ∞ \1"),
+    (r"step=(\S+)", lambda found: f"{significant(1e6 * float(found[1]), 2)} µs"),
+    (r"integrator=|solver=as delivered|finite elements, |spline, |openseespy frame, ", ""),
+    (r"exudyn ", ""),
+    (r"integration=(\d)", r"int. \1"),
+)
 
 
-def _digits(results: Results, study: str, labels: dict[str, str], suffix: str) -> Table:
-    table = results.table(study, "digits_of_time")
-    solved = [name for name in labels if name in set(table["series"])]
+def _setting(words: str) -> str:
+    """Return a setting in few words."""
+    for pattern, short in SHORT:
+        words = re.sub(pattern, short, words)
+    return (
+        words.strip(" ,")
+        .replace("generalised-alpha", "gen.-α")
+        .replace("central-difference", "central diff.")
+    )
+
+
+def _timed(setting: str, row: Any, kind: str) -> str:
+    median, low, high = (float(row[f"{kind}_{part}"]) for part in ("s", "low_s", "high_s"))
+    return f"{_setting(setting)}: {seconds(median)} ({seconds(low)} to {seconds(high)})"
+
+
+def _cost(results: Results) -> Table:
+    """Return all models at equal error: setting, median and quartiles, and the ratio to the spline."""
     rows: Rows = []
-    for target in sorted(set(table["target"]), reverse=True):
-        found = table[table["target"] == target].set_index("series")
-        cells: list[Cell] = [f"{decade(target) if not suffix else significant(target, 2)}{suffix}"]
-        rows.append(cells + [_cost(found.loc[name], name == solved[0]) for name in solved])
-    return ["error", *(labels[name] for name in solved)], rows
+    for task, name in TASKS.items():
+        table = results.table(CODES, name)
+        for level in sorted(set(table["level"]), reverse=True):
+            found = table[table["level"] == level].set_index("group")
+            error = decade(level) if task == "path" else f"{significant(level, 1)}\u00a0rad"
+            first = found.iloc[0]
+            cells: list[Cell] = [f"{task}, {error}", _timed(first["spline"], first, "spline")]
+            rows.append(cells + [_peer(found, group) for group in GROUPS])
+    return ["task, error", "spline", *GROUPS], rows
 
 
-def _cost(row: Any, first: bool) -> str:
-    """Return setting, time and, for all but the first column, how many times that of the first."""
-    time, ratio = float(str(row["solve_s"])), float(str(row["ratio"]))
-    if absent(time):
+def _peer(found: pd.DataFrame, group: str) -> str:
+    row: Any = found.loc[group] if group in found.index else None
+    if row is None or absent(row["ratio"]):
         return "–"
-    more = "" if first or absent(ratio) else f" ({times(ratio)})"
-    return f"{row['setting']}: {seconds(time)}{more}"
+    return f"{_timed(row['peer'], row, 'peer')}, {times(float(row['ratio']))}"
 
 
-def _calls(results: Results) -> Table:
-    """Return whole calls and compiled parts of both models at equal error, and the ratio of each."""
-    digits, models = results.table(STATIC, "digits_of_time"), ("spline", "finite elements")
-    language, timings = (results.table(STATIC, name) for name in ("language", "timings"))
-    taken = language.merge(timings[["series", "setting", "wall_s"]], on=["series", "setting"])
+def _waits(results: Results) -> Table:
+    table = results.table(WAITS, "waits_of_time")
+    models = list(dict.fromkeys(table["model"]))
     rows: Rows = []
-    for target in sorted(set(digits["target"]), reverse=True):
-        chosen = digits[(digits["target"] == target) & digits["series"].isin(models)]
-        found = chosen.merge(taken, on=["series", "setting"]).set_index("series")
-        if len(found) < len(models):
-            continue
-        curve, beam = (found.loc[name] for name in models)
-        cells: list[Cell] = [decade(target), str(curve["setting"]), str(beam["setting"])]
-        for part in ("wall_s", "compiled_s"):
-            one, other = float(str(curve[part])), float(str(beam[part]))
-            cells += [seconds(one), f"{seconds(other)} ({times(other / one)})"]
+    for what in ("command line", "import of the suite", "first call", "whole call", "increments alone"):
+        cells: list[Cell] = []
+        for model in models:
+            row: Any = where(table, what=what, model=model).iloc[0]
+            median, low, high = (seconds(float(row[name])) for name in ("solve_s", "low_s", "high_s"))
+            cells.append(f"{median} ({low} to {high})")
+        rows.append([what, *cells])
+    return ["what is waited for", *models], rows
+
+
+def _waited(results: Results, what: str, model: str = "spline, n = 6") -> float:
+    return float(at("solve_s", model=model, what=what)(results.table(WAITS, "waits_of_time")))
+
+
+def _models(results: Results) -> Table:
+    errors = results.table(SURROGATES, "errors")
+    reached = results.table(SURROGATES, "thresholds")
+    rows: Rows = []
+    for model in (*SIMPLE, "n = 4, as the paper", "n = 4, locking-free", "n = 6"):
+        mine = where(errors, model=model)
+        cells: list[Cell] = [SIMPLE.get(model, f"spline {model}")]
+        cells += [percent(mine[name].abs().max()) for name in ("trajectory", "torque", "stiffness")]
+        for quantity in ("trajectory", "torque", "stiffness"):
+            row = where(reached, model=model, quantity=quantity, level=0.01).iloc[0]
+            cells.append("the end" if absent(row["rotation_deg"]) else _degrees(row["rotation_deg"]))
         rows.append(cells)
-    heads = ["whole call, spline", "elements", "compiled, spline", "elements"]
-    return ["error", "spline", "elements", *heads], rows
+    head = ["model", "trajectory", "torque", "stiffness", "path within 1 % to", "torque to", "stiffness to"]
+    return head, rows
 
 
-def _cell(study: str, target: float, series: str, column: str = "solve_s") -> Fact:
-    return fact(
-        study,
-        "digits_of_time",
-        lambda t: at(column, series=series)(t[(t["target"] / target - 1.0).abs() < 1e-9]),
-        seconds,
-    )
+def _nearer(results: Results, model: str) -> list[float]:
+    """Return the rotations [deg] at which the four-bar's path is nearer to the truth than that of `model`."""
+    errors = _path_errors(results)
+    return [math.degrees(angle) for angle in errors.index[errors[model] > errors["four-bar"]]]
 
 
-def _ratio(study: str, target: float, series: str) -> Fact:
-    return fact(
-        study,
-        "digits_of_time",
-        lambda t: at("ratio", series=series)(t[(t["target"] / target - 1.0).abs() < 1e-9]),
-        times,
-    )
+def _path_errors(results: Results) -> pd.DataFrame:
+    """Return the errors of the path by rotation, but for rest, and model."""
+    table = results.table(SURROGATES, "errors")
+    errors = table.pivot(index="rotation_rad", columns="model", values="trajectory").abs()
+    return errors[errors.index > 0.0]
 
 
-def _speeds(results: Results) -> pd.DataFrame:
-    table = results.table(STATIC, "language")
-    return where(table, series="finite elements", setting="20 elements")
+def _one_range(results: Results, model: str) -> bool:
+    """Return whether the rotations of `_nearer` follow one another, and do not reach the end of the path."""
+    angles = np.degrees(_path_errors(results).index)
+    nearer = np.isin(angles.round(6), np.round(_nearer(results, model), 6))
+    return bool(np.abs(np.diff(nearer.astype(int))).sum() == 2 and not nearer[-1])
+
+
+def _picked(pick: Callable[[list[float]], Any], model: str, results: Results) -> Any:
+    return pick(_nearer(results, model))
+
+
+def _degrees(value: float) -> str:
+    return f"{significant(value, 2)}°"
+
+
+def _ratios(results: Results, task: str, group: str, *, fine: bool = True) -> "pd.Series[Any]":
+    """Return how many times the spline's time a group takes, by error; `fine`: but for the coarsest."""
+    table = results.table(CODES, TASKS[task])
+    rows = table[table["group"] == group]
+    if fine:
+        rows = rows[rows["level"] < rows["level"].max()]
+    found: pd.Series[Any] = rows["ratio"].dropna()
+    return found
+
+
+def _extreme(task: str, group: str, pick: Callable[[Any], Any]) -> Fact:
+    return Fact(made=lambda r: float(pick(_ratios(r, task, group))), form=times)
+
+
+def _speeds(results: Results, column: str) -> float:
+    rows = where(results.table(STATIC, "language"), series="finite elements", setting="20 elements")
+    return float(rows[column].iloc[0])
+
+
+def _cost_unmet(results: Results) -> Table:
+    """Return the statements on cost of both studies that do not hold."""
+    tables = ((study, name) for study in (STATIC, MOVING) for name in ("findings", "findings_of_time"))
+    return unmet(results, tables, partial(significant, digits=3), "measured ratio")
 
 
 FACTS = {
-    "cost.path.coarse": _cell(STATIC, 1e-3, "spline"),
-    "cost.path.fine": _cell(STATIC, 1e-6, "spline"),
-    "cost.path.fe": _ratio(STATIC, 1e-3, "finite elements"),
-    "cost.swing.error": Fact(made=lambda _: SWING_ERROR, form=unit("rad")),
-    "cost.swing.spline": _cell(MOVING, SWING_ERROR, "spline"),
-    "cost.swing.fe": _ratio(MOVING, SWING_ERROR, "finite elements"),
-    "cost.swing.real-time": fact(
-        MOVING,
-        "findings_of_time",
-        at("value", claim="The swing within 0.01 rad is followed five times as fast as it happens"),
-        times,
+    **{
+        f"cost.{task}.{short}.{name}": _extreme(task, group, pick)
+        for task in TASKS
+        for short, group in (("exudyn", "Exudyn"), ("fe", "finite elements"))
+        for name, pick in (("least", min), ("most", max))
+    },
+    "cost.path.spline": fact(CODES, "statics_ratios", at("spline_s", group="Exudyn", level=2e-4), seconds),
+    "cost.swing.duration": fact("paper/fig06_release", "motions", largest("time_s"), unit("s", 1)),
+    "cost.kept": fact(
+        CODES,
+        "swings_ratios",
+        lambda t: t[(t["group"] == "Exudyn") & t["ratio"].notna()]["level"].min(),
+        unit("rad", 1),
     ),
+    "cost.independent": fact(CODES, "theories", at("torque", what="exudyn ancf, 64 elements"), power),
+    "cost.exudyn.version": fact(CODES, "codes", at("version", code="exudyn"), str),
+    "cost.opensees.version": fact(CODES, "codes", at("version", code="openseespy"), str),
     "cost.work.fe": fact(
         STATIC,
         "findings",
@@ -102,75 +193,60 @@ FACTS = {
         ),
         times,
     ),
-    "cost.work.swing": fact(
-        MOVING,
+    "cost.python": Fact(made=lambda r: _speeds(r, "python_share"), form=percent),
+    "cost.fe20": Fact(made=lambda r: _speeds(r, "solve_s"), form=seconds),
+    "cost.fe20.compiled": Fact(made=lambda r: _speeds(r, "compiled_s"), form=seconds),
+    "waits.whole.spline": Fact(made=lambda r: _waited(r, "whole call"), form=seconds),
+    "waits.command.spline": Fact(made=lambda r: _waited(r, "command line"), form=seconds),
+    "surrogates.states": Fact(made=lambda r: len(_path_errors(r)), form=count),
+    **{
+        f"surrogates.path.{name}.{what}": Fact(made=partial(_picked, pick, model), form=form)
+        for name, model in FOUR_POINTS.items()
+        for what, pick, form in (("nearer", len, count), ("from", min, _degrees), ("to", max, _degrees))
+    },
+    "surrogates.over": fact(
+        SURROGATES,
         "findings",
-        lambda t: t[t["claim"].str.contains("counted work") & t["formulation"].str.startswith("finite")][
-            "value"
-        ].iloc[0],
+        at(
+            "value",
+            formulation="n = 4, as the paper",
+            quantity="the largest error of the torque over the best such model's",
+        ),
         times,
     ),
-    "cost.python": Fact(made=lambda r: float(_speeds(r)["python_share"].iloc[0]), form=percent),
-    "cost.fe20": Fact(made=lambda r: float(_speeds(r)["solve_s"].iloc[0]), form=seconds),
-    "cost.fe20.compiled": Fact(made=lambda r: float(_speeds(r)["compiled_s"].iloc[0]), form=seconds),
-    "cost.claims.held": Fact(
-        made=lambda r: sum(
-            int((r.table(study, name)["holds"] == "yes").sum())
-            for study in (STATIC, MOVING)
-            for name in ("findings", "findings_of_time")
-        ),
-        form=count,
-    ),
-    "cost.claims.tried": Fact(
-        made=lambda r: sum(
-            len(r.table(study, name))
-            for study in (STATIC, MOVING)
-            for name in ("findings", "findings_of_time")
-        ),
-        form=count,
-    ),
+    "surrogates.swing": fact(SURROGATES, "motion", largest("difference_rad", model="four-bar"), unit("rad")),
 }
-
-
-def _unmet(results: Results) -> Table:
-    """Return the findings of both studies that do not hold."""
-    tables = ((study, name) for study in (STATIC, MOVING) for name in ("findings", "findings_of_time"))
-    return unmet(results, tables, partial(significant, digits=3), "measured ratio")
-
-
-def _cheapest(results: Results) -> bool:
-    """Whether the default spline takes less time than what is none at all but the coarsest error."""
-    table = results.table(STATIC, "digits_of_time")
-    named = table[table["series"].isin(list(STATICS)) & (table["target"] < 0.05)]
-    others = named[~named["series"].str.startswith("spline")]
-    return bool((others["ratio"].dropna() > 1.0).all())
-
 
 HOLDS = {
-    "cost.path.cheapest": Holds(
-        words="at all but the coarsest error the spline takes less time than elements and other codes",
-        test=_cheapest,
+    "cost.surrogates-win": Holds(
+        words="at the coarsest error of the path a surrogate takes no longer than the spline",
+        test=lambda r: _ratios(r, "path", "surrogates", fine=False).min() <= 1.1,
         timed=True,
     ),
-    "cost.swing.cheapest": Holds(
-        words="at every error of the swing the spline takes the least time",
+    "cost.command-loses": Holds(
+        words="the command line takes longer with the spline than with elements",
+        test=lambda r: _waited(r, "command line") > _waited(r, "command line", "80 elements"),
+        timed=True,
+    ),
+    "cost.slower": Holds(
+        words="elements and other codes take longer than the spline at all but the coarsest error",
+        test=lambda r: all((_ratios(r, task, group) > 1.0).all() for task in TASKS for group in GROUPS[:4]),
+        timed=True,
+    ),
+    "surrogates.not-everywhere": Holds(
+        words="the four-bar's path is nearer than that of either four-point spline over one range that ends",
+        test=lambda r: all(_one_range(r, model) for model in FOUR_POINTS.values()),
+    ),
+    "surrogates.six-nearer": Holds(
+        words="the path of six control points is nearer than the four-bar's at every rotation",
+        test=lambda r: not _nearer(r, "n = 6"),
+    ),
+    "surrogates.paper-worse": Holds(
+        words="the locked spline alone is worse than the best surrogate in something",
         test=lambda r: (
-            r.table(MOVING, "digits_of_time")
-            .query("series in @names and series != 'spline'", local_dict={"names": list(DYNAMICS)})["ratio"]
-            .dropna()
-            > 1.0
-        ).all(),
-        timed=True,
-    ),
-    "cost.python-most": Holds(
-        words="more than half of the time of twenty elements is Python's",
-        test=lambda r: float(_speeds(r)["python_share"].iloc[0]) > 0.5,
-        timed=True,
+            set(r.table(SURROGATES, "findings").query("holds == 'no'")["formulation"])
+            == {"n = 4, as the paper"}
+        ),
     ),
 }
-LISTINGS = {
-    "digits-path": lambda r: _digits(r, STATIC, STATICS, ""),
-    "digits-swing": lambda r: _digits(r, MOVING, DYNAMICS, "\u00a0rad"),
-    "cost-calls": _calls,
-    "cost-unmet": _unmet,
-}
+LISTINGS = {"cost": _cost, "waits": _waits, "surrogates": _models, "cost-unmet": _cost_unmet}

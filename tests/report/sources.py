@@ -3,12 +3,9 @@
 import re
 
 from studies.record.source import ROOT
-from studies.registry import STUDIES
-from studies.stability.summary import GROUP
 
 FOLDER = ROOT / "report"
 SECTIONS = sorted((FOLDER / "sections").glob("*.typ"))
-FAMILIES = [study.removeprefix(GROUP) for study in STUDIES if study.startswith(GROUP)]
 
 #: Digits that are names: of the paper's numbered parts, and units of a space.
 _NUMBER = r"\d+(?:\.\d+)?(?:\s*(?:–|,|and|to|a|c)\s*\d+)*"
@@ -34,7 +31,7 @@ def prose(source: str) -> str:
     source = re.sub(r'#import "[^"]*"|#include "[^"]*"', " ", source)
     source = re.sub(r'(?:fact|see|seetable|plot|listing|supported|either|family)\("[^"]*"', " ", source)
     source = re.sub(
-        r'"stability_\w+"|"hard\."|slice\(0, \d+\)|update\(0\)|rgb\("#\w+"\)|"A\.1"|level: 2|len\(\) > 0',
+        r'"\w+_\w+"|slice\(0, \d+\)|update\(0\)|rgb\("#\w+"\)|"S1"|level: 2|len\(\) > 0',
         " ",
         source,
     )
@@ -53,6 +50,4 @@ def quoted(function: str) -> set[str]:
         source = text(path)
         found |= set(re.findall(rf'\b{function}\("([^"]+)"\)', source))
         found |= set(re.findall(rf'\b{function}\("([^"]+)"[,\[]', source))
-        for name in re.findall(rf'\b{function}\("hard\." \+ name \+ "([^"]+)"\)', source):
-            found |= {f"hard.{family}{name}" for family in FAMILIES}
     return found

@@ -41,6 +41,26 @@ def test_pages_are_filled_and_keep_their_margins(pdf):
     assert {number: found for number, found in faults.items() if found} == {}
 
 
+def _filled(picture):
+    """Return how far down between the margins a page has ink [1], the running lines left out."""
+    rows = np.flatnonzero((picture < 200).any(axis=1))
+    top, bottom = 0.09 * len(picture), 0.925 * len(picture)
+    inside = rows[(rows > top) & (rows < bottom)]
+    return 0.0 if not inside.size else (inside[-1] - top) / (bottom - top)
+
+
+def test_pages_are_two_thirds_full(pdf):
+    """No page ends above two thirds of its height, but for the last of the part and of the supplement."""
+    document = pdfium.PdfDocument(pdf)
+    try:
+        titles = [(mark.get_title(), mark.get_dest().get_index()) for mark in document.get_toc()]
+    finally:
+        document.close()
+    supplement = next(page for title, page in titles if title.startswith("S1"))
+    short = [n for n, page in enumerate(_pages(pdf, 0.5), start=1) if _filled(page) < 2.0 / 3.0]
+    assert set(short) <= {supplement, len(list(_pages(pdf, 0.1)))}
+
+
 @pytest.mark.slow
 def test_pages_render_as_pictures(pdf, tmp_path):
     """Every page becomes a PNG of some size: figures are drawn, not left out."""
@@ -88,7 +108,8 @@ def test_file_says_what_it_is(content, pdf):
         "costs",
         "Hard cases",
         "Limits",
-        "Gates",
+        "Acceptance tests",
+        "For a designer",
         "Provenance",
     ):
         assert any(part in title for title in titles), part

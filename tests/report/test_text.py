@@ -7,8 +7,10 @@ import pytest
 from report.build import entries
 from studies.record.store import Store
 from studies.registry import STUDIES
-from tests.report.sources import SECTIONS, prose, quoted, text
+from tests.report.sources import FOLDER, SECTIONS, prose, quoted, text
 
+#: Figures that the text shows once their study is there.
+LATER = {"headline"}
 #: Years, pages and volumes stand there.
 REFERENCES = "references.typ"
 
@@ -60,12 +62,13 @@ def test_what_is_given_is_quoted(kind, functions):
 
 
 def test_every_figure_of_every_study_is_shown_and_referred_to(content):
-    """All stored figures appear, each once, and the text refers to them."""
-    shown = quoted("plot")
-    assert shown == set(content["figures"])
+    """All stored figures appear, those of no section at the end, and the text refers to its own."""
+    further = {each["name"] for each in content["further"]}
+    assert quoted("plot") - LATER <= set(content["figures"])
+    assert set(content["figures"]) == (quoted("plot") & set(content["figures"])) | further
     for path in SECTIONS:
         source = text(path)
-        for name in quoted("plot") & set(re.findall(r'#plot\("(\w+)"', source)):
+        for name in set(re.findall(r'#plot\("(\w+)"', source)):
             assert len(re.findall(rf'"{name}"', source)) >= 2, f"{path.name}: {name} is not referred to"
 
 
@@ -73,7 +76,8 @@ def test_every_study_appears(content):
     """Each study of the register has a figure in the report and a line in its provenance."""
     for study in STUDIES:
         names = {name.partition(".")[0] for name in Store().record(study)["figures"]}
-        assert names & quoted("plot"), study
+        further = {each["name"] for each in content["further"]}
+        assert names & (quoted("plot") | further), study
     lines = [row[0].replace("\u200b", "") for row in content["listings"]["provenance"]["rows"]]
     assert lines == list(STUDIES)
 
@@ -81,3 +85,20 @@ def test_every_study_appears(content):
 def test_every_result_is_fresh(content):
     """No number and no figure of the report comes from a stale result."""
     assert content["stale"] == []
+
+
+def test_every_figure_has_words():
+    """Each figure has an alternative text of a sentence; one without ends the build."""
+    for path in SECTIONS:
+        source = path.read_text(encoding="utf-8")
+        words = re.findall(r'#plot\("\w+",\s*alt: "([^"]+)"', source)
+        assert len(words) == len(re.findall(r'#plot\("', source)), path.name
+        assert all(len(each) > 40 and each.endswith(".") for each in words), path.name
+
+
+def test_every_reference_is_cited():
+    """Every entry of the references is cited by a section."""
+    source = "".join(path.read_text(encoding="utf-8") for path in SECTIONS)
+    entries = re.findall(r"(?m)^(\w+):$", (FOLDER / "references.yml").read_text(encoding="utf-8"))
+    assert [name for name in entries if not re.search(rf"@{name}\b", source)] == []
+    assert len(entries) >= 30

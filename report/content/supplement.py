@@ -5,6 +5,7 @@ import importlib.metadata
 import tomllib
 from typing import Any
 
+from report.content.hard_cases import WARNED, kinds
 from report.facts import Fact, Rows, Table, fact
 from report.forms import count, percent, power, seconds, short_hash, significant, times, unit
 from report.results import Results, at, gates, largest, where
@@ -15,7 +16,7 @@ from studies.stability.family import DEFAULT
 
 def _unresolved(results: Results) -> int:
     table = where(results.table("stability/step_size", "outcomes"), model=DEFAULT)
-    return int((table["outcome"] == "refused").sum())
+    return int((kinds(table) == WARNED).sum())
 
 
 FACTS = {
@@ -28,17 +29,8 @@ FACTS = {
     "limits.plate.constant": fact("model_form/plate", "paper", at("excess", kind="constant"), percent),
     "limits.plate.linear": fact("model_form/plate", "paper", at("excess", kind="linear"), percent),
     "limits.plate.ritz": fact("model_form/plate", "ritz", largest("difference"), power),
-    "limits.kept": fact(
-        "baselines/peers",
-        "swings_ratios",
-        lambda t: t[(t["criterion"] == "and kept at finer steps") & t["ratio"].isna()]["level"].max(),
-        unit("rad", 1),
-    ),
     "limits.unresolved": Fact(made=_unresolved, form=count),
     "limits.gates": Fact(made=lambda _: len(gates()), form=count),
-    "limits.designs": fact(
-        "convergence/error_estimate", "estimates", lambda t: t["design"].nunique(), significant
-    ),
 }
 
 
@@ -53,18 +45,15 @@ LABELS = {
 
 
 def _gates(results: Results) -> Table:
-    rows: Rows = [
-        [
-            _breakable(name),
-            power(gate["limit"]),
-            power(gate["measured"]),
-            significant(gate["limit"] / gate["measured"]),
-            gate["unit"],
-            gate["against"],
-        ]
+    """Return the limits two beside each other: name, limit, and how many times the measured one it is."""
+    cells = [
+        [_breakable(name), power(gate["limit"]), significant(gate["limit"] / gate["measured"])]
         for name, gate in gates().items()
     ]
-    return ["gate", "limit", "measured", "ratio", "unit", "measured against"], rows
+    half = -(-len(cells) // 2)
+    right = cells[half:] + [["", "", ""]] * (2 * half - len(cells))
+    rows: Rows = [[*one, *other] for one, other in zip(cells[:half], right, strict=True)]
+    return ["limit of", "limit", "ratio"] * 2, rows
 
 
 def _breakable(name: str) -> str:

@@ -1,0 +1,1 @@
+"""Charts to design with: dimensionless, over crossing ratio and inclination."""

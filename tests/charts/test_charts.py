@@ -1,0 +1,94 @@
+"""The design charts are those of the models, and say where they end."""
+
+import math
+
+import numpy as np
+import pytest
+
+from studies.answers.adapters import answer_static
+from studies.answers.settings import FeSettings
+from studies.cases.problem import named_case
+from studies.charts import pivot, theory
+from tests import gates
+
+RATIOS, ANGLES = np.array([0.2, 0.5, 0.8]), np.array([45.0, 45.0, 45.0])
+
+
+@pytest.fixture(scope="module")
+def charted():
+    """Quantities of three designs to 15 degrees, in increments of 2.5."""
+    found = pivot.turned(RATIOS, ANGLES, 15.0, pivot.SLENDER, 8)
+    return pivot.dimensionless(found, RATIOS, ANGLES, pivot.SLENDER)
+
+
+def test_stiffness_at_rest_is_the_closed_form(charted):
+    """Requirement: K L/(EI) of slender strips at rest is 8 (1 - 3 lambda (1 - lambda))."""
+    exact = 8.0 * (1.0 - 3.0 * RATIOS * (1.0 - RATIOS))
+    assert charted["stiffness"][:, 0] == pytest.approx(exact, rel=1e-3)
+
+
+def test_what_holds_for_a_ratio_holds_for_its_complement(charted):
+    """Requirement: crossed at lambda and at 1 - lambda a pivot is as stiff, as strained and shifts as far."""
+    for name in pivot.QUANTITIES:
+        assert charted[name][0] == pytest.approx(charted[name][2], rel=1e-5, abs=1e-7), name
+
+
+def _apart(elements):
+    """Largest difference of stiffness and shift of a chart from those of elements, relative."""
+    found = pivot.turned(np.array([0.3]), np.array([45.0]), 30.0, pivot.SLENDER, 10)
+    chart = pivot.dimensionless(found, np.array([0.3]), np.array([45.0]), pivot.SLENDER)
+    problem = pivot.replace(
+        pivot._at_crossing(0.3, 45.0), rotation=math.radians(30.0), increments=round(30.0 / pivot.INCREMENT)
+    )
+    unit = problem.youngs_modulus * problem.second_moment_of_area / problem.length
+    answer = answer_static(problem, FeSettings(elements=elements))
+    shift = np.hypot(*(answer.centre[-1] - answer.centre[0])) / problem.length
+    apart = [
+        answer.stiffness[-1] / unit / chart["stiffness"][0, -1] - 1.0,
+        shift / chart["shift"][0, -1] - 1.0,
+    ]
+    return float(np.abs(apart).max())
+
+
+@pytest.mark.slow
+def test_charts_are_the_answers_of_elements():
+    """Requirement: stiffness and shift of a chart are those of finite elements of that pivot."""
+    gates.check("charts_by_elements", _apart(80))
+
+
+@pytest.mark.slow
+def test_charts_gate_has_teeth():
+    """Requirement: the check notices an eighth of the elements."""
+    with pytest.raises(AssertionError, match="x the gate"):
+        gates.check("charts_by_elements", _apart(**gates.teeth("charts_by_elements")))
+
+
+def test_strength_is_passed_between_increments():
+    """Requirement: the rotation at a strength is interpolated, and is none where it is not reached."""
+    turns, path = np.array([0.0, 5.0, 10.0]), np.array([0.0, 0.1, 0.3])
+    assert pivot._crossed(turns, path, 0.2) == pytest.approx(7.5)
+    assert math.isnan(pivot._crossed(turns, path, 0.4))
+
+
+@pytest.mark.slow
+def test_load_at_the_crossing_leaves_the_shiftless_pivot_as_it_is():
+    """Requirement: a load changes the stiffness at mid-length far more than at the ratio without shift."""
+    change = {}
+    for ratio in (0.1273, 0.5):
+        rows = pivot.loaded(ratio, 45.0, "away from the ground")["loads"]
+        change[ratio] = abs(rows[-1]["stiffness"] / rows[0]["stiffness"] - 1.0)
+    assert change[0.1273] < 0.2 * change[0.5]
+
+
+@pytest.mark.slow
+def test_reference_pivot_lies_where_the_suite_says():
+    """Requirement: the pivot of Table 1 is as thick and wide as its case, and shear makes it softer."""
+    row, case = theory.judged("cross_axis_pivot")["validity"], named_case("cross_axis_pivot")
+    assert row["thickness_ratio"] == pytest.approx(case.depth / case.length)
+    assert row["shear"] < 0.0 < row["clamped_least"] < row["clamped_most"]
+
+
+def test_theory_ends_where_the_remarks_say():
+    """Requirement: at a ratio of the table what a beam leaves out is the share that stands beside it."""
+    for row in theory.limits()["limits"]:
+        assert theory.LEFT_OUT[row["ratio"]][0](row["value"]) == pytest.approx(row["share"], rel=0.05)
