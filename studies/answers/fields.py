@@ -7,7 +7,7 @@ import numpy as np
 
 from studies.answers.response import Answered
 from studies.cases.design import Design
-from studies.cases.mechanism_keys import GROUND
+from studies.cases.keys import GROUND
 from studies.cases.problem import Problem
 from studies.kinds import Array
 
@@ -102,6 +102,17 @@ class Fields(Answered):
         axial, bending, modulus, depth = np.array(given).T[:, :, None]
         strain = np.abs(self.axial_force / axial) + np.abs(self.bending_moment * depth / (2.0 * bending))
         return np.asarray(modulus * strain)
+
+    @property
+    def strain_energy(self) -> Array:
+        """(S,) of all strips [J]."""
+        parts = ("strain",) if "strain" in self.energies else ("bending", "axial", "shear")
+        return np.asarray(sum(self.energies[name] for name in parts if name in self.energies))
+
+    @property
+    def max_stress(self) -> Array:
+        """(S,) largest of all strips [Pa]."""
+        return np.asarray(self.stress.max(axis=(1, 2)))
 
 
 def strip_arrays(found: Any) -> dict[str, Any]:

@@ -1,7 +1,8 @@
-"""Put a design in motion to either model: its release and its natural modes."""
+"""Put a design in motion to either model: its release, how long it is worth following, its natural modes."""
 
 from collections.abc import Callable, Mapping
 from contextlib import suppress
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -22,6 +23,12 @@ WARM_UP_ROTATION = 1e-3
 PIVOT_BODY = "body"
 #: Duration of the first release, which only compiles [s], unless its step is longer.
 WARM_UP_DURATION = 1e-3
+#: Swings that are followed beyond what the design is led through, and steps in each.
+SWINGS, STEPS = 4, 256
+#: Modes that a step resolves, if they are at most so many times as fast as the first: steps in each period.
+MODES, FASTEST, LEAST_STEPS = 3, 40.0, 20
+#: Duration of what has no first frequency [s].
+USUAL = 0.05
 
 
 def answer_release(
@@ -235,3 +242,34 @@ def _places(result: Any) -> Mapping[str, Any]:
         places: Mapping[str, Any] = result.bodies
         return places
     return {PIVOT_BODY: np.column_stack((result.centre, result.rotation))}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Pace:
+    """Duration of a motion [s], and step [s]; None for the model's own."""
+
+    duration: float
+    step: float | None
+
+
+def pace(design: Design, settings: Settings) -> Pace:
+    """Return the pace of the design's first mode at rest, after all histories of loads and drives.
+
+    Exact for nothing: of what has no stable mode it is the usual duration in the model's own steps.
+    """
+    found = answer_modes(design, settings, count=MODES)
+    frequency = found.frequency[found.frequency > 0.0]
+    led = _last_time(design)
+    if not found.converged or not frequency.size:
+        return Pace(duration=led + USUAL, step=None)
+    first = float(frequency[0])
+    last = float(frequency[frequency <= FASTEST * first].max())
+    return Pace(duration=led + SWINGS / first, step=1.0 / max(STEPS * first, LEAST_STEPS * last))
+
+
+def _last_time(design: Design) -> float:
+    """Return when the last history of a load or a drive is over [s]."""
+    histories = [design.history or ()]
+    histories += [design.effects.tables.get(name, {}).get("history") or () for name in design.effects.names]
+    times = [float(time) for history in histories for time, _ in np.reshape(history, (-1, 2))]
+    return float(max([0.0, *times, *(design.held or ())]))

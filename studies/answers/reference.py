@@ -1,6 +1,6 @@
 """The references that paths and motions are held against: limits of refinement of the finite elements."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -34,14 +34,20 @@ class NoReference(RuntimeError):
     """The finite elements do not reach the end of a path or motion, so that there is no reference."""
 
 
+#: What a path is judged by, and the array of an answer that tells it.
+ARRAYS = {"trajectory": "centre", "torque": "torque", "stiffness": "stiffness", "stress": "max_stress"}
+QUANTITIES = tuple(ARRAYS)
+
+
 @dataclass(frozen=True, kw_only=True)
 class Reference:
     """Limit of refinement of the finite-element path and how uncertain it is.
 
     Attributes:
         finest: the answer on the finest mesh, for shapes and what else is not extrapolated.
-        rotation: (S,) [rad]; centre: (S, 2) [m]; torque: (S,) [N m]; stiffness: (S,) [N m / rad], the limits.
-        uncertainty: largest over the path, relative, of "trajectory", "torque" and "stiffness" [1].
+        rotation: (S,) [rad]; centre: (S, 2) [m]; torque: (S,) [N m]; stiffness: (S,) [N m / rad]; stress:
+            (S,) the largest of each state [Pa]; the limits.
+        uncertainty: largest over the path, relative, of each of `QUANTITIES` [1].
     """
 
     finest: Any
@@ -49,24 +55,22 @@ class Reference:
     centre: Array
     torque: Array
     stiffness: Array
+    stress: Array
     uncertainty: Mapping[str, float]
 
 
 @dataclass(frozen=True, kw_only=True)
 class Errors:
-    """Errors of one path against a reference, (S,) each: trajectory >= 0, torque and stiffness signed [1]."""
+    """Errors of one path against a reference, (S,) each: trajectory >= 0, the others signed [1]."""
 
     trajectory: Array
     torque: Array
     stiffness: Array
+    stress: Array
 
     def largest(self) -> dict[str, float]:
         """Return the largest magnitude of each over the path [1]."""
-        return {
-            "trajectory": float(self.trajectory.max()),
-            "torque": float(np.abs(self.torque).max()),
-            "stiffness": float(np.abs(self.stiffness).max()),
-        }
+        return {name: float(np.abs(getattr(self, name)).max()) for name in QUANTITIES}
 
 
 def reference(problem: Problem) -> Reference:
@@ -87,22 +91,26 @@ def limit_of(answers: Sequence[Response | MechanismResponse]) -> Reference:
     for answer in answers:
         if not answer.converged:
             raise NoReference(f"reference with {answer.settings['elements']} elements: {answer.message}")
-    centre = extrapolate([answer.centre for answer in answers])
-    torque = extrapolate([answer.torque for answer in answers])
-    stiffness = extrapolate([answer.stiffness for answer in answers])
-    uncertainty = {
-        "trajectory": float(trajectory_error(centre.value + centre.uncertainty, centre.value).max()),
-        "torque": float(relative_error(torque.value + torque.uncertainty, torque.value).max()),
-        "stiffness": float(relative_error(stiffness.value + stiffness.uncertainty, stiffness.value).max()),
+    limits = {
+        name: extrapolate([getattr(answer, array) for answer in answers]) for name, array in ARRAYS.items()
     }
     return Reference(
         finest=answers[-1],
         rotation=answers[-1].rotation,
-        centre=centre.value,
-        torque=torque.value,
-        stiffness=stiffness.value,
-        uncertainty=uncertainty,
+        centre=limits["trajectory"].value,
+        torque=limits["torque"].value,
+        stiffness=limits["stiffness"].value,
+        stress=limits["stress"].value,
+        uncertainty={
+            name: float(_error_of(name)(limit.value + limit.uncertainty, limit.value).max())
+            for name, limit in limits.items()
+        },
     )
+
+
+def _error_of(name: str) -> Callable[[Array, Array], Array]:
+    """Return the measure of a quantity's error: of a position over the travel, else relative."""
+    return trajectory_error if name == "trajectory" else relative_error
 
 
 def errors(answer: Response | MechanismResponse, against: Reference) -> Errors:
@@ -111,6 +119,7 @@ def errors(answer: Response | MechanismResponse, against: Reference) -> Errors:
         trajectory=trajectory_error(answer.centre, against.centre),
         torque=relative_error(answer.torque, against.torque),
         stiffness=relative_error(answer.stiffness, against.stiffness),
+        stress=relative_error(answer.max_stress, against.stress),
     )
 
 

@@ -8,13 +8,13 @@ planar beam knows none of it unless the scene names the effect; the remarks say 
 import math
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
-from typing import Any, Protocol
+from functools import cache
+from typing import Any
 
 import numpy as np
 
 from studies.cases.design import Design
 from studies.cases.problem import Problem
-from studies.kinds import Array
 
 #: Effects that take in what a plain beam leaves out.
 CLAMPED_WIDTH, ANTICLASTIC, ROOTS = "clamped_width", "anticlastic", "root_compliance"
@@ -22,27 +22,9 @@ CLAMPED_WIDTH, ANTICLASTIC, ROOTS = "clamped_width", "anticlastic", "root_compli
 WORTH_SAYING = 0.01
 #: Largest strain of a linear material, smallest length over thickness of a beam [1].
 STRAIN, SLENDERNESS = 0.02, 10.0
-#: Length over which each root from the same block turns, over the thickness [1]: plane-stress half-plane,
-#: sharp corner; O'Donnell measured near 0.44 (Journal of Applied Mechanics 27 (1960) 461).
-ROOT = 0.416
-#: Rates at which the share of plate action grows with b/L, for a constant moment and a linear one of zero
-#: mean: fitted to the study model_form/plate, within an eighth.
-PLATE_RATES = (0.86, 2.4)
 ROUND_OFF = 1e-9
 #: Lengths [m], moduli [Pa] and densities [kg/m^3] that are not a slip of units.
 LENGTHS, MODULI, DENSITIES = (1e-5, 5.0), (1e6, 1.3e12), (10.0, 23e3)
-
-
-class Forces(Protocol):
-    """What an answer must know of the strips' forces: (S, G, P) by state, strip and station [N], [N m]."""
-
-    @property
-    def axial_force(self) -> Array:
-        """N."""
-
-    @property
-    def bending_moment(self) -> Array:
-        """M."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -94,9 +76,12 @@ class Strip:
 
     @property
     def clamped(self) -> tuple[Any, Any]:
-        """Stiffness that clamps over the whole width add, of a constant and a linear moment [1]."""
-        bound = self.poisson_ratio**2 / (1.0 - self.poisson_ratio**2)
-        low, high = (bound * (1.0 - np.exp(-rate * self.width_ratio)) for rate in PLATE_RATES)
+        """Stiffness that clamps over the whole width add, of a constant and a linear moment [1].
+
+        By the plate of the splines, at b/L in two digits, that designs by the thousand ask few plates.
+        """
+        of = np.vectorize(lambda ratio, nu: _plate(float(f"{ratio:.2g}"), round(float(nu), 2)))
+        low, high = of(self.width_ratio, self.poisson_ratio)
         return low, high
 
     @property
@@ -107,23 +92,26 @@ class Strip:
     @property
     def turned_roots(self) -> Any:
         """Stiffness that two roots from the same block take [1]."""
-        return 1.0 - 1.0 / (1.0 + 2.0 * ROOT * self.thickness_ratio)
+        from spline_model.effects.by_name import MONOLITHIC
+
+        return 1.0 - 1.0 / (1.0 + 2.0 * MONOLITHIC * self.thickness_ratio)
 
 
 def anticlastic_factor(ratio: Any, poisson_ratio: Any) -> Any:
-    """Return M / (EI kappa) at b^2 kappa / t = `ratio`: 1 for small ones, 1 / (1 - nu^2) for large.
+    """Return M / (EI kappa) at b^2 kappa / t = `ratio`, by the law of the splines; 1 where there is none."""
+    from spline_model.strip.laws import curl_factors
 
-    x^2 = sqrt(3 (1 - nu^2)) ratio, f = (2/x) (cosh x - cos x) / (sinh x + sin x),
-    M = D b kappa (1 - nu^2 (f + x f'/4)). Exact for circular bending of a thin strip away from its ends.
-    D. G. Ashwell, Journal of the Royal Aeronautical Society 54 (1950) 708.
-    """
     square = np.asarray(poisson_ratio, dtype=float) ** 2
-    x = np.sqrt(np.sqrt(3.0 * (1.0 - square)) * np.asarray(ratio, dtype=float))
-    x = np.clip(x, 1e-2, 300.0)  # below the series' error is round-off, above cosh ends and f is 2/x
-    top, bottom = np.cosh(x) - np.cos(x), np.sinh(x) + np.sin(x)
-    f = 2.0 / x * top / bottom
-    slope = f * (-1.0 / x + bottom / top - (np.cosh(x) + np.cos(x)) / bottom)
-    return (1.0 - square * (f + 0.25 * x * slope)) / (1.0 - square)
+    return curl_factors(np.nan_to_num(ratio), square, np.sqrt(3.0 * (1.0 - square)))[1]
+
+
+@cache
+def _plate(ratio: float, poisson_ratio: float) -> tuple[float, float]:
+    from spline_model.effects.curl import WIDTHS
+    from spline_model.plate.factors import plate_factors
+
+    constant, linear = plate_factors(min(max(ratio, WIDTHS[0]), WIDTHS[1]), poisson_ratio)
+    return constant - 1.0, linear - 1.0
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -131,13 +119,25 @@ class Rule:
     """A limit of the model, and the sentence that says that a strip lies beyond it.
 
     Attributes:
-        excess: of the strip, how many times the limit it has. says: of a strip, numbers only.
+        excess: of the strip, how many times the limit it has. says: with numbers of `_told_of` in braces.
         effect: that lifts the limit where it is named.
     """
 
     excess: Callable[[Strip], Any]
-    says: Callable[[Strip], str]
+    says: str
     effect: str = ""
+
+
+def _told_of(s: Strip) -> dict[str, float]:
+    """Return the numbers of sentences, in the units they are told in."""
+    return {
+        "length": s.length, "modulus": s.youngs_modulus, "density": s.density,
+        "thickness_mm": 1e3 * s.thickness, "width_mm": 1e3 * s.width,
+        "slenderness": 1.0 / s.thickness_ratio, "b_L": s.width_ratio, "t_L": s.thickness_ratio,
+        "b2_Rt": s.curvature_ratio, "low": 100.0 * s.clamped[0], "high": 100.0 * s.clamped[1],
+        "flattened": 100.0 * s.flattened, "roots": 100.0 * s.turned_roots, "strain": 100.0 * s.strain,
+        "stress": s.stress / 1e6, "strength": s.yield_strength / 1e6,
+    }  # fmt: skip
 
 
 def _beyond(value: Any, limits: tuple[float, float]) -> Any:
@@ -148,71 +148,55 @@ def _beyond(value: Any, limits: tuple[float, float]) -> Any:
 DATA = (
     Rule(
         excess=lambda s: _beyond(s.length, LENGTHS),
-        says=lambda s: f"length {s.length:.3g} m: expected 10 um to 5 m; are millimetres given as metres?",
+        says="length {length:.3g} m: expected 10 um to 5 m; are millimetres given as metres?",
     ),
     Rule(
         excess=lambda s: _beyond(s.youngs_modulus, MODULI),
-        says=lambda s: (
-            f"Young's modulus {s.youngs_modulus:.3g} Pa: expected 1 MPa to 1300 GPa; is it given in GPa?"
-        ),
+        says="Young's modulus {modulus:.3g} Pa: expected 1 MPa to 1300 GPa; is it given in GPa?",
     ),
     Rule(
         excess=lambda s: _beyond(s.density, DENSITIES),
-        says=lambda s: f"density {s.density:.3g} kg/m^3: expected 10 to 23000; is it given in g/cm^3?",
+        says="density {density:.3g} kg/m^3: expected 10 to 23000; is it given in g/cm^3?",
     ),
     Rule(
         excess=lambda s: s.thickness / (s.width * (1.0 + ROUND_OFF)),
-        says=lambda s: (
-            f"thickness {1e3 * s.thickness:.3g} mm, width {1e3 * s.width:.3g} mm: expected the "
-            "thickness, in the plane of bending, to be the smaller; are they exchanged?"
-        ),
+        says="thickness {thickness_mm:.3g} mm, width {width_mm:.3g} mm: expected the thickness, in the plane "
+        "of bending, to be the smaller; are they exchanged?",
     ),
     Rule(
         excess=lambda s: SLENDERNESS * s.thickness_ratio,
-        says=lambda s: (
-            f"length over thickness {1.0 / s.thickness_ratio:.3g}: expected at least "
-            f"{SLENDERNESS:g}, below which it is no beam"
-        ),
+        says=f"length over thickness {{slenderness:.3g}}: expected at least {SLENDERNESS:g}, below which it "
+        "is no beam",
     ),
 )
 #: What a beam leaves out, and where its material ends.
 MODEL = (
     Rule(
         excess=lambda s: s.clamped[1] / WORTH_SAYING,
-        says=lambda s: (
-            f"b/L {s.width_ratio:.3g}: clamps over the whole width make it stiffer by about "
-            f"{100 * s.clamped[0]:.2g} to {100 * s.clamped[1]:.2g} %, which is left out"
-        ),
+        says="b/L {b_L:.3g}: clamps over the whole width make it stiffer by about {low:.2g} to {high:.2g} %, "
+        "which is left out",
         effect=CLAMPED_WIDTH,
     ),
     Rule(
         excess=lambda s: s.flattened / WORTH_SAYING,
-        says=lambda s: (
-            f"b^2/(R t) {s.curvature_ratio:.3g}: bent so far, a strip flattens and is stiffer by up to "
-            f"{100 * s.flattened:.2g} %, which is left out"
-        ),
+        says="b^2/(R t) {b2_Rt:.3g}: bent so far, a strip flattens and is stiffer by up to "
+        "{flattened:.2g} %, which is left out",
         effect=ANTICLASTIC,
     ),
     Rule(
         excess=lambda s: s.turned_roots / WORTH_SAYING,
-        says=lambda s: (
-            f"t/L {s.thickness_ratio:.3g}: strips cut from one block with their bodies are softer "
-            f"by about {100 * s.turned_roots:.2g} %, which is left out; clamped ones are not"
-        ),
+        says="t/L {t_L:.3g}: strips cut from one block with their bodies are softer by about {roots:.2g} %, "
+        "which is left out; clamped ones are not",
         effect=ROOTS,
     ),
     Rule(
         excess=lambda s: s.strain / STRAIN,
-        says=lambda s: (
-            f"strain {100 * s.strain:.3g} %: expected at most {100 * STRAIN:g} %, up to which the "
-            "material is taken as linear"
-        ),
+        says=f"strain {{strain:.3g}} %: expected at most {100 * STRAIN:g} %, up to which the material is "
+        "taken as linear",
     ),
     Rule(
         excess=lambda s: s.stress / s.yield_strength,
-        says=lambda s: (
-            f"stress {s.stress / 1e6:.4g} MPa: over the yield strength, {s.yield_strength / 1e6:.4g} MPa"
-        ),
+        says="stress {stress:.4g} MPa: over the yield strength, {strength:.4g} MPa",
     ),
 )
 
@@ -222,13 +206,7 @@ RULES = (*DATA, *MODEL)
 
 @dataclass(frozen=True, kw_only=True)
 class Validity:
-    """The largest ratios of all strips, and what is outside, a sentence each.
-
-    Attributes:
-        width_ratio: b/L. curvature_ratio: b^2/(R t). thickness_ratio: t/L.
-        strain: largest of an extreme fibre; all [1].
-        outside: sentences; none where the model covers the answer.
-    """
+    """The largest ratios of all strips [1], as of `Strip`, and what is outside, a sentence each."""
 
     width_ratio: float
     curvature_ratio: float
@@ -238,7 +216,7 @@ class Validity:
 
 
 def validity(
-    design: Design, forces: Forces, *, effects: Iterable[str], yield_strength: float | None = None
+    design: Design, forces: Any, *, effects: Iterable[str], yield_strength: float | None = None
 ) -> Validity:
     """Return what the answer to a design is worth.
 
@@ -265,7 +243,7 @@ def told(rules: Iterable[Rule], strips: list[Strip], effects: Iterable[str]) -> 
     for rule in rules:
         worst = max(strips, key=rule.excess)
         if rule.excess(worst) > 1.0 and rule.effect not in named:
-            yield rule.says(worst)
+            yield rule.says.format(**_told_of(worst))
 
 
 def passed(strips: Iterable[Strip], effects: Iterable[str]) -> Any:
@@ -275,9 +253,7 @@ def passed(strips: Iterable[Strip], effects: Iterable[str]) -> Any:
     return sum(np.any([rule.excess(strip) > 1.0 for strip in strips], axis=0).astype(int) for rule in rules)
 
 
-def strips_of(
-    design: Design, forces: Forces | None = None, yield_strength: float | None = None
-) -> list[Strip]:
+def strips_of(design: Design, forces: Any = None, yield_strength: float | None = None) -> list[Strip]:
     """Return the strips of a design, those of a pivot as one, with the most that an answer says of them."""
     parts: Any = (design,) if isinstance(design, Problem) else design.strips
     found = []

@@ -1,6 +1,5 @@
 """The neutral answers of a baseline, the pivot as it is given one, and what all check and time alike."""
 
-import gc
 import math
 import time
 from collections.abc import Callable, Mapping
@@ -12,6 +11,7 @@ import numpy as np
 from studies.cases.problem import Problem
 from studies.errors import BadInput
 from studies.kinds import Array
+from studies.record.timing import measure
 
 
 class BaselineFailed(RuntimeError):
@@ -49,6 +49,7 @@ class SolvedPath(Followed):
         centre: (S, 2) centre of mass of the body, origin at A1 [m].
         torque: (S,) driving torque on the body [N m].
         stiffness: (S,) its derivative by the rotation [N m / rad]; NaN where the model does not give it.
+        max_stress: (S,) largest at the strips' outer fibres [Pa]; None where the model does not give it.
         wall_s: time of the whole answer [s], NaN if unknown.
     """
 
@@ -56,6 +57,7 @@ class SolvedPath(Followed):
     centre: Array
     torque: Array
     stiffness: Array
+    max_stress: Array | None = None
     wall_s: float = math.nan
 
 
@@ -120,21 +122,14 @@ def median_seconds(prepare: Callable[[], Callable[[], Any]], repeat: int) -> flo
         BadInput: `repeat` below 1.
     """
     checked_count("repeat", repeat, 1)
-    if repeat > 1:
-        prepare()()
-    seconds = []
-    collecting = gc.isenabled()
-    gc.disable()
-    try:
-        for _ in range(repeat):
-            work = prepare()
-            begin = time.perf_counter()
-            work()
-            seconds.append(time.perf_counter() - begin)
-    finally:
-        if collecting:
-            gc.enable()
-    return float(np.median(seconds))
+
+    def work() -> float:
+        prepared = prepare()
+        begin = time.perf_counter()
+        prepared()
+        return time.perf_counter() - begin
+
+    return measure(work, repeat=repeat, warm_up=1 if repeat > 1 else 0, part=float).median_part
 
 
 #: The effects of a scene that baselines can stand for: what they leave out of these is their error.

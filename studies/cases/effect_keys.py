@@ -10,6 +10,7 @@ from studies.cases.rules import (
     Text,
     finite,
     finite_pair,
+    keys_of,
     not_negative,
 )
 
@@ -35,142 +36,67 @@ EFFECTS: dict[str, str] = {
     "pre_strain": "curvature and strain that the strips would have if they were free",
 }
 
-#: Table, name in the file, parameter, rule, what it is, what holds where it is left out, and an example.
+# Rows: name in the file, parameter, rule, default ("": it is needed), example, meaning.
+# fmt: off
 _Row = tuple[str, str, Rule, str, str, str]
 _BODY: _Row = (
-    "body",
-    "body",
-    Text(expected="the name of a body"),
-    "on which body, of a mechanism",
-    "the only one",
-    '"body"',
+    "body", "body", Text(expected="the name of a body"), "the only one",
+    '"body"', "on which body, of a mechanism",
 )
 _HISTORY: _Row = (
-    "history",
-    "history",
-    History(),
-    "in motion: factor of the load over time, constant behind the last instant",
-    "the whole load at all times",
-    "[[0, 0], [0.01, 1]]",
+    "history", "history", History(), "the whole load at all times",
+    "[[0, 0], [0.01, 1]]", "in motion: factor of the load over time, constant behind the last instant",
 )
-#: Effect -> its keys; one without a default is needed.
+_FORCE: _Row = ("force_N", "force", finite_pair("N"), "", "[0, -1]", "the force [x, y]")
+_FREE_TIP = Text(expected="the name of a strip with a free end")
+_LED = FreePair(expected='two finite numbers [x, y], one of them or "free" [m]')
+_ROOT = NumberOr(
+    expected='"monolithic" or a number of at least 0 [1]', word="monolithic", number=not_negative("1")
+)
+#: Effect -> its keys.
 _KEYS: dict[str, tuple[_Row, ...]] = {
     "gravity": (
-        (
-            "acceleration_m_per_s2",
-            "acceleration",
-            finite_pair("m/s^2"),
-            "acceleration of free fall [x, y]",
-            "of magnitude and direction",
-            "[0, -9.81]",
-        ),
-        (
-            "magnitude_m_per_s2",
-            "magnitude",
-            not_negative("m/s^2"),
-            "size of the acceleration of free fall",
-            "9.81",
-            "9.81",
-        ),
-        (
-            "direction_deg",
-            "direction",
-            ROTATION,
-            "where it points, counter-clockwise from the x axis",
-            "-90, against the y axis",
-            "-90",
-        ),
+        ("acceleration_m_per_s2", "acceleration", finite_pair("m/s^2"), "of magnitude and direction",
+         "[0, -9.81]", "acceleration of free fall [x, y]"),
+        ("magnitude_m_per_s2", "magnitude", not_negative("m/s^2"), "9.81",
+         "9.81", "size of the acceleration of free fall"),
+        ("direction_deg", "direction", ROTATION, "-90, against the y axis",
+         "-90", "where it points, counter-clockwise from the x axis"),
     ),
     "strip_damping": (
-        (
-            "relaxation_time_s",
-            "relaxation_time",
-            not_negative("s"),
-            "stress by strain rate, over E",
-            "",
-            "1e-4",
-        ),
+        ("relaxation_time_s", "relaxation_time", not_negative("s"), "",
+         "1e-4", "stress by strain rate, over E"),
     ),
     "strip_drag": (
-        ("rate_per_s", "rate", not_negative("1/s"), "force by velocity, over the strip's mass", "", "10"),
+        ("rate_per_s", "rate", not_negative("1/s"), "", "10", "force by velocity, over the strip's mass"),
     ),
     "body_damping": (
-        ("translation_Ns_per_m", "translation", not_negative("N s/m"), "force by velocity", "0", "0.1"),
-        ("rotation_Nms", "rotation", not_negative("N m s"), "moment by angular velocity", "0", "1e-5"),
+        ("translation_Ns_per_m", "translation", not_negative("N s/m"), "0", "0.1", "force by velocity"),
+        ("rotation_Nms", "rotation", not_negative("N m s"), "0", "1e-5", "moment by angular velocity"),
     ),
-    "applied_force": (
-        ("force_N", "force", finite_pair("N"), "the force [x, y]", "", "[0, -1]"),
-        _BODY,
-        _HISTORY,
-    ),
+    "applied_force": (_FORCE, _BODY, _HISTORY),
     "applied_moment": (
-        ("moment_Nm", "moment", finite("N m"), "the moment, counter-clockwise", "", "0.01"),
+        ("moment_Nm", "moment", finite("N m"), "", "0.01", "the moment, counter-clockwise"),
         _BODY,
         _HISTORY,
     ),
-    "tip_force": (
-        (
-            "strip",
-            "strip",
-            Text(expected="the name of a strip with a free end"),
-            "on which strip",
-            "",
-            '"strip"',
-        ),
-        ("force_N", "force", finite_pair("N"), "the force [x, y]", "", "[0, -1]"),
-        _HISTORY,
-    ),
+    "tip_force": (("strip", "strip", _FREE_TIP, "", '"strip"', "on which strip"), _FORCE, _HISTORY),
     "driven_displacement": (
-        (
-            "displacement_m",
-            "displacement",
-            FreePair(expected='two finite numbers [x, y], one of them or "free" [m]'),
-            "from its place at rest [x, y]",
-            "",
-            "[1e-3, 0]",
-        ),
+        ("displacement_m", "displacement", _LED, "", "[1e-3, 0]", "from its place at rest [x, y]"),
         _BODY,
         _HISTORY,
     ),
     "root_compliance": (
-        (
-            "root",
-            "root",
-            NumberOr(
-                expected='"monolithic" or a number of at least 0 [1]',
-                word="monolithic",
-                number=not_negative("1"),
-            ),
-            "length of strip that turns as much as a root does, over the thickness; monolithic: 0.416",
-            '"monolithic"',
-            '"monolithic"',
-        ),
+        ("root", "root", _ROOT, '"monolithic"', '"monolithic"',
+         "length of strip that turns as much as a root does, over the thickness; monolithic: 0.416"),
     ),
     "pre_strain": (
-        (
-            "curvature_per_m",
-            "curvature",
-            finite("1/m"),
-            "natural curvature, counter-clockwise from root to tip",
-            "0",
-            "0.1",
-        ),
-        ("strain", "strain", finite("1"), "natural axial strain", "0", "1e-5"),
+        ("curvature_per_m", "curvature", finite("1/m"), "0",
+         "0.1", "natural curvature, counter-clockwise from root to tip"),
+        ("strain", "strain", finite("1"), "0", "1e-5", "natural axial strain"),
     ),
 }
+# fmt: on
 KEYS: dict[str, tuple[Key, ...]] = {
-    effect: tuple(
-        Key(
-            section=f"effects.{effect}",
-            name=name,
-            attribute=parameter,
-            rule=rule,
-            optional=bool(default),
-            meaning=meaning,
-            default=default,
-            example=example,
-        )
-        for name, parameter, rule, meaning, default, example in _KEYS.get(effect, ())
-    )
-    for effect in EFFECTS
+    effect: keys_of(f"effects.{effect}", *_KEYS.get(effect, ())) for effect in EFFECTS
 }

@@ -29,6 +29,9 @@ MOTION_ONLY = (
     "body_damping",
 )
 
+#: Why shear is no effect of a scene.
+SHEAR = "sections of a spline's strip stay normal to its curve, and shear is in the choice of the elements"
+
 #: How a scene is named.
 WORDS = "+NAME and -NAME, or names alone"
 
@@ -136,6 +139,8 @@ def require_known(where: str, name: str) -> None:
     """Raise CaseError that lists what there is unless `name` is an effect, also one added to the splines'."""
     if name in KEYS or name in _registered():
         return
+    if name in ("shear", "shear_deformation"):
+        raise CaseError(f"{where}: got {name}, expected --model fe-shear in its place: {SHEAR}")
     near = difflib.get_close_matches(name, KEYS, n=1)
     hint = f"{near[0]} (the nearest name), or " if near else ""
     raise CaseError(f"{where}: got {name}, expected {hint}one of {', '.join(KEYS)}")

@@ -9,8 +9,17 @@ from typing import Any
 from studies.cases import document
 from studies.cases.document import CaseError
 from studies.cases.effects import Effects, read_effects
-from studies.cases.keys import LOADS_FIRST, MATERIAL, SECTION
-from studies.cases.mechanism_keys import BODY, DRIVE, GROUND, OWN, SECTIONS, STRIP
+from studies.cases.keys import (
+    BODY,
+    DRIVE,
+    GROUND,
+    LOADS_FIRST,
+    MATERIAL,
+    OWN,
+    SECTION,
+    SECTIONS,
+    STRIP,
+)
 from studies.cases.rules import FREE, shown
 from studies.cases.strips import completed, inherited, refuse_both, without
 
@@ -151,6 +160,10 @@ def _strip(path: str, given: Mapping[str, Any], label: str, shared: Mapping[str,
     refuse_both(path, own, label)
     found = completed(path, inherited(shared, own), label, label, shared=True)
     found["tip"] = None if found["tip"] == FREE else found["tip"]
+    if found["start"] == found["end"]:
+        raise CaseError(
+            f"{path}: {label}.end_m: got {list(found['end'])}, where it begins, expected a length"
+        )
     return Strip(**found)
 
 

@@ -5,9 +5,8 @@ from collections.abc import Iterable, Iterator
 from studies.cases.effect_keys import EFFECTS
 from studies.cases.effect_keys import KEYS as EFFECT_KEYS
 from studies.cases.effects import DEFAULT
-from studies.cases.keys import KEYS, MATERIAL, SECTION
+from studies.cases.keys import BODY, DRIVE, KEYS, MATERIAL, OWN, SECTION, STRIP
 from studies.cases.materials import MATERIALS
-from studies.cases.mechanism_keys import BODY, DRIVE, OWN, STRIP
 from studies.cases.rules import Key
 
 #: Tables of a pivot's file, and of a mechanism's, in the order of a file, with their keys.
@@ -53,7 +52,8 @@ def materials() -> Iterator[str]:
     for name, given in MATERIALS.items():
         strength = "none" if given.yield_strength is None else f"{given.yield_strength / 1e6:g}"
         numbers = f"{given.youngs_modulus / 1e9:g} | {given.poisson_ratio:g} | {given.density:g} | {strength}"
-        yield f"| `{name}` | {numbers} | {given.title}. {given.source} |"
+        said = f"{given.title}. {given.source}. Found again: {given.checked}"
+        yield f"| `{name}` | {numbers} | {said} |"
 
 
 def _tables(tables: dict[str, tuple[Key, ...]]) -> Iterator[str]:

@@ -48,7 +48,20 @@ class Number:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Whole:
+class _Parsed:
+    """A rule whose values in SI are those of the file."""
+
+    def parse(self, value: Any) -> Any:
+        """Return `value` as it is kept; raises ValueError that says what was got and expected."""
+        raise NotImplementedError
+
+    def verify(self, value: Any) -> None:
+        """Raise ValueError unless `value` is admissible."""
+        self.parse(value)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Whole(_Parsed):
     """A whole number from `low` to `high`, both included."""
 
     expected: str
@@ -61,13 +74,9 @@ class Whole:
             raise ValueError(f"got {shown(value)}, expected {self.expected}")
         return value
 
-    def verify(self, value: Any) -> None:
-        """Raise ValueError unless `value` is admissible."""
-        self.parse(value)
-
 
 @dataclass(frozen=True, kw_only=True)
-class Pair:
+class Pair(_Parsed):
     """Two finite numbers [x, y]."""
 
     expected: str
@@ -85,10 +94,6 @@ class Pair:
                 raise ValueError(f"got {shown(value)}, expected {self.expected}")
         return float(value[0]), float(value[1])
 
-    def verify(self, value: Any) -> None:
-        """Raise ValueError unless `value` is admissible."""
-        self.parse(value)
-
 
 @dataclass(frozen=True, kw_only=True)
 class FreePair(Pair):
@@ -105,7 +110,7 @@ class FreePair(Pair):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Text:
+class Text(_Parsed):
     """A text that is not empty."""
 
     expected: str
@@ -116,13 +121,9 @@ class Text:
             raise ValueError(f"got {shown(value)}, expected {self.expected}")
         return value
 
-    def verify(self, value: Any) -> None:
-        """Raise ValueError unless `value` is admissible."""
-        self.parse(value)
-
 
 @dataclass(frozen=True, kw_only=True)
-class NumberOr:
+class NumberOr(_Parsed):
     """A number, or one word in its place."""
 
     expected: str
@@ -138,13 +139,9 @@ class NumberOr:
         except ValueError:
             raise ValueError(f"got {shown(value)}, expected {self.expected}") from None
 
-    def verify(self, value: Any) -> None:
-        """Raise ValueError unless `value` is admissible."""
-        self.parse(value)
-
 
 @dataclass(frozen=True, kw_only=True)
-class Choice:
+class Choice(_Parsed):
     """One of some names."""
 
     names: tuple[str, ...]
@@ -160,13 +157,9 @@ class Choice:
             raise ValueError(f"got {shown(value)}, expected {self.expected}")
         return str(value)
 
-    def verify(self, value: Any) -> None:
-        """Raise ValueError unless `value` is admissible."""
-        self.parse(value)
-
 
 @dataclass(frozen=True, kw_only=True)
-class History:
+class History(_Parsed):
     """Pairs [time in s, factor] in order of time."""
 
     expected: str = "pairs [time, factor] with increasing times [s]"
@@ -180,13 +173,9 @@ class History:
             raise ValueError(f"got {shown(value)}, expected {self.expected}")
         return points
 
-    def verify(self, value: Any) -> None:
-        """Raise ValueError unless `value` is admissible."""
-        self.parse(value)
-
 
 @dataclass(frozen=True, kw_only=True)
-class Interval:
+class Interval(_Parsed):
     """Two instants [begin, end]."""
 
     expected: str = "two instants [begin, end], the first before the second [s]"
@@ -197,10 +186,6 @@ class Interval:
         if not begin < end:
             raise ValueError(f"got {shown(value)}, expected {self.expected}")
         return begin, end
-
-    def verify(self, value: Any) -> None:
-        """Raise ValueError unless `value` is admissible."""
-        self.parse(value)
 
 
 Rule = Number | NumberOr | Whole | Pair | Text | Choice | History | Interval
@@ -236,6 +221,29 @@ class Key:
     def admitted(self) -> str:
         """What the rule admits, without the unit."""
         return self.rule.expected.removesuffix(f" [{self.unit}]")
+
+
+def keys_of(section: str, *rows: tuple[str, str, Rule, str, str, str]) -> tuple[Key, ...]:
+    """Return the keys of a table of a case file.
+
+    Args:
+        section: name of the table.
+        rows: of each key its name in the file, attribute, rule, default ("" of one that is needed), example
+            and meaning.
+    """
+    return tuple(
+        Key(
+            section=section,
+            name=name,
+            attribute=attribute,
+            rule=rule,
+            optional=bool(default),
+            meaning=meaning,
+            default=default,
+            example=example,
+        )
+        for name, attribute, rule, default, example, meaning in rows
+    )
 
 
 def _as_float(value: float) -> float:

@@ -1,7 +1,7 @@
-"""A pivot as the text of a case file, from the declarations that read it."""
+"""Designs as the text of case files: a pivot by the declarations that read it, any case by its document."""
 
 import json
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
 from studies.cases.effect_keys import KEYS as EFFECT_KEYS
@@ -19,6 +19,27 @@ def as_toml(problem: Problem, remarks: Iterable[str] = ()) -> str:
         problem: what is written. remarks: lines of comment to begin with.
     """
     return "\n".join([*(f"# {remark}" for remark in remarks), *_lines(problem)]) + "\n"
+
+
+def document_toml(document: Mapping[str, Any], remarks: Iterable[str] = ()) -> str:
+    """Return the text of a case's document: tables, and arrays of tables, of numbers, texts and lists.
+
+    Args:
+        document: as it was parsed. remarks: lines of comment to begin with.
+    """
+    lines = [f"# {remark}" for remark in remarks]
+    for section, content in document.items():
+        for table in content if isinstance(content, list) else [content]:
+            nested = {name: value for name, value in table.items() if isinstance(value, Mapping)}
+            if len(nested) < len(table) or not table:
+                lines += ["", f"[[{section}]]" if isinstance(content, list) else f"[{section}]"]
+                lines += [
+                    f"{name} = {_text(value, repr)}" for name, value in table.items() if name not in nested
+                ]
+            for name, inner in nested.items():
+                lines += ["", f"[{section}.{name}]"]
+                lines += [f"{key} = {_text(each, repr)}" for key, each in inner.items()]
+    return "\n".join(lines) + "\n"
 
 
 def _lines(problem: Problem) -> Iterator[str]:
@@ -48,12 +69,12 @@ def _in_file(key: Key, value: Any) -> str:
     return _text(key.rule.from_si(value) if isinstance(key.rule, Number) else value)
 
 
-def _text(value: Any) -> str:
+def _text(value: Any, number: Callable[[float], str] = "{:.15g}".format) -> str:
     """Return a number, a text or a list as it stands in a TOML file."""
     if value is None:
         return f'"{FREE}"'
     if isinstance(value, str):
         return json.dumps(value)
     if isinstance(value, Sequence):
-        return f"[{', '.join(map(_text, value))}]"
-    return f"{value:.15g}" if isinstance(value, float) else str(value)
+        return f"[{', '.join(_text(each, number) for each in value)}]"
+    return number(value) if isinstance(value, float) else str(value)

@@ -87,18 +87,27 @@ def described(model: str, settings: Mapping[str, Any], effects: Iterable[str]) -
     return f"{model}: {', '.join(given)}\neffects: {', '.join(effects)}"
 
 
-def remarks(answer: Response | MechanismResponse) -> Iterator[str]:
+def remarks(answer: Response | MechanismResponse, points: Iterable[Mapping[str, Any]]) -> Iterator[str]:
     """Yield what is to be said of a path beside its numbers: what it passed, how uncertain it is.
 
     Why a path stopped early is told on the error stream, see `deliver`.
+
+    points: the critical points as JSON has them.
     """
     if answer.converged and answer.message:
         yield answer.message
-    for point in answer.critical_points:
-        turn = f", {math.degrees(point.rotation):.6g} deg" if math.isfinite(point.rotation) else ""
-        yield f"{point.kind}: load factor {point.load_factor:.6g}{turn}"
+    yield from dict.fromkeys(f"{point['kind']}: {passed(point)}" for point in points)
     if answer.resolution:
         yield answer.resolution
+
+
+def passed(point: Mapping[str, Any]) -> str:
+    """Return where a critical point is: its load factor, the force that acts there, and the rotation."""
+    force = f" (force {point['force_N']:.4g} N)" if "force_N" in point else ""
+    turn = point["rotation_rad"]
+    return f"load factor {point['load_factor']:.6g}{force}" + (
+        "" if turn is None else f", {math.degrees(turn):.6g} deg"
+    )
 
 
 def estimated(estimate: Mapping[str, Any] | None) -> Iterator[str]:

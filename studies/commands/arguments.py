@@ -4,7 +4,7 @@ import argparse
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import TypeVar
+from typing import Any, TypeVar
 
 from studies.answers.settings import FeSettings, Settings, SplineSettings
 from studies.cases import keys
@@ -91,28 +91,23 @@ SPLINE = (
     ),
 )
 ELEMENTS = Argument("--elements", type=int, metavar="N", help="elements a strip (fe, fe-shear; default 20)")
-_MODEL_HELP = "spline (default), corotational or shear-deformable FE"
+
+
+def _asked(**model: Any) -> tuple[Argument, ...]:
+    """Return the arguments of a design, its models and their settings."""
+    what = "spline (default), corotational or shear-deformable FE"
+    model["help"] = what + model.pop("several", "")
+    return CASE, EFFECTS, Argument("--model", **model), *SPLINE, ELEMENTS
+
+
 #: A design, a model and its settings: what `chosen_design` and `chosen_settings` read.
-MODEL = (
-    CASE,
-    EFFECTS,
-    Argument("--model", choices=MODELS, default="spline", help=_MODEL_HELP),
-    *SPLINE,
-    ELEMENTS,
-)
+MODEL = _asked(choices=MODELS, default="spline")
 #: The same of one model or several: what `all_settings` reads.
-SEVERAL_MODELS = (
-    CASE,
-    EFFECTS,
-    Argument(
-        "--model",
-        type=names_of(MODELS),
-        default=("spline",),
-        metavar="LIST",
-        help=f"{_MODEL_HELP}: spline, fe, fe-shear, or several with commas",
-    ),
-    *SPLINE,
-    ELEMENTS,
+SEVERAL_MODELS = _asked(
+    type=names_of(MODELS),
+    default=("spline",),
+    metavar="LIST",
+    several=": spline, fe, fe-shear, or several with commas",
 )
 
 ROTATION = Argument("--rotation-deg", dest="rotation", type=ruled(keys.ROTATION, degrees), metavar="X")

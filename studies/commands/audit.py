@@ -10,13 +10,17 @@ answer is from the full one's when the effect is left out or replaced by its sim
 inextensible strips for stretching and massless strips for their inertia. Changes are of the path over the
 travel, of the torque over the largest, of the swing's and the first mode's frequency, and of the part of the
 energy that is lost. Times are of static path and motion together, the full scene's over the line's: above 1
-the line is faster. DOF are those with inertia; the explicit step is 2.83 over the highest frequency. Exit
-code 0: done; 2: bad input; 3: the full scene has no answer.
+the line is faster. DOF are those with inertia; the explicit step is 2.83 over the highest frequency. Then
+comes what planar beams leave out: how path, stiffness at the begin of the rotation, torque and largest stress
+at its end, and first mode change with clamps over the whole width, sections that flatten, roots cut in one
+block, all three, and with shear, which the elements have (--model fe-shear). Exit code 0: done; 2: bad input;
+3: the full scene has no answer.
 """
 
 import argparse
 import math
 from collections.abc import Iterator
+from dataclasses import asdict
 from typing import Any
 
 from studies.answers.settings import SplineSettings
@@ -61,6 +65,13 @@ def as_document(found: Audit) -> dict[str, Any]:
         "full": _row(found, found.full),
         "rows": [_row(found, row) for row in found.rows],
         "tried": [_row(found, row) for row in found.tried],
+        "beyond": [
+            {
+                name: number(value) if isinstance(value, float) else value
+                for name, value in asdict(row).items()
+            }
+            for row in found.beyond
+        ],
         "cheapest": _row(found, found.cheapest) | {"time_ratio": found.ratio, "wall_s": found.seconds[1]},
         "full_wall_s": found.seconds[0],
     }
@@ -98,6 +109,14 @@ def _readable(found: Audit) -> Iterator[str]:
     for row in (found.full, *found.rows):
         yield _line(found, row)
     best = found.cheapest
+    yield ""
+    head = f"{'path':>9}{'stiffness':>11}{'torque':>10}{'stress':>10}{'1st mode':>10}"
+    yield f"{'what planar beams leave out':<28}{head}"
+    for price in found.beyond:
+        cells = f"{_cell(price.trajectory, 9)}{_cell(price.stiffness, 11, '+')}"
+        cells += "".join(_cell(value, 10, "+") for value in (price.torque, price.stress, price.mode))
+        answer = f"{price.status.replace('_', ' ')}: {price.reason}" if price.reason else cells
+        yield f"{'with ' + price.effect.replace('_', ' '):<28}{answer}"
     yield ""
     if not best.variant.dropped:
         yield f"no cheaper scene is within {found.tolerance:g}"

@@ -3,13 +3,14 @@
     python -m studies compare cross_axis_pivot spring_steel_pivot --rotation-deg 15
     python -m studies compare spring_steel_pivot --model spline,fe --plot models.svg
     python -m studies compare four_bar_of_flexures parallel_strip_guide --json -
+    python -m studies compare titanium_pivot spring_steel_pivot --plot-modes modes.svg
 
 Every case is solved by every model, as `solve` does, to the end of its own path unless --rotation-deg is
-given; frequencies are those of `modes` at rest. A, B ... are the designs in their order, and the columns at
-the right are over A. Variation is the largest less the smallest stiffness of the path over that at its
-begin; safety, and from which rotation on a strip yields, are of cases with a yield strength. A dash: the
-design has no such number. Exit code 0: all converged; 2: bad input; 3: one did not, and is told up to where
-it came.
+given; frequencies are those of `modes` at rest, whose first six --plot-modes draws over one another. A, B
+... are the designs in their order, and the columns at the right are over A. Variation is the largest less the
+smallest stiffness of the path over that at its begin; safety, and from which rotation on a strip yields, are
+of cases with a yield strength. A dash: the design has no such number. Exit code 0: all converged; 2: bad
+input; 3: one did not, and is told up to where it came.
 """
 
 import argparse
@@ -46,8 +47,15 @@ from studies.kinds import Array
 from studies.pictures.shown import LETTERS, Shown
 from studies.record.progress import Bar
 
-#: Digits of a number.
-DIGITS = 5
+#: Digits of a number; a variation below which a stiffness is constant but for round-off [1].
+DIGITS, ROUND_OFF = 5, 1e-8
+#: Modes that are drawn.
+MODES = 6
+PLOT_MODES = Argument(
+    "--plot-modes",
+    **PLOT.keywords
+    | {"help": "draw the first six natural modes at rest over one another (default: no picture)"},
+)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -57,6 +65,7 @@ class Compared:
     Attributes:
         name: in the key of table and picture; case, design: it is of; answer: its path.
         shown: what follows from it; None of a path without a state.
+        modes: the natural modes at rest; None where statics does not hold the rest.
         beside: values of the lines that are not of what is shown, by their keys.
     """
 
@@ -65,6 +74,7 @@ class Compared:
     design: Design
     answer: Response | MechanismResponse
     shown: Shown | None
+    modes: Shown | None
     beside: dict[str, float]
 
 
@@ -89,7 +99,10 @@ def _largest(values: Array | None) -> float:
 
 def _variation(shown: Shown) -> float:
     stiffness = shown.fields.stiffness
-    return math.nan if stiffness is None else float(np.ptp(stiffness) / abs(stiffness[0]))
+    if stiffness is None:
+        return math.nan
+    variation = float(np.ptp(stiffness) / abs(stiffness[0]))
+    return variation if variation > ROUND_OFF else 0.0
 
 
 def _first_stiffness(shown: Shown) -> float:
@@ -120,10 +133,13 @@ ROWS = (
         key="max_stress_Pa",
         unit="Pa",
         highest=6,
-        of=lambda each: _largest(each.stress),
+        of=lambda each: _largest(each.fields.max_stress),
     ),
     Row(
-        name="strain energy, end", key="strain_energy_J", unit="J", of=lambda each: _last(each.strain_energy)
+        name="strain energy, end",
+        key="strain_energy_J",
+        unit="J",
+        of=lambda each: _last(each.fields.strain_energy),
     ),
 )
 #: Lines that are not of what a picture shows.
@@ -148,21 +164,26 @@ SAFETY, YIELDS, FREQUENCY = BESIDE = (
     ACCURACY.but(help="wanted relative error of the paths, as of `solve` (default: that of `solve`)"),
     JSON,
     PLOT,
+    PLOT_MODES,
 )
 def main(arguments: argparse.Namespace) -> int:
     """Solve all, report and draw; return the exit code."""
     asked = [(case, settings) for case in arguments.cases for settings in all_settings(arguments)]
     if not 2 <= len(asked) <= len(LETTERS):
-        got = f"{len(arguments.cases)} of {len(arguments.model)} models"
-        raise BadInput(f"compare: got {got}, expected 2 to {len(LETTERS)} designs times models")
+        got = f"{len(asked)} (designs: {len(arguments.cases)}, models: {len(arguments.model)})"
+        raise BadInput(f"compare: got {got}, expected 2 to {len(LETTERS)} designs, or a design by two models")
     require_target(arguments)
     with Bar("compare") as bar:
         found = []
         for done, (case, settings) in enumerate(asked, start=1):
             found.append(_solved(case, settings, arguments))
             bar(done, len(asked))
-    if arguments.plot is not None and all(each.shown is not None for each in found):
-        draw(arguments, [each.shown for each in found if each.shown is not None])
+    for target, parts in (
+        (arguments.plot, [each.shown for each in found]),
+        (arguments.plot_modes, [each.modes for each in found]),
+    ):
+        if target is not None and None not in parts:
+            draw(arguments, [each for each in parts if each is not None], target)
     failed = (
         f"{LETTERS[k]}: {each.answer.message}" for k, each in enumerate(found) if not each.answer.converged
     )
@@ -191,8 +212,8 @@ def _solved(case: str, settings: Settings, arguments: argparse.Namespace) -> Com
     design = driven(read_design(case, changes=arguments.effects), arguments)
     accuracy = arguments.accuracy
     answer = answer_path(design, settings, accuracy=accuracy)
-    spectrum = answer_modes(design, settings, count=1)
-    name, shown, beside = called(case, answer), None, {}
+    spectrum = answer_modes(design, settings, count=1 if arguments.plot_modes is None else MODES)
+    name, shown, modes, beside = called(case, answer), None, None, {}
     if len(answer.load_factor):
         shown = Shown(name=name, fields=fields_of(answer, design), yield_strength=weakest(design))
         found = strength(design, answer)
@@ -200,7 +221,10 @@ def _solved(case: str, settings: Settings, arguments: argparse.Namespace) -> Com
         beside[YIELDS.key] = math.nan if found.yields is None else found.yields[1]
     if len(spectrum.frequency):
         beside[FREQUENCY.key] = float(spectrum.frequency[0])
-    return Compared(name=name, case=case, design=design, answer=answer, shown=shown, beside=beside)
+        modes = Shown(name=called(case, spectrum), fields=fields_of(spectrum, design))
+    return Compared(
+        name=name, case=case, design=design, answer=answer, shown=shown, modes=modes, beside=beside
+    )
 
 
 def _value(row: Row, each: Compared) -> float:

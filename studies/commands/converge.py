@@ -4,19 +4,23 @@
     python -m studies converge my_pivot.toml --control-points 4:16 --elements 5:320 --out my_pivot
 
 The spline is refined point by point, the finite elements by doubling; both are held against the limit of the
-finite elements' refinement, whose own uncertainty is printed. Errors are the largest over the path. Tables
-and a figure go to the output folder. Exit code 0: done; 2: bad input; 3: the finite elements, and with them
-the reference, did not converge. A spline that does not converge keeps its row.
+finite elements' refinement, whose own uncertainty is printed. Errors are the largest over the path, of the
+stress those of the largest stress of each state. Tables and a figure go to the output folder. Exit code 0:
+done; 2: bad input; 3: the finite elements, and with them the reference, did not converge. A spline that does
+not converge keeps its row.
 """
 
 import argparse
 import math
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import pandas as pd
 
-from studies.answers.reference import NoReference, Reference
+from studies.answers.adapters import answer_path
+from studies.answers.reference import QUANTITIES, NoReference, Reference, errors
+from studies.answers.response import MechanismResponse, Response
 from studies.answers.settings import SplineSettings
 from studies.commands.answer import not_converged
 from studies.commands.arguments import (
@@ -32,7 +36,6 @@ from studies.commands.arguments import (
 from studies.commands.parser import command, counts
 from studies.convergence.sweep import (
     FINEST,
-    QUANTITIES,
     drawn,
     element_sweep,
     reaching,
@@ -80,10 +83,11 @@ def main(arguments: argparse.Namespace) -> int:
         with Bar("finite elements") as bar:
             elements, limit = element_sweep(problem, meshes, "corotational", bar)
     except NoReference as error:
-        return not_converged(error)
+        return not_converged(f"{error}; begin with more elements, as --elements 20:160, or turn less far")
     with Bar("splines") as bar:
         splines = with_orders(spline_sweep(problem, settings, limit, bar), "control_points")
-    print("\n".join(_report(splines, elements, limit)))
+    itself = answer_path(problem, replace(settings[0], control_points=None))
+    print("\n".join((*_report(splines, elements, limit), *_by_itself(itself, limit))))
     with style.applied():
         figure = style.rendered(drawn(splines, elements, limit))
     contents = {"control_points.csv": as_csv(splines), "elements.csv": as_csv(elements)}
@@ -118,13 +122,29 @@ def _report(splines: pd.DataFrame, elements: pd.DataFrame, limit: Reference) -> 
         yield from _rows(table, count)
     yield ""
     yield "count that reaches, in trajectory and torque" + "".join(f"{a:>10.0e}" for a in ACCURACIES)
-    for title, table, count in (
-        ("control points", splines, "control_points"),
-        ("elements", elements, "elements"),
-    ):
+    yield from _reached(splines, elements, QUANTITIES[:2])
+    yield "in stiffness and largest stress too"
+    yield from _reached(splines, elements, QUANTITIES)
+
+
+def _by_itself(answer: Response | MechanismResponse, limit: Reference) -> Iterator[str]:
+    """Yield what the spline does without a number of control points: its errors, its estimates of them."""
+    yield ""
+    estimate = answer.estimate or {}
+    if not answer.converged or not estimate:
+        yield f"without --control-points `solve` stops: {answer.message}"
+        return
+    yield f"without --control-points `solve` takes {estimate['control_points']}, with moments by balance"
+    for title, values in (("error", errors(answer, limit).largest()), ("estimate", estimate)):
+        yield f"{title:<9}" + ", ".join(f"{name} {values[name]:.1e}" for name in QUANTITIES)
+
+
+def _reached(splines: pd.DataFrame, elements: pd.DataFrame, quantities: tuple[str, ...]) -> Iterator[str]:
+    """Yield for each model the counts that reach the accuracies in these quantities."""
+    for table, count in ((splines, "control_points"), (elements, "elements")):
         beyond = f"> {table[count].max()}"
-        found = (reaching(table, count, accuracy) for accuracy in ACCURACIES)
-        yield f"{title:<44}" + "".join(f"{number or beyond:>10}" for number in found)
+        found = (reaching(table, count, accuracy, quantities) for accuracy in ACCURACIES)
+        yield f"{count.replace('_', ' '):<44}" + "".join(f"{number or beyond:>10}" for number in found)
 
 
 def _rows(table: pd.DataFrame, count: str) -> Iterator[str]:

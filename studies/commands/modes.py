@@ -65,7 +65,7 @@ def main(arguments: argparse.Namespace) -> int:
         None if answer.converged else f"at {math.degrees(arguments.rotation or 0.0):g} deg: {answer.message}"
     )
     pictured(arguments, design, answer)
-    return deliver(arguments, as_document(answer), _readable(answer), failure=failure)
+    return deliver(arguments, as_document(answer), _readable(answer, arguments.count), failure=failure)
 
 
 def as_document(answer: Spectrum) -> dict[str, Any]:
@@ -82,7 +82,7 @@ def as_document(answer: Spectrum) -> dict[str, Any]:
     }
 
 
-def _readable(answer: Spectrum) -> Iterator[str]:
+def _readable(answer: Spectrum, count: int) -> Iterator[str]:
     """Yield the lines of a short table."""
     yield described(answer.model, answer.settings, answer.effects)
     yield "displacement of the body at unit modal mass"
@@ -99,6 +99,11 @@ def _readable(answer: Spectrum) -> Iterator[str]:
         ]
     )
     yield from estimated(answer.estimate)
+    least = answer.estimate or {}
+    if least.get("frequency", 0.0) > least.get("accuracy", math.inf):
+        yield f"the accuracy of {least['accuracy']:g} is not reached by all frequencies"
+    if answer.converged and len(answer.frequency) < count:
+        yield f"{len(answer.frequency)} of {count} modes: the discretisation has no more"
     yield ending(answer.status, {}, answer.wall_s)
 
 

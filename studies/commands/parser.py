@@ -141,7 +141,7 @@ def names_of(known: Iterable[str]) -> Callable[[str], tuple[str, ...]]:
         given = tuple(text.split(","))
         for name in given:
             if name not in choices or given.count(name) > 1:
-                expected = f"one or more of {', '.join(choices)}, separated by commas"
+                expected = f"one or more of {', '.join(choices)}, each once, separated by commas"
                 raise argparse.ArgumentTypeError(f"got {name or 'nothing'}, expected {expected}")
         return given
 

@@ -14,6 +14,7 @@ from studies.cases.design import Design, flexural_scale
 from studies.cases.problem import Problem
 from studies.commands.answer import described, ending, estimated, headed, number, places, remarks
 from studies.commands.columns import (
+    ANGLE_FLOOR,
     ENERGY_FLOOR,
     FORCE_FLOOR,
     STRAIN_FLOOR,
@@ -150,7 +151,7 @@ def readable(design: Design, answer: Path) -> Iterator[str]:
     yield from _told(strength(design, answer))
     yield from (f"beyond the model: {each}" for each in worth(design, answer).outside)
     yield from estimated(answer.estimate)
-    yield from remarks(answer)
+    yield from remarks(answer, critical(design, answer))
     yield ending(answer.status, answer.counters, answer.wall_s)
 
 
@@ -227,7 +228,7 @@ def _told(found: Strength) -> Iterator[str]:
 
 def _state(load_factor: float, rotation: float) -> str:
     """Return which state it is, in degrees, or by its load."""
-    if math.isfinite(rotation) and rotation != 0.0:
+    if math.isfinite(rotation) and abs(rotation) > ANGLE_FLOOR:
         return f"at {math.degrees(rotation):.4g} deg"
     return f"at load factor {load_factor:.4g}"
 

@@ -51,22 +51,23 @@ def pictured(arguments: argparse.Namespace, design: Design, *answers: Answered) 
             for each in answers
             if each.solution is not None
         ],
+        arguments.plot,
     )
 
 
-def draw(arguments: argparse.Namespace, shown: "list[Shown]") -> None:
-    """Draw answers over one another where --plot says, and say where they are."""
+def draw(arguments: argparse.Namespace, shown: "list[Shown]", target: Path) -> None:
+    """Draw answers over one another in a file, and say where they are."""
     from studies.pictures.page import picture  # only who asks for a picture waits for matplotlib
     from studies.record.style import printed
 
     try:
-        write_whole(arguments.plot, printed(picture(shown), arguments.plot.suffix[1:].lower()))
+        write_whole(target, printed(picture(shown), target.suffix[1:].lower()))
     except BadInput as error:
-        print(f"studies: {arguments.plot}: nothing is drawn: {error}", file=sys.stderr)
+        print(f"studies: {target}: nothing is drawn: {error}", file=sys.stderr)
     else:
         taken = "-" in (arguments.json, getattr(arguments, "csv", None))
         stream = sys.stderr if taken else sys.stdout
-        print(f"{arguments.plot}: the picture", file=stream)
+        print(f"{target}: the picture", file=stream)
 
 
 def called(case: str, answer: Any) -> str:

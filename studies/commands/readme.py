@@ -32,7 +32,7 @@ def _published(store: Store) -> Iterable[str]:
 
 #: File -> block -> the lines that stand between its marks.
 BLOCKS: dict[Path, Mapping[str, Callable[[Store], Iterable[str]]]] = {
-    ROOT / "README.md": {"agreement": tables.short},
+    ROOT / "README.md": {"agreement": tables.short, "published": _published},
     ROOT / "docs" / "findings.md": {
         "paths": tables.paths,
         "swings": tables.swings,
@@ -40,7 +40,6 @@ BLOCKS: dict[Path, Mapping[str, Callable[[Store], Iterable[str]]]] = {
         "digits": _digits,
         "hard cases": lines,
         "sized": tables.sized,
-        "published": _published,
     },
     ROOT / "docs" / "cases.md": {
         "keys of a pivot": lambda store: page.pivot(),

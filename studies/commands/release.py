@@ -31,7 +31,7 @@ from typing import Any
 
 from studies.answers.adapters import answer_release
 from studies.answers.motion import Motion
-from studies.answers.pace import pace
+from studies.answers.moving import pace
 from studies.answers.settings import Settings
 from studies.cases.design import Design, flexural_scale
 from studies.cases.effects import DEFAULT
@@ -68,6 +68,9 @@ OPTIONS = ("step", "integrator", "accuracy")
 
 #: Parts of an estimate that are angles [rad].
 ANGLES = ("accuracy", "rotation", "time", "space")
+
+#: Energy in EI/L below which what moves is round-off, whose balance says nothing [1].
+STILL = 1e-15
 
 #: Lines of the table, beside the release itself.
 LINES = 20
@@ -201,7 +204,8 @@ def _readable(design: Design, answer: Motion) -> Iterator[str]:
     swing = answer.swing
     if len(answer.time):
         rate = f"{swing.value:.4f} Hz" if math.isfinite(swing.value) else f"-: {swing.reason}"
-        yield f"frequency {rate}; energy balanced to {answer.energy_error:.1e}"
+        moved = max(float(each.max()) for each in (kinetic, strain)) > STILL * flexural_scale(design)
+        yield f"frequency {rate}" + (f"; energy balanced to {answer.energy_error:.1e}" if moved else "")
     if math.isfinite(answer.rotation_error):
         yield f"rotation uncertain by {answer.rotation_error:.1e} rad, by the discretisation"
     if answer.estimate is not None:

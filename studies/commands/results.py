@@ -17,7 +17,7 @@ from studies.errors import BadInput
 from studies.record import style
 from studies.record.progress import Bar
 from studies.record.source import ROOT, source_hash
-from studies.record.store import Store, as_csv
+from studies.record.store import Store, same
 from studies.registry import STUDIES, selected, study_of
 
 #: Where the answers of interrupted studies are kept; not a result.
@@ -89,8 +89,9 @@ def verify(arguments: argparse.Namespace) -> int:
         python -m studies verify convergence/elements
 
     A name is a study, its last part, a group of studies or "all". Tables that differ from run to run, as
-    times do, are not compared, and nothing is drawn: only the note of the source that the results are of is
-    renewed. A study with another table is named and keeps what is stored. Exit code 0: all that could be
+    times do, are not compared, and columns that other work on the machine changes only to the digits that the
+    study states. Nothing is drawn: only the note of the source that the results are of is renewed. A study
+    with another table is named and keeps what is stored. Exit code 0: all that could be
     computed here is fresh; 1: a table differs; 2: bad input.
     """
     store, code = Store(arguments.results), 0
@@ -160,4 +161,4 @@ def _differing(stored: Tables, found: Tables, study: Study) -> list[str]:
     """Return the tables that are not as stored, of those that do not differ from run to run."""
     names = [name for name in {**stored, **found} if not study.varies(name)]
     both = {name for name in stored if name in found}
-    return [name for name in names if name not in both or as_csv(stored[name]) != as_csv(found[name])]
+    return [name for name in names if name not in both or not same(stored[name], found[name], study.digits)]

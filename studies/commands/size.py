@@ -1,38 +1,49 @@
-"""Size a pivot: least centre shift or least variation of stiffness at given range, stiffness and stress.
+"""Size a design: least centre shift, variation of stiffness or stress at given range, stiffness and stress.
 
     python -m studies size cross_axis_pivot --objective centre-shift --rotation-deg 45
     python -m studies size spring_steel_pivot --objective stiffness-variation --aspect 0.5
     python -m studies size large_steel_pivot --objective centre-shift --length-mm 300 --out best.toml
+    python -m studies size four_bar_of_flexures --objective stress --free section.thickness_m=1e-4:5e-4
 
-The case gives the material, the range to either side (its rotation), the loads that the pivot carries and the
-design to compare with. The wanted stiffness is its own at rotation 0 unless it is given; the allowable stress
-is the yield strength over the safety factor, or the case's own at the end of the range where no strength is
-known. Under loads both sides of the range are solved, the stress is held at both ends and before the body
-turns, and a design that buckles is none. Both strips are alike, with a rectangular section; they become
-neither thicker for their length than the case's nor wider than --aspect times their length; a dimension with
-one value is held. Gradients are exact; several starts show local optima. The optimum is solved once more by
-the finite elements in the limit of refinement, and --out writes it as a case file. A price is the change of
-the objective over that of a limit, in % over %. Exit code 0: an optimum was found; 2: bad input; 3: none was
-found, and then the table of the starts says how near they came.
+The case of a pivot gives the material, the range to either side (its rotation), the loads that it carries and
+the design to compare with. The wanted stiffness is its own at rotation 0 unless it is given; the allowable
+stress is the yield strength over the safety factor, or the case's own at the end of the range where no
+strength is known. Under loads both sides of the range are solved, the stress is held at both ends and before
+the body turns, and a design that buckles is none. Both strips are alike, with a rectangular section; they
+become neither thicker for their length than the case's nor wider than --aspect times their length; a
+dimension with one value is held. Gradients are exact; several starts show local optima. The optimum is solved
+once more by the finite elements in the limit of refinement, and --out writes it as a case file. A price is
+the change of the objective over that of a limit, in % over %. What the scene names is assembled: clamped
+widths, sections that flatten and roots too.
+
+Of a mechanism the numbers of its file that --free names are found, as `sweep` names them, in the file's unit;
+keys with commas share a value. Held is the stiffness of the driven body as it begins to turn, or, of a
+mechanism that follows its loads, how far its body goes. Exit code 0: an optimum was found; 2: bad input; 3:
+none was found, and then the table of the starts says how near they came.
 """
 
 import argparse
 import math
 import sys
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 from studies.answers.reference import NoReference
+from studies.cases.document import parsed
 from studies.cases.keys import LOADS_FIRST
 from studies.cases.problem import Problem
-from studies.cases.write import as_toml
+from studies.cases.write import as_toml, document_toml
 from studies.commands.answer import deliver, not_converged, require_target
 from studies.commands.arguments import CASE, JSON, OUT, ROTATION, option, turned_pivot
 from studies.commands.parser import Argument, command, positive, whole_number
-from studies.commands.sized import as_document, question, readable
-from studies.design.evaluate import PathEnds, answers, by_elements
+from studies.commands.sized import as_document, of_elements, question, readable, values_of
+from studies.design.evaluate import Answers, PathEnds, answers
+from studies.design.numbers import NumbersTask, by_sides, number_of
 from studies.design.optimise import Outcome, best, search, starts
-from studies.design.task import OBJECTIVES, Room, Task, sides_of, variables_of
+from studies.design.programme import Sizing, own
+from studies.design.task import OBJECTIVES, STRESS, Room, Task, sides_of, variables_of
 from studies.errors import BadInput
 from studies.record.files import require_writable_file, write_whole
 from studies.record.progress import Bar
@@ -69,10 +80,27 @@ def _interval(most: float) -> Callable[[str], tuple[float, float]]:
 
 @command(
     CASE,
-    Argument("--objective", choices=list(OBJECTIVES), required=True, help="what is to be least"),
+    Argument(
+        "--objective",
+        choices=[*OBJECTIVES, STRESS],
+        required=True,
+        help="what is to be least: of a mechanism stress or stiffness-variation",
+    ),
+    Argument(
+        "--free",
+        action="append",
+        metavar="KEY[=LOW:HIGH]",
+        help="a number of a mechanism's file to be found, repeatable (default bounds: half to twice its own)",
+    ),
     ROTATION.but(help="range to either side, in deg (default: the case's)"),
     Argument(
         "--stiffness", type=positive, metavar="K", help="at rotation 0, in N m/rad (default: the case's own)"
+    ),
+    Argument(
+        "--travel-mm",
+        type=positive,
+        metavar="U",
+        help="of the body of a mechanism that follows its loads, in mm (default: the case's own)",
     ),
     Argument(
         "--max-stress-MPa",
@@ -110,22 +138,25 @@ def _interval(most: float) -> Callable[[str], tuple[float, float]]:
 )
 def main(arguments: argparse.Namespace) -> int:
     """Search, check, report; return the exit code."""
-    start = _start(arguments)
+    content = parsed(arguments.case)
+    mechanism = isinstance(content.get("strips"), list)
+    _refuse_others(arguments, mechanism)
+    given = _numbers(content, arguments) if mechanism else _start(arguments)
     require_target(arguments)
     if arguments.out is not None:
         require_writable_file(arguments.out)
     try:
-        task = _task(start, arguments)
+        task: Sizing = _task(given, arguments) if isinstance(given, Problem) else _asked(given, arguments)
         with Bar("size") as bar:
             outcomes = search(task, starts(task, arguments.starts), bar)
         found = best(outcomes)
-        checked = None if found is None else by_elements(found.problem)[0]
+        checked = None if found is None else of_elements(task, found)
     except (PathEnds, NoReference) as error:
         return not_converged(error)
     failure = _failure(outcomes) if found is None else None
     document = as_document(task, outcomes, found, checked)
     if arguments.out is not None and found is not None:
-        write_whole(arguments.out, as_toml(found.problem, _remarks(task, arguments)).encode())
+        write_whole(arguments.out, _file(task, found, _remarks(task, arguments)).encode())
         print(f"studies: {arguments.out}: the optimum as a case file", file=sys.stderr)
     return deliver(arguments, document, readable(task, outcomes, found, checked), failure=failure)
 
@@ -146,27 +177,83 @@ def _start(arguments: argparse.Namespace) -> Problem:
     return start
 
 
-def _remarks(task: Task, arguments: argparse.Namespace) -> list[str]:
+def _refuse_others(arguments: argparse.Namespace, mechanism: bool) -> None:
+    """Raise BadInput for an option of the other kind of design."""
+    others = ["free", "travel_mm"]
+    if mechanism:
+        others = [attribute for attribute, *_ in BOUNDS.values()]
+    for name in others:
+        if vars(arguments).get(name) is not None:
+            expected = "--free KEY=LOW:HIGH for a mechanism" if mechanism else "it for a mechanism only"
+            raise BadInput(f"{option(name)}: got it for {Path(arguments.case).stem}, expected {expected}")
+    wrong = "centre-shift" if mechanism else STRESS
+    if arguments.objective == wrong:
+        kinds = "stress or stiffness-variation" if mechanism else " or ".join(OBJECTIVES)
+        raise BadInput(f"--objective: got {wrong}, expected {kinds} for {Path(arguments.case).stem}")
+    if mechanism and not arguments.free:
+        raise BadInput("--free: got none, expected a number of the mechanism's file, such as section.width_m")
+
+
+def _numbers(content: dict[str, Any], arguments: argparse.Namespace) -> NumbersTask:
+    """Return the numbers of a mechanism that are to be found, over the path that is asked for."""
+    where = str(arguments.case)
+    document = by_sides(content, arguments.free)
+    if arguments.rotation is not None:
+        document["drive"] = document.get("drive", {}) | {"rotation_deg": math.degrees(arguments.rotation)}
+    numbers = tuple(number_of(where, document, text) for text in arguments.free)
+    task = NumbersTask(where=where, document=document, numbers=numbers, objective=arguments.objective)
+    if task.objective not in task.objectives:
+        raise BadInput(f"--objective: got {task.objective}, expected stress of what follows its loads")
+    if not task.start.bodies:
+        raise BadInput(f"{where}: bodies: got none, expected one whose stiffness or travel is held")
+    other = "travel_mm" if task.held == "stiffness" else "stiffness"
+    if getattr(arguments, other) is not None:
+        expected = option("stiffness" if other == "travel_mm" else "travel_mm")
+        raise BadInput(f"{option(other)}: got it for {Path(where).stem}, expected {expected}")
+    task.require_numbers()
+    return task
+
+
+def _asked(task: NumbersTask, arguments: argparse.Namespace) -> NumbersTask:
+    """Return the question with what is held and allowed: as given, or the case's own."""
+    case: Answers = own(task)
+    travel = arguments.travel_mm
+    wanted = arguments.stiffness if travel is None else 1e-3 * travel
+    strengths = [strip.yield_strength for strip in task.start.strips]
+    known = [each for each in strengths if each is not None]
+    strength = min(known) if len(known) == len(strengths) else None
+    allowed = _allowable(strength, arguments, case.largest(STRESS))
+    return replace(task, stiffness=case.stiffness if wanted is None else wanted, allowable_stress=allowed)
+
+
+def _file(task: Sizing, found: Outcome, remarks: list[str]) -> str:
+    """Return the optimum as a case file."""
+    if isinstance(task, NumbersTask):
+        return document_toml(task.content(values_of(task, found)), remarks)
+    return as_toml(found.problem, remarks)
+
+
+def _remarks(task: Sizing, arguments: argparse.Namespace) -> list[str]:
     """Return the comment of the optimum's case file: what it is the optimum of."""
     least = f"Sized from {Path(arguments.case).stem} for the {question(task)[0]}"
     return [f"{least},", f"{question(task)[1]}."]
 
 
-def _allowable(start: Problem, arguments: argparse.Namespace, own: float) -> float:
-    """Return the stress that is allowed [Pa], from what is given and the case's `own`."""
+def _allowable(strength: float | None, arguments: argparse.Namespace, own: float) -> float:
+    """Return the stress that is allowed [Pa], from what is given, the yield strength and the case's `own`."""
     factor, wanted = arguments.safety_factor, arguments.max_stress_MPa
     if factor is not None and wanted is not None:
         raise BadInput(f"--safety-factor: got {factor:g} beside --max-stress-MPa, expected one of them")
-    if factor is not None and start.yield_strength is None:
+    if factor is not None and strength is None:
         expected = "material.yield_strength_Pa in the case, or --max-stress-MPa"
         raise BadInput(f"--safety-factor: got {factor:g} without a yield strength, expected {expected}")
     if wanted is not None:
         return float(1e6 * wanted)
-    return own if start.yield_strength is None else start.yield_strength / (factor or 1.0)
+    return own if strength is None else strength / (factor or 1.0)
 
 
 def _task(start: Problem, arguments: argparse.Namespace) -> Task:
-    own = answers(start)
+    case = answers(start)
     bounds = Room().bounds(start)
     for name, (attribute, unit, _, _) in BOUNDS.items():
         given = getattr(arguments, attribute)
@@ -176,8 +263,8 @@ def _task(start: Problem, arguments: argparse.Namespace) -> Task:
     return Task(
         start=start,
         objective=arguments.objective,
-        stiffness=own.stiffness if arguments.stiffness is None else arguments.stiffness,
-        allowable_stress=_allowable(start, arguments, float(abs(own.stress).max())),
+        stiffness=case.stiffness if arguments.stiffness is None else arguments.stiffness,
+        allowable_stress=_allowable(start.yield_strength, arguments, case.largest(STRESS)),
         bounds=bounds,
         least_slenderness=length / thickness,
         largest_aspect=arguments.aspect,

@@ -5,15 +5,19 @@ from collections.abc import Iterator
 from typing import Any
 
 from studies.cases.problem import Problem
-from studies.design.evaluate import Measured, answers, of_spline
+from studies.design.evaluate import Answers, by_elements, of_spline
+from studies.design.numbers import NumbersTask, quantities, quantities_by_elements
 from studies.design.optimise import Outcome, numbered
-from studies.design.task import PLAIN, VARIABLES, Task, variables_of
+from studies.design.programme import Sizing, own
+from studies.design.task import PLAIN, Task, variables_of
+from studies.effects.beyond import SECTIONS
 
 #: What the table calls the quantities, with the factor to the unit it shows them in.
 SHOWN = {
     "centre-shift": ("centre shift [mm]", 1e3),
     "stiffness-variation": ("variation of stiffness [%]", 1e2),
     "stiffness": ("stiffness [N m / rad]", 1.0),
+    "travel": ("travel [mm]", 1e3),
     "stress": ("stress [MPa]", 1e-6),
 }
 #: What the JSON calls them.
@@ -21,31 +25,46 @@ KEYS = {
     "centre-shift": "largest_centre_shift_m",
     "stiffness-variation": "stiffness_variation",
     "stiffness": "stiffness_Nm_per_rad",
+    "travel": "travel_m",
     "stress": "max_stress_Pa",
 }
 DIMENSIONS = ("length_m", "inclination_deg", "crossing_ratio", "thickness_m", "width_m")
 
 
+Quantities = dict[str, float]
+
+
+def of_splines(task: Sizing, found: Answers) -> Quantities:
+    """Return what the splines say of a design, by name."""
+    return of_spline(found).quantities() if isinstance(task, Task) else quantities(task, found)
+
+
+def of_elements(task: Sizing, found: Outcome) -> Quantities:
+    """Return what the finite elements say of it; NoReference where they do not reach the end of its path."""
+    if isinstance(task, Task):
+        return by_elements(found.problem)[0].quantities()
+    return quantities_by_elements(task, found.problem)
+
+
 def as_document(
-    task: Task, outcomes: list[Outcome], found: Outcome | None, checked: Measured | None
+    task: Sizing, outcomes: list[Outcome], found: Outcome | None, checked: Quantities | None
 ) -> dict[str, Any]:
     """Return the answer as the JSON object of the command."""
     optimum = None
     if found is not None and checked is not None:
         optimum = {
-            **_dimensions(found.problem),
-            "area_m2": found.problem.area,
-            "second_moment_m4": found.problem.second_moment_of_area,
-            "spline": _named(of_spline(found.answers)),
+            **_dimensions(task, found),
+            **_section(found.problem),
+            "spline": _named(of_splines(task, found.answers)),
             "finite_elements": _named(checked),
             "active": [{"constraint": each.name, "price": each.price} for each in found.active],
         }
     return {
         "objective": task.objective,
-        "stiffness_Nm_per_rad": task.stiffness,
+        KEYS[_held(task)]: task.stiffness,
         "allowable_stress_Pa": task.allowable_stress,
-        "bounds": {name: list(task.bounds[name]) for name in VARIABLES},
-        "case": _named(of_spline(answers(task.start))),
+        "bounds": {name: list(task.bounds[name]) for name in task.variables},
+        "case": _named(of_splines(task, own(task))),
         "optimum": optimum,
         "starts": [
             {
@@ -55,73 +74,115 @@ def as_document(
                 "kkt_residual": each.residual,
                 "paths_solved": each.solved,
                 "message": each.message,
-                **_dimensions(each.problem),
+                **_dimensions(task, each),
             }
             for number, each in zip(numbered(outcomes), outcomes, strict=True)
         ],
     }
 
 
-def question(task: Task) -> tuple[str, str]:
+def question(task: Sizing) -> tuple[str, str]:
     """Return what is asked, in two lines."""
-    degrees = abs(math.degrees(task.start.rotation))
-    loads = [name for name in task.start.effects.names if name not in PLAIN]
+    names, rotation = task.start.effects.names, task.start.rotation
+    loads = [name for name in names if name not in PLAIN]
+    taken = [name.replace("_", " ") for name in SECTIONS if name in names]
+    degrees = (
+        "" if rotation is None else f" over {'+-' * isinstance(task, Task)}{math.degrees(rotation):.4g} deg"
+    )
+    wanted = f"{task.stiffness:.6g} N m/rad"
+    if _held(task) == "travel":
+        wanted = f"a travel of {1e3 * task.stiffness:.6g} mm"
     return (
-        f"least {task.objective.replace('-', ' ')} over +-{degrees:.4g} deg"
-        + (f" under {', '.join(loads)}" if loads else ""),
-        f"at {task.stiffness:.6g} N m/rad and at most {task.allowable_stress / 1e6:.6g} MPa",
+        f"least {task.objective.replace('-', ' ')}{degrees}"
+        + (f" under {', '.join(loads)}" if loads else "")
+        + (f" with {', '.join(taken)}" if taken else ""),
+        f"at {wanted} and at most {task.allowable_stress / 1e6:.6g} MPa",
     )
 
 
-def _named(measured: Measured) -> dict[str, float]:
-    return {KEYS[name]: value for name, value in measured.quantities().items()}
+def _held(task: Sizing) -> str:
+    return task.held if isinstance(task, NumbersTask) else "stiffness"
 
 
-def _dimensions(problem: Problem) -> dict[str, float]:
-    values = dict(zip(DIMENSIONS, map(float, variables_of(problem)), strict=True))
-    return values | {"inclination_deg": math.degrees(problem.inclination)}
+def _named(measured: Quantities) -> dict[str, float]:
+    return {KEYS[name]: value for name, value in measured.items()}
+
+
+def _dimensions(task: Sizing, found: Outcome) -> dict[str, Any]:
+    """Return the dimensions of a pivot, or the numbers of a mechanism in the file's units."""
+    if isinstance(task, NumbersTask):
+        return {"numbers": dict(zip(task.variables, map(float, values_of(task, found)), strict=True))}
+    values = dict(zip(DIMENSIONS, map(float, variables_of(found.problem)), strict=True))
+    return values | {"inclination_deg": math.degrees(found.problem.inclination)}
+
+
+def _section(design: Any) -> dict[str, float]:
+    """Return the section of a pivot as case files have it."""
+    if not isinstance(design, Problem):
+        return {}
+    return {"area_m2": design.area, "second_moment_m4": design.second_moment_of_area}
+
+
+def values_of(task: Sizing, found: Outcome) -> Any:
+    """Return the variables (N,) of an outcome."""
+    return task.low + task.span * found.at[:-1]
 
 
 def readable(
-    task: Task, outcomes: list[Outcome], found: Outcome | None, checked: Measured | None
+    task: Sizing, outcomes: list[Outcome], found: Outcome | None, checked: Quantities | None
 ) -> Iterator[str]:
     """Yield the lines of a table: case, optimum and finite elements, what holds it back, and the starts."""
-    own = of_spline(answers(task.start)).quantities()
+    case = of_splines(task, own(task))
     yield from question(task)
     if found is not None and checked is not None:
-        yield from _comparison(task, own, found, checked)
+        yield from _comparison(task, case, found, checked)
     yield ""
-    yield f"{'start':>5} {'optimum':>8} {'over case':>10} {'paths':>6}  {_heading()}"
+    yield f"{'start':>5} {'optimum':>8} {'over case':>10} {'paths':>6}  {_heading(task)}"
     for i, (number, each) in enumerate(zip(numbered(outcomes), outcomes, strict=True)):
-        share = each.objective / own[task.objective]
-        line = f"{i:>5} {number or '-':>8} {share:10.4f} {each.solved:>6}  {_line(each.problem)}"
+        share = each.objective / case[task.objective]
+        line = (
+            f"{i:>5} {number or '-':>8} {share:10.4f} {each.solved:>6}  {_line(task, values_of(task, each))}"
+        )
         yield f"{line}  {each.message}".rstrip()
 
 
-def _comparison(task: Task, own: dict[str, float], found: Outcome, checked: Measured) -> Iterator[str]:
-    spline, fe = of_spline(found.answers).quantities(), checked.quantities()
+def _comparison(task: Sizing, case: Quantities, found: Outcome, fe: Quantities) -> Iterator[str]:
+    spline = of_splines(task, found.answers)
     yield ""
     yield f"{'':<28}{'case':>12}{'sized':>12}{'in FE':>12}"
     for key, (label, factor) in SHOWN.items():
-        yield f"{label:<28}{factor * own[key]:12.5g}{factor * spline[key]:12.5g}{factor * fe[key]:12.5g}"
-    yield f"{own[task.objective] / spline[task.objective]:.4g} times less than the case's"
+        if key in case:
+            yield f"{label:<28}{factor * case[key]:12.5g}{factor * spline[key]:12.5g}{factor * fe[key]:12.5g}"
+    yield f"{case[task.objective] / spline[task.objective]:.4g} times less than the case's"
     yield ""
-    yield f"{'':<10}{_heading()}"
-    yield f"{'case':<10}{_line(task.start)}"
-    yield f"{'sized':<10}{_line(found.problem)}"
+    if isinstance(task, NumbersTask):
+        yield from (f"{place:>5}: {name}" for place, name in enumerate(task.variables, start=1))
+    yield f"{'':<10}{_heading(task)}"
+    yield f"{'case':<10}{_line(task, task.own)}"
+    yield f"{'sized':<10}{_line(task, values_of(task, found))}"
     yield ""
-    active = (f"{each.name.replace('_', ' ')} ({each.price:+.2g})" for each in found.active)
+    active = (f"{_said(task, each.name)} ({each.price:+.2g})" for each in found.active)
     yield f"held back by, with prices: {', '.join(active)}"
-    held = [name.replace("_", " ") for name, span in zip(VARIABLES, task.span, strict=True) if span == 0.0]
+    spans = zip(task.variables, task.span, strict=True)
+    held = [_said(task, name) for name, span in spans if span == 0.0]
     if held:
         yield f"held as asked: {', '.join(held)}"
 
 
-def _heading() -> str:
+def _said(task: Sizing, name: str) -> str:
+    """Return the name of a constraint as it is read: keys of a file stand as they are."""
+    return name if isinstance(task, NumbersTask) else name.replace("_", " ")
+
+
+def _heading(task: Sizing) -> str:
+    if isinstance(task, NumbersTask):
+        return "".join(f"{place:>12}" for place in range(1, len(task.numbers) + 1))
     return f"{'L mm':>9}{'incl. deg':>11}{'crossing':>10}{'h mm':>9}{'b mm':>9}"
 
 
-def _line(problem: Problem) -> str:
-    length, _, ratio, thickness, width = variables_of(problem)
-    inclination = math.degrees(problem.inclination)
-    return f"{1e3 * length:9.3f}{inclination:11.3f}{ratio:10.4f}{1e3 * thickness:9.4f}{1e3 * width:9.3f}"
+def _line(task: Sizing, values: Any) -> str:
+    if isinstance(task, NumbersTask):
+        return "".join(f"{value:12.6g}" for value in values)
+    length, inclination, ratio, thickness, width = values
+    form = f"{1e3 * length:9.3f}{math.degrees(inclination):11.3f}{ratio:10.4f}"
+    return f"{form}{1e3 * thickness:9.4f}{1e3 * width:9.3f}"

@@ -36,7 +36,7 @@ from studies.answers.response import MechanismResponse, Response
 from studies.answers.settings import Settings
 from studies.cases.design import Design
 from studies.cases.problem import Problem
-from studies.commands.answer import deliver, require_target
+from studies.commands.answer import deliver, passed, require_target
 from studies.commands.arguments import (
     ACCURACY,
     CSV,
@@ -49,8 +49,9 @@ from studies.commands.arguments import (
     chosen_design,
     driven,
 )
+from studies.commands.columns import fixed
 from studies.commands.parser import command
-from studies.commands.path_output import as_document, as_frame, readable
+from studies.commands.path_output import as_document, as_frame, critical, readable
 from studies.commands.picture import PLOT, pictured
 from studies.record.progress import Bar
 
@@ -99,10 +100,15 @@ def _stopped(design: Design, answer: Path) -> str:
     """Return how far a path came, why it stopped, and what mends a discretisation that is too coarse."""
     given = answer.resolution and not answer.estimate
     mend = "; without --control-points their number is chosen" if given else ""
+    points = critical(design, answer)
+    if points and "buckle" not in answer.message:
+        mend += f"; it lost its stability before, first at {passed(points[0])}"
+    if answer.model == "spline" and not given:
+        mend += "; --model fe may go further"
     if isinstance(answer, Response) and isinstance(design, Problem) and design.rotation:
         last = math.degrees(answer.rotation[-1]) if len(answer.rotation) else 0.0
         mend = f"{answer.message}{mend}"
-        return f"reached {last:.3f} of {math.degrees(design.rotation):.3f} deg: {mend}"
+        return f"reached {fixed(last, 3)} of {math.degrees(design.rotation):.3f} deg: {mend}"
     return f"{answer.message}{mend}"
 
 

@@ -6,9 +6,10 @@ from matplotlib.axes import Axes
 from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 
+from studies.answers.reference import QUANTITIES
 from studies.answers.settings import SplineSettings
 from studies.cases.problem import named_case
-from studies.convergence.sweep import QUANTITIES, reaching, spline_row
+from studies.convergence.sweep import reaching, spline_row
 from studies.engine.findings import Finding, Tables, percent
 from studies.engine.study import Part, Study
 from studies.paper.formulations import CASE, refined

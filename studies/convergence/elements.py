@@ -7,9 +7,9 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from studies.answers.reference import Reference
+from studies.answers.reference import QUANTITIES, Reference
 from studies.cases.problem import named_case
-from studies.convergence.sweep import QUANTITIES, element_sweep
+from studies.convergence.sweep import element_sweep
 from studies.engine.findings import Claim, Tables
 from studies.engine.study import Answer, Part, Study
 from studies.paper.formulations import CASE
@@ -29,7 +29,7 @@ def _refined(element: str) -> Answer:
 
 def figure(tables: Tables) -> Figure:
     """Draw the errors over the number of elements, one panel a quantity."""
-    drawn = page(9.5, 3.9)
+    drawn = page(11.5, 3.9)
     panels = drawn.subplots(1, len(QUANTITIES))
     for panel, quantity in zip(panels, QUANTITIES, strict=True):
         for element, look in ELEMENTS.items():
@@ -59,6 +59,7 @@ def _limits(element: str, limit: Reference) -> list[dict[str, Any]]:
         "com_y_m": (limit.centre[-1, 1], "trajectory"),
         "torque_Nm": (limit.torque[-1], "torque"),
         "stiffness_Nm_per_rad": (limit.stiffness[-1], "stiffness"),
+        "max_stress_Pa": (limit.stress[-1], "stress"),
     }
     return [
         {

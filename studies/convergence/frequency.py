@@ -32,14 +32,14 @@ def _shifts(tables: Tables) -> Figure:
     for stretch, look in (("consistent", LOOKS["n = 4, as the paper"]), ("mixed", LOOKS[SPLINE])):
         rows = tables["control_points"].query(f"stretch == '{stretch}'")
         style = {"color": look.colour, "marker": look.marker}
-        points.semilogy(rows["control_points"], rows["shift"].abs(), **style, label=f"{stretch} stretch")
+        points.semilogy(rows["control_points"], rows["shift"].abs(), **style, label=stretch)
         predicted = rows["shift_from_statics"].abs()
-        label = f"{stretch}, from statics alone"
+        label = f"{stretch}, statics"
         points.semilogy(
             rows["control_points"], predicted, **(style | {"marker": ""}), linestyle=":", label=label
         )
     points.set(xlabel="control points a strip", ylabel="|shift of the frequency| [1]", title="Swing from 90°")
-    points.legend(loc="upper right")
+    points.legend(loc="upper right", fontsize=7)
     rows = tables["elements"]
     meshes.loglog(rows["elements"], rows["shift"].abs(), "s--", color=BLACK)
     meshes.set(xlabel="elements a strip", title="Swing from 90°")

@@ -15,10 +15,9 @@ from matplotlib.figure import Figure
 from spline_model.pivot import SLIDE_STIFFNESS, swinging_slide_stiffness
 from studies.answers.adapters import answer_static
 from studies.answers.frequency import swing_frequency
-from studies.answers.reference import errors
+from studies.answers.reference import QUANTITIES, errors
 from studies.answers.settings import SplineSettings
 from studies.cases.problem import named_case
-from studies.convergence.sweep import QUANTITIES
 from studies.engine.findings import Finding, Tables
 from studies.engine.study import Answer, Part, Study
 from studies.paper import formulations

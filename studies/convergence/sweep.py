@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 
 from studies.answers.adapters import answer_path
 from studies.answers.metrics import observed_order
-from studies.answers.reference import Reference, errors, limit_of
+from studies.answers.reference import QUANTITIES, Reference, errors, limit_of
 from studies.answers.response import MechanismResponse, Response
 from studies.answers.settings import FeSettings, SplineSettings
 from studies.cases.design import Design
@@ -17,7 +17,6 @@ from studies.kinds import Progress
 from studies.record.progress import silent
 from studies.record.style import LOOKS, page, uncertain
 
-QUANTITIES = ("trajectory", "torque", "stiffness")
 ERROR_COLUMNS = tuple(f"error_{name}" for name in QUANTITIES)
 
 #: Meshes above this one are answered but not extrapolated from: their stiffness carries too much round-off.
@@ -40,8 +39,9 @@ def spline_row(problem: Design, setting: SplineSettings, against: Reference) -> 
     """Return what a spline is, how it ended, its errors, its work.
 
     Columns: basis, measure, stretch, control_points, axial_modes (none for consistent stretch), status,
-    reached_rad (end of the converged part of the path), error_trajectory, error_torque, error_stiffness
-    (largest magnitudes over the path; empty when the path was not completed), newton_iterations, message.
+    reached_rad (end of the converged part of the path), error_trajectory, error_torque, error_stiffness,
+    error_stress (largest magnitudes over the path; empty when the path was not completed),
+    newton_iterations, message.
     """
     return _described(setting) | _outcome(answer_path(problem, setting), against)
 
@@ -51,7 +51,7 @@ def element_sweep(
 ) -> tuple[pd.DataFrame, Reference]:
     """Return one row a mesh with its errors against the limit of the meshes themselves, and that limit.
 
-    Columns: element, elements, status, reached_rad, the three errors, their observed orders (from the pair of
+    Columns: element, elements, status, reached_rad, the four errors, their observed orders (from the pair of
     this mesh and the one before), newton_iterations, message.
 
     Raises:
@@ -83,12 +83,14 @@ def with_orders(table: pd.DataFrame, count: str) -> pd.DataFrame:
     return table
 
 
-def reaching(table: pd.DataFrame, count: str, accuracy: float) -> int | None:
-    """Return the smallest `count` from which on all errors of trajectory and torque are within `accuracy`.
+def reaching(
+    table: pd.DataFrame, count: str, accuracy: float, quantities: Iterable[str] = ("trajectory", "torque")
+) -> int | None:
+    """Return the smallest `count` from which on all errors of these quantities are within `accuracy`.
 
     None when no count of the table does; a failed row counts as an error of any size.
     """
-    worst = table[["error_trajectory", "error_torque"]].max(axis=1, skipna=False).fillna(np.inf)
+    worst = table[[f"error_{name}" for name in quantities]].max(axis=1, skipna=False).fillna(np.inf)
     within = (worst <= accuracy)[::-1].cummin()[::-1]
     counts = table.loc[within, count]
     return None if counts.empty else int(counts.min())
@@ -122,7 +124,7 @@ def drawn(splines: pd.DataFrame, elements: pd.DataFrame, limit: Reference) -> Fi
         splines, elements: rows of `spline_sweep` and `element_sweep`.
         limit: the reference, for its uncertainty.
     """
-    figure = page(9.5, 6.0)
+    figure = page(11.5, 6.0)
     panels = figure.subplots(2, len(QUANTITIES), sharey="col")
     for column, quantity in enumerate(QUANTITIES):
         above, below = panels[:, column]

@@ -1,7 +1,6 @@
 """A design's answers with exact gradients, and what checks them: differences, and the finite elements."""
 
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 
@@ -12,15 +11,18 @@ from studies.answers.reference import reference
 from studies.answers.response import Response, centre_shift
 from studies.answers.settings import SplineSettings
 from studies.cases.problem import Problem
-from studies.design.task import CENTRE_SHIFT, VARIABLES, VARIATION, Task, sides_of, variables_of
+from studies.design.task import (
+    CENTRE_SHIFT,
+    STATIONS,
+    STRESS,
+    VARIABLES,
+    VARIATION,
+    sides_of,
+)
 from studies.kinds import Array
 
 #: Control points of the strips: an optimum's answers nearly cancel, and 8 miss the least variation by 8 %.
 CONTROL_POINTS = 10
-#: Where fibre stresses are constrained, reference arc length over L.
-STATIONS = np.linspace(0.0, 1.0, 21)
-#: Fibre stresses of a state: two strips, both fibres.
-FIBRES = 4 * len(STATIONS)
 
 
 class PathEnds(RuntimeError):
@@ -29,16 +31,16 @@ class PathEnds(RuntimeError):
 
 @dataclass(frozen=True, kw_only=True)
 class Answers:
-    """What a design answers over S states of its range behind the first, with gradients by variables (5,).
+    """What a design answers over S states of its range behind the first, with gradients by variables (N,).
 
     The first state has rotation 0, and all loads; under loads the states of the other side follow.
 
     Attributes:
-        stiffness: at the first state [N m / rad]; by_stiffness (5,).
-        square_shift: (S,) square of the centre shift since then [m^2]; by_square_shift (S, 5).
-        variation: (S,) change of stiffness over that of the first state, signed [1]; by_variation (S, 5).
+        stiffness: at the first state [N m / rad]; by_stiffness (N,).
+        square_shift: (S,) square of the centre shift since then [m^2]; by_square_shift (S, N).
+        variation: (S,) change of stiffness over that of the first state, signed [1]; by_variation (S, N).
         stress: (F,) signed fibre stresses at the end of each side, of the first state too under loads [Pa];
-            by_stress (F, 5).
+            by_stress (F, N).
         rotation: (S + 1,) from the first state [rad]; largest_stress (S + 1,) [Pa].
         evaluations: factorisations and back-substitutions of the gradients.
     """
@@ -59,6 +61,8 @@ class Answers:
         """Return the largest value of an objective over the range [m or 1]."""
         if objective == CENTRE_SHIFT:
             return float(np.sqrt(self.square_shift.max()))
+        if objective == STRESS:
+            return float(np.abs(self.stress).max())
         return float(np.abs(self.variation).max())
 
 
@@ -133,10 +137,6 @@ def _to_one_side(problem: Problem, rotation: float, control_points: int) -> tupl
         return path.rotation, sensitivities(pivot, path, parameters=VARIABLES, stations=STATIONS)
 
 
-#: First step of the differences, of a variable's bounds, and how often it is halved.
-STEP, LEVELS = 0.01, 4
-
-
 @dataclass(frozen=True, kw_only=True)
 class Measured:
     """What an answer of either model says of a design; each over the range, both sides.
@@ -188,50 +188,3 @@ def by_elements(problem: Problem) -> tuple[Measured, Response]:
         stress=behind_first(begin, [limit.finest.max_stress for limit in limits]),
     )
     return measured, limits[0].finest
-
-
-def gradient_error(task: Task, problem: Problem, levels: int = LEVELS) -> float:
-    """Return the largest error of the gradients that the optimiser was given, against differences [1].
-
-    Central differences of halved steps, extrapolated; relative to the largest
-    derivative of the same rows by any variable, over the bounds.
-    """
-    at = variables_of(problem)
-    exact = answers(problem)
-    errors: list[float] = []
-    for i in range(len(VARIABLES)):
-        rows = []
-        for level in range(levels):
-            step = STEP / 2**level * task.span * (np.arange(len(at)) == i)
-            up, down = (_rows(answers(task.problem(at + sign * step))) for sign in (1.0, -1.0))
-            rows.append({name: (up[name] - down[name]) / (2.0 * step[i]) for name in up})
-        for name, gradient in _gradients(exact).items():
-            expected = _limit([row[name] for row in rows])
-            largest = float((np.abs(gradient) * task.span).max())
-            errors.append(task.span[i] * float(np.abs(gradient[:, i] - expected).max()) / largest)
-    return max(errors)
-
-
-def _rows(found: Answers) -> dict[str, Any]:
-    return {
-        CENTRE_SHIFT: found.square_shift,
-        VARIATION: found.variation,
-        "stiffness": np.array([found.stiffness]),
-        "stress": found.stress,
-    }
-
-
-def _gradients(found: Answers) -> dict[str, Any]:
-    return {
-        CENTRE_SHIFT: found.by_square_shift,
-        VARIATION: found.by_variation,
-        "stiffness": found.by_stiffness[None, :],
-        "stress": found.by_stress,
-    }
-
-
-def _limit(row: list[np.ndarray]) -> np.ndarray:
-    """Return the limit of differences whose steps are halved, by Richardson's extrapolation."""
-    for order in range(1, len(row)):
-        row = [(4**order * row[i + 1] - row[i]) / (4**order - 1) for i in range(len(row) - 1)]
-    return row[0]

@@ -1,5 +1,6 @@
 """Figures of the sizing: the designs to scale with their answers, and the search for them."""
 
+import textwrap
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -101,20 +102,21 @@ def _geometry(figure: SubFigure, tables: Mapping[str, pd.DataFrame], names: Sequ
                 clamps = shape.query("station == 0")["x_m"] - origin
                 panel.plot(1e3 * clamps, [0.0, 0.0], color=GREY, linewidth=2.5, zorder=1)
         sizes = (
-            f"L {1e3 * design['length_m']:.1f}, h {1e3 * design['thickness_m']:.2f}, "
-            f"b {1e3 * design['width_m']:.1f} mm\n"
-            f"{np.degrees(design['inclination_rad']):.0f}°, crossing at {design['crossing_ratio']:.3f} L"
+            f"L {1e3 * design['length_m']:.1f}, t {1e3 * design['thickness_m']:.2f},\n"
+            f"b {1e3 * design['width_m']:.1f} mm, {np.degrees(design['inclination_rad']):.0f}°\n"
+            f"λ = {design['crossing_ratio']:.3f}"
         )
         panel.set(title=_broken(name), xlabel="x [mm]", aspect="equal")
-        panel.annotate(sizes, (0.5, 0.99), xycoords="axes fraction", ha="center", va="top", fontsize=7)
-        panel.set_ylim(-8.0, 1.4 * highest)
+        text = panel.annotate(sizes, (0.5, 0.99), xycoords="axes fraction", ha="center", va="top", fontsize=7)
+        text.set_in_layout(False)
+        panel.set_ylim(-8.0, 1.9 * highest)
         panel.set_axisbelow(True)
     panels[0].set_ylabel("y [mm]")
 
 
 def _broken(name: str) -> str:
-    """Return a name in two lines, broken at its comma."""
-    return name.replace(", ", ",\n")
+    """Return a name in short lines."""
+    return textwrap.fill(name, 14)
 
 
 def _thick(line: np.ndarray, thickness: float) -> np.ndarray:

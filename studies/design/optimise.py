@@ -1,15 +1,16 @@
 """Sizing from several starts: sequential quadratic programming with exact gradients."""
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from scipy.optimize import minimize
 from scipy.stats import qmc
 
 from studies.cases.problem import Problem
-from studies.design.evaluate import Answers, answers
-from studies.design.programme import Active, Programme, conditions
-from studies.design.task import CENTRE_SHIFT, OBJECTIVES, Task, variables_of
+from studies.design.evaluate import Answers
+from studies.design.programme import Active, Programme, Sizing, conditions, own
+from studies.design.task import CENTRE_SHIFT
 from studies.kinds import Array, Progress
 
 MOST_ITERATIONS = 100
@@ -30,7 +31,7 @@ class Outcome:
     """Where one start led.
 
     Attributes:
-        start: scaled variables (5,) of the start; at: (6,) where it ended, t last.
+        start: scaled variables (N,) of the start; at: (N + 1,) where it ended, t last.
         converged: whether it is feasible and meets the Karush-Kuhn-Tucker conditions; message: otherwise why.
         problem: the design there; answers: its own.
         objective: largest value over the range [m or 1]; violation: of the worst row [1].
@@ -43,7 +44,7 @@ class Outcome:
     at: Array
     converged: bool
     message: str
-    problem: Problem
+    problem: Any
     answers: Answers
     objective: float
     violation: float
@@ -54,21 +55,21 @@ class Outcome:
     failed: int
 
 
-def starts(task: Task, count: int, seed: int = 8) -> Array:
-    """Return scaled starts (count, 5): the task's own design, clipped to the bounds, and Sobol's points."""
+def starts(task: Sizing, count: int, seed: int = 8) -> Array:
+    """Return scaled starts (count, N): the task's own design, clipped to the bounds, and Sobol's points."""
     held = task.span == 0.0
-    own = np.clip((variables_of(task.start) - task.low) / np.where(held, 1.0, task.span), 0.0, 1.0)
-    spread = qmc.Sobol(5, seed=seed).random_base2(int(np.ceil(np.log2(max(count - 1, 1)))))
+    own = np.clip((task.own - task.low) / np.where(held, 1.0, task.span), 0.0, 1.0)
+    spread = qmc.Sobol(len(own), seed=seed).random_base2(int(np.ceil(np.log2(max(count - 1, 1)))))
     return np.vstack((own, spread[: count - 1]))
 
 
-def optimise(task: Task, start: Array) -> Outcome | None:
-    """Minimise from a scaled start (5,); None where the start itself has no answer.
+def optimise(task: Sizing, start: Array) -> Outcome | None:
+    """Minimise from a scaled start (N,); None where the start itself has no answer.
 
     An end that is feasible but not stationary is gone on from, with a fresh approximation of the curvature.
     """
-    given = answers(task.start)
-    programme = Programme(task=task, scale={name: given.largest(name) for name in OBJECTIVES})
+    given = own(task)
+    programme = Programme(task=task, scale={name: given.largest(name) for name in task.objectives})
     if programme.answers(start) is None:
         return None
     history = [_progress(programme, start)]
@@ -77,7 +78,7 @@ def optimise(task: Task, start: Array) -> Outcome | None:
         outcome = _run(programme, start, at, history)
         if outcome is None or outcome.converged or outcome.violation > FEASIBLE:
             break
-        at = outcome.at[:5]
+        at = outcome.at[:-1]
     return outcome
 
 
@@ -87,11 +88,11 @@ def _run(programme: Programme, start: Array, at: Array, history: list[tuple[floa
     if begin is None:
         return None
     found = minimize(
-        lambda x: (x[5], np.eye(6)[5]),
+        lambda x: (x[-1], np.eye(len(x))[-1]),
         np.append(at, _t(programme, begin)),
         jac=True,
         method="SLSQP",
-        bounds=[(0.0, 1.0)] * 5 + [(0.0, None)],
+        bounds=[(0.0, 1.0)] * len(at) + [(0.0, None)],
         constraints=[
             {"type": "ineq", "fun": programme.inequalities, "jac": programme.inequality_jacobian},
             {"type": "eq", "fun": programme.equality, "jac": programme.equality_jacobian},
@@ -102,8 +103,8 @@ def _run(programme: Programme, start: Array, at: Array, history: list[tuple[floa
     return _outcome(programme, start, found.x, str(found.message), np.array(history))
 
 
-def search(task: Task, begin: Array, progress: Progress) -> list[Outcome]:
-    """Optimise from scaled starts (K, 5); those without an answer are left out."""
+def search(task: Sizing, begin: Array, progress: Progress) -> list[Outcome]:
+    """Optimise from scaled starts (K, N); those without an answer are left out."""
     found = []
     for done, start in enumerate(begin):
         progress(done, len(begin))
@@ -121,15 +122,15 @@ def best(outcomes: list[Outcome]) -> Outcome | None:
     if not good:
         return None
     least = min(each.objective for each in good) * (1.0 + SAME)
-    return max(
-        (each for each in good if each.objective <= least), key=lambda each: each.problem.crossing_ratio
-    )
+    least_ones = [each for each in good if each.objective <= least]
+    return max(least_ones, key=lambda each: getattr(each.problem, "crossing_ratio", -each.objective))
 
 
 def numbered(outcomes: list[Outcome]) -> list[int]:
     """Return the number of every outcome's optimum, the best 1; 0 for what is none.
 
-    Two are one if objective, inclination and crossing ratio agree: sizes may then lie on a line of equals. A
+    Two are one if objective, inclination and crossing ratio agree: sizes may then lie on a line of equals; of
+    a mechanism, if all its numbers do. A
     design and its mirror image, with ground and body exchanged (crossing ratio r and 1 - r), have the same
     stiffness, shift and stress and count as one.
     """
@@ -146,6 +147,8 @@ def numbered(outcomes: list[Outcome]) -> list[int]:
 
 
 def _place(outcome: Outcome) -> Array:
+    if not isinstance(outcome.problem, Problem):
+        return np.append(outcome.objective, 1.0 + outcome.at[:-1])
     ratio = outcome.problem.crossing_ratio
     return np.array([outcome.objective, outcome.problem.inclination, min(ratio, 1.0 - ratio)])
 
@@ -167,7 +170,7 @@ def _progress(programme: Programme, y: Array) -> tuple[float, float]:
 
 def _violation(programme: Programme, y: Array) -> float:
     """Return the worst violation of what does not depend on t."""
-    whole = np.append(y[:5], np.inf)
+    whole = np.append(y[: len(programme.task.span)], np.inf)
     worst = max(float(-programme.inequalities(whole).min()), float(np.abs(programme.equality(y)).max()))
     return max(worst, 0.0)
 
@@ -177,7 +180,7 @@ def _outcome(programme: Programme, start: Array, at: Array, message: str, histor
     found = programme.answers(at)
     if found is None:
         return None
-    at = np.append(at[:5], _t(programme, found))
+    at = np.append(at[: len(task.span)], _t(programme, found))
     violation = _violation(programme, at)
     active, residual = conditions(programme, at)
     converged = violation <= FEASIBLE and residual <= STATIONARY

@@ -1,6 +1,6 @@
 """A sizing question as a smooth programme: scaled variables, constraints below zero, exact Jacobians.
 
-The unknowns are the variables over their bounds, y in [0, 1]^5, and the bound t of the objective:
+The unknowns are the N variables over their bounds, y in [0, 1]^N, and the bound t of the objective:
 
     min t   with   objective at every state <= t,   stiffness = wanted,   |fibre stress| <= allowable, ...
 
@@ -14,12 +14,25 @@ from dataclasses import dataclass, field
 import numpy as np
 from scipy.optimize import nnls
 
-from studies.design.evaluate import FIBRES, Answers, PathEnds, answers
-from studies.design.task import CENTRE_SHIFT, OBJECTIVES, VARIABLES, Task
+from studies.design.evaluate import Answers, PathEnds, answers
+from studies.design.numbers import NumbersTask
+from studies.design.task import CENTRE_SHIFT, STRESS, VARIATION, Task
 from studies.kinds import Array
+
+Sizing = Task | NumbersTask
 
 #: Stands for every row of a design without an answer: far outside, so that a line search comes back.
 OUTSIDE = -1e3
+
+
+def asked(task: Sizing, values: Array) -> Answers:
+    """Return what a task's design answers with these variables (N,); errors as of `answers`."""
+    return answers(task.problem(values)) if isinstance(task, Task) else task.answers(values)
+
+
+def own(task: Sizing) -> Answers:
+    """Return what the start of a task answers."""
+    return answers(task.start) if isinstance(task, Task) else task.answers(task.own)
 
 
 @dataclass(kw_only=True)
@@ -29,23 +42,23 @@ class Programme:
     Counts designs that were solved and those whose path ended early; keeps the last design's answer.
     """
 
-    task: Task
+    task: Sizing
     scale: dict[str, float]
     solved: int = 0
     failed: int = 0
     _last: tuple[bytes, Answers | None] = field(default=(b"", None), repr=False)
 
     def variables(self, y: Array) -> Array:
-        """Return the design's variables (5,) in their units."""
-        return self.task.low + self.task.span * y[:5]
+        """Return the design's variables (N,) in their units, of y (N + 1,), or (N,)."""
+        return self.task.low + self.task.span * y[: len(self.task.span)]
 
     def answers(self, y: Array) -> Answers | None:
         """Return the design's answers; None where its path ends early."""
-        key = y[:5].tobytes()
+        key = y[: len(self.task.span)].tobytes()
         if key != self._last[0]:
             self.solved += 1
             try:
-                found = answers(self.task.problem(self.variables(y)))
+                found = asked(self.task, self.variables(y))
             except PathEnds:
                 self.failed += 1
                 found = None
@@ -57,7 +70,7 @@ class Programme:
         return self._rows(y)[0]
 
     def inequality_jacobian(self, y: Array) -> Array:
-        """Return their Jacobian (R, 6)."""
+        """Return their Jacobian (R, N + 1)."""
         return self._rows(y)[1]
 
     def equality(self, y: Array) -> Array:
@@ -66,42 +79,42 @@ class Programme:
         return np.array([OUTSIDE if found is None else found.stiffness / self.task.stiffness - 1.0])
 
     def equality_jacobian(self, y: Array) -> Array:
-        """Return its gradient (1, 6)."""
+        """Return its gradient (1, N + 1)."""
         found = self.answers(y)
-        row = np.zeros((1, 6))
+        row = np.zeros((1, len(self.task.span) + 1))
         if found is not None:
-            row[0, :5] = found.by_stiffness * self.task.span / self.task.stiffness
+            row[0, :-1] = found.by_stiffness * self.task.span / self.task.stiffness
         return row
 
     def row_names(self) -> list[str]:
         """Return what each row of `inequalities` holds."""
-        sides = len(self.task.sides)
-        states = self.task.start.increments * sides
-        stressed = sides if sides == 1 else sides + 1
-        counts = {name: states if name == CENTRE_SHIFT else 2 * states for name in self._held()}
-        rows = [name for name, count in counts.items() for _ in range(count)]
-        return [*rows, *["stress"] * 2 * FIBRES * stressed, "slenderness", "aspect"]
+        states, fibres = self.task.states, 2 * self.task.fibres
+        counts = {CENTRE_SHIFT: states, VARIATION: 2 * states, STRESS: fibres}
+        rows = [name for name in self._held() for _ in range(counts[name])]
+        shape = list(self.task.shape(self.task.low)[2])
+        return [*rows, *["allowable stress" if STRESS in rows else "stress"] * fibres, *shape]
 
     def _held(self) -> list[str]:
         """Return the objectives with rows: the one to be least and those with a limit."""
-        return [name for name in OBJECTIVES if name == self.task.objective or name in self.task.limits]
+        task = self.task
+        return [name for name in task.objectives if name == task.objective or name in task.limits]
 
     def _rows(self, y: Array) -> tuple[Array, Array]:
         found = self.answers(y)
         if found is None:
             size = len(self.row_names())
-            return np.full(size, OUTSIDE), np.zeros((size, 6))
+            return np.full(size, OUTSIDE), np.zeros((size, len(self.task.span) + 1))
         values, jacobians = [], []
         for name in self._held():
-            value, jacobian = self._objective(name, found, y[5])
+            value, jacobian = self._objective(name, found, y[-1])
             values.append(value)
             jacobians.append(jacobian)
         span, allowed = self.task.span, self.task.allowable_stress
         stress, by_stress = found.stress / allowed, found.by_stress * span / allowed
         values += [1.0 - stress, 1.0 + stress]
         jacobians += [_widened(-by_stress), _widened(by_stress)]
-        value, jacobian = self._shape(y)
-        return np.concatenate([*values, value]), np.concatenate([*jacobians, jacobian])
+        value, jacobian, _ = self.task.shape(self.variables(y))
+        return np.concatenate([*values, value]), np.concatenate([*jacobians, _widened(jacobian)])
 
     def _objective(self, name: str, found: Answers, t: float) -> tuple[Array, Array]:
         """Return the rows of one objective: below t, or below its limit."""
@@ -116,24 +129,55 @@ class Programme:
                 found.by_square_shift,
             )
             return bound - value, _widened(-by * span / scale**2, slope)
-        value, by = found.variation / scale, found.by_variation * span / scale
+        value, by = (
+            (found.stress, found.by_stress) if name == STRESS else (found.variation, found.by_variation)
+        )
+        value, by = value / scale, by * span / scale
         rows = np.concatenate((bound - value, bound + value))
         return rows, np.concatenate((_widened(-by, slope), _widened(by, slope)))
 
-    def _shape(self, y: Array) -> tuple[Array, Array]:
-        """Return the rows of slenderness, L / h, and of aspect, b / L: linear in the variables."""
-        length, _, _, thickness, width = self.variables(y)
-        whole = self.task.low[0] + self.task.span[0]
-        rows = np.zeros((2, 6))
-        rows[0, [0, 3]] = self.task.span[[0, 3]] * (1.0, -self.task.least_slenderness) / whole
-        rows[1, [0, 4]] = self.task.span[[0, 4]] * (self.task.largest_aspect, -1.0) / whole
-        slender = length - self.task.least_slenderness * thickness
-        return np.array([slender, self.task.largest_aspect * length - width]) / whole, rows
-
 
 def _widened(rows: Array, last: float = 0.0) -> Array:
-    """Return Jacobian rows (R, 5) with the column of t."""
+    """Return Jacobian rows (R, N) with the column of t."""
     return np.column_stack((rows, np.full(len(rows), last)))
+
+
+#: First step of differences, of a variable's bounds, and how often it is halved.
+STEP, LEVELS = 0.01, 4
+
+
+def gradient_error(task: Sizing, values: Array, levels: int = LEVELS) -> float:
+    """Return the largest error of the gradients that the optimiser is given at a design (N,), against
+    differences [1].
+
+    Central differences of halved steps, extrapolated; relative to the largest derivative of the same rows by
+    any variable, over the bounds.
+    """
+    given = own(task)
+    programme = Programme(task=task, scale={name: given.largest(name) for name in task.objectives})
+    at = (values - task.low) / np.where(task.span == 0.0, 1.0, task.span)
+    y = np.append(at, 1.0)
+    exact = np.vstack((programme.inequality_jacobian(y), programme.equality_jacobian(y)))
+    errors = np.zeros_like(exact)
+    for i, unit in enumerate(np.eye(len(y))):
+        found = []
+        for step in (STEP / 2**level * unit for level in range(levels)):
+            up, down = (
+                np.concatenate((programme.inequalities(each), programme.equality(each)))
+                for each in (y + step, y - step)
+            )
+            found.append((up - down) / (2.0 * step[i]))
+        errors[:, i] = np.abs(exact[:, i] - _limit(found))
+    names = np.array([*programme.row_names(), "stiffness"])
+    parts = [(errors[names == name].max(), np.abs(exact[names == name]).max()) for name in set(names)]
+    return float(max(error / largest for error, largest in parts if largest > 0.0))
+
+
+def _limit(row: list[Array]) -> Array:
+    """Return the limit of differences whose steps are halved, by Richardson's extrapolation."""
+    for order in range(1, len(row)):
+        row = [(4**order * row[i + 1] - row[i]) / (4**order - 1) for i in range(len(row) - 1)]
+    return row[0]
 
 
 #: Margin below which a row is active [1].
@@ -156,21 +200,21 @@ class Active:
 
 
 def conditions(programme: Programme, y: Array) -> tuple[tuple[Active, ...], float]:
-    """Return the active constraints of a point y (6,) and the residual of the conditions.
+    """Return the active constraints of a point y (N + 1,) and the residual of the conditions.
 
     The gradient of t, which is 1, as a combination of the active rows' gradients with multipliers of at
     least zero, but for the equality's: the residual is the length of what is left over.
     """
     names, jacobian = _active(programme, y)
     equal = programme.equality_jacobian(y)[0]
-    found, residual = nnls(np.column_stack([*jacobian, equal, -equal]), np.eye(6)[5])
+    found, residual = nnls(np.column_stack([*jacobian, equal, -equal]), np.eye(len(y))[-1])
     multipliers = [*found[:-2], found[-2] - found[-1]]
     summed: dict[str, float] = {}
     for name, multiplier in zip([*names, "stiffness"], multipliers, strict=True):
         summed[name] = summed.get(name, 0.0) + float(multiplier)
     squared = 2.0 if programme.task.objective == CENTRE_SHIFT else 1.0
     active = tuple(
-        Active(name=name, multiplier=m, price=m * _per_limit(programme, y, name) / (squared * y[5]))
+        Active(name=name, multiplier=m, price=m * _per_limit(programme, y, name) / (squared * y[-1]))
         for name, m in summed.items()
         if name != programme.task.objective and m != 0.0
     )
@@ -183,31 +227,25 @@ def _active(programme: Programme, y: Array) -> tuple[list[str], list[Array]]:
     labels = programme.row_names()
     reached = np.flatnonzero(rows < ACTIVE)
     names, gradients = [labels[i] for i in reached], list(jacobian[reached])
-    for i, name in enumerate(VARIABLES):
+    for i, name in enumerate(programme.task.variables):
         if programme.task.span[i] == 0.0:
             continue
         for end, where in ((0.0, "at its least"), (1.0, "at its most")):
             if abs(y[i] - end) < ACTIVE:
                 names.append(f"{name} {where}")
-                gradients.append((1.0 - 2.0 * end) * np.eye(6)[i])
+                gradients.append((1.0 - 2.0 * end) * np.eye(len(y))[i])
     return names, gradients
 
 
 def _per_limit(programme: Programme, y: Array, name: str) -> float:
     """Return d(t) over a relative change of a limit for a multiplier of one: minus the change of its row."""
-    task, values = programme.task, dict(zip(VARIABLES, programme.variables(y), strict=True))
-    whole = task.bounds["length"][1]
+    task = programme.task
     variable, _, end = name.partition(" at its ")
-    if variable in VARIABLES:
+    if variable in task.variables:
         low, high = task.bounds[variable]
         return float((low if end == "least" else -high) / (high - low))
     if name in task.limits:
         bound = task.limits[name] / programme.scale[name]
         return -2.0 * bound**2 if name == CENTRE_SHIFT else -bound
-    changes: dict[str, float] = {
-        "stiffness": 1.0,
-        "stress": -1.0,
-        "slenderness": task.least_slenderness * values["thickness"] / whole,
-        "aspect": -task.largest_aspect * values["length"] / whole,
-    }
-    return changes[name]
+    fixed = {"stiffness": 1.0, "stress": -1.0, "allowable stress": -1.0}
+    return (fixed | task.shape(programme.variables(y))[2])[name]

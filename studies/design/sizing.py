@@ -14,8 +14,10 @@ from spline_model.statics import solve_statics
 from studies.answers.response import Response
 from studies.cases.problem import Problem, named_case
 from studies.design import figures
-from studies.design.evaluate import Answers, Measured, answers, by_elements, gradient_error, of_spline
+from studies.design.evaluate import Answers, Measured, answers, by_elements, of_spline
 from studies.design.optimise import Outcome, best, numbered, search, starts
+from studies.design.programme import gradient_error
+from studies.design.sections import CLAIMS, off, resized
 from studies.design.task import (
     ALLOWABLE,
     BASELINES,
@@ -26,6 +28,7 @@ from studies.design.task import (
     STARTS,
     TABLE_ONE,
     TRADE,
+    UNITS,
     VARIATION,
     WIDE,
     Question,
@@ -40,7 +43,6 @@ from studies.record.timing import measure
 
 #: Control points of what is timed, and how often it is.
 TIMED, REPEAT = (6, 8, 10), 21
-UNITS = ("length_m", "inclination_rad", "crossing_ratio", "thickness_m", "width_m")
 
 
 @cache
@@ -75,7 +77,7 @@ def _searched(name: str) -> Answer:
     """Return a question's optimum and how it was found.
 
     Tables: starts (a row a start: where it led); history (a row an iteration); active (constraints that hold
-    the optimum, and what they cost); the others as of `described`.
+    the optimum, and what they cost); resized (sized anew as plates with roots); the others as of `described`.
     """
     task, outcomes = _found(name)
     optimum = _optimum(name)
@@ -86,6 +88,7 @@ def _searched(name: str) -> Answer:
         "starts": _starts(name, task, outcomes),
         "history": _history(name, outcomes),
         "active": _active(name, optimum),
+        "resized": resized(name, task, optimum),
     }
 
 
@@ -94,7 +97,7 @@ def described(name: str, problem: Problem, found: Answers) -> dict[str, Any]:
 
     Tables: designs (variables, objectives, factor); curves (a row a model and rotation); shapes
     (finite-element stations at rest and at the end); checks (splines against finite elements, gradients
-    against differences).
+    against differences); sections (what each effect of the third dimension changes).
     """
     measured, response = by_elements(problem)
     curves = [_curve(name, "spline", of_spline(found)), _curve(name, "FE", measured)]
@@ -103,6 +106,7 @@ def described(name: str, problem: Problem, found: Answers) -> dict[str, Any]:
         "curves": pd.concat(curves),
         "shapes": _shapes(name, response),
         "checks": _checks(name, found, measured),
+        "sections": off(name, problem, found),
     }
 
 
@@ -112,12 +116,12 @@ def _trade() -> list[dict[str, Any]]:
     It lies between the optima of both objectives, and begins at the last one too.
     """
     rows: list[dict[str, Any]] = []
-    begin = [_optimum(name).at[:5] for name in WIDE]
+    begin = [_optimum(name).at[:-1] for name in WIDE]
     for limit in TRADE:
         task = _task(QUESTIONS[WIDE[0]], variation=limit)
         found = best(search(task, np.array(begin), silent))
         rows.append(_trade_row(limit, found))
-        begin = begin[:2] if found is None else [*begin[:2], found.at[:5]]
+        begin = begin[:2] if found is None else [*begin[:2], found.at[:-1]]
     return rows
 
 
@@ -189,7 +193,7 @@ def _starts(name: str, task: Task, outcomes: list[Outcome]) -> list[dict[str, An
         {
             "question": name,
             "start": number,
-            **{f"start_{key}": value for key, value in _in_units(task, each.start)},
+            **dict(zip((f"start_{key}" for key in UNITS), task.low + task.span * each.start, strict=True)),
             **dict(zip(UNITS, variables_of(each.problem), strict=True)),
             "optimum": optimum,
             "objective": each.objective,
@@ -202,10 +206,6 @@ def _starts(name: str, task: Task, outcomes: list[Outcome]) -> list[dict[str, An
         }
         for number, (each, optimum) in enumerate(zip(outcomes, numbered(outcomes), strict=True))
     ]
-
-
-def _in_units(task: Task, scaled: np.ndarray) -> list[tuple[str, float]]:
-    return list(zip(UNITS, task.low + task.span * scaled, strict=True))
 
 
 def _history(name: str, outcomes: list[Outcome]) -> list[dict[str, Any]]:
@@ -252,7 +252,7 @@ def _gradient(name: str, task: Task, outcome: Outcome) -> dict[str, Any]:
         "against": "differences, extrapolated",
         "value": math.nan,
         "reference": math.nan,
-        "error": gradient_error(task, outcome.problem),
+        "error": gradient_error(task, variables_of(outcome.problem)),
     }
 
 
@@ -286,6 +286,7 @@ STUDY = Study(
         Part(ask=lambda: {"trade": _trade()}),
         Part(at=lambda: TIMED, ask=timed, alone=True),
     ),
+    claims=CLAIMS,
     figures={
         "sizing": lambda tables: figures.designs(tables, TABLE_ONE),
         "sizing_spring_steel": lambda tables: figures.designs(tables, SPRING_STEEL),

@@ -13,14 +13,19 @@ from studies.cases.strips import of_sides
 
 #: Variables of a sizing, as keywords of the sensitivities; both strips are alike.
 VARIABLES = ("length", "inclination", "crossing_ratio", "thickness", "width")
+#: What tables call them.
+UNITS = ("length_m", "inclination_rad", "crossing_ratio", "thickness_m", "width_m")
 
-CENTRE_SHIFT, VARIATION = "centre-shift", "stiffness-variation"
+CENTRE_SHIFT, VARIATION, STRESS = "centre-shift", "stiffness-variation", "stress"
 #: What may be made least: its meaning, over the whole range to both sides.
 OBJECTIVES: Mapping[str, str] = {
     CENTRE_SHIFT: "largest displacement of the body's point in the strips' crossing at rest [m]",
     VARIATION: "largest change of the rotational stiffness, relative to that at rest [1]",
 }
-
+#: Where fibre stresses are constrained, reference arc length over L.
+STATIONS = np.linspace(0.0, 1.0, 21)
+#: Fibre stresses of a pivot's state: two strips, both fibres.
+FIBRES = 4 * len(STATIONS)
 
 #: Effects under which both sides of a range are mirror images, as both strips are alike.
 PLAIN = {"bending", "stretching", "clamped_width", "anticlastic", "root_compliance", *MOTION_ONLY}
@@ -31,8 +36,29 @@ def sides_of(problem: Problem) -> tuple[float, ...]:
     return (1.0,) if set(problem.effects.names) <= PLAIN else (1.0, -1.0)
 
 
+class Bounded:
+    """A question whose N variables have `bounds`: lowest and highest value of each by its name."""
+
+    bounds: Mapping[str, tuple[float, float]]
+
+    @property
+    def variables(self) -> tuple[str, ...]:
+        """Names of the variables (N,)."""
+        return tuple(self.bounds)
+
+    @property
+    def low(self) -> NDArray[np.float64]:
+        """Lowest values of the variables (N,)."""
+        return np.array([low for low, _ in self.bounds.values()])
+
+    @property
+    def span(self) -> NDArray[np.float64]:
+        """Widths of the bounds (N,), 0 of a variable that is held."""
+        return np.array([high - low for low, high in self.bounds.values()])
+
+
 @dataclass(frozen=True, kw_only=True)
-class Task:
+class Task(Bounded):
     """One question about one pivot.
 
     Args:
@@ -40,7 +66,7 @@ class Task:
         objective: a key of `OBJECTIVES`.
         stiffness: wanted rotational stiffness at rotation 0, under the loads [N m / rad].
         allowable_stress: of the extreme fibres at the ends of the range, and before it under loads [Pa].
-        bounds: lowest and highest value of every variable, SI and radians.
+        bounds: lowest and highest value of every variable in the order of `VARIABLES`, SI and radians.
         least_slenderness: of the strips, L / h [1]: below, shear counts, which the strips do not have.
         largest_aspect: of the strips, b / L [1]: above, a strip is a plate.
         limits: largest value of an objective that is not the one to be least, by its name.
@@ -61,14 +87,46 @@ class Task:
         return sides_of(self.start)
 
     @property
-    def low(self) -> NDArray[np.float64]:
-        """Lowest values of the variables (5,)."""
-        return np.array([self.bounds[name][0] for name in VARIABLES])
+    def own(self) -> NDArray[np.float64]:
+        """Variables of the start (5,)."""
+        return variables_of(self.start)
 
     @property
-    def span(self) -> NDArray[np.float64]:
-        """Widths of the bounds (5,), 0 of a variable that is held."""
-        return np.array([self.bounds[name][1] for name in VARIABLES]) - self.low
+    def objectives(self) -> tuple[str, ...]:
+        """What may be made least of a pivot."""
+        return tuple(OBJECTIVES)
+
+    @property
+    def fibres(self) -> int:
+        """Fibre stresses that are held: at the end of each side, under loads before the body turns too."""
+        return FIBRES * (1 if len(self.sides) == 1 else len(self.sides) + 1)
+
+    @property
+    def states(self) -> int:
+        """States behind the first, of all sides."""
+        return self.start.increments * len(self.sides)
+
+    def shape(
+        self, values: NDArray[np.float64]
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64], dict[str, float]]:
+        """Return the rows of slenderness, L / h, and of aspect, b / L, linear in the variables (5,), over the
+        longest length; their Jacobian by the scaled variables (2, 5); and their changes over relative ones of
+        the limits."""
+        length, _, _, thickness, width = values
+        whole = self.low[0] + self.span[0]
+        rows = np.zeros((2, len(VARIABLES)))
+        rows[0, [0, 3]] = self.span[[0, 3]] * (1.0, -self.least_slenderness) / whole
+        rows[1, [0, 4]] = self.span[[0, 4]] * (self.largest_aspect, -1.0) / whole
+        changes = {
+            "slenderness": self.least_slenderness * thickness / whole,
+            "aspect": -self.largest_aspect * length / whole,
+        }
+        slender = length - self.least_slenderness * thickness
+        return np.array([slender, self.largest_aspect * length - width]) / whole, rows, changes
+
+    def begun_at(self, start: Problem) -> "Task":
+        """Return the same question about another design."""
+        return replace(self, start=start)
 
     def problem(self, variables: NDArray[np.float64]) -> Problem:
         """Return the design with these variables (5,) [m, rad, 1, m, m]."""

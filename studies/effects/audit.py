@@ -8,6 +8,7 @@ import numpy as np
 
 from studies.answers.settings import SplineSettings
 from studies.cases.design import Design
+from studies.effects.beyond import Price, prices
 from studies.effects.outcome import Answer, Outcome, Run, Unanswered, answered, outcome, run_of, timed
 from studies.effects.variants import Variant, beside, full_scene, without
 from studies.kinds import Progress
@@ -31,6 +32,7 @@ class Audit:
         tolerance: allowed change [1]. run: what every scene was asked.
         full: the full scene, with no change. rows: one effect left out or simplified each.
         tried: scenes without several effects, for the cheapest.
+        beyond: what planar beams leave out, and the scene too, at its price.
         cheapest: the cheapest scene within the tolerance, answered once more; the full one if there is none.
         seconds: median times of the full and of the cheapest scene, in turn in one run [s].
     """
@@ -40,6 +42,7 @@ class Audit:
     full: Outcome
     rows: tuple[Outcome, ...]
     tried: tuple[Outcome, ...]
+    beyond: tuple[Price, ...]
     cheapest: Outcome
     seconds: tuple[float, float]
 
@@ -86,6 +89,7 @@ def audit(design: Design, settings: SplineSettings, tolerance: float, progress: 
         full=full,
         rows=(*others[: len(rows)], *upset),
         tried=tuple(others[len(rows) :]),
+        beyond=tuple(prices(whole)),
         cheapest=_outcome(cheapest.variant, design, run, base).timed(duel[1]),
         seconds=duel,
     )

@@ -121,8 +121,8 @@ def answered(design: Design, run: Run, full: Answer | None = None) -> Answer:
     Raises:
         BadInput: what the model refuses. Unanswered: a path that stopped early, and why.
     """
-    static = _reached(answer_path(design, run.settings))
-    mode = float(_reached(answer_modes(design, run.settings, count=1)).frequency[0])
+    static = reached(answer_path(design, run.settings))
+    mode = float(reached(answer_modes(design, run.settings, count=1)).frequency[0])
     turned = slice(
         -design.increments - 1, None
     )  # as the body turns: a scene without loads has no states before
@@ -133,7 +133,7 @@ def answered(design: Design, run: Run, full: Answer | None = None) -> Answer:
     motion = answer_release(design, run.settings, duration=run.duration, step=run.step)
     if full is not None and not motion.converged:
         return replace(answer, stopped=True, note=f"motion: {motion.message}")
-    _reached(motion)
+    reached(motion)
     driven = bool(design.rotation)
     return replace(
         answer,
@@ -184,7 +184,7 @@ def outcome(variant: Variant, design: Design, run: Run, full: Answer) -> Outcome
 Reached = TypeVar("Reached", Response | MechanismResponse, Spectrum, Motion)
 
 
-def _reached(answer: Reached) -> Reached:
+def reached(answer: Reached) -> Reached:
     """Return the answer; Unanswered unless it is complete."""
     if not answer.converged:
         raise Unanswered(answer.message)

@@ -7,9 +7,11 @@ import numpy as np
 
 from studies.answers.adapters import answer_modes
 from studies.answers.settings import SplineSettings
+from studies.cases.design import named_design
 from studies.cases.problem import Problem, named_case
 from studies.effects import figures
 from studies.effects.audit import Audit, audit
+from studies.effects.beyond import ALL, SHEAR, prices
 from studies.effects.outcome import Outcome
 from studies.effects.variants import Variant, size_of, without
 from studies.engine.findings import Claim, Finding, Tables
@@ -24,6 +26,18 @@ TOLERANCE = 1e-3
 COUNTS = range(4, 9)
 #: Mass of the body, and with it its moment of inertia, over that of Table 1.
 MASSES = np.geomspace(0.03, 30.0, 13)
+
+#: Designs for which what planar beams leave out is priced, by their cases; sized ones are in `design/sizing`.
+PRICED = {
+    "Table 1": CASE,
+    "spring steel": "spring_steel_pivot",
+    "titanium": "titanium_pivot",
+    "large steel": "large_steel_pivot",
+    "silicon": "silicon_pivot",
+    "polymer": "polymer_pivot",
+    "living hinge": "living_hinge",
+    "four-bar linkage": "four_bar_of_flexures",
+}
 
 STRETCHING, INERTIA = "stretching", "strip_inertia"
 
@@ -50,6 +64,25 @@ def _audited(name: str) -> Answer:
         "timings": _times(name, found),
         "cheapest": _cheapest(name, found),
     }
+
+
+def _priced(name: str) -> list[dict[str, Any]]:
+    """Return what each effect that planar beams leave out is worth for a design, a row an effect."""
+    return [
+        {
+            "design": name,
+            "effect": row.effect,
+            "status": row.status,
+            "trajectory": row.trajectory,
+            "stiffness": row.stiffness,
+            "torque": row.torque,
+            "stress": row.stress,
+            "first_mode": row.mode,
+            "largest": row.largest,
+            "reason": row.reason,
+        }
+        for row in prices(named_design(PRICED[name]))
+    ]
 
 
 def _with_body(problem: Problem, factor: float) -> Problem:
@@ -185,9 +218,10 @@ def _exponent(tables: Tables) -> list[dict[str, Any]]:
 
 
 STUDY = Study(
-    cases=(CASE,),
+    cases=tuple(PRICED.values()),
     parts=(
         Part(at=designs, ask=_audited, alone=True),
+        Part(at=lambda: PRICED, ask=lambda name: {"beyond": _priced(name)}),
         # highest frequency and explicit step with and without stretching
         Part(at=lambda: COUNTS, ask=lambda n: {"steps": _steps(n)}),
         # shift of the first mode by massless strips
@@ -201,6 +235,14 @@ STUDY = Study(
             rows=lambda tables: tables["worth"].query("status == 'converged'"),
             value="largest",
             most=TOLERANCE,
+        ),
+        Claim(
+            claim="A planar beam without shear is within 1 % of one that has it, and of three dimensions",
+            formulation="{design}, {effect}",
+            quantity="the largest change of path, stiffness, torque, stress and first mode",
+            rows=lambda tables: tables["beyond"][tables["beyond"]["effect"].isin((ALL, SHEAR))],
+            value="largest",
+            most=0.01,
         ),
         Claim(
             claim="Without stretching the largest stable explicit step is at least twice as long",

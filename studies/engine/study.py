@@ -8,6 +8,7 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from studies.engine.findings import Finding, Tables
+from studies.record.store import Digits
 
 Row = dict[str, Any]
 #: What one asking gives to tables, by their name: a row, rows, findings or a table of its own.
@@ -46,6 +47,7 @@ class Study:
         claims, claims_of_time: of all tables, the findings; those that differ from run to run apart.
         figures: name -> what draws it from the tables as they come back from their files.
         varying: tables that differ from run to run, beside those whose name says time.
+        digits: columns that other work on the machine changes in their last digits, and how many hold.
         missing: says in a line what this machine lacks for it, and nothing where it can be run.
     """
 
@@ -56,6 +58,7 @@ class Study:
     claims_of_time: tuple[Callable[[Tables], Iterable[Finding]], ...] = ()
     figures: Mapping[str, Callable[[Tables], Figure]]
     varying: tuple[str, ...] = ()
+    digits: Mapping[str, Digits] = field(default_factory=dict)
     missing: Callable[[], str] = str
 
     def varies(self, table: str) -> bool:

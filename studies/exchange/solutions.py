@@ -10,7 +10,7 @@ from studies.answers.motion import Motion
 from studies.answers.response import Answered, assembled
 from studies.answers.spectrum import Spectrum
 from studies.cases.design import Design
-from studies.cases.mechanism_keys import GROUND
+from studies.cases.keys import GROUND
 from studies.cases.problem import Problem
 from studies.errors import BadInput
 from studies.kinds import Array
@@ -94,6 +94,10 @@ def solved_fields(model: Model, asked: Any, result: Any, about: dict[str, Any]) 
 
 def _path(model: Model, asked: Any, result: Any, about: dict[str, Any]) -> Fields:
     driven = not np.isnan(result.torque).all()
+    along = strip_arrays(model.static_fields(asked, result.states))
+    # as the solution has them: by balance of moments, where a spline has chosen its control points
+    own = {name: np.asarray(getattr(result, name), dtype=float) for name in ("axial_force", "bending_moment")}
+    along |= {name: forces for name, forces in own.items() if forces.shape == along[name].shape}
     return Fields(
         **about,
         **_ended(result),
@@ -104,7 +108,7 @@ def _path(model: Model, asked: Any, result: Any, about: dict[str, Any]) -> Field
         torque=np.asarray(result.torque) if driven else None,
         stiffness=np.asarray(result.stiffness) if driven else None,
         energies=_energies(result, OF_PATH),
-        **strip_arrays(model.static_fields(asked, result.states)),
+        **along,
     )
 
 

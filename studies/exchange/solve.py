@@ -2,13 +2,14 @@
 
 from typing import Any
 
+from studies.answers.adapters import answer_path
 from studies.answers.fields import Fields
 from studies.answers.models import as_solved, built, is_given, model_of, refusals
 from studies.answers.moving import drive_of, state_of
 from studies.answers.settings import Settings
 from studies.cases.design import Design
 from studies.cases.problem import Problem
-from studies.exchange.solutions import described, solved_fields
+from studies.exchange.solutions import described, fields_of, solved_fields
 from studies.kinds import Progress
 
 
@@ -22,18 +23,7 @@ def static_fields(design: Design, settings: Settings, *, progress: Progress | No
     Raises:
         BadInput: a setting that the model refuses; one line.
     """
-    model = model_of(settings)
-    asked, keywords = built(model, design, settings, moving=False)
-    how: dict[str, Any] = {"increments": design.increments, "order": design.order, "progress": progress}
-    how["raise_on_failure"] = False
-    with refusals(model, settings):
-        if isinstance(design, Problem):
-            result = model.statics.solve_statics(asked, rotation=design.rotation, **how)
-        else:
-            drive = {"body": design.body, "rotation": design.rotation}
-            result = model.statics.solve_mechanism(asked, **drive, **how)
-    asked, keywords = as_solved(model, design, settings, result, moving=False)
-    return solved_fields(model, asked, result, _about(design, settings, keywords))
+    return fields_of(answer_path(design, settings, progress=progress), design)
 
 
 def release_fields(

@@ -23,7 +23,7 @@ def svg(fields: Fields, states: list[int]) -> dict[str, bytes]:
 def drawing(fields: Fields, states: list[int]) -> Figure:
     """Return the figure of `svg`."""
     if fields.mode_shape is not None:
-        return shapes.modes(fields, states)
+        return shapes.modes([(fields, "", "-")], states)
     figure = style.page(SIZE, SIZE + 0.9)
     panel = figure.subplots()
     handles = shapes.states_over_rest(panel, fields, states)

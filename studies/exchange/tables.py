@@ -10,6 +10,17 @@ COLUMNS = {
     "load_factor": "part of the static path, 0 to 1 [1]",
     "time_s": "time since the release [s]",
     "mode": "number of the mode, the lowest 1",
+    "state": "number of the state, the first 0; the same in all tables, and the row of `solve --csv`",
+    "com_x_m": "of the only body, as by `solve --csv` [m]",
+    "com_y_m": "of the only body, as by `solve --csv` [m]",
+    "stiffness_Nm_per_rad": "of the rotation at fixed loads [N m/rad]",
+    "strain_energy_J": "of all strips, on a static path [J]",
+    "gravity_energy_J": "of a static path against rest [J]",
+    "max_stress_Pa": "largest extreme-fibre stress of all strips [Pa]",
+    "kinetic_J": "of a motion [J]",
+    "strain_J": "of a motion, of all strips [J]",
+    "gravity_J": "of a motion against rest [J]",
+    "dissipated_J": "of a motion since its start [J]",
     "frequency_Hz": "of the mode; negative where the state is unstable [Hz]",
     "torque_Nm": "of the drive of a static path [N m]",
     "strip": "name of the strip",
@@ -46,20 +57,28 @@ def tables(fields: Fields) -> dict[str, pd.DataFrame]:
 
 
 def _states(fields: Fields) -> pd.DataFrame:
-    """One row a state: what runs, and what the state has as a whole."""
-    columns = {fields.series: _series(fields)}
-    if fields.torque is not None:
-        columns["torque_Nm"] = fields.torque
+    """One row a state: what runs, and what the state has as a whole, by the names of `solve --csv`."""
+    columns = _running(fields, 1)
     if fields.frequency is not None:
-        columns["frequency_Hz"] = fields.frequency
-    return pd.DataFrame(columns)
+        return pd.DataFrame(columns | {"frequency_Hz": fields.frequency})
+    if len(fields.blocks) == 1:
+        com_x, com_y, turn = fields.bodies[:, 0].T
+        columns |= {"rotation_rad": turn, "com_x_m": com_x, "com_y_m": com_y}
+    for name, array in (("torque_Nm", fields.torque), ("stiffness_Nm_per_rad", fields.stiffness)):
+        columns |= {} if array is None else {name: array}
+    if fields.analysis == "static":
+        columns["strain_energy_J"] = fields.strain_energy
+        kept = {f"{name}_energy_J": fields.energies[name] for name in ("gravity",) if name in fields.energies}
+    else:
+        kept = {f"{name}_J": energy for name, energy in fields.energies.items()}
+    return pd.DataFrame(columns | kept | {"max_stress_Pa": fields.max_stress})
 
 
 def _strips(fields: Fields) -> pd.DataFrame:
     """One row a state, strip and station."""
     states, strips, stations = fields.rotation.shape
     columns = {
-        fields.series: np.repeat(_series(fields), strips * stations),
+        **_running(fields, strips * stations),
         "strip": np.tile(np.repeat([part.name for part in fields.parts], stations), states),
         "arc_length_m": np.tile(fields.arc_length.ravel(), states),
     }
@@ -98,7 +117,7 @@ def _bodies(fields: Fields) -> pd.DataFrame:
         per_body |= dict(zip(names, np.moveaxis(fields.mode_bodies, 2, 0), strict=True))
     return pd.DataFrame(
         {
-            fields.series: np.repeat(_series(fields), bodies),
+            **_running(fields, bodies),
             "body": np.tile([block.name for block in fields.blocks], states),
             **{name: array.ravel() for name, array in per_body.items()},
             "mass_kg": np.tile([block.mass for block in fields.blocks], states),
@@ -113,7 +132,7 @@ def _reactions(fields: Fields) -> pd.DataFrame:
     on = [place or "free" for part in fields.parts for place in (part.root, part.tip)]
     return pd.DataFrame(
         {
-            fields.series: np.repeat(_series(fields), 2 * strips),
+            **_running(fields, 2 * strips),
             "strip": np.tile(np.repeat([part.name for part in fields.parts], 2), states),
             "end": np.tile(["root", "tip"], states * strips),
             "on": np.tile(on, states),
@@ -125,6 +144,12 @@ def _reactions(fields: Fields) -> pd.DataFrame:
     )
 
 
-def _series(fields: Fields) -> np.ndarray:
-    """Return what runs over the states: modes are counted in whole numbers."""
-    return fields.values.astype(np.int64) if fields.series == "mode" else fields.values
+def _running(fields: Fields, rows: int) -> dict[str, np.ndarray]:
+    """Return what runs over the states, each of so many rows, and their numbers, which modes have as it is.
+
+    The load factor alone does not tell states apart: it stays 1 while a loaded pivot is turned.
+    """
+    if fields.series == "mode":
+        return {"mode": np.repeat(fields.values.astype(np.int64), rows)}
+    states = np.arange(len(fields.values))
+    return {fields.series: np.repeat(fields.values, rows), "state": np.repeat(states, rows)}

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from studies.answers.fields import Fields
-from studies.cases.mechanism_keys import GROUND
+from studies.cases.keys import GROUND
 from studies.kinds import Array
 
 Indices = NDArray[np.int64]

@@ -111,8 +111,8 @@ def _limits(panel: Axes, rows: pd.DataFrame) -> None:
     panel.set(
         xlim=(low, high), ylim=(low, high), xlabel="2/ω of the spectrum [s]", ylabel="measured limit [s]"
     )
-    panel.set_title("Limit of the form as printed")
-    panel.legend(fontsize=6.5, loc="lower right")
+    panel.set_title("Limit as printed")
+    panel.legend(fontsize=7.5, loc="lower right")
 
 
 def _errors(panel: Axes, rows: pd.DataFrame) -> None:
@@ -130,7 +130,7 @@ def _errors(panel: Axes, rows: pd.DataFrame) -> None:
         )
     step = 1e6 * rows["step_s"].min()
     panel.set(xlabel="sweeps", ylabel="error of the velocity change [1]", ylim=(1e-16, 1e3))
-    panel.set_title(f"Towards the direct solution, h = {step:.2g} µs")
+    panel.set_title(f"Sweeps, h = {step:.2g} µs")
     panel.legend(fontsize=7)
 
 
@@ -145,7 +145,7 @@ def _factors(panel: Axes, rows: pd.DataFrame) -> None:
     panel.axhline(1.0, color="#444444", linewidth=0.9)
     panel.axvline(PAPER_STEP, color="#444444", linestyle=":", linewidth=1.2)
     panel.set(xlabel="step h [s]", ylabel="error after a sweep over that before [1]")
-    panel.set_title("What a sweep leaves, Table 1")
+    panel.set_title("Left by a sweep")
     panel.legend(fontsize=7, loc="lower right", frameon=True, facecolor="white", edgecolor="none")
 
 

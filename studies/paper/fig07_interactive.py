@@ -204,10 +204,9 @@ def _times(panel: Axes, frames: pd.DataFrame, alone: pd.DataFrame) -> None:
     panel.legend(
         loc="upper center",
         bbox_to_anchor=(0.45, -0.28),  # below the axes: the curves need all of them
-        ncol=2,
-        fontsize=6.5,
+        fontsize=7.5,
         title="95 % of the frames in",
-        title_fontsize=6.5,
+        title_fontsize=7.5,
     )
 
 

@@ -73,7 +73,7 @@ def charts_of(shown: Sequence[Shown]) -> Iterator[Chart]:
     yield from _chart(shown, x, SHIFT, over, lambda each: each.shift)
     yields = [each.yield_strength for each in shown if each.yield_strength is not None]
     level = (min(yields), "yield" if len(set(yields)) == 1 else "lowest yield") if yields else None
-    yield from _chart(shown, x, STRESS, over, lambda each: each.stress, level=level)
+    yield from _chart(shown, x, STRESS, over, lambda each: each.fields.max_stress, level=level)
     if path:
         yield from _energies(shown, x, over)
 
@@ -101,7 +101,7 @@ def _energies(shown: Sequence[Shown], x: Quantity, over: Callable[[Shown], Array
     """Yield the chart of the energy by its parts, or of several answers that of the strain alone."""
     if len(shown) > 1:
         strain = Quantity(name="strain energy", unit="J")
-        yield from _chart(shown, x, strain, over, lambda each: each.strain_energy)
+        yield from _chart(shown, x, strain, over, lambda each: each.fields.strain_energy)
         return
     (only,) = shown
     largest = max(float(np.abs(part).max()) for part in only.fields.energies.values())

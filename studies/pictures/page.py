@@ -28,7 +28,7 @@ TIGHT: Any = {
 
 
 def picture(shown: Sequence[Shown]) -> Figure:
-    """Return the figure of one answer, or of up to five over one another, all paths or all motions.
+    """Return the figure of one answer, or of up to five over one another: paths, motions or natural modes.
 
     Raises:
         BadInput: more than five, kinds that do not go over one another, or less than two states; one line.
@@ -36,7 +36,7 @@ def picture(shown: Sequence[Shown]) -> Figure:
     if not shown:
         raise BadInput("picture: got no state, expected a solution with one")
     kinds = sorted({each.fields.analysis for each in shown})
-    if len(shown) > len(LETTERS) or len(kinds) > 1 or (kinds == ["modes"] and len(shown) > 1):
+    if len(shown) > len(LETTERS) or len(kinds) > 1:
         raise BadInput(
             f"picture: got {len(shown)} of {', '.join(kinds)}, expected one, or 2 to 5 of one kind"
         )
@@ -44,12 +44,14 @@ def picture(shown: Sequence[Shown]) -> Figure:
         if len(each.fields.values) < 1 + (each.fields.analysis != "modes"):
             raise BadInput(f"picture: got too few states of {each.name}, expected at least two")
     with style.applied(**style.PRINTED):
-        return _modes(shown[0]) if kinds == ["modes"] else _page(shown)
+        return _modes(shown) if kinds == ["modes"] else _page(shown)
 
 
-def _modes(shown: Shown) -> Figure:
-    figure = shapes.modes(shown.fields, range(len(shown.fields.values)))
-    figure.suptitle(shown.name, x=0.01, ha="left")
+def _modes(shown: Sequence[Shown]) -> Figure:
+    looks = [look(place, shown) for place in range(len(shown))]
+    drawn = [(each.fields, own["colour"], own["line"]) for each, own in zip(shown, looks, strict=True)]
+    figure = shapes.modes(drawn, range(max(len(each.fields.values) for each in shown)))
+    _head(figure, shown)
     return figure
 
 
@@ -64,12 +66,17 @@ def _page(shown: Sequence[Shown]) -> Figure:
     places = [grid[0, 1], grid[1, 1], *(grid[row, column] for row in range(2, rows) for column in (0, 1))]
     for chart, place in zip(charts, places, strict=False):
         chart.draw(figure.add_subplot(place))
+    _head(figure, shown)
+    return figure
+
+
+def _head(figure: Figure, shown: Sequence[Shown]) -> None:
+    """Say on top what is shown: a name, or a key of several."""
     if len(shown) == 1:
         figure.suptitle(shown[0].name, x=0.01, ha="left")
-    else:
-        key = [_entry(shown, place) for place in range(len(shown))]
-        figure.legend(handles=key, loc="outside upper left", ncols=1, handlelength=3.0, fontsize=8.0)
-    return figure
+        return
+    key = [_entry(shown, place) for place in range(len(shown))]
+    figure.legend(handles=key, loc="outside upper left", ncols=1, handlelength=3.0, fontsize=8.0)
 
 
 def _entry(shown: Sequence[Shown], place: int) -> Line2D:

@@ -57,7 +57,7 @@ def plot(solution: Any, design: Any, *, name: str = "", yield_strength: float | 
 
 
 def overlay(solved: Mapping[str, tuple[Any, Any]], *, yield_strength: float | None = None) -> Picture:
-    """Return the picture of two to five paths, or motions, over one another; arguments as of `plot`.
+    """Return the picture of two to five paths, motions or modes over one another; arguments as of `plot`.
 
     Args:
         solved: solution and design by their name.

@@ -1,6 +1,7 @@
 """Drawings of a design to scale, in millimetres: at rest, deformed at chosen states, in its modes."""
 
 import math
+import textwrap
 from collections.abc import Iterator, Sequence
 from typing import Any
 
@@ -10,7 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from studies.answers.fields import Fields
-from studies.cases.mechanism_keys import GROUND
+from studies.cases.keys import GROUND
 from studies.exchange.vtk import mode_scale
 from studies.kinds import Array
 from studies.record import style
@@ -21,8 +22,8 @@ COLOURS = {"spline": BLUE, "fe": BLACK, "fe-shear": GREEN}
 NAMES = {"spline": "spline", "fe": "FE, corotational", "fe-shear": "FE, with shear"}
 #: Colours of what is at rest, and of bodies.
 REST, BODY = "#aaaaaa", "#e0e0e0"
-#: Modes in a row, modes that are drawn at most, and height of a row [inch].
-ROW, MOST_MODES, ROW_HEIGHT = 3, 12, 2.1
+#: Modes in a row, modes that are drawn at most, height of a row [inch], and letters over a mode.
+ROW, MOST_MODES, ROW_HEIGHT, TITLE = 3, 12, 2.1, 28
 
 
 def states_over_rest(
@@ -43,8 +44,14 @@ def states_over_rest(
     return handles
 
 
-def modes(fields: Fields, states: Sequence[int]) -> Figure:
-    """Return the drawings of modes, the first `MOST_MODES` of them, over the state that they are about."""
+def modes(several: Sequence[tuple[Fields, str, Any]], states: Sequence[int]) -> Figure:
+    """Return the drawings of modes, the first `MOST_MODES` of them, over the state that they are about.
+
+    Args:
+        several: of each design its fields, colour ("" for that of its model) and line; the modes of the same
+            number stand over one another, with the sign that turns them the same way.
+        states: the modes, by their place.
+    """
     chosen = list(states)[:MOST_MODES]
     columns = min(ROW, len(chosen))
     rows = math.ceil(len(chosen) / columns)
@@ -52,18 +59,34 @@ def modes(fields: Fields, states: Sequence[int]) -> Figure:
     panels = figure.subplots(rows, columns, squeeze=False).ravel()
     for panel in panels[len(chosen) :]:
         panel.set_axis_off()
-    for panel, state in zip(panels, chosen, strict=False):
-        scale = mode_scale(fields, state)
-        shape = fields.shape[state] + scale * np.asarray(fields.mode_shape)[state]
-        moved = fields.bodies[state, :, :2] + scale * np.asarray(fields.mode_bodies)[state, :, :2]
-        at_rest(panel, fields, fields.shape[state], fields.bodies[state, :, :2])
-        deformed(panel, fields, shape, moved, color=COLOURS[fields.model], linewidth=1.8)
-        frequency = float(np.asarray(fields.frequency)[state])
-        panel.set_title(f"mode {fields.values[state]:.0f}: {frequency:.5g} Hz")
-    for place, panel in enumerate(panels[: len(chosen)]):
+    for place, (panel, state) in enumerate(zip(panels, chosen, strict=False)):
+        there = [each for each in several if state < len(each[0].values)]
+        for fields, colour, line in there:
+            _mode(panel, fields, state, _turned_as(fields, there[0][0], state), colour, line)
+        rates = ", ".join(f"{float(np.asarray(each[0].frequency)[state]):.5g}" for each in there)
+        panel.set_title(textwrap.fill(f"mode {state + 1}: {rates} Hz", TITLE))
         left, bottom = place % columns == 0, place + columns >= len(chosen)
         to_scale(panel, x="x [mm]" if bottom else "", y="y [mm]" if left else "")
     return figure
+
+
+def _mode(panel: Axes, fields: Fields, state: int, sign: float, colour: str, line: Any) -> None:
+    """Draw a mode of a design over the state that it is about."""
+    scale = sign * mode_scale(fields, state)
+    shape = fields.shape[state] + scale * np.asarray(fields.mode_shape)[state]
+    moved = fields.bodies[state, :, :2] + scale * np.asarray(fields.mode_bodies)[state, :, :2]
+    at_rest(panel, fields, fields.shape[state], fields.bodies[state, :, :2])
+    look: dict[str, Any] = {"color": colour or COLOURS[fields.model], "linestyle": line, "linewidth": 1.8}
+    deformed(panel, fields, shape, moved, **look)
+
+
+def _turned_as(fields: Fields, first: Fields, state: int) -> float:
+    """Return the sign with which a mode moves the middles of the strips, on the whole, as that of another
+    design does: 1 of designs with other strips."""
+    mine, theirs = (
+        np.asarray(each.mode_shape)[state, :, each.rotation.shape[2] // 2] for each in (fields, first)
+    )
+    return -1.0 if mine.shape == theirs.shape and float((mine * theirs).sum()) < 0.0 else 1.0
 
 
 def to_scale(panel: Axes, x: str = "x [mm]", y: str = "y [mm]") -> None:

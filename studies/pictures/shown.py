@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from studies.answers.fields import Fields
-from studies.cases.mechanism_keys import GROUND
+from studies.cases.keys import GROUND
 from studies.kinds import Array
 
 #: What answers over one another are called beside their curves: as many as there may be.
@@ -32,18 +32,6 @@ class Shown:
         """Whether its path is one of a driven rotation."""
         driven = self.fields.torque is not None and self.rotation is not None
         return driven and float(np.ptp(np.asarray(self.rotation))) > TURNED
-
-    @property
-    def strain_energy(self) -> Array:
-        """(S,) of all strips [J]."""
-        energies = self.fields.energies
-        parts = ("strain",) if "strain" in energies else ("bending", "axial", "shear")
-        return np.asarray(sum(energies[name] for name in parts if name in energies))
-
-    @property
-    def stress(self) -> Array:
-        """(S,) largest of all strips [Pa]."""
-        return np.asarray(self.fields.stress.max(axis=(1, 2)))
 
     @property
     def shift(self) -> Array | None:

@@ -1,11 +1,10 @@
 """Read a published problem: its design, and the values that are in print, each with source and uncertainty.
 
-A case file has [problem], [[values]] and a design as any case file has one, or [design] with the name of a
-frame of `studies.stability.statics.frames` in the units of its source.
+A case file has [problem], [[values]] and a design as any case file has one.
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -90,12 +89,8 @@ VALUE = (
     _key("values", "bound", Choice(names=(EQUAL, AT_MOST, AT_LEAST)), optional=True),
     _key("values", "limit", Limits(), attribute="limits"),
 )
-FRAME = (
-    _key("design", "frame", Choice(names=("column", "toggle", "lees_frame"))),
-    _key("design", "load", positive("load"), optional=True),
-    _key("design", "slenderness", positive("1"), optional=True),
-    _key("design", "rise", positive("in"), optional=True),
-)
+#: Parameters of loads, which grow with the load.
+LOADS = ("force", "moment", "acceleration")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -129,8 +124,7 @@ class Published:
     Attributes:
         name: of its file. title, source: in words. values: in print.
         models, answers: who is asked, and for which kinds of answer.
-        design: None where `frame` names one with its parameters. body: whose place is reported; pins: bodies
-            that are held and free to turn.
+        body: whose place is reported; pins: bodies that are held and free to turn.
     """
 
     name: str
@@ -139,8 +133,7 @@ class Published:
     values: tuple[Value, ...]
     models: tuple[str, ...]
     answers: tuple[str, ...]
-    design: Design | None = None
-    frame: Mapping[str, Any] = field(default_factory=dict)
+    design: Design
     body: str = ""
     pins: tuple[str, ...] = ()
 
@@ -177,10 +170,7 @@ def read_published(path: Path) -> Published:
             raise CaseError(
                 f"{where}: values number {i}.limit: got none of {', '.join(without)}, expected one"
             )
-    rest = {key: part for key, part in content.items() if key not in ("problem", "values", "design")}
-    if "design" in content:
-        frame = document.values(where, FRAME, document.table(where, content, "design"), "design")
-        return Published(name=path.stem, values=values, frame=frame, **about)
+    rest = {key: part for key, part in content.items() if key not in ("problem", "values")}
     design: Design
     if isinstance(rest.get("strips"), list):
         design = read_mechanism(where, rest)
@@ -203,3 +193,20 @@ def _require_bodies(
     moved = [value.quantity for value in values if value.quantity in PLACES]
     if pins and moved:
         raise CaseError(f"{where}: problem.pins: got them beside {moved[0]}, expected limit loads alone")
+
+
+def loaded(design: Mechanism, answer: str, load: float) -> Mechanism:
+    """Return a design under so many times its loads, as a beam or with the effects that the answer names."""
+    effects = design.effects
+    tables = {
+        effect: {
+            name: _product(given, load) if name in LOADS else given for name, given in parameters.items()
+        }
+        for effect, parameters in effects.tables.items()
+    }
+    more = () if answer == BEAM else tuple(answer.split(", "))
+    return replace(design, effects=replace(effects, names=(*effects.names, *more), tables=tables))
+
+
+def _product(given: Any, load: float) -> Any:
+    return tuple(load * part for part in given) if isinstance(given, tuple) else load * given

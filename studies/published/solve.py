@@ -4,35 +4,25 @@ import math
 from collections.abc import Callable
 from dataclasses import replace
 from functools import cache
-from typing import Any
 
 import numpy as np
 from scipy.interpolate import CubicSpline
 
 from studies.answers.adapters import answer_mechanism, answer_static
 from studies.answers.settings import FeSettings, Settings, SplineSettings
-from studies.cases.effects import Effects
 from studies.cases.mechanism import Mechanism
 from studies.cases.problem import Problem
 from studies.published import case
-from studies.published.case import Published, Value
-from studies.stability.statics import frames
+from studies.published.case import Value, loaded
 from studies.stability.statics.element_arcs import element_arc
-from studies.stability.statics.frames import Arc, Frame, spline_arc
-from studies.stability.statics.questions import LIMIT, SIDE
+from studies.stability.statics.frames import SIDE, Arc, frame_of, spline_arc
+from studies.stability.statics.questions import LIMIT
 
 #: Fine enough that what is left is the model's, not its discretisation's.
 SETTINGS: dict[str, Settings] = {
     "spline": SplineSettings(control_points=12),
     "fe": FeSettings(elements=40),
     "fe-shear": FeSettings(elements=80, element="reissner"),
-}
-#: Parameters of loads, which grow with the load.
-LOADS = ("force", "moment", "acceleration")
-FRAMES: dict[str, Callable[..., Frame]] = {
-    "column": frames.column,
-    "toggle": frames.toggle,
-    "lees_frame": frames.lees_frame,
 }
 
 
@@ -52,8 +42,8 @@ def ours(name: str, model: str, answer: str, value: Value) -> float:
     elif value.quantity in AXES:
         found = moved(name, model, answer, value.load)[AXES[value.quantity]]
     else:
-        load = problem.frame.get("load", value.load)
-        found = OF_ARCS[value.quantity](_arc(name, model, answer, load), value)
+        arc = _arc(name, model, answer, value.load, value.quantity == case.LOAD_AT_ROTATION)
+        found = OF_ARCS[value.quantity](arc, value)
     return found / value.scale
 
 
@@ -68,57 +58,19 @@ def moved(name: str, model: str, answer: str, load: float) -> tuple[float, ...]:
     """Return how far the body moves under a load, x, y [m] and its turn [rad]; NaN where the path stops."""
     problem = case.published(name)
     assert isinstance(problem.design, Mechanism)
-    design = _answered_as(problem.design, answer)
-    response = answer_mechanism(replace(design, effects=_times(design.effects, load)), SETTINGS[model])
-    rest = next(body.centre for body in design.bodies if body.name == problem.body)
+    response = answer_mechanism(loaded(problem.design, answer, load), SETTINGS[model])
+    rest = next(body.centre for body in problem.design.bodies if body.name == problem.body)
     way = response.bodies[problem.body][-1] - (*rest, 0.0) if response.converged else np.full(3, np.nan)
     return tuple(float(part) for part in way)
 
 
 @cache
-def _arc(name: str, model: str, answer: str, load: float) -> Arc:
-    """Return the path of a problem to a load."""
-    problem, settings = case.published(name), SETTINGS[model]
-    frame, bent, branch = _frame(problem, answer, load)
+def _arc(name: str, model: str, answer: str, load: float, bends: bool) -> Arc:
+    """Return the path of a problem to a load; one that `bends` leaves the straight branch."""
+    settings, bent = SETTINGS[model], {"side": SIDE} if bends else {}
     if isinstance(settings, SplineSettings):
-        return spline_arc(frame, settings, branch=branch)
-    return element_arc(bent, settings)
-
-
-def _frame(problem: Published, answer: str, load: float) -> tuple[Frame, Frame, str]:
-    """Return the loaded frame, what elements are given in its place, and the branch that the spline takes."""
-    if isinstance(problem.design, Mechanism):
-        design = _answered_as(problem.design, answer)
-        loaded = replace(design, effects=_times(design.effects, load))
-        frame = Frame(design=loaded, load=load, body=problem.body, pins=problem.pins)
-        return frame, frame, "primary"
-    how: dict[str, Any] = dict(problem.frame)
-    make = FRAMES[how.pop("frame")]
-    if make is not frames.column:
-        return make(**how), make(**how), "primary"
-    return make(**how), make(**how, side=SIDE), "follow"
-
-
-def _times(effects: Effects, load: float) -> Effects:
-    """Return effects with their loads times a factor."""
-    tables = {
-        effect: {
-            name: _product(given, load) if name in LOADS else given for name, given in parameters.items()
-        }
-        for effect, parameters in effects.tables.items()
-    }
-    return replace(effects, tables=tables)
-
-
-def _product(given: Any, load: float) -> Any:
-    return tuple(load * part for part in given) if isinstance(given, tuple) else load * given
-
-
-def _answered_as(design: Mechanism, answer: str) -> Mechanism:
-    """Return the design as a kind of answer takes it: a beam, or with one effect more."""
-    if answer == case.BEAM:
-        return design
-    return replace(design, effects=replace(design.effects, names=(*design.effects.names, answer)))
+        return spline_arc(frame_of(name, answer, load), settings, branch="follow" if bends else "primary")
+    return element_arc(frame_of(name, answer, load, **bent), settings)
 
 
 def _limit_load(arc: Arc, value: Value) -> float:

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from studies.cases.design import named_design
+from studies.cases.design import FOLDER, named_design
 from studies.cases.document import parsed
 from studies.record.source import ROOT, source_hash
 
@@ -34,8 +34,10 @@ def sha256(content: bytes) -> str:
 
 def inputs(module: str, cases: Iterable[str]) -> dict[str, Any]:
     """Return the hashes of what a study is made from: its source and its cases."""
+    cases = tuple(cases)
+    said = "\n".join(_file(name).read_text(encoding="utf-8") for name in cases)
     return {
-        "source_sha256": source_hash(module),
+        "source_sha256": source_hash(module, said=said),
         "cases": {name: _fingerprint(name) for name in cases},
     }
 
@@ -44,8 +46,11 @@ def _fingerprint(name: str) -> str:
     """Return the hash of a design by its name, of the values of another file by its path below studies/."""
     if "/" not in name:
         return named_design(name).fingerprint()
-    content = parsed(ROOT / "studies" / f"{name}.toml")
-    return sha256(json.dumps(content, sort_keys=True).encode())
+    return sha256(json.dumps(parsed(_file(name)), sort_keys=True).encode())
+
+
+def _file(name: str) -> Path:
+    return (ROOT / "studies" if "/" in name else FOLDER) / f"{name}.toml"
 
 
 def surroundings() -> dict[str, Any]:

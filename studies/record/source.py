@@ -1,88 +1,139 @@
-"""Which source a result depends on: the modules that a module imports, and a hash of their code."""
+"""Which source a result depends on: the definitions that its study reaches by name, and a hash of their code.
 
-import ast
+A definition is a function, a class or a constant of a module. A study reaches all of its own module, what
+that names, and so on. What stands beside in a module and is not named does not count, and neither does a
+method whose name is nowhere said.
+"""
+
 import hashlib
-from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
-from functools import cache
+from collections.abc import Iterable
 from pathlib import Path
 
+from studies.record.syntax import BODY, Definition, Module, analysed, is_ours, words
+
 ROOT = Path(__file__).parents[2]
-PACKAGES = ("spline_model", "fe_reference", "studies")
 
 #: Modules that move or draw numbers and cannot change them, so that results stay fresh when these are edited.
 WITHOUT_INFLUENCE = ("studies.record", "studies.pictures")
 
-#: Fields of a syntax node that differ between versions of Python while the code is the same.
-_VERSIONED = {"ctx", "kind", "type_comment", "type_params"}
+#: Tables of effects by name, read by the name alone: an entry counts where its name is said, in a case of the
+#: study or in the code that is reached, so that an effect more leaves alone what does not name it.
+BY_NAME = ("spline_model.effects.registry:REGISTRY", "fe_reference.effects:KNOWN")
 
 
-def source_hash(module: str, *, root: Path = ROOT) -> str:
-    """Return the SHA-256 of the code of `module` and of all that it imports from this repository.
+def source_hash(module: str, *, said: str | None = None, root: Path = ROOT) -> str:
+    """Return the SHA-256 of the code of `module` and of all definitions of this repository that it reaches.
 
     The code is the syntax tree without docstrings, comments and layout; imports inside functions count too.
+
+    Args:
+        module: its full name.
+        said: text in which an effect's name is looked for, as that of case files; None counts all effects.
+        root: folder of the packages.
     """
     digest = hashlib.sha256()
-    for name in closure(module, root=root):
-        digest.update(f"{name}\n{_read(name, root).code}\n".encode())
+    for place, code in sorted(_Reach(module, said, root).found.items()):
+        digest.update(f"{place}\n{code}\n".encode())
     return digest.hexdigest()
 
 
-def closure(module: str, *, root: Path = ROOT) -> list[str]:
-    """Return `module` and every module of this repository it imports, directly or not, sorted by name.
+def reached(module: str, *, said: str | None = None, root: Path = ROOT) -> list[str]:
+    """Return the places `module:name` of the definitions that `source_hash` takes in, sorted.
 
     Raises:
         FileNotFoundError: no such module in this repository.
     """
-    if _file(module, root) is None:
-        raise FileNotFoundError(f"module {module}: no such module in this repository")
-    found: set[str] = set()
-    waiting = [module]
-    while waiting:
-        name = waiting.pop()
-        if name in found or name.startswith(WITHOUT_INFLUENCE) or _file(name, root) is None:
-            continue
-        found.add(name)
-        waiting.extend(_read(name, root).imports)
-        waiting.extend(_parents(name))
-    return sorted(found)
+    return sorted(_Reach(module, said, root).found)
 
 
-@dataclass(frozen=True, kw_only=True)
-class Module:
-    """One module: a text that is equal for equal code, and the names that the code imports."""
+class _Reach:
+    """A walk from a module along names: `found` has the code of every definition it came to, by its place."""
 
-    code: str
-    imports: tuple[str, ...]
+    def __init__(self, module: str, said: str | None, root: Path) -> None:
+        self.modules: dict[str, Module | None] = {}
+        self.root = root
+        self.found: dict[str, str] = {}
+        self.said = words(said or "")
+        self.by_name = BY_NAME if said is not None else ()
+        self.tables: dict[str, dict[str, Definition]] = {}
+        self.waiting: list[Definition] = []
+        if self._module(module) is None:
+            raise FileNotFoundError(f"module {module}: no such module in this repository")
+        self._whole(module)
+        while self.waiting or self._entries():
+            self._follow(self.waiting.pop())
 
+    def _module(self, name: str) -> Module | None:
+        """Return a module of this repository that can influence numbers; None for any other name."""
+        if name not in self.modules:
+            path = None if name.startswith(WITHOUT_INFLUENCE) else _file(name, self.root)
+            text = "" if path is None else path.read_text(encoding="utf-8")
+            self.modules[name] = None if path is None else analysed(text, name, path.name == "__init__.py")
+        return self.modules[name]
 
-def _read(name: str, root: Path) -> Module:
-    path = _file(name, root)
-    if path is None:
-        raise FileNotFoundError(f"module {name}: no such module in this repository")
-    return _analysed(path.read_text(encoding="utf-8"), name, path.name == "__init__.py")
+    def _follow(self, definition: Definition) -> None:
+        self.said |= definition.said
+        for chain in definition.chains:
+            self._name(definition.module, chain)
 
+    def _entries(self) -> bool:
+        """Take entries of tables and methods whose name was said by now; return whether there were any."""
+        for place, entries in self.tables.items():
+            for key in entries.keys() & self.said:
+                self._take(f"{place}[{key}]", entries.pop(key))
+        return bool(self.waiting)
 
-@cache
-def _analysed(text: str, name: str, package: bool) -> Module:
-    tree = ast.parse(text)
-    names = tuple(imports(tree, name, package=package))
-    return Module(code=_canonical(_Silent().visit(tree)), imports=names)
+    def _whole(self, name: str) -> None:
+        module = self._module(name)
+        for each in module.definitions if module else ():
+            self._define(name, each)
 
+    def _define(self, module: str, name: str) -> None:
+        """Take one definition, with what its module and the packages around it do on import."""
+        place = f"{module}:{name}"
+        known = self._module(module)
+        if place in self.found or known is None:
+            return
+        for outer in (*_parents(module), module):
+            if around := self._module(outer):
+                self._take(f"{outer}:", around.definitions[BODY])
+        definition = known.definitions[name]
+        if place in self.by_name or definition.is_class:
+            self.tables[place] = dict(definition.entries)
+        if definition.is_open:
+            self.said |= definition.entries.keys()
+        if place in self.by_name:
+            self.found[place] = ""
+        else:
+            self._take(place, definition)
 
-def imports(tree: ast.AST, module: str, *, package: bool) -> Iterator[str]:
-    """Yield the full names that the code of `module` may import: of modules, and of names within them."""
-    for node in ast.walk(tree):
-        if isinstance(node, ast.Import):
-            yield from (alias.name for alias in node.names)
-        elif isinstance(node, ast.ImportFrom):
-            base = node.module or ""
-            if node.level:
-                parts = module.split(".")
-                keep = len(parts) - node.level + (1 if package else 0)
-                base = ".".join([*parts[:keep], *([node.module] if node.module else [])])
-            yield base
-            yield from (f"{base}.{alias.name}" for alias in node.names)
+    def _take(self, place: str, definition: Definition) -> None:
+        if place not in self.found:
+            self.found[place] = definition.code
+            self.waiting.append(definition)
+
+    def _name(self, module: str, chain: str) -> None:
+        """Take what a dotted name of `module` means, if that is of this repository."""
+        head, _, rest = chain.partition(".")
+        known = self._module(module)
+        if known is None:
+            return
+        if head in known.definitions:
+            self._define(module, head)
+        for target in known.aliases.get(head, ()):
+            self._target(f"{target}.{rest}" if rest else target)
+
+    def _target(self, dotted: str) -> None:
+        """Take what a full name means: a definition of a module, or the whole module where none is named."""
+        parts = dotted.split(".")
+        for count in range(len(parts), 0, -1):
+            module, rest = ".".join(parts[:count]), parts[count:]
+            if known := self._module(module):
+                if rest and (rest[0] in known.definitions or rest[0] in known.aliases):
+                    self._name(module, ".".join(rest))
+                else:
+                    self._whole(module)
+                return
 
 
 def _parents(name: str) -> Iterable[str]:
@@ -91,33 +142,10 @@ def _parents(name: str) -> Iterable[str]:
 
 
 def _file(name: str, root: Path) -> Path | None:
-    if name.split(".")[0] not in PACKAGES:
+    if not is_ours(name):
         return None
     path = root.joinpath(*name.split("."))
     for candidate in (path.with_suffix(".py"), path / "__init__.py"):
         if candidate.is_file():
             return candidate
     return None
-
-
-class _Silent(ast.NodeTransformer):
-    """Takes out strings that stand alone: docstrings of modules, classes, functions and names."""
-
-    def visit_Expr(self, node: ast.Expr) -> ast.Expr | None:
-        """Return the statement, or nothing for a string that stands alone."""
-        alone = isinstance(node.value, ast.Constant) and isinstance(node.value.value, str)
-        return None if alone else node
-
-
-def _canonical(node: object) -> str:
-    """Return a text of the syntax tree that is the same in every version of Python."""
-    if isinstance(node, ast.AST):
-        fields = (
-            f"{name}={_canonical(value)}"
-            for name, value in ast.iter_fields(node)
-            if name not in _VERSIONED and value is not None and value != []
-        )
-        return f"{type(node).__name__}({','.join(fields)})"
-    if isinstance(node, list):
-        return f"[{','.join(map(_canonical, node))}]"
-    return repr(node)

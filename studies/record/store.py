@@ -3,9 +3,11 @@
 import io
 import json
 from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
@@ -101,6 +103,32 @@ class Store:
             return State(kind="missing", reason="never run")
         now = provenance.inputs(module, cases)
         return provenance.judge(record, now, data=self.data(study), figures=self.figures)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Digits:
+    """How far a column of numbers comes out again: to a part of itself [1], or to a floor in its unit.
+
+    Sums of floating point numbers depend on their order, and so on what else keeps the cores busy.
+    """
+
+    relative: float = 0.0
+    floor: float = 0.0
+
+
+def same(stored: pd.DataFrame, found: pd.DataFrame, digits: Mapping[str, Digits]) -> bool:
+    """Return whether two tables are the same: to the letter, columns with `digits` to these."""
+    if list(stored.columns) != list(found.columns) or len(stored) != len(found):
+        return False
+    one, other = (pd.read_csv(io.BytesIO(as_csv(table)), dtype=str) for table in (stored, found))
+    exact = [name for name in one.columns if name not in digits]
+    return one[exact].equals(other[exact]) and all(
+        np.allclose(
+            one[name].to_numpy(float), other[name].to_numpy(float), each.relative, each.floor, equal_nan=True
+        )
+        for name, each in digits.items()
+        if name in one.columns
+    )
 
 
 def as_csv(table: pd.DataFrame) -> bytes:

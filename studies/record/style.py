@@ -9,6 +9,7 @@ from typing import Any
 
 import matplotlib as mpl
 from matplotlib.axes import Axes
+from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 from PIL import Image
 
@@ -19,30 +20,33 @@ GREEN, YELLOW, BLUE, RED, PURPLE = "#009e73", "#d6c400", "#0072b2", "#d55e00", "
 #: Width of a page's text [inch].
 PAGE_WIDTH = 160.0 / 25.4
 
-#: Colours of a figure in pixels.
-COLOURS = 96
+#: Colours of a figure in pixels, and in how many steps each of the above goes over into white there.
+COLOURS, SHADES = 256, 12
 
 SETTINGS: Any = {
     "font.family": "DejaVu Sans",
-    "font.size": 9.0,
-    "axes.labelsize": 9.0,
-    "axes.titlesize": 9.5,
+    "font.size": 8.0,
+    "axes.labelsize": 8.0,
+    "axes.titlesize": 8.0,
     "axes.titlelocation": "left",
-    "figure.titlesize": 9.0,
+    "figure.titlesize": 8.0,
+    "figure.labelsize": 8.0,
     "axes.grid": True,
     "axes.spines.top": False,
     "axes.spines.right": False,
     "grid.color": "#dddddd",
     "grid.linewidth": 0.6,
-    "lines.linewidth": 1.4,
-    "lines.markersize": 4.0,
-    "legend.fontsize": 8.0,
+    "lines.linewidth": 1.1,
+    "lines.markersize": 3.0,
+    "legend.fontsize": 7.5,
+    "legend.handlelength": 1.6,
+    "legend.columnspacing": 1.2,
     "legend.frameon": False,
     "svg.hashsalt": "cross-axis flexural pivot",
     "svg.fonttype": "path",
     # a line may leave out points that move it by less than this [1/72 inch]
     "path.simplify_threshold": 0.8,
-    "savefig.dpi": 130,
+    "savefig.dpi": 180,
 }
 
 
@@ -104,6 +108,7 @@ PRINTED: Any = {
     "xtick.labelsize": 8.0,
     "ytick.labelsize": 8.0,
     "figure.titlesize": 9.0,
+    "legend.fontsize": 8.0,
     "savefig.dpi": 200,
     "path.simplify_threshold": 0.1,
 }
@@ -117,8 +122,12 @@ def applied(**more: Any) -> Iterator[None]:
 
 
 def page(width: float, height: float) -> Figure:
-    """Return an empty figure of that size [inch]."""
-    return Figure(figsize=(width, height), layout="constrained")
+    """Return an empty figure of that size [inch], or of the width of a page and lower in proportion.
+
+    So what is printed is as large as it is drawn, letters included.
+    """
+    share = min(1.0, PAGE_WIDTH / width)
+    return Figure(figsize=(share * width, (0.1 + 0.9 * share) * height), layout="constrained")
 
 
 def uncertain(panel: Axes, level: float) -> None:
@@ -166,8 +175,19 @@ def _short(svg: bytes) -> bytes:
 
 
 def _in_palette(png: bytes) -> bytes:
-    """Return `png` in the colours of a palette, enough for lines and their soft edges: a third as large."""
+    """Return `png` in a palette of the style's own colours, their soft edges and what else there is most of.
+
+    It is a third as large, and no colour of a line becomes that of another one.
+    """
+    own = [to_rgb(each) for each in (BLACK, GREY, ORANGE, SKY, GREEN, YELLOW, BLUE, RED, PURPLE)]
+    shades = [1.0 - (1.0 - part) * step / SHADES for rgb in own for step in range(SHADES + 1) for part in rgb]
+    fixed = [round(255.0 * part) for part in shades]
     stream = io.BytesIO()
     with Image.open(io.BytesIO(png)) as picture:
-        picture.convert("RGB").quantize(COLOURS, dither=Image.Dither.NONE).save(stream, "png", optimize=True)
+        drawn = picture.convert("RGB")
+        left = COLOURS - len(fixed) // 3
+        more = drawn.quantize(left, dither=Image.Dither.NONE).getpalette() or []
+        palette = Image.new("P", (1, 1))
+        palette.putpalette((fixed + more[: 3 * left])[: 3 * COLOURS])
+        drawn.quantize(palette=palette, dither=Image.Dither.NONE).save(stream, "png", optimize=True)
     return stream.getvalue()

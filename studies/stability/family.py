@@ -12,6 +12,7 @@ from studies.answers.settings import FeSettings, Settings, SplineSettings
 from studies.engine.findings import Tables
 from studies.engine.study import Answer, Part, Study
 from studies.errors import BadInput
+from studies.record.store import Digits
 
 DEFAULT = "spline, default"
 #: The locking-free spline where control points, axial modes or Gauss points are what a family varies.
@@ -77,6 +78,7 @@ class Found:
         reason: what the model itself says about its answer; a limitation that it states makes an answer that
             is off a refusal, provided `states_limit` is set.
         states_limit: whether `reason` warns of what is off in an answer that reached its end.
+        warned: whether the model's own check finds its answer unresolved, be that counted here or not.
         fault: an invariant that the answer breaks, in words; what the model says does not excuse it.
         counters: work done, by kind.
     """
@@ -85,19 +87,40 @@ class Found:
     reached: bool = True
     reason: str = ""
     states_limit: bool = False
+    warned: bool = False
     fault: str = ""
     counters: Mapping[str, int] = field(default_factory=dict)
 
 
+def said(answer: Any, error: float, *, checked: bool = True, fault: str = "") -> Found:
+    """Return a neutral answer with its error; without `checked`, as if it said nothing of its resolution."""
+    resolution = answer.resolution if checked else ""
+    return Found(
+        error=error,
+        reached=answer.converged,
+        reason=answer.message or resolution,
+        states_limit=bool(resolution),
+        warned=bool(answer.resolution),
+        fault=fault,
+        counters=answer.counters,
+    )
+
+
 @dataclass(frozen=True, kw_only=True)
 class Verdict:
-    """The outcome of a case: one of `OUTCOMES`, the error [1], the reason in words and the work."""
+    """The outcome of a case: one of `OUTCOMES`, the error [1], the reason in words and the work.
+
+    `stopped` is whether it did not reach its end, `warned` that of `Found`: with both, every model can be
+    judged with its own warnings and without.
+    """
 
     outcome: str
     error: float
     reason: str
     iterations: int
     halvings: int
+    stopped: bool = False
+    warned: bool = False
 
     def row(self) -> dict[str, Any]:
         """Return the verdict as columns of a table."""
@@ -125,6 +148,8 @@ def judged(attempt: Callable[[], Found], tolerance: float) -> Verdict:
         reason=found.fault or found.reason,
         iterations=work.get("newton_iterations", work.get("iterations", 0)),
         halvings=work.get("halved_increments", 0) + work.get("halved_steps", 0),
+        stopped=not found.reached,
+        warned=found.warned,
     )
 
 
@@ -144,6 +169,14 @@ def _without_answer(outcome: str, reason: str) -> Verdict:
 
 CASE = "cross_axis_pivot"
 
+#: What comes out again of a column: balances to their floor, distances to six digits, work to a per cent.
+_DISTANCE = Digits(relative=1e-6, floor=1e-9)
+DIGITS = {
+    "iterations": Digits(relative=0.01, floor=2.0),
+    **dict.fromkeys(("energy_gain", "energy_change", "constraint_residual_m"), Digits(floor=1e-12)),
+    **dict.fromkeys(("error", "largest_right_error", "refinement", "independent", "period_s"), _DISTANCE),
+}
+
 #: A case of one model: name, model, what is asked, and the largest error that is right [1].
 Task = tuple[str, str, Callable[[], Found], float]
 
@@ -156,7 +189,7 @@ def family(
 ) -> Study:
     """Return the study of a family whose parts give the table `outcomes`; `counts` follows from it."""
     counts = {"counts": lambda tables: counted(tables["outcomes"])}
-    return Study(cases=cases, parts=parts, made={**(made or {}), **counts}, figures=figures)
+    return Study(cases=cases, parts=parts, made={**(made or {}), **counts}, figures=figures, digits=DIGITS)
 
 
 def outcome_of(case: str, model: str, attempt: Callable[[], Found], tolerance: float) -> Answer:

@@ -13,7 +13,7 @@ from studies.answers.settings import Settings, SplineSettings
 from studies.cases.problem import Problem, named_case
 from studies.engine.study import Answer, Part
 from studies.stability import maps
-from studies.stability.family import CASE, DEFAULT, VARIED, Found, family, judged
+from studies.stability.family import CASE, DEFAULT, VARIED, Found, family, judged, said
 
 EXAMPLES, SEED = 400, 20260101
 #: Largest error of torque at the ends of the legs, over the largest of them, that is right [1]: the distance
@@ -150,6 +150,7 @@ def _path(example: Example, settings: SplineSettings) -> Found:
         reached=path.status.value == "converged",
         reason=path.message or path.resolution,
         states_limit=bool(path.resolution),
+        warned=bool(path.resolution),
         fault=""
         if books <= max(0.5 * stored, UNLOADED * unit) or example.increments < 5
         else "work and energy differ",
@@ -198,14 +199,8 @@ def _motion(example: Example, settings: SplineSettings) -> Found:
         f"the clamps part by {gap:.2g} of the length": not gap <= BOOKS,
         "the motion is not of finite numbers": not finite,
     }
-    return Found(
-        error=max(lost, gap),
-        reached=motion.converged,
-        reason=motion.message or motion.resolution,
-        states_limit=bool(motion.resolution),
-        fault=next((fault for fault, holds in faults.items() if holds), ""),
-        counters=motion.counters,
-    )
+    fault = next((fault for fault, holds in faults.items() if holds), "")
+    return said(motion, max(lost, gap), fault=fault)
 
 
 STUDY = family(

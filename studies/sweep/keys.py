@@ -6,7 +6,7 @@ from dataclasses import dataclass, fields
 from typing import Any
 
 from studies.answers.settings import FeSettings, SplineSettings
-from studies.cases import effect_keys, effects, keys, mechanism_keys
+from studies.cases import effect_keys, effects, keys
 from studies.cases.rules import Number, Pair, Rule, Text, Whole, not_negative, positive, shown
 
 SETTINGS = "settings"
@@ -72,9 +72,9 @@ def known(document: Mapping[str, Any], model: str) -> dict[str, Rule | Names]:
 
 def _of_mechanism(document: Mapping[str, Any]) -> dict[str, Rule]:
     """Return the keys of a mechanism: `strips.NAME.key`, `bodies.NAME.key` and those of its sections."""
-    shared = (*keys.SECTION, *keys.MATERIAL, *mechanism_keys.DRIVE)
+    shared = (*keys.SECTION, *keys.MATERIAL, *keys.DRIVE)
     found = {f"{key.section}.{key.name}": key.rule for key in shared}
-    own = {"strips": (*mechanism_keys.STRIP, *mechanism_keys.OWN), "bodies": mechanism_keys.BODY}
+    own = {"strips": (*keys.STRIP, *keys.OWN), "bodies": keys.BODY}
     for section, rows in own.items():
         for part in document.get(section, []):
             found |= {f"{section}.{part['name']}.{key.name}": key.rule for key in rows}

@@ -83,6 +83,8 @@ def plan_of(where: str, content: Mapping[str, Any], folder: Path) -> Plan:
 def _tables(where: str, content: Mapping[str, Any]) -> dict[str, Mapping[str, Any]]:
     """Return the sections, empty where they are not there."""
     for name in content:
+        if name in ("strip", "strips"):
+            raise CaseError(f'{where}: [{name}]: got a case, expected a sweep, which names one: case = "..."')
         if name not in ("case", "model", *SECTIONS):
             expected = document.nearest(name, ["case", "model", *SECTIONS])
             raise CaseError(f"{where}: {name}: got an unknown name, expected {expected}")

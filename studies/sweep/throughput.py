@@ -80,13 +80,13 @@ def figure(tables: Tables) -> Figure:
         )  # fmt: skip
     cores = timings["cores"].iloc[0]
     rate.set(xlabel="designs of the sweep [1]", ylabel="designs a second [1/s]", ylim=(0.0, None))
-    rate.set_title(f"Static paths of 20 increments, n = 6, measured on {cores} cores")
+    rate.set_title(f"Paths of 20 increments, n = 6, {cores} cores")
     for kind, colour in colours.items():
         mine = cuts[cuts["workers"] == kind].sort_values("chunks")
         label = f"1 {_named(kind, 1)}: {1e3 * chunk_cost(cuts, kind):.1f} ms a chunk"
         cost.semilogx(mine["chunks"], mine["wall_s"], color=colour, marker="o", label=label)
     cost.set(xlabel="chunks [1]", ylabel="time [s]", ylim=(0.0, None))
-    cost.set_title(f"The same {CUT} designs in more chunks")
+    cost.set_title(f"{CUT} designs in more chunks")
     drawn.legend(*rate.get_legend_handles_labels(), loc="outside lower left", ncols=3)
     cost.legend(loc="upper left")
     return drawn

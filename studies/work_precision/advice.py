@@ -19,6 +19,7 @@ from studies.work_precision.equal_error import coarsest, worst
 from studies.work_precision.motions import at, motion_errors, moving
 from studies.work_precision.paths import limit_of_theory, path_errors
 
+#: What a setting is judged by.
 PATH_ERRORS = ("error_trajectory", "error_torque")
 MOTION_ERRORS = ("error_rotation", "error_frequency")
 #: Series of the suite's own that are advised on; the others are variants of them.
@@ -39,15 +40,17 @@ def advise_path(problem: Design, error: float, progress: Progress = silent) -> p
     """Return the advice for the static path of `problem`, each model against the limit of its own theory.
 
     A row a model: series, setting, meets (whether trajectory and torque are within `error` over the path, and
-    stay so in all finer settings), error_trajectory, error_torque, uncertainty (the larger one of the limit's
-    two), solve_s, wall_s, message (why a model has no answer). Of a model that does not meet the error it is
-    the best setting.
+    stay so in all finer settings), error_trajectory, error_torque, error_stiffness, error_stress (NaN of a
+    model that does not give it), uncertainty (the larger one of the limit's path and torque),
+    uncertainty_stress, solve_s, wall_s, message (why a model has no answer). Of a model that does not meet
+    the error it is the best setting.
 
     Raises:
         NoReference: the finite elements do not reach the end of the path.
     """
     models = [each for each in series.own_series() if each.name in OWN]
     models[0] = series.splines(series.SPLINE, models[0].look, counts=COUNTS)
+    models.append(series.by_itself(error))
     models += series.other_series() if isinstance(problem, Problem) else []
     total = sum(len(each.members) for each in models) + len(models)
     limits, members = {}, {}
@@ -64,6 +67,7 @@ def advise_path(problem: Design, error: float, progress: Progress = silent) -> p
                 {"series": model.name, "family": "all", "setting": member.setting, "rank": member.count}
                 | path_errors(path, limit.path)
                 | {"uncertainty": max(limit.uncertainty[name] for name in ("trajectory", "torque"))}
+                | {"uncertainty_stress": limit.uncertainty["stress"]}
                 | {"solve_s": path.solve_s, "wall_s": path.wall_s, "message": path.message}
             )
     found = chosen(pd.DataFrame(rows), PATH_ERRORS, error)

@@ -9,7 +9,7 @@ import numpy as np
 
 from studies.answers.adapters import answer_path
 from studies.answers.metrics import relative_error, trajectory_error
-from studies.answers.reference import MESHES, limit_of
+from studies.answers.reference import MESHES, QUANTITIES, limit_of
 from studies.answers.settings import FeSettings, Settings, SplineSettings
 from studies.baselines.answer import BaselineFailed, SolvedPath
 from studies.cases.design import Design
@@ -17,7 +17,6 @@ from studies.cases.problem import Problem
 from studies.errors import BadInput
 from studies.work_precision.work import work_of
 
-QUANTITIES = ("trajectory", "torque", "stiffness")
 #: Columns of machine-neutral work.
 WORK = ("unknowns", "points", "iterations", "factorisation_flops", "assembly_flops", "flops")
 #: Names of these in the counters of a baseline, where they differ.
@@ -52,11 +51,12 @@ class Member:
     step: float = math.nan
 
 
-def of_settings(settings: Settings, setting: str, count: int) -> Member:
-    """Return the member of one of the suite's own models."""
+def of_settings(settings: Settings, setting: str, count: int, accuracy: float | None = None) -> Member:
+    """Return the member of one of the suite's own models; of a spline by itself with the wanted accuracy."""
 
     def solve(problem: Design, repeat: int) -> SolvedPath:
-        answer = answer_path(problem, settings, repeat=repeat)
+        answer = answer_path(problem, settings, repeat=repeat, accuracy=accuracy)
+        chosen = {} if accuracy is None else {"control_points": answer.settings["control_points"]}
         return SolvedPath(
             status=answer.status,
             message=answer.message,
@@ -64,9 +64,10 @@ def of_settings(settings: Settings, setting: str, count: int) -> Member:
             centre=answer.centre,
             torque=answer.torque,
             stiffness=answer.stiffness,
+            max_stress=answer.max_stress,
             solve_s=answer.solve_s,
             wall_s=answer.wall_s,
-            work=dict(work_of(settings, answer.counters).row()),
+            work=dict(work_of(replace(settings, **chosen), answer.counters).row()),
         )
 
     return Member(setting=setting, count=count, solve=solve)
@@ -102,10 +103,11 @@ def unsolved(message: str) -> SolvedPath:
 
 
 def path_errors(path: SolvedPath, against: SolvedPath) -> dict[str, float]:
-    """Return the largest and the end errors of a whole path, NaN of one that stopped early.
+    """Return the largest and the end errors of a whole path, NaN of one that stopped early and of what a
+    model does not give.
 
-    Keys: error_trajectory, error_torque, error_stiffness (largest magnitude over the path), and the same with
-    end_ for its last state.
+    Keys: error_ with each of `QUANTITIES` (largest magnitude over the path), and the same with end_ for its
+    last state.
     """
     names = [f"{kind}_{name}" for kind in ("error", "end") for name in QUANTITIES]
     if not path.converged or len(path.torque) < len(against.torque):
@@ -114,7 +116,10 @@ def path_errors(path: SolvedPath, against: SolvedPath) -> dict[str, float]:
         "trajectory": trajectory_error(path.centre, against.centre),
         "torque": np.abs(relative_error(path.torque, against.torque)),
         "stiffness": np.abs(relative_error(path.stiffness, against.stiffness)),
+        "stress": np.full(len(path.torque), math.nan),
     }
+    if path.max_stress is not None and against.max_stress is not None:
+        errors["stress"] = np.abs(relative_error(path.max_stress, against.max_stress))
     largest = {f"error_{name}": float(values.max()) for name, values in errors.items()}
     return largest | {f"end_{name}": float(values[-1]) for name, values in errors.items()}
 
@@ -135,7 +140,7 @@ class Limit:
 
     Attributes:
         path: the limit; its times mean nothing.
-        uncertainty: largest relative error of it over the path, of trajectory, torque and stiffness [1].
+        uncertainty: largest relative error of it over the path, of each of `QUANTITIES` [1].
         source: what it was taken from.
     """
 
@@ -165,6 +170,7 @@ def limit_of_theory(problem: Design, theory: str) -> Limit:
             centre=limit.centre,
             torque=limit.torque,
             stiffness=limit.stiffness,
+            max_stress=limit.stress,
         ),
         uncertainty=limit.uncertainty,
         source=f"{element} elements, {', '.join(map(str, MESHES))} a strip, extrapolated",
@@ -179,6 +185,6 @@ def _spatial(problem: Design) -> Limit:
     gap = path_errors(coarse, fine)
     return Limit(
         path=fine,
-        uncertainty={name: gap[f"error_{name}"] for name in ("trajectory", "torque", "stiffness")},
+        uncertainty={name: gap[f"error_{name}"] for name in QUANTITIES},
         source=f"spline with {SPATIAL[0]} control points; its distance to one with {SPATIAL[1]}",
     )

@@ -17,7 +17,8 @@ from studies.record.style import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, RED, 
 from studies.work_precision.motions import moving, moving_baseline
 from studies.work_precision.paths import Member, of_baseline, of_settings
 
-SPLINE, ELEMENTS, SHEAR = "spline", "finite elements", "finite elements with shear"
+SPLINE, ITSELF = "spline", "spline, by itself"
+ELEMENTS, SHEAR = "finite elements", "finite elements with shear"
 IMPLICIT = "spline, energy-consistent"
 COUNTS = range(4, 13)
 BSPLINE_COUNTS = (4, 6, 8, 12, 16, 24, 32, 48, 64)
@@ -113,6 +114,12 @@ def own_series() -> list[Series]:
             SHEAR, "reissner", Look(label="finite elements, shear", colour=GREY, line="--", marker="s")
         ),
     ]  # fmt: skip
+
+
+def by_itself(accuracy: float) -> Series:
+    """Return the spline that finds its own control points for an accuracy, as `solve` does."""
+    member = of_settings(SplineSettings(), f"accuracy {accuracy:g}", 0, accuracy=accuracy)
+    return Series(name=ITSELF, look=Look(label=ITSELF, colour=BLUE), members=(member,))
 
 
 def splines(

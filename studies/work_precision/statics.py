@@ -15,6 +15,7 @@ import numpy as np
 import pandas as pd
 
 from studies.answers.adapters import answer_release
+from studies.answers.reference import QUANTITIES
 from studies.answers.settings import FeSettings
 from studies.baselines.registry import missing
 from studies.cases.problem import named_case
@@ -24,7 +25,6 @@ from studies.record.style import BASES
 from studies.work_precision import scaling
 from studies.work_precision.equal_error import cheapest, diagram, finer, less
 from studies.work_precision.paths import (
-    QUANTITIES,
     THEORIES,
     Limit,
     Member,

@@ -5,8 +5,12 @@ import json
 import pytest
 
 from studies.__main__ import main
+from studies.answers.adapters import answer_mechanism
+from studies.answers.settings import SplineSettings
+from studies.cases.design import read_design
 from studies.cases.problem import FOLDER, named_case, read_case
 from studies.design.evaluate import answers, of_spline
+from tests import gates
 from tests.exchange.test_data_page import described
 
 CASE = str(FOLDER / "cross_axis_pivot.toml")
@@ -35,7 +39,7 @@ def test_json(tmp_path):
     assert optimum["finite_elements"]["max_stress_Pa"] <= 1.01 * found["allowable_stress_Pa"]
     assert len(found["starts"]) == 1 and found["starts"][0]["optimum"] == 1
     active = [key for each in optimum["active"] for key in each]
-    assert set(described("## JSON of `size`")) == {
+    assert set(described("## JSON of `size`")) - {"numbers", "travel_m"} == {
         *found, *case, *optimum, *found["starts"][0], *active, *optimum["spline"], *optimum["finite_elements"]
     }  # fmt: skip
 
@@ -81,6 +85,82 @@ def test_bad_input_in_one_line(arguments, message, capsys):
     assert main(["size", *arguments]) == 2
     err = capsys.readouterr().err
     assert message in err and err.count("\n") == 1
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ([], "--free: got none, expected a number of the mechanism's file"),
+        (["--free", "section.depth_m"], "--free: got section.depth_m, expected a number of"),
+        (["--free", "strips.rocker_ground.end_m.x"], "without bounds, expected strips.rock"),
+        (["--free", "section.width_m=2:1"], "expected KEY=LOW:HIGH with LOW"),
+        (["--free", "bodies.crank.mass_kg"], "expected a number of sections, moduli"),
+        (["--free", "section.width_m", "--travel-mm", "1"], "--travel-mm: got it for four_bar"),
+        (["--free", "section.width_m", "--width-mm", "9"], "--width-mm: got it for four_bar"),
+    ],
+)
+def test_bad_numbers_in_one_line(arguments, message, capsys):
+    """Numbers that a mechanism has not, has no bounds for, or no gradients by, are refused by name."""
+    assert main(["size", "four_bar_of_flexures", "--objective", "stress", *arguments]) == 2
+    err = capsys.readouterr().err
+    assert message in err and err.count("\n") == 1
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["cross_axis_pivot", "--objective", "stress"], "--objective: got stress, expected centre-shift or"),
+        (["cross_axis_pivot", *QUICK[:2], "--free", "x"], "--free: got it for cross_axis"),
+        (["living_hinge", *QUICK[:2]], "got centre-shift, expected stress or"),
+        (
+            ["parallel_strip_guide", "--objective", "stiffness-variation", "--free", "section.width_m"],
+            "--objective: got stiffness-variation, expected stress of what follows its loads",
+        ),
+    ],
+)
+def test_what_only_one_kind_of_design_has(arguments, message, capsys):
+    """Objectives and options of pivots and of mechanisms are refused of the other kind."""
+    assert main(["size", *arguments]) == 2
+    err = capsys.readouterr().err
+    assert message in err and err.count("\n") == 1
+
+
+@pytest.mark.slow
+def test_a_mechanism_is_sized_by_numbers_of_its_file(tmp_path, capsys):
+    """The least stress of a four-bar linkage is in wide, thin strips; the file of the optimum solves so."""
+    path = tmp_path / "best.toml"
+    free = ("--free", "section.thickness_m=1e-4:5e-4", "--free", "section.width_m")
+    words = ("size", "four_bar_of_flexures", "--objective", "stress", *free, "--starts", "2")
+    assert main([*words, "--out", str(path), "--json", "-"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    optimum, case = found["optimum"], found["case"]
+    assert optimum["numbers"]["section.width_m"] == pytest.approx(0.02, rel=1e-6)
+    assert {each["constraint"] for each in optimum["active"]} == {"section.width_m at its most", "stiffness"}
+    # K goes with b h^3, stress with h: twice as wide, it is less by the cube root of two
+    stress = optimum["spline"]["max_stress_Pa"]
+    assert stress / case["max_stress_Pa"] == pytest.approx(0.5 ** (1 / 3), rel=1e-3)
+    gates.check("sizing_finite_elements", abs(optimum["finite_elements"]["max_stress_Pa"] / stress - 1.0))
+    assert set(described("## JSON of `size`")) >= {
+        *found,
+        *case,
+        *optimum,
+        *found["starts"][0],
+        *optimum["spline"],
+    }
+    best = read_design(path)
+    answer = answer_mechanism(best, SplineSettings(control_points=10))
+    assert answer.max_stress[-1] == pytest.approx(stress)
+    assert answer.stiffness[-best.increments - 1] == pytest.approx(case["stiffness_Nm_per_rad"], rel=1e-6)
+
+
+@pytest.mark.slow
+def test_a_guide_keeps_its_travel(capsys):
+    """Where the body follows its loads, how far it goes is held; a shared value moves both strips."""
+    free = ("--free", "strips.left.end_m.y,strips.right.end_m.y=0.08:0.12", "--free", "section.thickness_m")
+    assert main(["size", "parallel_strip_guide", "--objective", "stress", *free, "--starts", "1"]) == 0
+    out = capsys.readouterr().out
+    assert "at a travel of 9.87671 mm" in out and "travel [mm]" in out
+    assert "strips.left.end_m.y,strips.right.end_m.y at its most" in out
 
 
 LED = """effects = ["+driven_displacement"]

@@ -6,6 +6,8 @@ toml     is a case or a sweep that its reader accepts, a part of a case behind t
          of a file as its first line it is written there, or, "at its end", added to a file that is no case.
 diff     a file's name, a line of that file, and lines with + that are put in after it.
 sh       each command succeeds; a text block that follows is the end of what it prints.
+
+A command that draws into `docs/pictures` must draw what is there.
 """
 
 import contextlib
@@ -39,6 +41,12 @@ NOT_RUN = {
     "source ": "the commands run with the environment of the tests",
 }
 
+PICTURES = ROOT / "docs" / "pictures"
+#: What differs in two files of one picture: names made from its content, and its numbers [pt].
+_NAMES, _NUMBERS = re.compile(r'(id|href|clip-path)="[^"]*"'), re.compile(r"-?\d+(?:\.\d+)?")
+#: How far a point of a picture may be from where it is shown [pt].
+_APART = 0.1
+
 _LANGUAGES = "python|toml|diff|sh|text"
 _NAME = re.compile(r"# ([\w/]+\.\w+)( \(at its end\))?\n")
 _PROMISE = re.compile(r"\)  # (.*)")
@@ -68,6 +76,22 @@ def checkout(folder: Path) -> Path:
     copy = shutil.copytree(ROOT, folder / "checkout", ignore=hidden)
     (copy / ".venv").symlink_to(sys.prefix)
     return copy
+
+
+def other_pictures(copy: Path) -> list[str]:
+    """Return the pictures of the pages that are drawn otherwise in a copy of the checkout."""
+    return [
+        made.name
+        for made in sorted((copy / "docs" / "pictures").glob("*.svg"))
+        if not _alike(made.read_text(encoding="utf-8"), (PICTURES / made.name).read_text(encoding="utf-8"))
+    ]
+
+
+def _alike(made: str, shown: str) -> bool:
+    made, shown = (_NAMES.sub("", text) for text in (made, shown))
+    numbers, others = (list(map(float, _NUMBERS.findall(text))) for text in (made, shown))
+    apart = max((abs(a - b) for a, b in zip(numbers, others, strict=False)), default=0.0)
+    return _NUMBERS.sub("", made) == _NUMBERS.sub("", shown) and apart < _APART
 
 
 class Runner:

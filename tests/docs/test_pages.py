@@ -20,13 +20,27 @@ LINK = re.compile(r"\]\((?!https?:)([^)#\s]*)(?:#([\w-]+))?\)")
 @pytest.mark.slow
 @pytest.mark.parametrize("page", blocks.PAGES)
 def test_blocks_of_a_page_work_in_their_order(page, tmp_path):
-    """All blocks of a page do what `blocks` says of their kind, in order in one copy of the checkout."""
+    """All blocks of a page do what `blocks` says of their kind, in order in one copy of the checkout, and
+    draw the pictures that the page shows."""
     runner = blocks.Runner(blocks.checkout(tmp_path))
     for example in blocks.examples(page):
         try:
             runner.run(example)
         except Exception as error:
             raise AssertionError(f"{page}:{example.line}: {error}") from error
+    assert blocks.other_pictures(runner.copy) == []
+
+
+def test_another_picture_is_seen(tmp_path):
+    """A curve that lies elsewhere by more than a tenth of a point is another picture, round-off is not."""
+    shown = sorted(blocks.PICTURES.glob("*.svg"))[0]
+    text = shown.read_text(encoding="utf-8")
+    (tmp_path / "docs" / "pictures").mkdir(parents=True)
+    x = re.search(r"L (\d+\.\d+) ", text)[1]
+    for moved, expected in ((1e-3, []), (0.5, [shown.name])):
+        made = text.replace(f"L {x} ", f"L {float(x) + moved:.6f} ", 1)
+        (tmp_path / "docs" / "pictures" / shown.name).write_text(made, encoding="utf-8")
+        assert blocks.other_pictures(tmp_path) == expected
 
 
 @pytest.mark.parametrize("page", blocks.PAGES)

@@ -7,17 +7,28 @@ from studies.cases.document import CaseError
 from studies.commands.tables import published_values
 from studies.engine.answer import answered
 from studies.published import problems
-from studies.published.case import AT_LEAST, AT_MOST, EQUAL, FOLDER, Value, names, published, read_published
+from studies.published.case import (
+    AT_LEAST,
+    AT_MOST,
+    EQUAL,
+    FOLDER,
+    LIMIT_POINTS,
+    Value,
+    names,
+    published,
+    read_published,
+)
 from studies.published.solve import ours
 
 
 @pytest.mark.parametrize("name", names())
 def test_every_case_file_is_whole(name):
-    """Requirement: a case file has a source, and a limit for each kind of answer to each value."""
+    """Requirement: a case file has source, limits for each kind of answer, and uncertainty but of counts."""
     problem = published(name)
     assert len(problem.source) > 20
     for value in problem.values:
         assert set(problem.answers) <= set(value.limits)
+        assert value.uncertainty > 0.0 or value.quantity == LIMIT_POINTS
 
 
 def test_every_case_file_is_a_problem_of_the_study():

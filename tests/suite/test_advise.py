@@ -2,6 +2,7 @@
 
 import json
 import math
+from dataclasses import replace
 
 import numpy as np
 import pandas as pd
@@ -65,6 +66,7 @@ def exact_path(problem, offset=0.0):
         centre=np.column_stack((np.sin(turns), turns)) * (1.0 + offset),
         torque=turns * (1.0 + offset),
         stiffness=np.ones_like(turns),
+        max_stress=turns * (1.0 + 2.0 * offset),
         solve_s=1e-3 / max(offset, 1e-9),
         wall_s=1.0,
         work=dict.fromkeys(WORK, 1.0),
@@ -78,6 +80,9 @@ def test_errors_of_a_path_relate_to_its_reference():
     assert found["error_torque"] == pytest.approx(0.01, rel=1e-9)
     assert found["end_trajectory"] == pytest.approx(0.01, rel=1e-9)
     assert found["error_stiffness"] == 0.0
+    assert (found["error_stress"], found["end_stress"]) == pytest.approx((0.02, 0.02), rel=1e-9)
+    silent = path_errors(replace(exact_path(problem), max_stress=None), exact_path(problem))
+    assert math.isnan(silent["error_stress"]) and silent["error_torque"] == 0.0
     assert all(math.isnan(value) for value in path_errors(unsolved("stopped"), exact_path(problem)).values())
 
 
@@ -104,12 +109,16 @@ def test_static_advice_as_json(capsys, monkeypatch):
     assert main(["advise", CASE, "--accuracy", "1e-2", "--json", "-"]) == 0
     document = json.loads(capsys.readouterr().out)
     found = {row["model"]: row for row in document["models"]}
-    assert set(found) == {"spline", "finite elements", *wanted}
-    for name in ("spline", "finite elements"):
+    assert set(found) == {"spline", series.ITSELF, "finite elements", *wanted}
+    assert found[series.ITSELF]["error_stress"] < 0.1 * found["spline"]["error_stress"]
+    for name in ("spline", series.ITSELF, "finite elements"):
         assert found[name]["meets"]
         assert 0.0 < found[name]["error_torque"] <= 1e-2
         assert found[name]["solve_s"] > 0.0
         assert found[name]["reference_uncertainty"] < 1e-4
+        assert 0.0 < found[name]["error_stress"] < 0.03
+        assert found[name]["reference_uncertainty_stress"] < 1e-4
+    assert found["pin joint"]["error_stress"] is None
     assert found["spline"]["setting"] == "n = 5"
     assert not found["pin joint"]["meets"] and found["pin joint"]["error_trajectory"] > 0.1
 
@@ -143,6 +152,7 @@ def test_no_model_meets_an_impossible_error(capsys, monkeypatch):
     bad = series.Series(name="spline", look=one.look, members=(coarse,))
     monkeypatch.setattr(series, "own_series", lambda: [bad])
     monkeypatch.setattr(series, "splines", lambda *_, **__: bad)
+    monkeypatch.setattr(series, "by_itself", lambda accuracy: bad)
     monkeypatch.setattr(series, "other_series", list)
     assert main(["advise", CASE, "--accuracy", "1e-9"]) == 3
     streams = capsys.readouterr()

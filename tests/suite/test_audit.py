@@ -19,6 +19,7 @@ from studies.cases.effects import Effects
 from studies.cases.problem import FOLDER, named_case
 from studies.effects import audit as module
 from studies.effects import outcome
+from studies.effects.beyond import prices
 from studies.effects.variants import Variant, full_scene, size_of, without
 from studies.record.store import Store
 
@@ -258,3 +259,29 @@ def test_every_shipped_case_can_be_audited(name, monkeypatch, capsys):
     monkeypatch.setattr(outcome, "SWINGS", 0.2)
     assert main(["audit", str(FOLDER / f"{name}.toml")]) == 0
     assert "cheape" in capsys.readouterr().out
+
+
+def test_what_planar_beams_leave_out_is_priced(audited):
+    """Table 1's wide clamps, flat sections, roots and shear change its answers by what theory says."""
+    found = {row["effect"]: row for row in audited["beyond"]}
+    assert list(found) == ["clamped_width", "anticlastic", "root_compliance", "all three", "shear"]
+    root = 2.0 * 0.416 * 0.005 / (0.06 * math.sqrt(2.0))
+    assert found["root_compliance"]["stiffness"] == pytest.approx(1.0 / (1.0 + root) - 1.0, rel=2e-3)
+    assert found["clamped_width"]["stiffness"] == pytest.approx(0.0082, abs=1e-4)
+    assert found["anticlastic"]["stiffness"] == pytest.approx(0.0, abs=1e-8)
+    assert found["shear"]["torque"] == pytest.approx(-0.0024, abs=1e-5)
+    assert all(
+        row["mode"] == pytest.approx(0.5 * row["stiffness"], rel=0.1, abs=3e-5) for row in found.values()
+    )
+
+
+def test_what_has_no_price_says_why():
+    """Inextensible strips are unknown to the elements: the row of shear says so, the others have prices."""
+    design = named_design("cross_axis_pivot")
+    rigid = dataclasses.replace(
+        design, effects=design.effects.renamed(["bending", "inextensible", "body_inertia"])
+    )
+    rows = {row.effect: row for row in prices(rigid)}
+    assert (rows["shear"].status, rows["anticlastic"].status) == ("refused", "converged")
+    assert "got 'inextensible'" in rows["shear"].reason
+    assert math.isnan(rows["shear"].largest)

@@ -171,6 +171,10 @@ BAD_OPTIONS = {
         ["--model", "rod"],
         "argument --model: got rod, expected one or more of spline, fe, fe-shear",
     ),
+    "a model twice": (
+        ["--model", "fe,fe"],
+        "argument --model: got fe, expected one or more of spline, fe, fe-shear, each once",
+    ),
     "three control points": (
         ["--model", "spline", "--control-points", "3"],
         "control_points: got 3, expected",

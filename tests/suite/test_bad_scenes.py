@@ -95,6 +95,11 @@ BAD_SCENES = {
         '"gravty"]',
         "scene.effects: got gravty, expected gravity (the nearest name)",
     ),
+    "shear": (
+        '"gravity"]',
+        '"gravity", "shear"]',
+        "scene.effects: got shear, expected --model fe-shear in its place: sections of a spline's strip stay",
+    ),
     "effects no list": (
         'effects = ["bending"',
         'effects = "bending" #',
@@ -149,6 +154,11 @@ BAD_SCENES = {
     ),
     "no name": ('name = "ground_crank"', "", "strips number 1.name: got no such key, expected a name"),
     "same name": ('name = "coupler"\n', 'name = "crank"\n', "name: got crank, expected different names"),
+    "no length": (
+        "end_m = [0, 0.02]",
+        "end_m = [0, 0]",
+        "strips.ground_crank.end_m: got [0.0, 0.0], where it begins, expected a length",
+    ),
     "misspelt key": (
         "mass_kg = 0.1",
         "mas_kg = 0.1",

@@ -13,9 +13,9 @@ from studies.cases.design import named_design, read_design
 from studies.cases.effect_keys import EFFECTS
 from studies.cases.effect_keys import KEYS as EFFECT_KEYS
 from studies.cases.effects import Effects
+from studies.cases.keys import OWN
 from studies.cases.materials import MATERIALS
 from studies.cases.mechanism import Mechanism
-from studies.cases.mechanism_keys import OWN
 from studies.cases.problem import FOLDER, CaseError, Problem, read_case
 from studies.cases.write import as_toml
 
@@ -73,6 +73,25 @@ def test_named_material_fills_what_no_key_gives(name, case):
     assert isinstance(found, Problem)
     assert (found.youngs_modulus, found.poisson_ratio) == (given.youngs_modulus, given.poisson_ratio)
     assert (found.yield_strength, found.density) == (given.yield_strength, 1234.0)
+
+
+@pytest.mark.parametrize(("name", "turned"), [("silicon_100", False), ("silicon_110", True)])
+def test_silicon_follows_from_the_constants_of_its_crystal(name, turned):
+    """Along <100> and <110> modulus and Poisson's ratio to <001> are those of the cubic crystal."""
+    c11, c12, c44 = 166e9, 64e9, 80e9
+    s11 = (c11 + c12) / ((c11 - c12) * (c11 + 2.0 * c12))
+    s12 = -c12 / ((c11 - c12) * (c11 + 2.0 * c12))
+    modulus = 1.0 / (s11 - 0.5 * (s11 - s12 - 0.5 / c44) * turned)
+    given = MATERIALS[name]
+    assert given.youngs_modulus == pytest.approx(modulus, rel=5e-3)
+    assert given.poisson_ratio == pytest.approx(-s12 * modulus, abs=5e-3)
+
+
+def test_materials_say_what_was_found_again():
+    """Every material has a source, and says which of its values were found again, and where."""
+    assert all(
+        given.source and ("http" in given.checked or "not" in given.checked) for given in MATERIALS.values()
+    )
 
 
 GUIDE = """

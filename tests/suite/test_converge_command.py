@@ -6,6 +6,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from studies.answers.reference import QUANTITIES
 from studies.convergence.sweep import reaching, with_orders
 
 
@@ -26,10 +27,31 @@ def test_table_orders_and_counts(short):
         int(line.split()[0]): line.split() for line in outcome.out.splitlines() if re.match(r" +\d", line)
     }
     assert set(rows) == {4, 5, 6, 10, 20, 40}
-    assert [float(cell) for cell in rows[40][2:7:2]] == pytest.approx([2.0, 2.0, 2.0], abs=0.1)
-    assert rows[40][7] == "converged"
+    assert [float(cell) for cell in rows[40][2:9:2]] == pytest.approx([2.0] * 4, abs=0.1)
+    assert rows[40][9] == "converged"
     assert re.search(r"trajectory and torque +1e-03 +1e-04 +1e-06\n", outcome.out)
-    assert re.search(r"\nelements +\d+ +\d+ +> 40\n", outcome.out)
+    assert len(re.findall(r"\nelements +\d+ +\d+ +> 40\n", outcome.out)) == 2
+    assert 0.0 < float(re.search(r"uncertainty: .*, stress (\S+)\n", outcome.out)[1]) < 1e-6
+
+
+def test_estimates_stand_beside_the_errors(short):
+    """What `solve` takes by itself is told with its errors and estimates, which are no less than half."""
+    lines = short[0].out.splitlines()
+    place = next(i for i, line in enumerate(lines) if line.startswith("without --control-points"))
+    error, estimate = (
+        [float(v) for v in re.findall(r"\d\.\de-\d+", line)] for line in lines[place + 1 : place + 3]
+    )
+    assert len(error) == len(estimate) == len(QUANTITIES)
+    assert all(e < max(2.0 * by_itself, 1e-9) for e, by_itself in zip(error, estimate, strict=True))
+
+
+def test_count_that_reaches_an_accuracy_in_the_stress(short):
+    """Of six control points the stress is the least accurate, so that it alone asks for more of them."""
+    outcome, folder = short
+    six = pd.read_csv(folder / "control_points.csv").set_index("control_points").loc[6]
+    assert six["error_stress"] > 10.0 * max(six["error_trajectory"], six["error_torque"])
+    path, all_four = re.findall(r"\ncontrol points +(\d+) +(\S+) ", outcome.out)
+    assert (path[1], all_four[1]) == ("5", ">")
 
 
 def test_a_mechanism_is_refined_too(command, tmp_path):
@@ -38,7 +60,7 @@ def test_a_mechanism_is_refined_too(command, tmp_path):
     outcome = command(*words, "--out", tmp_path)
     assert outcome.code == 0
     rows = [line.split() for line in outcome.out.splitlines() if re.match(r" +\d", line)]
-    assert [float(cell) for cell in rows[-1][2:7:2]] == pytest.approx([2.0, 2.0, 2.0], abs=0.05)
+    assert [float(cell) for cell in rows[-1][2:9:2]] == pytest.approx([2.0] * 4, abs=0.05)
     assert float(rows[1][3]) < 1e-4
 
 
@@ -110,7 +132,7 @@ def test_count_that_reaches_an_accuracy_holds_from_there_on():
 def test_orders_compare_a_row_with_the_one_before():
     """The observed order belongs to the pair of this count and the one before, whatever their ratio."""
     table = pd.DataFrame({"n": [30, 10, 20]})
-    for name in ("trajectory", "torque", "stiffness"):
+    for name in QUANTITIES:
         table[f"error_{name}"] = 5.0 / table["n"] ** 3
     orders = with_orders(table, "n")["order_torque"].to_numpy()
     assert np.isnan(orders[0])

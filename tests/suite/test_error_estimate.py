@@ -5,6 +5,8 @@ import math
 import numpy as np
 import pytest
 
+from studies.answers.adapters import answer_static
+from studies.answers.settings import SplineSettings
 from studies.cases.problem import named_case
 from studies.convergence import error_estimate
 from studies.convergence.error_estimate import drawn
@@ -27,6 +29,21 @@ def test_designs_fill_their_bounds_and_are_the_same_again():
     assert all(math.isclose(design.area / design.depth, case.area / case.depth) for design in designs)
 
 
+def test_the_stress_has_an_estimate_of_its_own():
+    """The estimate of the largest stress is not below its error; half a dozen points by curvature are."""
+    case = named_case("titanium_pivot")
+    exact = answer_static(case, SplineSettings(control_points=16)).max_stress
+    answer = answer_static(case, SplineSettings())
+
+    def optimism(stress):
+        return np.abs(stress - exact).max() / exact.max() / answer.estimate["stress"]
+
+    gates.check("spline_stress_accuracy_optimism", optimism(answer.max_stress))
+    coarse = answer_static(case, SplineSettings(**gates.teeth("spline_stress_accuracy_optimism")))
+    with pytest.raises(AssertionError):
+        gates.check("spline_stress_accuracy_optimism", optimism(coarse.max_stress))
+
+
 @pytest.mark.slow
 def test_estimates_of_all_designs_are_within_their_band():
     """Over 36 designs and six accuracies, and some swings: 0.3 to 10 for 90 %, none below a third."""
@@ -39,7 +56,10 @@ def test_estimates_of_all_designs_are_within_their_band():
     counted = {name: each for name, each in rows[rows["counts"]].groupby("problem")}
     for problem, every in counted.items():
         assert every["effectivity"].between(*error_estimate.BAND).mean() >= error_estimate.SHARE, problem
-    statics, motion = counted["statics"], counted["motion"]
+    statics, motion, stress = counted["statics"], counted["motion"], tables["stress"].query("counts")
+    assert stress["effectivity"].between(*error_estimate.BAND).mean() >= error_estimate.SHARE
+    assert (stress["true_error"] <= stress["accuracy"]).all()
+    gates.check("spline_stress_accuracy_optimism", (1.0 / stress["effectivity"]).max())
     gates.check("spline_accuracy_request", (statics["true_error"] / statics["accuracy"]).max())
     gates.check("spline_accuracy_effectivity", np.log(statics["effectivity"]).abs().max())
     gates.check("spline_motion_accuracy_request", (motion["true_error"] / motion["accuracy"]).max())

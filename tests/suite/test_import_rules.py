@@ -6,7 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from studies.record.source import ROOT, imports
+from studies.record.source import ROOT
+from studies.record.syntax import imports
 
 REPOSITORY = {"spline_model", "fe_reference", "studies", "tests", "report"}
 MODELS = {
@@ -21,7 +22,7 @@ def _top_level_imports(path: Path, source: str) -> set[str]:
     """Return the top-level names that `source`, standing at `path`, imports in any way."""
     module = ".".join(path.relative_to(ROOT).with_suffix("").parts).removesuffix(".__init__")
     tree = ast.parse(source)
-    names = set(imports(tree, module, package=path.name == "__init__.py"))
+    names = {full for _, full in imports(tree, module, package=path.name == "__init__.py")}
     for node in ast.walk(tree):
         if isinstance(node, ast.Call) and getattr(node.func, "id", getattr(node.func, "attr", "")) in (
             "import_module",

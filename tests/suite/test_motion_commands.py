@@ -107,6 +107,18 @@ def test_release_table_is_short_and_says_what_is_not_resolved(case, command):
     assert "of the swing's" in lines[-2]
 
 
+def test_what_stands_still_has_no_balance_of_energy(case, command):
+    """Where nothing moves, energies are round-off, and no line says how well they balance."""
+    out = command("release", case(), "--rotation-deg", 0, "--duration", 1e-3, "--step", 1e-4).out
+    assert "nothing moves" in out and "balanced" not in out
+
+
+def test_modes_beyond_those_that_there_are_told(case, command):
+    """Asked for more modes than the discretisation has, the table says how many there are."""
+    out = command("modes", case(), "--count", 500, "--control-points", 6).out
+    assert "13 of 500 modes" in out
+
+
 def test_release_is_timed_without_its_static_path(case, command, monkeypatch):
     """R releases are timed after a warm-up, and R that end at the first record are taken off."""
     asked = []

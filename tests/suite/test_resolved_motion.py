@@ -6,7 +6,7 @@ import math
 import numpy as np
 import pytest
 
-from fe_reference import companion as of_elements
+from fe_reference import trajectory as of_elements
 from fe_reference.dynamics import solve_release as release_elements
 from fe_reference.errors import InvalidParameter
 from fe_reference.pivot import cross_axis_pivot as elements_pivot

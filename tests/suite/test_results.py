@@ -14,8 +14,9 @@ from studies.errors import BadInput
 from studies.paper import formulations
 from studies.record import provenance, style
 from studies.record.source import ROOT
-from studies.record.store import Store, as_csv, as_json
+from studies.record.store import Store, as_csv, as_json, same
 from studies.registry import STUDIES, study_of
+from studies.stability.family import DIGITS
 
 
 @pytest.mark.parametrize("name", STUDIES)
@@ -117,6 +118,34 @@ def test_stored_tables_are_tidy():
         for name, table in Store().load_tables(study).items():
             stored = (Store().data(study) / f"{name}.csv").read_bytes()
             assert as_csv(pd.DataFrame(table)) == stored, f"{study}/{name}"
+
+
+@pytest.mark.parametrize(
+    ("column", "found", "equal"),
+    [
+        ("iterations", 592, True),
+        ("iterations", 700, False),
+        ("energy_gain", 3e-14, True),
+        ("energy_gain", 3e-9, False),
+        ("error", 0.0123456789, True),
+        ("error", 0.012345671, True),
+        ("error", 0.012346, False),
+        ("error", float("nan"), False),
+        ("halvings", 1, False),
+        ("outcome", "wrong", False),
+    ],
+)
+def test_verify_knows_round_off(column, found, equal):
+    """Columns that state their digits are held to these, balances to a floor, and all else to the letter."""
+    table = {"case": "a", "outcome": "right", "error": 0.01234567, "iterations": 591, "halvings": 0}
+    stored = pd.DataFrame([{**table, "energy_gain": 1e-15}, {**table, "case": "b", "error": None}])
+    other = stored.astype({column: type(found)})
+    other.loc[0, column] = found
+    assert same(stored, stored, DIGITS)
+    assert same(stored, other, DIGITS) == equal
+    assert not same(stored, other, {})
+    assert not same(stored, stored.iloc[:1], DIGITS)
+    assert not same(stored, stored.rename(columns={"case": "name"}), DIGITS)
 
 
 @pytest.mark.slow

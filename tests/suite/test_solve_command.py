@@ -1,6 +1,5 @@
 """`python -m studies solve`: its JSON, table and exit codes are an interface that others call."""
 
-import dataclasses
 import json
 import math
 import re
@@ -8,9 +7,7 @@ import re
 import pytest
 
 from studies.answers import adapters
-from studies.answers.response import Critical
 from studies.cases.problem import FOLDER
-from studies.commands import solve
 from studies.commands.path_output import ENTRIES
 
 ARRAYS = {
@@ -226,79 +223,6 @@ def test_order_of_loads_and_rotation(model, order, turned, case, command):
     assert answer["load_factor"] == pytest.approx([k / 3 for k in range(4)] + [1.0] * (turned - 1))
     assert [angle != 0.0 for angle in answer["rotation_rad"]].index(True) == turned
     assert command("solve", path, "--model", model).out.splitlines()[2].split()[0] == "load"
-
-
-#: A strip of steel, its foot built in and its head pushed down: it buckles at (pi/2)^2 EI / L^2 = 5.08 N.
-COLUMN = """
-[section]
-area_m2 = 5e-6
-second_moment_m4 = 1e-13
-[material]
-youngs_modulus_Pa = 206e9
-poisson_ratio = 0.29
-density_kg_m3 = 7800
-[[strips]]
-name = "left"
-start_m = [0, 0]
-end_m = [0, 0.1]
-root = "ground"
-tip = "head"
-[[bodies]]
-name = "head"
-centre_m = [0, 0.1]
-mass_kg = 0.1
-moment_of_inertia_kg_m2 = 1e-5
-[drive]
-increments = 10
-[scene]
-effects = ["+applied_force"]
-[effects.applied_force]
-force_N = [0, -8]
-"""
-
-
-def test_what_a_converged_path_passed_is_told(command, tmp_path):
-    """A path that reached its end says what it passed, in the table and in JSON, with the load factor."""
-    path = tmp_path / "column.toml"
-    path.write_text(COLUMN, encoding="utf-8")
-    words = ["solve", path, "--model", "spline"]
-    answer = json.loads(command(*words, "--json", "-").out)
-    outcome = command(*words)
-    assert (outcome.code, outcome.err, answer["status"]) == (0, "", "converged")
-    assert answer["message"]
-    assert answer["message"] in outcome.out
-    (point,) = answer["critical_points"]
-    euler = (math.pi / 2) ** 2 * 206e9 * 1e-13 / 0.1**2  # one end free
-    assert point["kind"] == "bifurcation"
-    assert point["force_N"] == pytest.approx(euler, rel=1e-3)
-    assert point["rotation_rad"] is None
-    assert point["load_factor"] == pytest.approx(euler / 8.0, rel=1e-3)
-    assert f"bifurcation: load factor {point['load_factor']:.6g}" in outcome.out
-
-
-@pytest.mark.parametrize("model", ["spline", "fe"])
-def test_heading_names_the_effects(model, command, tmp_path):
-    """The table's heading has the effects that were assembled: a load that is not there is not named."""
-    path = tmp_path / "column.toml"
-    path.write_text(COLUMN.replace("[0, -8]", "[0, -1]"), encoding="utf-8")
-    lines = command("solve", path, "--model", model).out.splitlines()
-    assert lines[1] == "effects: bending, stretching, applied_force"
-    lines = command("solve", path, "--model", model, "--effects=-applied_force").out.splitlines()
-    assert lines[1] == "effects: bending, stretching"
-
-
-def test_critical_points_of_a_pivot_have_their_angle(case, command, monkeypatch):
-    """Of a pivot the line of a critical point has degrees, and the message stands beside it."""
-    genuine = solve.answer_path
-
-    def passing(*arguments, **keywords):
-        point = Critical(kind="limit point", load_factor=0.5, rotation=math.radians(15))
-        answer = genuine(*arguments, **keywords)
-        return dataclasses.replace(answer, message="the torque has a limit", critical_points=(point,))
-
-    monkeypatch.setattr(solve, "answer_path", passing)
-    out = command("solve", case(), "--model", "fe", "--rotation-deg", 30, "--increments", 1).out
-    assert out.splitlines()[-3:-1] == ["the torque has a limit", "limit point: load factor 0.5, 15 deg"]
 
 
 def test_a_case_of_the_suite_is_called_by_its_name(command):

@@ -1,12 +1,14 @@
 """Stored results are tidy, whole, traceable and the same every time."""
 
 import getpass
+import io
 import json
 import platform
 
 import numpy as np
 import pandas as pd
 import pytest
+from PIL import Image
 
 from studies.record import style
 from studies.record.files import OutputError, replace_folder, write_whole
@@ -91,7 +93,7 @@ def test_fresh_stale_missing(store, monkeypatch):
     """A result is fresh until the case, the source or a file changes, and missing without its files."""
     assert _state(store) == ("fresh", "")
     with monkeypatch.context() as patch:
-        patch.setattr("studies.record.provenance.source_hash", lambda module: "another")
+        patch.setattr("studies.record.provenance.source_hash", lambda module, said: "another")
         assert _state(store) == ("stale", "the source was changed")
     (store.figures / "example.png").write_bytes(b"edited")
     assert _state(store) == ("stale", "example.png was changed after it was made")
@@ -156,3 +158,23 @@ def test_folder_holds_exactly_what_was_written(tmp_path):
     replace_folder(folder, {"b.csv": b"3"})
     assert {item.name: item.read_bytes() for item in folder.iterdir()} == {"b.csv": b"3"}
     assert [item.name for item in folder.parent.iterdir()] == ["study"]
+
+
+def test_pixels_keep_the_colours_of_lines():
+    """Every colour of the style is the same in pixels as it was drawn, beside all others."""
+    colours = (style.ORANGE, style.RED, style.YELLOW, style.PURPLE, style.SKY, style.BLUE, style.GREEN)
+    with style.applied():
+        figure = style.page(4.0, 2.0)
+        panel = figure.subplots()
+        for level, colour in enumerate(colours):
+            panel.plot([0, 1], [level, level], color=colour, linewidth=4.0)
+        png = style.rendered(figure)["png"]
+    with Image.open(io.BytesIO(png)) as picture:
+        found = set(map(tuple, np.asarray(picture.convert("RGB")).reshape(-1, 3).tolist()))
+    assert {tuple(int(colour[i : i + 2], 16) for i in (1, 3, 5)) for colour in colours} <= found
+
+
+def test_figures_are_as_wide_as_the_page():
+    """No figure is wider than the text of a page, so that its letters are printed as large as drawn."""
+    assert style.page(9.5, 4.0).get_figwidth() == pytest.approx(style.PAGE_WIDTH)
+    assert style.page(4.0, 2.0).get_figwidth() == 4.0

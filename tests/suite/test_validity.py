@@ -135,7 +135,7 @@ def plate_error(**other):
 
 
 def test_estimate_of_plate_action():
-    """Requirement: what clamps over the whole width add is told within an eighth of the plate's solution."""
+    """Requirement: what clamps over the whole width add is told within 2 % of the plate's solution."""
     gates.check("validity_plate", plate_error())
 
 

@@ -45,18 +45,20 @@ def test_operations_of_the_condensed_spline(monkeypatch, n):
     """Assembly, condensation and recovery of a strip do as many operations as the formulas say."""
     model = reduced(compile_scene(cross_axis_pivot(**TABLE_ONE, control_points=n).driven(1.0)))
     strips, shape, local = model.strips, model.shape, model.local()
-    for name in ("bending_law", "mixed_law"):
-        monkeypatch.setattr(points, name, getattr(points, name).py_func)
+    for name, called in list(vars(points).items()):
+        if hasattr(called, "py_func"):
+            monkeypatch.setattr(points, name, called.py_func)
     monkeypatch.setattr(points, "math", SimpleNamespace(sqrt=lambda value: value.sqrt()))
     monkeypatch.setattr(strip_condense, "eliminate", strip_condense.eliminate.py_func)
     modes, own = strips.compliance.shape[1], 2 * n - 6
     curve = np.column_stack((np.linspace(0.0, 1.0, n), 0.01 * np.sin(np.arange(n))))
     counted = {name: counting(getattr(strips, name)) for name in ("along", "compliance", "numbers")}
-    shape = shape._replace(tables=counting(shape.tables), rule=counting(shape.rule))
-    local = local._replace(**{name: counting(getattr(local, name)) for name in ("nodal", "axial", "moment")})
+    tables = {name: counting(getattr(shape, name)) for name in ("tables", "rule", "curve", "products")}
+    room = {name: counting(getattr(local, name)) for name in ("nodal", "axial", "lanes", "pairs")}
+    shape, local = shape._replace(**tables), local._replace(**room)
     local.nodal[0, POINTS] = counting(curve.ravel())
     ones, out = counting(np.ones(modes)), counting(np.zeros(5))
-    evaluate = points.evaluate_points.py_func
+    evaluate = points.evaluate_points
     done = operations(evaluate, 0, ones, n - 1, shape, strips._replace(**counted), local, out)
     assert done == work.assembly_flops(shape.rule.shape[1], n - 1, modes)
 
@@ -82,7 +84,7 @@ def test_operations_of_an_element(monkeypatch):
     done = []
     for asked in (law.FORCES, law.TANGENT):
         room = np.empty(5, dtype=object), np.empty((4, 4), dtype=object)
-        done.append(operations(law._corotational.py_func, row, 1.0, *moved, asked, *room))
+        done.append(operations(law._corotational.py_func, row, 1.0, tuple(moved), asked, *room))
     assert done == [work.ELEMENT_FORCES, work.ELEMENT_FORCES + work.ELEMENT_TANGENT]
 
 

@@ -25,6 +25,7 @@ BAD = [
     ({"case": 'case = "cross_axis_pivvot"'}, "cross_axis_pivot (the nearest name)"),
     ({"case": 'case = "none.toml"'}, "none.toml: cannot be read"),
     ({"case": 'case = "cross_axis_pivot"\nmodell = "fe"'}, "modell: got an unknown name, expected model"),
+    ({"case": "strip.length_m = 0.08"}, "[strip]: got a case, expected a sweep, which names one"),
     ({"model": 'model = "splines"'}, 'model: got the text "splines", expected spline (the nearest name)'),
     ({"settings": "settings.control_point = 6"}, "control_points (the nearest name)"),
     ({"settings": "settings.control_points = 3"}, "settings.control_points: got 3, expected a whole number"),

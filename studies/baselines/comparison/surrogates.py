@@ -28,19 +28,16 @@ from studies.baselines.linear_pivot import (
     small_angle_stiffness,
 )
 from studies.baselines.registry import PSEUDO_RIGID, SURROGATES
-from studies.cases.mechanism import Mechanism
 from studies.cases.problem import Problem, named_case
 from studies.engine.findings import Claim, Tables
 from studies.engine.study import Answer, Part, Study
 from studies.kinds import Array
+from studies.model_form.account import CASE as GUIDE
+from studies.model_form.account import LOADS, guide_design, guide_shape
 from studies.paper import formulations
-from studies.published.case import published
 from studies.published.solve import moved
 
-CASE, GUIDE = "cross_axis_pivot", "parallelogram"
-#: Loads on the guide [EI/L^2].
-LOADS = (0.5, 1.0, 2.0, 5.0, 10.0, 20.0)
-
+CASE = "cross_axis_pivot"
 #: Splines beside them: what the paper wrote, the same count without locking, and the default.
 SPLINES = (formulations.PAPER, formulations.LOCKING_FREE, "n = 6")
 #: Control points of the reference, and those whose difference to it is its uncertainty.
@@ -187,16 +184,12 @@ def _swung(part: float) -> Answer:
 
 def _guided(load: float) -> Answer:
     """Return the displacement of a parallelogram under a load across it [EI/L^2], and that of its beams."""
-    given = published(GUIDE).design
-    assert isinstance(given, Mechanism)
-    upper, lower = given.strips
-    length = math.dist(upper.start, upper.end)
-    apart = math.dist(upper.start, lower.start) / length
-    slenderness = length / math.sqrt(12.0 * upper.second_moment_of_area / upper.area)
+    strip, shape = guide_design().strips[0], guide_shape()
+    length = math.dist(strip.start, strip.end)
     limit = np.array(moved(GUIDE, "spline", "beam", load)) / (length, length, 1.0)
     rows = []
     for model, count in ((constraint_model.model, 1), (chained_constraint_model.model, CHAINED)):
-        place = guide(apart, slenderness, count).pushed(np.array([0.0, load]))
+        place = guide(shape["apart"], 1.0 / shape["thickness"], count).pushed(np.array([0.0, load]))
         for quantity, found, known in zip(("displacement_x", "displacement_y"), place, limit, strict=False):
             row = {"model": model, "load": load, "quantity": quantity, "found": found, "reference": known}
             rows.append({**row, "error": found / known - 1.0})

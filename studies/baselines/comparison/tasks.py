@@ -36,9 +36,10 @@ FINEST: dict[Any, dict[str, Any]] = {
     openseespy_frame: {"elements": 320, "tolerance": 1e-14},
 }
 #: Timed solves of a path in a pass.
-REPEAT = 9
+REPEAT = 5
 
-PATH_ERRORS = ("trajectory", "torque", "torque_at_end", "worst")
+PATH_ERRORS = ("trajectory", "torque", "torque_at_end", "worst", "fineness")
+WORK = ("unknowns", "newton_iterations", "factorisations")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -99,11 +100,18 @@ def compared_paths(problem: Problem, against: dict[str, Limit]) -> tuple[Rows, R
     """Return errors and work, and times, a row a variant."""
     turns = _rotations(problem)
 
-    def solve(variant: Variant) -> tuple[dict[str, Any], float]:
-        path = variant.module.static_path(problem, turns, repeat=REPEAT, **variant.settings)
-        return against[variant.theory].errors(path.centre, path.torque) | dict(path.work), path.solve_s
+    def solve(variant: Variant) -> tuple[dict[str, Any], list[float]]:
+        paths = [variant.module.static_path(problem, turns, **variant.settings) for _ in range(REPEAT)]
+        work = {name: paths[0].work.get(name, np.nan) for name in WORK}
+        found = against[variant.theory].errors(paths[0].centre, paths[0].torque)
+        return found | {"fineness": _fineness(variant)} | work, [path.solve_s for path in paths]
 
     return tried(static_variants(), solve, PATH_ERRORS)
+
+
+def _fineness(variant: Variant) -> float:
+    """Return elements or control points of a variant; none where it has no refinement."""
+    return float(variant.settings.get("elements") or variant.settings.get("control_points") or np.nan)
 
 
 def _row(what: str, theory: str, errors: dict[str, float]) -> dict[str, Any]:
@@ -116,10 +124,7 @@ SWING_REFINED, SWING_CHECK = 10, 8
 SHEAR_MESHES = (36, 54, 81, 121)
 #: What the other codes' rods with shear have beside it.
 ROTARY = "section_rotary_inertia"
-#: Timed releases in a pass.
-SWING_REPEAT = 1
-
-SWING_ERRORS = ("rotation_rad", "uncertainty_rad", "step_s")
+SWING_ERRORS = ("rotation_rad", "uncertainty_rad", "step_s", "fineness")
 
 
 def swing_limits(problem: Problem) -> tuple[dict[str, Array], Rows]:
@@ -154,20 +159,20 @@ def compared_swings(
 ) -> tuple[Rows, Rows]:
     """Return errors with the uncertainty of their limit and work, and times, a row a variant."""
 
-    def solve(variant: Variant) -> tuple[dict[str, Any], float]:
+    def solve(variant: Variant) -> tuple[dict[str, Any], list[float]]:
         motion = variant.module.release(
             problem,
             start=problem.rotation,
             duration=formulations.DURATION,
-            repeat=SWING_REPEAT,
             **variant.settings,
         )
         unsure = float(uncertainty[variant.theory])
         work = {name: motion.work.get(name, np.nan) for name in ("steps", "newton_iterations")}
         rotation = CubicSpline(motion.time, motion.rotation)(formulations.INSTANTS)
         apart = float(np.abs(rotation - against[variant.theory]).max())
-        errors = {"rotation_rad": apart, "uncertainty_rad": unsure, "step_s": variant.settings["step"]}
-        return errors | work, motion.solve_s
+        step = variant.settings["step"]
+        errors = {"rotation_rad": apart, "uncertainty_rad": unsure, "step_s": step, "fineness": -step}
+        return errors | work, [motion.solve_s]
 
     return tried(release_variants(), solve, SWING_ERRORS)
 

@@ -6,21 +6,21 @@ from typing import Any
 
 import numpy as np
 
+from studies.baselines import elements as own_elements
 from studies.baselines import openseespy_frame, spline
 from studies.baselines.answer import BaselineFailed
 from studies.baselines.exudyn_strips import exudyn_ancf, exudyn_exact
-from studies.baselines.registry import HINT
+from studies.baselines.registry import HINT, SURROGATES
 
 #: Theories of the rod: the limit that a model tends to.
 WITHOUT_SHEAR, WITH_SHEAR = "without shear", "with shear"
 
 #: Group of a ratio -> modules, and the solver settings that count for it.
 EXUDYN, AS_DELIVERED, OPENSEES = "Exudyn", "Exudyn as delivered", "OpenSees"
-SPLINE = "spline"
+SPLINE, ELEMENTS, SURROGATE = "spline", "finite elements", "surrogates"
 
-#: Passes through all variants, far apart in time, of whose median times the smallest counts: what else the
-#: machine does lasts longer than one variant.
-PASSES = 2
+#: Passes through all variants, far apart in time: what else the machine does lasts longer than one variant.
+PASSES = 3
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -56,8 +56,9 @@ def _short(value: Any) -> str:
 
 def static_variants() -> list[Variant]:
     """Return the settings of the static path."""
-    found = [_variant(spline, SPLINE, control_points=n) for n in range(5, 11)]
-    found += [_variant(spline, SPLINE, control_points=n, gauss_points=n - 1 + (n < 8)) for n in (6, 7, 8, 9)]
+    found = [_variant(spline, SPLINE, control_points=n) for n in range(4, 11)]
+    found += [_variant(own_elements, ELEMENTS, elements=n) for n in (4, 5, 10, 20, 40, 80, 160, 320)]
+    found += [_variant(each, SURROGATE) for each in SURROGATES.values()]
     for tolerance in (1e-5, 1e-6, 1e-8):
         for elements in (2, 4, 6, 8, 12, 16, 24, 40):
             found.append(_ancf(elements, relative_tolerance=tolerance))
@@ -88,6 +89,16 @@ def release_variants() -> list[Variant]:
         _variant(spline, SPLINE, control_points=n, integrator="leapfrog", step=step)
         for n, step in ((5, 5e-6), (6, 5e-6), (6, 2.5e-6), (7, 4e-6), (8, 2.5e-6), (8, 1.25e-6), (9, 2e-6))
     ]
+    found += [
+        _variant(own_elements, ELEMENTS, elements=n, integrator=integrator, step=step)
+        for integrator, step in (
+            ("central-difference", 2e-5),
+            ("generalised-alpha", 1e-4),
+            ("generalised-alpha", 5e-5),
+        )
+        for n in (5, 10, 16, 24)
+    ]
+    found += [_variant(each, SURROGATE, step=1e-5) for each in SURROGATES.values()]
     for radius, tolerance in ((0.9, 1e-3), (0.6, 1e-3), (0.9, 1e-5)):
         options = {"spectral_radius": radius, "relative_tolerance": tolerance}
         for step in (2e-4, 1e-4, 5e-5, 2e-5):
@@ -121,18 +132,18 @@ def _exact(elements: int, **settings: Any) -> Variant:
 
 def tried(
     variants: Sequence[Variant],
-    solve: Callable[[Variant], tuple[dict[str, Any], float]],
+    solve: Callable[[Variant], tuple[dict[str, Any], list[float]]],
     errors: Iterable[str],
 ) -> tuple[list[dict[str, Any]], list[dict[str, Any]]]:
-    """Return the rows of the physics, and those of the times, the best of `PASSES` through all variants.
+    """Return the rows of the physics, and those of the times: median and quartiles of all passes.
 
-    `solve` returns errors and work of a variant, and its time [s]. What is not installed has one row, and
+    `solve` returns errors and work of a variant, and its times [s]. What is not installed has one row, and
     what fails keeps its own, both without errors.
     """
     nothing = dict.fromkeys(errors, np.nan)
     rows: list[dict[str, Any]] = []
     solved: list[Variant] = []
-    seconds: dict[Variant, float] = {}
+    seconds: dict[Variant, list[float]] = {}
     for variant in variants:
         row: dict[str, Any] = {"model": variant.model, "group": variant.group, "variant": variant.label}
         row |= {"theory": variant.theory, "reason": ""}
@@ -149,6 +160,11 @@ def tried(
         solved.append(variant)
     for _ in range(1, PASSES):
         for variant in solved:
-            seconds[variant] = min(seconds[variant], solve(variant)[1])
-    times = [{"model": v.model, "variant": v.label, "solve_s": seconds[v]} for v in solved]
-    return rows, times
+            seconds[variant] += solve(variant)[1]
+    return rows, [{"model": v.model, "variant": v.label} | spread(seconds[v]) for v in solved]
+
+
+def spread(seconds: Sequence[float]) -> dict[str, float]:
+    """Return median and quartiles of times [s], and how many they are, as columns of a table."""
+    low, median, high = np.percentile(seconds, (25, 50, 75))
+    return {"solve_s": median, "low_s": low, "high_s": high, "runs": len(seconds)}

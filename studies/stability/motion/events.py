@@ -30,6 +30,7 @@ from studies.stability.family import (
     family,
     names,
     outcome_of,
+    said,
 )
 from studies.stability.statics.geometry import as_mechanism
 from studies.stability.statics.paths import TOLERANCE
@@ -202,17 +203,8 @@ def _displaced(settings: Settings, millimetres: tuple[float, float], checked: bo
     answer = answer_mechanism(design, settings)
     energy = abs(answer.strain_energy[-1] / reference.strain_energy[-1] - 1.0)
     turn = abs(answer.bodies["body"][-1, 2] - reference.bodies["body"][-1, 2])
-    resolution = answer.resolution if checked else ""
-    return _bounded(
-        Found(
-            error=float(max(energy, turn)) if answer.converged else 0.0,
-            reached=answer.converged,
-            reason=answer.message or resolution,
-            states_limit=bool(resolution),
-            counters=answer.counters,
-        ),
-        1,
-    )
+    error = float(max(energy, turn)) if answer.converged else 0.0
+    return _bounded(said(answer, error, checked=checked), 1)
 
 
 def _bounded(answer: Found, jumps: int) -> Found:

@@ -24,6 +24,7 @@ from studies.stability.family import (
     Found,
     Verdict,
     judged,
+    said,
 )
 
 #: Largest error of the rotation that counts as right, over the rotation at the start [1]. A step of a
@@ -106,15 +107,8 @@ def _compared(motion: Motion, reference: Motion, *, most_gain: float, checked: b
     if not len(motion.time):  # statics does not reach the start
         return Found(error=0.0, reached=False, reason=motion.message, counters=motion.counters)
     gain = _energy_gain(motion)
-    resolution = motion.resolution if checked else ""
-    return Found(
-        error=rotation_error(motion, reference),
-        reached=motion.converged,
-        reason=motion.message or resolution,
-        states_limit=bool(resolution),
-        fault=f"the energy grows by {gain:.2g} of itself" if gain > most_gain else "",
-        counters=motion.counters,
-    )
+    fault = f"the energy grows by {gain:.2g} of itself" if gain > most_gain else ""
+    return said(motion, rotation_error(motion, reference), checked=checked, fault=fault)
 
 
 def judged_swing(

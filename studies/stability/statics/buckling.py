@@ -21,7 +21,7 @@ from studies.engine.study import Part
 from studies.kinds import Array
 from studies.record.style import BLACK, BLUE, GREEN, GREY, PURPLE, RED, page
 from studies.stability.family import COLUMNS, DEFAULT, EIGHT, FE, FINER, PAPER, TWELVE, family
-from studies.stability.statics.frames import EULER, PUBLISHED, Arc, Frame, lees_frame, load_ratio, tip, toggle
+from studies.stability.statics.frames import EULER, PUBLISHED, Arc, Frame, frame_of, load_ratio, tip
 from studies.stability.statics.questions import (
     BIFURCATION,
     COLUMN,
@@ -54,8 +54,8 @@ def tables() -> dict[str, pd.DataFrame]:
     curves, critical = _elastica(), []
     for part, case in {
         COLUMN: column,
-        TOGGLE: _plain(column, toggle(rise=0.386)),
-        LEE: _plain(column, lees_frame()),
+        TOGGLE: _plain(column, frame_of("williams_toggle")),
+        LEE: _plain(column, frame_of("lees_frame")),
     }.items():
         for model in DRAWN:
             arc = answer(case, (COLUMNS | FINER)[model])

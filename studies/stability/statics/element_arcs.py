@@ -6,13 +6,12 @@ from dataclasses import replace
 import numpy as np
 
 from fe_reference.arc_length import ArcPath, follow_arc
-from fe_reference.control import Control
+from fe_reference.control import Control, equilibrate
 from fe_reference.effects import DrivenDisplacement
 from fe_reference.errors import ConvergenceError
 from fe_reference.follow import follow
 from fe_reference.loads import full_load
 from fe_reference.model import Model
-from fe_reference.newton import equilibrate
 from fe_reference.structure import structure_of
 from studies.answers.models import built, model_of
 from studies.answers.settings import FeSettings

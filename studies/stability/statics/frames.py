@@ -1,6 +1,5 @@
 """Frames that buckle and snap through, the pivot pushed along its strips, and their paths in arc length."""
 
-import itertools
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
@@ -13,18 +12,17 @@ from spline_model.proportional import solve_mechanism
 from studies.answers.models import built, model_of, refusals
 from studies.answers.settings import SplineSettings
 from studies.cases.effects import Effects
-from studies.cases.mechanism import Body, Mechanism, Strip
-from studies.cases.mechanism_keys import GROUND
+from studies.cases.mechanism import Mechanism
 from studies.cases.problem import named_case
 from studies.kinds import Array
-from studies.published.case import published
+from studies.published.case import BEAM, loaded, published
 from studies.stability.statics.geometry import as_mechanism
 
 CASE = "cross_axis_pivot"
 STATIC = ("bending", "stretching")
-#: Poisson's ratio and density, which no static path of these strips asks for.
-UNASKED = {"poisson_ratio": 0.3, "density": 1.0}
-INCREMENTS = 20
+#: Part of the load across a column that leads elements, which have no way onto a branch, to bend: the angle
+#: moves by less than 1 %, and with a tenth of it the steps of their path jump the bend.
+SIDE = 1e-4
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -41,49 +39,22 @@ class Frame:
     pins: tuple[str, ...] = ()
 
 
-def column(*, load: float, side: float = 0.0, slenderness: float = 1e3) -> Frame:
-    """Return a cantilever of length 1 and EI = 1 along x, its tip pushed towards its root by `load` [EI/L^2].
+def frame_of(name: str, answer: str = BEAM, load: float | None = None, *, side: float = 0.0) -> Frame:
+    """Return the frame of a published problem under a load in its units, of None that of its first value.
 
     Args:
-        side: part of the load that acts across it. slenderness: L sqrt(EA / EI) [1].
+        answer: kind of answer. side: part of the load that acts across it, to the right of it.
     """
-    strip = _strip("column", (0.0, 0.0), (1.0, 0.0), GROUND, "tip", (slenderness**2, 1.0, 1.0))
-    return Frame(
-        design=_loaded((strip,), {"tip": (1.0, 0.0)}, "tip", (-load, side * load)), load=load, body="tip"
-    )
-
-
-def toggle(*, rise: float, load: float = 60.0) -> Frame:
-    """Return Williams' toggle: two built-in members of 12.943 in, EI = 9.27e3 lb in^2, EA = 1.885e6 lb.
-
-    F. W. Williams, Quarterly Journal of Mechanics and Applied Mathematics 17 (1964) 451; `rise` [in], `load`
-    [lb] down at the apex.
-    """
-    half, apex = math.sqrt(12.943**2 - rise**2), (0.0, rise)
-    strips = tuple(
-        _strip(name, (x, 0.0), apex, GROUND, "apex", (1.885e6, 9.27e3, 1.0))
-        for name, x in (("left", -half), ("right", half))
-    )
-    return Frame(design=_loaded(strips, {"apex": apex}, "apex", (0.0, -load)), load=load, body="apex")
-
-
-def lees_frame(*, load: float = 3.0) -> Frame:
-    """Return Lee's frame: two pinned members of 120 cm at a right angle, `load` [t] 24 cm from the corner.
-
-    A = 6 cm^2, I = 2 cm^4, E = 720 t/cm^2. S. L. Lee, F. S. Manuel, E. C. Rossow, Journal of the Engineering
-    Mechanics Division (ASCE) 94 (1968) 521.
-    """
-    joints = {"foot": (0.0, 0.0), "corner": (0.0, 120.0), "loaded": (24.0, 120.0), "far": (120.0, 120.0)}
-    strips = tuple(
-        _strip(f"{a}_{b}", joints[a], joints[b], a, b, (6.0, 2.0, 720.0))
-        for a, b in itertools.pairwise(joints)
-    )
-    return Frame(
-        design=_loaded(strips, joints, "loaded", (0.0, -load)),
-        load=load,
-        body="loaded",
-        pins=("foot", "far"),
-    )
+    problem = published(name)
+    load = problem.values[0].load if load is None else load
+    assert isinstance(problem.design, Mechanism)
+    design = loaded(problem.design, answer, load)
+    effects = design.effects
+    if side:
+        x, y = effects.tables["applied_force"]["force"]
+        aside = {**effects.tables["applied_force"], "force": (x + side * y, y - side * x)}
+        effects = replace(effects, tables={**effects.tables, "applied_force": aside})
+    return Frame(design=replace(design, effects=effects), load=load, body=problem.body, pins=problem.pins)
 
 
 def pushed_pivot(*, depth: float) -> Frame:
@@ -94,40 +65,6 @@ def pushed_pivot(*, depth: float) -> Frame:
     )
     design = replace(as_mechanism(named_case(CASE), 0.0), rotation=None, effects=effects)
     return Frame(design=design, load=depth, body="body")
-
-
-def _strip(
-    name: str,
-    start: tuple[float, float],
-    end: tuple[float, float],
-    root: str,
-    tip: str,
-    section: tuple[float, float, float],
-) -> Strip:
-    """Return a strip of section (A, I, E)."""
-    area, second, modulus = section
-    return Strip(
-        name=name, start=start, end=end, root=root, tip=tip, area=area, second_moment_of_area=second,
-        youngs_modulus=modulus, **UNASKED,
-    )  # fmt: skip
-
-
-def _loaded(
-    strips: tuple[Strip, ...],
-    joints: dict[str, tuple[float, float]],
-    body: str,
-    force: tuple[float, float],
-) -> Mechanism:
-    """Return the strips between joints, which are bodies without mass, one of them under a force."""
-    effects = Effects(
-        names=(*STATIC, "applied_force"), tables={"applied_force": {"body": body, "force": force}}
-    )
-    bodies = tuple(
-        Body(name=name, centre=place, mass=0.0, moment_of_inertia=0.0) for name, place in joints.items()
-    )
-    return Mechanism(
-        strips=strips, bodies=bodies, body=body, rotation=None, increments=INCREMENTS, effects=effects
-    )
 
 
 #: Euler load of a cantilever [EI/L^2].

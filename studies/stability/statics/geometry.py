@@ -25,9 +25,7 @@ def _grid() -> Iterator[StaticCase]:
     for ratio in RATIOS:
         for degrees in INCLINATIONS:
             design = replace(given, crossing_ratio=ratio, inclination=math.radians(degrees))
-            yield StaticCase(
-                name=f"cross {ratio:g}, {degrees:g} deg", x=ratio, y=degrees, design=design, settings={}
-            )
+            yield StaticCase(name=f"cross {ratio:g}, {degrees:g} deg", x=ratio, y=degrees, design=design)
 
 
 def _others() -> Iterator[StaticCase]:
@@ -36,17 +34,16 @@ def _others() -> Iterator[StaticCase]:
     cross = as_mechanism(given, OTHER_ROTATION)
     first, second = cross.strips
     length = given.length
-    parallel = _moved(second, start=(first.start[0] + length / 2, 0.0), end=_shifted(first.end, length / 2))
-    short = _moved(second, start=_between(second, 0.3), end=second.end)
-    steep = _moved(second, start=(0.6 * second.start[0], 0.0), end=second.end)
+    apart = {"half a length": length / 2.0, "a tenth of a length": length / 10.0}
+    short = replace(second, start=_between(second, 0.3))
+    steep = replace(second, start=(0.6 * second.start[0], 0.0))
     designs = {
-        "parallel strips, half a length apart": _with(cross, second=parallel),
-        "parallel strips, a tenth of a length apart": _with(
-            cross,
-            second=_moved(
-                second, start=(first.start[0] + length / 10, 0.0), end=_shifted(first.end, length / 10)
-            ),
-        ),
+        **{
+            f"parallel strips, {words} apart": _with(
+                cross, second=replace(second, start=_shifted(first.start, by), end=_shifted(first.end, by))
+            )
+            for words, by in apart.items()
+        },
         "second strip 0.7 as long": _with(cross, second=short),
         "strips at 45 and 59 degrees": _with(cross, second=steep),
         "second strip 10 times as stiff": _with(cross, second=_thicker(second, 10.0)),
@@ -59,7 +56,7 @@ def _others() -> Iterator[StaticCase]:
         },
     }
     for place, (name, design) in enumerate(designs.items()):
-        yield StaticCase(name=name, x=place, y=0.0, design=design, settings={})
+        yield StaticCase(name=name, x=place, y=0.0, design=design)
 
 
 def as_mechanism(given: Problem, degrees: float) -> Mechanism:
@@ -100,10 +97,6 @@ def as_mechanism(given: Problem, degrees: float) -> Mechanism:
 
 def _with(cross: Mechanism, *, first: Strip | None = None, second: Strip | None = None) -> Mechanism:
     return replace(cross, strips=(first or cross.strips[0], second or cross.strips[1]))
-
-
-def _moved(strip: Strip, *, start: tuple[float, float], end: tuple[float, float]) -> Strip:
-    return replace(strip, start=start, end=end)
 
 
 def _shifted(point: tuple[float, float], by: float) -> tuple[float, float]:

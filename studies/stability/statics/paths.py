@@ -1,7 +1,7 @@
 """Static paths of hard designs: the answer of each model against a refined and an independent one."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import partial
 
 import numpy as np
@@ -11,7 +11,7 @@ from studies.answers.response import MechanismResponse, Response
 from studies.answers.settings import FeSettings, Settings
 from studies.cases.design import Design
 from studies.engine.study import Answer
-from studies.stability.family import CHECK, FE, PATHS, REFINED, UNCHECKED, Found, judged
+from studies.stability.family import CHECK, FE, PATHS, REFINED, UNCHECKED, Found, judged, said
 
 #: Largest distance of a path that counts as right [1], over the largest torque and displacement. The error of
 #: six control points grows to 0.03 at a half turn; another branch is off by more than 0.1.
@@ -36,7 +36,7 @@ class StaticCase:
     x: float
     y: float
     design: Design
-    settings: Mapping[str, Settings]
+    settings: Mapping[str, Settings] = field(default_factory=dict)
     refined: Settings = REFINED
     check: Settings = CHECK
 
@@ -88,11 +88,4 @@ def attempted(design: Design, settings: Settings, reference: StaticPath, *, chec
 
 def found(path: StaticPath, reference: StaticPath, *, checked: bool) -> Found:
     """Return a path compared with the reference; without `checked`, as if it said nothing of itself."""
-    resolution = path.resolution if checked else ""
-    return Found(
-        error=distance(path, reference),
-        reached=path.converged,
-        reason=path.message or resolution,
-        states_limit=bool(resolution),
-        counters=path.counters,
-    )
+    return said(path, distance(path, reference), checked=checked)

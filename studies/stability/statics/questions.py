@@ -14,24 +14,21 @@ from studies.stability.statics.element_arcs import element_arc, tilted_state
 from studies.stability.statics.frames import (
     EULER,
     PUBLISHED,
+    SIDE,
     Arc,
     Frame,
-    column,
     extensible_euler,
-    lees_frame,
+    frame_of,
     load_ratio,
     pushed_pivot,
     spline_arc,
-    toggle,
 )
 from studies.stability.statics.paths import TOLERANCE
 
 COLUMN, TOGGLE, LEE, PIVOT = "column", "Williams' toggle", "Lee's frame", "pivot pushed down"
 LIMIT, BIFURCATION = "limit point", "bifurcation"
-SLENDERNESS = 1e3
-#: Part of the load across the column that leads elements, which have no way onto a branch, to bend: the
-#: angle moves by less than 1 %, and with a tenth of it the steps of their path jump the bend.
-SIDE = 1e-4
+#: Of the column: L sqrt(EA / EI) [1], and the load beyond which it is asked for its critical one [EI/L^2].
+SLENDERNESS, BEYOND = 1e3, 4.0
 #: Depths that the pivot's body is pushed down to [m]: the first before its strips buckle.
 SHALLOW, DEPTHS = 1e-3, (2e-3, 5e-3, 1e-2, 2e-2)
 #: Tilt of the body over its depth, in lengths of a strip, from which elements find the branch [rad].
@@ -80,7 +77,7 @@ def cases() -> Iterator[BucklingCase]:
     yield BucklingCase(
         name="column: critical load",
         part=COLUMN,
-        frame=column(load=4.0, slenderness=SLENDERNESS),
+        frame=frame_of("column", load=BEYOND),
         quantity="bifurcation [EI/L^2]",
         value=_critical(BIFURCATION, 0),
         exact=extensible_euler(SLENDERNESS),
@@ -88,17 +85,17 @@ def cases() -> Iterator[BucklingCase]:
     for degrees in PUBLISHED:
         yield post_buckling(degrees)
     for place, value in enumerate(published("williams_toggle").values):
-        yield _limit(TOGGLE, toggle(rise=0.386), place, value)
+        yield _limit(TOGGLE, frame_of("williams_toggle"), place, value)
     yield BucklingCase(
         name="toggle of rise 0.32 in: limit points",
         part=TOGGLE,
-        frame=toggle(rise=0.32),
+        frame=frame_of("williams_shallow_toggle"),
         quantity="limit points [1]",
         value=lambda arc: float(len(arc.critical)),
         published=published("williams_shallow_toggle").values[0].published,
     )
     for place, value in enumerate(published("lees_frame").values):
-        yield _limit(LEE, lees_frame(), place, value)
+        yield _limit(LEE, frame_of("lees_frame"), place, value)
     yield from _pushed()
 
 
@@ -108,8 +105,8 @@ def post_buckling(degrees: int) -> BucklingCase:
     return BucklingCase(
         name=f"column: elastica at {degrees} deg",
         part=COLUMN,
-        frame=column(load=load, slenderness=SLENDERNESS),
-        bent=column(load=load, slenderness=SLENDERNESS, side=SIDE),
+        frame=frame_of("column", load=load),
+        bent=frame_of("column", load=load, side=SIDE),
         quantity="tip angle [deg]",
         value=turned,
         branch="follow",
@@ -222,5 +219,6 @@ def _compared(arc: Arc, error: float, *, checked: bool) -> Found:
         reason=(warning if arc.reached else "") or arc.message,
         # a path that says where it stopped does not claim what lies beyond
         states_limit=bool(warning) or not arc.reached,
+        warned=bool(arc.warning),
         counters=arc.counters,
     )

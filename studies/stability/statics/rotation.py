@@ -38,7 +38,6 @@ def cases() -> Iterator[StaticCase]:
                 x=degrees,
                 y=count,
                 design=design,
-                settings={},
                 refined=FAR,
                 check=FAR_CHECK,
             )

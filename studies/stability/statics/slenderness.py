@@ -34,7 +34,7 @@ def cases() -> Iterator[StaticCase]:
         for slenderness in SLENDERNESS:
             design = replace(slender(slenderness), rotation=math.radians(degrees))
             name = f"L/h = {slenderness:g}, {degrees} deg"
-            yield StaticCase(name=name, x=slenderness, y=degrees, design=design, settings={})
+            yield StaticCase(name=name, x=slenderness, y=degrees, design=design)
         rigid: dict[str, Any] = {
             name: inextensible(settings)
             for name in (DEFAULT, LOCKING_FREE, SIX)

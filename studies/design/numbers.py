@@ -1,0 +1,285 @@
+"""Sizing a mechanism by named numbers of its case file, with exact gradients by any of them."""
+
+import copy
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from spline_model.sensitivity.parameters import CENTRES, MATERIAL, POINTS
+from spline_model.sensitivity.solve import sensitivities
+from studies.answers.adapters import answer_mechanism
+from studies.answers.models import built, model_of, refusals
+from studies.answers.reference import MESHES, limit_of
+from studies.answers.settings import FeSettings, SplineSettings
+from studies.cases.keys import MOMENTS, SIDES
+from studies.cases.mechanism import Mechanism, read_mechanism
+from studies.design.evaluate import CONTROL_POINTS, Answers, PathEnds
+from studies.design.task import STATIONS, STRESS, VARIATION, Bounded
+from studies.errors import BadInput
+from studies.kinds import Array
+from studies.sweep import keys
+
+#: Bounds of a number of a section or material where none are given, over its own.
+ROOM = (0.5, 2.0)
+#: Step of the differences by which a case's numbers are followed to those of its strips, polynomials of the
+#: fourth degree at most, of which extrapolated differences are exact.
+STEP = 0.05
+
+
+@dataclass(frozen=True, kw_only=True)
+class Number:
+    """Keys of a case file that hold one value, in the file's unit, and its bounds."""
+
+    keys: tuple[str, ...]
+    own: float
+    low: float
+    high: float
+
+    @property
+    def name(self) -> str:
+        """The keys with commas."""
+        return ",".join(self.keys)
+
+
+def number_of(where: str, document: Mapping[str, Any], text: str) -> Number:
+    """Return the number that `KEY[,KEY...][=LOW:HIGH]` stands for; BadInput where it is none of the case."""
+    names, _, bounds = text.partition("=")
+    given = tuple(name.strip() for name in names.split(","))
+    known = keys.known(document, "spline")
+    for name in given:
+        if name not in known:
+            near = [key for key in known if key.rpartition(".")[2] == name.rpartition(".")[2]] or list(known)
+            raise BadInput(f"--free: got {name}, expected a number of {where}, such as {', '.join(near[:6])}")
+    own = _value(document, given[0])
+    if own is None:
+        raise BadInput(f"--free: got {given[0]}, expected a number that stands in {where}")
+    if not bounds and (own <= 0.0 or given[0].split(".")[-1] in keys.PARTS):
+        raise BadInput(f"--free: got {text} without bounds, expected {text}=LOW:HIGH, in the file's unit")
+    try:
+        low, high = map(float, bounds.split(":")) if bounds else (own * ROOM[0], own * ROOM[1])
+    except ValueError:
+        low = high = math.nan
+    if not -math.inf < low < high < math.inf:
+        raise BadInput(f"--free: got {text}, expected KEY=LOW:HIGH with LOW < HIGH, in the file's unit")
+    return Number(keys=given, own=own, low=low, high=high)
+
+
+def by_sides(document: Mapping[str, Any], texts: Sequence[str]) -> dict[str, Any]:
+    """Return the document with its sections by width and thickness, where one of these is to be found."""
+    found = copy.deepcopy(dict(document))
+    if not any(side.name in text for text in texts for side in SIDES):
+        return found
+    area, second = (key.name for key in MOMENTS)
+    for table in (found.get("section", {}), *found["strips"]):
+        if area in table and second in table:
+            thickness = math.sqrt(12.0 * table.pop(second) / table[area])
+            table |= {"width_m": table.pop(area) / thickness, "thickness_m": thickness}
+    return found
+
+
+def _value(document: Mapping[str, Any], key: str) -> float | None:
+    """Return the number at a key, of a strip the one of all where it has none; None where there is none."""
+    section, *way = key.split(".")
+    place: Any = document.get(section, {})
+    for name in way:
+        if isinstance(place, list) and name not in keys.PARTS:
+            place = next((part for part in place if part.get("name") == name), {})
+        elif isinstance(place, list):
+            place = place[keys.PARTS[name]]
+        else:
+            place = place.get(name)
+        if place is None:
+            shared = [document.get(each, {}).get(way[-1]) for each in ("section", "material")]
+            place = next((each for each in shared if each is not None), None)
+            break
+    return float(place) if isinstance(place, int | float) else None
+
+
+@dataclass(frozen=True, kw_only=True)
+class NumbersTask(Bounded):
+    """One question about one mechanism: what is to be least over its numbers, what is held, what is allowed.
+
+    Attributes:
+        where, document: the case file and what stands in it. numbers: to be found.
+        objective: STRESS or VARIATION, of the path to the end of its drive or loads.
+        stiffness: wanted: of the driven body as it begins to turn [N m / rad], or, where the bodies follow
+            the loads, how far it goes [m].
+        allowable_stress: of the extreme fibres, before the body turns and at the end [Pa].
+    """
+
+    where: str
+    document: Mapping[str, Any]
+    numbers: tuple[Number, ...]
+    objective: str = STRESS
+    stiffness: float = math.nan
+    allowable_stress: float = math.inf
+
+    @cached_property
+    def start(self) -> Mechanism:
+        """The case as it is."""
+        return read_mechanism(self.where, self.document)
+
+    @property
+    def objectives(self) -> tuple[str, ...]:
+        """What may be made least of this mechanism."""
+        return (STRESS,) if self.start.rotation is None else (STRESS, VARIATION)
+
+    @property
+    def held(self) -> str:
+        """What the wanted stiffness is called."""
+        return "travel" if self.start.rotation is None else "stiffness"
+
+    @property
+    def limits(self) -> dict[str, float]:
+        """Of objectives that are not the one to be least: none."""
+        return {}
+
+    @cached_property
+    def bounds(self) -> dict[str, tuple[float, float]]:  # type: ignore[override]
+        """Lowest and highest value of every number, in the file's unit."""
+        return {number.name: (number.low, number.high) for number in self.numbers}
+
+    @property
+    def own(self) -> Array:
+        """Values of the case (N,)."""
+        return np.array([number.own for number in self.numbers])
+
+    @property
+    def fibres(self) -> int:
+        """Fibre stresses that are held."""
+        return 2 * 2 * len(self.start.strips) * len(STATIONS)
+
+    @property
+    def states(self) -> int:
+        """States behind the first."""
+        return self.start.increments
+
+    def content(self, values: Array) -> dict[str, Any]:
+        """Return the case with these values (N,)."""
+        document = copy.deepcopy(dict(self.document))
+        for number, value in zip(self.numbers, values, strict=True):
+            for key in number.keys:
+                keys.put(document, key, float(value))
+        return document
+
+    def problem(self, values: Array) -> Mechanism:
+        """Return the mechanism with these values (N,)."""
+        return read_mechanism(self.where, self.content(values))
+
+    def shape(self, values: Array) -> tuple[Array, Array, dict[str, float]]:
+        """Return rows of the form alone, their Jacobian, and their changes by name: there are none."""
+        del values
+        return np.zeros(0), np.zeros((0, len(self.numbers))), {}
+
+    def answers(self, values: Array) -> Answers:
+        """Solve the mechanism with these values, with exact gradients by its numbers.
+
+        Raises:
+            PathEnds: its path ends early or buckles. BadInput: what the model refuses; one line.
+        """
+        design = self.problem(values)
+        names, by = self._chain(values)
+        settings = SplineSettings(control_points=CONTROL_POINTS)
+        model = model_of(settings)
+        asked, _ = built(model, design, settings, moving=False)
+        how = {"body": design.body, "rotation": design.rotation, "order": design.order}
+        with refusals(model, settings):
+            try:
+                path = model.statics.solve_mechanism(asked, increments=design.increments, **how)
+            except model.errors.ConvergenceError as error:
+                raise PathEnds(str(error)) from None
+            if path.critical_points:
+                raise PathEnds(path.message)
+            found = sensitivities(asked, path, parameters=names, stations=STATIONS, body=design.body)
+        begin = len(path.torque) - 1 - design.increments
+        shift, by_shift = found.body_shift.value, found.body_shift.derivative @ by
+        stiffness, by_stiffness = found.stiffness.value[begin:], found.stiffness.derivative[begin:] @ by
+        held, by_held = stiffness[0], by_stiffness[0]
+        if design.rotation is None:
+            held = np.linalg.norm(shift[-1])
+            by_held = shift[-1] @ by_shift[-1] / held
+        ratio, ends, stress = stiffness[1:] / stiffness[0], [begin, -1], found.fibre_stress
+        return Answers(
+            stiffness=float(held),
+            by_stiffness=by_held,
+            square_shift=np.sum(shift[begin + 1 :] ** 2, axis=1),
+            by_square_shift=2.0 * np.einsum("si,sip->sp", shift, by_shift)[begin + 1 :],
+            variation=ratio - 1.0,
+            by_variation=(by_stiffness[1:] - ratio[:, None] * by_stiffness[0]) / stiffness[0],
+            stress=stress.value[ends].ravel(),
+            by_stress=(stress.derivative[ends] @ by).reshape(-1, len(self.numbers)),
+            rotation=path.load_factor[begin:],
+            largest_stress=found.largest_stress().value[begin:],
+            counters=found.counters,
+        )
+
+    def _chain(self, values: Array) -> tuple[list[str], Array]:
+        """Return names of the strips' and bodies' numbers that change, and derivatives (R, N) of these by the
+        case's."""
+        columns = []
+        for i, number in enumerate(self.numbers):
+            size = STEP * (abs(values[i]) if number.low > 0.0 else number.high - number.low)
+            one, rows = np.eye(len(values))[i], []
+            for step in (size, 0.5 * size):
+                up, down = (_raw(self.problem(values + side * step * one)) for side in (1, -1))
+                rows.append({name: (up[name] - down[name]) / (2.0 * step) for name in up})
+            columns.append({name: (4.0 * rows[1][name] - rows[0][name]) / 3.0 for name in rows[0]})
+        names = [name for name in columns[0] if any(abs(column[name]) > 0.0 for column in columns)]
+        return names, np.array([[column[name] for column in columns] for name in names])
+
+    def require_numbers(self) -> None:
+        """Raise BadInput unless every number is one that gradients are known by."""
+        given = _rest(self.start)
+        for number in self.numbers:
+            alone = replace(self, numbers=(number,))
+            for value in (number.low, number.high):
+                other = alone.problem(np.array([value]))
+                if _rest(other) != given:
+                    expected = "a number of sections, moduli, ends of straight strips or centres"
+                    raise BadInput(f"--free: got {number.name}, expected {expected}")
+
+
+def _raw(design: Mechanism) -> dict[str, float]:
+    """Return all numbers that gradients are known by, by the names of the sensitivities."""
+    found: dict[str, float] = {}
+    for strip in design.strips:
+        found |= {f"{strip.name}.{name}": getattr(strip, name) for name in MATERIAL}
+        places = zip(POINTS, (*strip.start, *strip.end), strict=True)
+        found |= {f"{strip.name}.{name}": value for name, value in places}
+    for body in design.bodies:
+        found |= {f"{body.name}.{n}": value for n, value in zip(CENTRES, body.centre, strict=True)}
+    return found
+
+
+def _rest(design: Mechanism) -> Mechanism:
+    """Return a design without what gradients are known by, to compare with another."""
+    none: dict[str, Any] = dict.fromkeys((*MATERIAL, "width", "thickness"), 1.0)
+    straight: dict[str, Any] = {"start": (0.0, 0.0), "end": (1.0, 0.0)}
+    strips = (replace(each, **none, **({} if each.rise else straight)) for each in design.strips)
+    bodies = (replace(each, centre=(0.0, 0.0)) for each in design.bodies)
+    return replace(design, strips=tuple(strips), bodies=tuple(bodies))
+
+
+def quantities(task: NumbersTask, found: Answers) -> dict[str, float]:
+    """Return what the splines say of a design, by name: what is held, and the objectives."""
+    return {task.held: found.stiffness, **{name: found.largest(name) for name in task.objectives}}
+
+
+def quantities_by_elements(task: NumbersTask, design: Mechanism) -> dict[str, float]:
+    """Return what the finite elements say in the limit of refinement, stress on the finest mesh.
+
+    Raises:
+        NoReference: they do not reach the end of the path.
+    """
+    limit = limit_of([answer_mechanism(design, FeSettings(elements=count)) for count in MESHES])
+    begin = len(limit.rotation) - 1 - design.increments
+    stress = {STRESS: float(limit.finest.max_stress[[begin, -1]].max())}
+    if design.rotation is None:
+        return {task.held: float(np.linalg.norm(limit.centre[-1] - limit.finest.centre[0])), **stress}
+    stiffness = limit.stiffness[begin:]
+    variation = float(np.abs(stiffness / stiffness[0] - 1.0).max())
+    return {task.held: float(stiffness[0]), **stress, VARIATION: variation}

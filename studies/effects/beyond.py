@@ -1,0 +1,152 @@
+"""What planar beams leave out, priced: how the answers of a design change with each such effect."""
+
+import math
+from dataclasses import dataclass, replace
+from typing import Any, TypeVar
+
+import numpy as np
+
+from studies.answers.adapters import answer_modes, answer_path
+from studies.answers.response import MechanismResponse, Response
+from studies.answers.settings import FeSettings, Settings, SplineSettings
+from studies.cases.design import Design
+from studies.cases.mechanism import Mechanism, Strip
+from studies.cases.problem import Problem
+from studies.effects.outcome import Unanswered, reached
+from studies.errors import BadInput
+from studies.kinds import Array
+
+Either = TypeVar("Either", bound=Problem | Mechanism)
+
+#: Effects of the third dimension, which both models know by their names.
+SECTIONS = ("clamped_width", "anticlastic", "root_compliance")
+#: What stands for all of them at once, and for the shear that only the elements know.
+ALL, SHEAR = "all three", "shear"
+#: Control points by which sections are priced, and elements by which shear is.
+CONTROL_POINTS, ELEMENTS = 10, 160
+
+
+@dataclass(frozen=True, kw_only=True)
+class Price:
+    """How far an effect moves the answers of a design that does without it.
+
+    Attributes:
+        effect: its name. status: "converged", "refused" or "not_converged"; reason: in a line.
+        trajectory: largest distance of a body's centre along the path over the largest travel [1].
+        stiffness, torque, stress, mode: relative change of the stiffness at the begin of the rotation, of the
+            torque at its end, of the largest stress there and of the first natural frequency at rest [1]; NaN
+            where there is none.
+    """
+
+    effect: str
+    status: str = "converged"
+    reason: str = ""
+    trajectory: float = np.nan
+    stiffness: float = np.nan
+    torque: float = np.nan
+    stress: float = np.nan
+    mode: float = np.nan
+
+    @property
+    def largest(self) -> float:
+        """The largest change of all [1]; NaN without an answer."""
+        changes = np.abs((self.trajectory, self.stiffness, self.torque, self.stress, self.mode))
+        return float(np.nan if np.isnan(changes).all() else np.nanmax(changes))
+
+
+def with_sections(design: Either, names: tuple[str, ...] = SECTIONS) -> Either:
+    """Return a design with these effects beside its own, its sections as the rectangles of their A and I;
+    roots are those of one block."""
+    effects = design.effects
+    tables = {"root_compliance": {"root": "monolithic"}} | dict(effects.tables)
+    more = [name for name in names if name not in effects.names]
+    return _sided(replace(design, effects=replace(effects, names=(*effects.names, *more), tables=tables)))
+
+
+def _sided(design: Either) -> Either:
+    """Return a design whose strips have the sides of the rectangles with their A and I."""
+    if isinstance(design, Problem):
+        return design if design.width is not None else replace(design, section_depth=None, **_sides(design))
+    strips = [each if each.width is not None else replace(each, **_sides(each)) for each in design.strips]
+    return replace(design, strips=tuple(strips))
+
+
+def _sides(strip: Problem | Strip) -> dict[str, Any]:
+    thickness = math.sqrt(12.0 * strip.second_moment_of_area / strip.area)
+    return {"width": strip.area / thickness, "thickness": thickness}
+
+
+def prices(design: Design) -> list[Price]:
+    """Return what each effect beside the design's own is worth: sections by the splines, shear by elements.
+
+    Raises:
+        BadInput: the splines refuse the design. Unanswered: it has no answer without these effects.
+    """
+    spline = SplineSettings(control_points=CONTROL_POINTS)
+    design = _sided(design)
+    own = _Answers.of(design, spline)
+    missing = tuple(name for name in SECTIONS if name not in design.effects.names)
+    asked = {name: (name,) for name in missing} | ({ALL: missing} if len(missing) > 1 else {})
+    found = [_price(name, with_sections(design, added), spline, own) for name, added in asked.items()]
+    try:
+        stiff = _Answers.of(design, FeSettings(elements=ELEMENTS))
+    except (BadInput, Unanswered) as error:
+        return [*found, _unpriced(SHEAR, error)]
+    return [*found, _price(SHEAR, design, FeSettings(elements=ELEMENTS, element="reissner"), stiff)]
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Answers:
+    """Static path as the body turns, and first mode at rest [Hz]."""
+
+    path: Response | MechanismResponse
+    centres: dict[str, Array]
+    mode: float
+
+    @classmethod
+    def of(cls, design: Design, settings: Settings) -> "_Answers":
+        path = reached(answer_path(design, settings))
+        turned = slice(-design.increments - 1, None)
+        modes = reached(answer_modes(design, settings, count=1)).frequency
+        return cls(
+            path=path,
+            centres={name: each[turned] for name, each in path.centres.items()},
+            mode=float(modes[0]) if len(modes) else np.nan,
+        )
+
+
+def _price(effect: str, design: Design, settings: Settings, own: _Answers) -> Price:
+    try:
+        other = _Answers.of(design, settings)
+    except (BadInput, Unanswered) as error:
+        return _unpriced(effect, error)
+    travel = max((_farthest(path, path[:1]) for path in own.centres.values()), default=0.0)
+    apart = max((_farthest(other.centres[name], path) for name, path in own.centres.items()), default=0.0)
+    begin = -design.increments - 1
+    return Price(
+        effect=effect,
+        trajectory=_rounded(apart / travel) if travel > 0.0 else np.nan,
+        stiffness=relative_change(other.path.stiffness[begin], own.path.stiffness[begin]),
+        torque=relative_change(other.path.torque[-1], own.path.torque[-1]),
+        stress=relative_change(other.path.max_stress[-1], own.path.max_stress[-1]),
+        mode=relative_change(other.mode, own.mode),
+    )
+
+
+def _unpriced(effect: str, error: Exception) -> Price:
+    status = "refused" if isinstance(error, BadInput) else "not_converged"
+    return Price(effect=effect, status=status, reason=str(error))
+
+
+def _farthest(path: Array, other: Array) -> float:
+    return float(np.linalg.norm(path - other, axis=1).max())
+
+
+def relative_change(value: float, own: float) -> float:
+    """Return a value over the own one less one, rounded; NaN where that is zero."""
+    return _rounded(value / own - 1.0) if own != 0.0 else np.nan
+
+
+def _rounded(change: float) -> float:
+    """Return a change to nine decimals, behind which both models have round-off."""
+    return round(float(change), 9) + 0.0

@@ -1,0 +1,70 @@
+"""Numbers of a mechanism's case file as variables: their gradients, and the file with their values."""
+
+import tomllib
+
+import numpy as np
+import pytest
+
+from studies.cases.design import Design, named_design, read_design
+from studies.cases.document import parsed
+from studies.cases.problem import FOLDER
+from studies.cases.write import document_toml
+from studies.design.numbers import NumbersTask, by_sides, number_of
+from studies.design.programme import gradient_error
+from studies.design.task import STRESS, VARIATION
+from tests import gates
+
+FREE = (
+    "section.thickness_m",
+    "strips.crank_coupler.end_m.y=0.09:0.11",
+    "bodies.coupler.centre_m.x=0.04:0.06",
+)
+SHARED = "strips.left.end_m.y,strips.right.end_m.y=0.09:0.11"
+
+
+def task(name, texts, **given):
+    """The question about a case that comes with the suite."""
+    document = by_sides(parsed(FOLDER / f"{name}.toml"), texts)
+    numbers = tuple(number_of(name, document, text) for text in texts)
+    return NumbersTask(where=name, document=document, numbers=numbers, **given)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("name", "texts", "objective"),
+    [
+        ("four_bar_of_flexures", FREE, VARIATION),
+        ("parallel_strip_guide", ("section.width_m", SHARED), STRESS),
+        ("living_hinge", ("section.thickness_m", "material.youngs_modulus_Pa"), STRESS),
+    ],
+)
+def test_gradients_by_numbers_of_a_file(name, texts, objective):
+    """Rows and Jacobian fit together for sections, moduli, places, and values that several keys share."""
+    asked = task(name, texts, objective=objective, stiffness=1.0, allowable_stress=1e9)
+    gates.check("sizing_gradients", gradient_error(asked, asked.own))
+    with pytest.raises(AssertionError, match="x the gate"):
+        gates.check("sizing_gradients", gradient_error(asked, asked.own, **gates.teeth("sizing_gradients")))
+
+
+def test_a_number_stands_for_the_sections_of_all_strips():
+    """The width of all sections, given by A and I, moves area and second moment of each strip."""
+    asked = task("four_bar_of_flexures", ["section.width_m"])
+    (number,) = asked.numbers
+    assert (number.own, number.low, number.high) == pytest.approx((0.01, 0.005, 0.02))
+    wide = asked.problem(np.array([0.02]))
+    for strip, own in zip(wide.strips, asked.start.strips, strict=True):
+        assert strip.second_moment_of_area == pytest.approx(2.0 * own.second_moment_of_area)
+    names, by = asked._chain(asked.own)
+    assert set(names) == {f"{s.name}.{n}" for s in wide.strips for n in ("area", "second_moment_of_area")}
+    known = [getattr(s, n) / 0.01 for s in asked.start.strips for n in ("area", "second_moment_of_area")]
+    assert by[:, 0] == pytest.approx(known, rel=1e-12)
+
+
+@pytest.mark.parametrize("path", sorted(FOLDER.glob("*.toml")), ids=lambda path: path.stem)
+def test_a_document_is_written_as_it_is_read(path, tmp_path):
+    """The text of a case's document is the same document, and the same design."""
+    document, target = parsed(path), tmp_path / "case.toml"
+    target.write_text(document_toml(document, ["a remark"]), encoding="utf-8")
+    assert tomllib.loads(target.read_text(encoding="utf-8")) == document
+    found: Design = read_design(target)
+    assert found == named_design(path.stem)
