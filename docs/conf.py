@@ -36,7 +36,8 @@ _OTHERS = (
     "argparse|ast|collections|concurrent|contextlib|enum|matplotlib|meshio|numpy|np|pandas|pathlib|pyarrow|"
     "scipy|skfem|subprocess|types"
 )
-nitpick_ignore_regex = [("py:(class|obj)", rf"({_OTHERS})\..*")]
+# Numbers are the bounds of parameters, which stand in their annotations.
+nitpick_ignore_regex = [("py:(class|obj)", rf"({_OTHERS})\..*"), ("py:class", r"[\d.]+")]
 nitpick_ignore = [
     ("py:class", name)
     for name in (
@@ -47,7 +48,7 @@ nitpick_ignore = [
         # scipy's class, which says that it belongs to no module
         "SuperLU",
         # type variables
-        *("spline_model.accuracy.Found", "spline_model.scene.Kind"),
+        *("spline_model.accuracy.Found", "spline_model.motion.arrays.Kind", "spline_model.scene.Kind"),
         *("fe_reference.effects.T", "fe_reference.refined.Answer", "fe_reference.refined.Solved"),
         "studies.record.timing.Result",
     )
