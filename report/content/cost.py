@@ -96,6 +96,16 @@ def _waited(results: Results, what: str, model: str = "spline, n = 6") -> float:
     return float(at("solve_s", model=model, what=what)(results.table(WAITS, "waits_of_time")))
 
 
+def _slower(results: Results, what: str) -> float:
+    """How many times the spline's wait the elements' is."""
+    return _waited(results, what, "80 elements") / _waited(results, what)
+
+
+def _around(results: Results, model: str) -> float:
+    """How many times its increments a whole call takes."""
+    return _waited(results, "whole call", model) / _waited(results, "increments alone", model)
+
+
 def _models(results: Results) -> Table:
     errors = results.table(SURROGATES, "errors")
     reached = results.table(SURROGATES, "thresholds")
@@ -197,6 +207,10 @@ FACTS = {
     "cost.fe20": Fact(made=lambda r: _speeds(r, "solve_s"), form=seconds),
     "cost.fe20.compiled": Fact(made=lambda r: _speeds(r, "compiled_s"), form=seconds),
     "waits.whole.spline": Fact(made=lambda r: _waited(r, "whole call"), form=seconds),
+    "waits.slower.whole": Fact(made=lambda r: _slower(r, "whole call"), form=times),
+    "waits.slower.increments": Fact(made=lambda r: _slower(r, "increments alone"), form=times),
+    "waits.around.spline": Fact(made=lambda r: _around(r, "spline, n = 6"), form=times),
+    "waits.around.fe": Fact(made=lambda r: _around(r, "80 elements"), form=times),
     "waits.command.spline": Fact(made=lambda r: _waited(r, "command line"), form=seconds),
     "surrogates.states": Fact(made=lambda r: len(_path_errors(r)), form=count),
     **{
