@@ -8,6 +8,7 @@ import pytest
 
 from studies.record.provenance import inputs
 from studies.record.source import ROOT, WITHOUT_INFLUENCE, reached, source_hash
+from studies.record.syntax import PACKAGES
 from studies.registry import STUDIES, study_of
 
 FILES = {
@@ -147,7 +148,7 @@ def ran(ask, *points):
     return {
         (".".join(file.with_suffix("").parts).removesuffix(".__init__"), code.co_qualname)
         for code, file in inside.items()
-        if file.parts[0] != "tests" and is_function(code)
+        if file.parts[0] in PACKAGES and is_function(code)
     }
 
 
