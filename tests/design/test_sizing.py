@@ -55,9 +55,9 @@ def test_jacobian_agrees_with_differences(own, objective):
     """Rows and Jacobian of the programme fit together at a design that is no optimum, limits included."""
     task = _task(own, objective, 1.0, **{CENTRE_SHIFT: {"variation": 0.05}, VARIATION: {}}[objective])
     values = task.low + task.span * (0.4, 0.3, 0.7, 0.35, 0.45)
-    gates.check("sizing_gradients", gradient_error(task, values))
+    gates.check("sizing_jacobian", gradient_error(task, values))
     with pytest.raises(AssertionError, match="x the gate"):
-        gates.check("sizing_gradients", gradient_error(task, values, **gates.teeth("sizing_gradients")))
+        gates.check("sizing_jacobian", gradient_error(task, values, **gates.teeth("sizing_jacobian")))
 
 
 def test_optimum_of_narrow_strips(own, narrow):
