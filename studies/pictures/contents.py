@@ -9,7 +9,7 @@ import numpy as np
 from studies.kinds import Array
 from studies.pictures import shapes
 from studies.pictures.charts import Chart, Curve, Quantity
-from studies.pictures.shown import LETTERS, Shown
+from studies.pictures.shown import LETTERS, TURNED, Shown
 from studies.record.style import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, RED
 
 #: Colours and lines of answers over one another.
@@ -55,7 +55,7 @@ def charts_of(shown: Sequence[Shown]) -> Iterator[Chart]:
     x = ROTATION if turned else LOAD if path else TIME
 
     def over(each: Shown) -> Array:
-        return np.asarray(each.rotation) if turned else each.fields.values
+        return turning(np.asarray(each.rotation)) if turned else each.fields.values
 
     first = (
         {
@@ -76,6 +76,12 @@ def charts_of(shown: Sequence[Shown]) -> Iterator[Chart]:
     yield from _chart(shown, x, STRESS, over, lambda each: each.fields.max_stress, level=level)
     if path:
         yield from _energies(shown, x, over)
+
+
+def turning(rotation: Array) -> Array:
+    """Return rotations (S,) without those before the last state at the first of them, where loads come on."""
+    begin = np.flatnonzero(np.abs(rotation - rotation[0]) <= TURNED)[-1]
+    return np.where(np.arange(len(rotation)) < begin, np.nan, rotation)
 
 
 def _chart(

@@ -19,6 +19,7 @@ from studies.cases.design import named_design
 from studies.errors import BadInput
 from studies.exchange.solutions import fields_of, own_fields
 from studies.pictures.charts import APART, WITHIN, apart
+from studies.pictures.contents import turning
 from studies.pictures.page import picture
 from studies.pictures.shown import Shown
 from studies.record import style
@@ -218,3 +219,11 @@ def test_compare_refuses_in_a_line(words, expected, capsys):
     """Too few or many designs, and options that no model takes, are one line."""
     assert main(["compare", *words]) == 2
     assert expected in capsys.readouterr().err
+
+
+def test_curves_over_rotation_begin_under_the_loads():
+    """States at which loads come on before the body turns are no part of a curve over its rotation."""
+    assert turning(np.array([0.0, 0.0, 0.0, 0.1, 0.2])) == pytest.approx(
+        [np.nan, np.nan, 0.0, 0.1, 0.2], nan_ok=True
+    )
+    assert turning(np.array([0.0, 0.1, 0.2])) == pytest.approx([0.0, 0.1, 0.2])
