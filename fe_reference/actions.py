@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .arrays import Array, Indices, kernel
+from .arrays import Array, Indices, inlined, kernel
 from .effects import BodyDamping, StripDamping, StripDrag
 from .law import FORCES, MATERIAL, Written, elements
 from .loads import Histories, applied, load_forces, load_power, load_tables, put_loads
@@ -159,7 +159,7 @@ def _grip_forces(grip: Array, bodies: Array, bodies_v: Array, out: Array) -> flo
     return power
 
 
-@kernel()
+@inlined()
 def act(acting: Acting, state: State, time: float) -> tuple[float, float, float]:
     """Write all that resists on nodes and bodies; return strain energy, power of the loads, power lost."""
     (given, carried, weights), (relaxation, drag, grip), histories, written, (resultants, pulls) = acting

@@ -9,7 +9,6 @@ from typing import Annotated, Any, Self, TypeVar
 
 import numpy as np
 
-from .arrays import Array
 from .errors import (
     Checked,
     History,
@@ -36,19 +35,6 @@ CURL = SIDES[:2]
 @dataclass(frozen=True, kw_only=True)
 class Effect(Checked):
     """An effect without parameters."""
-
-    def turned(self, turn: Array) -> Self:
-        """Return the same effect with its vectors turned by the matrix `turn` (2, 2)."""
-        own = {}
-        for each in fields(self):
-            read, *unit = getattr(each.type, "__metadata__", (None,))
-            if read in (pair, partly):
-                vector = getattr(self, each.name)
-                if None in vector:
-                    expected = f"two numbers in a model that turns [{unit[0]}]"
-                    raise InvalidParameter(each.name, vector, expected)
-                own[each.name] = tuple((turn @ np.array(vector)).tolist())
-        return replace(self, **own)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -170,6 +156,7 @@ KNOWN: Mapping[str, type[Effect]] = {
     "clamped_width": Effect,
     "anticlastic": Effect,
     "root_compliance": RootCompliance,
+    "shear": Effect,  # of shear-deformable elements, which have it in any case
 }
 DEFAULT_EFFECTS = ("bending", "stretching", "strip_inertia", "body_inertia")
 T = TypeVar("T", bound=Effect)
@@ -196,10 +183,6 @@ class Effects:
     def changed(self, name: str, effect: Effect) -> "Effects":
         """Return the effects with another one of this name."""
         return Effects(named={**self.named, name: effect})
-
-    def turned(self, turn: Array) -> "Effects":
-        """Return the effects of a scene turned as a whole by the matrix `turn` (2, 2)."""
-        return Effects(named={name: each.turned(turn) for name, each in self.named.items()})
 
 
 def read_effects(effects: Iterable[str], parameters: Mapping[str, Mapping[str, Any]]) -> Effects:

@@ -32,7 +32,7 @@ energy counts as that of bending, and dampers of the material's strains act in t
 
 A row of the table of elements is
 
-    X, Y, l0, EA, EI, kGA, e0, k0, nu^2 (0: it curls freely), g at two points, reach [m], c at both ends
+    X, Y, l0, EA, EI, kGA, e0, k0, D (EI: it curls freely), nu^2 g at two points, reach [m], c at both ends
 
 Sources: M. A. Crisfield, Non-linear Finite Element Analysis of Solids and Structures, vol. 1 (1991), ch. 7;
 E. Reissner, J. Appl. Math. Phys. (ZAMP) 23 (1972) 795-804; J. C. Simo, L. Vu-Quoc, Comput. Methods Appl.
@@ -41,8 +41,8 @@ Mech. Eng. 58 (1986) 79-116.
 
 import math
 
-from .arrays import Array, Indices, kernel
-from .bending import STEPS, bent_element, section
+from .arrays import Array, Indices, inlined, kernel
+from .bending import ROUND_OFF, STEPS, bent_element, rooted_element, section
 
 Energies = tuple[float, float, float]
 #: The step of the displacement over an element [m], and the turns of its end sections [rad].
@@ -57,18 +57,18 @@ FORCES, TANGENT, MATERIAL = 0, 1, 2
 QUADRATIC = 1e-9
 
 
-@kernel()
+@inlined()
 def _corotational(row: Array, share: float, moved: Moved, asked: int, f: Array, h: Array) -> Energies:
     """Write force x, y at the second node, both moments and the largest turn of an end from the element (5,).
 
     Also the tangent (4, 4) in `moved`, if it is asked for; return bending, axial and shear energy.
     """
     step_x, step_y, turn_1, turn_2 = moved
-    length_0, rate = row[2], row[4] / row[2]
+    length_0, rate = row[2], 1.0 / row[2]
     x, y = row[0] + step_x, row[1] + step_y
     length = math.sqrt(x * x + y * y)
     # (l^2 - l0^2) / (l + l0) from the displacements: no cancellation of two nearly equal lengths
-    strain = ((row[0] + x) * step_x + (row[1] + y) * step_y) / ((length + length_0) * length_0)
+    strain = rate * ((row[0] + x) * step_x + (row[1] + y) * step_y) / (length + length_0)
     strain -= share * row[6]
     turn = math.atan2(row[0] * y - row[1] * x, row[0] * x + row[1] * y)
     first, second = turn_1 - turn, turn_2 - turn
@@ -76,12 +76,21 @@ def _corotational(row: Array, share: float, moved: Moved, asked: int, f: Array, 
     first -= 2.0 * math.pi * math.floor(first / (2.0 * math.pi) + 0.5)
     second -= 2.0 * math.pi * math.floor(second / (2.0 * math.pi) + 0.5)
     axial, natural = row[3] * strain / length, share * row[4] * row[7]
-    if row[8] == 0.0:
-        moment_1, moment_2 = rate * (4.0 * first + 2.0 * second), rate * (2.0 * first + 4.0 * second)
+    if row[12] != 0.0 or row[13] != 0.0:
+        least = ROUND_OFF if asked == FORCES else 0.0
+        bent, slip_1, slip_2 = rooted_element(row, rate, natural, first, second, least)
+        bending, moment_1, moment_2, k_11, k_12, k_22 = bent
+        first, second, turn_1, turn_2 = first - slip_1, second - slip_2, turn_1 - slip_1, turn_2 - slip_2
+    elif row[8] == row[4]:
+        stiff = rate * row[4]
+        moment_1, moment_2 = stiff * (4.0 * first + 2.0 * second), stiff * (2.0 * first + 4.0 * second)
         bending = 0.5 * (moment_1 * first + moment_2 * second)
-        k_11, k_12, k_22 = 4.0 * rate, 2.0 * rate, 4.0 * rate
+        k_11, k_12, k_22 = 4.0 * stiff, 2.0 * stiff, 4.0 * stiff
+    elif asked == FORCES:  # without the slopes
+        bending, moment_1, moment_2, _, _, _ = bent_element(row, rate, first, second)
+        k_11, k_12, k_22 = 0.0, 0.0, 0.0
     else:
-        bending, moment_1, moment_2, k_11, k_12, k_22 = bent_element(row, first, second)
+        bending, moment_1, moment_2, k_11, k_12, k_22 = bent_element(row, rate, first, second)
     shear = (moment_1 + moment_2) / (length * length)
     f[0], f[1] = axial * x + shear * y, axial * y - shear * x
     f[2], f[3] = moment_1 + natural, moment_2 - natural
@@ -119,8 +128,8 @@ def _reissner(row: Array, share: float, moved: Moved, asked: int, f: Array, h: A
     axial, shear, moment, rigidity = row[3] * strain, row[5] * sliding, row[4] * curvature, row[4]
     unit = 0.5 * length
     bent = unit * moment * curvature
-    if row[8] != 0.0:
-        bent, moment, rigidity = section(row[4] / (1.0 - row[8]), row[8] * row[9], row[11], curvature)
+    if row[8] != row[4]:
+        bent, moment, rigidity = section(row[8], row[9], row[11], curvature)
         bent *= length
     lever = 0.5 * length * (axial * sliding - shear * stretch)
     f[0], f[1] = axial * c - shear * s, axial * s + shear * c
@@ -143,21 +152,13 @@ def _reissner(row: Array, share: float, moved: Moved, asked: int, f: Array, h: A
 
 
 @kernel()
-def _law(shear: bool, row: Array, share: float, moved: Moved, asked: int, f: Array, h: Array) -> Energies:
-    """Write the same for either element."""
-    if shear:
-        return _reissner(row, share, moved, asked, f, h)
-    return _corotational(row, share, moved, asked, f, h)
-
-
-@kernel()
-def _rooted(shear: bool, row: Array, share: float, moved: Moved, asked: int, f: Array, h: Array) -> Energies:
-    """Write the same for an element whose end sections are held to its nodes by roots."""
+def _rooted(row: Array, share: float, moved: Moved, asked: int, f: Array, h: Array) -> Energies:
+    """Write the same for a shear-deformable element whose end sections are held to its nodes by roots."""
     x, y, turn_1, turn_2 = moved
     c_1, c_2, last, psi_1, psi_2 = row[12], row[13], math.inf, turn_1, turn_2
     # psi - phi + c M(psi) = 0
     for _ in range(STEPS):
-        _law(shear, row, share, (x, y, psi_1, psi_2), TANGENT, f, h)
+        _reissner(row, share, (x, y, psi_1, psi_2), TANGENT, f, h)
         r_1, r_2 = psi_1 - turn_1 + c_1 * f[2], psi_2 - turn_2 + c_2 * f[3]
         a, b, c, d = 1.0 + c_1 * h[2, 2], c_1 * h[2, 3], c_2 * h[2, 3], 1.0 + c_2 * h[3, 3]
         whole = a * d - b * c
@@ -166,7 +167,7 @@ def _rooted(shear: bool, row: Array, share: float, moved: Moved, asked: int, f: 
         if not QUADRATIC < size < last:
             break
         last = size
-    parts = _law(shear, row, share, (x, y, psi_1, psi_2), asked, f, h)
+    parts = _reissner(row, share, (x, y, psi_1, psi_2), asked, f, h)
     if asked != FORCES:
         _condense(c_1, c_2, h)
     return parts[0] + 0.5 * (c_1 * f[2] * f[2] + c_2 * f[3] * f[3]), parts[1], parts[2]
@@ -190,7 +191,7 @@ def _condense(c_1: float, c_2: float, h: Array) -> None:
     h[1, 1] -= h[1, 2] * c_1 * q_1 + h[1, 3] * c_2 * q_2
 
 
-@kernel()
+@inlined()
 def elements(given: Given, share: float, asked: int, u: Array, written: Written) -> Energies:
     """Evaluate all elements at once.
 
@@ -214,12 +215,12 @@ def elements(given: Given, share: float, asked: int, u: Array, written: Written)
         j, f = i + 1, ends[e]
         moved = (u[j, 0] - u[i, 0], u[j, 1] - u[i, 1], u[i, 2], u[j, 2])
         # told apart here, as every call deeper costs as much as the element itself
-        if table[e, 12] != 0.0 or table[e, 13] != 0.0:
-            parts = _rooted(shear, table[e], share, moved, asked, f, h)
-        elif shear:
-            parts = _reissner(table[e], share, moved, asked, f, h)
-        else:
+        if not shear:
             parts = _corotational(table[e], share, moved, asked, f, h)
+        elif table[e, 12] != 0.0 or table[e, 13] != 0.0:
+            parts = _rooted(table[e], share, moved, asked, f, h)
+        else:
+            parts = _reissner(table[e], share, moved, asked, f, h)
         bending, axial, sliding = bending + parts[0], axial + parts[1], sliding + parts[2]
         force[i, 0] -= f[0]
         force[i, 1] -= f[1]

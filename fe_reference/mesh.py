@@ -56,7 +56,9 @@ class Elements:
         own = [np.full_like(self.length, part) for part in (natural.strain, natural.curvature)]
         rigidities = [self.axial_rigidity, self.flexural_rigidity, self.shear_rigidity]
         known = np.transpose([*self.chord, self.length, *rigidities, *own])
-        return np.hstack([known, self.plate, self.roots])
+        square, shares = self.plate[:, :1], self.plate[:, 1:3]
+        flat = self.flexural_rigidity[:, None] / (1.0 - square)
+        return np.hstack([known, flat, square * shares, self.plate[:, 3:], self.roots])
 
 
 def strip_basis(model: Model) -> Basis:

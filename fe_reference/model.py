@@ -5,7 +5,7 @@ radians.
 """
 
 import math
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import Annotated
 
 import numpy as np
@@ -188,6 +188,8 @@ class Model:
 
     def __post_init__(self) -> None:
         choice("element", self.element, ELEMENTS)
+        if "shear" in self.effects and self.element == ELEMENTS[0]:
+            raise InvalidParameter("element", self.element, f"{ELEMENTS[1]} for shear [name]")
         sizes = {len(strip.nodes) for strip in self.strips}
         if len(sizes) != 1:
             raise InvalidParameter(
@@ -261,32 +263,3 @@ class Model:
     def strip_index(self, name: str) -> int:
         """Return the place of the strip of this name."""
         return self.strip_names.index(choice("strip", name, self.strip_names))
-
-    def rotated(self, angle: float) -> "Model":
-        """Return the same model turned as a whole about the origin by `angle` [rad], with its loads."""
-        turn = rotation_matrix(angle)
-        strips = tuple(replace(strip, nodes=strip.nodes @ turn.T) for strip in self.strips)
-        bodies = tuple(replace(body, centre=turn @ body.centre) for body in self.bodies)
-        return replace(self, strips=strips, bodies=bodies, effects=self.effects.turned(turn))
-
-    def derived(self) -> dict[str, float | Array]:
-        """Return what this package derives from the given data, for comparison with another derivation.
-
-        Rigidities [N m^2], [N], linear density [kg/m], clamp points and unit tangents (strips, end, xy) with
-        the ground end first, body centre (2,) [m], mass of one strip [kg], mass and inertia of the body.
-        """
-        section = self.strips[0].section
-        first = np.array([strip.nodes[1] - strip.nodes[0] for strip in self.strips])
-        last = np.array([strip.nodes[-1] - strip.nodes[-2] for strip in self.strips])
-        tangents = np.stack([first, last], axis=1)
-        return {
-            "flexural_rigidity": section.flexural_rigidity,
-            "axial_rigidity": section.axial_rigidity,
-            "linear_density": section.linear_density,
-            "clamp_points": np.array([[strip.nodes[0], strip.nodes[-1]] for strip in self.strips]),
-            "clamp_directions": tangents / np.linalg.norm(tangents, axis=2, keepdims=True),
-            "centre": self.body.centre,
-            "strip_mass": section.linear_density * self.strips[0].length,
-            "body_mass": self.body.mass,
-            "body_moment_of_inertia": self.body.moment_of_inertia,
-        }

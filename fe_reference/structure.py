@@ -8,7 +8,6 @@ Gravity and natural strains, where they are named, are part of the potential her
 part: `share` goes from 0 to 1 on the way from the shape at rest to the state under both.
 """
 
-import math
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 
@@ -229,15 +228,6 @@ class Structure:
         written = (force, np.empty((many, 5)), matrices, scratch)
         elements(self.given, 1.0, asked, self.displacement(y), written)
         return matrices
-
-    def energies(self, y: Array, share: float = 1.0) -> tuple[float, float, float]:
-        """Return bending, axial and shear energy of the strips [J]."""
-        return self.evaluate(y, share, FORCES).strain
-
-    def potential(self, y: Array, share: float = 1.0) -> float:
-        """Return strain energy and energy of the weight, both in the given share [J]."""
-        here = self.evaluate(y, share, FORCES)
-        return math.fsum(here.strain) + share * here.gravity
 
     def share_rates(self, y: Array) -> tuple[Array, float, float]:
         """Return what the share changes at fixed y: the gradient (size,), and the potential, once and twice.

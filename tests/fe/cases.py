@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from fe_reference.model import Body, Model, Section, Strip
+from fe_reference.model import Body, Model, Section, Strip, rotation_matrix
 from fe_reference.pivot import cross_axis_pivot
 from tests import gates
 from tests.table_one import TABLE_ONE
@@ -50,6 +50,19 @@ def with_shear_factor(model: Model, factor: float) -> Model:
     """Return the model with another shear factor in all strips."""
     section = replace(model.strips[0].section, shear_factor=factor)
     return replace(model, strips=tuple(replace(strip, section=section) for strip in model.strips))
+
+
+def rotated(model: Model, angle: float) -> Model:
+    """Return the same model turned as a whole about the origin by `angle` [rad], with the vectors of its
+    effects."""
+    turn, named = rotation_matrix(angle), {}
+    for name, effect in model.effects.named.items():
+        vectors = {each: getattr(effect, each, None) for each in ("acceleration", "force", "displacement")}
+        own = {each: tuple((turn @ np.array(v)).tolist()) for each, v in vectors.items() if v is not None}
+        named[name] = replace(effect, **own)
+    strips = tuple(replace(strip, nodes=strip.nodes @ turn.T) for strip in model.strips)
+    bodies = tuple(replace(body, centre=turn @ body.centre) for body in model.bodies)
+    return replace(model, strips=strips, bodies=bodies, effects=replace(model.effects, named=named))
 
 
 def extrapolated(values: Sequence[Any]) -> Any:

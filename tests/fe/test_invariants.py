@@ -8,7 +8,7 @@ import pytest
 from fe_reference import control
 from fe_reference.model import ELEMENTS, rotation_matrix
 from fe_reference.statics import solve_statics
-from tests.fe.cases import FORCE, LENGTH, MOMENT, QUICK_ELEMENTS, SECTION, hold, pivot
+from tests.fe.cases import FORCE, LENGTH, MOMENT, QUICK_ELEMENTS, SECTION, hold, pivot, rotated
 
 QUARTER = np.pi / 2.0
 #: Eighth-order central difference of a first derivative, offsets 1 to 4.
@@ -118,7 +118,7 @@ def test_frame_indifference(element: str) -> None:
 
     def error(elements: int = 20) -> float:
         one = solve_statics(pivot(element=element), rotation=QUARTER)
-        other = solve_statics(pivot(element=element, elements=elements).rotated(2.5), rotation=QUARTER)
+        other = solve_statics(rotated(pivot(element=element, elements=elements), 2.5), rotation=QUARTER)
         gaps = (
             (other.torque - one.torque) / one.torque.max(),
             (other.stiffness - one.stiffness) / one.stiffness.max(),

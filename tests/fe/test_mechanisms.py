@@ -8,7 +8,7 @@ import pytest
 from fe_reference.model import ELEMENTS, rotation_matrix
 from fe_reference.statics import solve_loads, solve_mechanism, solve_statics
 from studies.published.case import published
-from tests.fe.cases import EI, LENGTH, QUICK_ELEMENTS, cantilever, extrapolated, hold, pivot
+from tests.fe.cases import EI, LENGTH, QUICK_ELEMENTS, cantilever, extrapolated, hold, pivot, rotated
 from tests.fe.scenes import APART, GUIDE, LINK, PARAMETERS, four_bar, free_cantilever, guide
 
 SOFT = {
@@ -180,7 +180,7 @@ def test_mechanism_does_not_depend_on_the_frame(element: str) -> None:
     def error(angle: float = 2.0) -> float:
         one, other = (
             solve_mechanism(model, body="crank", rotation=0.6)
-            for model in (all_static(element=element), all_static(element=element).rotated(2.0))
+            for model in (all_static(element=element), rotated(all_static(element=element), 2.0))
         )
         gaps = [(other.shape - one.shape @ rotation_matrix(angle).T) / GUIDE]
         gaps += [(other.torque - one.torque) / np.abs(one.torque).max()]
