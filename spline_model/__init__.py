@@ -14,21 +14,25 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from spline_model.batch import solve_many
-    from spline_model.design import BodyDesign, StripDesign
-    from spline_model.dynamics import solve_motion, solve_release
-    from spline_model.effects.registry import DEFAULT_EFFECTS
-    from spline_model.errors import ConvergenceError, InvalidParameter
-    from spline_model.held import HeldPivot
-    from spline_model.mechanism import Mechanism
-    from spline_model.modes import natural_frequencies
-    from spline_model.pivot import cross_axis_pivot
-    from spline_model.proportional import solve_mechanism
-    from spline_model.section_forces import moving_fields, static_fields
-    from spline_model.sensitivity.solve import sensitivities
-    from spline_model.sequential_impulse import solve_impulses
-    from spline_model.solution import Status
-    from spline_model.statics import solve_statics
+    from spline_model.batch import solve_many as solve_many
+    from spline_model.design import BodyDesign as BodyDesign
+    from spline_model.design import StripDesign as StripDesign
+    from spline_model.dynamics import solve_motion as solve_motion
+    from spline_model.dynamics import solve_release as solve_release
+    from spline_model.effects.registry import DEFAULT_EFFECTS as DEFAULT_EFFECTS
+    from spline_model.errors import ConvergenceError as ConvergenceError
+    from spline_model.errors import InvalidParameter as InvalidParameter
+    from spline_model.held import HeldPivot as HeldPivot
+    from spline_model.mechanism import Mechanism as Mechanism
+    from spline_model.modes import natural_frequencies as natural_frequencies
+    from spline_model.pivot import cross_axis_pivot as cross_axis_pivot
+    from spline_model.proportional import solve_mechanism as solve_mechanism
+    from spline_model.section_forces import moving_fields as moving_fields
+    from spline_model.section_forces import static_fields as static_fields
+    from spline_model.sensitivity.solve import sensitivities as sensitivities
+    from spline_model.sequential_impulse import solve_impulses as solve_impulses
+    from spline_model.solution import Status as Status
+    from spline_model.statics import solve_statics as solve_statics
 
 _HOMES = {
     "BodyDesign": "design",
@@ -53,27 +57,7 @@ _HOMES = {
 }
 
 
-__all__ = [
-    "DEFAULT_EFFECTS",
-    "BodyDesign",
-    "ConvergenceError",
-    "HeldPivot",
-    "InvalidParameter",
-    "Mechanism",
-    "Status",
-    "StripDesign",
-    "cross_axis_pivot",
-    "moving_fields",
-    "natural_frequencies",
-    "sensitivities",
-    "solve_impulses",
-    "solve_many",
-    "solve_mechanism",
-    "solve_motion",
-    "solve_release",
-    "solve_statics",
-    "static_fields",
-]
+__all__ = list(_HOMES)
 
 
 def __getattr__(name: str) -> Any:

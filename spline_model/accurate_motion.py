@@ -18,9 +18,16 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from spline_model.compile import compile_scene
 from spline_model.design import swinging_slide_stiffness
+from spline_model.effects import DrivenRotation
+from spline_model.errors import InvalidParameter
 from spline_model.estimate import MotionEstimate
 from spline_model.mechanism import Mechanism
+from spline_model.modes import linear_modes, static_state
+from spline_model.motion.dispatch import highest_frequency
+from spline_model.motion.explicit import require_explicit, stability_limit
+from spline_model.motion.start import set_in_motion
 from spline_model.solution import Status
 
 if TYPE_CHECKING:
@@ -52,7 +59,7 @@ MOST_STEPS = 500_000
 """Energy-consistent steps at which the search ends where there are no explicit ones."""
 
 
-class Rung(NamedTuple):
+class _Rung(NamedTuple):
     """A scheme and how fine it is: steps between two instants, or the step over the critical one."""
 
     integrator: str
@@ -60,7 +67,7 @@ class Rung(NamedTuple):
     part: float
 
 
-class Resolved(NamedTuple):
+class _Resolved(NamedTuple):
     """Runs of one rung: the fine one, a coarser rotation (S,), and what the fine one still lacks.
 
     correction (S,): of the fine rotation by the order of the scheme [rad]; doubt: how far the
@@ -75,31 +82,47 @@ class Resolved(NamedTuple):
     @property
     def error(self) -> float:
         """Estimated error by the steps [rad]."""
-        return largest(self.correction) + self.doubt
+        return _largest(self.correction) + self.doubt
 
 
 @dataclass(frozen=True, kw_only=True)
 class Task:
-    """What is asked for: a motion of ``duration`` [s] with a swing of ``amplitude`` [rad].
+    """A motion of a mechanism from the static state at the rotation ``start`` of a body; as ``solve_motion``,
+    which is ``solve``."""
 
-    lowest: asked for the slowest circular frequency at rest [rad/s], 0 for none; run: solves a mechanism
-    with an integrator, a step [s] and a number of records; critical: the longest stable step of the
-    explicit one with a mechanism [s], 0 where it cannot be used.
-    """
-
+    mechanism: Mechanism
+    start: float | None
+    body: str
+    drive: DrivenRotation | None
     duration: float
-    amplitude: float
-    lowest: Callable[[], float]
-    run: Callable[[Mechanism, str, float, int], Trajectory]
-    critical: Callable[[Mechanism], float]
+    solve: Callable[..., Trajectory]
 
     @cached_property
     def frequency(self) -> float:
-        """That frequency."""
-        return self.lowest()
+        """Slowest circular frequency at rest [rad/s], 0 for none."""
+        system = compile_scene(self.mechanism.released())
+        squares = linear_modes(system, system.rest, set_in_motion(system).mass)[0]
+        return math.sqrt(max(float(squares[0]), 0.0))
+
+    def run(self, chosen: Mechanism, integrator: str, step: float, records: int) -> Trajectory:
+        """The motion of a mechanism by an integrator, with a step [s] and a number of records."""
+        asked = {name: getattr(self, name) for name in ("start", "body", "drive", "duration")}
+        return self.solve(chosen, **asked, step=step, integrator=integrator, records=records, check=False)
+
+    def critical(self, chosen: Mechanism) -> float:
+        """The longest stable explicit step with a mechanism [s], 0 where it cannot be used."""
+        if self.drive is not None:
+            return 0.0
+        motion = set_in_motion(compile_scene(chosen.released()))
+        try:
+            require_explicit(motion, EXPLICIT)
+        except InvalidParameter:
+            return 0.0
+        held = static_state(chosen.at_start(), self.start, body=self.body)[: motion.system.layout.size]
+        return stability_limit(EXPLICIT, motion) / highest_frequency(motion, held)
 
 
-def solve_accurately(mechanism: Mechanism, accuracy: float, task: Task, records: int | None) -> Trajectory:
+def solve_accurately(task: Task, accuracy: float, records: int | None) -> Trajectory:
     """The motion whose estimated error of the rotation is below ``accuracy`` [rad].
 
     Control points are raised from those of the mechanism on, and the slide stiffness with
@@ -107,27 +130,28 @@ def solve_accurately(mechanism: Mechanism, accuracy: float, task: Task, records:
     more suggest, and how far the runs depart from that order. An accuracy that is not reached
     is the status NOT_CONVERGED of the best motion.
     """
-    instants, every = comparison(task, records)
-    runs = _Runs(mechanism, task, instants)
+    mechanism = task.mechanism
+    instants, every = _comparison(task, records)
+    runs = _Runs(task, instants)
     n = mechanism.design.discretisation.points
     while True:
         rung = runs.resolve(n, runs.first(n, accuracy), accuracy)
         by_steps, by_points = runs.solved(n, rung), runs.by_points(n, rung)
         estimate = MotionEstimate(
             accuracy=accuracy,
-            rotation=largest(by_steps.correction + by_points) + by_steps.doubt,
+            rotation=_largest(by_steps.correction + by_points) + by_steps.doubt,
             time=by_steps.error,
-            space=largest(by_points),
+            space=_largest(by_points),
             control_points=n,
             runs=runs.count,
         )
         stuck = by_steps.error > SHARE * accuracy
         if estimate.rotation <= accuracy or stuck or n + MORE > MOST:
-            return _answer(by_steps.fine, estimate, slide_stiffness(mechanism, n), every)
+            return _answer(by_steps.fine, estimate, _slide_stiffness(mechanism, n), every)
         n += MORE
 
 
-def comparison(task: Task, records: int | None) -> tuple[int, int]:
+def _comparison(task: Task, records: int | None) -> tuple[int, int]:
     """Spacings of the instants at which runs are compared, and every which fine record is kept."""
     least = max(math.ceil(INSTANTS * task.duration * task.frequency / (2 * math.pi)), INSTANTS)
     if records is None or records >= FINE * least:
@@ -138,7 +162,7 @@ def comparison(task: Task, records: int | None) -> tuple[int, int]:
     return each * records, each * FINE
 
 
-def largest(difference: Array) -> float:
+def _largest(difference: Array) -> float:
     """Largest magnitude; inf where there is none because a run stopped."""
     magnitude = float(np.abs(difference).max())
     return magnitude if math.isfinite(magnitude) else math.inf
@@ -170,32 +194,32 @@ def _answer(fine: Trajectory, estimate: MotionEstimate, slide_stiffness: float, 
 class _Runs:
     """Runs of one mechanism, each solved once; compared at ``instants`` + 1 instants."""
 
-    def __init__(self, mechanism: Mechanism, task: Task, instants: int) -> None:
-        self.mechanism, self.task, self.instants = mechanism, task, instants
+    def __init__(self, task: Task, instants: int) -> None:
+        self.task, self.instants = task, instants
         self.spacing = task.duration / instants
         self.count = 0
-        self.with_points = cache(partial(with_points, mechanism))
+        self.with_points = cache(partial(with_points, task.mechanism))
         self.critical = cache(lambda n: task.critical(self.with_points(n)))
         self.run = cache(self._run)
 
-    def first(self, n: int, accuracy: float) -> Rung:
+    def first(self, n: int, accuracy: float) -> _Rung:
         """Energy-consistent steps whose phase error, amplitude omega t (omega h)^2 / 12, is small enough.
 
         The leapfrog's steps are a hundred times cheaper and resolve all from the start.
         """
         task = self.task
         if self.critical(n) > 0.0:
-            return Rung(EXPLICIT, FINE, LARGEST_PART)
-        angle = task.amplitude * task.frequency * task.duration  # that the phase error is a part of
+            return _Rung(EXPLICIT, FINE, LARGEST_PART)
+        angle = abs(task.start or 0.0) * task.frequency * task.duration  # that the phase error is a part of
         step = math.inf
         if angle > 0:
             step = math.sqrt(6 * SHARE * accuracy / angle) / task.frequency
-        return Rung("energy", FINE * max(1, math.ceil(self.spacing / (FINE * step))), 0.0)
+        return _Rung("energy", FINE * max(1, math.ceil(self.spacing / (FINE * step))), 0.0)
 
-    def resolve(self, n: int, rung: Rung, accuracy: float) -> Rung:
+    def resolve(self, n: int, rung: _Rung, accuracy: float) -> _Rung:
         """The first rung from ``rung`` on whose error leaves enough of the accuracy, or else the best."""
         best, least = rung, math.inf
-        following: Rung | None = rung
+        following: _Rung | None = rung
         while following is not None:
             rung = following
             error = self.solved(n, rung).error
@@ -206,38 +230,38 @@ class _Runs:
             following = self.finer(rung, error / (SHARE * accuracy))
         return best
 
-    def finer(self, rung: Rung, excess: float) -> Rung | None:
+    def finer(self, rung: _Rung, excess: float) -> _Rung | None:
         """The next rung after one whose error is ``excess`` times too large; None if there is none."""
         if rung.integrator != "energy":
             part = rung.part * min(max(0.9 * excess ** (-1.0 / ORDER), 0.3), 0.8)
-            return Rung(EXPLICIT, FINE, part) if part >= SMALLEST_PART else None
+            return _Rung(EXPLICIT, FINE, part) if part >= SMALLEST_PART else None
         factor = min(max(1.2 * math.sqrt(min(excess, 1e6)), 2.0), 8.0)
         fine = FINE * math.ceil(rung.fine * factor / FINE)
-        return Rung("energy", fine, 0.0) if fine * self.instants <= MOST_STEPS else None
+        return _Rung("energy", fine, 0.0) if fine * self.instants <= MOST_STEPS else None
 
-    def solved(self, n: int, rung: Rung) -> Resolved:
+    def solved(self, n: int, rung: _Rung) -> _Resolved:
         """The runs of a rung and what they say of the fine one."""
         steps = self.steps(n, rung)
         fine, coarser = self.run(n, rung.integrator, steps), self.coarser(n, rung)
         change = self.rotation(fine) - coarser
         if rung.integrator != "energy":
-            doubt = DOUBT * largest(change)
+            doubt = DOUBT * _largest(change)
             gain = EXPLICIT_RATIO**ORDER - 1.0
-            return Resolved(fine, coarser, change / gain, doubt)
+            return _Resolved(fine, coarser, change / gain, doubt)
         before = coarser - self.rotation(self.run(n, rung.integrator, steps // 4))
-        return Resolved(fine, coarser, change / 3.0, largest(before - 4.0 * change) / 4.0)
+        return _Resolved(fine, coarser, change / 3.0, _largest(before - 4.0 * change) / 4.0)
 
-    def by_points(self, n: int, rung: Rung) -> Array:
+    def by_points(self, n: int, rung: _Rung) -> Array:
         """What some more control points change of the rotation (S,) [rad]."""
         return self.coarser(n + MORE, rung) - self.coarser(n, rung)
 
-    def coarser(self, n: int, rung: Rung) -> Array:
+    def coarser(self, n: int, rung: _Rung) -> Array:
         """Rotation (S,) of the second finest run of a rung [rad]."""
         steps = self.steps(n, rung)
         fewer = 3 * steps // 4 if rung.integrator != "energy" else steps // 2
         return self.rotation(self.run(n, rung.integrator, fewer))
 
-    def steps(self, n: int, rung: Rung) -> int:
+    def steps(self, n: int, rung: _Rung) -> int:
         """Steps of the finest run between two instants."""
         if rung.integrator != "energy":
             return FINE * math.ceil(self.spacing / (FINE * rung.part * self.critical(n)))
@@ -259,10 +283,10 @@ def with_points(mechanism: Mechanism, n: int) -> Mechanism:
     """The mechanism with n control points, and a slide stiffness in the proportion that goes with them."""
     if n == mechanism.design.discretisation.points:
         return mechanism
-    return mechanism.with_discretisation(control_points=n, slide_stiffness=slide_stiffness(mechanism, n))
+    return mechanism.with_discretisation(control_points=n, slide_stiffness=_slide_stiffness(mechanism, n))
 
 
-def slide_stiffness(mechanism: Mechanism, n: int) -> float:
+def _slide_stiffness(mechanism: Mechanism, n: int) -> float:
     """That of the mechanism, in the proportion that goes with n control points [EI/L^2]."""
     grid = mechanism.design.discretisation
     return grid.slide * swinging_slide_stiffness(n) / swinging_slide_stiffness(grid.points)

@@ -28,7 +28,7 @@ def gauss_legendre(points: int) -> tuple[Array, Array]:
 
 
 @cache
-def spline_functions(control_points: int, degree: int) -> BSpline:
+def _spline_functions(control_points: int, degree: int) -> BSpline:
     """All functions of a clamped uniform basis as one vector-valued spline; kept, for building it is slow."""
     basis = SplineBasis(control_points=control_points, degree=degree)
     return BSpline(basis.knots, np.eye(control_points), degree)
@@ -73,7 +73,7 @@ class SplineBasis:
         """Values of the derivative of each basis function, shape (len(u), control_points)."""
         if derivative > self.degree:
             return np.zeros((len(u), self.control_points))
-        return np.asarray(spline_functions(self.control_points, self.degree)(u, nu=derivative))
+        return np.asarray(_spline_functions(self.control_points, self.degree)(u, nu=derivative))
 
     def first_of_support(self, u: Array) -> NDArray[np.int64]:
         """Index of the first of the degree + 1 functions that do not vanish at u, shape (len(u),)."""

@@ -6,6 +6,7 @@ import os
 from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import asdict, dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -18,15 +19,13 @@ from spline_model.effects.curl import CLAMPED_WIDTH
 from spline_model.errors import InvalidParameter, require_count
 from spline_model.mechanism import Mechanism
 from spline_model.newton import TOLERANCE
-from spline_model.preload import is_preloaded
 from spline_model.reduced.assembly import working_space
-from spline_model.reduced.designs import Designs, Given, designs_of
+from spline_model.reduced.designs import Designs, Given, designs_of, one_each, pivots, varied
 from spline_model.reduced.many import follow_share, stations_of
 from spline_model.reduced.model import LEAST_COMPLIANCE, Reduced, reduced
 from spline_model.reduced.path import Route, empty_answer
 from spline_model.reduced.preload import preload_of
-from spline_model.static_answers import STATIONS
-from spline_model.varied_designs import one_each, pivots, varied
+from spline_model.sections import STATIONS
 
 Array = NDArray[np.float64]
 
@@ -103,48 +102,56 @@ def solve_many(
         gauss_points=gauss_points,
         slide_stiffness=slide_stiffness,
     )
-    if isinstance(designs, Mechanism):
-        if grid != Discretisation():
-            raise InvalidParameter("discretisation", grid, "none beside a mechanism, which has its own")
-        base, given = designs, varied(designs, values or {}, np.size(rotation))
-        _require_shape(base, given)
-    else:
-        if values is not None:
-            raise InvalidParameter("values", list(values), "none beside columns of pivots, which hold them")
-        base, given = pivots(designs, asdict(grid))
+    base, given = _given(designs, values, grid, np.size(rotation))
     count = len(given.ends)
     turned = np.broadcast_to(one_each("rotation", rotation, count), (count,))
-    depth = np.zeros(0)
-    if section_depth is not None:
-        plain = {"material"} == {e.measure for e in base.scene.of(Bending)} and base.scene.of(MixedStretching)
-        if not plain or any(strip.rise for strip in base.design.strips):
-            expected = "none without straight strips, the material measure and mixed stretching"
-            raise InvalidParameter("section_depth", section_depth, expected)
-        each = one_each("section_depth", section_depth, count, above=0.0)
-        depth = np.broadcast_to(each, (count,)) / np.abs(given.chord).max(axis=1)
+    depth = _depth(base, given, section_depth)
     batch = _empty(count, increments, rotation, turned)
-    model = _model(base, body)
+    model, names = _model(base, body), [b.name for b in base.design.bodies]
+    place = 3 * names.index(base.design.body_named(body))
     split, small = model.strips.split, (given.compliance < LEAST_COMPLIANCE).any(axis=1)
     slender_ones = (small | ~model.strips.compliance[:, :split].all()) & (split > 0)
     workers = threads or os.cpu_count() or 1
     with ThreadPoolExecutor(workers) as pool:
         for slender in (False, True):  # their elements differ: see ``LEAST_COMPLIANCE``
             rows = np.flatnonzero(slender_ones == slender)
-            if not rows.size:
-                continue
-            kind = model.as_slender(slender=slender)
-            share = _Share(
-                model=kind,
-                place=_place(base, body),
-                rows=rows,
-                designs=designs_of(kind, Given.of(base.design), given.rows(rows), turned[rows]),
-                depth=depth[rows] if depth.size else depth,
-                increments=increments,
-                workers=workers,
-                batch=batch,
-            )
-            list(pool.map(share.solve, range(workers)))
+            if rows.size:
+                kind = model.as_slender(slender=slender)
+                numbers = designs_of(kind, Given.of(base.design), given.rows(rows), turned[rows])
+                deep = depth[rows] if depth.size else depth
+                share = (workers, kind, place, rows, numbers, deep, increments, batch)
+                list(pool.map(partial(_solve_share, *share), range(workers)))
     return batch
+
+
+def _given(
+    designs: Mapping[str, ArrayLike] | Sequence[Mapping[str, Any]] | Mechanism,
+    values: Mapping[str, ArrayLike] | None,
+    grid: Discretisation,
+    count: int,
+) -> tuple[Mechanism, Given]:
+    """A mechanism, and the numbers of the designs that are like it; at least ``count`` of them."""
+    if isinstance(designs, Mechanism):
+        if grid != Discretisation():
+            raise InvalidParameter("discretisation", grid, "none beside a mechanism, which has its own")
+        given = varied(designs, values or {}, count)
+        _require_shape(designs, given)
+        return designs, given
+    if values is not None:
+        raise InvalidParameter("values", list(values), "none beside columns of pivots, which hold them")
+    return pivots(designs, asdict(grid))
+
+
+def _depth(base: Mechanism, given: Given, section_depth: ArrayLike | None) -> Array:
+    """Depth of each design's sections over its length (D,); (0,) where none is asked for."""
+    if section_depth is None:
+        return np.zeros(0)
+    plain = {"material"} == {e.measure for e in base.scene.of(Bending)} and base.scene.of(MixedStretching)
+    if not plain or any(strip.rise for strip in base.design.strips):
+        expected = "none without straight strips, the material measure and mixed stretching"
+        raise InvalidParameter("section_depth", section_depth, expected)
+    each = one_each("section_depth", section_depth, len(given.ends), above=0.0)
+    return np.asarray(each / np.abs(given.chord).max(axis=1))
 
 
 def _require_shape(base: Mechanism, given: Given) -> None:
@@ -168,12 +175,9 @@ def _model(mechanism: Mechanism, body: str | None) -> Reduced:
     model = reduced(compile_scene(mechanism.driven(1.0, body)))
     if model is None:
         raise InvalidParameter("discretisation", "printed forces or long splines", "what the elements know")
+    if model.shears:
+        raise InvalidParameter("effects", "shear", "none in a batch: solve_mechanism has it")
     return model
-
-
-def _place(mechanism: Mechanism, body: str | None) -> int:
-    """Place of the reported body's pose."""
-    return 3 * [b.name for b in mechanism.design.bodies].index(mechanism.design.body_named(body))
 
 
 def _empty(designs: int, increments: int, rotation: ArrayLike, turned: Array) -> Batch:
@@ -193,61 +197,48 @@ def _empty(designs: int, increments: int, rotation: ArrayLike, turned: Array) ->
     )
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class _Share:
-    """Designs of one kind of element, their rows in the batch, and what each thread does of them."""
+def _solve_share(
+    workers: int,
+    model: Reduced,
+    place: int,
+    rows: NDArray[np.int64],
+    designs: Designs,
+    depth: Array,
+    increments: int,
+    batch: Batch,
+    worker: int,
+) -> None:
+    """Solve what one thread does of the designs of one kind of element, with working arrays of its own.
 
-    model: Reduced
-    place: int
-    rows: NDArray[np.int64]
-    designs: Designs
-    depth: Array
-    increments: int
-    workers: int
-    batch: Batch
-
-    def solve(self, worker: int) -> None:
-        """Solve the designs of one thread, with working arrays of its own."""
-        model, batch, strips = self.model, self.batch, self.model.strips
-        own = {name: getattr(strips, name).copy() for name in ("along", "numbers", "compliance", "gain")}
-        bodies, preload = model.bodies, preload_of(model)
-        bodies = bodies._replace(**{k: getattr(bodies, k).copy() for k in ("rest", "load", "weight")})
-        copies = {k: getattr(preload, k).copy() for k in ("curvature", "numbers", "bodies")}
-        factors, held = np.linspace(0.0, 1.0, self.increments + 1), len(bodies.held)
-        route = Route(factor=factors, origin=np.zeros(held), target=np.zeros(held), growth=1.0, passes=True)
-        grows = factors[[0, -1]] if is_preloaded(model.system) else factors[:0]
-        growing = route._replace(factor=grows, target=np.zeros(held), growth=0.0, swells=True)
-        results = (
-            batch.states,
-            batch.centre,
-            batch.torque,
-            batch.stiffness,
-            batch.energy,
-            batch.strain,
-            batch.inertia,
-            batch.moment_defect,
-            batch.iterations,
-        )
-        follow_share(
-            worker,
-            self.workers,
-            self.rows,
-            self.designs,
-            self.depth,
-            stations_of(model, STATIONS),
-            growing,
-            route,
-            True,  # the moment defect refuses; a constant inside would be another type, compiled again
-            self.place,
-            preload._replace(**copies),
-            strips.along,
-            preload.curvature,
-            bodies,
-            strips._replace(**own),
-            model.shape,
-            model.local(),
-            working_space(bodies, model.size),
-            TOLERANCE,
-            empty_answer(len(factors), model.size, held),
-            results,
-        )
+    rows: theirs in the batch.
+    """
+    strips, bodies, preload = model.strips, model.bodies, preload_of(model)
+    own = {name: getattr(strips, name).copy() for name in ("along", "numbers", "compliance", "gain")}
+    bodies = bodies._replace(**{k: getattr(bodies, k).copy() for k in ("rest", "load", "weight")})
+    copies = {k: getattr(preload, k).copy() for k in ("curvature", "numbers", "bodies")}
+    factors, held = np.linspace(0.0, 1.0, increments + 1), len(bodies.held)
+    route = Route(factor=factors, origin=np.zeros(held), target=np.zeros(held), growth=1.0, passes=True)
+    grows = factors[[0, -1]] if model.system.is_preloaded else factors[:0]
+    follow_share(
+        worker,
+        workers,
+        rows,
+        designs,
+        depth,
+        stations_of(model, STATIONS),
+        route._replace(factor=grows, target=np.zeros(held), growth=0.0, swells=True),
+        route,
+        True,  # the moment defect refuses; a constant inside would be another type, compiled again
+        place,
+        preload._replace(**copies),
+        strips.along,
+        preload.curvature,
+        bodies,
+        strips._replace(**own),
+        model.shape,
+        model.local(),
+        working_space(bodies, model.size),
+        TOLERANCE,
+        empty_answer(len(factors), model.size, held),
+        tuple(array for name, array in vars(batch).items() if name != "rotation"),
+    )

@@ -80,12 +80,12 @@ def assemble(z, points, clamps, gradient, hessian, work):
     bending = axial = 0.0
     slowest = np.inf
     for p in range(points.place.shape[0]):
-        bent, stretched, v = add_point(p, z, points, gradient, hessian, work)
+        bent, stretched, v = _add_point(p, z, points, gradient, hessian, work)
         bending += bent
         axial += stretched
         slowest = min(slowest, v / points.numbers[p, SPEED])
     for c in range(clamps.place.shape[0]):
-        bending += subtract_clamp(z, clamps.place[c], clamps.numbers[c], gradient, hessian)
+        bending += _subtract_clamp(z, clamps.place[c], clamps.numbers[c], gradient, hessian)
     return bending, axial, slowest
 
 
@@ -103,7 +103,7 @@ def derivatives(z, first, width, d1, d2):
 
 
 @part()
-def printed_bending(phi, v, curvature, rigidity):
+def _printed_bending(phi, v, curvature, rigidity):
     """The forces of Eq 12 as printed, without d|C'|/dq: energy, m, m_phi, m_v, f, f_phi and f_v."""
     density, m, m_phi, m_v, _, _ = bending_law(phi, v, 1.0, curvature, rigidity, 0.0, 0.0, SPATIAL)
     ratio = phi / v
@@ -112,7 +112,7 @@ def printed_bending(phi, v, curvature, rigidity):
 
 
 @part()
-def add_point(p, z, points, gradient, hessian, work):
+def _add_point(p, z, points, gradient, hessian, work):
     """Add the derivatives of a point's energy; returns its energies of bending and stretching, and v."""
     place, numbers, modes = points.place[p], points.numbers[p], points.modes[p]
     first, width, mode, count, measure = place[FIRST], place[WIDTH], place[MODE], place[MODES], place[MEASURE]
@@ -124,7 +124,7 @@ def add_point(p, z, points, gradient, hessian, work):
     s = x1 * x1 + y1 * y1
     v, phi = math.sqrt(s), (x1 * y2 - y1 * x2) / s
     if measure == PRINTED:
-        bent, m, m_phi, m_v, f, f_phi, f_v = printed_bending(phi, v, curvature, rigidity)
+        bent, m, m_phi, m_v, f, f_phi, f_v = _printed_bending(phi, v, curvature, rigidity)
     else:
         drop, curl = numbers[DROP], numbers[CURL]
         bent, m, m_phi, m_v, f, f_v = bending_law(phi, v, speed, curvature, rigidity, drop, curl, law)
@@ -189,7 +189,7 @@ def add_point(p, z, points, gradient, hessian, work):
 
 
 @part()
-def subtract_clamp(z, place, numbers, gradient, hessian):
+def _subtract_clamp(z, place, numbers, gradient, hessian):
     """Subtract lambda psi of a clamped end, its gradient and its Hessian (Eqs 5 and 6); returns the energy of
     its root, if that yields [J]."""
     end, inner, body, row, sign = place[END], place[INNER], place[BODY], place[ROW], numbers[SIGN]
@@ -205,18 +205,18 @@ def subtract_clamp(z, place, numbers, gradient, hessian):
         gradient[body] += fx
         gradient[body + 1] += fy
         gradient[body + 2] += fy * ax - fx * ay + moment
-        add_pair(hessian, row, body, 1.0)
-        add_pair(hessian, row + 1, body + 1, 1.0)
-        add_pair(hessian, row, body + 2, -ay)
-        add_pair(hessian, row + 1, body + 2, ax)
-        add_pair(hessian, row + 2, body + 2, 1.0)
+        _add_pair(hessian, row, body, 1.0)
+        _add_pair(hessian, row + 1, body + 1, 1.0)
+        _add_pair(hessian, row, body + 2, -ay)
+        _add_pair(hessian, row + 1, body + 2, ax)
+        _add_pair(hessian, row + 2, body + 2, 1.0)
         hessian[body + 2, body + 2] -= fx * ax + fy * ay
     gradient[row] -= z[end] - ax
     gradient[row + 1] -= z[end + 1] - ay
     gradient[end] -= fx
     gradient[end + 1] -= fy
-    add_pair(hessian, row, end, -1.0)
-    add_pair(hessian, row + 1, end + 1, -1.0)
+    _add_pair(hessian, row, end, -1.0)
+    _add_pair(hessian, row + 1, end + 1, -1.0)
 
     dx, dy = sign * (z[inner] - z[end]), sign * (z[inner + 1] - z[end + 1])
     s = dx * dx + dy * dy
@@ -227,8 +227,8 @@ def subtract_clamp(z, place, numbers, gradient, hessian):
     for i in range(2):
         gradient[inner + i] -= moment * turn[i]
         gradient[end + i] += moment * turn[i]
-        add_pair(hessian, row + 2, inner + i, -turn[i])
-        add_pair(hessian, row + 2, end + i, turn[i])
+        _add_pair(hessian, row + 2, inner + i, -turn[i])
+        _add_pair(hessian, row + 2, end + i, turn[i])
         for j in range(2):
             value = hxy if i != j else (hxx if i == 0 else -hxx)
             hessian[inner + i, inner + j] += value
@@ -242,7 +242,7 @@ def subtract_clamp(z, place, numbers, gradient, hessian):
 
 
 @part()
-def add_pair(hessian, row, column, value):
+def _add_pair(hessian, row, column, value):
     """Add to an entry and to its mirror image."""
     hessian[row, column] += value
     hessian[column, row] += value

@@ -16,9 +16,9 @@ from numpy.typing import NDArray
 
 from spline_model.accurate_motion import EXPLICIT, MORE, Task, with_points
 from spline_model.errors import ConvergenceError, InvalidParameter
-from spline_model.laps import Laps
 from spline_model.mechanism import Mechanism
 from spline_model.motion.dispatch import QUASI_STATIC
+from spline_model.newton import Laps
 
 if TYPE_CHECKING:
     from spline_model.motion.trajectory import Trajectory
@@ -37,13 +37,14 @@ INSTANTS = 1000
 """Instants at which the two are compared, about: at least so many where the motion has as many records."""
 
 
-def with_companion(mechanism: Mechanism, motion: Trajectory, task: Task) -> Trajectory:
+def with_companion(task: Task, motion: Trajectory) -> Trajectory:
     """The motion with its ``rotation_error``, and a remark in ``resolution`` where that is much of the swing.
 
-    task: solves a mechanism from the same start. A companion that fails leaves nothing to compare, and the
+    task: that of the motion. A companion that fails leaves nothing to compare, and the
     remark says so.
     """
-    laps, points = Laps(), mechanism.design.discretisation.points + MORE
+    laps, mechanism = Laps(), task.mechanism
+    points = mechanism.design.discretisation.points + MORE
     every = _thinning(len(motion.time) - 1)
     instants = motion.time[::every]
     try:

@@ -1,4 +1,4 @@
-"""From a scene to a system of unknowns, and to flat operator tables where they are asked for."""
+"""From a scene to a system of unknowns, and to flat operator tables and matrices where they are asked for."""
 
 from __future__ import annotations
 
@@ -6,17 +6,27 @@ import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Any, TypeVar
+from typing import Any, Self, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from spline_model import tables as build
-from spline_model.effects import Bending, Clamp, DrivenDisplacement, MixedStretching
+from spline_model.effects import (
+    Bending,
+    BodyDamper,
+    BodyInertia,
+    Clamp,
+    DrivenDisplacement,
+    MixedStretching,
+    SectionRotaryInertia,
+    Stretching,
+    StripDrag,
+    StripInertia,
+)
 from spline_model.effects.base import Constraint, OpenPotential
-from spline_model.layout import Layout
 from spline_model.quadrature import PointTable, point_table
-from spline_model.scene import Scene
+from spline_model.scene import Layout, Scene
 from spline_model.tables import DriveTable, LoadTable, Tables
 
 Array = NDArray[np.float64]
@@ -25,19 +35,23 @@ Table = TypeVar("Table")
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class System:
-    """A scene with its unknowns counted off and its units; each table is made when it is first asked for.
+    """A scene with its units; each table and matrix is made when it is first asked for.
 
-    Attributes
-    ----------
-    layout : what stands where in the vector of unknowns z.
-    scales : the unit of each unknown, which makes residuals dimensionless.
     changed : tables that are not those of the scene, by name.
     """
 
     scene: Scene
-    layout: Layout
-    scales: Scales
     changed: Mapping[str, Any] = field(default_factory=dict)
+
+    @cached_property
+    def layout(self) -> Layout:
+        """What stands where in the vector of unknowns z."""
+        return self.scene.layout
+
+    @cached_property
+    def scales(self) -> Scales:
+        """The unit of each unknown, which makes residuals dimensionless."""
+        return Scales.of(self.scene)
 
     def with_tables(self, **changed: Any) -> System:
         """The same scene with other tables of these names."""
@@ -46,29 +60,29 @@ class System:
     @cached_property
     def points(self) -> PointTable:
         """Gauss points of bending and stretching."""
-        return self._table("points", lambda s: point_table(s.scene, s.layout))
+        return self._table("points", point_table)
 
     @cached_property
     def drives(self) -> DriveTable:
         """Driven coordinates."""
-        return self._table("drives", lambda s: build.drive_table(s.scene, s.layout))
+        return self._table("drives", build.drive_table)
 
     @cached_property
     def loads(self) -> LoadTable:
         """Loads, one row a component."""
-        return self._table("loads", lambda s: build.load_table(s.scene, s.layout))
+        return self._table("loads", build.load_table)
 
     @cached_property
     def weight(self) -> Array:
         """Generalised force of gravity and steady loads (Q,) [N, N m]; empty where no effect names any."""
-        return self._table("weight", lambda s: build.weight(s.scene, s.layout))
+        return self._table("weight", build.weight)
 
     @cached_property
     def tables(self) -> Tables:
         """All tables, which the bordered form and the motions walk."""
         return Tables(
             points=self.points,
-            clamps=self._table("clamps", lambda s: build.clamp_table(s.scene, s.layout)),
+            clamps=self._table("clamps", build.clamp_table),
             drives=self.drives,
             loads=self.loads,
             weight=self.weight,
@@ -84,9 +98,55 @@ class System:
     def _made(self) -> dict[str, Any]:
         return {}
 
-    def _table(self, name: str, make: Callable[[System], Table]) -> Table:
-        changed: Table = self.changed[name] if name in self.changed else make(self)
+    def _table(self, name: str, make: Callable[[Scene], Table]) -> Table:
+        changed: Table = self.changed[name] if name in self.changed else make(self.scene)
         return changed
+
+    @cached_property
+    def mass(self) -> Array:
+        """M in the coordinates q (Q, Q) [kg, kg m^2]; zero where no inertia acts."""
+        scene = self.scene
+        mass = np.zeros((self.layout.coordinate_count, self.layout.coordinate_count))
+        for strip in scene.of(StripInertia):
+            self._add(mass, strip.strip, strip.linear_density * scene.strip(strip.strip).products())
+        for rotary in scene.of(SectionRotaryInertia):
+            self._add(mass, rotary.strip, rotary.rotary_density * scene.strip(rotary.strip).slope_products())
+        for body in scene.of(BodyInertia):
+            at = self.layout.body(body.body)
+            mass[at, at] += np.diag((body.mass, body.mass, body.moment_of_inertia))
+        return mass
+
+    @cached_property
+    def drag(self) -> Array:
+        """D of the force - D v (Q, Q) [N s/m, N m s]; (0, 0) where no effect names any."""
+        strips, bodies = self.scene.of(StripDrag), self.scene.of(BodyDamper)
+        if not strips and not bodies:
+            return np.zeros((0, 0))
+        drag = np.zeros((self.layout.coordinate_count, self.layout.coordinate_count))
+        for each in strips:
+            self._add(
+                drag, each.strip, each.rate * each.linear_density * self.scene.strip(each.strip).products()
+            )
+        for body in bodies:
+            at = self.layout.body(body.body)
+            drag[at, at] += np.diag((body.translation, body.translation, body.rotation))
+        return drag
+
+    def _add(self, matrix: Array, strip: str, block: Array) -> None:
+        """Add a matrix of a strip's control points (n, n), the same for x and y."""
+        at = self.layout.strip(strip)
+        matrix[at, at] += np.kron(block, np.eye(2))
+
+    @property
+    def is_preloaded(self) -> bool:
+        """Whether weight or pre-strain act."""
+        scene = self.scene
+        strains = (
+            *(e.natural_curvature for e in scene.of(Bending)),
+            *(e.natural_strain for e in scene.of(Stretching)),
+            *(e.natural_strain for e in scene.of(MixedStretching)),
+        )
+        return any(strains) or bool(self.weight.any())
 
     @property
     def open_potentials(self) -> tuple[OpenPotential, ...]:
@@ -105,40 +165,13 @@ class System:
 
 
 def compile_scene(scene: Scene) -> System:
-    """The scene as a system: its unknowns counted off, its units chosen."""
-    layout = make_layout(scene)
-    return System(scene=scene, layout=layout, scales=scene_scales(scene, layout))
-
-
-def make_layout(scene: Scene) -> Layout:
-    """Count the unknowns off: control points, bodies, axial forces, multipliers."""
-    at, strips, bodies, modes, rows = 0, {}, {}, [], []
-    for strip in scene.strips:
-        strips[strip.name] = (at, strip.basis.control_points)
-        at += 2 * strip.basis.control_points
-    for body in scene.bodies:
-        bodies[body.name] = at
-        at += 3
-    coordinates = at
-    for effect in scene.of(MixedStretching):
-        modes.append((at, effect.modes.count))
-        at += effect.modes.count
-    for constraint in scene.of(Constraint):
-        rows.append((at, constraint.rows))
-        at += constraint.rows
-    return Layout(
-        strips=strips,
-        bodies=bodies,
-        modes=tuple(modes),
-        multipliers=tuple(rows),
-        coordinate_count=coordinates,
-        size=at,
-    )
+    """The scene as a system."""
+    return System(scene=scene)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Scales:
-    """Length L and energy EI / L of a scene.
+    """Length L of the longest strip and energy EI / L of the largest flexural rigidity of a scene.
 
     Scaled by ``unit / energy`` a force row is in EI/L^2, a moment row in EI/L, a
     compatibility or constraint row in L or rad: no tolerance changes its meaning with the
@@ -146,35 +179,29 @@ class Scales:
     """
 
     scene: Scene
-    layout: Layout
     length: float
     energy: float
+
+    @classmethod
+    def of(cls, scene: Scene) -> Self:
+        """Those of a scene; the length of a curved strip is that of its control polygon, an upper bound."""
+        polygons = (strip.control_points.tolist() for strip in scene.strips)
+        length = max(sum(map(math.dist, points[:-1], points[1:])) for points in polygons)
+        rigidity = max((e.flexural_rigidity for e in scene.of(Bending)), default=1.0)
+        return cls(scene=scene, length=length, energy=rigidity / length)
 
     @cached_property
     def unit(self) -> NDArray[np.float64]:
         """The unit of each unknown (N,)."""
-        force, moment = self.energy / self.length, self.energy
-        unit = np.full(self.layout.size, self.length)
-        for start in self.layout.bodies.values():
+        force, moment, layout = self.energy / self.length, self.energy, self.scene.layout
+        unit = np.full(layout.size, self.length)
+        for start in layout.bodies.values():
             unit[start + 2] = 1.0
-        for start, count in self.layout.modes:
+        for start, count in layout.modes:
             unit[start : start + count] = force
-        for constraint, (row, count) in zip(self.scene.of(Constraint), self.layout.multipliers, strict=True):
+        for constraint, (row, count) in zip(self.scene.of(Constraint), layout.multipliers, strict=True):
             if isinstance(constraint, Clamp):
                 unit[row : row + count] = (force, force, moment)
             else:
                 unit[row : row + count] = force if isinstance(constraint, DrivenDisplacement) else moment
         return unit
-
-
-def scene_scales(scene: Scene, layout: Layout) -> Scales:
-    """Scales from the longest strip and the largest flexural rigidity."""
-    length = max(_arc_length(strip.control_points) for strip in scene.strips)
-    rigidity = max((e.flexural_rigidity for e in scene.of(Bending)), default=1.0)
-    return Scales(scene=scene, layout=layout, length=length, energy=rigidity / length)
-
-
-def _arc_length(control_points: NDArray[np.float64]) -> float:
-    """Length of the control polygon: the arc length of a straight strip, an upper bound of a curved one."""
-    points = control_points.tolist()
-    return sum(map(math.dist, points[:-1], points[1:]))

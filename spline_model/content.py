@@ -47,7 +47,7 @@ class Content:
         return f"mode {self.number} ({self.kind}, {self.frequency:.3g} Hz, {self.share:.1g} of the energy)"
 
 
-def energy_content(system: System, motion: Motion, z: Array, v: Array, acceleration: Array) -> list[Content]:
+def energy_content(motion: Motion, z: Array, v: Array, acceleration: Array) -> list[Content]:
     """Energy of every mode at the state (z, v) with its acceleration, lowest mode first.
 
     About the state a mode of unit modal mass moves as y'' + w^2 y = c with c = phi^T M a and
@@ -55,6 +55,7 @@ def energy_content(system: System, motion: Motion, z: Array, v: Array, accelerat
     about the state; what later couples into other modes is left out. A state at rest in
     equilibrium has no energy; there the swing counts for all of it.
     """
+    system = motion.system
     squares, shapes, slide = linear_modes(system, z, motion.mass)
     push, speed = shapes.T @ motion.mass @ acceleration, shapes.T @ motion.mass @ v
     frequency = np.sqrt(np.maximum(squares, 0.0))
@@ -95,16 +96,13 @@ def unresolved(scene: Scene, start: Start, step: float) -> str:
 
     The scene is that in motion, without the drives that the start may have multipliers of: they let go.
     """
-    if start.system.scene is not scene:
-        system, known = compile_scene(scene), start.z
-        size = system.layout.size
-        free = np.zeros(size)
-        free[: min(size, len(known))] = known[:size]
-        start = Start(system, set_in_motion(system), free, start.v)
-    system, motion = start.system, start.motion
+    if start.motion.system.scene is not scene:
+        start = Start(set_in_motion(compile_scene(scene)), start.known, start.v)
+    motion = start.motion
+    system = motion.system
     lowest = linear_modes(system, system.rest, motion.mass)[0][0]
     swing = math.sqrt(max(lowest, 0.0)) / (2 * math.pi)
-    return resolution(energy_content(system, motion, start.z, start.v, start.acceleration), swing, step)
+    return resolution(energy_content(motion, start.z, start.v, start.acceleration), swing, step)
 
 
 def _stretching_share(system: System, z: Array, shapes: Array, squares: Array) -> Array:

@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any
+from typing import Any, TypedDict
 
 import numpy as np
 from numpy.typing import NDArray
@@ -34,8 +34,6 @@ resistance and the tangent at rest is singular. Any value from 1e-6 to 10 mends 
 the static error by some factors only: 10 is best for n = 5 and 8 and several times the least
 for n = 6 and 10 (results of convergence/slide_stiffness); from 100 on the strip begins to lock.
 """
-
-
 NOT_GIVEN = math.nan
 """Area and second moment of a strip that has them from its width and thickness."""
 ROUNDED = 1e-3
@@ -50,6 +48,18 @@ def swinging_slide_stiffness(control_points: int) -> float:
     through the best values for n = 4, 6 and 8 (results of convergence/slide_stiffness).
     """
     return 100.0 * ((control_points - 2) / 6.0) ** 3
+
+
+class Described(TypedDict, total=False):
+    """Keywords of ``Discretisation``."""
+
+    control_points: int | None
+    axial_modes: int | None
+    basis: str
+    measure: str
+    stretch: str
+    gauss_points: int | None
+    slide_stiffness: float | None
 
 
 @dataclass(frozen=True, kw_only=True)

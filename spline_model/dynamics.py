@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.accuracy import MORE, MOST
-from spline_model.accurate_motion import EXPLICIT, Task, solve_accurately
+from spline_model.accurate_motion import Task, solve_accurately
 from spline_model.companion import with_companion
-from spline_model.compile import System, compile_scene
+from spline_model.compile import compile_scene
 from spline_model.content import unresolved
 from spline_model.effects import DrivenRotation
 from spline_model.errors import (
@@ -21,9 +21,8 @@ from spline_model.errors import (
     require_finite,
     require_positive,
 )
-from spline_model.laps import Laps
 from spline_model.mechanism import Mechanism
-from spline_model.modes import linear_modes, static_state
+from spline_model.modes import settle
 from spline_model.motion.dispatch import (
     EXPLICIT_STEPS,
     INTEGRATORS,
@@ -34,12 +33,12 @@ from spline_model.motion.dispatch import (
     integrate,
     require_options,
 )
-from spline_model.motion.explicit import require_explicit, stability_limit
-from spline_model.motion.start import Motion, Start, set_in_motion
-from spline_model.motion.trajectory import Trajectory, counted_on, last_state, later, trajectory_of
+from spline_model.motion.start import Motion, Start, Steps, set_in_motion
+from spline_model.motion.trajectory import Trajectory, counted_on, trajectory_of
+from spline_model.newton import Laps
 from spline_model.pivot import Pivot
 from spline_model.scene import Scene
-from spline_model.solution import Status
+from spline_model.solution import Later, Status
 
 __all__ = [
     "EXPLICIT_STEPS",
@@ -139,14 +138,15 @@ def solve_motion(
     laps, body = Laps(), mechanism.design.body_named(body)
     mechanism, held = _settled(mechanism, start, body) if after is None else (mechanism.in_motion(), None)
     if accuracy is not None:
-        task = _task(mechanism, start, body, drive, duration)
-        return solve_accurately(mechanism, accuracy, task, records)
+        task = Task(
+            mechanism=mechanism, start=start, body=body, drive=drive, duration=duration, solve=solve_motion
+        )
+        return solve_accurately(task, accuracy, records)
     laps.lap("start")
     scene = mechanism.released()
-    system = compile_scene(scene if drive is None else scene.with_effects(drive))
-    motion = set_in_motion(system)
+    motion = set_in_motion(compile_scene(scene if drive is None else scene.with_effects(drive)))
     laps.lap("compile")
-    begun = _begin(system, motion, held, after)
+    begun = _begin(motion, held, after)
     laps.lap("start")
     trajectory = _run(mechanism, begun, body, scene, (duration, step, records), integrator, options, laps)
     if after is not None:
@@ -165,16 +165,16 @@ def _run(
     laps: Laps,
 ) -> Trajectory:
     """The motion from its start on; scene: without drives; asked: duration, step and records."""
-    (duration, step, records), layout = asked, begun.system.layout
+    (duration, step, records), layout = asked, begun.motion.system.layout
     if step is None:
         step = default_step(integrator, begun, duration)
     steps, every = count_steps(duration, step, records, layout.size + layout.coordinate_count + 7)
     step = duration / steps
     laps.lap("compile")
-    ran, run = integrate(integrator, begun, step=step, steps=steps, every=every, options=options)
+    ran, run = integrate(integrator, begun, Steps(step, steps, every), options)
     laps.lap("solve")
     return trajectory_of(
-        begun.system,
+        begun.motion.system,
         run,
         effects=mechanism.effects,
         body=body,
@@ -204,14 +204,19 @@ def checked(
     mechanism = mechanism.with_control_points(trajectory.control_points).in_motion()
     if trajectory.status is not Status.CONVERGED or trajectory.estimate is not None:
         return trajectory
-    body = mechanism.design.body_named(body)
-    return with_companion(
-        mechanism, trajectory, _task(mechanism, start, body, drive, float(trajectory.time[-1]))
+    task = Task(
+        mechanism=mechanism,
+        start=start,
+        body=mechanism.design.body_named(body),
+        drive=drive,
+        duration=float(trajectory.time[-1]),
+        solve=solve_motion,
     )
+    return with_companion(task, trajectory)
 
 
-def _settled(mechanism: Mechanism, start: float | None, body: str) -> tuple[Mechanism, Array]:
-    """The mechanism as it swings, and the unknowns of ``static_state`` that it starts from.
+def _settled(mechanism: Mechanism, start: float | None, body: str) -> tuple[Mechanism, Later]:
+    """The mechanism as it swings, and the states of ``settle`` at whose end it starts.
 
     Where its control points are left open it gets more until statics reaches the start, or ConvergenceError.
     """
@@ -219,7 +224,7 @@ def _settled(mechanism: Mechanism, start: float | None, body: str) -> tuple[Mech
     points, most = grid.points, grid.points if grid.control_points is not None else MOST[grid.basis]
     while True:
         try:
-            return chosen, static_state(chosen.at_start(), start, body=body)
+            return chosen, settle(chosen.at_start(), start, body=body)
         except ConvergenceError:
             if points == most:
                 raise
@@ -227,58 +232,15 @@ def _settled(mechanism: Mechanism, start: float | None, body: str) -> tuple[Mech
             chosen = mechanism.with_control_points(points).in_motion()
 
 
-def _begin(system: System, motion: Motion, held: Array | None, after: Trajectory | None) -> Start:
+def _begin(motion: Motion, held: Later | None, after: Trajectory | None) -> Start:
     """What a motion begins with, its clock set: the state it is held in, or the end of another one."""
-    layout = system.layout
-    if held is None:
-        assert after is not None, "one of both"
-        return Start(system, later(motion, float(after.time[-1])), *last_state(after, system))
-    z, v = np.zeros(layout.size), np.zeros(layout.coordinate_count)
-    known = min(len(held), layout.size)
-    z[:known] = held[:known]
-    return Start(system, motion, z, v)
-
-
-def _task(
-    mechanism: Mechanism, start: float | None, body: str, drive: DrivenRotation | None, duration: float
-) -> Task:
-    """The motion as a task of accuracy on request."""
-
-    def frequency() -> float:
-        system = compile_scene(mechanism.released())
-        squares = linear_modes(system, system.rest, set_in_motion(system).mass)[0]
-        return math.sqrt(max(float(squares[0]), 0.0))
-
-    def run(chosen: Mechanism, integrator: str, step: float, records: int) -> Trajectory:
-        return solve_motion(
-            chosen,
-            start=start,
-            body=body,
-            drive=drive,
-            duration=duration,
-            step=step,
-            integrator=integrator,
-            records=records,
-            check=False,
-        )
-
-    def critical(chosen: Mechanism) -> float:
-        scene = compile_scene(chosen.released())
-        motion = set_in_motion(scene)
-        try:
-            require_explicit(scene, motion, EXPLICIT)
-        except InvalidParameter:
-            return 0.0
-        held = static_state(chosen.at_start(), start, body=body)[: scene.layout.size]
-        return stability_limit(EXPLICIT, motion) / highest_frequency(scene, motion, held)
-
-    return Task(
-        duration=duration,
-        amplitude=abs(start or 0.0),
-        lowest=frequency,
-        run=run,
-        critical=critical if drive is None else lambda chosen: 0.0,
-    )
+    known, count = motion.system.layout.multiplier_start, motion.system.layout.coordinate_count
+    if held is not None:
+        return Start(motion, held, np.zeros(count))
+    assert after is not None, "one of both"
+    if after.velocities.shape[1] != count or after.states.shape[1] < known:
+        raise InvalidParameter("after", "a motion of another mechanism", f"one of {count} coordinates")
+    return Start(motion.later(float(after.time[-1])), Later(after.states.copy), after.velocities[-1].copy())
 
 
 def _check(

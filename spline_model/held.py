@@ -12,7 +12,6 @@ from spline_model.compile import System, compile_scene
 from spline_model.errors import InvalidParameter
 from spline_model.mechanism import Mechanism
 from spline_model.newton import TOLERANCE
-from spline_model.preload import is_preloaded
 from spline_model.reduced import pose as compiled
 from spline_model.reduced.assembly import AXIAL, BENDING, NEGATIVE, SLOWEST, assemble, working_space
 from spline_model.reduced.equilibrium import EVALUATIONS, HALVED, ITERATIONS, newton, tangent
@@ -63,7 +62,9 @@ class HeldPivot:
     def __init__(self, mechanism: Mechanism) -> None:
         model = _held_model(mechanism)
         if model is None:
-            expected = "one body on strips that bend and stretch, mixed form and material measure, no loads"
+            expected = (
+                "one body on strips that bend and stretch, mixed form, material measure, no loads, no shear"
+            )
             raise InvalidParameter("mechanism", list(mechanism.effects), expected)
         self.model = model
         self._local = model.local()
@@ -148,13 +149,13 @@ class HeldPivot:
         """One part of the way of ``turn``, predicted by the tangent; the state stays if it fails."""
         before, space, model = self._y.copy(), self._space, self.model
         parts = (model.bodies, model.strips, model.shape, self._local, space)
-        if newton(self._y, 0.0, *parts, TOLERANCE, counters) < 0:  # with the rotation as it is
+        if newton(self._y, 0.0, False, *parts, TOLERANCE, counters)[0] < 0:  # with the rotation as it is
             self._y[:] = before
             return False
         tangent(np.ones(1), 0.0, *parts)
         self._y += (rotation - before[2]) * space.rate
         self._y[2] = rotation
-        solved = newton(self._y, 0.0, *parts, TOLERANCE, counters) >= 0
+        solved = newton(self._y, 0.0, False, *parts, TOLERANCE, counters)[0] >= 0
         forward = (self._strips[:, self._own - 2 : self._own] > 0.0).all()
         if solved and forward and space.out[SLOWEST] > compiled.SLOWEST_SPEED:
             self.pose[:] = self._y[:3] * self._unit
@@ -211,12 +212,12 @@ def _held_model(mechanism: Mechanism) -> Reduced | None:
         return None
     system = compile_scene(mechanism.driven(1.0))
     model = reduced(system)
-    if model is None or model.strips.measure != MATERIAL or model.strips.stretching.any():
+    if model is None or model.strips.measure != MATERIAL or model.strips.stretching.any() or model.shears:
         return None
     if (model.strips.compliance < LEAST_HELD_COMPLIANCE).any():
         return None
     bodies = model.bodies
-    if is_preloaded(system) or bodies.load.any() or len(bodies.held) != 1 or len(bodies.rest) != 3:
+    if system.is_preloaded or bodies.load.any() or len(bodies.held) != 1 or len(bodies.rest) != 3:
         return None
     return replace(
         model,

@@ -3,22 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, fields, replace
-from typing import Any, Self
+from dataclasses import asdict, dataclass, replace
+from functools import cached_property
+from typing import Any, Self, Unpack
 
 import numpy as np
 
-from spline_model.design import BodyDesign, Design, Discretisation, StripDesign, swinging_slide_stiffness
-from spline_model.effects import (
-    AppliedForce,
-    AppliedMoment,
-    Clamp,
-    DrivenDisplacement,
-    DrivenRotation,
-    TipForce,
+from spline_model.design import (
+    BodyDesign,
+    Described,
+    Design,
+    Discretisation,
+    StripDesign,
+    swinging_slide_stiffness,
 )
+from spline_model.effects import Clamp, DrivenDisplacement, DrivenRotation, Shear
 from spline_model.effects.base import Inertia
 from spline_model.effects.curl import CURLING
+from spline_model.effects.loads import Sized
 from spline_model.effects.registry import DEFAULT_EFFECTS, INERTIA, build, check_names
 from spline_model.errors import InvalidParameter
 from spline_model.scene import Body, Effect, Scene, Strip
@@ -55,11 +57,10 @@ class Mechanism:
             bodies=self.design.bodies,
             effects=self.effects,
             parameters=self.parameters,
-            **({part.name: getattr(grid, part.name) for part in fields(grid)} | changes),
+            **(asdict(grid) | changes),
         )
-        return replace(self, design=made.design, effects=made.effects, scene=made.scene, pins=()).pinned(
-            *self.pins
-        )
+        own = replace(self, design=made.design, effects=made.effects, scene=made.scene, pins=())
+        return own.pinned(*self.pins)
 
     def with_control_points(self, control_points: int | None) -> Self:
         """The same mechanism with so many control points a strip."""
@@ -71,8 +72,12 @@ class Mechanism:
         """The mechanism as it swings: with ``swinging_slide_stiffness`` where no slide stiffness was given.
 
         Motions and modes, and the static states that they begin from, are those of this mechanism, whose
-        number of control points is settled.
+        number of control points is settled. It is made once.
         """
+        return self._swinging
+
+    @cached_property
+    def _swinging(self) -> Self:
         grid = self.design.discretisation
         if None not in (grid.slide_stiffness, grid.control_points):
             return self
@@ -95,13 +100,16 @@ class Mechanism:
         """
         if not self.scene.of(Inertia):
             raise InvalidParameter("effects", list(self.effects), f"one of {', '.join(INERTIA)} for a motion")
+        if self.scene.of(Shear):
+            has_it = "none in motions and modes of splines: elements have it, with --model fe-shear"
+            raise InvalidParameter("effects", "shear", has_it)
         scene = self.in_motion().scene
         kept = (e for e in scene.effects if not (isinstance(e, DrivenDisplacement) and e.lets_go))
         return replace(scene, effects=tuple(kept))
 
     def at_start(self) -> Self:
         """The mechanism with loads and driven displacements as they are at the start of a motion."""
-        timed = AppliedForce | AppliedMoment | TipForce | DrivenDisplacement
+        timed = Sized | DrivenDisplacement
         effects = (e.at(0.0) if isinstance(e, timed) else e for e in self.scene.effects)
         return replace(self, scene=replace(self.scene, effects=tuple(effects)))
 
@@ -112,29 +120,15 @@ def mechanism(
     bodies: Sequence[BodyDesign] = (),
     effects: Sequence[str] = DEFAULT_EFFECTS,
     parameters: Mapping[str, Mapping[str, Any]] | None = None,
-    control_points: int | None = None,
-    axial_modes: int | None = None,
-    basis: str = "bezier",
-    measure: str = "material",
-    stretch: str = "mixed",
-    gauss_points: int | None = None,
-    slide_stiffness: float | None = None,
+    **described: Unpack[Described],
 ) -> Mechanism:
     """A mechanism whose scene holds the named effects and nothing else.
 
     effects: names of ``spline_model.effects.registry``; parameters: of each named effect,
-    by effect; the others as of ``Discretisation``. ``stretch="inextensible"`` and
+    by effect; described: keywords of ``Discretisation``. ``stretch="inextensible"`` and
     the effect "inextensible" are the same thing.
     """
-    grid = Discretisation(
-        control_points=control_points,
-        axial_modes=axial_modes,
-        basis=basis,
-        measure=measure,
-        stretch=stretch,
-        gauss_points=gauss_points,
-        slide_stiffness=slide_stiffness,
-    )
+    grid = Discretisation(**described)
     given = dict(parameters or {})
     names = tuple(effects)
     if grid.stretch == "inextensible":

@@ -13,19 +13,19 @@ from scipy.linalg import eigh, null_space
 from spline_model.accuracy import search, wanted
 from spline_model.basis import SlideModes
 from spline_model.bordered import evaluate
-from spline_model.compile import System, compile_scene, make_layout
+from spline_model.compile import System, compile_scene
 from spline_model.effects import DrivenDisplacement, DrivenRotation, MixedStretching
 from spline_model.effects.base import Constraint, Load
 from spline_model.errors import ConvergenceError, InvalidParameter, require_count, require_finite
 from spline_model.estimate import FrequencyEstimate
-from spline_model.mass import mass_matrix
 from spline_model.mechanism import Mechanism
 from spline_model.path import follow
 from spline_model.pivot import Pivot
-from spline_model.proportional import solve_mechanism, solve_path
+from spline_model.proportional import solve_mechanism
 from spline_model.reduced.model import Reduced, from_unknowns, reduced
 from spline_model.reduced.whole import coordinates_by, whole_tangents
-from spline_model.static_answers import STATIONS
+from spline_model.sections import STATIONS
+from spline_model.solution import Later
 
 Array = NDArray[np.float64]
 
@@ -86,16 +86,15 @@ def natural_frequencies(
     require_count("count", count, 1)
     if rotation is not None:
         require_finite("rotation", rotation, "rad")
-    given = pivot
     if rotation is None and (held or isinstance(pivot, Pivot)):
         rotation = 0.0
-    chosen = wanted(accuracy, given.design)
+    chosen = wanted(accuracy, pivot.design)
     if chosen is None:
-        return _modes(given.in_motion(), rotation, body, count, held, increments)
+        return _modes(pivot.in_motion(), rotation, body, count, held, increments)
 
     @cache
     def modes(control_points: int) -> Modes | ConvergenceError:
-        finer = given.with_control_points(control_points).in_motion()
+        finer = pivot.with_control_points(control_points).in_motion()
         try:
             return _modes(finer, rotation, body, count, held, increments)
         except ConvergenceError as error:  # more control points may reach the state
@@ -108,7 +107,7 @@ def natural_frequencies(
         apart = _apart(coarse.frequency, fine.frequency)
         return None if apart is None else (apart, coarse)
 
-    outcome = search(given.design, chosen, attempt)
+    outcome = search(pivot.design, chosen, attempt)
     if outcome.found is None:
         last = modes(outcome.trials[-1])
         if isinstance(last, ConvergenceError):
@@ -116,15 +115,13 @@ def natural_frequencies(
         return last
     if accuracy is not None and outcome.message:
         raise InvalidParameter("accuracy", accuracy, f"no less than {outcome.error:.2g}, which is reached")
-    return replace(
-        outcome.found,
-        estimate=FrequencyEstimate(
-            accuracy=chosen,
-            frequency=outcome.error,
-            control_points=outcome.control_points,
-            trials=outcome.trials,
-        ),
+    estimate = FrequencyEstimate(
+        accuracy=chosen,
+        frequency=outcome.error,
+        control_points=outcome.control_points,
+        trials=outcome.trials,
     )
+    return replace(outcome.found, estimate=estimate)
 
 
 def _apart(frequency: Array, better: Array) -> float | None:
@@ -147,7 +144,7 @@ def _modes(
     system = compile_scene(scene)
     layout = system.layout
     z = static_state(mechanism, rotation, increments, body)[: layout.size]
-    values, vectors, share = linear_modes(system, z, mass_matrix(released, layout))
+    values, vectors, share = linear_modes(system, z, system.mass)
     slide = share > SLIDE_SHARE
     frequency = np.sign(values) * np.sqrt(np.abs(values)) / (2 * np.pi)
     kept = np.flatnonzero(~slide)[:count]
@@ -177,17 +174,22 @@ def static_state(
     The rotation [rad] of a body is driven; None drives none. Loads, driven displacements, weight and
     pre-strain act in full; the multipliers of displacements that let go are left out.
     """
+    z = settle(mechanism, rotation, increments, body).array[-1]
     driven = mechanism.scene if rotation is None else mechanism.driven(rotation, body)
-    if rotation is not None:
-        z = solve_path(mechanism, rotation, increments, body).states[-1]
-    elif any(isinstance(effect, Load | DrivenDisplacement) for effect in driven.effects):
-        z = solve_mechanism(mechanism, increments=increments).states[-1]
-    else:
-        z = follow(compile_scene(driven), []).states[0]
-    layout = make_layout(driven)
+    layout = driven.layout
     constraints = enumerate(driven.of(Constraint))
     kept = [i for i, each in constraints if not (isinstance(each, DrivenDisplacement) and each.lets_go)]
     return np.concatenate((z[: layout.multiplier_start], *(z[layout.rows(i)] for i in kept)))
+
+
+def settle(
+    mechanism: Mechanism, rotation: float | None, increments: int = 20, body: str | None = None
+) -> Later:
+    """The unknowns of the path to that state, with all multipliers."""
+    loaded = any(isinstance(effect, Load | DrivenDisplacement) for effect in mechanism.scene.effects)
+    if rotation is not None or loaded:
+        return solve_mechanism(mechanism, rotation=rotation, increments=increments, body=body).unknowns
+    return follow(compile_scene(mechanism.scene), []).unknowns
 
 
 def linear_modes(system: System, z: Array, mass: Array) -> tuple[Array, Array, Array]:

@@ -15,9 +15,8 @@ from spline_model.continuation.point import Point, stand
 from spline_model.continuation.start import equilibrium, first_point
 from spline_model.continuation.watch import BRANCHES, Watch
 from spline_model.errors import require_choice
-from spline_model.preload import is_preloaded
 from spline_model.reduced.elements import Elements, followed
-from spline_model.reduced.model import at_rest
+from spline_model.reduced.model import Reduced, at_rest
 from spline_model.reduced.solve import grown, run
 from spline_model.reduced.states import by_state
 from spline_model.solution import Later, Path, joined
@@ -62,7 +61,8 @@ class _Track:
     """The states of a path: on the elements compiled while nothing happens, in steps where something does.
 
     pieces: rows by state, and their z (S, N); waiting: points that are not rows yet, with ``done`` of
-    each; given: unknowns (N,) of the first state, where they were given and are an equilibrium.
+    each; last: model and y (Y,) of the last state, if compiled; given: unknowns (N,) of the first state,
+    where they were given and are an equilibrium.
     """
 
     def __init__(self, watch: Watch, factors: Array, progress: Progress | None) -> None:
@@ -73,6 +73,7 @@ class _Track:
         self.follower: Follower | None = None
         self.history: list[tuple[float, ...]] = []
         self.given: Array | None = None
+        self.last: tuple[Reduced, Array] | None = None
 
     def begin(self, start: tuple[float, Array] | None) -> None:
         """The first state, and on the elements all those up to where something happens."""
@@ -81,7 +82,7 @@ class _Track:
                 newton = equilibrium(self.work, *start)
                 self.given = start[1] if len(newton.norms) == 1 else None
                 self._run(self.work, self.work.y(newton.z))
-            elif not is_preloaded(self.work.system):
+            elif not self.work.system.is_preloaded:
                 self.given = self.work.system.rest  # reactions at rest are none, not their round-off
                 self._run(self.work, at_rest(self.work.model))
             elif (y := grown(self.work)) is not None:
@@ -124,6 +125,7 @@ class _Track:
         rows = by_state(work.model, factors[known:count], answer._replace(done=answer.done + self.done))
         self.pieces.append((rows, Later(partial(work.z, answer.y, answer.reaction))))
         self.done += float(answer.done[-1])
+        self.last = work.model, answer.y[-1]
         work.counters.increments += count - 1
         self._count(count - known)
         if self.follower is not None:
@@ -132,6 +134,7 @@ class _Track:
 
     def _keep(self, points: Sequence[Point], done: Sequence[float]) -> None:
         self.waiting += zip(points, done, strict=True)
+        self.last = None
         self.done = done[-1] if done else self.done
         self._count(len(points))
 
@@ -169,12 +172,11 @@ class _Track:
         names = self.pieces[0][0].keys() - {"unknowns"}
         rows: dict[str, Any] = {name: self._rows(name) for name in names}
         pieces = [rows["unknowns"] for rows, _ in self.pieces]
-        rows["unknowns"] = Later(partial(_states, pieces, self.states, self.given))
+        rows["unknowns"] = Later(partial(_states, pieces, self.states, self.given), self.last)
         if self.given is not None:
             system = self.work.system
             rows["reactions"][0] = self.given[system.drives.row]
-            for i, start in enumerate(system.layout.bodies.values()):
-                rows["bodies"][0, 3 * i : 3 * i + 3] = self.given[start : start + 3]
+            rows["bodies"][0] = self.given[system.layout.poses]
         history = [*self.history, *([] if self.follower is None else self.follower.history)]
         return self.watch.path(rows, message, [norms for norms in history if norms])
 

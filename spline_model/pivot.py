@@ -5,7 +5,7 @@ from __future__ import annotations
 import cmath
 import math
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import Any, Unpack
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +14,7 @@ from spline_model.design import (
     NOT_GIVEN,
     SLIDE_STIFFNESS,
     BodyDesign,
+    Described,
     StripDesign,
     swinging_slide_stiffness,
 )
@@ -25,18 +26,6 @@ __all__ = ["BODY", "SLIDE_STIFFNESS", "STRIPS", "Pivot", "cross_axis_pivot", "sw
 
 BODY = "body"
 STRIPS = ("strip_1", "strip_2")
-DERIVED = (
-    "flexural_rigidity",
-    "axial_rigidity",
-    "linear_density",
-    "clamp_points",
-    "clamp_directions",
-    "centre",
-    "strip_mass",
-    "body_mass",
-    "body_moment_of_inertia",
-)
-"""What two models must make alike of one design."""
 
 
 class Pivot(Mechanism):
@@ -88,10 +77,6 @@ class Pivot(Mechanism):
         along = np.diff(self.clamp_points, axis=1)
         return np.repeat(along / np.linalg.norm(along, axis=2, keepdims=True), 2, axis=1)
 
-    def derived(self) -> dict[str, Any]:
-        """Derived data by name, for comparison with another model's."""
-        return {name: getattr(self, name) for name in DERIVED}
-
 
 def cross_axis_pivot(
     *,
@@ -111,13 +96,7 @@ def cross_axis_pivot(
     thickness: float | None = None,
     effects: Sequence[str] = DEFAULT_EFFECTS,
     parameters: Mapping[str, Mapping[str, Any]] | None = None,
-    control_points: int | None = None,
-    axial_modes: int | None = None,
-    basis: str = "bezier",
-    measure: str = "material",
-    stretch: str = "mixed",
-    gauss_points: int | None = None,
-    slide_stiffness: float | None = None,
+    **described: Unpack[Described],
 ) -> Pivot:
     """The pivot of Table 1, or any other design, in SI units and radians.
 
@@ -131,8 +110,8 @@ def cross_axis_pivot(
     centre_offset : of the body's centre of mass from the midpoint of B1 B2 [m].
     orientation : turns the whole pivot about A1 [rad].
     effects, parameters : names of the effects of the scene, and the parameters of each.
-    control_points ... slide_stiffness : how strips are described, see ``design.Discretisation``; without
-        control_points answers take as many as an accuracy of 1e-4 needs.
+    described : control_points ... slide_stiffness, see ``design.Discretisation``; without control_points
+        answers take as many as an accuracy of 1e-4 needs.
 
     Source: paper, section 2 and Table 1.
     """
@@ -167,19 +146,7 @@ def cross_axis_pivot(
         mass=body_mass,
         moment_of_inertia=body_moment_of_inertia,
     )
-    made = mechanism(
-        strips=strips,
-        bodies=[body],
-        effects=effects,
-        parameters=parameters,
-        control_points=control_points,
-        axial_modes=axial_modes,
-        basis=basis,
-        measure=measure,
-        stretch=stretch,
-        gauss_points=gauss_points,
-        slide_stiffness=slide_stiffness,
-    )
+    made = mechanism(strips=strips, bodies=[body], effects=effects, parameters=parameters, **described)
     return Pivot(design=made.design, effects=made.effects, parameters=made.parameters, scene=made.scene)
 
 

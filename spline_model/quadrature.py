@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 
 from spline_model.basis import AxialModes, SplineBasis
 from spline_model.effects import MEASURES, Bending, MixedStretching, Stretching, StripDamping
-from spline_model.layout import Layout
 from spline_model.scene import Scene, Strip
 from spline_model.strip.laws import curl_factors
 
@@ -74,15 +73,15 @@ class PointTable(NamedTuple):
         return self._replace(numbers=numbers)
 
 
-def point_table(scene: Scene, layout: Layout) -> PointTable:
+def point_table(scene: Scene) -> PointTable:
     """Gauss points of bending and stretching; those that two effects share stand there once.
 
     The stress-free curvature is the one at rest and the natural one.
     """
-    groups = _groups(scene, layout)
+    groups = _groups(scene)
     widest = max((scene.strip(e.strip).basis.degree + 1 for e, *_ in groups), default=0)
     most = max((at.modes.width for _, at, _ in groups if isinstance(at, MixedStretching)), default=0)
-    parts = [_rows(scene, layout, *group, widest, most) for group in groups]
+    parts = [_rows(scene, *group, widest, most) for group in groups]
     if not parts:
         return PointTable(
             np.zeros((0, 5), np.int64), np.zeros((2, 0, 0)), np.zeros((0, 0)), np.zeros((0, 11))
@@ -92,11 +91,11 @@ def point_table(scene: Scene, layout: Layout) -> PointTable:
     return PointTable(np.concatenate(place), joined, np.concatenate(modes), np.concatenate(numbers))
 
 
-def _groups(scene: Scene, layout: Layout) -> list[tuple[Any, Any, int]]:
+def _groups(scene: Scene) -> list[tuple[Any, Any, int]]:
     """Effects that act at the same points: bending or else stretching, stretching, its first axial force."""
     groups: list[tuple[Any, Any, int]] = [(bending, None, 0) for bending in scene.of(Bending)]
     axial: list[tuple[Stretching | MixedStretching, int]] = [(e, 0) for e in scene.of(Stretching)]
-    axial += [(e, at) for e, (at, _) in zip(scene.of(MixedStretching), layout.modes, strict=True)]
+    axial += [(e, at) for e, (at, _) in zip(scene.of(MixedStretching), scene.layout.modes, strict=True)]
     for effect, at in axial:
         grid = effect.strip, effect.gauss_points, effect.measure
         alone = [(e.strip, e.gauss_points, e.measure) if other is None else () for e, other, _ in groups]
@@ -109,7 +108,7 @@ def _groups(scene: Scene, layout: Layout) -> list[tuple[Any, Any, int]]:
 
 
 def _rows(
-    scene: Scene, layout: Layout, effect: Any, axial: Any, mode: int, widest: int, most: int
+    scene: Scene, effect: Any, axial: Any, mode: int, widest: int, most: int
 ) -> tuple[Indices, Array, Array, Array]:
     """Rows of a group, as wide as the widest support and the most modes of the scene."""
     strip = scene.strip(effect.strip)
@@ -117,10 +116,10 @@ def _rows(
     count, width = len(weight), basis.shape[2]
     place, numbers = np.zeros((count, 5), dtype=np.int64), np.zeros((count, 11))
     modes = np.zeros((count, most))
-    place[:, FIRST] = layout.strips[strip.name][0] + 2 * support
+    place[:, FIRST] = scene.layout.strips[strip.name][0] + 2 * support
     place[:, WIDTH], place[:, MEASURE] = width, MEASURES.index(effect.measure)
     numbers[:, WEIGHT] = weight
-    numbers[:, SPEED], numbers[:, REST] = rest_of(strip, effect.gauss_points)
+    numbers[:, SPEED], numbers[:, REST] = _rest_of(strip, effect.gauss_points)
     numbers[:, CURVATURE] = numbers[:, REST]
     damping = {e.strip: e.relaxation_time for e in scene.of(StripDamping)}
     numbers[:, RELAXATION] = damping.get(strip.name, 0.0)
@@ -167,7 +166,7 @@ def _modes_at(modes: AxialModes, basis: SplineBasis, count: int) -> tuple[Indice
 
 
 @lru_cache(maxsize=256)
-def rest_of(strip: Strip, count: int) -> tuple[Array, Array]:
+def _rest_of(strip: Strip, count: int) -> tuple[Array, Array]:
     """Speed and curvature (P,) at rest, ``count`` Gauss points a knot span; kept."""
     tangent, bend = _tables(strip.basis, count)[-1] @ strip.control_points
     speed = np.hypot(tangent[:, 0], tangent[:, 1])

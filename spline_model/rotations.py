@@ -7,7 +7,7 @@ proportion to the size of the rotation, whatever its sign.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 from typing import Any
 
@@ -17,11 +17,11 @@ from numpy.typing import NDArray
 from spline_model.compile import System, compile_scene
 from spline_model.effects import DrivenDisplacement
 from spline_model.effects.base import Load
-from spline_model.laps import Laps
+from spline_model.effects.loads import Sized
+from spline_model.newton import Laps
 from spline_model.path import Progress, follow
 from spline_model.scene import Scene
 from spline_model.solution import BY_STATE, Later, Path, Status, joined
-from spline_model.tables import SIZED
 
 Array = NDArray[np.float64]
 
@@ -50,7 +50,7 @@ def follow_loads_first(
     driven: the scene that is driven to a rotation; start: rotation, load factor and unknowns (N,). The
     path's load factors are those of the loads, in critical points too.
     """
-    largest, total = largest_of(rotations, 0.0 if start is None else start[0]), increments + len(rotations)
+    largest, total = _largest_of(rotations, 0.0 if start is None else start[0]), increments + len(rotations)
     whole = compile_scene(driven(0.0))
     turned = compile_scene(_steady(driven(largest)))
     laps.lap("compile")
@@ -85,80 +85,69 @@ def follow_loads_first(
 
 def _steady(scene: Scene) -> Scene:
     """The scene with loads and driven displacements in full at any load factor."""
-    effects = (
-        replace(e, steady=True) if isinstance(e, (*SIZED, DrivenDisplacement)) else e for e in scene.effects
-    )
+    timed = Sized | DrivenDisplacement
+    effects = (replace(e, steady=True) if isinstance(e, timed) else e for e in scene.effects)
     return replace(scene, effects=tuple(effects))
 
 
-@dataclass(frozen=True, kw_only=True)
-class Side:
-    """A part of a path on one side of rest: factors of one sign, and whether it must come back to rest."""
-
-    sign: float
-    factors: tuple[float, ...]
-    returns: bool
-
-
-def largest_of(rotations: Array, origin: float = 0.0) -> float:
+def _largest_of(rotations: Array, origin: float) -> float:
     """The rotation of largest size [rad], with its sign: there the loads act in full."""
     return float(max(*rotations.tolist(), origin, key=abs))
 
 
-def factors_of(rotations: Array, largest: float) -> Array:
-    """Signed load factors of rotations [rad]: over the largest, or 0 to 1 where the body is held at zero."""
-    if largest == 0.0:
-        return np.linspace(0.0, 1.0, len(rotations) + 1)[1:]
-    return rotations / largest
-
-
 def follow_rotations(
     driven: Callable[[float], Scene],
-    largest: float,
-    factors: Array,
+    rotations: Array,
     progress: Progress | None = None,
     *,
-    start: tuple[float, Array] | None = None,
+    start: tuple[float, float, Array] | None = None,
     branch: str = "primary",
     method: str = "condensed",
     laps: Laps,
 ) -> tuple[System, Path]:
-    """The scene driven to ``largest`` [rad], and its path through signed load factors.
+    """The scene driven to the largest of the rotations [rad], and its path through them, loads together.
 
-    driven: the scene that is driven to a rotation. Where the factor is below zero the body turns
-    the other way and the loads still grow with its size: under loads that part is the path of the
-    scene driven to -``largest``, which begins where the other one has come back to rest. start: signed
-    factor and unknowns (N,). laps: told when the scene is compiled and when the path is solved. The path's
-    load factors are signed, those of critical points are not.
+    driven: the scene that is driven to a rotation. Where the body turns the other way the load factor is
+    below zero and the loads still grow with its size: under loads that part is the path of the
+    scene driven the other way, which begins where the other one has come back to rest. All rotations zero:
+    loads grow from 0 to 1. start: rotation, load factor and unknowns (N,). laps: told when the scene is
+    compiled and when the path is solved. The path's load factors are signed, critical points' are not.
     """
+    largest, begun = _largest_of(rotations, 0.0 if start is None else start[0]), None
+    factors = rotations / largest if largest else np.linspace(0.0, 1.0, len(rotations) + 1)[1:]
+    if start is not None:
+        begun = start[0] / largest if largest else start[1], start[2]
     path, done, back = None, 0, False
     whole = compile_scene(driven(largest))
     laps.lap("compile")
-    for side in _sides(whole, factors, 0.0 if start is None else start[0]):
-        system = whole if side.sign > 0.0 else compile_scene(driven(-largest))
-        start = start if path is None else (0.0, path.states[-1])
-        aims = [side.sign * factor for factor in side.factors] + [0.0] * side.returns
-        begin = None if start is None else (side.sign * start[0], start[1])
+    for sign, part_factors, returns in _sides(whole, factors, 0.0 if begun is None else begun[0]):
+        system = whole if sign > 0.0 else compile_scene(driven(-largest))
+        begun = begun if path is None else (0.0, path.states[-1])
+        aims = [sign * factor for factor in part_factors] + [0.0] * returns
+        begin = None if begun is None else (sign * begun[0], begun[1])
         told = None if progress is None else _later(progress, done, len(factors))
         part = follow(system, aims, told, start=begin, branch=branch, method=method)
         if part.critical_points:
             branch = "primary"  # the branch was left, or there was none to follow
-        if side.sign < 0.0:
+        if sign < 0.0:
             part = replace(part, load_factor=-part.load_factor)
         path = part if path is None else _joined(path, part, back)
         if path.status is not Status.CONVERGED:
             break
-        done, back = done + len(side.factors), side.returns
+        done, back = done + len(part_factors), returns
     laps.lap("solve")
     assert path is not None, "a path has at least one rotation"
     points = tuple(replace(point, load_factor=abs(point.load_factor)) for point in path.critical_points)
     return whole, replace(path, critical_points=points) if points else path
 
 
-def _sides(system: System, factors: Array, begin: float) -> list[Side]:
-    """The factors by their side of rest, that of the start where they are zero; all at once without loads."""
+def _sides(system: System, factors: Array, begin: float) -> list[tuple[float, list[float], bool]]:
+    """Sign of a side of rest, factors there, and whether they come back to rest; all at once without loads.
+
+    Zero is on the side of the start.
+    """
     if not system.loads.value.any() and np.count_nonzero(system.drives.target) < 2:
-        return [Side(sign=1.0, factors=tuple(factors.tolist()), returns=False)]
+        return [(1.0, factors.tolist(), False)]
     signs = np.sign(np.append(begin, factors))
     for i in range(1, len(signs)):
         signs[i] = signs[i] or signs[i - 1]
@@ -167,15 +156,11 @@ def _sides(system: System, factors: Array, begin: float) -> list[Side]:
     cuts = np.flatnonzero(np.diff(signs[1:])) + 1
     parts = np.split(factors, cuts)
     sides = [
-        Side(
-            sign=float(signs[1 + at]),
-            factors=tuple(part.tolist()),
-            returns=bool(i < len(cuts) and part[-1] != 0.0),
-        )
+        (float(signs[1 + at]), part.tolist(), bool(i < len(cuts) and part[-1] != 0.0))
         for i, (at, part) in enumerate(zip(np.append(0, cuts), parts, strict=True))
     ]
     if signs[0] != signs[1]:  # begun on the other side
-        sides.insert(0, Side(sign=float(signs[0]), factors=(), returns=True))
+        sides.insert(0, (float(signs[0]), [], True))
     return sides
 
 

@@ -1,4 +1,4 @@
-"""A scene: strips, bodies and the effects that act on them."""
+"""A scene: strips, bodies and the effects that act on them, and where each stands among the unknowns."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.basis import SplineBasis
-from spline_model.effects import GROUND, Bending, Clamp
+from spline_model.effects import GROUND, Bending, MixedStretching
 from spline_model.effects.base import Constraint, Dissipation, Inertia, Load, Potential
 from spline_model.errors import InvalidParameter
 
@@ -39,6 +39,19 @@ class Strip:
         u, length = self.gauss_points()
         return np.asarray(length @ self.basis.evaluate(u))
 
+    def products(self) -> NDArray[np.float64]:
+        """int N^T N ds0 (n, n) [m]."""
+        u, length = self.gauss_points()
+        values = self.basis.evaluate(u)
+        return np.asarray(values.T @ (length[:, None] * values))
+
+    def slope_products(self) -> NDArray[np.float64]:
+        """int (dN/ds0)^T (dN/ds0) ds0 (n, n) [1/m]."""
+        u, length = self.gauss_points()
+        slopes = self.basis.evaluate(u, 1)
+        speed = np.hypot(*(slopes @ self.control_points).T)
+        return np.asarray(slopes.T @ ((length / speed**2)[:, None] * slopes))
+
     def length_to(self, stations: NDArray[np.float64]) -> NDArray[np.float64]:
         """Arc length at rest from the start to ``stations`` (P,), u in [0, 1], shape (P,) [m]."""
         u, weight = self.basis.gauss_rule(self.basis.degree + 1)
@@ -53,6 +66,60 @@ class Body:
 
     name: str
     centre: NDArray[np.float64]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Layout:
+    """Slices of the unknowns z = (q, a, lambda).
+
+    q holds the control points of the strips (x0, y0, x1, y1, ...) and then x, y, theta
+    of each body (the generalised coordinates of Eq 4); a the axial-force modes of the
+    mixed strips; lambda the multipliers in the order of the scene's constraints.
+
+    Attributes
+    ----------
+    strips : start of each strip's control points, and their number, by name.
+    bodies : start of each body's three coordinates, by name.
+    modes : start and number of axial-force modes of each MixedStretching effect, in scene order.
+    multipliers : start and number of rows of each constraint, in scene order.
+    """
+
+    strips: dict[str, tuple[int, int]]
+    bodies: dict[str, int]
+    modes: tuple[tuple[int, int], ...]
+    multipliers: tuple[tuple[int, int], ...]
+    coordinate_count: int
+    size: int
+
+    @property
+    def multiplier_start(self) -> int:
+        """First multiplier, behind the coordinates and the axial forces."""
+        return self.coordinate_count + sum(count for _, count in self.modes)
+
+    def strip(self, name: str) -> slice:
+        """Slice of a strip's control points, 2 n entries."""
+        start, count = self.strips[name]
+        return slice(start, start + 2 * count)
+
+    def body(self, name: str) -> slice:
+        """Slice of a body's x, y, theta."""
+        start = self.bodies[name]
+        return slice(start, start + 3)
+
+    @property
+    def poses(self) -> slice:
+        """Slice of x, y, theta of all bodies."""
+        return slice(self.coordinate_count - 3 * len(self.bodies), self.coordinate_count)
+
+    def axial_modes(self, effect: int) -> slice:
+        """Slice of the axial-force modes of a MixedStretching effect."""
+        start, count = self.modes[effect]
+        return slice(start, start + count)
+
+    def rows(self, constraint: int) -> slice:
+        """Slice of a constraint's multipliers."""
+        start, count = self.multipliers[constraint]
+        return slice(start, start + count)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -106,7 +173,28 @@ class Scene:
         """The bending effect of a strip, if the scene names one."""
         return next((e for e in self.effects if isinstance(e, Bending) and e.strip == strip), None)
 
-    def clamp_of(self, strip: str, end: str) -> Clamp | None:
-        """The clamp at one end of a strip, if the scene names one."""
-        clamps = (e for e in self.effects if isinstance(e, Clamp))
-        return next((c for c in clamps if (c.strip, c.end) == (strip, end)), None)
+    @cached_property
+    def layout(self) -> Layout:
+        """The unknowns counted off: control points, bodies, axial forces, multipliers."""
+        at, strips, bodies, modes, rows = 0, {}, {}, [], []
+        for strip in self.strips:
+            strips[strip.name] = (at, strip.basis.control_points)
+            at += 2 * strip.basis.control_points
+        for body in self.bodies:
+            bodies[body.name] = at
+            at += 3
+        coordinates = at
+        for effect in self.of(MixedStretching):
+            modes.append((at, effect.modes.count))
+            at += effect.modes.count
+        for constraint in self.of(Constraint):
+            rows.append((at, constraint.rows))
+            at += constraint.rows
+        return Layout(
+            strips=strips,
+            bodies=bodies,
+            modes=tuple(modes),
+            multipliers=tuple(rows),
+            coordinate_count=coordinates,
+            size=at,
+        )

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, fields
 
 import numpy as np
@@ -16,8 +15,7 @@ from spline_model.effects import GROUND, MixedStretching
 from spline_model.errors import InvalidParameter
 from spline_model.mechanism import Mechanism
 from spline_model.motion.start import axial_rigidity
-from spline_model.sections import Sections, clamp_reactions, sections
-from spline_model.statics import STATIONS
+from spline_model.sections import ENDS, STATIONS, Sections, clamp_reactions, sections
 
 Array = NDArray[np.float64]
 
@@ -52,21 +50,19 @@ class StripFields:
 
 ALONG = tuple(field.name for field in fields(StripFields) if "bodies" not in field.name)
 GIVEN = ("arc_length", "rest_shape")
-Shear = Callable[[System, Array, str, Sections, Array, Array], tuple[Array, Array]]
-"""From system, states, strip, sections, stretch and direction (S, P) to shear force and reactions."""
 
 
-def static_fields(asked: Mechanism, states: Array) -> StripFields:
+def static_fields(mechanism: Mechanism, states: Array) -> StripFields:
     """Fields of static states (S, N), as solutions hold them; a drive's multiplier at the end is ignored.
 
     Shear force and reactions are those of balance with the clamps: exact but for the solver's
     residual. N and M follow from the strains and show the error of too few control points.
     """
-    mechanism, system = _compiled(asked)
-    return _fields(mechanism, system, _known(system, states), _balanced)
+    system = compile_scene(mechanism.scene)
+    return _fields(mechanism, system, _known(system, states), moving=False)
 
 
-def moving_fields(asked: Mechanism, states: Array) -> StripFields:
+def moving_fields(mechanism: Mechanism, states: Array) -> StripFields:
     """Fields of the states (T, N) of a motion.
 
     Inertia is not among the states: the shear force is that of the moments' balance in a
@@ -75,14 +71,9 @@ def moving_fields(asked: Mechanism, states: Array) -> StripFields:
     at a free one but for that error. Axial forces are those of the shape, as some integrators
     keep none; of inextensible strips those that the states hold.
     """
-    mechanism, system = _compiled(asked)
+    system = compile_scene(mechanism.scene)
     known = _with_axial_forces(system, _known(system, states))
-    return _fields(mechanism, system, known, _by_moments)
-
-
-def _compiled(asked: Mechanism) -> tuple[Mechanism, System]:
-    mechanism = asked
-    return mechanism, compile_scene(mechanism.scene)
+    return _fields(mechanism, system, known, moving=True)
 
 
 def _known(system: System, states: Array) -> Array:
@@ -93,22 +84,21 @@ def _known(system: System, states: Array) -> Array:
     return found[:, :size]
 
 
-def _fields(mechanism: Mechanism, system: System, states: Array, shear: Shear) -> StripFields:
+def _fields(mechanism: Mechanism, system: System, states: Array, *, moving: bool) -> StripFields:
     along = sections(system, states, STATIONS)
     strips = [
-        _strip_fields(system, states, along.strip(i), s.name, s.root, shear)
+        _strip_fields(system, states, along.strip(i), s.name, s.root, moving)
         for i, s in enumerate(mechanism.design.strips)
     ]
-    bodies = [states[:, system.layout.body(body.name)] for body in mechanism.design.bodies]
     return StripFields(
         **{name: np.stack([each[name] for each in strips], axis=int(name not in GIVEN)) for name in ALONG},
         rest_bodies=np.array([body.centre for body in mechanism.design.bodies]).reshape(-1, 2),
-        bodies=np.array(bodies).reshape(-1, len(states), 3).swapaxes(0, 1),
+        bodies=states[:, system.layout.poses].reshape(len(states), -1, 3),
     )
 
 
 def _strip_fields(
-    system: System, states: Array, along: Sections, name: str, root: str, shear: Shear
+    system: System, states: Array, along: Sections, name: str, root: str, moving: bool
 ) -> dict[str, Array]:
     strip = system.scene.strip(name)
     first, second = (strip.basis.evaluate(STATIONS, order) for order in (1, 2))
@@ -121,9 +111,14 @@ def _strip_fields(
         rotation = rotation + 2.0 * np.pi * np.round((turn - rotation[:, :1]) / (2.0 * np.pi))
     stretch = _stretch(system, along.axial_force, name, speed / rest_speed)
     direction = rotation + np.arctan2(rest[:, 1], rest[:, 0])
-    force, reactions = shear(system, states, name, along, stretch, direction)
+    arc = strip.length_to(STATIONS)
+    if moving:
+        force, reactions = _by_moments(arc, along, stretch, direction)
+    else:
+        ends = [clamp_reactions(system, states, name, end) for end in ENDS]
+        force, reactions = along.shear_force, np.stack(ends, axis=1)
     return {
-        "arc_length": strip.length_to(STATIONS),
+        "arc_length": arc,
         "rest_shape": strip.basis.evaluate(STATIONS) @ strip.control_points,
         "shape": along.shape,
         "rotation": rotation,
@@ -144,17 +139,8 @@ def _stretch(system: System, axial_force: Array, name: str, kinematic: Array) ->
     return kinematic
 
 
-def _balanced(
-    system: System, states: Array, name: str, along: Sections, stretch: Array, direction: Array
-) -> tuple[Array, Array]:
-    ends = [clamp_reactions(system, states, name, end) for end in ("start", "end")]
-    return along.shear_force, np.stack(ends, axis=1)
-
-
-def _by_moments(
-    system: System, states: Array, name: str, along: Sections, stretch: Array, direction: Array
-) -> tuple[Array, Array]:
-    arc = system.scene.strip(name).length_to(STATIONS)
+def _by_moments(arc: Array, along: Sections, stretch: Array, direction: Array) -> tuple[Array, Array]:
+    """Shear force and reactions by the balance of moments."""
     slope = CubicSpline(arc, along.bending_moment, axis=1)(arc, 1)
     shear = -slope / stretch
     c, s = np.cos(direction), np.sin(direction)

@@ -11,11 +11,15 @@ from numpy.typing import NDArray
 from spline_model.basis import AxialModes, SplineBasis, all_modes
 from spline_model.compile import System
 from spline_model.continuation.resolution import areas_of, balance, weight_of
-from spline_model.effects import Clamp, MixedStretching, Stretching, StripGravity
+from spline_model.effects import Clamp, MixedStretching, Shear, Stretching, StripGravity
 from spline_model.effects.base import Constraint
 from spline_model.scene import Strip
 
 Array = NDArray[np.float64]
+
+STATIONS = np.linspace(0.0, 1.0, 61)
+"""Where sections are recovered, reference arc length over L; both clamped ends are among them."""
+ENDS = ("start", "end")
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -72,6 +76,11 @@ def _alike(system: System, states: Array, strips: list[Strip], stations: Array, 
     rest_speed, rest_turning = speed[:, count:], turning[:, count:]
     x1, y1, speed, turning = x1[:, :count], y1[:, :count], speed[:, :count], turning[:, :count]
 
+    if scene.of(Shear):
+        shown = centre_lines(system, states)
+        for g, strip in enumerate(strips):
+            own = shown[:, layout.strip(strip.name)].reshape(count, -1, 2)
+            curve[0, :, :, :count, g] = np.tensordot(values[: len(stations)], own, (1, 1)).swapaxes(1, 2)
     pull = np.empty((2, len(stations), count, len(strips)))
     for g, strip in enumerate(strips):
         pull[..., g] = -clamp_reactions(system, states, strip.name, "start")[:, :2].T[:, None]
@@ -106,10 +115,8 @@ def _balanced_moments(
 ) -> Array:
     """Bending moments (P, S, G) by balance, of control points (n, 2, S, G)."""
     basis = strips[0].basis
-    values, areas = (
-        _basis_at(basis, stations.tobytes())[: len(stations)],
-        _areas_at(basis, stations.tobytes()),
-    )
+    values = _basis_at(basis, stations.tobytes())[: len(stations)]
+    areas = _areas_at(basis, stations.tobytes())
     by_strip = [
         balance(
             points[..., g].transpose(2, 0, 1),
@@ -158,6 +165,19 @@ def _areas_at(basis: SplineBasis, stations: bytes) -> Array:
 def _modes_at(modes: AxialModes, stations: bytes) -> Array:
     """All axial modes at stations (K, P); kept."""
     return np.ascontiguousarray(all_modes(modes, np.frombuffer(stations)).T)
+
+
+def centre_lines(system: System, states: Array) -> Array:
+    """States (S, N) with the control points of the strips' centre lines: what shear adds goes along them."""
+    if not system.scene.of(Shear):
+        return states
+    shown = states.copy()
+    for shear in system.scene.of(Shear):
+        strip = system.scene.strip(shear.strip)
+        force = -clamp_reactions(system, states, strip.name, "start")[:, None, :2]
+        arc = float(strip.share_of_length().sum()) * strip.basis.greville[:, None]
+        shown[:, system.layout.strip(strip.name)] += (shear.compliance * arc * force).reshape(len(states), -1)
+    return shown
 
 
 def clamp_reactions(system: System, states: Array, strip: str, end: str) -> Array:

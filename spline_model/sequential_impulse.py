@@ -31,13 +31,11 @@ from spline_model.content import STEPS_PER_PERIOD
 from spline_model.effects import DrivenDisplacement, DrivenRotation
 from spline_model.errors import InvalidParameter, require_positive
 from spline_model.impulses.solver import TOLERANCE, ImpulseSolver, Outcome, Run, State
-from spline_model.laps import Laps
-from spline_model.mass import mass_matrix
 from spline_model.mechanism import Mechanism
 from spline_model.modes import linear_modes, static_state
 from spline_model.motion.dispatch import count_steps
-from spline_model.motion.events import catch, drives_at, event_times, from_here
 from spline_model.motion.trajectory import Trajectory, trajectory_of
+from spline_model.newton import Laps
 
 __all__ = ["ImpulseSolver", "Outcome", "State", "impulse_solver", "solve_impulses", "stability_limit"]
 
@@ -90,7 +88,7 @@ def stability_limit(pivot: Mechanism, rotation: float | None = None) -> float:
     mechanism = pivot.in_motion()
     system = compile_scene(mechanism.released())
     z = static_state(mechanism, rotation)[: system.layout.size]
-    highest = linear_modes(system, z, mass_matrix(system.scene, system.layout))[0][-1]
+    highest = linear_modes(system, z, system.mass)[0][-1]
     return STABILITY_LIMIT / math.sqrt(highest)
 
 
@@ -153,14 +151,14 @@ def _follow(run: Run, h: float, steps: int, every: int) -> int:
     """Take the steps, drives beginning and ending at the nearest one; returns the number taken."""
     solver = run.solver
     motion = solver.motion
-    before = np.zeros(len(motion.tables.drives.row), dtype=np.int64)
+    before = np.zeros(len(motion.drives.row), dtype=np.int64)
     done = 0
-    instants = {round(time / h) for time in event_times(motion, steps * h, h)} - {0, steps}
+    instants = {round(time / h) for time in motion.event_times(steps * h, h)} - {0, steps}
     for begin, end in pairwise((0, *sorted(instants), steps)):
-        active = drives_at(motion, (begin + 0.5) * h)
+        active = motion.drives_at((begin + 0.5) * h)
         z, v = run.moving.z, run.moving.v
-        motion = from_here(motion, z, active, before, begin * h)
-        run.change(*catch(motion, z, v, active, begin * h, h))
+        motion = motion.from_here(z, active, before, begin * h)
+        run.change(*motion.catch(z, v, active, begin * h, h))
         if begin == 0:
             run.keep_start()
         done = run.go(begin, end, h, 0.0, every, active, motion)

@@ -11,13 +11,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from spline_model.body_stiffness import body_stiffness
+from spline_model.compile import System
 from spline_model.errors import InvalidParameter
 from spline_model.estimate import ErrorEstimate, resolution
+from spline_model.sections import ENDS, STATIONS, Sections, clamp_reactions, sections
 
 if TYPE_CHECKING:
     import pandas as pd
-
-    from spline_model.static_answers import Along
 
 Array = NDArray[np.float64]
 
@@ -61,9 +62,10 @@ class CriticalPoint:
 
 @dataclass(frozen=True, eq=False)
 class Later:
-    """An array that is made when it is first asked for."""
+    """An array that is made when it is first asked for; last: the model and what its last row is in it."""
 
     make: Callable[[], Array]
+    last: tuple[Any, Array] | None = None
 
     @cached_property
     def array(self) -> Array:
@@ -77,8 +79,8 @@ class Path:
 
     load_factor (S,); bodies (S, 3 B): x, y, theta of each [m, rad]; reactions (S, D) of the drives, as
     multipliers; unknowns: z (S, N) of all states; stiffness (S,) d(torque)/d(rotation) of a driven rotation
-    at fixed loads, nan without one [N m/rad]; energies (S, 2) bending and axial [J]; work (S,) of loads and
-    drives since the first state [J]; history: residual norms by increment.
+    at fixed loads, nan without one [N m/rad]; energies (S, 2) bending and axial, (S, 3) where strips shear
+    [J]; work (S,) of loads and drives since the first state [J]; history: residual norms by increment.
     inertia (S,): negative eigenvalues of the reduced tangent with the drives held, 0 for a
     stable state, -1 where the printed forces have no potential; moment_defect (S,): what the
     strips' moments differ from balance by, relative (``continuation.resolution``);
@@ -173,15 +175,12 @@ class StaticSolution(Tabulated):
     theta (S, 3) by name [m, m, rad]; driven: the body whose rotation is driven, if there is one;
     torque (S,) lambda_13 [N m], and stiffness (S,) d(torque)/d(rotation) [N m/rad] (Eq 20) at fixed loads
     and driven displacements, from the tangent, of the driven rotation, nan without one;
-    bending_energy, axial_energy (S,) [J];
+    bending_energy, axial_energy and, of strips that shear, shear_energy (S,) [J];
     gravity_energy (S,) [J] against rest, work (S,) of drives and loads since the first state;
-    along: what is known along the strips, made when it is asked for: shape (S, G, P, 2) [m]; axial_force,
-    bending_moment, shear_force (S, G, P) [N, N m, N] at stations (P,), reference arc length over L, and
-    clamp_reactions (S, G, 2, 3): force [N] and moment [N m] of the clamp at the root and at the tip of a
-    strip, zero at a free end; each is an attribute of the answer, too;
+    what is known along the strips is made when it is asked for; balanced: see ``Sections``;
     effects: names of what was assembled;
     inertia, moment_defect, critical_points and states (S, N) as in ``Path``;
-    seconds: by part, see ``spline_model.laps``; control_points: of a strip;
+    seconds: by part, see ``spline_model.newton.Laps``; control_points: of a strip;
     estimate: of the error, where the control points were chosen for an accuracy.
     """
 
@@ -194,9 +193,12 @@ class StaticSolution(Tabulated):
     stiffness: Array
     bending_energy: Array
     axial_energy: Array
+    shear_energy: Array
     gravity_energy: Array
     work: Array
-    along: Along
+    system: System
+    unknowns: Later
+    balanced: bool
     effects: tuple[str, ...]
     inertia: NDArray[np.int64]
     moment_defect: Array
@@ -220,49 +222,51 @@ class StaticSolution(Tabulated):
     @property
     def states(self) -> Array:
         """The unknowns z of all states (S, N), to go on from."""
-        return self.along.unknowns.array
+        return self.unknowns.array
 
-    @property
+    @cached_property
     def clamp_reactions(self) -> Array:
         """Force [N] and moment [N m] of the clamps at root and tip of the strips (S, G, 2, 3)."""
-        return self.along.clamp_reactions
+        names = [strip.name for strip in self.system.scene.strips]
+        ends = [[clamp_reactions(self.system, self.states, name, end) for end in ENDS] for name in names]
+        return np.asarray(np.array(ends).transpose(2, 0, 1, 3))
 
     @property
     def stations(self) -> Array:
         """Where sections are recovered (P,), reference arc length over L."""
-        return self.along.stations
+        return STATIONS
+
+    @cached_property
+    def sections(self) -> Sections:
+        """Shapes and section forces."""
+        return sections(self.system, self.states, STATIONS, balanced=self.balanced)
 
     @property
     def shape(self) -> Array:
         """Points of the strips (S, G, P, 2) [m]."""
-        return self.along.sections.shape
+        return self.sections.shape
 
     @property
     def axial_force(self) -> Array:
         """N (S, G, P) [N]."""
-        return self.along.sections.axial_force
+        return self.sections.axial_force
 
     @property
     def bending_moment(self) -> Array:
         """M (S, G, P) [N m]."""
-        return self.along.sections.bending_moment
+        return self.sections.bending_moment
 
     @property
     def shear_force(self) -> Array:
         """V (S, G, P) [N]."""
-        return self.along.sections.shear_force
+        return self.sections.shear_force
 
     def body_stiffness(self, body: str | None = None) -> Array:
         """Stiffness (S, 3, 3) of a body's x, y, theta [N/m, N, N m/rad]: ``body_stiffness``.
 
         body: its name; None for the driven one, or the only one.
         """
-        return self.along.body_stiffness(body or self._watched_name)
-
-    @property
-    def shear_energy(self) -> Array:
-        """None: strips are rigid in shear (S,) [J]."""
-        return np.zeros(len(self.load_factor))
+        return body_stiffness(self.system, self.states, body or self._watched_name)
 
     @property
     def resolution(self) -> str:

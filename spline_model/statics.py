@@ -4,40 +4,33 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 from itertools import pairwise
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from spline_model.accuracy import DOUBTFUL, settled, wanted
-from spline_model.accurate_path import solve_accurately
+from spline_model.accuracy import DOUBTFUL, settled, solve_accurately, wanted
 from spline_model.compile import System, compile_scene
-from spline_model.continuation.recover import recover
-from spline_model.continuation.start import last_state
-from spline_model.errors import (
-    ConvergenceError,
-    InvalidParameter,
-    finite_numbers,
-    require_choice,
-    require_count,
-)
-from spline_model.laps import Laps
-from spline_model.path import Progress
+from spline_model.continuation.start import equilibrium
+from spline_model.errors import InvalidParameter, finite_numbers, require_choice, require_count
+from spline_model.newton import Laps
+from spline_model.path import Progress, follow
 from spline_model.pivot import Pivot
-from spline_model.proportional import CONTROLS, solve_loads, solve_mechanism, solve_path
+from spline_model.proportional import CONTROLS, solve_loads, solve_mechanism
+from spline_model.reduced.elements import followed
 from spline_model.rotations import (
     LOADS_FIRST,
     ORDERS,
     TOGETHER,
-    factors_of,
     follow_loads_first,
     follow_rotations,
     has_loads,
-    largest_of,
 )
+from spline_model.sections import STATIONS
 from spline_model.solution import Path, StaticSolution, Status
-from spline_model.static_answers import STATIONS, static_answer
+from spline_model.static_answers import checked, static_answer
 
 __all__ = [
     "CONTROLS",
@@ -46,7 +39,6 @@ __all__ = [
     "solve_from",
     "solve_loads",
     "solve_mechanism",
-    "solve_path",
     "solve_statics",
 ]
 
@@ -56,6 +48,9 @@ LEAST_ROTATION = 1e-12
 """Largest rotation of a path that is none [rad]: states are solved to 1e-11."""
 
 METHODS = ("condensed", "multipliers")
+
+HOME = 1e-6
+"""Distance from rest at which a path has come home, in lengths of a strip and rad."""
 
 
 def solve_statics(
@@ -100,12 +95,12 @@ def solve_statics(
     def solve(control_points: int | None) -> StaticSolution:
         given = pivot.with_control_points(control_points)
         told = progress if chosen is None else None
-        if order == TOGETHER or not rotations.any() or not has_loads(given.scene):
-            system, path = _along(given, rotations, method, laps, told, start=start, branch=branch)
-            return static_answer(system, path, given.effects, laps, balanced=chosen is not None)
         begin = None if start is None else (origin, float(start.load_factor[-1]), start.states[-1])
         how: dict[str, Any] = {"start": begin, "branch": branch, "method": method, "laps": laps}
-        system, path, _ = follow_loads_first(given.driven, rotations, increments, told, **how)
+        if order == TOGETHER or not rotations.any() or not has_loads(given.scene):
+            system, path = follow_rotations(given.driven, rotations, told, **how)
+        else:
+            system, path, _ = follow_loads_first(given.driven, rotations, increments, told, **how)
         return static_answer(system, path, given.effects, laps, balanced=chosen is not None)
 
     if chosen is None:
@@ -114,14 +109,7 @@ def solve_statics(
         solution = solve_accurately(design, chosen, solve, least=DOUBTFUL if accuracy is None else None)
         if progress is not None:
             progress(len(rotations), len(rotations))
-    if raise_on_failure and solution.status is not Status.CONVERGED:
-        raise ConvergenceError(
-            solution.message,
-            solution=solution,
-            load_factor=float(solution.load_factor[-1]),
-            history=solution.history,
-        )
-    return solution
+    return checked(solution, raise_on_failure)
 
 
 def _rotations(rotation: float | Sequence[float], increments: int, origin: float) -> Array:
@@ -134,37 +122,13 @@ def _rotations(rotation: float | Sequence[float], increments: int, origin: float
     return np.array([b - (b - a) * left / increments for a, b in legs for left in range(increments)[::-1]])
 
 
-def _along(
-    pivot: Pivot,
-    rotations: Array,
-    method: str,
-    laps: Laps,
-    progress: Progress | None = None,
-    *,
-    start: StaticSolution | None = None,
-    branch: str = "primary",
-) -> tuple[System, Path]:
-    """The path through the rotations [rad], and the scene that it is one of."""
-    largest = largest_of(rotations, 0.0 if start is None else float(start.rotation[-1]))
-    return follow_rotations(
-        pivot.driven,
-        largest,
-        factors_of(rotations, largest),
-        progress,
-        start=None if start is None else last_state(start, largest),
-        branch=branch,
-        method=method,
-        laps=laps,
-    )
-
-
 def solve_from(
     pivot: Pivot, *, rotation: float, guess: Array, increments: int = 20, raise_on_failure: bool = True
 ) -> StaticSolution:
     """The state of the primary branch at a rotation [rad] from any guess of the unknowns (N,).
 
     ``message`` says whether the guess led there or the path from rest did, in ``increments``.
-    A guess that leads elsewhere is never believed: see ``continuation.recover``.
+    A guess that leads elsewhere is never believed: see ``_recover``.
     """
     require_count("increments", increments, 1)
     if not math.isfinite(rotation):
@@ -172,10 +136,44 @@ def solve_from(
     laps = Laps()
     system = compile_scene(pivot.driven(rotation))
     laps.lap("compile")
-    path = recover(system, 1.0, np.asarray(guess, dtype=float), increments)
+    path = _recover(system, 1.0, np.asarray(guess, dtype=float), increments)
     laps.lap("solve")
-    solution = static_answer(system, path, pivot.effects, laps)
-    if raise_on_failure and path.status is not Status.CONVERGED:
-        at = float(path.load_factor[-1])
-        raise ConvergenceError(path.message, solution=solution, load_factor=at, history=path.history)
-    return solution
+    return checked(static_answer(system, path, pivot.effects, laps), raise_on_failure)
+
+
+def _recover(system: System, load_factor: float, guess: Array, increments: int) -> Path:
+    """The state of the primary branch at a load factor, one state; ``message`` says how it was found.
+
+    What Newton finds from the guess is believed if the path from there back to load factor
+    0 ends at rest; a wound-up or snapped strip has equilibria too, and passes every local
+    check. Otherwise the path is followed from rest. Raises InvalidParameter for a guess that
+    is no vector of unknowns.
+    """
+    whole = np.linspace(0.0, load_factor, increments + 1)
+    try:
+        found = equilibrium(work := followed(system), load_factor, guess)
+    except InvalidParameter as error:
+        if np.shape(guess) != (system.layout.size,):
+            raise
+        reason = str(error.got)
+    else:
+        back = follow(system, list(whole[-2::-1]), start=(load_factor, work.unknowns(found.z)))
+        reason = "it lies on another branch"
+        if back.status is Status.CONVERGED and _is_rest(system, back.states[-1]):
+            return _only(back, 0, "found from the given state")
+    path = follow(system, list(whole[1:]))
+    if path.status is not Status.CONVERGED:
+        return path
+    return _only(path, -1, f"solved from rest, the given state led nowhere ({reason})")
+
+
+def _is_rest(system: System, z: Array) -> bool:
+    rest = follow(system, []).states[0]
+    count = system.layout.coordinate_count
+    return bool(np.abs((z - rest)[:count] / system.scales.unit[:count]).max() < HOME)
+
+
+def _only(path: Path, place: int, message: str) -> Path:
+    """One state of a path."""
+    at = place % len(path.work)
+    return replace(path, message=message, **path.rows(slice(at, at + 1)))

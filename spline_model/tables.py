@@ -11,26 +11,21 @@ from numpy.typing import NDArray
 
 from spline_model.effects import (
     GROUND,
-    AppliedForce,
-    AppliedMoment,
     BodyGravity,
     Clamp,
     DrivenDisplacement,
     DrivenRotation,
     RootCompliance,
     StripGravity,
-    TipForce,
 )
 from spline_model.effects.base import Constraint, Load
 from spline_model.effects.history import STEADY, History
-from spline_model.layout import Layout
+from spline_model.effects.loads import Sized
 from spline_model.quadrature import PointTable
-from spline_model.scene import Scene
+from spline_model.scene import Layout, Scene
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
-Sized = AppliedForce | AppliedMoment | TipForce
-SIZED = (AppliedForce, AppliedMoment, TipForce)
 
 END, INNER, BODY, ROW = range(4)
 """Columns of ``ClampTable.place``."""
@@ -134,7 +129,7 @@ class Tables(NamedTuple):
     weight: Array
 
 
-def clamp_table(scene: Scene, layout: Layout) -> ClampTable:
+def clamp_table(scene: Scene) -> ClampTable:
     """The clamped strip ends."""
     places, numbers = [], []
     yielding = {(e.strip, e.end): e.compliance for e in scene.of(RootCompliance)}
@@ -142,14 +137,14 @@ def clamp_table(scene: Scene, layout: Layout) -> ClampTable:
         if not isinstance(clamp, Clamp):
             continue
         strip = scene.strip(clamp.strip)
-        start, count = layout.strips[clamp.strip]
+        start, count = scene.layout.strips[clamp.strip]
         at_start = clamp.end == "start"
         end, inner = (0, 1) if at_start else (count - 1, count - 2)
         sign = 1.0 if at_start else -1.0
         along = sign * (strip.control_points[inner] - strip.control_points[end])
         centre = np.zeros(2) if clamp.to == GROUND else scene.body(clamp.to).centre
-        body = -1 if clamp.to == GROUND else layout.bodies[clamp.to]
-        places.append((start + 2 * end, start + 2 * inner, body, layout.multipliers[i][0]))
+        body = -1 if clamp.to == GROUND else scene.layout.bodies[clamp.to]
+        places.append((start + 2 * end, start + 2 * inner, body, scene.layout.multipliers[i][0]))
         point = strip.control_points[end] - centre
         yields = yielding.get((clamp.strip, clamp.end), 0.0)
         numbers.append((sign, *point, np.arctan2(along[1], along[0]), yields))
@@ -159,7 +154,7 @@ def clamp_table(scene: Scene, layout: Layout) -> ClampTable:
     )
 
 
-def drive_table(scene: Scene, layout: Layout) -> DriveTable:
+def drive_table(scene: Scene) -> DriveTable:
     """The driven rotations and displacements, one row a coordinate."""
     rows: list[tuple[int, float, float, int, int, float, float]] = []
     histories: list[History] = []
@@ -176,15 +171,17 @@ def drive_table(scene: Scene, layout: Layout) -> DriveTable:
         else:
             continue
         for k, (offset, origin, target) in enumerate(parts):
-            place = layout.bodies[drive.body] + offset
-            rows.append((place, origin, target, layout.multipliers[i][0] + k, int(offset == 2), *drive.held))
+            place = scene.layout.bodies[drive.body] + offset
+            rows.append(
+                (place, origin, target, scene.layout.multipliers[i][0] + k, int(offset == 2), *drive.held)
+            )
             histories.append(drive.history or STEADY)
-    coordinate, origin_, target_, row, turns, begin, until = zip(*rows, strict=True) if rows else ((),) * 7
+    coordinate, origin_, target_, row_, turns, begin, until = zip(*rows, strict=True) if rows else ((),) * 7
     return DriveTable(
         coordinate=np.array(coordinate, dtype=np.int64),
         origin=np.array(origin_, dtype=float),
         target=np.array(target_, dtype=float),
-        row=np.array(row, dtype=np.int64),
+        row=np.array(row_, dtype=np.int64),
         turns=np.array(turns, dtype=np.int64),
         begin=np.array(begin, dtype=float),
         until=np.array(until, dtype=float),
@@ -192,36 +189,20 @@ def drive_table(scene: Scene, layout: Layout) -> DriveTable:
     )
 
 
-def load_table(scene: Scene, layout: Layout) -> LoadTable:
+def load_table(scene: Scene) -> LoadTable:
     """Forces on bodies and strip ends and moments on bodies that grow, one row a component."""
-    rows: list[tuple[int, float, int]] = []
-    histories: list[History] = []
-    for load in scene.of(Load):
-        if isinstance(load, SIZED) and not load.steady:
-            parts = _components(load, layout)
-            rows += parts
-            histories += [load.history] * len(parts)
-    return _table_of_loads(rows, histories) if rows else NO_LOADS
+    growing = [load for load in scene.of(Load) if isinstance(load, Sized) and not load.steady]
+    return _table_of_loads(scene, growing) if growing else NO_LOADS
 
 
-def _table_of_loads(rows: Sequence[tuple[int, float, int]], histories: Sequence[History]) -> LoadTable:
+def _table_of_loads(scene: Scene, growing: Sequence[Sized]) -> LoadTable:
+    parts = [(load.history, part) for load in growing for part in load.components(scene.layout)]
     return LoadTable(
-        coordinate=np.array([row[0] for row in rows], dtype=np.int64),
-        value=np.array([row[1] for row in rows], dtype=float),
-        turns=np.array([row[2] for row in rows], dtype=np.int64),
-        **_histories(histories),
+        coordinate=np.array([place for _, (place, _, _) in parts], dtype=np.int64),
+        value=np.array([value for _, (_, value, _) in parts], dtype=float),
+        turns=np.array([turns for _, (_, _, turns) in parts], dtype=np.int64),
+        **_histories([history for history, _ in parts]),
     )
-
-
-def _components(load: Sized, layout: Layout) -> list[tuple[int, float, int]]:
-    """Place, value and kind (1: a moment) of each component of a load."""
-    if isinstance(load, AppliedMoment):
-        return [(layout.bodies[load.body] + 2, load.moment, 1)]
-    if isinstance(load, AppliedForce):
-        return [(layout.bodies[load.body] + k, load.force[k], 0) for k in range(2)]
-    start, count = layout.strips[load.strip]
-    end = start if load.end == "start" else start + 2 * count - 2
-    return [(end + k, load.force[k], 0) for k in range(2)]
 
 
 def _histories(histories: Sequence[History]) -> dict[str, Any]:
@@ -236,27 +217,27 @@ def _histories(histories: Sequence[History]) -> dict[str, Any]:
     }
 
 
-NO_LOADS = _table_of_loads((), ())
+NO_LOADS = _table_of_loads(Scene(strips=(), bodies=(), effects=()), ())
 
 
 def steady_loads(scene: Scene, layout: Layout) -> list[tuple[int, float]]:
     """Place and value of each component of the loads that act in full at any load factor."""
-    steady = [load for load in scene.of(Load) if isinstance(load, SIZED) and load.steady]
-    return [(place, value) for load in steady for place, value, _ in _components(load, layout)]
+    steady = [load for load in scene.of(Load) if isinstance(load, Sized) and load.steady]
+    return [(place, value) for load in steady for place, value, _ in load.components(layout)]
 
 
-def weight(scene: Scene, layout: Layout) -> Array:
+def weight(scene: Scene) -> Array:
     """Generalised force of gravity and steady loads, (Q,) [N, N m]; empty where no effect names any."""
     strips, bodies = scene.of(StripGravity), scene.of(BodyGravity)
-    steady = steady_loads(scene, layout)
+    steady = steady_loads(scene, scene.layout)
     if not (strips or bodies or steady):
         return np.zeros(0)
-    force = np.zeros(layout.coordinate_count)
+    force = np.zeros(scene.layout.coordinate_count)
     for strip in strips:
         share = strip.linear_density * scene.strip(strip.strip).share_of_length()
-        force[layout.strip(strip.strip)] += np.outer(share, strip.acceleration).ravel()
+        force[scene.layout.strip(strip.strip)] += np.outer(share, strip.acceleration).ravel()
     for body in bodies:
-        force[layout.body(body.body)][:2] += body.mass * np.asarray(body.acceleration)
+        force[scene.layout.body(body.body)][:2] += body.mass * np.asarray(body.acceleration)
     for place, value in steady:
         force[place] += value
     return force

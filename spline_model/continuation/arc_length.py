@@ -10,11 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.compile import System
-from spline_model.continuation.balance import done_by_load_factor
-from spline_model.continuation.corrector import Corrected, correct
-from spline_model.continuation.followed import Followed
+from spline_model.continuation.followed import Corrected, Followed, correct
 from spline_model.continuation.follower import KNOWN_STATES, hermite_extrapolation
-from spline_model.continuation.point import Point, directed, stand
+from spline_model.continuation.point import Point, directed, done_by_load_factor, stand
 from spline_model.continuation.start import first_point
 from spline_model.continuation.watch import BRANCHES, Watch
 from spline_model.errors import require_choice

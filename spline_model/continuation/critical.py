@@ -10,8 +10,7 @@ from numpy.typing import NDArray
 from scipy.linalg import eigh, null_space
 
 from spline_model.compile import System
-from spline_model.continuation.corrector import correct
-from spline_model.continuation.followed import Followed
+from spline_model.continuation.followed import Followed, correct
 from spline_model.continuation.point import NOT_TRACKED, Point, directed, stand
 from spline_model.effects import DrivenRotation
 from spline_model.effects.base import Constraint
@@ -162,9 +161,8 @@ def _crossing(work: Followed, kind: str, at: Point, mode: Array, inertia: int) -
 
 def _sense(system: System, moved: Array) -> float:
     """The sign that a mode is given: with any number of control points the bodies move to the same side."""
-    at = [system.layout.body(body.name) for body in system.scene.bodies]
-    bodies = moved[np.r_[tuple(at)]] if at else moved
-    if np.abs(bodies).max() < NO_PART * np.abs(moved).max():
+    bodies = moved[system.layout.poses]
+    if np.abs(bodies).max(initial=0.0) < NO_PART * np.abs(moved).max():
         bodies = moved
     size = np.abs(bodies)
     return float(np.sign(bodies[np.flatnonzero(size >= 0.5 * size.max())[0]]))
@@ -211,13 +209,19 @@ def _hermite(
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class ReducedTangent:
-    """stiffness (F, F) on the free directions (Q, F), which are orthonormal, all dimensionless (EI/L)."""
+    """stiffness (F, F) on the free directions (Q, F), which are orthonormal, all dimensionless (EI/L).
+
+    below: eigenvalues that are negative in any case, one for each force of a negative compliance
+    (``effects.Shear``), which the spring of the tip outweighs.
+    """
 
     stiffness: Array
     free: Array
+    below: int
 
     def eigenpair(self, number: int) -> tuple[float, Array]:
         """The eigenvalue of that number from the lowest, 0 on, and its direction (Q,)."""
+        number += self.below
         values, vectors = eigh(self.stiffness, subset_by_index=(number, number))
         return float(values[0]), np.asarray(self.free @ vectors[:, 0])
 
@@ -237,4 +241,5 @@ def reduced_tangent(work: Followed) -> ReducedTangent:
     constraints = rows[~soft]
     norms = np.linalg.norm(constraints, axis=1, keepdims=True)
     free = null_space(constraints / norms) if len(constraints) else np.eye(count)
-    return ReducedTangent(stiffness=free.T @ stiffness @ free, free=free)
+    below = int((np.diag(between) > 0.0).sum())
+    return ReducedTangent(stiffness=free.T @ stiffness @ free, free=free, below=below)

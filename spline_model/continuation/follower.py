@@ -8,8 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from spline_model.continuation.balance import done_by_load_factor
-from spline_model.continuation.point import Point, stand
+from spline_model.continuation.point import Point, done_by_load_factor, stand
 from spline_model.continuation.watch import Watch
 from spline_model.newton import Newton, solve
 

@@ -33,7 +33,7 @@ class Place:
         """One place; rotation [rad] of the driven body, if it is known better than by the load factor."""
         if self.system is None:
             return f"{100 * load_factor:.6g} % of weight and pre-strain"
-        if is_steady(self.system.scene):
+        if _is_steady(self.system.scene):
             return self._acting(load_factor, rotation).strip(" ()")
         return f"load factor {self._share(load_factor):.6g}{self._acting(load_factor, rotation)}"
 
@@ -41,7 +41,7 @@ class Place:
         """Two neighbouring places."""
         if self.system is None:
             return f"{100 * last:.6g} and {self.at(following)}"
-        if is_steady(self.system.scene):
+        if _is_steady(self.system.scene):
             return f"{self.at(last)} and {self.at(following)}"
         acting = self._acting(following, math.nan)
         return f"load factor {self._share(last):.6g} and {self._share(following):.6g}{acting}"
@@ -88,7 +88,7 @@ def sized(value: float) -> str:
     return f"{value / 10.0**power:.4g} {PREFIXES[power]}"
 
 
-def is_steady(scene: Scene) -> bool:
+def _is_steady(scene: Scene) -> bool:
     """Whether loads or driven displacements act in full at any load factor, which is the rotation's alone."""
     return any(getattr(effect, "steady", False) for effect in scene.effects)
 

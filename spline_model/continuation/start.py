@@ -1,4 +1,4 @@
-"""Where a path begins: at rest, or at a state that is given, corrected and checked."""
+"""Where a path begins: at rest, weight and pre-strain grown from nothing, or at a state that is given."""
 
 from __future__ import annotations
 
@@ -6,12 +6,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.continuation.followed import Followed
+from spline_model.continuation.follower import Follower
 from spline_model.continuation.point import Point, stand
+from spline_model.continuation.remark import Place
 from spline_model.continuation.watch import Watch
 from spline_model.errors import InvalidParameter
 from spline_model.newton import Newton, solve
-from spline_model.preload import settle
-from spline_model.solution import Path, StaticSolution
 
 Array = NDArray[np.float64]
 
@@ -37,7 +37,7 @@ def first_point(watch: Watch, start: tuple[float, Array] | None) -> tuple[Point,
     Raises InvalidParameter where there is none, or where nothing holds the scene.
     """
     work = watch.work
-    newton = settle(watch) if start is None else equilibrium(work, *start)
+    newton = _settle(watch) if start is None else equilibrium(work, *start)
     try:
         point = stand(work, newton.z, 0.0 if start is None else start[0], newton.energies)
     except np.linalg.LinAlgError as error:
@@ -45,9 +45,32 @@ def first_point(watch: Watch, start: tuple[float, Array] | None) -> tuple[Point,
     return point, newton.norms
 
 
-def last_state(start: Path | StaticSolution, angle: float = 0.0) -> tuple[float, Array]:
-    """Load factor and unknowns where a result ended; of a body turned by ``angle`` at most, signed."""
-    if isinstance(start, StaticSolution) and angle != 0.0:
-        return float(start.rotation[-1]) / angle, start.states[-1]
-    at = start.load_factor
-    return float(at[-1]), start.states[-1]
+def _settle(watch: Watch) -> Newton:
+    """Equilibrium at load factor 0: weight and pre-strain grow from nothing, watched like any path.
+
+    Raises InvalidParameter where they cannot grow to their full size.
+    """
+    work = watch.work
+    z = _grown(watch) if work.system.is_preloaded else work.state(work.system.rest)
+    newton = solve(work, z, 0.0)
+    if newton.reason:
+        raise InvalidParameter("scene", newton.reason, "an equilibrium at load factor 0, near rest")
+    return newton
+
+
+def _grown(watch: Watch) -> Array:
+    """The unknowns (N,) under full weight and pre-strain; what was met on the way is told to ``watch``."""
+    growing = watch.work.growing()
+    own = Watch(growing, leaves=watch.leaves, by_load=True, place=Place(system=None))
+    newton = solve(growing, growing.state(growing.system.rest), 0.0)
+    try:
+        begin = stand(growing, newton.z, 0.0, newton.energies)
+    except np.linalg.LinAlgError as error:
+        raise InvalidParameter("scene", str(error), "strips that can move, but not freely") from error
+    follower = Follower(own, begin, newton.norms)
+    own.first = (0.0, begin.z)
+    message = follower.advance(1.0)
+    if message:
+        raise InvalidParameter("scene", message, "an equilibrium under all of its weight and pre-strain")
+    watch.leaves, watch.before = own.leaves, own.remark()
+    return follower.here.z

@@ -11,12 +11,11 @@ from numpy.typing import NDArray
 
 from spline_model.checks import left_the_branch
 from spline_model.compile import System
-from spline_model.continuation.balance import jumped
-from spline_model.continuation.corrector import correct
 from spline_model.continuation.critical import BIFURCATION, Bracket, Crossing, between, corrected
-from spline_model.continuation.followed import Followed
-from spline_model.continuation.point import Point, directed, stand
+from spline_model.continuation.followed import Followed, correct
+from spline_model.continuation.point import Point, directed, jumped, stand
 from spline_model.continuation.remark import Place, left, remark
+from spline_model.sections import centre_lines
 from spline_model.solution import CriticalPoint, Path, Status
 
 Array = NDArray[np.float64]
@@ -47,7 +46,7 @@ class Watch:
         self.place, self.before = place or Place(system=work.system), ""
         self.critical: list[CriticalPoint] = []
         self.note, self.first = "", None  # type: str, tuple[float, Array] | None
-        self._finer: Finer | None = None
+        self._finer: _Finer | None = None
 
     def refuse(self, here: Point, predicted: Array, z: Array, load_factor: float) -> str:
         """Why a converged state is not the next one; empty if it may be."""
@@ -90,7 +89,7 @@ class Watch:
 
     def _confirmed(self, here: Point, point: Point, step: float) -> bool:
         if self._finer is None:
-            self._finer = Finer(self.work)
+            self._finer = _Finer(self.work)
         return self._finer.confirms(self.work, here, point, step)
 
     def is_resolved(self, point: Point) -> bool:
@@ -116,11 +115,11 @@ class Watch:
         """The result: what was followed, by state; why it ended early, if it did."""
         told = message or self.remark(int(rows["inertia"][-1]))
         counters = dict(vars(self.work.counters))
-        path = path_of(self.work.system, rows, told, counters, tuple(self.critical), tuple(history))
+        path = _path_of(self.work.system, rows, told, counters, tuple(self.critical), tuple(history))
         return replace(path, status=Status.NOT_CONVERGED) if message else path
 
 
-def path_of(
+def _path_of(
     system: System,
     rows: dict[str, Any],
     message: str,
@@ -131,7 +130,9 @@ def path_of(
     """A converged path of rows by state, ``done`` among them: int P_lambda d(lambda) from the first [J]."""
     loads, work = system.loads, rows["done"]
     if loads.value.size:
-        moved = (rows["unknowns"].array - system.rest)[:, loads.coordinate] @ loads.value
+        moved = (centre_lines(system, rows["unknowns"].array) - system.rest)[
+            :, loads.coordinate
+        ] @ loads.value
         work = rows["load_factor"] * moved + work
     return Path(
         status=Status.CONVERGED,
@@ -166,7 +167,7 @@ def leave(work: Followed, crossing: Crossing) -> Point | None:
     return None
 
 
-class Finer:
+class _Finer:
     """A system with twice the Gauss points: its unknowns are the same ones.
 
     Too few points do not see a bend between them. The tangent then loses its stiffness there

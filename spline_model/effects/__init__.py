@@ -1,37 +1,24 @@
 """Effects: the named frozen values a scene is made of."""
 
-from spline_model.effects.constraints import (
-    ALWAYS,
-    GROUND,
-    Clamp,
-    DrivenDisplacement,
-    DrivenRotation,
-)
-from spline_model.effects.damping import BodyDamper, StripDamping, StripDrag
-from spline_model.effects.elastic import MEASURES, Bending, MixedStretching, RootCompliance, Stretching
-from spline_model.effects.inertia import BodyInertia, SectionRotaryInertia, StripInertia
-from spline_model.effects.loads import AppliedForce, AppliedMoment, BodyGravity, StripGravity, TipForce
-
-__all__ = [
-    "ALWAYS",
-    "GROUND",
-    "MEASURES",
-    "AppliedForce",
-    "AppliedMoment",
-    "Bending",
-    "BodyDamper",
-    "BodyGravity",
-    "BodyInertia",
-    "Clamp",
-    "DrivenDisplacement",
-    "DrivenRotation",
-    "MixedStretching",
-    "RootCompliance",
-    "SectionRotaryInertia",
-    "Stretching",
-    "StripDamping",
-    "StripDrag",
-    "StripGravity",
-    "StripInertia",
-    "TipForce",
-]
+from spline_model.effects.constraints import ALWAYS as ALWAYS
+from spline_model.effects.constraints import GROUND as GROUND
+from spline_model.effects.constraints import Clamp as Clamp
+from spline_model.effects.constraints import DrivenDisplacement as DrivenDisplacement
+from spline_model.effects.constraints import DrivenRotation as DrivenRotation
+from spline_model.effects.elastic import MEASURES as MEASURES
+from spline_model.effects.elastic import Bending as Bending
+from spline_model.effects.elastic import MixedStretching as MixedStretching
+from spline_model.effects.elastic import RootCompliance as RootCompliance
+from spline_model.effects.elastic import Shear as Shear
+from spline_model.effects.elastic import Stretching as Stretching
+from spline_model.effects.loads import AppliedForce as AppliedForce
+from spline_model.effects.loads import AppliedMoment as AppliedMoment
+from spline_model.effects.loads import BodyGravity as BodyGravity
+from spline_model.effects.loads import StripGravity as StripGravity
+from spline_model.effects.loads import TipForce as TipForce
+from spline_model.effects.moving import BodyDamper as BodyDamper
+from spline_model.effects.moving import BodyInertia as BodyInertia
+from spline_model.effects.moving import SectionRotaryInertia as SectionRotaryInertia
+from spline_model.effects.moving import StripDamping as StripDamping
+from spline_model.effects.moving import StripDrag as StripDrag
+from spline_model.effects.moving import StripInertia as StripInertia

@@ -9,12 +9,13 @@ class; a class that no effect names has a table of length zero.
 
 from __future__ import annotations
 
-from typing import ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from spline_model.layout import Layout
+if TYPE_CHECKING:
+    from spline_model.scene import Layout
 
 Array = NDArray[np.float64]
 

@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.basis import SplineBasis
+from spline_model.effects.plate import rigidity_of, rigidity_rate
 from spline_model.errors import InvalidParameter
-from spline_model.plate.profile import rigidity_of, rigidity_rate
 
 if TYPE_CHECKING:
     from spline_model.design import Design, StripDesign
@@ -32,7 +32,7 @@ class Curl:
 
         V = 1/2 int EI kappa^2 (1 - nu^2 g(s) f(x)) / (1 - nu^2) ds0                 [J]
 
-    with g the share of the curl that clamps over the whole width leave (``spline_model.plate.profile``)
+    with g the share of the curl that clamps over the whole width leave (``spline_model.effects.plate``)
     and f the one that the curvature of a wide strip leaves, x^2 = (3 (1 - nu^2))^(1/2) b^2 kappa / t
     (``spline_model.strip.laws.curl_law``). Each is 1 where its effect is not named.
 

@@ -7,42 +7,238 @@ effects. A new effect is a class with such a function in a file of its own, and 
 from __future__ import annotations
 
 import difflib
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from inspect import signature
 from typing import TYPE_CHECKING, Any
 
-from spline_model.effects import by_name
-from spline_model.errors import InvalidParameter
+from spline_model.basis import AxialModes, SlideModes
+from spline_model.effects.constraints import DrivenDisplacement
+from spline_model.effects.curl import curl_of
+from spline_model.effects.elastic import Bending, MixedStretching, RootCompliance, Shear, Stretching
+from spline_model.effects.history import STEADY, History
+from spline_model.effects.loads import AppliedForce, AppliedMoment, BodyGravity, StripGravity, TipForce
+from spline_model.effects.moving import (
+    BodyDamper,
+    BodyInertia,
+    SectionRotaryInertia,
+    StripDamping,
+    StripDrag,
+    StripInertia,
+)
+from spline_model.errors import InvalidParameter, is_finite
 
 if TYPE_CHECKING:
-    from spline_model.design import Design
+    from spline_model.design import Design, StripDesign
     from spline_model.scene import Effect
 
 Parameters = Mapping[str, Mapping[str, Any]]
 Builder = Callable[..., "Iterable[Effect]"]
+Vector = tuple[float, float]
+
+MONOLITHIC = 0.416
+"""Length of a root over the thickness: half-plane in plane stress, sharp corner, of any Poisson ratio."""
+SHEAR_FACTOR = 5.0 / 6.0
+"""k of a rectangle in energy equivalence (Reissner), of any Poisson ratio."""
+
+
+def _bending(design: Design) -> Iterator[Effect]:
+    """Bending of every strip, in the discretisation's measure, with the design's pre-strain and curl."""
+    grid = design.discretisation
+    for strip in design.strips:
+        yield Bending(
+            strip=strip.name,
+            flexural_rigidity=strip.flexural_rigidity,
+            natural_curvature=design.pre_strain.get("curvature", 0.0),
+            curl=curl_of(design, strip),
+            measure=grid.measure,
+            gauss_points=grid.points_a_span,
+        )
+
+
+def _stretching(design: Design) -> Iterator[Effect]:
+    """Stretching of every strip: mixed, or by quadrature where the discretisation says so."""
+    grid = design.discretisation
+    for strip in design.strips:
+        if grid.stretch != "consistent":
+            yield from _mixed(design, strip, 1.0 / strip.axial_rigidity)
+            continue
+        yield Stretching(
+            strip=strip.name,
+            axial_rigidity=strip.axial_rigidity,
+            natural_strain=design.pre_strain.get("strain", 0.0),
+            measure=grid.measure,
+            gauss_points=grid.points_a_span,
+        )
+
+
+def _inextensible(design: Design) -> Iterator[Effect]:
+    """Strips that keep their length: the mixed form with zero compliance."""
+    for strip in design.strips:
+        yield from _mixed(design, strip, 0.0)
+
+
+def _mixed(design: Design, strip: StripDesign, compliance: float) -> Iterator[Effect]:
+    grid = design.discretisation
+    parts: list[tuple[float, AxialModes]] = [(compliance, grid.modes)]
+    slide = grid.slide * strip.flexural_rigidity / strip.length**2
+    if slide > 0 and grid.modes.count < grid.points - 1:
+        parts.append((1.0 / slide, SlideModes(basis=grid.spline, axial=grid.modes)))
+    for part, modes in parts:
+        yield MixedStretching(
+            strip=strip.name,
+            axial_compliance=part,
+            modes=modes,
+            natural_strain=design.pre_strain.get("strain", 0.0),
+            measure=grid.measure,
+            gauss_points=grid.points_a_span,
+        )
+
+
+def _strip_inertia(design: Design) -> Iterator[Effect]:
+    """Translational inertia of every strip; without it strips are massless."""
+    for strip in design.strips:
+        yield StripInertia(strip=strip.name, linear_density=strip.linear_density)
+
+
+def _section_rotary_inertia(design: Design) -> Iterator[Effect]:
+    """Rotary inertia of every strip's sections."""
+    for strip in design.strips:
+        yield SectionRotaryInertia(
+            strip=strip.name, rotary_density=strip.density * strip.second_moment_of_area
+        )
+
+
+def _body_inertia(design: Design) -> Iterator[Effect]:
+    """Inertia of every body."""
+    for body in design.bodies:
+        yield BodyInertia(body=body.name, mass=body.mass, moment_of_inertia=body.moment_of_inertia)
+
+
+def _gravity(design: Design, acceleration: Vector = (0.0, -9.81)) -> Iterator[Effect]:
+    """Weight of every strip and body; acceleration [m/s^2]."""
+    for strip in design.strips:
+        yield StripGravity(strip=strip.name, linear_density=strip.linear_density, acceleration=acceleration)
+    for body in design.bodies:
+        yield BodyGravity(body=body.name, mass=body.mass, acceleration=acceleration)
+
+
+def _strip_damping(design: Design, relaxation_time: float) -> Iterator[Effect]:
+    """Kelvin-Voigt damping of every strip; relaxation_time [s]."""
+    for strip in design.strips:
+        yield StripDamping(strip=strip.name, relaxation_time=relaxation_time)
+
+
+def _strip_drag(design: Design, rate: float) -> Iterator[Effect]:
+    """Mass-proportional drag on every strip; rate [1/s]."""
+    for strip in design.strips:
+        yield StripDrag(strip=strip.name, linear_density=strip.linear_density, rate=rate)
+
+
+def _body_damping(design: Design, translation: float = 0.0, rotation: float = 0.0) -> Iterator[Effect]:
+    """Damper between every body and the ground; translation [N s/m], rotation [N m s]."""
+    for body in design.bodies:
+        yield BodyDamper(body=body.name, translation=translation, rotation=rotation)
+
+
+def _applied_force(
+    design: Design, force: Vector, body: str | None = None, history: History = STEADY
+) -> Iterator[Effect]:
+    """Dead force [N] on a body, the only one if it is not named."""
+    yield AppliedForce(body=design.body_named(body), force=force, history=history)
+
+
+def _applied_moment(
+    design: Design, moment: float, body: str | None = None, history: History = STEADY
+) -> Iterator[Effect]:
+    """Moment [N m] on a body, the only one if it is not named."""
+    yield AppliedMoment(body=design.body_named(body), moment=moment, history=history)
+
+
+def _tip_force(design: Design, strip: str, force: Vector, history: History = STEADY) -> Iterator[Effect]:
+    """Dead force [N] at the free end of a strip."""
+    if strip not in {s.name for s in design.strips if s.tip is None}:
+        raise InvalidParameter("strip", strip, "a strip with a free end")
+    yield TipForce(strip=strip, end="end", force=force, history=history)
+
+
+def _driven_displacement(
+    design: Design,
+    displacement: tuple[float | None, float | None],
+    body: str | None = None,
+    history: History | None = None,
+) -> Iterator[Effect]:
+    """Displacement [m] of a body's centre prescribed beside its rotation, None where it is free; in a motion
+    only with a history."""
+    yield DrivenDisplacement(body=design.body_named(body), displacement=displacement, history=history)
+
+
+def _pre_strain(design: Design, curvature: float = 0.0, strain: float = 0.0) -> Iterator[Effect]:
+    """Natural curvature [1/m] and strain of the strips, from rest: bending and stretching take them up."""
+    del design, curvature, strain  # the design carries them to the two potentials
+    yield from ()
+
+
+def _taken_up(design: Design) -> Iterator[Effect]:
+    """No effect of its own: bending takes up clamps that hold sections flat over the width, "clamped_width",
+    and sections that flatten as wide strips bend, "anticlastic" (M(kappa) by Ashwell's law)."""
+    del design
+    yield from ()
+
+
+def _root_compliance(design: Design, root: float | str) -> Iterator[Effect]:
+    """Roots of all clamped ends, of length ``root`` over the thickness: "monolithic", or a number >= 0."""
+    if root != "monolithic" and not (not isinstance(root, str) and is_finite(root) and root >= 0.0):
+        raise InvalidParameter("root", root, '"monolithic" or a number >= 0, its length over the thickness')
+    length = MONOLITHIC if isinstance(root, str) else root
+    for strip in design.strips:
+        if strip.thickness is None:
+            needs = "width and thickness [m] for root_compliance"
+            raise InvalidParameter(f"thickness of {strip.name}", None, needs)
+        compliance = length * strip.thickness / strip.flexural_rigidity
+        if compliance > 0.0:
+            yield RootCompliance(strip=strip.name, end="start", compliance=compliance)
+            if strip.tip is not None:
+                yield RootCompliance(strip=strip.name, end="end", compliance=compliance)
+
+
+def _shear(design: Design) -> Iterator[Effect]:
+    """Shear of every strip, c_s = 2 (1 + nu) / (k E A), in statics."""
+    grid = design.discretisation
+    if grid.measure != "material":
+        raise InvalidParameter("measure", grid.measure, "material, of strips with shear")
+    if grid.stretch == "consistent":
+        raise InvalidParameter("stretch", grid.stretch, "mixed or inextensible, of strips with shear")
+    for strip in design.strips:
+        area = SHEAR_FACTOR * strip.area
+        modulus = strip.youngs_modulus / (2.0 * (1.0 + strip.poisson_ratio))
+        yield Shear(strip=strip.name, compliance=1.0 / (modulus * area))
+
 
 REGISTRY: dict[str, Builder] = {
-    "bending": by_name.bending,
-    "stretching": by_name.stretching,
-    "inextensible": by_name.inextensible,
-    "strip_inertia": by_name.strip_inertia,
-    "section_rotary_inertia": by_name.section_rotary_inertia,
-    "body_inertia": by_name.body_inertia,
-    "gravity": by_name.gravity,
-    "strip_damping": by_name.strip_damping,
-    "strip_drag": by_name.strip_drag,
-    "body_damping": by_name.body_damping,
-    "applied_force": by_name.applied_force,
-    "applied_moment": by_name.applied_moment,
-    "tip_force": by_name.tip_force,
-    "driven_displacement": by_name.driven_displacement,
-    "pre_strain": by_name.pre_strain,
-    "clamped_width": by_name.clamped_width,
-    "anticlastic": by_name.anticlastic,
-    "root_compliance": by_name.root_compliance,
+    "bending": _bending,
+    "stretching": _stretching,
+    "inextensible": _inextensible,
+    "strip_inertia": _strip_inertia,
+    "section_rotary_inertia": _section_rotary_inertia,
+    "body_inertia": _body_inertia,
+    "gravity": _gravity,
+    "strip_damping": _strip_damping,
+    "strip_drag": _strip_drag,
+    "body_damping": _body_damping,
+    "applied_force": _applied_force,
+    "applied_moment": _applied_moment,
+    "tip_force": _tip_force,
+    "driven_displacement": _driven_displacement,
+    "pre_strain": _pre_strain,
+    "clamped_width": _taken_up,
+    "anticlastic": _taken_up,
+    "root_compliance": _root_compliance,
+    "shear": _shear,
 }
 
 DEFAULT_EFFECTS = ("bending", "stretching", "strip_inertia", "body_inertia")
-CONTRADICTIONS = (("stretching", "inextensible"),)
+CONTRADICTIONS = (("stretching", "inextensible"), ("shear", "gravity"))
+"""Pairs of which a scene has one: with weight the force along a strip varies, see ``elastic.Shear``."""
 INERTIA = ("strip_inertia", "section_rotary_inertia", "body_inertia")
 MOTION_ONLY = (*INERTIA, "strip_damping", "strip_drag", "body_damping")
 """Effects that statics never asks for."""
@@ -51,9 +247,6 @@ MOTION_ONLY = (*INERTIA, "strip_damping", "strip_drag", "body_damping")
 def check_names(names: Sequence[str], parameters: Parameters) -> None:
     """Refuse unknown, doubled, contradictory and missing effects, and parameters of absent ones."""
     for name in (*names, *parameters):
-        if name == "shear":
-            kept = 'none: sections stay normal to the curve; fe_reference has it, element="reissner"'
-            raise InvalidParameter("effects", name, kept)
         if name not in REGISTRY:
             near = difflib.get_close_matches(name, REGISTRY, n=1)
             hint = f" (nearest: {near[0]})" if near else ""
@@ -80,12 +273,7 @@ def build(names: Sequence[str], parameters: Parameters, design: Design) -> tuple
         try:
             effects += REGISTRY[name](design, **parameters.get(name, {}))
         except TypeError as error:
-            given = sorted(parameters.get(name, {}))
-            raise InvalidParameter(f"parameters of {name}", given, _signature(name)) from error
+            given, known = sorted(parameters.get(name, {})), list(signature(REGISTRY[name]).parameters)[1:]
+            expected = "only " + ", ".join(known) if known else "none"
+            raise InvalidParameter(f"parameters of {name}", given, expected) from error
     return tuple(effects)
-
-
-def _signature(name: str) -> str:
-    code = REGISTRY[name].__code__
-    names = code.co_varnames[1 : code.co_argcount + code.co_kwonlyargcount]
-    return "only " + ", ".join(names) if names else "none"

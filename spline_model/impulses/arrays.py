@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,6 +11,7 @@ from spline_model.compile import System
 from spline_model.effects import Clamp, DrivenDisplacement, DrivenRotation, MixedStretching
 from spline_model.effects.base import Constraint
 from spline_model.errors import InvalidParameter
+from spline_model.motion.arrays import zeros
 from spline_model.motion.start import Motion
 from spline_model.quadrature import PointTable
 from spline_model.tables import ClampTable
@@ -76,24 +77,24 @@ class Problem(NamedTuple):
 class Space(NamedTuple):
     """Arrays that a step fills.
 
-    z, gradient (N,), matrix (N, N); v, base, drift, x (Q,); drag (Q, Q) all damping of the coordinates;
-    schur (R, R); mu, change, gap (R,); strains (M,); work (5, 4).
+    z, gradient, matrix of the unknowns; v, base, drift, x of the coordinates, drag all damping of them;
+    schur, mu, change, gap of the rows; strains of the axial modes.
     """
 
-    z: Array
-    gradient: Array
-    matrix: Array
-    v: Array
-    base: Array
-    drift: Array
-    x: Array
-    drag: Array
-    schur: Array
-    mu: Array
-    change: Array
-    gap: Array
-    strains: Array
-    work: Array
+    z: Annotated[Array, "N"]
+    gradient: Annotated[Array, "N"]
+    matrix: Annotated[Array, "N N"]
+    v: Annotated[Array, "Q"]
+    base: Annotated[Array, "Q"]
+    drift: Annotated[Array, "Q"]
+    x: Annotated[Array, "Q"]
+    drag: Annotated[Array, "Q Q"]
+    schur: Annotated[Array, "R R"]
+    mu: Annotated[Array, "R"]
+    change: Annotated[Array, "R"]
+    gap: Annotated[Array, "R"]
+    strains: Annotated[Array, "M"]
+    work: Annotated[Array, "5 4"]
 
 
 class Moving(NamedTuple):
@@ -116,15 +117,14 @@ class Moving(NamedTuple):
     energies: Array
 
 
-def make_problem(
-    system: System, motion: Motion, *, soft: bool, impulses: str, sweeps: int, tolerance: float
-) -> Problem:
+def make_problem(motion: Motion, *, soft: bool, impulses: str, sweeps: int, tolerance: float) -> Problem:
     """The problem of a system: rows of the strips' axial forces and clamps first, then those of the drives.
 
     soft: the axial forces of extensible strips are rows as well, with their compliance; else
     only those of inextensible ones are. impulses: one of IMPULSES.
     """
-    layout, tables, count = system.layout, motion.tables, system.layout.coordinate_count
+    system = motion.system
+    layout, tables, count = system.layout, system.tables, system.layout.coordinate_count
     strips = {name: g for g, name in enumerate(layout.strips)}
     bodies = {name: len(strips) + g for g, name in enumerate(layout.bodies)}
     start = [at for at, _ in layout.strips.values()] + list(layout.bodies.values())
@@ -152,7 +152,7 @@ def make_problem(
         rigidity=motion.rigidity,
         relaxation=motion.relaxation,
         unit=system.scales.unit / system.scales.energy,
-        energy=motion.energy,
+        energy=system.scales.energy,
         turns=motion.turns,
         groups=np.array((start, size), dtype=np.int64).T.copy(),
         rows=rows,
@@ -168,7 +168,7 @@ def make_problem(
 
 def with_drives(problem: Problem, motion: Motion, active: Indices) -> Problem:
     """The problem with the loads and drives of a motion, of which those hold whose ``active`` (D,) is 1."""
-    drives, loads = motion.tables.drives, motion.tables.loads
+    drives, loads = motion.drives, motion.loads
     place = {row: r for r, row in enumerate(problem.rows[:, 0].tolist())}
     rows = np.array([place[row] for row in drives.row.tolist()], dtype=np.int64)
     free, always = np.full_like(loads.first, -1), np.ones_like(loads.first)
@@ -186,23 +186,8 @@ def with_drives(problem: Problem, motion: Motion, active: Indices) -> Problem:
 
 def make_space(problem: Problem) -> Space:
     """Arrays of a problem's size."""
-    size, rows, coordinates = len(problem.unit), len(problem.rows), len(problem.mass)
-    return Space(
-        z=np.zeros(size),
-        gradient=np.zeros(size),
-        matrix=np.zeros((size, size)),
-        v=np.zeros(coordinates),
-        base=np.zeros(coordinates),
-        drift=np.zeros(coordinates),
-        x=np.zeros(coordinates),
-        drag=np.zeros((coordinates, coordinates)),
-        schur=np.zeros((rows, rows)),
-        mu=np.zeros(rows),
-        change=np.zeros(rows),
-        gap=np.zeros(rows),
-        strains=np.zeros(len(problem.rigidity)),
-        work=np.zeros((5, 4)),
-    )
+    sizes = {"N": len(problem.unit), "Q": len(problem.mass), "R": len(problem.rows)}
+    return zeros(Space, sizes | {"M": len(problem.rigidity)})
 
 
 def _constraints(

@@ -25,14 +25,14 @@ from spline_model.strip.compiled import called, kernel, once
 from spline_model.strip.laws import MATERIAL, SPATIAL, bending_law, stretching_law
 
 
-@kernel()
+@called()
 def factor(a, time, problem):
     """The factor of a load or drive at an instant [s]."""
     acting, history = problem.acting[a], problem.history
     return factor_at(time, acting[BEGIN], acting[PAIRS], history[0], history[1])
 
 
-@kernel()
+@called()
 def fill(z, problem, time, space):
     """Fill the gradient (N,) and the matrix (N, N) of V - lambda psi - f q at z (N,) and ``time``.
 
@@ -70,7 +70,7 @@ def held(problem):
     return False
 
 
-@kernel()
+@called()
 def axial_strains(z, v, rates, problem, strains):
     """Fill strains (M,) = int eps P_k ds0 of every axial mode at z, or with the rate of eps at velocity v."""
     points = problem.points
@@ -118,7 +118,7 @@ def potential(z, v, problem, space):
     return energy
 
 
-@kernel()
+@called()
 def kinetic(v, mass):
     """Kinetic energy [J] of velocities v (Q,)."""
     energy = 0.0
@@ -150,14 +150,14 @@ def fill_drag(z, problem, space):
         weight = numbers[WEIGHT] * numbers[RELAXATION] * w
         g[0], g[1] = (y2 - turning * x1) / (s * w), (-x2 - turning * y1) / (s * w)
         g[2], g[3] = -y1 / (s * w), x1 / (s * w)
-        add_square(drag, first, width, d1, d2, weight * numbers[RIGIDITY], g)
+        _add_square(drag, first, width, d1, d2, weight * numbers[RIGIDITY], g)
         if numbers[STRETCHING] > 0.0:
             g[0], g[1], g[2], g[3] = x1 / (v * numbers[SPEED]), y1 / (v * numbers[SPEED]), 0.0, 0.0
-            add_square(drag, first, width, d1, d2, weight * numbers[STRETCHING], g)
+            _add_square(drag, first, width, d1, d2, weight * numbers[STRETCHING], g)
 
 
 @called()
-def add_square(matrix, first, width, d1, d2, weight, g):
+def _add_square(matrix, first, width, d1, d2, weight, g):
     """Add weight (dp/dq)^T g g^T (dp/dq), p = (x', y', x'', y'') and g (4,)."""
     for a in range(2 * width):
         mine = weight * (d1[a // 2] * g[a % 2] + d2[a // 2] * g[2 + a % 2])
@@ -165,7 +165,7 @@ def add_square(matrix, first, width, d1, d2, weight, g):
             matrix[first + a, first + b] += mine * (d1[b // 2] * g[b % 2] + d2[b // 2] * g[2 + b % 2])
 
 
-@kernel()
+@called()
 def external_work(z0, z1, problem, time):
     """Work [J] from z0 to z1 of the loads at ``time`` and of the drives' multipliers in z1."""
     work = 0.0
@@ -179,7 +179,7 @@ def external_work(z0, z1, problem, time):
     return work
 
 
-@kernel()
+@called()
 def damped(z, v, h, problem, space):
     """Energy [J] that damping takes in a step of length h with the velocity v and ``space.drag``."""
     lost, rates = 0.0, space.strains

@@ -11,14 +11,14 @@ A^-1 B^T; the impulses follow from (B A^-1 B^T + S) dmu = c - B A^-1 g, block af
 
 from __future__ import annotations
 
-from spline_model.strip.compiled import called, kernel
+from spline_model.strip.compiled import called
 
 TINY = 1e-300
 """In place of a pivot of zero: what follows is not finite, and the step is refused."""
 
 
-@kernel()
-def factorise(a, first, size):
+@called()
+def _factorise(a, first, size):
     """L D L^T of a symmetric block in place, in the lower triangle.
 
     Pivots are taken in order: what they lose in digits, Newton's iteration gains again, and a
@@ -39,7 +39,7 @@ def factorise(a, first, size):
 
 
 @called()
-def solve_vector(a, first, size, x, offset):
+def _solve_vector(a, first, size, x, offset):
     """Solve with the factors of a block for x[offset : offset + size], in place."""
     shift = offset - first
     for i in range(first, first + size):
@@ -53,7 +53,7 @@ def solve_vector(a, first, size, x, offset):
 
 
 @called()
-def solve_column(a, first, size, column):
+def _solve_column(a, first, size, column):
     """Solve with the factors of a block for its part of a column of the same matrix, in place."""
     for i in range(first, first + size):
         for k in range(first, i):
@@ -65,7 +65,7 @@ def solve_column(a, first, size, column):
             a[i, column] -= a[k, i] * a[k, column]
 
 
-@kernel()
+@called()
 def prepare(problem, matrix, schur):
     """Factorise the groups, overwrite B^T by A^-1 B^T and factorise the blocks' B A^-1 B^T + S.
 
@@ -74,12 +74,12 @@ def prepare(problem, matrix, schur):
     """
     groups, rows = problem.groups, problem.rows
     for g in range(groups.shape[0]):
-        factorise(matrix, groups[g, 0], groups[g, 1])
+        _factorise(matrix, groups[g, 0], groups[g, 1])
     for r in range(rows.shape[0]):
         for k in range(1, 3):
             g = rows[r, k]
             if g >= 0:
-                solve_column(matrix, groups[g, 0], groups[g, 1], rows[r, 0])
+                _solve_column(matrix, groups[g, 0], groups[g, 1], rows[r, 0])
     for b in range(problem.first.size - 1):
         begin, end = problem.first[b], problem.first[b + 1]
         for r in range(begin, end):
@@ -91,18 +91,18 @@ def prepare(problem, matrix, schur):
                         for i in range(groups[g, 0], groups[g, 0] + groups[g, 1]):
                             value += matrix[rows[r, 0], i] * matrix[i, rows[s, 0]]
                 schur[r, s] = value
-        factorise(schur, begin, end - begin)
+        _factorise(schur, begin, end - begin)
 
 
-@kernel()
+@called()
 def free_update(problem, matrix, x):
     """Overwrite x (Q,) by A^-1 x: every group by itself, as if there were no constraint (Eq 21)."""
     for g in range(problem.groups.shape[0]):
         start, size = problem.groups[g, 0], problem.groups[g, 1]
-        solve_vector(matrix, start, size, x, start)
+        _solve_vector(matrix, start, size, x, start)
 
 
-@kernel()
+@called()
 def row_times(problem, matrix, r, x):
     """B x of one row."""
     value = 0.0
@@ -115,7 +115,7 @@ def row_times(problem, matrix, r, x):
     return value
 
 
-@kernel()
+@called()
 def apply_impulses(problem, space, x, tolerance):
     """Sweep over the blocks until no gap exceeds the tolerance; returns sweeps and the largest gap.
 
@@ -135,7 +135,7 @@ def apply_impulses(problem, space, x, tolerance):
                     value += matrix[rows[r, 0], rows[s, 0]] * mu[s]
                 change[r] = value
                 largest = max(largest, abs(value) * problem.unit[rows[r, 0]])
-            solve_vector(space.schur, begin, end - begin, change, begin)
+            _solve_vector(space.schur, begin, end - begin, change, begin)
             for r in range(begin, end):
                 mu[r] += change[r]
                 for k in range(1, 3):

@@ -38,7 +38,7 @@ def printed_advance(moving, time, h, problem, space):
     copy(v, moving.earlier[1])
     for i in range(v.size):
         moving.earlier[0, i] = z[i]
-    gap = printed_step(moving, time, h, problem, space)
+    gap = _printed_step(moving, time, h, problem, space)
     if not kinetic(v, problem.mass) <= MOST_ENERGY * (status[ENERGY] + work + FROM_REST * problem.energy):
         for i in range(z.size):
             z[i] = moving.earlier[0, i] if i < v.size else 0.0
@@ -49,13 +49,13 @@ def printed_advance(moving, time, h, problem, space):
 
 
 @once()
-def printed_step(moving, time, h, problem, space):
+def _printed_step(moving, time, h, problem, space):
     """Advance by h; returns the largest gap, dimensionless, that the last impulses found.
 
     ``moving.z`` is left with the axial forces of q0 and the constraint forces P / h.
     """
     z, v, x = moving.z, moving.v, space.x
-    explicit_axial_forces(z, v, problem, space)
+    _explicit_axial_forces(z, v, problem, space)
     fill(z, problem, time, space)
     fill_drag(z, problem, space)
     for i in range(v.size):
@@ -91,7 +91,7 @@ def printed_step(moving, time, h, problem, space):
 
 
 @once()
-def explicit_axial_forces(z, v, problem, space):
+def _explicit_axial_forces(z, v, problem, space):
     """Set the axial forces of extensible strips in z, a = C^-1 (eps + beta d(eps)/dt), and no others."""
     strains = space.strains
     for i in range(v.size, z.size):

@@ -27,8 +27,8 @@ from spline_model.impulses.printed import printed_advance
 from spline_model.impulses.stable import stable_advance
 from spline_model.mechanism import Mechanism
 from spline_model.modes import static_state
-from spline_model.motion.records import KINETIC, STRAIN, WEIGHT, Records, known_records, records_of, rows_of
-from spline_model.motion.start import Motion, require_compiled, set_in_motion
+from spline_model.motion.records import KINETIC, STRAIN, WEIGHT, Records, records_of
+from spline_model.motion.start import Motion, set_in_motion
 from spline_model.strip.compiled import copy, kernel, once
 
 Array = NDArray[np.float64]
@@ -105,16 +105,16 @@ class ImpulseSolver:
         require_choice("impulses", impulses, IMPULSES)
         require_positive("tolerance", tolerance, "1")
         require_count("sweeps", sweeps, 1)
-        require_compiled(system, "sequential impulses")
+        self.motion, soft = set_in_motion(system), form == "stable"
+        self.motion.require_compiled("sequential impulses")
         held = "another one for sequential impulses"
         if ANTICLASTIC in mechanism.design.curling:
             raise InvalidParameter("effects", ANTICLASTIC, held)
         if system.scene.of(RootCompliance):
             raise InvalidParameter("effects", "root_compliance", held)
         self.mechanism, self.system, self.form = mechanism, system, form
-        self.motion, soft = set_in_motion(system), form == "stable"
         self.problem = make_problem(
-            system, self.motion, soft=soft, impulses=impulses, sweeps=sweeps, tolerance=tolerance
+            self.motion, soft=soft, impulses=impulses, sweeps=sweeps, tolerance=tolerance
         )
         self.space = make_space(self.problem)
 
@@ -142,7 +142,7 @@ class ImpulseSolver:
         unknowns = np.zeros(layout.size)
         same = min(len(given), layout.size)
         unknowns[:same] = given[:same]
-        unknowns[self.motion.tables.drives.row] = 0.0
+        unknowns[self.motion.drives.row] = 0.0
         earlier = np.array((unknowns[:count], speed))
         return State(z=unknowns, v=speed, earlier=earlier, known=0, time=0.0, held=False)
 
@@ -159,14 +159,14 @@ class ImpulseSolver:
             motion = self._driven(state, np.asarray(pose, dtype=float), h * count)
         if (pose is not None) != state.held:
             state = replace(state, known=0)
-        active = np.full(len(motion.tables.drives.row), int(pose is not None), dtype=np.int64)
+        active = np.full(len(motion.drives.row), int(pose is not None), dtype=np.int64)
         run = Run(self, state)
         taken = run.go(0, count, h, state.time, count, active, motion)
         return run.outcome(taken, count, state.time + taken * h, pose is not None)
 
     def _driven(self, state: State, pose: Array, duration: float) -> Motion:
         """The motion with its drives on the way from the state to the pose."""
-        tables, drives = self.motion.tables, self.motion.tables.drives
+        drives = self.motion.drives
         _require_numbers("pose", pose, drives.row.size, drives.row.size, "m, rad")
         here = state.z[drives.coordinate]
         way = drives._replace(
@@ -177,7 +177,7 @@ class ImpulseSolver:
             times=np.array([state.time, state.time + duration]),
             factors=np.array([0.0, 1.0]),
         )
-        return self.motion._replace(tables=tables._replace(drives=way))
+        return replace(self.motion, drives=way)
 
 
 class Run:
@@ -205,7 +205,7 @@ class Run:
         solver = self.solver
         problem = with_drives(solver.problem, motion, active)
         stable = solver.form == "stable"
-        return int(advance(self.moving, time, h, first, last, every, stable, problem, solver.space))
+        return int(_advance(self.moving, time, h, first, last, every, stable, problem, solver.space))
 
     def _energy(self) -> float:
         (z, v), problem = self.moving[:2], self.solver.problem
@@ -229,17 +229,16 @@ class Run:
     def records(self, spacing: float, kept: int, message: str) -> Records:
         """The first ``kept`` records, ``spacing`` [s] apart; message: why the run stopped, if it did."""
         states, rates, energies = (kinds[:kept] for kinds in self.moving[-3:])
-        motion = self.solver.motion
-        rows = rows_of(motion, states, rates, energies)
-        return records_of(motion, spacing, states, rates, rows, message, self._counters())
+        return records_of(self.solver.motion, spacing, states, rates, energies, message, self._counters())
 
     def outcome(self, taken: int, asked: int, time: float, held: bool) -> Outcome:
         """Where the run stands, for who asked for steps."""
         moving, solver = self.moving, self.solver
         strain = strain_energy(moving.z, moving.v, solver.problem, solver.space)
         energies = np.array([[strain, *moving.totals]])
-        here = moving.z[None], moving.v[None]
-        (row,), (gap,) = rows_of(solver.motion, *here, energies), known_records(solver.motion, *here).gaps
+        here, counters = (moving.z[None], moving.v[None]), self._counters()
+        seen = records_of(solver.motion, 0.0, *here, energies, "", counters)
+        (row,), (gap,) = seen.rows, seen.whole.gaps
         known = int(moving.status[COUNTS])
         weight, rest = solver.system.weight, solver.system.rest
         return Outcome(
@@ -252,7 +251,7 @@ class Run:
             constraint_residual=float(gap[0]),
             velocity_residual=float(gap[1]),
             residual=float(moving.status[RESIDUAL]),
-            counters=self._counters(),
+            counters=counters,
         )
 
     def _counters(self) -> dict[str, int]:
@@ -260,7 +259,7 @@ class Run:
 
 
 @kernel()
-def advance(moving, time, h, first, last, every, stable, problem, space):
+def _advance(moving, time, h, first, last, every, stable, problem, space):
     """Take the steps ``first`` ... ``last`` - 1 of length h, step 0 being at ``time`` [s].
 
     Returns the number of the first step that was not taken; ``moving`` stands at its begin. Every
@@ -275,12 +274,12 @@ def advance(moving, time, h, first, last, every, stable, problem, space):
         if not done:
             return k
         if (k + 1) % every == 0:
-            keep(moving, (k + 1) // every, problem, space)
+            _keep(moving, (k + 1) // every, problem, space)
     return last
 
 
 @once()
-def keep(moving, r, problem, space):
+def _keep(moving, r, problem, space):
     """Record where a motion stands as the r-th record."""
     copy(moving.z, moving.states[r])
     copy(moving.v, moving.rates[r])

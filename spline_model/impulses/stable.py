@@ -42,7 +42,7 @@ def stable_advance(moving, time, duration, problem, space):
         rule = EULER
         if step == duration:
             rule = BACKWARD if status[COUNTS] == 1.0 else (EULER if driven else START)
-        if try_step(moving, time + done, step, rule, driven, problem, space):
+        if _try_step(moving, time + done, step, rule, driven, problem, space):
             done += step
             step *= 2.0
             continue
@@ -56,7 +56,7 @@ def stable_advance(moving, time, duration, problem, space):
 
 
 @once()
-def try_step(moving, time, h, rule, driven, problem, space):
+def _try_step(moving, time, h, rule, driven, problem, space):
     """Take one step by a rule; False, with the state as it was, if it is not solved or gains energy."""
     z, v, status = moving.z, moving.v, moving.status
     span, lag = predict(moving, h, rule, problem.turns, space)
@@ -131,9 +131,9 @@ def solve_step(span, lag, time, problem, space, counters):
         for i in range(v.size):
             z[i] = space.base[i] + span * v[i]
         slowest = fill(z, problem, time, space)
-        relax(v, span, problem, gradient, matrix)
-        add_inertia(v, span, lag, problem.mass, space)
-        norm = largest_residual(gradient, problem.unit)
+        _relax(v, span, problem, gradient, matrix)
+        _add_inertia(v, span, lag, problem.mass, space)
+        norm = _largest_residual(gradient, problem.unit)
         if norm <= tolerance or (norm <= 1e3 * tolerance and norm > 0.5 * before) or not norm < 1e12:
             break
         before = norm
@@ -159,7 +159,7 @@ def solve_step(span, lag, time, problem, space, counters):
 
 
 @once()
-def relax(v, span, problem, gradient, matrix):
+def _relax(v, span, problem, gradient, matrix):
     """Turn the compatibility of damped axial forces into eps + beta d(eps)/dt - C a, over 1 + beta / s.
 
     Divided so, it keeps its Jacobian (to the first order in the velocity), and the compliance is
@@ -177,7 +177,7 @@ def relax(v, span, problem, gradient, matrix):
 
 
 @once()
-def add_inertia(v, span, lag, mass, space):
+def _add_inertia(v, span, lag, mass, space):
     """Add M (v - v~) / r + D v to the gradient and its derivative in q to the matrix."""
     count, over = v.size, 1.0 / (span * lag)
     for i in range(count):
@@ -189,7 +189,7 @@ def add_inertia(v, span, lag, mass, space):
 
 
 @once()
-def largest_residual(gradient, unit):
+def _largest_residual(gradient, unit):
     """Largest entry, dimensionless; infinite if one is not a number."""
     norm = 0.0
     for i in range(gradient.size):

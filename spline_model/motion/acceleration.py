@@ -24,7 +24,7 @@ from spline_model.strip.condense import eliminate
 
 
 @part()
-def to_ends(c, ends, lever, tip, root, out):
+def _to_ends(c, ends, lever, tip, root, out):
     """A covector (2, 4) of the end points in (s_A, s_B, pose of the tip's body, of the root's): out (8,)."""
     out[0] = ends[0, 2] * c[0, INNER_ROOT] + ends[0, 3] * c[1, INNER_ROOT]
     out[1] = ends[1, 2] * c[0, INNER_TIP] + ends[1, 3] * c[1, INNER_TIP]
@@ -41,7 +41,7 @@ def to_ends(c, ends, lever, tip, root, out):
 
 
 @part()
-def mass_of_ends(m, ends, lever, tip, root, first, h):
+def _mass_of_ends(m, ends, lever, tip, root, first, h):
     """Upper mass matrix T^T m T of the end points, those of the bodies from the place ``first`` on."""
     ax, ay, bx, by = ends[0, 2], ends[0, 3], ends[1, 2], ends[1, 3]
     m00, m01, m02, m03, m11 = m[0, 0], m[0, 1], m[0, 2], m[0, 3], m[1, 1]
@@ -81,7 +81,7 @@ def mass_of_ends(m, ends, lever, tip, root, first, h):
 
 
 @part()
-def set_drift(s, at, w, strips, room):
+def _set_drift(s, at, w, strips, room):
     """Accelerations (2, 4) of the end points that the rates make."""
     drift, ends, lever, last = room.drift[s], room.ends[s], room.lever[s], at + strips.own - 2
     for e in range(2):
@@ -95,7 +95,7 @@ def set_drift(s, at, w, strips, room):
 
 
 @part()
-def gather_ends(v, lead, follow, c):
+def _gather_ends(v, lead, follow, c):
     """The four end points' entries of a covector (n,), inner points condensed by W."""
     n = v.size
     c[INNER_ROOT], c[INNER_TIP], c[TIP], c[ROOT] = v[1], v[n - 2], v[n - 1], v[0]
@@ -109,7 +109,7 @@ def gather_ends(v, lead, follow, c):
 
 
 @part()
-def strip_system(s, tied, grid, strips, room):
+def _strip_system(s, tied, grid, strips, room):
     """The equations of a strip's ends in g and h, and their size; its inner points are eliminated."""
     lead, force, follow, drift = strips.lead, room.force[s], grid.follow[s], room.drift[s]
     count = follow.shape[1]
@@ -117,15 +117,15 @@ def strip_system(s, tied, grid, strips, room):
     first, g, h, c = 2 + max(tied - 1, 0), room.g[s], room.h[s], room.covector
     ends, lever, line, inner = room.ends[s], room.lever[s], room.line, room.inner
     outer = 2 + 3 * tip + 3 * root
-    mass_of_ends(m, ends, lever, tip, root, first, h)
+    _mass_of_ends(m, ends, lever, tip, root, first, h)
     if lead == 1:  # the first two unknowns are none
         h[0, 0] = h[1, 1] = 1.0
     for k in range(2):
-        gather_ends(force[k], lead, follow, c[k])
+        _gather_ends(force[k], lead, follow, c[k])
         d0, d1, d2, d3 = drift[k, 0], drift[k, 1], drift[k, 2], drift[k, 3]
         for p in range(4):
             c[k, p] = -(c[k, p] + m[p, 0] * d0 + m[p, 1] * d1 + m[p, 2] * d2 + m[p, 3] * d3)
-    to_ends(c, ends, lever, tip, root, line)
+    _to_ends(c, ends, lever, tip, root, line)
     for i in range(outer):
         g[i if i < 2 else first + i - 2] = line[i]
     if tied > 0:
@@ -143,7 +143,7 @@ def strip_system(s, tied, grid, strips, room):
             for i in range(count):
                 left += row[k, i + 4] * inner[k, i]
         g[mine] = left
-        to_ends(row, ends, lever, tip, root, line)
+        _to_ends(row, ends, lever, tip, root, line)
         for i in range(outer):
             place = i if i < 2 else first + i - 2
             h[min(place, mine), max(place, mine)] = line[i]
@@ -157,7 +157,7 @@ def strip_system(s, tied, grid, strips, room):
 
 
 @part()
-def follow_ends(s, at, tied, size, poses, grid, strips, room, push):
+def _follow_ends(s, at, tied, size, poses, grid, strips, room, push):
     """Accelerations of a strip from those of the bodies, in place of the rest of its equations."""
     lead, count, g, h, y = strips.lead, grid.follow.shape[2], room.g[s], room.h[s], room.y
     tip, root, first = strips.tips[s] >= 0, strips.roots[s] >= 0, 2 + max(tied - 1, 0)
@@ -225,13 +225,13 @@ def accelerate(r, w, sharpness, grid, strips, masses, room, push):
         add_forces(s, tied, strips, grid, room.points[s], room.at, room.axial[s], room.force[s])
         if strips.lead == 1:
             turn_roots(s, strips, room, tangent, load)
-        set_drift(s, at, w, strips, room)
+        _set_drift(s, at, w, strips, room)
         if tied > 0:
             move(s, at, w, strips, room)
             add_ties(s, tied, sharpness, strips, grid, room.speed[s], room.at, room.rows[s], room.rest)
         elif grid.outer:
             tangent[poses + s, poses + s] = -1.0
-        size = strip_system(s, tied, grid, strips, room)
+        size = _strip_system(s, tied, grid, strips, room)
         first = 2 + max(tied - 1, 0)
         eliminate(first, size, room.g[s], room.h[s])
         scatter(first, size, strips.tips[s], strips.roots[s], poses + s, room.g[s], room.h[s], load, tangent)
@@ -252,4 +252,4 @@ def accelerate(r, w, sharpness, grid, strips, masses, room, push):
         tied = grid.tied[s]
         size = 2 + max(tied - 1, 0) + (3 if strips.tips[s] >= 0 else 0) + (3 if strips.roots[s] >= 0 else 0)
         size += 1 if tied > 0 else 0
-        follow_ends(s, poses + s * own, tied, size, poses, grid, strips, room, push)
+        _follow_ends(s, poses + s * own, tied, size, poses, grid, strips, room, push)

@@ -11,7 +11,6 @@ from typing import Annotated, Any, NamedTuple, TypeVar, get_type_hints
 import numpy as np
 from numpy.typing import NDArray
 
-from spline_model.compile import System
 from spline_model.motion.start import Motion
 
 Array = NDArray[np.float64]
@@ -88,22 +87,19 @@ class Masses(NamedTuple):
     drive_factors: Array
 
 
-def masses_of(system: System, motion: Motion, poses: int) -> Masses:
+def masses_of(motion: Motion, poses: int) -> Masses:
     """The bodies and what acts on them; poses: the number of their coordinates."""
-    scene, layout, tables = system.scene, system.layout, system.tables
-    length, energy, loads, drives = system.scales.length, system.scales.energy, tables.loads, tables.drives
+    system, loads, drives = motion.system, motion.loads, motion.drives
+    scene, layout, length, energy = system.scene, system.layout, system.scales.length, system.scales.energy
     unit = np.tile([length, length, 1.0], poses // 3)
-    inertia, drag, weight = (np.zeros(poses) for _ in range(3))
-    body_at: dict[int, int] = {}
+    body_at = {k: k - layout.poses.start for k in range(layout.poses.start, layout.poses.stop)}
+    inertia, drag, weight = np.zeros((3, poses))
+    given = np.diag(motion.mass), np.diag(motion.drag), system.weight
+    for mine, acts in zip((inertia, drag, weight), given, strict=True):
+        mine[: len(body_at)] = acts[layout.poses] if acts.size else 0.0
     strip_at: dict[int, int] = {}
     place: dict[int, int] = {}
-    for i, body in enumerate(scene.bodies):
-        at, mine = layout.body(body.name), slice(3 * i, 3 * i + 3)
-        inertia[mine] = np.diag(motion.mass)[at]
-        drag[mine] = np.diag(motion.drag)[at] if motion.drag.size else 0.0
-        weight[mine] = tables.weight[at] if tables.weight.size else 0.0
-        body_at |= {at.start + k: 3 * i + k for k in range(3)}
-    for s, strip in enumerate(scene.strips):
+    for s, strip in enumerate(scene.strips if loads.coordinate.size else ()):
         start, n = layout.strips[strip.name]
         strip_at |= {start + k: s for k in range(2 * n)}
         place |= {start + 2 * i + k: k * n + i for i in range(n) for k in range(2)}
@@ -157,7 +153,7 @@ class Scratch(NamedTuple):
 
     dy: changes, 2 tan(dphi / 2) of rotations, and the means of the axial forces; pose, points, move, at,
     ends: of the step's end; steady, force, stiff: inertia, drag and loads; maps: D, and derivatives at the
-    end; roots: as of ``spline_model.motion.roots``; blocks xx, xy, yx, yy of the tangent; half of it in
+    end; roots: as of ``spline_model.motion.project``; blocks xx, xy, yx, yy of the tangent; half of it in
     element coordinates; pull, along: of the axial forces and of their strains; residual, reduced: of it at
     the bodies with the strips condensed; system and x, free: what is solved; held: 1 where a drive holds.
     """
@@ -199,7 +195,7 @@ Kind = TypeVar("Kind", bound=tuple[Any, ...])
 
 
 @cache
-def shapes_of(kind: type) -> dict[str, tuple[type, list[str]]]:
+def _shapes_of(kind: type) -> dict[str, tuple[type, list[str]]]:
     """Type of number and sizes, by letters, of each array of a record that names them in its annotations."""
     hints = get_type_hints(kind, include_extras=True)
     return {
@@ -213,7 +209,7 @@ def zeros(kind: type[Kind], sizes: dict[str, int]) -> Kind:
     return kind(
         **{
             name: np.zeros([int(sizes.get(size, size)) for size in shape], dtype=number)
-            for name, (number, shape) in shapes_of(kind).items()
+            for name, (number, shape) in _shapes_of(kind).items()
         }
     )
 
@@ -258,5 +254,5 @@ def poses_of(y: Array, rate: Array, inertia: Array, all_bodies: int) -> Poses:
     still = [*np.flatnonzero(inertia == 0.0), *range(len(rate), all_bodies)]
     poses = zeros(Poses, {"Y": len(y), "Q": len(rate), "Q'": all_bodies})
     return poses._replace(
-        y=y, trial=y.copy(), rate=rate, last=np.ones(1), still=np.array(still, dtype=np.int64)
+        y=y.copy(), trial=y.copy(), rate=rate, last=np.ones(1), still=np.array(still, dtype=np.int64)
     )

@@ -15,10 +15,9 @@ from scipy.linalg import get_lapack_funcs
 
 from spline_model.bordered import evaluate, open_energy
 from spline_model.checks import refuse
-from spline_model.compile import System
 from spline_model.motion.energy_consistent import Moves
 from spline_model.motion.records import ENERGIES, MOST_GAIN_OF_OTHERS, rows_of
-from spline_model.motion.start import Array, Motion
+from spline_model.motion.start import Array, Start
 from spline_model.motion.step import FACTORISATIONS, HALVED, NEWTON, STEPS
 
 (gesv,) = get_lapack_funcs(("gesv",))  # without the checks and warnings of scipy.linalg.solve
@@ -36,18 +35,17 @@ class Stepper(Moves):
 
     most_gain = MOST_GAIN_OF_OTHERS
 
-    def __init__(
-        self, system: System, motion: Motion, z: Array, v: Array, acceleration: Array, constants: Array
-    ) -> None:
+    def __init__(self, start: Start, constants: Array) -> None:
         self.alpha_m, self.alpha_f, self.gamma, self.beta = constants
-        self.system, self.motion, self.z, self.v = system, motion, z.copy(), v.copy()
-        self.acceleration, self.pseudo = acceleration.copy(), acceleration.copy()
-        size = len(z)
+        self.motion, self.system, self.z, self.v = start.motion, start.motion.system, start.z, start.v
+        self.acceleration = self.pseudo = start.acceleration
+        size, scales = len(self.z), self.system.scales
+        self.unknown, self.energy = scales.unit, scales.energy
         self.gradient, self.hessian = np.empty(size), np.empty((size, size))
-        self.energies = evaluate(system, self.z, 1.0, self.gradient, self.hessian)
+        self.energies = evaluate(self.system, self.z, 1.0, self.gradient, self.hessian)
         self.counters = np.zeros(6, dtype=np.int64)
-        self.poses = (motion.turns[:, None] + np.arange(-2, 1)).ravel()
-        self.unit, self.width = np.ones(3), len(self.poses) + size + len(v) + ENERGIES
+        self.poses = (self.motion.turns[:, None] + np.arange(-2, 1)).ravel()
+        self.unit, self.width = np.ones(3), len(self.poses) + size + len(self.v) + ENERGIES
 
     def take(
         self, time: float, step: float, begin: int, end: int, every: int, smallest: float, records: Array
@@ -80,7 +78,7 @@ class Stepper(Moves):
         for _ in range(MOST_ITERATIONS):
             energies = evaluate(self.system, z, 1.0, self.gradient, self.hessian)
             self.gradient[:count] += motion.mass @ acceleration
-            norm = np.abs(self.gradient * motion.unit).max() / motion.energy
+            norm = np.abs(self.gradient * self.unknown).max() / self.energy
             if not np.isfinite(norm):
                 return False
             if norm <= TOLERANCE:
@@ -100,7 +98,7 @@ class Stepper(Moves):
         return False
 
     def _solve(self) -> Array | None:
-        unit, energy = self.motion.unit, self.motion.energy
+        unit, energy = self.unknown, self.energy
         self.counters[[NEWTON, FACTORISATIONS]] += 1
         matrix = self.hessian * (unit[:, None] * unit / energy)
         _, _, change, failed = gesv(matrix, self.gradient * unit / energy)
@@ -110,7 +108,7 @@ class Stepper(Moves):
         """The present state's record (W,); the axial forces are those that its strains give."""
         strain = sum(self.energies) + open_energy(self.system, self.z)
         (row,) = rows_of(self.motion, self.z[None], self.v[None], np.array([[strain, 0.0, 0.0]]))
-        return np.concatenate((self.z[self.poses], self.z, self.v, row / self.motion.energy))
+        return np.concatenate((self.z[self.poses], self.z, self.v, row / self.energy))
 
     def unknowns(self, records: Array) -> tuple[Array, Array]:
         """Unknowns (R, N) and velocities (R, Q) of records."""

@@ -5,17 +5,15 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from functools import partial
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from spline_model.compile import System
 from spline_model.errors import InvalidParameter, require_count
 from spline_model.modes import linear_modes
 from spline_model.motion import energy_consistent, explicit, generalised_alpha, quasi_static
 from spline_model.motion.records import Records
-from spline_model.motion.start import Motion, Start
+from spline_model.motion.start import Motion, Start, Steps
 
 Array = NDArray[np.float64]
 
@@ -46,28 +44,11 @@ def require_options(integrator: str, options: Mapping[str, float]) -> None:
             raise InvalidParameter(name, value, f"none: the integrator {integrator} {reads}")
 
 
-def massless(system: System, motion: Motion) -> bool:
-    """Whether no strip has inertia, so that only the bodies' coordinates are dynamic."""
-    bodies = min(system.layout.bodies.values(), default=len(motion.mass))
-    return not motion.mass[:bodies].any()
-
-
-def integrate(
-    integrator: str,
-    start: Start,
-    *,
-    step: float,
-    steps: int,
-    every: int,
-    options: Mapping[str, float],
-) -> tuple[str, Records]:
+def integrate(integrator: str, start: Start, run: Steps, options: Mapping[str, float]) -> tuple[str, Records]:
     """Run from a start; returns what ran and its records."""
-    system, motion, v = start.system, start.motion, start.v
-    run: dict[str, Any] = {"step": step, "steps": steps, "every": every}
-    if integrator == "energy" and massless(system, motion):
-        return QUASI_STATIC, quasi_static.integrate(system, motion, start.known, v, **run)
-    scheme = INTEGRATORS[integrator]
-    return integrator, scheme(system, motion, start.z, v, start.acceleration, **run, **options)
+    if integrator == "energy" and start.motion.massless:
+        return QUASI_STATIC, quasi_static.integrate(start, run)
+    return integrator, INTEGRATORS[integrator](start, run, **options)
 
 
 def default_step(integrator: str, start: Start, duration: float) -> float:
@@ -75,13 +56,14 @@ def default_step(integrator: str, start: Start, duration: float) -> float:
     step = min(STEP, duration)
     if integrator in EXPLICIT_STEPS:
         limit = explicit.stability_limit(integrator, start.motion)
-        stable = limit / highest_frequency(start.system, start.motion, start.z)
+        stable = limit / highest_frequency(start.motion, start.z)
         step = min(step, EXPLICIT_STEPS[integrator] * stable)
     return step
 
 
-def highest_frequency(system: System, motion: Motion, z: Array) -> float:
+def highest_frequency(motion: Motion, z: Array) -> float:
     """Highest circular frequency at a state and at rest [rad/s]."""
+    system = motion.system
     return math.sqrt(max(linear_modes(system, state, motion.mass)[0][-1] for state in (z, system.rest)))
 
 
@@ -102,6 +84,7 @@ def count_steps(duration: float, step: float, records: int | None, width: int) -
         raise InvalidParameter(
             "duration",
             duration,
-            f"records within {MOST_MEMORY / 1e9:g} GB; {steps} steps of {step:g} s take {memory / 1e9:.3g}",
+            f"records within {MOST_MEMORY / 1e9:g} GB; {steps} steps of {step:g} s take {memory / 1e9:.3g} "
+            "GB: keep fewer of them with records, or take a longer step",
         )
     return math.ceil(steps / every) * every, every

@@ -21,12 +21,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from spline_model.compile import System
-from spline_model.motion.events import SAME, catch, drives_at, event_times, from_here
 from spline_model.motion.mechanism import moving
 from spline_model.motion.records import ENERGIES, MOST_GAIN, Records, compact, first_gain
 from spline_model.motion.run import MOST_HALVED, MOST_HALVED_A_STEP, run, store
-from spline_model.motion.start import Array, Motion, require_compiled
+from spline_model.motion.start import SAME, Array, Motion, Start, Steps
 from spline_model.motion.step import FACTORISATIONS, FOLDS, HALVED, NEWTON, REFUSED, STEPS, WHOLE
 from spline_model.scene import Scene
 
@@ -38,35 +36,25 @@ WATCHED = 4096
 """Steps after which the energy is looked at, at the latest."""
 
 
-def integrate(
-    system: System,
-    motion: Motion,
-    z: Array,
-    v: Array,
-    acceleration: Array,
-    *,
-    step: float,
-    steps: int,
-    every: int,
-) -> Records:
-    """Take ``steps`` steps from (z, v), recording every ``every``-th one.
+def integrate(start: Start, run: Steps) -> Records:
+    """The records of a run.
 
     Drives begin and end at their times and start from where the body is; a body that is caught
     changes its velocity at once, and what that costs counts as dissipated. A run whose balance
     of energies gains more than ``MOST_GAIN`` is stopped at the last good record.
     """
-    return carry(Stepper(system, motion, z, v, acceleration), z, step, steps, every)
+    return carry(Stepper(start), run, start.z)
 
 
-def carry(stepper: Moves, z: Array | None, step: float, steps: int, every: int) -> Records:
+def carry(stepper: Moves, run: Steps, z: Array | None = None) -> Records:
     """The records of a stepper that starts from z (N,), or None where its own first record says as much."""
-    mover = _Mover(stepper, step, steps, every)
-    for begin, end in pairwise((0.0, *event_times(stepper.motion, steps * step, step), steps * step)):
+    mover, step, duration = _Mover(stepper, run), run.step, run.steps * run.step
+    for begin, end in pairwise((0.0, *stepper.motion.event_times(duration, step), duration)):
         mover.switch(begin, min(end - begin, step))
         if not mover.go_to(end):
             break
-    records, counters = mover.records[: mover.kept], counts(stepper.counters)
-    return compact(stepper.motion, stepper, records, z, step * every, mover.message, counters)
+    records, counters = mover.records[: mover.kept], _counts(stepper.counters)
+    return compact(stepper.motion, stepper, records, z, run.spacing, mover.message, counters)
 
 
 def turned(scene: Scene, strips: Any, y: Array, s: int) -> str:
@@ -135,13 +123,14 @@ class Moves(ABC):
 class Stepper(Moves):
     """A scene that the scheme advances; active (D,) is 1 for each drive that holds."""
 
-    def __init__(self, system: System, motion: Motion, z: Array, v: Array, acceleration: Array) -> None:
-        require_compiled(system, "energy")
-        self.motion, self._model = motion, moving(system, motion)
+    def __init__(self, start: Start) -> None:
+        self.motion = start.motion
+        self.motion.require_compiled("energy")
+        self._model = moving(self.motion)
         self.width, self.unit = self._model.width, self._model.unit
-        self._state, self._work = self._model.arrays(z, v, acceleration)
+        self._state, self._work = self._model.arrays(start.z, start.v, start.acceleration)
         self.counters = np.zeros(6, dtype=np.int64)
-        self.active = np.zeros(motion.tables.drives.row.size, dtype=np.int64)
+        self.active = np.zeros(self.motion.drives.row.size, dtype=np.int64)
 
     def take(
         self, time: float, step: float, begin: int, end: int, every: int, smallest: float, records: Array
@@ -177,17 +166,17 @@ class Stepper(Moves):
     def look(self) -> tuple[Array, Array, Array]:
         """Unknowns (1, N), velocities (1, Q) and energies (1, 5) [J] of the present state."""
         record = self.record()[None]
-        return *self.unknowns(record), record[:, -ENERGIES:] * self.motion.energy
+        return *self.unknowns(record), record[:, -ENERGIES:] * self.motion.system.scales.energy
 
     def switch(self, time: float, span: float) -> None:
         """Let drives begin, change or end at ``time``; they then hold for at least ``span`` [s]."""
-        before, self.active = self.active, drives_at(self.motion, time + 0.5 * span)
+        before, self.active = self.active, self.motion.drives_at(time + 0.5 * span)
         if not self.active.any():
             return
         (z,), (v,) = self.unknowns(self.record()[None])
-        self.motion = from_here(self.motion, z, self.active, before, time)
+        self.motion = self.motion.from_here(z, self.active, before, time)
         self._model = self._model.with_drives(self.motion)
-        v, lost = catch(self.motion, z, v, self.active, time, span)
+        v, lost = self.motion.catch(z, v, self.active, time, span)
         self._model.set_velocity(self._state, v)
         if (self.active > before).any():
             self._state.totals[1] += lost / self._model.energy
@@ -207,9 +196,9 @@ class Stepper(Moves):
 class _Mover:
     """A run and its records on a uniform grid."""
 
-    def __init__(self, stepper: Moves, step: float, steps: int, every: int) -> None:
-        self.stepper, self.step, self.every = stepper, step, every
-        self.records = np.empty((steps // every + 1, stepper.width))
+    def __init__(self, stepper: Moves, run: Steps) -> None:
+        self.stepper, self.step, self.every = stepper, run.step, run.every
+        self.records = np.empty((run.records, stepper.width))
         self.time, self.kept, self.message = 0.0, 0, ""
 
     def switch(self, time: float, span: float) -> None:
@@ -266,7 +255,7 @@ class _Mover:
         return not self.message
 
 
-def counts(counters: NDArray[np.int64]) -> dict[str, int]:
+def _counts(counters: NDArray[np.int64]) -> dict[str, int]:
     """Counters of a run by name."""
     return {
         "steps": int(counters[STEPS]),

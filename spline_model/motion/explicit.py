@@ -27,7 +27,6 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from spline_model.compile import System
 from spline_model.errors import InvalidParameter
 from spline_model.motion.acceleration import accelerate, move, place
 from spline_model.motion.arrays import Scratch, State
@@ -35,7 +34,7 @@ from spline_model.motion.grid import Grid, Room, grid_of, room_of
 from spline_model.motion.mechanism import Moving, moving
 from spline_model.motion.records import ENERGIES, MOST_GAIN_OF_OTHERS, Records, compact, first_gain
 from spline_model.motion.run import SLOWEST_SPEED, store
-from spline_model.motion.start import Motion, require_compiled, require_conservative
+from spline_model.motion.start import Motion, Start, Steps
 from spline_model.motion.strip import curve_at
 from spline_model.strip.compiled import copy, kernel, part
 
@@ -52,7 +51,7 @@ SHARPNESS = 0.1
 
 
 @part()
-def start_stage(scheme, stage, h, r, w, push, room):
+def _start_stage(scheme, stage, h, r, w, push, room):
     """Where a stage asks for accelerations, room.x, and the rates there, room.u."""
     x, u, mean = room.x, room.u, room.mean
     for i in range(r.size):
@@ -72,7 +71,7 @@ def start_stage(scheme, stage, h, r, w, push, room):
 
 
 @part()
-def end_stage(scheme, stage, last, h, r, w, push, room):
+def _end_stage(scheme, stage, last, h, r, w, push, room):
     """What a stage adds."""
     u, mean = room.u, room.mean
     for i in range(r.size):
@@ -92,7 +91,7 @@ def end_stage(scheme, stage, last, h, r, w, push, room):
 
 
 @part()
-def show(r, w, grid, strips, masses, room, state):
+def _show(r, w, grid, strips, masses, room, state):
     """The state at r with rates w, axial forces of the last evaluation; False if it is no strip's."""
     poses, n, modes = masses.inertia.size, strips.mass.shape[1], strips.compliance.shape[1]
     own, fine = strips.own, True
@@ -123,7 +122,7 @@ def show(r, w, grid, strips, masses, room, state):
 
 
 @kernel()
-def run(scheme, stages, h, every, r, w, push, grid, strips, masses, room, state, work, records):
+def _run(scheme, stages, h, every, r, w, push, grid, strips, masses, room, state, work, records):
     """Fill the rows of the records, ``every`` steps of that many stages apart; returns the rows filled.
 
     A state that diverges or is no strip's ends the run.
@@ -131,15 +130,15 @@ def run(scheme, stages, h, every, r, w, push, grid, strips, masses, room, state,
     for row in range(records.shape[0]):
         for step in range(every):
             for stage in range(-1 if scheme == LEAPFROG and row + step == 0 else 0, stages):
-                start_stage(scheme, stage, h, r, w, push, room)
+                _start_stage(scheme, stage, h, r, w, push, room)
                 accelerate(room.x, room.u, SHARPNESS / h, grid, strips, masses, room, push)
-                end_stage(scheme, stage, stage == stages - 1, h, r, w, push, room)
+                _end_stage(scheme, stage, stage == stages - 1, h, r, w, push, room)
             largest = 0.0
             for i in range(r.size):
                 largest = max(largest, abs(r[i]) + h * abs(w[i])) if r[i] == r[i] else np.inf
             if not largest < 1e3:  # far outside any pose, or not finite
                 return row
-        if not show(r, w, grid, strips, masses, room, state):
+        if not _show(r, w, grid, strips, masses, room, state):
             return row
         store(state, strips, masses, work, records[row])
     return records.shape[0]
@@ -168,17 +167,17 @@ class Flight(NamedTuple):
         """Fill the records behind the first, ``every`` steps apart, compiled; returns how many."""
         model = self.model
         return int(
-            run(
+            _run(
                 self.scheme, self.stages, step, every, self.r, self.w, self.push, self.grid, model.strips,
                 model.masses, self.room, self.state, self.work, self.records[1:],
             )
         )  # fmt: skip
 
 
-def flight(system: System, motion: Motion, z: Array, v: Array, rows: int, integrator: str) -> Flight:
+def flight(motion: Motion, z: Array, v: Array, rows: int, integrator: str) -> Flight:
     """The motion from (z, v), which the first record has, with space for ``rows`` more."""
-    require_explicit(system, motion, integrator)
-    model = moving(system, motion)
+    require_explicit(motion, integrator)
+    model = moving(motion)
     strips, masses = model.strips, model.masses
     state, work = model.arrays(z, v, np.zeros(len(v)))
     grid = grid_of(strips)
@@ -199,31 +198,20 @@ def flight(system: System, motion: Motion, z: Array, v: Array, rows: int, integr
     )
 
 
-def integrate(
-    system: System,
-    motion: Motion,
-    z: Array,
-    v: Array,
-    acceleration: Array,
-    *,
-    step: float,
-    steps: int,
-    every: int,
-    integrator: str,
-) -> Records:
-    """Take ``steps`` steps from (z, v), recording every ``every``-th one; finds its own acceleration."""
-    start = flight(system, motion, z, v, steps // every, integrator)
-    records = start.records[: start.fly(step, every) + 1]
+def integrate(start: Start, run: Steps, integrator: str) -> Records:
+    """The records of a run."""
+    begun = flight(start.motion, start.z, start.v, run.records - 1, integrator)
+    records = begun.records[: begun.fly(run.step, run.every) + 1]
     kept = first_gain(records[:, -ENERGIES:], 1.0, MOST_GAIN_OF_OTHERS)
     message = ""
-    if kept <= steps // every:
+    if kept < run.records:
         message = (
-            f"unstable near {kept * every * step:.6g} s: the step is above the critical one; "
+            f"unstable near {kept * run.spacing:.6g} s: the step is above the critical one; "
             "take a shorter step"
         )
-    done = (kept - 1) * every
-    counters = {"steps": done, "evaluations": start.stages * done}
-    return compact(motion, start.model, records[:kept], z, step * every, message, counters)
+    done = (kept - 1) * run.every
+    counters = {"steps": done, "evaluations": begun.stages * done}
+    return compact(start.motion, begun.model, records[:kept], start.z, run.spacing, message, counters)
 
 
 def stability_limit(integrator: str, motion: Motion) -> float:
@@ -232,11 +220,12 @@ def stability_limit(integrator: str, motion: Motion) -> float:
     return PLAIN_LIMIT if tied and integrator == "leapfrog" else STABILITY_LIMITS[integrator]
 
 
-def require_explicit(system: System, motion: Motion, integrator: str) -> None:
+def require_explicit(motion: Motion, integrator: str) -> None:
     """Refuse a scene whose accelerations do not follow from its state alone."""
-    require_compiled(system, integrator)
-    require_conservative(motion, integrator)
-    blocks = [motion.mass[at, at][::2, ::2] for at in map(system.layout.strip, system.layout.strips)]
+    motion.require_compiled(integrator)
+    motion.require_conservative(integrator)
+    layout = motion.system.layout
+    blocks = [motion.mass[at, at][::2, ::2] for at in map(layout.strip, layout.strips)]
     if not all(np.linalg.eigvalsh(block)[0] > 0.0 for block in blocks):
         raise InvalidParameter("integrator", integrator, "an implicit one for strips without mass")
 

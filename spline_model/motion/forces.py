@@ -14,7 +14,7 @@ from __future__ import annotations
 
 import math
 
-from spline_model.motion.roots import root_turn
+from spline_model.motion.project import root_turn
 from spline_model.strip.compiled import part
 from spline_model.strip.laws import bending_law, stretching_law
 
@@ -24,7 +24,7 @@ derivatives of the energy in C' and C''. Inner loops only read: a store in them 
 
 
 @part()
-def place_end(body, frame, turns, end, lever, at, s):
+def _place_end(body, frame, turns, end, lever, at, s):
     """Arm and s-direction of an end; how its inner and outer points turn with its body: lever[at:at + 4]."""
     if body < 0:
         for i in range(4):
@@ -48,7 +48,7 @@ def place(s, at, r, grid, strips, room):
         body = strips.roots[s] if e == 0 else strips.tips[s]
         outer, inner = (0, 1) if e == 0 else (n - 1, n - 2)
         end, reach = room.ends[s, e], r[last + e]
-        place_end(body, grid.frames[s, e], room.turns, end, room.lever[s], 4 - 4 * e, reach)
+        _place_end(body, grid.frames[s, e], room.turns, end, room.lever[s], 4 - 4 * e, reach)
         x, y = end[0], end[1]
         if body >= 0:
             x, y = x + r[3 * body], y + r[3 * body + 1]
@@ -164,7 +164,7 @@ def add_ties(s, tied, sharpness, strips, grid, speed, at, rows, rest):
 
 @part()
 def turn_roots(s, strips, room, tangent, load):
-    """Add the springs of both roots (``spline_model.motion.roots``); a free end's body has no angle."""
+    """Add the springs of both roots (``spline_model.motion.project``); a free end's body has no angle."""
     points, force, n = room.points[s], room.force[s], strips.mass.shape[1]
     for e in range(2):
         end, inner, body = (0, 1, strips.roots[s]) if e == 0 else (n - 1, n - 2, strips.tips[s])

@@ -23,12 +23,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from spline_model.compile import System
 from spline_model.errors import InvalidParameter
 from spline_model.motion import bordered, energy_consistent
 from spline_model.motion.records import MOST_GAIN_OF_OTHERS, Records
 from spline_model.motion.run import MOST_HALVED, MOST_HALVED_A_STEP, clamp_forces, forward, set_points, store
-from spline_model.motion.start import Motion, require_conservative
+from spline_model.motion.start import Start, Steps
 from spline_model.motion.step import (
     FACTORISATIONS,
     FOLDS,
@@ -53,7 +52,7 @@ SMALLEST_STEP = 2.0**-8
 """Least fraction of a step before the run is given up."""
 
 
-class Alpha(NamedTuple):
+class _Alpha(NamedTuple):
     """The scheme's constants (4,) alpha_m, alpha_f, gamma, beta, and its own state.
 
     q, v, a, p (C,): coordinates of bodies and control points, their velocities, accelerations,
@@ -79,8 +78,8 @@ def constants(spectral_radius: float) -> Array:
     return np.array([alpha_m, alpha_f, gamma, (gamma + 0.5) ** 2 / 4])
 
 
-@kernel()
-def gather(of_bodies, of_points, out):
+@called()
+def _gather(of_bodies, of_points, out):
     """Numbers of bodies (Q,) and control points (S, 2, n), one after the other."""
     n, at = of_points.shape[2], of_bodies.size
     for i in range(at):
@@ -93,7 +92,7 @@ def gather(of_bodies, of_points, out):
 
 
 @called()
-def spread(source, of_bodies, of_points):
+def _spread(source, of_bodies, of_points):
     """The other way round."""
     n, at = of_points.shape[2], of_bodies.size
     for i in range(at):
@@ -106,15 +105,15 @@ def spread(source, of_bodies, of_points):
 
 
 @part()
-def begin(h, alpha, state, strips, masses, work):
+def _begin(h, alpha, state, strips, masses, work):
     """The step's target, and a first guess of y."""
     alpha_m, alpha_f, beta = alpha.constants[0], alpha.constants[1], alpha.constants[3]
     for i in range(alpha.q.size):
         pseudo = (alpha_f * alpha.a[i] - alpha_m * alpha.p[i]) / (1.0 - alpha_m)
         mean = (0.5 - beta) * alpha.p[i] + beta * pseudo
         alpha.target[i] = 2.0 * mean
-    spread(alpha.v, state.rate, state.velocity)
-    spread(alpha.target, state.push, state.acceleration)
+    _spread(alpha.v, state.rate, state.velocity)
+    _spread(alpha.target, state.push, state.acceleration)
     for i in range(alpha.q.size):
         alpha.target[i] = h * alpha.v[i] + 0.5 * h * h * alpha.target[i]
     guess_step(h, state, strips, masses, work)
@@ -129,7 +128,7 @@ def begin(h, alpha, state, strips, masses, work):
 
 
 @part()
-def equilibrium(stiffness, h, alpha, state, strips, masses, work):
+def _equilibrium(stiffness, h, alpha, state, strips, masses, work):
     """Residual and tangent at y, with the inertia of a1 = stiffness (q1 - target); the largest residual."""
     n, modes, poses = strips.mass.shape[1], strips.compliance.shape[1], masses.inertia.size
     own = strips.own
@@ -159,12 +158,12 @@ def equilibrium(stiffness, h, alpha, state, strips, masses, work):
 
 
 @part()
-def solve(stiffness, alpha, state, strips, masses, work, counters):
+def _solve(stiffness, alpha, state, strips, masses, work, counters):
     """Newton for y; True if the residual came below TOLERANCE."""
     modes, own = strips.compliance.shape[1], strips.own
     poses, h, before = masses.inertia.size, 2.0 / math.sqrt(stiffness), math.inf
     for _ in range(MOST_ITERATIONS):
-        norm = equilibrium(stiffness, h, alpha, state, strips, masses, work)
+        norm = _equilibrium(stiffness, h, alpha, state, strips, masses, work)
         if not norm < 1e12:
             return False
         if norm <= TOLERANCE or (norm <= 1e3 * TOLERANCE and norm > 0.5 * before):
@@ -185,7 +184,7 @@ def solve(stiffness, alpha, state, strips, masses, work, counters):
 
 
 @part()
-def accept(h, stiffness, alpha, state, strips, work):
+def _accept(h, stiffness, alpha, state, strips, work):
     """Velocities, accelerations and pseudo-accelerations of a step that was solved, and clamp forces."""
     alpha_m, alpha_f, gamma, beta = (
         alpha.constants[0],
@@ -193,7 +192,7 @@ def accept(h, stiffness, alpha, state, strips, work):
         alpha.constants[2],
         alpha.constants[3],
     )
-    gather(state.y[: state.rate.size], state.points, alpha.q)
+    _gather(state.y[: state.rate.size], state.points, alpha.q)
     for i in range(alpha.q.size):
         change = alpha.moved[i] - alpha.target[i]
         pseudo = (alpha_f * alpha.a[i] - alpha_m * alpha.p[i]) / (1.0 - alpha_m)
@@ -205,7 +204,7 @@ def accept(h, stiffness, alpha, state, strips, work):
 
 
 @kernel()
-def run(step, first, end, every, smallest, alpha, state, strips, masses, work, counters, records):
+def _run(step, first, end, every, smallest, alpha, state, strips, masses, work, counters, records):
     """Take the steps ``first`` ... ``end`` - 1, halved at need; returns the next step's number.
 
     records: filled at the ends of steps whose number ``every`` divides.
@@ -216,10 +215,10 @@ def run(step, first, end, every, smallest, alpha, state, strips, masses, work, c
         while step - done > 1e-9 * step:
             h = min(h, step - done)
             stiffness = (1.0 - alpha_m) / (beta * h * h * (1.0 - alpha_f))
-            begin(h, alpha, state, strips, masses, work)
-            solved = solve(stiffness, alpha, state, strips, masses, work, counters)
+            _begin(h, alpha, state, strips, masses, work)
+            solved = _solve(stiffness, alpha, state, strips, masses, work, counters)
             if solved and forward(state, strips, masses, work):
-                accept(h, stiffness, alpha, state, strips, work)
+                _accept(h, stiffness, alpha, state, strips, work)
                 counters[STEPS] += 1
                 done += h
                 h = min(2.0 * h, step)
@@ -233,63 +232,50 @@ def run(step, first, end, every, smallest, alpha, state, strips, masses, work, c
                 return number
         counters[WHOLE] += 1
         if (number + 1) % every == 0:
-            spread(alpha.v, state.rate, state.velocity)
+            _spread(alpha.v, state.rate, state.velocity)
             store(state, strips, masses, work, records[(number + 1) // every - first // every - 1])
     return end
 
 
-class Stepper(energy_consistent.Stepper):
+class _Stepper(energy_consistent.Stepper):
     """A free scene that the scheme advances."""
 
     most_gain = MOST_GAIN_OF_OTHERS
 
-    def __init__(
-        self, system: System, motion: Motion, z: Array, v: Array, acceleration: Array, constants: Array
-    ) -> None:
-        super().__init__(system, motion, z, v, acceleration)
+    def __init__(self, start: Start, constants: Array) -> None:
+        super().__init__(start)
         state = self._state
-        size = state.rate.size + state.points.size
-        self._alpha = Alpha(
+        push = np.concatenate((state.push, state.acceleration.ravel()))
+        self._alpha = _Alpha(
             constants=constants,
+            q=np.concatenate((state.y[: state.rate.size], state.points.ravel())),
+            v=np.concatenate((state.rate, state.velocity.ravel())),
+            a=push,
+            p=push.copy(),
+            moved=np.zeros_like(push),
+            target=np.zeros_like(push),
             y=state.y.copy(),
-            **{name: np.zeros(size) for name in ("q", "v", "a", "p", "moved", "target")},
         )
-        gather(state.y[: state.rate.size], state.points, self._alpha.q)
-        gather(state.rate, state.velocity, self._alpha.v)
-        for array in (self._alpha.a, self._alpha.p):
-            gather(state.push, state.acceleration, array)
 
     def take(
         self, time: float, step: float, begin: int, end: int, every: int, smallest: float, records: Array
     ) -> int:
         """The next step's number; at any time, as nothing that acts has a history."""
         return int(
-            run(
+            _run(
                 step, begin, end, every, smallest, self._alpha, self._state, self._model.strips,
                 self._model.masses, self._work, self.counters, records,
             )
         )  # fmt: skip
 
 
-def integrate(
-    system: System,
-    motion: Motion,
-    z: Array,
-    v: Array,
-    acceleration: Array,
-    *,
-    step: float,
-    steps: int,
-    every: int,
-    spectral_radius: float = SPECTRAL_RADIUS,
-) -> Records:
-    """Take ``steps`` steps from (z, v), recording every ``every``-th one.
+def integrate(start: Start, run: Steps, spectral_radius: float = SPECTRAL_RADIUS) -> Records:
+    """The records of a run.
 
     Potentials in Python, which the element does not know, ask for the scheme with multipliers.
     """
-    require_conservative(motion, "generalised-alpha")
+    start.motion.require_conservative("generalised-alpha")
     if not 0.0 <= spectral_radius <= 1.0:
         raise InvalidParameter("spectral_radius", spectral_radius, "a number from 0 to 1")
-    form = bordered.Stepper if system.open_potentials else Stepper
-    stepper = form(system, motion, z, v, acceleration, constants(spectral_radius))
-    return energy_consistent.carry(stepper, z, step, steps, every)
+    form = bordered.Stepper if start.motion.system.open_potentials else _Stepper
+    return energy_consistent.carry(form(start, constants(spectral_radius)), run, start.z)

@@ -7,7 +7,8 @@ with g the strips' reactions, so that the energy is the same before and after a 
 Poses and strips are solved for together, the strips condensed as in statics
 (``spline_model.reduced.assembly``); coordinates without mass, of free strip ends, are in equilibrium
 at the step's end. A step begins along the last tangent, renews it there, and goes on with gradients alone
-(``spline_model.motion.gradients``) while the residual shrinks.
+while the residual shrinks: with an older tangent Newton's method converges to the same equilibrium, and an
+evaluation costs a quarter. All are parts of one kernel: a call that passes the tables takes as long.
 Source of the discrete gradient: Gonzalez, J Nonlinear Sci 6 (1996) 449.
 """
 
@@ -15,11 +16,20 @@ from __future__ import annotations
 
 import math
 
-from spline_model.motion.gradients import take_gradients
 from spline_model.motion.step import FACTORISATIONS, MOST_ITERATIONS, NEWTON, solve_rows
-from spline_model.reduced.assembly import AXIAL, BENDING, DEAD, FORCE, MOVE, RATE, assemble, move_strips
+from spline_model.reduced.assembly import (
+    AXIAL,
+    BENDING,
+    DEAD,
+    FORCE,
+    MOVE,
+    RATE,
+    condense_all,
+    move_strips,
+)
+from spline_model.reduced.beside import condense_again, take_residual
 from spline_model.reduced.equilibrium import entry
-from spline_model.strip.compiled import copy, kernel, part
+from spline_model.strip.compiled import copy, part
 from spline_model.strip.element import LAST
 from spline_model.strip.laws import MATERIAL
 
@@ -36,7 +46,7 @@ POOR = 0.1
 
 
 @part()
-def stored(y, bodies, strips, shape, local, space):
+def _stored(y, bodies, strips, shape, local, space):
     """The potential W at a state just assembled: stationary in the strips' coordinates and forces."""
     total = space.out[BENDING] + space.out[AXIAL] + space.out[DEAD]
     if strips.measure == MATERIAL:
@@ -49,7 +59,7 @@ def stored(y, bodies, strips, shape, local, space):
 
 
 @part()
-def look_ahead(poses, strips, shape, local, space):
+def _look_ahead(poses, strips, shape, local, space):
     """W and reactions behind the last correction, to the second and first order in it.
 
     What the strips were off their equilibrium raises W by g^2 / 2 d a pivot, and lowers it by gap^2 / 2 c.
@@ -69,7 +79,7 @@ def look_ahead(poses, strips, shape, local, space):
 
 
 @part()
-def list_free(moving, poses, masses, bodies):
+def _list_free(moving, poses, masses, bodies):
     """List the coordinates to be solved for, at held bodies those without mass alone; their number."""
     count = 0
     for i in range(bodies.load.size):
@@ -80,7 +90,7 @@ def list_free(moving, poses, masses, bodies):
 
 
 @part()
-def mean_gradient(poses, masses, space):
+def _mean_gradient(poses, masses, space):
     """The mean gradient's correction along M dx, dx . M dx, and the gap's derivative, less the metric's."""
     force, dx = space.vectors[FORCE], poses.dx
     metric, gap = 0.0, poses.energy[1] - poses.energy[0]
@@ -103,10 +113,10 @@ def mean_gradient(poses, masses, space):
 
 
 @part()
-def balance(h, count, poses, masses, space):
+def _balance(h, count, poses, masses, space):
     """Fill the rows of the step's residual, negative, and its tangent; returns the largest residual."""
     force, free, x, dx, system = space.vectors[FORCE], poses.free, poses.x, poses.dx, poses.system
-    push, metric = mean_gradient(poses, masses, space)
+    push, metric = _mean_gradient(poses, masses, space)
     norm = 0.0
     for r in range(count):
         i = free[r]
@@ -130,7 +140,7 @@ def balance(h, count, poses, masses, space):
 
 
 @part()
-def move_all(share, count, poses, bodies, strips, shape, local, space):
+def _move_all(share, count, poses, bodies, strips, shape, local, space):
     """Move by the solution x of the rows, the strips with the bodies; share: 1 with their own residual."""
     move, rate, dx, y = space.vectors[MOVE], space.states[RATE], poses.dx, poses.trial
     for i in range(bodies.load.size):
@@ -147,66 +157,60 @@ def move_all(share, count, poses, bodies, strips, shape, local, space):
 
 
 @part()
-def set_off(h, count, poses, masses, bodies, strips, shape, local, space):
-    """Begin a step: from the last state along the last tangent; False if that leads nowhere.
-
-    What the strips bent away from theirs in the last step they bend again, by the square of the step.
-    """
-    copy(poses.pull, space.vectors[FORCE])
-    poses.energy[1] = poses.energy[0]
-    norm = balance(h, count, poses, masses, space)
-    if not norm < 1e12 or not solve_rows(count, poses.system, poses.x):
-        return False
-    move_all(0.0, count, poses, bodies, strips, shape, local, space)
+def _bend_on(h, poses):
+    """What the strips bent away from the tangent in the last step they bend again, by its square."""
     again = h * h / (poses.last[0] * poses.last[0])
     for i in range(poses.dx.size, poses.y.size):
         poses.ahead[i] = poses.trial[i] - poses.y[i]
         poses.trial[i] += again * poses.bent[i]
-    return True
 
 
-@kernel()
+@part()
+def _evaluate(fresh, poses, bodies, strips, shape, local, space):
+    """Energy and reactions at ``trial``, with a fresh tangent or an older one; the strips' residual."""
+    if fresh:
+        norm = condense_all(poses.trial, 0.0, bodies, strips, shape, local, space)
+    else:
+        norm = take_residual(poses.trial, 0.0, bodies, strips, shape, local, space)
+        condense_again(bodies, strips, shape, local, space)
+    poses.energy[1] = _stored(poses.trial, bodies, strips, shape, local, space)
+    for i in range(bodies.load.size):
+        poses.next[i] = space.vectors[FORCE, i]
+    return norm
+
+
+@part()
 def solve(h, moving, poses, masses, bodies, strips, shape, local, space, tolerance, counters):
     """Solve a step of length h for the state ``trial``, or the strips at held bodies; True if it converged.
 
-    With bodies that move dx is their change, kept apart as their inertia would drown in its round-off.
+    With bodies that move dx is their change, kept apart as their inertia would drown in its round-off. They
+    begin from the last state along the last tangent.
     """
-    count, norm, before = list_free(moving, poses, masses, bodies), math.inf, math.inf
+    count, norm, before, fresh = _list_free(moving, poses, masses, bodies), math.inf, math.inf, False
     for i in range(poses.dx.size):
         poses.dx[i] = 0.0
     copy(poses.y, poses.trial)
-    if moving > 0.0 and not set_off(h, count, poses, masses, bodies, strips, shape, local, space):
-        return False
-    for trial in range(MOST_ITERATIONS):
-        fresh = trial == 0 or moving == 0.0 or norm > POOR * before
-        before = norm
-        if fresh:
-            counters[FACTORISATIONS] += 1
-            norm = assemble(poses.trial, 0.0, bodies, strips, shape, local, space)
-        else:
-            norm = take_gradients(poses.trial, bodies, strips, shape, local, space)
-        if not norm < 1e12:
-            return False
-        poses.energy[1] = stored(poses.trial, bodies, strips, shape, local, space)
-        for i in range(bodies.load.size):
-            poses.next[i] = space.vectors[FORCE, i]
-        norm = max(norm, balance(h, count, poses, masses, space))
-        if norm <= tolerance or (norm <= 1e3 * tolerance and norm > 0.5 * before):
+    copy(poses.pull, space.vectors[FORCE])
+    poses.energy[1] = poses.energy[0]
+    for trial in range(-1 if moving > 0.0 else 0, MOST_ITERATIONS):
+        strain = 0.0
+        if trial >= 0:
+            fresh, before = trial == 0 or moving == 0.0 or norm > POOR * before, norm
+            counters[FACTORISATIONS] += fresh
+            strain = _evaluate(fresh, poses, bodies, strips, shape, local, space)
+        norm = max(strain, _balance(h, count, poses, masses, space)) if strain == strain else math.inf
+        if trial >= 0 and (norm <= tolerance or (norm <= 1e3 * tolerance and norm > 0.5 * before)):
             return True
         if not norm < 1e12 or not solve_rows(count, poses.system, poses.x):
             return False
-        move_all(1.0, count, poses, bodies, strips, shape, local, space)
+        _move_all(0.0 if trial < 0 else 1.0, count, poses, bodies, strips, shape, local, space)
+        if trial < 0:
+            _bend_on(h, poses)
+            norm = math.inf
+            continue
         counters[NEWTON] += 1
         small = norm <= NEARLY if fresh else norm <= CLOSE and norm * norm <= AFTER * before
         if moving > 0.0 and small and strips.coupled == 0:
-            look_ahead(poses, strips, shape, local, space)
+            _look_ahead(poses, strips, shape, local, space)
             return True
     return False
-
-
-def settle(poses, masses, bodies, strips, shape, local, space, tolerance, counters):
-    """Bring strips and massless coordinates into equilibrium at the bodies' poses; True if that converged."""
-    if not solve(1.0, 0.0, poses, masses, bodies, strips, shape, local, space, tolerance, counters):
-        return False
-    poses.y[:], poses.pull[:], poses.energy[0] = poses.trial, poses.next, poses.energy[1]
-    return True

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from typing import Any
 
 import numpy as np
@@ -54,7 +54,7 @@ class Moving:
 
     def with_drives(self, motion: Motion) -> Moving:
         """The same with the drives starting where those of a motion do."""
-        origin = motion.tables.drives.origin / self._turning
+        origin = motion.drives.origin / self._turning
         return replace(self, masses=self.masses._replace(drive_origin=origin))
 
     def arrays(self, z: Array, v: Array, acceleration: Array) -> tuple[State, Scratch]:
@@ -73,8 +73,7 @@ class Moving:
 
     def _place(self, given: Array, of_bodies: Array, of_points: Array) -> None:
         layout, n = self.system.layout, self.strips.mass.shape[1]
-        for i, body in enumerate(self.system.scene.bodies):
-            of_bodies[3 * i : 3 * i + 3] = given[layout.body(body.name)] / self.unit
+        of_bodies[: len(self._units)] = given[layout.poses] / self._units
         for s, strip in enumerate(self.system.scene.strips):
             of_points[s] = given[layout.strip(strip.name)].reshape(n, 2).T / self.length
 
@@ -83,6 +82,10 @@ class Moving:
         """Of a pose (3,) [m, rad]."""
         return np.array([self.length, self.length, 1.0])
 
+    @cached_property
+    def _units(self) -> Array:
+        return np.tile(self.unit, len(self.system.scene.bodies))
+
     @property
     def _turning(self) -> Array:
         return np.where(self.system.drives.turns == 1, 1.0, self.length)
@@ -90,8 +93,7 @@ class Moving:
     def _coordinates(self, z: Array) -> Array:
         system, strips, n = self.system, self.strips, self.strips.mass.shape[1]
         pose, own = np.zeros(len(self.masses.inertia)), []
-        for i, body in enumerate(system.scene.bodies):
-            pose[3 * i : 3 * i + 3] = z[system.layout.body(body.name)] / self.unit
+        pose[: len(self._units)] = z[system.layout.poses] / self._units
         for s, strip in enumerate(system.scene.strips):
             points = z[system.layout.strip(strip.name)].reshape(n, 2) / self.length
             chords = points[1] - points[0], points[-1] - points[-2]
@@ -124,10 +126,8 @@ class Moving:
         q, own = len(self.masses.inertia), self.strips.own
         z, v = np.zeros((count, layout.size)), np.zeros((count, layout.coordinate_count))
         at = 2 * q + s_count * (own + k)
-        for i, body in enumerate(scene.bodies):
-            place = layout.body(body.name)
-            z[:, place] = records[:, 3 * i : 3 * i + 3] * self.unit
-            v[:, place] = records[:, at - q + 3 * i : at - q + 3 * i + 3] * self.unit
+        z[:, layout.poses] = records[:, : len(self._units)] * self._units
+        v[:, layout.poses] = records[:, at - q : at - q + len(self._units)] * self._units
         rows: dict[tuple[str, str], slice] = {
             (c.strip, c.end): layout.rows(i)
             for i, c in enumerate(scene.of(Constraint))
@@ -154,22 +154,24 @@ class Moving:
         return z, v
 
 
-def moving(system: System, motion: Motion) -> Moving:
+def moving(motion: Motion) -> Moving:
     """The reduced coordinates of a system in motion, whose strips have one basis and one quadrature."""
+    system = motion.system
     ends = ends_of(system)
     poses = 3 * max(len(system.scene.bodies), 1 + max(end.body for end in ends.values()))
     return Moving(
         system=system,
-        masses=masses_of(system, motion, poses),
+        masses=masses_of(motion, poses),
         length=system.scales.length,
         energy=system.scales.energy,
-        **_strips(system, motion, ends),
+        **_strips(motion, ends),
     )
 
 
-def _strips(system: System, motion: Motion, ends: Ends) -> dict[str, Any]:
+def _strips(motion: Motion, ends: Ends) -> dict[str, Any]:
     """Those of statics with a banded basis, and what they have in motion."""
-    scene, tables, layout = system.scene, system.tables, system.layout
+    system = motion.system
+    scene, layout, weight = system.scene, system.layout, system.weight
     length, energy, names = system.scales.length, system.scales.energy, [s.name for s in scene.strips]
     basis, points = _grid(system)
     yields = {(e.strip, e.end): 1.0 / e.compliance for e in scene.of(RootCompliance)}
@@ -180,7 +182,7 @@ def _strips(system: System, motion: Motion, ends: Ends) -> dict[str, Any]:
     small[:, :outer] = True
     time = {e.strip: e.relaxation_time for e in scene.of(StripDamping)}
     places = [layout.strip(name) for name in names]
-    weight = tables.weight if tables.weight.size else np.zeros(layout.coordinate_count)
+    weight = weight if weight.size else np.zeros(layout.coordinate_count)
     mass, drag = length**2 / energy, motion.drag if motion.drag.size else np.zeros_like(motion.mass)
     springs = [[yields.get((name, end), energy) / energy for end in ("start", "end")] for name in names]
     strips = Flexures(

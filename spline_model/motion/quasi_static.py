@@ -1,24 +1,29 @@
-"""Massless strips under bodies with mass: only the bodies' coordinates are dynamic (``motion.massless``)."""
+"""Bodies on massless strips: only their coordinates are dynamic, by ``spline_model.motion.massless``.
+
+Strips without mass stand in stable equilibrium at every instant. Where one snaps through there is none to go
+on in, and the run ends: what follows is a motion of the strip, which has its inertia.
+"""
 
 from __future__ import annotations
 
 import numpy as np
 from scipy.linalg import eigh
 
-from spline_model.compile import System
 from spline_model.errors import InvalidParameter
 from spline_model.motion import energy_consistent
 from spline_model.motion.arrays import masses_of, poses_of
 from spline_model.motion.energy_consistent import turned, why
-from spline_model.motion.massless import settle
-from spline_model.motion.massless_run import run, store
+from spline_model.motion.massless import solve
 from spline_model.motion.records import ENERGIES, Records
-from spline_model.motion.start import Array, Motion
-from spline_model.motion.step import FOLDS, REFUSED
-from spline_model.reduced.assembly import working_space
+from spline_model.motion.run import MOST_HALVED, MOST_HALVED_A_STEP, SLOWEST_SPEED
+from spline_model.motion.start import Array, Start, Steps
+from spline_model.motion.step import FOLDS, HALVED, REFUSED, SNAPS, STEPS, WHOLE, load_at
+from spline_model.reduced.assembly import NEGATIVE, SLOWEST, assemble, factorise, working_space
 from spline_model.reduced.model import Reduced, at_rest, from_unknowns, reduced
 from spline_model.reduced.states import unknowns_of
 from spline_model.reduced.whole import whole_tangents
+from spline_model.strip.compiled import copy, kernel, part
+from spline_model.strip.element import ON_POINTS, POINTS, place_points
 
 TOLERANCE = 1e-11
 """Residual of a step in EI/L^2, EI/L and L."""
@@ -28,25 +33,24 @@ SOFT = 0.5
 """Least stiffness of a strip over that at rest below which it is what stops a motion."""
 
 
-def integrate(
-    system: System, motion: Motion, z: Array, v: Array, *, step: float, steps: int, every: int
-) -> Records:
-    """Take ``steps`` steps from z and the bodies' part of v, recording every ``every``-th one."""
+def integrate(start: Start, run: Steps) -> Records:
+    """The records of a run, from the bodies' part of the velocity."""
+    motion = start.motion
     if motion.damped:
         raise InvalidParameter(
             "effects", "strip_damping", "strip_inertia with it: massless strips have no rate"
         )
-    if system.tables.drives.row.size:
+    if motion.drives.row.size:
         raise InvalidParameter("effects", "a drive", "strip_inertia for a driven motion")
-    bodies = {at + k for at in system.layout.bodies.values() for k in range(3)}
-    if not bodies.issuperset(system.tables.loads.coordinate.tolist()):
+    if (motion.loads.coordinate < motion.system.layout.poses.start).any():
         raise InvalidParameter("effects", "tip_force", "loads on bodies only, with massless strips")
-    model = reduced(system)
+    model, y = start.known.last or (reduced(motion.system), None)
     if model is None:
         raise InvalidParameter(
             "strips", "massless ones of this kind", "strip_inertia for printed forces or long B-splines"
         )
-    return energy_consistent.carry(Stepper(model, motion, z, v), None, step, steps, every)
+    y = from_unknowns(model, start.known.array[-1]) if y is None else y
+    return energy_consistent.carry(_Stepper(model.let_go(motion.system), y, start), run)
 
 
 def softness(model: Reduced, y: Array, strip: int) -> float:
@@ -63,37 +67,151 @@ def softness(model: Reduced, y: Array, strip: int) -> float:
     return float(eigh(*parts, eigvals_only=True)[0])
 
 
-class Stepper(energy_consistent.Moves):
+@part()
+def _refused(poses, bodies, strips, shape, space, scene_bodies):
+    """Why a solved state is refused, or 0: FOLDS, or SNAPS where the strips' equilibrium is unstable.
+
+    Every clamped end's tangent points forwards, |C'| is above a tenth of that at rest, and at held masses no
+    direction lowers the energy: coordinates without mass would leave such a state at once.
+    """
+    own, modes = 2 * shape.order.size - 6, strips.compliance.shape[1]
+    for s in range(strips.roots.size):
+        at = bodies.rest.size + s * (own + modes) + own
+        if strips.roots[s] < scene_bodies and not poses.trial[at - 2] > 0.0:
+            return FOLDS
+        if strips.tips[s] < scene_bodies and not poses.trial[at - 1] > 0.0:
+            return FOLDS
+    if not space.out[SLOWEST] > SLOWEST_SPEED:
+        return FOLDS
+    outer = bodies.load.size - bodies.rest.size
+    negative = factorise(poses.still, space.tangent, space.factors, outer)
+    return 0 if negative + space.out[NEGATIVE] == 0.0 else SNAPS
+
+
+@part()
+def _accept(h, poses, masses):
+    """Take the solved step: books, velocities, coordinates."""
+    for i in range(poses.dx.size):
+        change = poses.dx[i]
+        poses.totals[0] += poses.load[i] * change
+        poses.totals[1] += masses.drag[i] * change * change / h
+        poses.rate[i] = 2.0 * change / h - poses.rate[i] if masses.inertia[i] > 0.0 else 0.0
+    for i in range(poses.dx.size, poses.y.size):
+        poses.bent[i] = poses.trial[i] - poses.y[i] - poses.ahead[i]
+    poses.last[0] = h
+    copy(poses.trial, poses.y)
+    copy(poses.next, poses.pull)
+    poses.energy[0] = poses.energy[1]
+
+
+@part()
+def _settle(poses):
+    """Take the equilibrium found at held bodies."""
+    copy(poses.trial, poses.y)
+    copy(poses.next, poses.pull)
+    poses.energy[0] = poses.energy[1]
+
+
+@part()
+def _store(poses, masses, bodies, strips, shape, local, row):
+    """A record: y, the bodies' rates and its energies, as of ``spline_model.motion.run.store``."""
+    y, rate, n = poses.y, poses.rate, shape.order.size
+    own, modes = 2 * n - 6, strips.compliance.shape[1]
+    kinetic = weight = 0.0
+    for i in range(y.size):
+        row[i] = y[i]
+    for i in range(rate.size):
+        row[y.size + i] = rate[i]
+        kinetic += 0.5 * masses.inertia[i] * rate[i] * rate[i]
+        weight -= bodies.weight[i] * y[i]
+    for s in range(strips.roots.size):
+        at = rate.size + s * (own + modes)
+        dead = 0.0
+        for i in range(2 * n):
+            dead += abs(strips.numbers[s, ON_POINTS + i])
+        if dead == 0.0:
+            continue
+        place_points(s, y[at : at + own], y, strips, local)
+        for i in range(2 * n):
+            weight -= strips.numbers[s, ON_POINTS + i] * local.nodal[s, POINTS, i]
+    at = y.size + rate.size
+    row[at], row[at + 1], row[at + 2] = kinetic, weight, poses.energy[0] - weight
+    row[at + 3], row[at + 4] = poses.totals[0], poses.totals[1]
+
+
+@kernel()
+def _run(
+    time, step, begin, end, every, smallest, scene_bodies, poses, masses, bodies, strips, shape, local, space,
+    tolerance, counters, records,
+):  # fmt: skip
+    """Take the steps ``begin`` ... ``end`` - 1 after a time; returns the next step's number.
+
+    Where there are none, strips and coordinates without mass are brought into equilibrium, which is recorded,
+    or the number is less. A step whose Newton fails is halved, down to ``smallest``, and doubles again after
+    each success. records (R, Y + Q + 5): of ``_store``, at the ends of steps whose number ``every`` divides.
+    """
+    for k in range(begin if begin < end else begin - 1, end):
+        done, h, moving = 0.0, step, 1.0 if k >= begin else 0.0
+        while step - done > 1e-9 * step:
+            now, h = time + k * step + done, min(h, step - done)
+            for i in range(poses.load.size * int(moving)):
+                poses.load[i] = 0.0
+            for f in range(masses.load_value.size * int(moving)):
+                poses.load[masses.load_body[f]] += load_at(f, now + 0.5 * h, masses)
+            solved = solve(h, moving, poses, masses, bodies, strips, shape, local, space, tolerance, counters)
+            if moving == 0.0:
+                if not solved:
+                    return k
+                _settle(poses)
+                break
+            counters[REFUSED] = _refused(poses, bodies, strips, shape, space, scene_bodies) if solved else 0
+            if solved and counters[REFUSED] == 0:
+                _accept(h, poses, masses)
+                counters[STEPS] += 1
+                done += h
+                h = min(2.0 * h, step)
+                continue
+            counters[HALVED] += 1
+            h *= 0.5
+            if h < smallest or counters[HALVED] > MOST_HALVED + MOST_HALVED_A_STEP * counters[WHOLE]:
+                return k
+            assemble(poses.y, 0.0, bodies, strips, shape, local, space)  # the tangent to begin along
+        counters[WHOLE] += int(moving)
+        if (k + 1) % every == 0:
+            row = records[(k + 1) // every - begin // every - 1]
+            _store(poses, masses, bodies, strips, shape, local, row)
+    return end
+
+
+class _Stepper(energy_consistent.Moves):
     """Bodies on massless strips that the scheme advances."""
 
-    def __init__(self, model: Reduced, motion: Motion, z: Array, v: Array) -> None:
-        self.motion, self._model, scene = motion, model, model.system.scene
-        self._masses = masses_of(model.system, motion, len(model.bodies.rest))
+    def __init__(self, model: Reduced, y: Array, start: Start) -> None:
+        self.motion, self._model = start.motion, model
+        self._masses = masses_of(self.motion, len(model.bodies.rest))
         self.unit = np.array([model.length, model.length, 1.0])
-        rate = np.zeros(len(model.bodies.rest))
-        for i, body in enumerate(scene.bodies):
-            rate[3 * i : 3 * i + 3] = v[model.system.layout.body(body.name)] / self.unit
-        self._poses = poses_of(from_unknowns(model, z), rate, self._masses.inertia, len(model.bodies.load))
+        rate, moved = np.zeros((len(model.bodies.rest) // 3, 3)), model.system.layout.poses
+        rate[: len(model.system.scene.bodies)] = start.v[moved].reshape(-1, 3) / self.unit
+        self._poses = poses_of(y, rate.ravel(), self._masses.inertia, len(model.bodies.load))
         self._local, self._space = model.local(), working_space(model.bodies, model.size)
-        self.width = model.size + len(rate) + ENERGIES
+        self.width = model.size + rate.size + ENERGIES
         self.counters = np.zeros(6, dtype=np.int64)
         made = self._masses, model.bodies, model.strips, model.shape, self._local, self._space
         self._given = (self._poses, *made, TOLERANCE, self.counters)
-        if not settle(*self._given):
-            raise InvalidParameter("start", "no equilibrium of the strips", "a static state")
 
     def take(
         self, time: float, step: float, begin: int, end: int, every: int, smallest: float, records: Array
     ) -> int:
         """The next step's number."""
         bodies = len(self._model.system.scene.bodies)
-        return int(run(time, step, begin, end, every, smallest, bodies, *self._given, records))
+        return int(_run(time, step, begin, end, every, smallest, bodies, *self._given, records))
 
     def record(self) -> Array:
-        """The present state's record (W,)."""
-        record, model = np.zeros(self.width), self._model
-        store(self._poses, self._masses, model.bodies, model.strips, model.shape, self._local, record)
-        return record
+        """The present state's record (W,), in equilibrium."""
+        records = np.zeros((1, self.width))
+        if self.take(0.0, 1.0, 0, 0, 1, 1.0, records) < 0:
+            raise InvalidParameter("start", "no equilibrium of the strips", "a static state")
+        return np.asarray(records[0])
 
     def switch(self, time: float, span: float) -> None:
         """Nothing begins or ends but loads."""
@@ -115,9 +233,8 @@ class Stepper(energy_consistent.Moves):
     def unknowns(self, records: Array) -> tuple[Array, Array]:
         """Unknowns (R, N) and velocities (R, Q) of records."""
         model, size = self._model, len(self._poses.y)
-        v = np.zeros((len(records), model.system.layout.coordinate_count))
-        for i, body in enumerate(model.system.scene.bodies):
-            begin = size + 3 * i
-            v[:, model.system.layout.body(body.name)] = records[:, begin : begin + 3] * self.unit
+        layout, count = model.system.layout, 3 * len(model.system.scene.bodies)
+        v = np.zeros((len(records), layout.coordinate_count))
+        v[:, layout.poses] = records[:, size : size + count] * np.tile(self.unit, count // 3)
         y = np.ascontiguousarray(records[:, :size])
         return unknowns_of(model, y, np.zeros((len(y), 0))), v

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property, partial
 from typing import Protocol
@@ -36,7 +36,7 @@ class Whole:
     """
 
     motion: Motion
-    make: Callable[[], tuple[Array, Array]]
+    make: Callable[[], Sequence[Array]]
     every: int = 1
 
     def thinned(self, every: int) -> Whole:
@@ -54,8 +54,8 @@ class Whole:
         """Largest constraint residual [m] and its rate [m/s] at each record, (R, 2)."""
         z, v = self.both
         largest = np.zeros((len(z), 2))
-        for c in range(len(self.motion.tables.clamps.end)):
-            for k, gap in enumerate(clamp_gaps(self.motion, c, z, v)):
+        for c in range(len(self.motion.system.tables.clamps.end)):
+            for k, gap in enumerate(_clamp_gaps(self.motion, c, z, v)):
                 largest[:, k] = np.maximum(largest[:, k], np.abs(gap).max(axis=0))
         return largest
 
@@ -77,21 +77,27 @@ class Records:
 
 
 def records_of(
-    motion: Motion, spacing: float, z: Array, v: Array, rows: Array, message: str, counters: dict[str, int]
+    motion: Motion,
+    spacing: float,
+    z: Array,
+    v: Array,
+    energies: Array,
+    message: str,
+    counters: dict[str, int],
 ) -> Records:
-    """The records ``spacing`` [s] apart of a run that kept its states z (R, N) and v (R, Q)."""
-    poses = (motion.turns[:, None] + np.arange(-2, 1)).ravel()
+    """The records ``spacing`` [s] apart of a run that kept its states z (R, N) and v (R, Q); energies as of
+    ``rows_of``."""
     return Records(
         time=np.arange(0.0, len(z)) * spacing,
-        poses=z[:, poses],
-        rows=rows,
-        whole=known_records(motion, z, v),
+        poses=z[:, motion.system.layout.poses],
+        rows=rows_of(motion, z, v, energies),
+        whole=Whole(motion, partial(tuple, (z, v))),
         message=message,
         counters=counters,
     )
 
 
-class Reader(Protocol):
+class _Reader(Protocol):
     """Who knows the numbers of a compiled run's records: the bodies' poses first, the energies last."""
 
     @property
@@ -104,7 +110,7 @@ class Reader(Protocol):
 
 def compact(
     motion: Motion,
-    reader: Reader,
+    reader: _Reader,
     records: Array,
     z: Array | None,
     spacing: float,
@@ -119,32 +125,23 @@ def compact(
     return Records(
         time=np.arange(0.0, len(records)) * spacing,
         poses=records[:, : 3 * bodies] * np.tile(reader.unit, bodies),
-        rows=records[:, -ENERGIES:] * motion.energy,
+        rows=records[:, -ENERGIES:] * motion.system.scales.energy,
         whole=Whole(motion, partial(_read, reader, records, z)),
         message=message,
         counters=counters,
     )
 
 
-def _read(reader: Reader, records: Array, z: Array | None) -> tuple[Array, Array]:
+def _read(reader: _Reader, records: Array, z: Array | None) -> tuple[Array, Array]:
     states, rates = reader.unknowns(records)
     if z is not None:
         states[0] = z
     return states, rates
 
 
-def known_records(motion: Motion, z: Array, v: Array) -> Whole:
-    """Records whose states z (R, N) and velocities v (R, Q) are there already."""
-    return Whole(motion, partial(_both, z, v))
-
-
-def _both(z: Array, v: Array) -> tuple[Array, Array]:
-    return z, v
-
-
 def rows_of(motion: Motion, z: Array, v: Array, energies: Array) -> Array:
     """Rows (R, 5) of states z (R, N), velocities v (R, Q), and strain energy, work and losses (R, 3) [J]."""
-    rows, weight = np.zeros((len(z), ENERGIES)), motion.tables.weight
+    rows, weight = np.zeros((len(z), ENERGIES)), motion.system.weight
     rows[:, KINETIC] = 0.5 * ((v @ motion.mass) * v).sum(axis=1)
     rows[:, [STRAIN, WORK, DISSIPATED]] = energies
     if weight.size:
@@ -152,12 +149,12 @@ def rows_of(motion: Motion, z: Array, v: Array, energies: Array) -> Array:
     return rows
 
 
-def clamp_gaps(motion: Motion, c: int, z: Array, v: Array) -> tuple[Array, Array]:
+def _clamp_gaps(motion: Motion, c: int, z: Array, v: Array) -> tuple[Array, Array]:
     """Gaps of a clamp's end and of its direction over the end's chord at rest (3, R) [m], and their rates.
 
     Of a root that turns those of its end alone (2, R).
     """
-    clamps = motion.tables.clamps
+    clamps = motion.system.tables.clamps
     end, inner, sign, body = clamps.end[c], clamps.inner[c], clamps.sign[c], clamps.body[c]
     pose, rate = (q[:, body : body + 3].T if body >= 0 else np.zeros((3, len(q))) for q in (z, v))
     (p, d), (u, w) = (
@@ -166,7 +163,8 @@ def clamp_gaps(motion: Motion, c: int, z: Array, v: Array) -> tuple[Array, Array
     (bx, by), direction = clamps.point[c], clamps.direction[c] + pose[2]
     cos, sin, m = np.cos(pose[2]), np.sin(pose[2]), np.array((np.cos(direction), np.sin(direction)))
     arm = np.array((cos * bx - sin * by, sin * bx + cos * by))
-    reach = motion.chord[c] / np.hypot(*d)
+    rest = motion.system.rest
+    reach = np.hypot(*(rest[inner : inner + 2] - rest[end : end + 2])) / np.hypot(*d)
     turned = rate[2] * np.array((-arm[1], arm[0]))
     position = (*(p - pose[:2] - arm), reach * (m[0] * d[1] - m[1] * d[0]))
     velocity = (*(u - rate[:2] - turned), m[0] * w[1] - m[1] * w[0] - rate[2] * (m * d).sum(axis=0))
@@ -185,8 +183,10 @@ def energy_gain(rows: Array, unit: float) -> Array:
     stored = rows[:, KINETIC] + rows[:, STRAIN]
     fallen = rows[:, WEIGHT] - rows[0, WEIGHT]
     balance = stored + fallen - rows[:, WORK] + rows[:, DISSIPATED]
-    parts = np.abs(np.stack((stored, fallen, rows[:, WORK], rows[:, DISSIPATED])))
-    scale = np.maximum(np.maximum.accumulate(parts.max(axis=0)), QUIET * unit)
+    largest = np.maximum(np.abs(stored), np.abs(fallen))
+    for k in (WORK, DISSIPATED):
+        largest = np.maximum(largest, np.abs(rows[:, k]))
+    scale = np.maximum(np.maximum.accumulate(largest), QUIET * unit)
     return np.asarray((balance - balance[0]) / scale)
 
 

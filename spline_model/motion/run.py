@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from spline_model.motion.roots import PUSH, root_energy
+from spline_model.motion.project import PUSH, root_energy
 from spline_model.motion.step import FOLDS, HALVED, REFUSED, STEPS, WHOLE, cayley, load_at, newton
 from spline_model.motion.strip import curve_at, look_at, place_strip
 from spline_model.strip.compiled import kernel, part
@@ -50,7 +50,7 @@ def clamp_forces(s, state, strips, work):
 
 
 @part()
-def accept(time, h, active, state, strips, masses, work):
+def _accept(time, h, active, state, strips, masses, work):
     """Take the solved step: books of work and losses, velocities, coordinates."""
     poses, n, modes = masses.inertia.size, strips.mass.shape[1], strips.compliance.shape[1]
     own, dy, y, totals = strips.own, work.dy, state.y, state.totals
@@ -174,7 +174,7 @@ def run(
             now, h = time + k * step + done, min(h, step - done)
             solved = newton(now, h, active, state, strips, masses, tolerance, work, counters)
             if solved and forward(state, strips, masses, work):
-                accept(now, h, active, state, strips, masses, work)
+                _accept(now, h, active, state, strips, masses, work)
                 counters[STEPS] += 1
                 done += h
                 h = min(2.0 * h, step)

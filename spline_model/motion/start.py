@@ -1,60 +1,223 @@
-"""From a compiled scene to a motion: its constants and consistent start."""
+"""A system in motion: its constants, its consistent start, and what happens at an instant of it."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from spline_model.bordered import evaluate
+from spline_model.bordered import assemble, evaluate
 from spline_model.compile import System
 from spline_model.effects import MixedStretching, StripDamping
 from spline_model.effects.base import Inertia
 from spline_model.effects.history import factor_at
 from spline_model.errors import InvalidParameter
-from spline_model.mass import drag_matrix, mass_matrix
-from spline_model.tables import YIELDING, Tables
+from spline_model.solution import Later
+from spline_model.tables import YIELDING, DriveTable, LoadTable
 
 Array = NDArray[np.float64]
+Places = NDArray[np.int64]
+
+SAME = 1e-9
+"""Instants nearer than this share of a step are the same."""
 
 
-class Motion(NamedTuple):
-    """What does not change during a motion: N unknowns, Q coordinates, C clamps, M axial modes.
+@dataclass(frozen=True, eq=False)
+class Motion:
+    """A system in motion: N unknowns, Q coordinates, M axial modes. What is asked for is made once a system.
 
-    tables: of the scene; mass (Q, Q) [kg, kg m^2]; drag (Q, Q) or (0, 0) [N s/m, N m s]; damped: whether
-    strips have a relaxation time; relaxation (M,) that of the axial modes [s]; turns: places of the rotations
-    in q; chord (C,) length of each clamp's end chord at rest [m]; rigidity (M, M) inverse compliance of the
-    axial modes [N/m], zero where a strip is inextensible; unit (N,) and energy [J] make residuals
-    dimensionless.
+    drives, loads: the scene's, by the clock of the motion, the former from where their bodies are.
     """
 
-    tables: Tables
-    mass: Array
-    drag: Array
-    damped: bool
-    relaxation: Array
-    turns: NDArray[np.int64]
-    chord: Array
-    rigidity: Array
-    unit: Array
-    energy: float
+    system: System
+    drives: DriveTable
+    loads: LoadTable
+
+    @property
+    def mass(self) -> Array:
+        """Mass matrix (Q, Q) [kg, kg m^2]."""
+        return self.system.mass
+
+    @property
+    def drag(self) -> Array:
+        """Of the force - D v, (Q, Q) or (0, 0) [N s/m, N m s]."""
+        return self.system.drag
+
+    @property
+    def rigidity(self) -> Array:
+        """Inverse of the axial modes' compliance, (M, M) [N/m]; zero where a strip is inextensible."""
+        rigidity: Array = self.system.once("rigidity", axial_rigidity)
+        return rigidity
+
+    @property
+    def relaxation(self) -> Array:
+        """Relaxation time of the axial modes (M,) [s]."""
+        scene = self.system.scene
+        times = {effect.strip: effect.relaxation_time for effect in scene.of(StripDamping)}
+        modes = scene.of(MixedStretching)
+        return np.array([times.get(effect.strip, 0.0) for effect in modes for _ in range(effect.modes.count)])
+
+    @property
+    def damped(self) -> bool:
+        """Whether strips have a relaxation time."""
+        return bool(self.system.scene.of(StripDamping))
+
+    @property
+    def massless(self) -> bool:
+        """Whether no strip has inertia, so that only the bodies' coordinates are dynamic."""
+        return not self.mass[: self.system.layout.poses.start].any()
+
+    @property
+    def turns(self) -> Places:
+        """Places of the rotations in q."""
+        return np.array([start + 2 for start in self.system.layout.bodies.values()], dtype=np.int64)
+
+    def later(self, time: float) -> Motion:
+        """With the clock set to ``time`` [s]: histories and drives are that far on."""
+        drives, loads = self.drives, self.loads
+        drives = drives._replace(
+            times=drives.times - time, begin=drives.begin - time, until=drives.until - time
+        )
+        return replace(self, drives=drives, loads=loads._replace(times=loads.times - time))
+
+    def event_times(self, duration: float, step: float) -> list[float]:
+        """Instants inside at which a drive begins or ends or a history has a corner [s].
+
+        A step that ends there keeps its order, and a corner of an active drive, which is a jump of
+        its rate, does not ring on as it would in a step across it.
+        """
+        drives = self.drives
+        times = np.concatenate((drives.begin, drives.until, drives.times, self.loads.times))
+        inside = np.sort(times[(times > SAME * step) & (times < duration - SAME * step)])
+        if not inside.size:
+            return []
+        apart = np.diff(inside, prepend=-np.inf) > SAME * step
+        return [float(time) for time in inside[apart]]
+
+    def drives_at(self, time: float) -> Places:
+        """1 for each drive row that holds at that time [s], 0 for the others."""
+        return ((self.drives.begin < time) & (time < self.drives.until)).astype(np.int64)
+
+    def from_here(self, z: Array, active: Places, before: Places, time: float) -> Motion:
+        """With the drives that begin now starting from where their bodies are."""
+        drives, origin = self.drives, self.drives.origin.copy()
+        for d in np.flatnonzero(active & ~before.astype(bool)):
+            factor = factor_at(time, drives.first[d], drives.pairs[d], drives.times, drives.factors)
+            origin[d] = z[drives.coordinate[d]] - factor * drives.target[d]
+        return replace(self, drives=drives._replace(origin=origin))
+
+    def catch(self, z: Array, v: Array, active: Places, time: float, span: float) -> tuple[Array, float]:
+        """Velocity that the active drives allow, and the kinetic energy that the change takes [J].
+
+        v+ is the velocity nearest to v in the kinetic metric that satisfies all constraints and
+        the drives' rates over the next ``span`` [s]: the effect of impulses along the constraints,
+        an inelastic catch.
+        """
+        drives, held = self.drives, np.flatnonzero(active)
+        if not held.size:
+            return v, 0.0
+        size, count = z.size, v.size
+        gradient, hessian = np.empty(size), np.empty((size, size))
+        points, clamps = self.system.tables.points, self.system.tables.clamps
+        assemble(z, points, clamps, gradient, hessian, np.empty((5, 4)))
+        holding = clamps.row[clamps.numbers[:, YIELDING] == 0.0]
+        rows = np.concatenate((clamps.row, clamps.row + 1, holding + 2, drives.row[held])).astype(int)
+        hessian[drives.row, drives.coordinate] = -1.0
+        jacobian = -hessian[rows][:, :count]
+        rate = np.zeros(len(rows))
+        for i, d in enumerate(held):
+            history = (drives.first[d], drives.pairs[d], drives.times, drives.factors)
+            change = factor_at(time + span, *history) - factor_at(time, *history)
+            rate[len(rows) - len(held) + i] = change / span * drives.target[d]
+        inverse = np.linalg.pinv(self.mass)
+        impulse = np.linalg.lstsq(jacobian @ inverse @ jacobian.T, rate - jacobian @ v, rcond=1e-12)[0]
+        caught = v + inverse @ jacobian.T @ impulse
+        return caught, 0.5 * float(v @ self.mass @ v - caught @ self.mass @ caught)
+
+    def accelerated(self, z: Array, v: Array) -> tuple[Array, Array]:
+        """Consistent acceleration (Q,) and unknowns (N,) at a state, z (Q or more,), with velocity v (Q,).
+
+        M a + dV/dq = Psi_q^T lambda with the constraints (and the inextensible strips' strains)
+        differentiated twice: Psi_q a = -(Psi_q v)_q v, the right side by a central difference of
+        Psi_q along v, exact at rest. Loads are those of the motion's instant 0.
+        """
+        system, layout = self._with_first_loads(), self.system.layout
+        q, size, unit = slice(0, layout.coordinate_count), layout.size, system.scales.unit
+        gradient, hessian = np.empty(size), np.empty((size, size))
+        free, rows = self._unconstrained(system, z, gradient, hessian)
+        evaluate(system, free, 1.0, gradient, hessian)
+        jacobian, force = hessian[rows][:, q].copy(), -gradient[q].copy()
+
+        drift, speed = np.zeros(len(rows)), np.abs(v / unit[q]).max()
+        if speed > 0:
+            step = 1e-4 / speed
+            for sign in (1.0, -1.0):
+                moved = free.copy()
+                moved[q] += sign * step * v
+                evaluate(system, moved, 1.0, gradient, hessian)
+                drift += sign * (hessian[rows][:, q] @ v) / (2 * step)
+
+        # a coordinate without mass stands in equilibrium already: least squares leave it at rest
+        matrix = np.block([[self.mass, jacobian.T], [jacobian, np.zeros((len(rows), len(rows)))]])
+        scale = np.concatenate((unit[q] / system.scales.length, np.full(len(rows), 1.0)))
+        sizes = np.linalg.norm(jacobian * scale[q], axis=1)
+        scale[len(self.mass) :] = np.diag(self.mass).max() / np.maximum(sizes, 1e-300)
+        right = np.concatenate((force, -drift)) * scale
+        solved = scale * np.linalg.lstsq(matrix * scale[:, None] * scale, right, rcond=1e-14)[0]
+        free[rows] = solved[len(self.mass) :]
+        return solved[: len(self.mass)], free
+
+    def _unconstrained(
+        self, system: System, z: Array, gradient: Array, hessian: Array
+    ) -> tuple[Array, Places]:
+        """Coordinates of z with the forces that their strains give and no others, and these others' rows."""
+        layout = system.layout
+        count, end = layout.coordinate_count, layout.multiplier_start
+        free = np.zeros(layout.size)
+        free[:count] = z[:count]
+        evaluate(system, free, 1.0, gradient, hessian)
+        free[count:end] = self.rigidity @ gradient[count:end]
+        fixed = np.ones(layout.size, dtype=bool)
+        fixed[:count], fixed[count:end] = False, np.diag(self.rigidity) == 0
+        clamps = system.tables.clamps
+        for row, compliance in zip(clamps.row + 2, clamps.numbers[:, YIELDING], strict=True):
+            if compliance > 0.0:
+                free[row], fixed[row] = gradient[row] / compliance, False
+        return free, np.flatnonzero(fixed)
+
+    def _with_first_loads(self) -> System:
+        """The system with the loads that act at the instant 0 of the motion's clock, at load factor 1."""
+        loads = self.loads
+        given = zip(loads.first, loads.pairs, strict=True)
+        parts = [factor_at(0.0, first, pairs, loads.times, loads.factors) for first, pairs in given]
+        return self.system.with_tables(loads=loads._replace(value=loads.value * parts) if parts else loads)
+
+    def require_compiled(self, name: str) -> None:
+        """Refuse potentials in Python."""
+        if self.system.open_potentials:
+            names = [type(potential).__name__ for potential in self.system.open_potentials]
+            raise InvalidParameter("integrator", name, f"generalised-alpha for {', '.join(names)}")
+
+    def require_conservative(self, name: str) -> None:
+        """Refuse damping, drives and loads: only the energy-consistent scheme has them."""
+        if self.drag.size or self.damped or self.drives.row.size or self.loads.coordinate.size:
+            raise InvalidParameter("integrator", name, "energy (fixed step) for damping, loads and drives")
 
 
 @dataclass(frozen=True, eq=False)
 class Start:
-    """Where a motion begins: its motion, unknowns z (N,) known so far, and velocities v (Q,)."""
+    """Where a motion begins: its motion, states that end there, under any drives, and velocities v (Q,)."""
 
-    system: System
     motion: Motion
-    known: Array
+    known: Later
     v: Array
 
     @cached_property
     def _consistent(self) -> tuple[Array, Array]:
-        return initial_acceleration(self.system, self.motion, self.known, self.v)
+        return self.motion.accelerated(self.known.array[-1], self.v)
 
     @property
     def acceleration(self) -> Array:
@@ -67,35 +230,36 @@ class Start:
         return self._consistent[1]
 
 
+class Steps(NamedTuple):
+    """Steps of a run: their length [s] and number, and every which is recorded, which divides the number."""
+
+    step: float
+    steps: int
+    every: int
+
+    @property
+    def records(self) -> int:
+        """Records of a whole run, the start among them."""
+        return self.steps // self.every + 1
+
+    @property
+    def spacing(self) -> float:
+        """Of the records [s]."""
+        return self.step * self.every
+
+
 def set_in_motion(system: System) -> Motion:
-    """Mass matrix and tables of a system; refuses a scene whose coordinates have no inertia."""
-    scene, layout, rest = system.scene, system.layout, system.rest
-    if not scene.of(Inertia):
+    """The motion of a system; refuses a scene whose coordinates have no inertia."""
+    if not system.scene.of(Inertia):
         raise InvalidParameter("effects", "no inertia", "strip_inertia and body_inertia for a motion")
-    if any(effect.measure != "material" for effect in scene.of(MixedStretching)):
+    if any(effect.measure != "material" for effect in system.scene.of(MixedStretching)):
         raise InvalidParameter("measure", "spatial", "material for the motion of mixed strips")
-    mixed = scene.of(MixedStretching)
-    times = {effect.strip: effect.relaxation_time for effect in scene.of(StripDamping)}
-    clamps = system.tables.clamps
-    chords = [rest[i : i + 2] - rest[e : e + 2] for e, i in zip(clamps.end, clamps.inner, strict=True)]
-    return Motion(
-        tables=system.tables,
-        mass=mass_matrix(scene, layout),
-        drag=drag_matrix(scene, layout),
-        damped=bool(scene.of(StripDamping)),
-        relaxation=np.array([times.get(e.strip, 0.0) for e in mixed for _ in range(e.modes.count)]),
-        turns=np.array([start + 2 for start in layout.bodies.values()], dtype=np.int64),
-        chord=np.array([np.hypot(*chord) for chord in chords]),
-        rigidity=axial_rigidity(system),
-        unit=system.scales.unit,
-        energy=system.scales.energy,
-    )
+    return Motion(system, system.drives, system.loads)
 
 
 def axial_rigidity(system: System) -> Array:
-    """Inverse of the axial modes' compliance matrix, (M, M) [N/m]; zero for inextensible strips."""
-    start, end = system.layout.coordinate_count, system.layout.multiplier_start
-    size = system.layout.size
+    """Inverse of the axial modes' compliance matrix, from the Hessian at rest."""
+    start, end, size = system.layout.coordinate_count, system.layout.multiplier_start, system.layout.size
     gradient, hessian = np.empty(size), np.empty((size, size))
     evaluate(system, system.rest, 0.0, gradient, hessian)
     compliance = -hessian[start:end, start:end]
@@ -105,77 +269,3 @@ def axial_rigidity(system: System) -> Array:
             block = slice(first - start, first - start + count)
             rigidity[block, block] = np.linalg.inv(compliance[block, block])
     return rigidity
-
-
-def initial_acceleration(system: System, motion: Motion, z: Array, v: Array) -> tuple[Array, Array]:
-    """Consistent acceleration (Q,) and unknowns z (N,) at a state with velocity v (Q,).
-
-    M a + dV/dq = Psi_q^T lambda with the constraints (and the inextensible strips' strains)
-    differentiated twice: Psi_q a = -(Psi_q v)_q v, the right side by a central difference of
-    Psi_q along v, exact at rest. Loads are those of the motion's instant 0.
-    """
-    system = _with_first_loads(system, motion)
-    layout = system.layout
-    q, rest = slice(0, layout.coordinate_count), slice(layout.coordinate_count, layout.size)
-    size, unit = layout.size, system.scales.unit
-    gradient, hessian = np.empty(size), np.empty((size, size))
-    free = z.copy()
-    axial = slice(layout.coordinate_count, layout.multiplier_start)
-    free[rest] = 0.0
-    evaluate(system, free, 1.0, gradient, hessian)
-    free[axial] = motion.rigidity @ gradient[axial]
-    fixed = np.concatenate((np.diag(motion.rigidity) == 0, np.ones(size - layout.multiplier_start, bool)))
-    for row, compliance in zip(
-        system.tables.clamps.row + 2, system.tables.clamps.numbers[:, YIELDING], strict=True
-    ):
-        if compliance > 0.0:
-            free[row], fixed[row - layout.coordinate_count] = gradient[row] / compliance, False
-    evaluate(system, free, 1.0, gradient, hessian)
-    rows = np.arange(size)[rest][fixed]
-    jacobian, force = hessian[rows][:, q].copy(), -gradient[q].copy()
-
-    drift = np.zeros(len(rows))
-    speed = np.abs(v / unit[q]).max()
-    if speed > 0:
-        step = 1e-4 / speed
-        ahead, behind = free.copy(), free.copy()
-        ahead[q] += step * v
-        behind[q] -= step * v
-        evaluate(system, ahead, 1.0, gradient, hessian)
-        drift = hessian[rows][:, q] @ v
-        evaluate(system, behind, 1.0, gradient, hessian)
-        drift = (drift - hessian[rows][:, q] @ v) / (2 * step)
-
-    # a coordinate without mass stands in equilibrium already: least squares leave it at rest
-    matrix = np.block([[motion.mass, jacobian.T], [jacobian, np.zeros((len(rows), len(rows)))]])
-    heavy = np.diag(motion.mass).max()
-    scale = np.concatenate((unit[q] / system.scales.length, np.full(len(rows), 1.0)))
-    scale[len(motion.mass) :] = heavy / np.maximum(np.linalg.norm(jacobian * scale[q], axis=1), 1e-300)
-    right = np.concatenate((force, -drift)) * scale
-    scaled = matrix * scale[:, None] * scale
-    solved = scale * np.linalg.lstsq(scaled, right, rcond=1e-14)[0]
-    free[rows] = solved[len(motion.mass) :]
-    return solved[: len(motion.mass)], free
-
-
-def _with_first_loads(system: System, motion: Motion) -> System:
-    """The system with the loads that act at the instant 0 of the motion's clock, at load factor 1."""
-    loads = motion.tables.loads
-    given = zip(loads.first, loads.pairs, strict=True)
-    parts = np.array([factor_at(0.0, first, pairs, loads.times, loads.factors) for first, pairs in given])
-    now = loads._replace(value=parts * loads.value) if parts.size else loads
-    return system.with_tables(loads=now)
-
-
-def require_compiled(system: System, name: str) -> None:
-    """Refuse potentials in Python."""
-    if system.open_potentials:
-        names = [type(potential).__name__ for potential in system.open_potentials]
-        raise InvalidParameter("integrator", name, f"generalised-alpha for {', '.join(names)}")
-
-
-def require_conservative(motion: Motion, name: str) -> None:
-    """Refuse a scene with damping, drives or loads: only the energy-consistent scheme has them."""
-    others = motion.tables.drives.row.size + motion.tables.loads.coordinate.size
-    if motion.drag.size or motion.damped or others:
-        raise InvalidParameter("integrator", name, "energy (fixed step) for damping, loads and drives")

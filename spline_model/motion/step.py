@@ -8,8 +8,7 @@ from __future__ import annotations
 import math
 
 from spline_model.effects.history import factor_at
-from spline_model.motion.project import condense, to_reduced
-from spline_model.motion.roots import turn_bodies, turn_roots
+from spline_model.motion.project import condense, to_reduced, turn_bodies, turn_roots
 from spline_model.motion.strip import add_points, move_strip
 from spline_model.strip.compiled import called, part
 
@@ -64,7 +63,7 @@ def load_at(f, time, masses):
 
 
 @called()
-def place_of(i, tip, root, behind):
+def _place_of(i, tip, root, behind):
     """The bodies' unknown that a strip's i-th coordinate behind its own ones is."""
     if tip >= 0:
         if i < 3:
@@ -125,13 +124,13 @@ def assemble(h, state, strips, masses, work):
         for k in range(modes):
             raw[at + own + k] = work.gap[s, k]
         for i in range(own, size):
-            raw[place_of(i - own, tip, root, behind)] += g[i]
+            raw[_place_of(i - own, tip, root, behind)] += g[i]
         size = condense(s, size, strips, work)
         for i in range(own, size):
-            row = place_of(i - own, tip, root, behind)
+            row = _place_of(i - own, tip, root, behind)
             reduced[row] += g[i]
             for j in range(own, size):
-                tangent[row, place_of(j - own, tip, root, behind)] += hessian[i, j]
+                tangent[row, _place_of(j - own, tip, root, behind)] += hessian[i, j]
     norm = 0.0
     for i in range(raw.size):
         if i >= poses or work.held[i] == 0:
@@ -193,7 +192,7 @@ def improve(strips, masses, work):
         ends = own + (3 if tip >= 0 else 0) + (3 if root >= 0 else 0)
         g, h, change, right = work.g[s], work.h[s], work.ends_change, work.right[s]
         for i in range(own, ends + outer):
-            change[i] = work.reduced[place_of(i - own, tip, root, poses + s * outer)]
+            change[i] = work.reduced[_place_of(i - own, tip, root, poses + s * outer)]
         for i in range(own - 1, -1, -1):
             total = -g[i]
             for j in range(i + 1, ends + outer):

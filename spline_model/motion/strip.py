@@ -10,7 +10,7 @@ c = 2 tan(dphi / 2):
 so that D^T times the forces on the control points is free of the clamps' reactions, and no energy is
 lost. The tangent is D^T (K T) with T = dP/d(dy) at the step's end, and (dD)^T times the forces. Where
 roots turn (``effects.RootCompliance``) P_inner is free like the points between, and a spring turns it
-(``spline_model.motion.roots``).
+(``spline_model.motion.project``).
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ from spline_model.strip.two_states import (
 
 
 @called()
-def end_frame(body, frame, reach, pose, out):
+def _end_frame(body, frame, reach, pose, out):
     """Arm from the body's centre and s-direction of a clamped end: out (4,)."""
     out[0] = out[1] = 0.0
     angle = 0.0
@@ -40,7 +40,7 @@ def end_frame(body, frame, reach, pose, out):
 
 
 @called()
-def move_end(body, end, inner, lead, s0, ds, dy, e0, e1, points, move, maps):
+def _move_end(body, end, inner, lead, s0, ds, dy, e0, e1, points, move, maps):
     """Move an end and its inner point by D dy, and fill D and T of it.
 
     A map has eight numbers: directions in which the inner point moves with s and with c, the outer one
@@ -77,14 +77,14 @@ def move_strip(s, at, state, strips, work):
     n, lead, own = strips.mass.shape[1], strips.lead, strips.own
     y, dy, move, points = state.y, work.dy, work.move[s], work.points[s]
     ends = work.ends[s]
-    end_frame(strips.roots[s], strips.root[s], strips.reach[s, 0], work.pose, ends[0])
-    end_frame(strips.tips[s], strips.tip[s], -strips.reach[s, 1], work.pose, ends[1])
+    _end_frame(strips.roots[s], strips.root[s], strips.reach[s, 0], work.pose, ends[0])
+    _end_frame(strips.tips[s], strips.tip[s], -strips.reach[s, 1], work.pose, ends[1])
     root, tip = at + own - 2, at + own - 1
-    move_end(
+    _move_end(
         strips.roots[s], 0, 1, lead, y[root], dy[root], dy, state.ends[s, 0], ends[0], points, move,
         work.maps[s, 0],
     )  # fmt: skip
-    move_end(
+    _move_end(
         strips.tips[s], n - 1, n - 2, lead, y[tip], dy[tip], dy, state.ends[s, 1], ends[1], points, move,
         work.maps[s, 1],
     )  # fmt: skip
@@ -100,8 +100,8 @@ def place_strip(s, y, at, strips, points, ends):
     """Control points (2, n) and end frames (2, 4) of a strip in the state y."""
     n, lead = strips.mass.shape[1], strips.lead
     root, tip = at + strips.own - 2, at + strips.own - 1
-    end_frame(strips.roots[s], strips.root[s], strips.reach[s, 0], y, ends[0])
-    end_frame(strips.tips[s], strips.tip[s], -strips.reach[s, 1], y, ends[1])
+    _end_frame(strips.roots[s], strips.root[s], strips.reach[s, 0], y, ends[0])
+    _end_frame(strips.tips[s], strips.tip[s], -strips.reach[s, 1], y, ends[1])
     for k in range(2):
         for e in range(2):
             body = strips.roots[s] if e == 0 else strips.tips[s]
@@ -128,7 +128,7 @@ def curve_at(p, points, first, d1, d2, out):
 
 
 @called()
-def add_products(begin, n, pairs, h0, h1, h2, h3, block):
+def _add_products(begin, n, pairs, h0, h1, h2, h3, block):
     """Add one component's h (C', C'') to its block of the tangent, (n n,) by rows."""
     p0, p1, p2, p3 = pairs[0], pairs[1], pairs[2], pairs[3]
     if p0.size == n * n:
@@ -208,10 +208,10 @@ def add_points(s, a, h, state, strips, work):
         pairs = strips.pairs[p]
         xx, xy = weight * (h00 + grow * dx * tx + turn), weight * (h01 + grow * dx * ty)
         yx, yy = weight * (h10 + grow * dy * tx), weight * (h11 + grow * dy * ty + turn)
-        add_products(begin, n, pairs, xx, weight * h02, weight * h20, weight * h22, blocks[0])
-        add_products(begin, n, pairs, xy, weight * h03, weight * h21, weight * h23, blocks[1])
-        add_products(begin, n, pairs, yx, weight * h12, weight * h30, weight * h32, blocks[2])
-        add_products(begin, n, pairs, yy, weight * h13, weight * h31, weight * h33, blocks[3])
+        _add_products(begin, n, pairs, xx, weight * h02, weight * h20, weight * h22, blocks[0])
+        _add_products(begin, n, pairs, xy, weight * h03, weight * h21, weight * h23, blocks[1])
+        _add_products(begin, n, pairs, yx, weight * h12, weight * h30, weight * h32, blocks[2])
+        _add_products(begin, n, pairs, yy, weight * h13, weight * h31, weight * h33, blocks[3])
 
 
 @part()

@@ -12,18 +12,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.compile import System
-from spline_model.errors import InvalidParameter
 from spline_model.estimate import MotionEstimate
-from spline_model.laps import Laps
 from spline_model.motion.records import DISSIPATED, KINETIC, STRAIN, WEIGHT, WORK, Records, Whole
-from spline_model.motion.start import Motion
+from spline_model.newton import Laps
 from spline_model.solution import Status, Tabulated, body_columns
 
 Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
-class Remark:
+class _Remark:
     """A sentence that is made when it is first asked for."""
 
     make: Callable[[], str]
@@ -43,7 +41,7 @@ class Trajectory(Tabulated):
     against rest, work of loads and drives so far, dissipated so far (T,) [J];
     whole: what is made when it is asked for, states, velocities and constraint residuals; unresolved: what
     the step leaves unresolved, likewise, and checked: what a companion found; effects: names of the scene's
-    effects; counters: steps, halved_steps, newton_iterations, ...; seconds: by part (``spline_model.laps``),
+    effects; counters: steps, halved_steps, newton_iterations, ...; seconds: by part (``newton.Laps``),
     "start" the static state that is let go; estimate: of the error, where an accuracy was asked for;
     rotation_error: largest difference of the rotation to a companion's with two control points more
     [rad], nan without one.
@@ -60,7 +58,7 @@ class Trajectory(Tabulated):
     work: Array
     dissipated: Array
     whole: Whole
-    unresolved: Remark
+    unresolved: _Remark
     effects: tuple[str, ...]
     counters: dict[str, int]
     settings: dict[str, Any]
@@ -131,7 +129,7 @@ def trajectory_of(
 ) -> Trajectory:
     """The trajectory of a run; a run that says why it stopped has not converged."""
     rows = run.rows
-    rest = float(system.tables.weight @ system.rest[: system.tables.weight.size])
+    rest = float(system.weight @ system.rest[: system.weight.size])
     return Trajectory(
         status=Status.NOT_CONVERGED if run.message else Status.CONVERGED,
         message=run.message,
@@ -144,7 +142,7 @@ def trajectory_of(
         work=rows[:, WORK],
         dissipated=rows[:, DISSIPATED],
         whole=run.whole,
-        unresolved=Remark(unresolved),
+        unresolved=_Remark(unresolved),
         effects=effects,
         counters=run.counters,
         settings={
@@ -153,25 +151,6 @@ def trajectory_of(
         },
         seconds=laps.lap("recover"),
     )
-
-
-def last_state(before: Trajectory, system: System) -> tuple[Array, Array]:
-    """Unknowns (N,) and velocities (Q,) of the last record, for a system that may have other drives."""
-    layout = system.layout
-    known, count = layout.multiplier_start, layout.coordinate_count
-    if before.velocities.shape[1] != count or before.states.shape[1] < known:
-        raise InvalidParameter("after", "a motion of another mechanism", f"one of {count} coordinates")
-    z = np.zeros(layout.size)
-    z[:known] = before.states[-1, :known]
-    return z, before.velocities[-1].copy()
-
-
-def later(motion: Motion, time: float) -> Motion:
-    """The motion with its clock set to ``time`` [s]: histories and drives are that far on."""
-    drives, loads = motion.tables.drives, motion.tables.loads
-    drives = drives._replace(times=drives.times - time, begin=drives.begin - time, until=drives.until - time)
-    loads = loads._replace(times=loads.times - time)
-    return motion._replace(tables=motion.tables._replace(drives=drives, loads=loads))
 
 
 def counted_on(trajectory: Trajectory, before: Trajectory) -> Trajectory:

@@ -39,7 +39,7 @@ KNOWN = 4
 
 FORCE, RAW, CHANGE, MOVE, REACTION, REACTION_RATE, ENDS = range(7)
 """Rows of ``Space.vectors``."""
-Y, RATE, PREDICTED = 2 * KNOWN, 2 * KNOWN + 1, 2 * KNOWN + 2
+Y, RATE, PREDICTED, SPARE = range(2 * KNOWN, 2 * KNOWN + 4)
 """Rows of ``Space.states`` behind the known ones."""
 FACTORS = 5
 """Place of the known states' factors behind the sums."""
@@ -67,7 +67,7 @@ class Space(NamedTuple):
     tangent (Q, Q), upper; factors (F, F) of its free part; vectors (7, Q or more): FORCE and RAW, the
     residuals with the strips condensed and without, CHANGE (F,), MOVE, REACTION and REACTION_RATE (D,), and
     ENDS of a strip;
-    states (2 KNOWN + 3, Y): known ones, their rates, Y, RATE and PREDICTED; out (5 + KNOWN,): what
+    states (2 KNOWN + 4, Y): known ones, their rates, Y, RATE, PREDICTED and SPARE; out (5 + KNOWN,): what
     ``assemble`` sums up, and the factors of the known states.
     """
 
@@ -95,7 +95,7 @@ def working_space(bodies: Bodies, size: int) -> Space:
         tangent=np.zeros((q, q)),
         factors=np.zeros((f, f)),
         vectors=np.zeros((7, max(q, 7))),
-        states=np.zeros((2 * KNOWN + 3, size)),
+        states=np.zeros((2 * KNOWN + 4, size)),
         out=np.zeros(5 + KNOWN),
     )
 
@@ -150,8 +150,8 @@ def condensed(s, own, size, strips, local):
     )  # fmt: skip
 
 
-@kernel()
-def assemble(y, load, bodies, strips, shape, local, space):
+@part()
+def condense_all(y, load, bodies, strips, shape, local, space):
     """Condense all strips at y; the bodies' tangent (upper) and force in ``space``.
 
     y: the bodies' poses, then w and a of each strip. Returns the largest residual of the strips, in
@@ -192,6 +192,12 @@ def assemble(y, load, bodies, strips, shape, local, space):
         out[NEGATIVE] += negative
         scatter(last, size, strips.tips[s], strips.roots[s], poses + s, g, h, force, tangent)
     return norm
+
+
+@kernel()
+def assemble(y, load, bodies, strips, shape, local, space):
+    """The same, to be called."""
+    return condense_all(y, load, bodies, strips, shape, local, space)
 
 
 @called()
@@ -257,8 +263,8 @@ def move_strips(share, bodies, strips, shape, local, space, out):
 
 
 @called()
-def moment_defect(y, strips, shape, local):
-    """Energy of what the strips' moments differ from balance by, twice, and twice their bending energy.
+def moment_defect(y, strips, shape, local, smallest):
+    """Root of the energy of what the strips' moments differ from balance by over their bending energy.
 
     The balance starts from the force and moment of the clamp at the tip and has the dead load
     beyond each point: int (M - M_b)^2 / EI ds with M_b linear in the curve's points.
@@ -291,10 +297,4 @@ def moment_defect(y, strips, shape, local):
                 ds = rule[WEIGHT, p] * along[p, SPEED] / along[p, RIGIDITY]
                 wrong += ds * left * left
                 stored += ds * moments[p] ** 2
-    return wrong, stored
-
-
-@called()
-def root_of(wrong, stored, smallest):
-    """The moment defect from the two energies."""
     return math.sqrt(wrong / (stored + smallest * smallest))

@@ -16,6 +16,8 @@ from spline_model.continuation.bordered import Bordered
 from spline_model.continuation.followed import Energies, Followed
 from spline_model.continuation.point import Point
 from spline_model.continuation.resolution import SMALLEST_MOMENT
+from spline_model.effects import Shear
+from spline_model.errors import InvalidParameter
 from spline_model.reduced.assembly import (
     AXIAL,
     BENDING,
@@ -23,7 +25,6 @@ from spline_model.reduced.assembly import (
     SLOWEST,
     Bodies,
     moment_defect,
-    root_of,
 )
 from spline_model.reduced.model import Reduced, from_unknowns, reduced
 from spline_model.reduced.path import empty_answer
@@ -40,7 +41,7 @@ ASIDE = 1e-5
 
 
 @kernel()
-def gather(y, reaction, aim, load, bodies, strips, shape, local, out, gradient, hessian):
+def _gather(y, reaction, aim, load, bodies, strips, shape, local, out, gradient, hessian):
     """Gradient (N,) and tangent (Y, Y) in poses, w and then a of all strips, at y (Y,); energies in out.
 
     Reactions (D,) of the drives, which hold their coordinates at ``aim`` (D,), are the last unknowns.
@@ -65,17 +66,16 @@ def gather(y, reaction, aim, load, bodies, strips, shape, local, out, gradient, 
 
 
 @kernel()
-def defect_of(y, strips, shape, local):
+def _defect_of(y, strips, shape, local):
     """The moment defect of the state that was last gathered."""
-    wrong, stored = moment_defect(y, strips, shape, local)
-    return root_of(wrong, stored, SMALLEST_MOMENT)
+    return moment_defect(y, strips, shape, local, SMALLEST_MOMENT)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Elements(Followed):
     """Unknowns z (N,): poses, w of all strips, a of all strips, reactions of the drives; dimensionless.
 
-    local, out (5,): working arrays, and energies as ``gather`` left them.
+    local, out (5,): working arrays, and energies as ``_gather`` left them.
     """
 
     model: Reduced
@@ -164,7 +164,7 @@ class Elements(Followed):
         if share != 1.0:
             act(share, self.preload, bodies, strips)
         origin, target = model.drives
-        gather(
+        _gather(
             self.y(z),
             z[size:],
             origin + load_factor * target,
@@ -208,7 +208,7 @@ class Elements(Followed):
         share = self.acting(load_factor)[1]
         self.fill(z, load_factor, share)
         strips = self.model.strips if share == 1.0 else self.loose[1]
-        return float(defect_of(self.y(z), strips, self.model.shape, self.local))
+        return float(_defect_of(self.y(z), strips, self.model.shape, self.local))
 
     def state(self, unknowns: Array) -> Array:
         """z of the scene's unknowns, whose clamps hold."""
@@ -260,4 +260,7 @@ def places(poses: int, count: int, own: int, modes: int) -> NDArray[np.int64]:
 def followed(system: System, method: str = "condensed") -> Followed:
     """The system to follow a path on: the elements, where they know the scene and are asked for."""
     model = reduced(system) if method == "condensed" else None
+    if model is None and system.scene.of(Shear):
+        known = 'none beside method="multipliers", long B-splines or own effects'
+        raise InvalidParameter("effects", "shear", known)
     return Bordered.of(system) if model is None else Elements.on(model)

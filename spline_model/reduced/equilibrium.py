@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from spline_model.reduced.assembly import (
@@ -13,6 +15,7 @@ from spline_model.reduced.assembly import (
     RAW,
     REACTION,
     REACTION_RATE,
+    SPARE,
     assemble,
     factorise,
     move_strips,
@@ -21,50 +24,74 @@ from spline_model.reduced.assembly import (
 from spline_model.strip.compiled import called, kernel
 from spline_model.strip.condense import SINGULAR
 
-ITERATIONS, EVALUATIONS, HALVED = range(3)
-"""Places of the counters."""
+ITERATIONS, EVALUATIONS, HALVED, CONFIRMED = range(4)
+"""Places of the counters; CONFIRMED: evaluations without a tangent."""
 MOST_ITERATIONS = 15
 NEARLY = 0.1
 """Residual over the tolerance from which the last correction is enough: it squares the residual, but
 stiffness is that of the state before it."""
+CLOSE = 0.01
+"""The same without a last correction."""
+
+
+@called()
+def _solve_bodies(bodies, space):
+    """The bodies' change, MOVE, by which their residual FORCE vanishes; held coordinates do not move."""
+    free, x, move = bodies.free, space.vectors[CHANGE], space.vectors[MOVE]
+    for i in range(bodies.load.size):
+        move[i] = 0.0
+    for i in range(free.size):
+        x[i] = -space.vectors[FORCE, free[i]]
+    solve_free(space.factors, x)
+    for i in range(free.size):
+        move[free[i]] = x[i]
+
+
+@called()
+def carry(row, bodies, space):
+    """The same, and what the drives then bear into a row of the vectors."""
+    _solve_bodies(bodies, space)
+    for d in range(bodies.held.size):
+        total = space.vectors[FORCE, bodies.held[d]]
+        for i in range(bodies.load.size):
+            total += entry(space.tangent, bodies.held[d], i) * space.vectors[MOVE, i]
+        space.vectors[row, d] = total
 
 
 @kernel()
-def newton(y, load, bodies, strips, shape, local, space, tolerance, counters):
-    """Solve in place at the held coordinates in y; the negative eigenvalues, or -1 where it fails."""
+def newton(y, load, early, bodies, strips, shape, local, space, tolerance, counters):
+    """Solve in place at the held coordinates in y; the negative eigenvalues, or -1 where it fails, and the
+    last residual, behind which there is one correction more: NEARLY none, or ``early`` one whose square is.
+    """
     before = np.inf
-    free, vectors, poses, rate = bodies.free, space.vectors, bodies.rest.size, space.states[RATE]
-    raw, force, move, change = vectors[RAW], vectors[FORCE], vectors[MOVE], vectors[CHANGE]
+    free, poses, change = bodies.free, bodies.rest.size, space.states[SPARE]
+    raw, move = space.vectors[RAW], space.vectors[MOVE]
     for trial in range(MOST_ITERATIONS + 1):
         norm = assemble(y, load, bodies, strips, shape, local, space)
         counters[EVALUATIONS] += 1
         for i in range(free.size):
             norm = max(norm, abs(raw[free[i]]))
         if not norm < 1e12:
-            return -1
+            return -1, norm
         negative = factorise(bodies.free, space.tangent, space.factors, bodies.load.size - poses)
         if negative == SINGULAR:
-            return -1
-        done = norm <= NEARLY * tolerance or (norm <= 1e3 * tolerance and norm > 0.5 * before)
+            return -1, norm
+        done = norm <= (math.sqrt(CLOSE * tolerance) if early else NEARLY * tolerance) or (
+            norm <= 1e3 * tolerance and norm > 0.5 * before
+        )
         if not done and trial == MOST_ITERATIONS:
-            return -1
+            return -1, norm
         before = norm
-        for i in range(bodies.load.size):
-            move[i] = 0.0
-        for i in range(free.size):
-            change[i] = -force[free[i]]
-        solve_free(space.factors, change)
-        for i in range(free.size):
-            move[free[i]] = change[i]
-            if free[i] < poses:
-                y[free[i]] += change[i]
-        move_strips(1.0, bodies, strips, shape, local, space, rate)
+        _solve_bodies(bodies, space)
+        for i in range(poses):
+            y[i] += move[i]
+        move_strips(1.0, bodies, strips, shape, local, space, change)
         for i in range(poses, y.size):
-            y[i] += rate[i]
+            y[i] += change[i]
         if done:  # with a last correction, whose own residual is of second order
-            return max(0, negative + int(space.out[NEGATIVE]))
+            return max(0, negative + int(space.out[NEGATIVE])), norm
         counters[ITERATIONS] += 1
-    return -1
+    return -1, before
 
 
 @called()
@@ -80,15 +107,8 @@ def tangent(held_rate, load_rate, bodies, strips, shape, local, space):
     The residual that is left is carried to equilibrium by the tangent.
     """
     free, held, matrix, vectors = bodies.free, bodies.held, space.tangent, space.vectors
-    x, force, move, rate = vectors[CHANGE], vectors[FORCE], vectors[MOVE], space.states[RATE]
-    for i in range(free.size):
-        x[i] = -force[free[i]]
-    solve_free(space.factors, x)
-    for d in range(held.size):
-        total = force[held[d]]
-        for i in range(free.size):
-            total += entry(matrix, held[d], free[i]) * x[i]
-        vectors[REACTION, d] = total
+    x, move, rate = vectors[CHANGE], vectors[MOVE], space.states[RATE]
+    carry(REACTION, bodies, space)
     for i in range(free.size):
         total = load_rate * bodies.load[free[i]]
         for d in range(held.size):
@@ -123,7 +143,7 @@ def stiffness_of(bodies, space):
     return total
 
 
-@kernel()
+@called()
 def conjugate(held_rate, load_rate, bodies, y, space):
     """First and second derivative of the potential in the factor: reactions on drives less moved loads."""
     slope = bend = 0.0

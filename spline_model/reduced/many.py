@@ -45,7 +45,7 @@ def stations_of(model: Reduced, stations: Array) -> Stations:
 
 
 @called()
-def take_design(i, designs, along, curved, preload, bodies, strips, route, local):
+def _take_design(i, designs, along, curved, preload, bodies, strips, route, local):
     """Put the i-th design's numbers where a path takes them from; along, curved: of the mechanism itself.
 
     curved (2, S, G): its curvatures as in ``Preload``.
@@ -79,7 +79,7 @@ def take_design(i, designs, along, curved, preload, bodies, strips, route, local
 
 
 @called()
-def largest_strain(y, poses, depth, along, strips, local, stations):
+def _largest_strain(y, poses, depth, along, strips, local, stations):
     """Largest |N / (EA)| + |M| d / (2 EI) over straight strips' stations; depth d of the sections over L.
 
     Plane sections: M = EI (theta' / J0 - kappa_0), N the mixed form's axial force, slide modes included, as
@@ -128,7 +128,7 @@ def follow_share(
     states, centre, torque, stiffness, energy, strain, inertia, defect, iterations = results
     for i in range(begin, rows.size, stride):
         row = rows[i]
-        take_design(i, designs, along, curved, preload, bodies, strips, route, local)
+        _take_design(i, designs, along, curved, preload, bodies, strips, route, local)
         for k in range(answer.counters.size):
             answer.counters[k] = 0
         start, stands = designs.start[i], True
@@ -155,4 +155,4 @@ def follow_share(
             energy[row, k] = (answer.energies[k, 0] + answer.energies[k, 1]) * unit
             if depth.size > 0:
                 poses = bodies.rest.size
-                strain[row, k] = largest_strain(answer.y[k], poses, depth[i], along, strips, local, stations)
+                strain[row, k] = _largest_strain(answer.y[k], poses, depth[i], along, strips, local, stations)

@@ -11,12 +11,12 @@ from scipy.interpolate import BSpline
 
 from spline_model.basis import SplineBasis
 from spline_model.compile import System
-from spline_model.effects import Bending, MixedStretching, RootCompliance, Stretching
+from spline_model.effects import Bending, Clamp, MixedStretching, RootCompliance, Shear, Stretching
+from spline_model.effects.base import Constraint
 from spline_model.effects.elastic import MEASURES
 from spline_model.reduced.assembly import Bodies
-from spline_model.reduced.axial import len_modes, orthonormal_modes
 from spline_model.reduced.ends import Ends, bodies_of, ends_of
-from spline_model.reduced.numbers import numbers_of, speeds
+from spline_model.reduced.numbers import len_modes, numbers_of, orthonormal_modes, speeds
 from spline_model.scene import Scene
 from spline_model.strip.element import (
     CURL,
@@ -24,6 +24,7 @@ from spline_model.strip.element import (
     DROP,
     MODES,
     RIGIDITY,
+    SHEAR,
     SPEED,
     SPRING,
     WHERE,
@@ -80,6 +81,16 @@ class Reduced:
         """Whether roots turn, by the first two of w: see ``spline_model.strip.ends``."""
         return bool(self.strips.numbers[0, SPRING] > 0.0)
 
+    @property
+    def shears(self) -> bool:
+        """Whether strips shear, by the next two of w."""
+        return bool(self.strips.numbers[0, SHEAR] > 0.0)
+
+    @property
+    def beside(self) -> int:
+        """Number of a strip's points on no curve, which w begins with."""
+        return self.yields + self.shears
+
     @cached_property
     def drive_length(self) -> Array:
         """Unit of each driven coordinate (D,): 1 rad or the length."""
@@ -91,12 +102,18 @@ class Reduced:
         drives = self.system.drives
         return drives.origin / self.drive_length, drives.target / self.drive_length
 
+    def let_go(self, system: System) -> Reduced:
+        """That of a system in which nothing is driven, with the same strips and bodies."""
+        every = np.arange(len(self.bodies.load))
+        bodies = self.bodies._replace(free=every, held=every[:0], driven=-1)
+        return replace(self, system=system, bodies=bodies)
+
     def as_slender(self, *, slender: bool) -> Reduced:
         """The same with, or without, the mean axial forces beside the bodies: see ``LEAST_COMPLIANCE``."""
         strips, modes = self.strips, int(self.strips.compliance.shape[1])
         bodies = bodies_of(self.system, ends_of(self.system), slender * len(strips.roots))
         assert bodies is not None, "the mechanism is known already"
-        coupled = modes if strips.measure else slender * strips.split
+        coupled = modes if strips.measure else (slender or self.shears) * strips.split
         strips = strips._replace(coupled=coupled, outer=int(slender), gain=np.full_like(strips.gain, GAIN))
         return replace(self, bodies=bodies, strips=strips)
 
@@ -123,7 +140,7 @@ def _reduced(system: System) -> Reduced | None:
     bending = {e.strip: e for e in scene.of(Bending)}
     basis, points = scene.strips[0].basis, next(iter(bending.values())).gauss_points
     length, energy = system.scales.length, system.scales.energy
-    shape = shape_of(basis, points, bool(scene.of(RootCompliance)))
+    shape = shape_of(basis, points, bool(scene.of(RootCompliance)) + bool(scene.of(Shear)))
     ends = ends_of(system)
     strips, rest, to_modes = strips_of(system, shape, basis, points, ends)
     bodies = bodies_of(system, ends, strips.outer * len(scene.strips))
@@ -157,17 +174,17 @@ def _known(scene: Scene, system: System, longest: float) -> bool:
 
 
 @lru_cache(maxsize=64)
-def shape_of(basis: SplineBasis, points: int, yields: bool) -> Shape:
-    """The basis at the Gauss points; yields: whether roots turn, by a point more that is on no curve."""
+def shape_of(basis: SplineBasis, points: int, beside: int) -> Shape:
+    """The basis at the Gauss points; beside: points more on no curve (``spline_model.strip.ends``)."""
     n = basis.control_points
     order = np.array([*range(2, n - 2), 1, n - 2, n - 1, 0], dtype=np.int64)
     u, weight = basis.gauss_rule(points)
     whole = BSpline(basis.knots, np.eye(n), basis.degree).antiderivative()
     values = [basis.evaluate(u, k) for k in range(3)] + [whole(1.0) - whole(u)]
     tables = np.ascontiguousarray(np.array(values)[:, :, order])
-    if yields:
-        order = np.concatenate(([n], order))
-        tables = np.concatenate((np.zeros((*tables.shape[:2], 1)), tables), axis=2)
+    if beside:
+        order = np.concatenate((np.arange(n, n + beside), order))
+        tables = np.concatenate((np.zeros((*tables.shape[:2], beside)), tables), axis=2)
     return Shape.of(order, tables, np.array((u, weight)))
 
 
@@ -191,6 +208,10 @@ def strips_of(
     c *= energy / length
     small = c < LEAST_COMPLIANCE
     outer = int(small[:, :split].any())
+    for shear in scene.of(Shear):
+        c[list(mixed).index(shear.strip), :split] -= shear.compliance * energy / length
+    beside_w = bool(scene.of(Shear)) or outer
+    small |= c < 0.0
     along = np.empty((*speed.shape, MODES + c.shape[1]))
     along[..., SPEED], along[..., MODES:] = speed, modes
     along[..., CURVATURE] = rest + np.array([[e.natural_curvature * length] for e in bends])
@@ -209,7 +230,7 @@ def strips_of(
         roots=np.array([end.body for end in starts], dtype=np.int64),
         tips=np.array([end.body for end in tips], dtype=np.int64),
         split=split,
-        coupled=c.shape[1] if measure else outer * split,
+        coupled=c.shape[1] if measure else beside_w * split,
         outer=outer,
         measure=measure,
     )
@@ -222,8 +243,7 @@ def at_rest(model: Reduced) -> Array:
     y[: len(bodies.rest)] = bodies.rest
     for s, strip in enumerate(model.system.scene.strips):
         w, _ = model.places(s)
-        turns = [0.0] * (2 * model.yields)
-        y[w] = [*turns, *(strip.control_points[2:-2] / model.length).ravel(), 1.0, 1.0]
+        y[w] = [*([0.0] * (2 * model.beside)), *(strip.control_points[2:-2] / model.length).ravel(), 1.0, 1.0]
     return y
 
 
@@ -231,11 +251,22 @@ def from_unknowns(model: Reduced, z: Array) -> Array:
     """The states y (..., Y) of unknowns z (..., N) of the scene, whose clamps hold."""
     scene, layout, strips = model.system.scene, model.system.layout, model.strips
     y = np.empty((*z.shape[:-1], model.size))
+    roots = {
+        c.strip: layout.rows(i)
+        for i, c in enumerate(scene.of(Constraint))
+        if isinstance(c, Clamp) and c.end == "start"
+    }
     for i, body in enumerate(scene.bodies):
         y[..., 3 * i : 3 * i + 3] = z[..., layout.body(body.name)] / [model.length, model.length, 1.0]
     for s, strip in enumerate(scene.strips):
         (w, a), n = model.places(s), strip.basis.control_points
         points = z[..., layout.strip(strip.name)].reshape(*z.shape[:-1], n, 2) / model.length
+        apart = np.zeros((*z.shape[:-1], 2))
+        if model.shears:  # the force of the clamp at the root is minus that along the strip
+            unit = model.length / model.energy / strips.numbers[s, SHEAR]
+            apart = z[..., roots[strip.name]][..., :2] * unit
+            at = w.start + 2 * model.yields
+            y[..., at : at + 2] = apart
         y[..., w.stop + 6 - 2 * n : w.stop - 2] = points[..., 2:-2, :].reshape(*z.shape[:-1], -1)
         for end, (bodies, frames, outer, inner) in enumerate(
             ((strips.roots, strips.root, 0, 1), (strips.tips, strips.tip, n - 1, n - 2))
@@ -245,7 +276,7 @@ def from_unknowns(model: Reduced, z: Array) -> Array:
             turn = np.arctan2(chord[..., 1], chord[..., 0]) - frames[s, 2]
             if bodies[s] >= len(scene.bodies):  # a free end is its own body
                 place = 3 * bodies[s]
-                y[..., place : place + 2] = points[..., outer, :]
+                y[..., place : place + 2] = points[..., outer, :] - (apart if end else 0.0)
                 y[..., place + 2] = np.arctan2(np.sin(turn), np.cos(turn))
             if model.yields:
                 turn = turn - (y[..., 3 * bodies[s] + 2] if bodies[s] >= 0 else 0.0)

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
 
+from spline_model.basis import AxialModes, SlideModes, SplineBasis, all_modes
 from spline_model.compile import System
-from spline_model.effects import MixedStretching, RootCompliance, Stretching, StripGravity
-from spline_model.reduced.axial import natural_strain
+from spline_model.effects import MixedStretching, RootCompliance, Shear, Stretching, StripGravity
 from spline_model.reduced.ends import End, frames_of
 from spline_model.strip.element import (
     FIRST,
@@ -18,6 +19,7 @@ from spline_model.strip.element import (
     REACH,
     ROOT,
     SECOND,
+    SHEAR,
     SPRING,
     STRAIN,
     STRETCHING,
@@ -30,8 +32,8 @@ Array = NDArray[np.float64]
 
 
 def in_order(points: Array, shape: Shape) -> Array:
-    """Values at control points (..., n, k) in the order of elimination, zero at one on no curve."""
-    on_none = np.zeros((*points.shape[:-2], 1, points.shape[-1]))
+    """Values at control points (..., n, k) in the order of elimination, zero at those on no curve."""
+    on_none = np.zeros((*points.shape[:-2], 2, points.shape[-1]))
     return np.asarray(np.concatenate((points, on_none), axis=-2)[..., shape.order, :])
 
 
@@ -51,13 +53,13 @@ def numbers_of(
     starts: list[End],
     tips: list[End],
 ) -> Array:
-    """The numbers of ``Strips``, (S, 14 + 2 n)."""
+    """The numbers of ``Strips``, (S, 15 + 2 n)."""
     scene, length, energy = system.scene, system.scales.length, system.scales.energy
     numbers = np.zeros((len(scene.strips), ON_POINTS + 2 * len(shape.order)))
     for row, strip, parts in zip(numbers, scene.strips, mixed, strict=True):
         stretching, points = consistent.get(strip.name), strip.control_points.tolist()
         row[STRETCHING] = 0.0 if stretching is None else stretching.axial_rigidity * length / energy
-        row[STRAIN] = natural_strain(parts, stretching)
+        row[STRAIN] = _natural_strain(parts, stretching)
         row[REACH:SPRING] = (
             math.dist(points[1], points[0]) / length,
             math.dist(points[-1], points[-2]) / length,
@@ -66,7 +68,11 @@ def numbers_of(
     if roots:  # a free end has a frame of its own, against which it does not turn
         for row, strip in zip(numbers, scene.strips, strict=True):
             springs = [roots.get((strip.name, end), energy) / energy for end in ("start", "end")]
-            row[SPRING:PER_U] = springs
+            row[SPRING:SHEAR] = springs
+    for shear in scene.of(Shear):
+        s = [strip.name for strip in scene.strips].index(shear.strip)
+        whole = float(scene.strips[s].share_of_length().sum())
+        numbers[s, SHEAR] = length**2 / (energy * shear.compliance * whole)
     numbers[:, ROOT:TIP], numbers[:, TIP:REACH] = frames_of(starts, length), frames_of(tips, length)
     if system.weight.size:
         numbers[:, ON_POINTS:], numbers[:, PER_U:ON_POINTS] = _dead(system, shape)
@@ -87,3 +93,54 @@ def _dead(system: System, shape: Shape) -> tuple[Array, Array]:
                 mass = effect.linear_density * float(strip.share_of_length().sum())
                 per_u[s] += mass * np.asarray(effect.acceleration) / force
     return dead, per_u
+
+
+ROUND_OFF = 1e-14
+"""Difference of speeds along a strip, in its mean, that is none."""
+
+
+def len_modes(parts: list[MixedStretching], *, slide: bool) -> int:
+    """Number of axial forces of a strip that belong to the stretching, or to the sliding."""
+    return sum(e.modes.count for e in parts if isinstance(e.modes, SlideModes) == slide)
+
+
+def orthonormal_modes(
+    parts: list[tuple[AxialModes, ...]], basis: SplineBasis, points: int, speed: Array
+) -> tuple[Array, Array]:
+    """Modes (S, G, K) orthonormal along strips of a speed (S, G), and the scene's modes from them (S, K, K).
+
+    Those of one distribution of the speed are kept: all straight strips have the same, but for round-off.
+    """
+    mean = speed.sum(axis=1, keepdims=True) / speed.shape[1]
+    alike = np.rint(speed / mean / ROUND_OFF)
+    found = [_modes_of(each, basis, points, v.tobytes()) for each, v in zip(parts, alike, strict=True)]
+    longer = np.sqrt(mean)[..., None]
+    values, back = (np.array(each) / longer for each in zip(*found, strict=True))
+    return values, back
+
+
+@lru_cache(maxsize=64)
+def _modes_of(
+    parts: tuple[AxialModes, ...], basis: SplineBasis, points: int, speed: bytes
+) -> tuple[Array, Array]:
+    """The same of one strip of mean speed 1; speed: in ``ROUND_OFF``."""
+    u, weight = basis.gauss_rule(points)
+    weight = weight * (ROUND_OFF * np.frombuffer(speed))
+    values, back = np.zeros((len(u), 0)), np.zeros((0, 0))
+    for modes in parts:
+        full, to_part = all_modes(modes, u), np.eye(modes.count)
+        if not isinstance(modes, SlideModes):  # the mean first
+            to_part[:, 0] = np.linalg.lstsq(full, np.ones(len(u)), rcond=None)[0]
+            full = full @ to_part
+        factor = np.linalg.cholesky(full.T @ (weight[:, None] * full))
+        values = np.column_stack((values, np.linalg.solve(factor, full.T).T))
+        k, m = len(back), modes.count
+        back = np.block([[back, np.zeros((k, m))], [np.zeros((m, k)), to_part @ np.linalg.inv(factor).T]])
+    return values, back
+
+
+def _natural_strain(parts: list[MixedStretching], consistent: Stretching | None) -> float:
+    """Stress-free strain of a strip."""
+    if consistent is not None:
+        return consistent.natural_strain
+    return parts[0].natural_strain if parts else 0.0

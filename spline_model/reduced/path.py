@@ -1,4 +1,4 @@
-"""An equilibrium path of any mechanism, compiled: predict, correct, check, halve.
+"""An equilibrium path of any mechanism, compiled: _predict, correct, check, halve.
 
 Held coordinates and loads are linear in one factor. As long as stability does not change: where it
 does, or the path stops, ``continuation`` finds out why.
@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.checks import LARGEST_CORRECTION, SLOWEST_SPEED, SMALLEST_CORRECTION
-from spline_model.continuation.balance import ROUND_OFF, WORK_MISMATCH
+from spline_model.continuation.point import ROUND_OFF, WORK_MISMATCH
 from spline_model.continuation.resolution import LARGEST_DEFECT, SMALLEST_MOMENT
 from spline_model.reduced.assembly import (
     AXIAL,
@@ -23,12 +23,13 @@ from spline_model.reduced.assembly import (
     PREDICTED,
     RATE,
     REACTION,
+    REACTION_RATE,
     SLOWEST,
     Y,
     moment_defect,
-    root_of,
 )
-from spline_model.reduced.equilibrium import HALVED, conjugate, newton, stiffness_of, tangent
+from spline_model.reduced.beside import solve
+from spline_model.reduced.equilibrium import HALVED, conjugate, stiffness_of
 from spline_model.reduced.preload import act, swell
 from spline_model.strip.compiled import called, copy, kernel, part
 
@@ -54,7 +55,7 @@ class Route(NamedTuple):
 class Answer(NamedTuple):
     """S states: y (S, Y); reaction (S, D); stiffness (S,) of the driven rotation at fixed loads; energies
     (S, 2) bending, axial; done (S,) the potential's derivative integrated over the factor; inertia, defect
-    (S,); counters (3,).
+    (S,); counters (4,).
     """
 
     y: Array
@@ -82,30 +83,34 @@ def empty_answer(states: int, size: int, held: int) -> Answer:
         done=np.zeros(states),
         inertia=np.zeros(states, dtype=np.int64),
         defect=np.zeros(states),
-        counters=np.zeros(3, dtype=np.int64),
+        counters=np.zeros(4, dtype=np.int64),
     )
 
 
 @called()
-def predict(t, known, at, states):
-    """Hermite's polynomial through the last ``known`` states and rates at a factor t, into PREDICTED."""
-    predicted = states[PREDICTED]
+def _predict(t, known, at, states):
+    """Hermite's polynomial through ``known`` states and rates at a factor t, into PREDICTED and RATE."""
+    predicted, rate = states[PREDICTED], states[RATE]
     for k in range(predicted.size):
-        predicted[k] = 0.0
+        predicted[k] = rate[k] = 0.0
     for i in range(known):
-        lagrange, slope = 1.0, 0.0
+        away, square, slope, lean = t - at[i], 1.0, 0.0, 0.0
         for j in range(known):
             if j != i:
-                lagrange *= (t - at[j]) / (at[i] - at[j])
-                slope += 1.0 / (at[i] - at[j])
-        square = lagrange * lagrange
-        by_value, by_rate = (1.0 - 2.0 * (t - at[i]) * slope) * square, (t - at[i]) * square
+                apart = at[i] - at[j]
+                square *= ((t - at[j]) / apart) ** 2
+                slope += 1.0 / apart
+                lean += 1.0 / (t - at[j])
+        flat = 1.0 - 2.0 * away * slope
+        by_value, by_rate = flat * square, away * square
+        value_slope, rate_slope = 2.0 * square * (flat * lean - slope), square * (1.0 + 2.0 * away * lean)
         for k in range(predicted.size):
             predicted[k] += by_value * states[i, k] + by_rate * states[KNOWN + i, k]
+            rate[k] += value_slope * states[i, k] + rate_slope * states[KNOWN + i, k]
 
 
 @called()
-def accepted(y, known, bodies, strips, shape, space):
+def _accepted(y, known, bodies, strips, shape, space):
     """Whether a solved state is the continuation of the last one, with end tangents forward and no fold."""
     if not space.out[SLOWEST] > SLOWEST_SPEED:
         return False
@@ -133,13 +138,13 @@ def work_of(width, slope0, slope1, bend0, bend1):
 
 @part()
 def is_work(gained, work, width, slope0, slope1, stored):
-    """Whether a gain of potential is the work done, for what is ``stored``: ``continuation.balance``."""
+    """Whether a gain of potential is the work done, for what is ``stored``: ``continuation.point.jumped``."""
     scale = max(abs(gained), 0.5 * abs(width) * (abs(slope0) + abs(slope1)))
     return abs(gained - work) <= WORK_MISMATCH * scale + ROUND_OFF * (1.0 + stored)
 
 
 @called()
-def remember(t, known, at, states):
+def _remember(t, known, at, states):
     """Append Y and RATE to the known states, dropping the oldest; returns their number."""
     if known > 0 and t == at[known - 1]:
         known -= 1
@@ -156,11 +161,22 @@ def remember(t, known, at, states):
 
 
 @called()
-def keep_last(known, at, states):
+def _keep_last(known, at, states):
     """Forget all known states but the last."""
     at[0] = at[known - 1]
     copy(states[known - 1], states[0])
     copy(states[KNOWN + known - 1], states[KNOWN])
+
+
+@called()
+def _is_alone(route, bodies):
+    """Whether the driven rotation alone goes along the route, so that the torque's rate is stiffness."""
+    alone = not route.swells and bodies.driven >= 0 and route.target[bodies.driven] != 0.0
+    for d in range(bodies.held.size):
+        alone = alone and (d == bodies.driven or route.target[d] == 0.0)
+    for i in range(bodies.load.size):
+        alone = alone and (route.growth == 0.0 or bodies.load[i] == 0.0)
+    return alone
 
 
 @kernel()
@@ -173,17 +189,17 @@ def follow(start, route, judged, preload, bodies, strips, shape, local, space, t
     """
     states, out, counters, factors = space.states, space.out, answer.counters, route.factor
     y, predicted, known_at = states[Y], states[PREDICTED], out[FACTORS:]
-    held, targets = bodies.held, route.target
+    held, targets, growth = bodies.held, route.target, route.growth
     copy(start, y)
     copy(start, predicted)
     copy(start, states[0])
     known, at = 0, factors[0]
     energy = gradient = curvature = done = defect = stiffness = 0.0
-    inertia = -1
+    inertia, alone = -1, _is_alone(route, bodies)
     for row in range(factors.size):
         begin, step = at, factors[row] - at
         if known > 1 and step * (at - known_at[known - 2]) < 0.0:  # the path turns back
-            keep_last(known, known_at, states)
+            _keep_last(known, known_at, states)
             known = 1
         whole = step
         while True:
@@ -193,24 +209,24 @@ def follow(start, route, judged, preload, bodies, strips, shape, local, space, t
                 if not last:
                     here = at + step
                 if known > 1 and abs(here - at) > 2 * abs(at - known_at[known - 2]):
-                    keep_last(known, known_at, states)
+                    _keep_last(known, known_at, states)
                     known = 1
-                predict(here, known, known_at, states)
+                _predict(here, known, known_at, states)
                 copy(predicted, y)
             for d in range(held.size):
                 y[held[d]] = predicted[held[d]] = route.origin[d] + here * targets[d]
-            load = here * route.growth
+            load = here * growth
             if route.swells:
                 act(here, preload, bodies, strips)
-            negative = newton(y, load, bodies, strips, shape, local, space, tolerance, counters)
+            negative = solve(
+                y, load, alone, targets, growth, bodies, strips, shape, local, space, tolerance, counters
+            )
             inertia = negative if row == 0 else inertia
             sound = inertia >= 0 and (negative == inertia or (route.passes and negative >= 0))
-            sound = sound and accepted(y, max(known, 1), bodies, strips, shape, space)
+            sound = sound and _accepted(y, max(known, 1), bodies, strips, shape, space)
             if sound:
-                tangent(targets, route.growth, bodies, strips, shape, local, space)
-                slope, bend = conjugate(targets, route.growth, bodies, y, space)
-                wrong, stored = moment_defect(y, strips, shape, local)
-                defect = root_of(wrong, stored, SMALLEST_MOMENT)
+                slope, bend = conjugate(targets, growth, bodies, y, space)
+                defect = moment_defect(y, strips, shape, local, SMALLEST_MOMENT)
                 total = out[BENDING] + out[AXIAL] + out[DEAD]
                 for i in range(bodies.rest.size):
                     total -= load * bodies.load[i] * (y[i] - bodies.rest[i])
@@ -232,7 +248,7 @@ def follow(start, route, judged, preload, bodies, strips, shape, local, space, t
                     return row
                 continue
             at = here
-            known = remember(at, known, known_at, states)
+            known = _remember(at, known, known_at, states)
             if last:
                 break
             steps = abs(at - begin) / abs(step)
@@ -240,7 +256,11 @@ def follow(start, route, judged, preload, bodies, strips, shape, local, space, t
                 step *= 2.0
         if bodies.driven >= 0:
             before = stiffness
-            stiffness = stiffness_of(bodies, space)
+            stiffness = (
+                space.vectors[REACTION_RATE, bodies.driven] / targets[bodies.driven]
+                if alone
+                else stiffness_of(bodies, space)
+            )
             if row > 0 and before * stiffness < 0.0 and not route.passes:
                 return row
             answer.stiffness[row] = stiffness

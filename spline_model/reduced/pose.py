@@ -75,7 +75,7 @@ def room_of(size: int, strip: int) -> Room:
 
 
 @kernel()
-def evaluate(s, at, y, strips, shape, local, room):
+def _evaluate(s, at, y, strips, shape, local, room):
     """One strip in its element coordinates; returns their number."""
     out = room.out
     out[BENDING] = out[AXIAL] = 0.0
@@ -93,13 +93,13 @@ def move(share, s, at, own, y, strips, local, room):
 
 
 @kernel()
-def correct(s, at, own, y, strips, shape, local, room, tolerance, counters):
+def _correct(s, at, own, y, strips, shape, local, room, tolerance, counters):
     """Newton of one strip between its ends, in place; negative pivots of the solution, or -1 if it fails."""
     for i in range(room.change.size):
         room.change[i] = 0.0
     before = np.inf
     for _ in range(MOST_ITERATIONS + 1):
-        size = evaluate(s, at, y, strips, shape, local, room)
+        size = _evaluate(s, at, y, strips, shape, local, room)
         counters[EVALUATIONS] += 1
         norm = 0.0
         for i in range(own):
@@ -121,9 +121,9 @@ def correct(s, at, own, y, strips, shape, local, room, tolerance, counters):
 
 
 @called()
-def energy_at(s, at, own, y, strips, shape, local, room):
+def _energy_at(s, at, own, y, strips, shape, local, room):
     """Strain energy of a strip with its axial forces made to follow w; inf for a fold."""
-    evaluate(s, at, y, strips, shape, local, room)
+    _evaluate(s, at, y, strips, shape, local, room)
     energy = room.out[BENDING]
     for k in range(strips.compliance.shape[1]):
         c = strips.compliance[s, k]
@@ -135,13 +135,13 @@ def energy_at(s, at, own, y, strips, shape, local, room):
 
 
 @called()
-def descend(s, at, own, y, strips, shape, local, room, tolerance, counters):
+def _descend(s, at, own, y, strips, shape, local, room, tolerance, counters):
     """From any w downhill to a stable equilibrium: Newton with a shift on the diagonal that keeps it so."""
     for i in range(room.change.size):
         room.change[i] = 0.0
-    energy, shift = energy_at(s, at, own, y, strips, shape, local, room), 0.0
+    energy, shift = _energy_at(s, at, own, y, strips, shape, local, room), 0.0
     for _ in range(DESCENTS):
-        size = evaluate(s, at, y, strips, shape, local, room)
+        size = _evaluate(s, at, y, strips, shape, local, room)
         counters[EVALUATIONS] += 1
         for i in range(own):
             local.reduced[s, i, i] += shift
@@ -152,22 +152,22 @@ def descend(s, at, own, y, strips, shape, local, room, tolerance, counters):
             room.trial[i] = y[at + i]
         move(1.0, s, at, own, y, strips, local, room)
         counters[ITERATIONS] += 1
-        lower = energy_at(s, at, own, y, strips, shape, local, room)
+        lower = _energy_at(s, at, own, y, strips, shape, local, room)
         if lower <= energy + 1e-12 * abs(energy):
             done = abs(energy - lower) <= 1e-9 * abs(energy) and shift == 0.0
             energy, shift = lower, (0.0 if shift < 20.0 else 0.25 * shift)
             if done:
-                return correct(s, at, own, y, strips, shape, local, room, tolerance, counters)
+                return _correct(s, at, own, y, strips, shape, local, room, tolerance, counters)
             continue
         for i in range(own):
             y[at + i] = room.trial[i]
-        energy_at(s, at, own, y, strips, shape, local, room)
+        _energy_at(s, at, own, y, strips, shape, local, room)
         shift = max(10.0, 4.0 * shift)
     return -1
 
 
 @kernel()
-def settle(s, at, own, y, strips, shape, local, room, tolerance, counters):
+def _settle(s, at, own, y, strips, shape, local, room, tolerance, counters):
     """From an unstable equilibrium to a stable one beside it, the lower of both sides; 0 if found."""
     size, least = own + strips.compliance.shape[1], np.inf
     for i in range(size):
@@ -183,8 +183,8 @@ def settle(s, at, own, y, strips, shape, local, room, tolerance, counters):
             push = (1.0 - 2.0 * turn) * NUDGE * 16.0 * (u * (1.0 - u)) ** 2
             y[place] -= push * room.place[3]
             y[place + 1] += push * room.place[2]
-        if descend(s, at, own, y, strips, shape, local, room, tolerance, counters) == 0:
-            energy = energy_at(s, at, own, y, strips, shape, local, room)
+        if _descend(s, at, own, y, strips, shape, local, room, tolerance, counters) == 0:
+            energy = _energy_at(s, at, own, y, strips, shape, local, room)
             if energy < least - 1e-9 * abs(energy):
                 least = energy
                 for i in range(size):
@@ -195,14 +195,14 @@ def settle(s, at, own, y, strips, shape, local, room, tolerance, counters):
 
 
 @kernel()
-def advance(y, pose, strips, shape, local, room, tolerance, counters):
+def _advance(y, pose, strips, shape, local, room, tolerance, counters):
     """All strips from y, where they are solved, to the bodies' poses (3 B,); False if one fails."""
     own, modes = 2 * shape.order.size - 6, strips.compliance.shape[1]
     for s in range(strips.roots.size):
         at = pose.size + s * (own + modes)
         for i in range(pose.size):
             y[i] = room.last[i]
-        size = evaluate(s, at, y, strips, shape, local, room)
+        size = _evaluate(s, at, y, strips, shape, local, room)
         counters[EVALUATIONS] += 1
         if condensed(s, own, size, strips, local) == SINGULAR:
             return False
@@ -215,20 +215,20 @@ def advance(y, pose, strips, shape, local, room, tolerance, counters):
         move(0.0, s, at, own, y, strips, local, room)
         for i in range(pose.size):
             y[i] = pose[i]
-        negative = correct(s, at, own, y, strips, shape, local, room, tolerance, counters)
+        negative = _correct(s, at, own, y, strips, shape, local, room, tolerance, counters)
         if negative < 0:  # too far for Newton: from the strip as it was, downhill
             for i in range(at, at + own + modes):
                 y[i] = room.last[i]
-            negative = descend(s, at, own, y, strips, shape, local, room, tolerance, counters)
+            negative = _descend(s, at, own, y, strips, shape, local, room, tolerance, counters)
         elif negative > 0:
-            negative = settle(s, at, own, y, strips, shape, local, room, tolerance, counters)
+            negative = _settle(s, at, own, y, strips, shape, local, room, tolerance, counters)
         if negative < 0:
             return False
     return True
 
 
 @called()
-def parts_of(before, pose, strips, room):
+def _parts_of(before, pose, strips, room):
     """Into how many parts the way from one set of poses to another is cut before it is tried."""
     longest = 0.0
     for s in range(strips.roots.size):
@@ -254,13 +254,13 @@ def hold(y, target, goal, strips, shape, local, room, tolerance, counters):
     copy(y, room.start)
     copy(y, room.last)
     done = 0.0
-    step = 1.0 / parts_of(room.start, target, strips, room)
+    step = 1.0 / _parts_of(room.start, target, strips, room)
     while done < 1.0:
         step = min(step, 1.0 - done)
         at = 1.0 if 1.0 - done - step < 1e-9 else done + step
         for i in range(target.size):
             goal[i] = target[i] if at == 1.0 else room.start[i] + at * (target[i] - room.start[i])
-        if advance(y, goal, strips, shape, local, room, tolerance, counters):
+        if _advance(y, goal, strips, shape, local, room, tolerance, counters):
             done = at
             copy(y, room.last)
             step *= 2.0

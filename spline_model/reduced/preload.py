@@ -10,22 +10,18 @@ from numpy.typing import NDArray
 from spline_model.reduced.assembly import (
     AXIAL,
     BENDING,
-    CHANGE,
     FORCE,
-    MOVE,
     RATE,
     Bodies,
-    move_strips,
     place_of,
-    solve_free,
 )
+from spline_model.reduced.beside import respond, to_coordinates
 from spline_model.reduced.model import Reduced
 from spline_model.reduced.numbers import in_order
-from spline_model.strip.compiled import kernel
-from spline_model.strip.element import CURVATURE, GRADIENT, LAST, PER_U, POINTS, SPRING, STRAIN, Strips
-from spline_model.strip.ends import by_roots, to_ends
+from spline_model.strip.compiled import called, kernel
+from spline_model.strip.element import CURVATURE, GRADIENT, LAST, PER_U, STRAIN, Strips
 from spline_model.strip.laws import MATERIAL
-from spline_model.strip.points import evaluate_points
+from spline_model.strip.points import evaluate_residual
 
 Array = NDArray[np.float64]
 
@@ -33,7 +29,7 @@ Array = NDArray[np.float64]
 class Preload(NamedTuple):
     """All of the weight and pre-strain of a mechanism, and scratch for their derivatives.
 
-    curvature (2, S, G) at rest and stress-free; numbers (S, 12 + 2 n) as in ``Strips``, bodies (Q,) as in
+    curvature (2, S, G) at rest and stress-free; numbers (S, 15 + 2 n) as in ``Strips``, bodies (Q,) as in
     ``Bodies``; hung (2,): energy of the dead load at rest, to be subtracted, and that with the bodies' own;
     change (S, 2 n + K): derivatives of gradient and gap in the share; push (Y,): that of the residual
     in w, a and the poses; out (5,).
@@ -87,22 +83,7 @@ def act(share, preload, bodies, strips):
         bodies.weight[i] = share * preload.bodies[i]
 
 
-@kernel()
-def forward(own, last, end, coupled, outer, gain, h, b, gap, g):
-    """Eliminate a right-hand side, g of w and the ends and gap of a, as the strip was condensed."""
-    for k in range(gap.size):
-        for i in range(end):
-            if i < own or i >= last:
-                g[i] += gain[k] * gap[k] * b[k, i]
-    for k in range(coupled):
-        g[end if k < outer else own + k - outer] = gap[k]
-    for i in range(last):
-        factor = g[i] / h[i, i]
-        for j in range(i + 1, end + outer):
-            g[j] -= factor * h[i, j]
-
-
-@kernel()
+@called(no_cpython_wrapper=False)
 def swell(y, share, preload, bodies, strips, shape, local, space):
     """Rate of a state, just solved, in the share, in ``space``; first and second derivative of its potential.
 
@@ -110,10 +91,9 @@ def swell(y, share, preload, bodies, strips, shape, local, space):
     condensed as ``assemble`` left it, its gradients are overwritten.
     """
     n, modes, poses = shape.order.size, strips.compliance.shape[1], bodies.rest.size
-    own, inner = 2 * n - 6, strips.coupled - strips.outer
+    own, last = 2 * n - 6, 2 * n - 6 + strips.coupled - strips.outer
     push, out, vectors, rate = preload.push, preload.out, space.vectors, space.states[RATE]
-    force, move, change = vectors[FORCE], vectors[MOVE], vectors[CHANGE]
-    slope, bend = preload.hung[0], -8.0 * (space.out[BENDING] + space.out[AXIAL])
+    force, slope, bend = vectors[FORCE], preload.hung[0], -8.0 * (space.out[BENDING] + space.out[AXIAL])
     for side in range(2):
         sign = 1.0 - 2.0 * side
         act(share + 0.5 * sign, preload, bodies, strips)
@@ -121,7 +101,7 @@ def swell(y, share, preload, bodies, strips, shape, local, space):
             out[i] = 0.0
         for s in range(strips.roots.size):
             at = poses + s * (own + modes) + own
-            evaluate_points(s, y[at : at + modes], n, shape, strips, local, out)
+            evaluate_residual(s, y[at : at + modes], n, shape, strips, local, out)
             total = preload.change[s]
             for i in range(2 * n + modes):
                 total[i] *= side
@@ -133,42 +113,22 @@ def swell(y, share, preload, bodies, strips, shape, local, space):
     act(share, preload, bodies, strips)
     for i in range(bodies.load.size):
         force[i] = -preload.bodies[i]
-        move[i] = 0.0
     for i in range(poses):
         push[i] = -preload.bodies[i]
         slope += push[i] * (y[i] - bodies.rest[i])
     for s in range(strips.roots.size):
-        at, first = poses + s * (own + modes), 2 * n - 8
-        tip, root = strips.tips[s] >= 0, strips.roots[s] >= 0
-        last, h, given = own + inner, local.reduced[s], preload.change[s]
-        g, b, gap = h[LAST], h[h.shape[1] : h.shape[1] + modes], local.axial[s, LAST]
-        for i in range(first):
-            g[i] = given[i]
-        to_ends(given, first, local.map[s], tip, root, g, first, last)
-        if strips.numbers[s, SPRING] > 0.0:
-            by_roots(given, first, local.nodal[s, POINTS], g)
+        at, tip, root = poses + s * (own + modes), strips.tips[s], strips.roots[s]
+        given, g, gap = preload.change[s], local.reduced[s, LAST], local.axial[s, LAST]
+        to_coordinates(s, given[: 2 * n], last, strips, local)
         for i in range(own):
             push[at + i] = g[i]
-        for i in range(3 * tip):
-            push[3 * strips.tips[s] + i] += g[last + i]
-        for i in range(3 * root):
-            push[3 * strips.roots[s] + i] += g[last + 3 * tip + i]
+        for i in range(last, last + 3 * (tip >= 0) + 3 * (root >= 0)):
+            push[place_of(i - last, tip, root, 0)] += g[i]
         for k in range(modes):
             push[at + own + k] = gap[k] = given[2 * n + k]
             if strips.measure == MATERIAL:
                 slope += y[at + own + k] * gap[k]
-        end = last + 3 * tip + 3 * root
-        forward(own, last, end, strips.coupled, strips.outer, strips.gain[s], h, b, gap, g)
-        for i in range(last, end + strips.outer):
-            force[place_of(i - last, strips.tips[s], strips.roots[s], poses + s)] += g[i]
-    for i in range(bodies.free.size):
-        change[i] = -force[bodies.free[i]]
-    solve_free(space.factors, change)
-    for i in range(bodies.free.size):
-        move[bodies.free[i]] = change[i]
-    for i in range(poses):
-        rate[i] = move[i]
-    move_strips(1.0, bodies, strips, shape, local, space, rate)
+    respond(bodies, strips, shape, local, space, rate)
     for i in range(y.size):
         bend += push[i] * rate[i]
     return slope, bend

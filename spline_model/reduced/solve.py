@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from spline_model.newton import TOLERANCE
 from spline_model.reduced.assembly import Bodies, working_space
 from spline_model.reduced.elements import Elements
-from spline_model.reduced.equilibrium import EVALUATIONS, HALVED, ITERATIONS
+from spline_model.reduced.equilibrium import CONFIRMED, EVALUATIONS, HALVED, ITERATIONS
 from spline_model.reduced.model import at_rest
 from spline_model.reduced.path import Answer, Route, empty_answer, follow
 from spline_model.strip.element import Strips
@@ -63,7 +63,7 @@ def _run(
     count.halved_increments += int(answer.counters[HALVED])
     count.newton_iterations += int(answer.counters[ITERATIONS])
     evaluations = int(answer.counters[EVALUATIONS])
-    count.residual_evaluations += evaluations
+    count.residual_evaluations += evaluations + int(answer.counters[CONFIRMED])
     count.tangent_evaluations += evaluations
     count.factorisations += evaluations
     return answer.rows(slice(done))

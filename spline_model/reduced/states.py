@@ -14,14 +14,14 @@ from spline_model.reduced.model import Reduced
 from spline_model.reduced.path import Answer
 from spline_model.solution import Later
 from spline_model.strip.compiled import kernel
-from spline_model.strip.element import GRADIENT, POINTS, place_points
-from spline_model.strip.points import evaluate_gradient
+from spline_model.strip.element import GRADIENT, POINTS, SHEAR, place_points
+from spline_model.strip.points import evaluate_residual
 
 Array = NDArray[np.float64]
 
 
 @kernel()
-def place_all(y, poses, shape, strips, local, out, points, forces):
+def _place_all(y, poses, shape, strips, local, out, points, forces):
     """Control points (S, G, 2 n) and, from the gradient, what the clamps do to the strips (S, G, 2, 3).
 
     A clamp's force is what its two control points ask for, its moment what the inner one asks for
@@ -34,7 +34,7 @@ def place_all(y, poses, shape, strips, local, out, points, forces):
             at = poses + s * (own + modes)
             state = y[row]
             place_points(s, state[at : at + own], state, strips, local)
-            evaluate_gradient(s, state[at + own : at + own + modes], n, shape, strips, local, out)
+            evaluate_residual(s, state[at + own : at + own + modes], n, shape, strips, local, out)
             p, g = local.nodal[s, POINTS], local.nodal[s, GRADIENT]
             for i in range(2 * n):
                 points[row, s, i] = p[i]
@@ -59,7 +59,7 @@ def by_state(model: Reduced, factors: Array, answer: Answer) -> dict[str, Any]:
         "reactions": answer.reaction * (model.energy / model.drive_length),
         "unknowns": Later(partial(unknowns_of, model, answer.y, answer.reaction)),
         "stiffness": answer.stiffness * model.energy,
-        "energies": answer.energies * model.energy,
+        "energies": _energies(model, answer) * model.energy,
         "done": answer.done * model.energy,
         "inertia": answer.inertia,
         "moment_defect": answer.defect,
@@ -71,12 +71,12 @@ def unknowns_of(model: Reduced, y: Array, reaction: Array) -> Array:
     strips, shape, n = model.strips, model.shape, len(model.shape.order)
     points = np.zeros((len(y), len(strips.roots), 2 * n))
     forces = np.zeros((len(y), len(strips.roots), 2, 3))
-    place_all(y, len(model.bodies.rest), shape, strips, model.local(), np.zeros(5), points, forces)
+    _place_all(y, len(model.bodies.rest), shape, strips, model.local(), np.zeros(5), points, forces)
     return gathered(model, y, points, forces, reaction)
 
 
 def gathered(model: Reduced, y: Array, points: Array, forces: Array, reaction: Array) -> Array:
-    """Unknowns z (..., N) from y (..., Y), control points and clamp forces as of ``place_all``, and
+    """Unknowns z (..., N) from y (..., Y), control points and clamp forces as of ``_place_all``, and
     reactions (..., D) of the drives."""
     system, shape = model.system, model.shape
     scene, layout, n = system.scene, system.layout, len(shape.order)
@@ -105,3 +105,18 @@ def gathered(model: Reduced, y: Array, points: Array, forces: Array, reaction: A
     drives = system.drives
     z[..., drives.row] = reaction * unit[2 * drives.turns]
     return z
+
+
+def _energies(model: Reduced, answer: Answer) -> Array:
+    """Bending and axial energy (S, 2) of states [EI/L], where strips shear (S, 3) apart from the axial one
+    what the springs of their tips hold less the part of N: ``effects.Shear``."""
+    if not model.shears:
+        return answer.energies
+    strips, states = model.strips, len(answer.y)
+    own = answer.y[:, len(model.bodies.rest) :].reshape(states, len(strips.roots), -1)
+    spring, length = strips.numbers[:, SHEAR], strips.speed @ model.shape.weight
+    at, first = 2 * model.yields, 2 * len(model.shape.order) - 6
+    apart, force = own[..., at : at + 2], own[..., first : first + strips.split]
+    held = spring * (apart**2).sum(axis=-1) - (force**2).sum(axis=-1) / (spring * length)
+    shear, (bending, axial) = 0.5 * held.sum(axis=1), answer.energies.T
+    return np.stack((bending, axial - shear, shear), axis=1)

@@ -19,7 +19,8 @@ from spline_model.basis import all_modes
 from spline_model.effects import Bending, MixedStretching
 from spline_model.reduced.model import Reduced
 from spline_model.reduced.numbers import in_order
-from spline_model.sensitivity.varied import Varied
+from spline_model.sensitivity.parameters import Varied
+from spline_model.sensitivity.planar import Curve, across, cross, dot, times, times_each, turned
 from spline_model.strip import laws
 from spline_model.strip.element import WHERE
 
@@ -27,34 +28,6 @@ Array = NDArray[Any]
 
 uncompiled: list[Any] = [laws.bending_law, laws.stretching_law, laws.mixed_law]
 bending_law, stretching_law, mixed_law = (getattr(law, "py_func", law) for law in uncompiled)
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Curve:
-    """C' and C'' (Q, 2, G, P, S)."""
-
-    first: Array
-    second: Array
-
-    @classmethod
-    def of(cls, d1: Array, d2: Array, points: Array) -> Curve:
-        """From tables (Q, n) and control points (n, 2, G, P, S)."""
-        return cls(first=_times(d1, points), second=_times(d2, points))
-
-    @cached_property
-    def square(self) -> Array:
-        """|C'|^2 (Q, G, P, S)."""
-        return _dot(self.first, self.first)
-
-    @cached_property
-    def speed(self) -> Array:
-        """v = |C'|."""
-        return np.sqrt(self.square)
-
-    @cached_property
-    def turning(self) -> Array:
-        """phi, turning of the tangent per du."""
-        return _cross(self.first, self.second) / self.square
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -66,9 +39,9 @@ class Elements:
     y: Array
 
     def _own(self, y: Array) -> tuple[Array, Array, Array, Array]:
-        """Free control points (n - 4, 2, ...), first the turns of the roots where they yield, shares of the
-        ends' reach (2, 1, ...), axial forces (K, ...) and poses (2, 3, ...) of what carries root and tip; the
-        ground's is zero."""
+        """Free control points (n - 4, 2, ...), first the turns of the roots where they yield and the offset
+        of the tip where it shears, shares of the ends' reach (2, 1, ...), axial forces (K, ...) and poses
+        (2, 3, ...) of what carries root and tip; the ground's is zero."""
         y = np.concatenate((np.moveaxis(y, -1, 0), np.zeros((3, *y.shape[:-1]))))
         w = y[self._places[0]]
         return (
@@ -106,12 +79,19 @@ class Elements:
         """Of the free control points those that are the turns of the roots, (2, ...)."""
         return free[0] if self.model.yields else 0.0
 
+    def _apart(self, free: Array) -> Array | float:
+        """Of the free control points the tip's offset by shear, zero at the root, (2, 2, ...)."""
+        if not self.model.shears:
+            return 0.0
+        apart = free[int(self.model.yields)]
+        return np.stack((0.0 * apart, apart))
+
     @cached_property
     def points(self) -> Array:
         """Control points (n, 2, ...) in the order of elimination."""
         arm, stick, share = self._ends
         free, _, _, pose = self._state
-        clamped = pose[:, :2] + arm
+        clamped = pose[:, :2] + arm + self._apart(free)
         return _ordered(free, clamped + share * stick, clamped)
 
     @cached_property
@@ -154,18 +134,26 @@ class Elements:
     def _forces(self, a: Array) -> list[Array]:
         """Axial force at the Gauss points, its part of the stretching and of the sliding, (Q, ...)."""
         modes, split = self.model.strips.modes, self.model.strips.split
-        return [_times_each(modes[..., k], a[k]) for k in (slice(split), slice(split, None))]
+        return [times_each(modes[..., k], a[k]) for k in (slice(split), slice(split, None))]
 
     @cached_property
     def energies(self) -> tuple[Array, Array]:
-        """Bending and axial energy (P, S) of all strips [EI/L]."""
+        """Bending and axial energy (P, S) of all strips [EI/L], not that of shear: see ``effects.Shear``."""
         weight = self.model.shape.weight
         bending, axial = (np.tensordot(weight, law[0], 1) for law in (self._bending, self._stretching))
+        if self.model.shears:
+            strips = self.model.strips
+            length = (strips.speed @ self.model.shape.weight)[:, None, None]
+            axial = axial + 0.5 * (self.axial[: strips.split] ** 2).sum(axis=0) / (self.varied.shear * length)
         return bending.sum(axis=0) + self._of_roots(self._state[0]), axial.sum(axis=0)
 
     def _of_roots(self, free: Array) -> Array:
         """1/2 k psi^2 (P, S) of the roots' turns psi, the first of ``free``."""
         return np.asarray(0.5 * (self.varied.springs * self._turns(free) ** 2).sum(axis=(0, 1)))
+
+    def _of_shear(self, free: Array) -> Array:
+        """1/2 k |e|^2 (P, S) of the tips' offsets e by shear, which stand among ``free``."""
+        return np.asarray(0.5 * (self.varied.shear * self._apart(free) ** 2).sum(axis=(0, 1, 2)))
 
     def residual(self) -> tuple[Array, Array]:
         """Derivative of the strips' energy by y (P, S, Y); force and moment of the clamps at root and tip on
@@ -175,18 +163,20 @@ class Elements:
         m = (shape.weight[:, None, None, None] * self._bending[1] / curve.square)[:, None]
         f = self._bending[4] + self._stretching[1]
         f = (shape.weight[:, None, None, None] * f / curve.speed)[:, None]
-        first = (f - 2.0 * m * curve.turning[:, None]) * curve.first - m * _across(curve.second)
-        g = _times(shape.d1.T, first) + _times(shape.d2.T, m * _across(curve.first)) - self.varied.dead
+        first = (f - 2.0 * m * curve.turning[:, None]) * curve.first - m * across(curve.second)
+        g = times(shape.d1.T, first) + times(shape.d2.T, m * across(curve.first)) - self.varied.dead
         inner, clamped = g[n - 4 : n - 2], g[: n - 3 : -1]
-        force, moment = inner + clamped, share[:, 0] * _cross(stick, inner)
+        force, moment = inner + clamped, share[:, 0] * cross(stick, inner)
         if self.model.yields:
             g[0] = self.varied.springs * self._turns(self._state[0]) + moment
+        if self.model.shears:
+            g[int(self.model.yields)] = (self.varied.shear * self._apart(self._state[0]) + force)[1]
         w, a, poses = self._places
         out = np.zeros((self.model.size + 3, *g.shape[3:]), dtype=complex)
         out[w[:-2]] = g[: n - 4].reshape(len(w) - 2, *g.shape[2:])
-        out[w[-2:]] = _dot(stick, inner)
+        out[w[-2:]] = dot(stick, inner)
         out[a] = self._gap() if len(a) else 0.0
-        push = np.concatenate((force, (_cross(arm, force) + moment)[:, None]), axis=1)
+        push = np.concatenate((force, (cross(arm, force) + moment)[:, None]), axis=1)
         for at in np.ndindex(poses.shape):
             out[poses[at]] += push[at]
         return np.moveaxis(out[:-3], 0, -1), np.concatenate((force, moment[:, None]), axis=1)
@@ -199,7 +189,7 @@ class Elements:
         for k, force in enumerate(self._forces(self.axial)):
             modes = strips.modes[..., (slice(strips.split), slice(strips.split, None))[k]]
             left = by_n - self.varied.compliance[k] * force * length
-            parts.append(_times_each((self.model.shape.weight[:, None] * modes).swapaxes(1, 2), left))
+            parts.append(times_each((self.model.shape.weight[:, None] * modes).swapaxes(1, 2), left))
         return np.concatenate(parts)
 
     def second_along(self, rate: Array) -> Array:
@@ -208,18 +198,19 @@ class Elements:
         (arm, stick, share), (free, push, pull, pose) = self._ends, self._own(rate)
         spin = pose[:, 2:]
         swing = spin + (free[0][:, None] if self.model.yields else 0.0)
-        clamped, turn = pose[:, :2] + spin * _across(arm), swing * _across(stick)
+        clamped = pose[:, :2] + spin * across(arm) + self._apart(free)
+        turn = swing * across(stick)
         back = -(spin**2) * arm
         bent = back + 2.0 * push * turn - share * swing**2 * stick
         twice = _ordered(0.0 * free, bent, back)
         by = Curve.of(shape.d1, shape.d2, _ordered(free, clamped + push * stick + share * turn, clamped))
         by2 = Curve.of(shape.d1, shape.d2, twice)
-        phi, v, square1 = curve.turning, curve.speed, 2.0 * _dot(curve.first, by.first)
-        square2 = 2.0 * (_dot(by.first, by.first) + _dot(curve.first, by2.first))
-        cross1 = _cross(curve.first, by.second) + _cross(by.first, curve.second)
-        cross2 = _cross(curve.first, by2.second) + _cross(by2.first, curve.second)
+        phi, v, square1 = curve.turning, curve.speed, 2.0 * dot(curve.first, by.first)
+        square2 = 2.0 * (dot(by.first, by.first) + dot(curve.first, by2.first))
+        cross1 = cross(curve.first, by.second) + cross(by.first, curve.second)
+        cross2 = cross(curve.first, by2.second) + cross(by2.first, curve.second)
         phi1, v1 = (cross1 - phi * square1) / curve.square, 0.5 * square1 / v
-        cross2 = cross2 + 2.0 * _cross(by.first, by.second) - 2.0 * phi1 * square1
+        cross2 = cross2 + 2.0 * cross(by.first, by.second) - 2.0 * phi1 * square1
         phi2, v2 = (cross2 - phi * square2) / curve.square, (0.5 * square2 - v1**2) / v
         (_, m, m_phi, m_v, f, f_v), (_, g, g_v, _, by_nv) = self._bending, self._stretching
         density = m * phi2 + m_phi * phi1**2 + 2.0 * m_v * phi1 * v1 + (f + g) * v2 + (f_v + g_v) * v1**2
@@ -230,7 +221,7 @@ class Elements:
                 density = density + by_force * (2.0 * by_nv * v1 - c * by_force * length)
                 density = density - 2.0 * c * by_force * force * longer
         total = np.tensordot(shape.weight, density, 1) - (varied.dead * twice).sum(axis=(0, 1))
-        return np.asarray(total.sum(axis=0) + 2.0 * self._of_roots(free))
+        return np.asarray(total.sum(axis=0) + 2.0 * (self._of_roots(free) + self._of_shear(free)))
 
     def fibre_stress(self, stations: Array) -> Array:
         """Stress [Pa] at both extreme fibres of G strips at Q stations, (P, S, G, Q, 2).
@@ -258,41 +249,12 @@ class Elements:
         if len(self.axial):
             parts = [e.modes for e in scene.of(MixedStretching) if e.strip == scene.strips[0].name]
             shown = np.column_stack([all_modes(modes, stations) for modes in parts]) @ model.to_modes
-            force = force + _times_each(shown, self.axial)
+            force = force + times_each(shown, self.axial)
         mean = force * (model.energy / model.length / varied.area)
         return np.stack((mean - side, mean + side)).transpose(3, 4, 2, 1, 0)
-
-
-def turned(angle: Array, x: Array, y: Array | float) -> Array:
-    """The vector (x, y) turned by an angle, x and y along axis 1."""
-    c, s = np.cos(angle), np.sin(angle)
-    return np.stack((c * x - s * y, s * x + c * y), axis=1)
 
 
 def _ordered(free: Array, inner: Array, clamped: Array) -> Array:
     """Control points in the order of elimination: P_2 ... P_(n-3), P_1, P_(n-2), P_(n-1), P_0."""
     many = np.broadcast_shapes(free.shape[1:], inner.shape[1:])
     return np.concatenate([np.broadcast_to(p, (len(p), *many)) for p in (free, inner, clamped[::-1])])
-
-
-def _times(table: Array, values: Array) -> Array:
-    """table @ values along the first axis, one product of real matrices."""
-    flat = np.ascontiguousarray(values).reshape(len(values), -1)
-    return (table @ flat.view(np.float64)).view(flat.dtype).reshape(len(table), *values.shape[1:])
-
-
-def _times_each(tables: Array, values: Array) -> Array:
-    """The same with a table for each strip, (G, ...) of values (..., G, P, S)."""
-    return np.stack([_times(table, values[:, s]) for s, table in enumerate(tables)], axis=1)
-
-
-def _across(v: Array) -> Array:
-    return np.stack((-v[:, 1], v[:, 0]), axis=1)
-
-
-def _cross(a: Array, b: Array) -> Array:
-    return np.asarray(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0])
-
-
-def _dot(a: Array, b: Array) -> Array:
-    return np.asarray(a[:, 0] * b[:, 0] + a[:, 1] * b[:, 1])

@@ -4,25 +4,31 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.compile import compile_scene
+from spline_model.effects.plate import STEP
 from spline_model.errors import InvalidParameter
-from spline_model.layout import Layout
 from spline_model.mechanism import Mechanism
 from spline_model.pivot import Pivot
-from spline_model.plate.profile import STEP
 from spline_model.reduced.model import from_unknowns, reduced
 from spline_model.reduced.states import gathered
 from spline_model.reduced.whole import whole_tangents
-from spline_model.sensitivity.element import Elements, turned
-from spline_model.sensitivity.parameters import KEYWORDS, Rates, crossing_reach, rates_of
-from spline_model.sensitivity.result import Quantity, Sensitivities
-from spline_model.sensitivity.varied import held_rates, varied_strips
+from spline_model.scene import Layout
+from spline_model.sensitivity.element import Elements
+from spline_model.sensitivity.parameters import (
+    KEYWORDS,
+    Rates,
+    crossing_reach,
+    held_rates,
+    rates_of,
+    varied_strips,
+)
+from spline_model.sensitivity.planar import turned
 from spline_model.solution import StaticSolution
 from spline_model.statics import STATIONS
 
@@ -55,9 +61,9 @@ def sensitivities(
     back-substitution a parameter and one for the rate y_t. The parameters enter through the end frames,
     reach, speed, EI, compliance and dead load of the strips, by a complex step: exact to round-off for
     the discrete answer, in either measure, under loads and pre-strain, with clamps over the whole width (by
-    the plate's own solution), sections that flatten and roots that turn. The slide stiffness goes with the
-    design. Bodies keep their mass. Refuses what the elements do not know: printed forces, own potentials.
-    Source: implicit function theorem; Haftka and Guerdal, Elements of Structural Optimization
+    the plate's own solution), sections that flatten, roots that turn and shear. The slide stiffness goes
+    with the design. Bodies keep their mass. Refuses what the elements do not know: printed forces, own
+    potentials. Source: implicit function theorem; Haftka and Guerdal, Elements of Structural Optimization
     (1992), ch. 7.
     """
     if asked.design.discretisation.control_points is None:
@@ -116,7 +122,7 @@ def _differentiate(still: Elements, solution: StaticSolution, held: Array) -> tu
     left = force[0].real.copy()
     left[:, :poses] -= np.multiply.outer(solution.load_factor, bodies.load[:poses]) + bodies.weight[:poses]
     at = [solution.states[:, model.system.layout.strip(strip.name)] for strip in scene.strips]
-    on_curve = slice(int(model.yields), None)
+    on_curve = slice(model.beside, None)
     order = model.shape.order[on_curve]
     given = np.stack(at, axis=-1).reshape(len(y), -1, 2, len(at))[:, order] / model.length
     apart = still.points[on_curve, ..., 0, :].real.transpose(3, 0, 1, 2) - given
@@ -171,3 +177,46 @@ def _shifts(
 def _quantity(found: NDArray[Any]) -> Quantity:
     """Values (...) and derivatives (..., P) of what a complex step gave, (P, ...)."""
     return Quantity(value=found[0].real, derivative=np.moveaxis(found.imag / STEP, 0, -1))
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Quantity:
+    """Values (...) of a quantity and its derivatives (..., P) by the parameters."""
+
+    value: Array
+    derivative: Array
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Sensitivities:
+    """Derivatives of a path of S states by P parameters, each over the parameter's SI unit.
+
+    parameters: names, the last axis of every derivative. torque (S,) [N m]; stiffness (S,)
+    [N m/rad]; centre (S, 2) of the body and body_shift (S, 2) from rest [m]; centre_shift (S, 2):
+    displacement of the body's point that lies in the strips' crossing at rest, what the
+    literature calls the pivot's centre shift [m]; bending_energy, axial_energy (S,) [J];
+    fibre_stress (S, G, Q, 2) of G strips at Q stations, both extreme fibres [Pa]; stations (Q,);
+    states: derivatives of the unknowns (S, N, P); counters: factorisations and back_substitutions.
+    """
+
+    parameters: tuple[str, ...]
+    torque: Quantity
+    stiffness: Quantity
+    centre: Quantity
+    body_shift: Quantity
+    centre_shift: Quantity
+    bending_energy: Quantity
+    axial_energy: Quantity
+    fibre_stress: Quantity
+    stations: Array
+    states: Array
+    counters: dict[str, int]
+
+    def largest_stress(self) -> Quantity:
+        """Largest magnitude of the fibre stress (S,) [Pa]; its derivative is that of the point where it
+        is, exact as long as there is one such point."""
+        flat = self.fibre_stress.value.reshape(len(self.torque.value), -1)
+        by = self.fibre_stress.derivative.reshape(*flat.shape, len(self.parameters))
+        rows, where = np.arange(len(flat)), np.abs(flat).argmax(axis=1)
+        sign = np.sign(flat[rows, where])
+        return Quantity(value=np.abs(flat[rows, where]), derivative=sign[:, None] * by[rows, where])

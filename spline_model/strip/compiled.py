@@ -23,7 +23,7 @@ Array = NDArray[np.float64]
 FAST = {"contract", "reassoc", "nsz"}
 
 
-class Short(Compiler):
+class _Short(Compiler):
     """Numba's compiler, optimising once and for short loops: of eight Gauss points, not of eighty.
 
     Numba optimises twice, around the pruning of reference counts that are not there, and lets a vectorised
@@ -53,14 +53,14 @@ kernel = partial(
     nogil=True,
     fastmath=FAST,
     error_model="numpy",
-    pipeline_class=Short,
+    pipeline_class=_Short,
     _nrt=False,
     no_cfunc_wrapper=True,
 )
 """Decorator ``@kernel()`` of a function that works on given arrays only and is called from Python."""
 
 
-class Parts(Short):
+class _Parts(_Short):
     """The same, but for the last pass: a part is optimised where it ends up, and not before."""
 
     @staticmethod
@@ -68,7 +68,7 @@ class Parts(Short):
         """Leave the code as it is."""
 
 
-class Lanes(Parts):
+class _Lanes(_Parts):
     """The same for arguments that share no element of an array, which lets their loops fill vectors."""
 
     def define_pipelines(self):
@@ -77,7 +77,7 @@ class Lanes(Parts):
         return super().define_pipelines()
 
 
-class Inside(CPUDispatcher):
+class _Inside(CPUDispatcher):
     """A function that has no entry from Python: a call would end the process."""
 
     def __call__(self, *arguments, **named):
@@ -85,14 +85,14 @@ class Inside(CPUDispatcher):
         raise TypeError(f"{self.py_func.__qualname__}: got a call from Python, expected one from a kernel")
 
 
-def called(*, no_cpython_wrapper=True, pipeline_class=Parts, **options):
+def called(*, no_cpython_wrapper=True, pipeline_class=_Parts, **options):
     """Decorator of a function that kernels call, and Python does not; ``py_func`` is the plain one."""
 
     def decorated(function):
         made = kernel(pipeline_class=pipeline_class, no_cpython_wrapper=no_cpython_wrapper, **options)
         made = made(function)
         if no_cpython_wrapper and isinstance(made, CPUDispatcher):
-            made.__class__ = Inside
+            made.__class__ = _Inside
         return made
 
     return decorated
@@ -103,7 +103,7 @@ part = partial(called, forceinline=True)
 inlines it, on machine code to be; Numba's own inlining would type and simplify it anew in each caller."""
 
 
-lane = partial(part, pipeline_class=Lanes)
+lane = partial(part, pipeline_class=_Lanes)
 """The same for loops over Gauss points, or pairs of control points: no two arguments share an element."""
 
 

@@ -22,7 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.strip.compiled import aligned, part
-from spline_model.strip.ends import add_roots, end_frame, to_ends
+from spline_model.strip.ends import add_roots, add_shear, end_frame, to_ends
 
 Array = NDArray[np.float64]
 GROUNDED = -1
@@ -33,13 +33,14 @@ WHERE, WEIGHT = range(2)
 """Places of ``Shape.rule``."""
 SPEED, CURVATURE, RIGIDITY, DROP, CURL, MODES = range(6)
 """Places along a strip, ``Strips.along``."""
-STRETCHING, STRAIN, ROOT, TIP, REACH, SPRING, PER_U, ON_POINTS = 0, 1, 2, 5, 8, 10, 12, 14
+STRETCHING, STRAIN, ROOT, TIP, REACH, SPRING, SHEAR, PER_U, ON_POINTS = 0, 1, 2, 5, 8, 10, 12, 13, 15
 """Places of a strip's numbers."""
 LEVER, GRADIENT, POINTS = -3, -2, -1
 """Last rows of ``Local.nodal``."""
-HESSIAN_AT, TANGENT_AT, SPEED_AT, MOMENT_AT, GIVEN, FORCE_AT, LANES = 8, 18, 20, 21, 24, 30, 32
+HESSIAN_AT, TANGENT_AT, SPEED_AT, MOMENT_AT, PULL_AT, GIVEN, FORCE_AT, LANES = 8, 18, 20, 21, 22, 24, 30, 32
 """Rows of ``Local.lanes`` behind x', y', x'', y'' and the derivatives of the energy in them, and their count:
-its second derivatives, the unit tangent, |C'|, the moment, what is given there, and both parts of N."""
+its second derivatives, the unit tangent, |C'|, the moment, the derivatives in N, what is given there, and
+both parts of N."""
 LAST = -1
 """Row of g in ``Local.reduced``, and of the gap in ``Local.axial``."""
 
@@ -91,12 +92,12 @@ class Strips(NamedTuple):
     along (S, G, 5 + K): J0, stress-free curvature, EI, the numbers of ``curl_law``, and the modes of the
     axial force at the Gauss points, orthonormal, of which ``split`` belong to the stretching, the others to
     the sliding of control points; compliance (S, K) of each; gain (S, K) the stiffness by which they are
-    condensed; numbers (S, 14 + 2 n): EA of stretching by quadrature, 0 for the mixed form; natural strain;
+    condensed; numbers (S, 15 + 2 n): EA of stretching by quadrature, 0 for the mixed form; natural strain;
     root and tip, three each, the clamped point in its body's frame, or on the ground, and direction at rest
-    [rad]; reach, k_A and k_B; springs of both roots in EI/L, 0 where they do not turn
+    [rad]; reach, k_A and k_B; springs of both roots in EI/L, or 0, and of shear in EI/L^3, or 0
     (``spline_model.strip.ends``); dead load per du, two, and on the control points; roots, tips (S,) bodies
     or GROUNDED; coupled: leading axial forces that stay beside w, where a compliance is too small to divide
-    by or depends on the state; outer: 1 if the mean stays beside the bodies, or 0; measure: of all.
+    by, negative or not constant; outer: 1 if the mean stays beside the bodies, or 0; measure: of all.
     """
 
     along: Array
@@ -232,6 +233,9 @@ def place_points(s, w, pose, strips, local):
     ends[2], ends[3] = kx, ky
     ends[4], ends[5] = frame[5] - points[inner + 3], points[inner + 2] - frame[4]
     ends[6], ends[7] = frame[5] - frame[1], frame[0] - frame[4]
+    if numbers[SHEAR] > 0.0:
+        for i in range(inner + 2, inner + 6):
+            points[i] += w[2 * yields + i % 2]
 
 
 @part()
@@ -283,9 +287,14 @@ def to_element(s, moving, inner, strips, local):
         x, y, bx, by = gradient[at + 6], gradient[at + 7], gradient[at], gradient[at + 1]
         h[at, turn] += ends[0] * by - ends[1] * bx
         h[turn, turn] += ends[10] * y - ends[11] * x + ends[8] * by - ends[9] * bx
-    if strips.numbers[s, SPRING] > 0.0:
-        points, count = hessian[POINTS], strips.compliance.shape[1]
+    points, count, yields = hessian[POINTS], strips.compliance.shape[1], strips.numbers[s, SPRING] > 0.0
+    if yields:
         add_roots(
             at, special, behind, tip, root, ends, points, gradient, hessian, lines[16], h, g, width, count
         )
+    if strips.numbers[s, SHEAR] > 0.0:
+        add_shear(
+            at, special, behind, tip, root, ends, points, gradient, hessian, lines[16], h, g, width, count,
+            2 * yields,
+        )  # fmt: skip
     return behind + columns - 2

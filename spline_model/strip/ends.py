@@ -2,7 +2,9 @@
 
 Where roots turn (``effects.RootCompliance``) the strips have a point more, the first in the order of
 elimination, that is on no curve: its coordinates are the turns of the root's and the tip's frame against
-their bodies, of which P_1 and P_(n-2) know alone. Springs hold them.
+their bodies, of which P_1 and P_(n-2) know alone. Springs hold them. Where strips shear
+(``effects.Shear``) they have another such point: how far P_(n-1), with P_(n-2), is from what the tip is
+clamped to, in the ground's frame, against a spring as well.
 """
 
 from __future__ import annotations
@@ -92,3 +94,35 @@ def add_roots(at, special, behind, tip, root, ends, points, gradient, hessian, l
         for k in range(count):
             row = hessian[axial + k]
             h[couplings + k, e] += x * row[inner + 1] - y * row[inner]
+
+
+@called()
+def by_tip(v, at, place, out):
+    """Add a covector's entries at P_(n-2) and P_(n-1), from v[at] on, in the tip's offset to out[place:]."""
+    for c in range(2):
+        out[place + c] += v[at + 2 + c] + v[at + 4 + c]
+
+
+@called()
+def add_shear(
+    at, special, behind, tip, root, ends, points, gradient, hessian, line, h, g, couplings, count, place
+):
+    """Add the offset of the tip to a strip's element coordinates, as ``add_roots`` does the turns; they stand
+    at ``place``, behind these turns."""
+    axial = hessian.shape[1]
+    by_tip(gradient, at, place, g)
+    for c in range(2):
+        row, inner, outer = place + c, at + 2 + c, at + 4 + c
+        for j in range(place + 2, at):
+            h[row, j] += hessian[j, inner] + hessian[j, outer]
+        for i in range(8):
+            line[i] = hessian[inner, at + i] + hessian[outer, at + i] if i < special else 0.0
+        to_ends(line, 0, ends, tip, root, h[row], at, behind)
+        for d in range(c, 2):
+            h[row, place + d] += line[2 + d] + line[4 + d]
+        for e in range(place):  # the turns of roots
+            mine, there = at + 2 * e, at + 6 - 2 * e
+            x, y = points[mine] - points[there], points[mine + 1] - points[there + 1]
+            h[e, row] += x * line[2 * e + 1] - y * line[2 * e]
+        for k in range(count):
+            h[couplings + k, row] += hessian[axial + k, inner] + hessian[axial + k, outer]

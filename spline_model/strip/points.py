@@ -1,8 +1,7 @@
 """A strip's energy, gradient and Hessian in its control points, summed over the Gauss points.
 
-What is done alike at all Gauss points is done in lanes: a row of ``Local.lanes`` holds one number at each
-of them, the rows come one by one to functions that know them apart (``compiled.lane``), and a processor's
-vectors are full. The Hessian is summed by pairs of control points, again in lanes, and laid out at the end.
+It is done in lanes: a row of ``Local.lanes`` holds one number at each Gauss point, the rows come one by one
+to functions that know them apart (``compiled.lane``). So is the Hessian, by pairs of control points.
 """
 
 from __future__ import annotations
@@ -24,7 +23,9 @@ from spline_model.strip.element import (
     MODES,
     ON_POINTS,
     POINTS,
+    PULL_AT,
     RIGIDITY,
+    SHEAR,
     SPEED,
     SPEED_AT,
     SPRING,
@@ -58,7 +59,7 @@ def curve_at(points, d1, d2, curve):
 
 
 @part()
-def given_at(s, a, strips, lanes):
+def _given_at(s, a, strips, lanes):
     """What is given at the Gauss points: J0, curvature, EI, factors of ``curl_law``, both parts of N."""
     along, split = strips.along[s], strips.split
     for p in range(along.shape[0]):
@@ -86,7 +87,7 @@ def laws_at(
 
     soft, slide_soft: compliances of both parts of N. Filled are rows, times the weight: g, h, derivatives
     in (x', y', x'', y''); the unit tangent; |C'|; the moment; derivatives of the axial energy in N, and
-    that one's in |C'|. Behind them is what ``given_at`` fills.
+    that one's in |C'|. Behind them is what ``_given_at`` fills.
     """
     bending = axial = 0.0
     for p in range(weights.size):
@@ -139,7 +140,7 @@ def laws_at(
 
 
 @lane()
-def add_pairs(blocks, products, h00, h01, h11, h02, h03, h12, h13, h22, h23, h33):
+def _add_pairs(blocks, products, h00, h01, h11, h02, h03, h12, h13, h22, h23, h33):
     """Add one Gauss point to the blocks xx, xy, yx, yy of all pairs (P,) of control points."""
     (xx, xy, yx, yy), (t11, t12, t21, t22) = blocks, products
     for q in range(xx.size):
@@ -164,7 +165,7 @@ def add_slopes(moving, d1, d2, slopes, gradient):
 
 
 @lane()
-def couple(moving, d1, share, tangent, row):
+def _couple(moving, d1, share, tangent, row):
     """Coupling of one axial force to the first ``moving`` places."""
     tx, ty = tangent
     for i in range(moving):
@@ -177,23 +178,37 @@ def couple(moving, d1, share, tangent, row):
 
 
 @part()
-def add_axial(s, a, moving, shape, strips, local):
-    """Gap, its derivative and coupling of all axial forces; returns their own energy, material measure."""
+def _add_gaps(s, a, shape, strips, local):
+    """Gap of all axial forces; returns their own energy, of the material measure."""
     along, split, compliance, measure = strips.along[s], strips.split, strips.compliance[s], strips.measure
-    lanes, gram, count, axial = local.lanes[s], local.axial[s], a.size, 0.0
-    d1, points, gap = shape.curve[0], along.shape[0], gram[LAST]
-    speeds, _, pulls, mixed = four(lanes, SPEED_AT)
+    lanes, gap, axial = local.lanes[s], local.axial[s, LAST], 0.0
+    for k in range(a.size):
+        c, mode, total = compliance[k], MODES + k, 0.0
+        for p in range(along.shape[0]):
+            total += along[p, mode] * lanes[PULL_AT, p]
+        if measure == MATERIAL:
+            total -= c * a[k]
+            axial += 0.5 * c * a[k] * a[k]
+        else:
+            mine = lanes[FORCE_AT + (k >= split)]
+            for p in range(along.shape[0]):
+                total -= c * along[p, mode] * shape.rule[WEIGHT, p] * lanes[SPEED_AT, p] * mine[p]
+        gap[k] = total
+    return axial
+
+
+@part()
+def _add_axial(s, count, moving, shape, strips, local):
+    """Coupling of all axial forces to the first ``moving`` places, and derivatives of the gaps in them."""
+    along, split, compliance, measure = strips.along[s], strips.split, strips.compliance[s], strips.measure
+    lanes, gram, d1, points = local.lanes[s], local.axial[s], shape.curve[0], along.shape[0]
+    speeds, _, _, mixed = four(lanes, SPEED_AT)
     tangent, share, first = (lanes[TANGENT_AT], lanes[TANGENT_AT + 1]), lanes[0], 2 * d1.shape[0]
     for k in range(count):
         c, mode = compliance[k], MODES + k
-        total = 0.0
         for p in range(points):
-            total += along[p, mode] * pulls[p]
             share[p] = along[p, mode] * mixed[p]
-        if measure == MATERIAL:
-            gap[k] = total - c * a[k]
-            axial += 0.5 * c * a[k] * a[k]
-        else:
+        if measure != MATERIAL:
             begin, end = (0, split) if k < split else (split, count)
             for j in range(count):
                 gram[k, j] = 0.0
@@ -202,16 +217,13 @@ def add_axial(s, a, moving, shape, strips, local):
                 loss = c * along[p, mode]
                 share[p] -= loss * mine[p]
                 loss *= shape.rule[WEIGHT, p] * speeds[p]
-                total -= loss * mine[p]
                 for j in range(begin, end):
                     gram[k, j] += loss * along[p, MODES + j]
-            gap[k] = total
-        couple(moving, d1, share, tangent, local.nodal[s, first + k])
-    return axial
+        _couple(moving, d1, share, tangent, local.nodal[s, first + k])
 
 
 @part()
-def add_hessian(moving, products, pairs, lanes, hessian):
+def _add_hessian(moving, products, pairs, lanes, hessian):
     """The upper Hessian of the first ``moving`` places, from what it is at the Gauss points."""
     count = (moving * (moving + 1) // 2 + 7) // 8 * 8
     blocks = pairs[0, :count], pairs[1, :count], pairs[2, :count], pairs[3, :count]
@@ -222,27 +234,27 @@ def add_hessian(moving, products, pairs, lanes, hessian):
         at = products[0, p, :count], products[1, p, :count], products[2, p, :count], products[3, p, :count]
         (h00, h01, h11, h02), (h03, h12, h13, h22) = four(lanes, HESSIAN_AT), four(lanes, HESSIAN_AT + 4)
         h23, h33 = lanes[HESSIAN_AT + 8], lanes[HESSIAN_AT + 9]
-        add_pairs(blocks, at, h00[p], h01[p], h11[p], h02[p], h03[p], h12[p], h13[p], h22[p], h23[p], h33[p])
-    q = 0
+        _add_pairs(blocks, at, h00[p], h01[p], h11[p], h02[p], h03[p], h12[p], h13[p], h22[p], h23[p], h33[p])
     for j in range(moving):
         for i in range(j + 1):
+            q = j * (j + 1) // 2 + i
             hessian[2 * i, 2 * j], hessian[2 * i, 2 * j + 1] = pairs[0, q], pairs[1, q]
             hessian[2 * i + 1, 2 * j], hessian[2 * i + 1, 2 * j + 1] = pairs[2, q], pairs[3, q]
-            q += 1
 
 
 @part()
-def evaluate_gradient(s, a, moving, shape, strips, local, out):
-    """Fill the gradient of the first ``moving`` places of strip s, and the rows of its lanes.
+def evaluate_residual(s, a, moving, shape, strips, local, out):
+    """Fill the gradient of the first ``moving`` places of strip s, the gaps, and the rows of its lanes.
 
-    Adds bending and axial energy to out[0] and out[1], the latter but for what the axial forces alone store
-    in the material measure, the dead load's to out[2]; out[3] becomes the least v / J0.
+    Adds bending, axial and the dead load's energy to the first three of out; out[3] becomes the least v / J0.
     """
     numbers, lanes, compliance = strips.numbers[s], local.lanes[s], strips.compliance[s]
     d1, d2 = shape.curve[0], shape.curve[1]
     points, gradient = local.nodal[s, POINTS], local.nodal[s, GRADIENT]
     curve_at(points, d1, d2, four(lanes, 0))
-    given_at(s, a, strips, lanes)
+    _given_at(s, a, strips, lanes)
+    rows = four(lanes, 0) + four(lanes, 4) + four(lanes, 8) + four(lanes, 12)
+    more = four(lanes, 16) + four(lanes, 20) + four(lanes, 24) + four(lanes, 28)
     bending, axial = laws_at(
         strips.measure,
         a.size,
@@ -251,16 +263,7 @@ def evaluate_gradient(s, a, moving, shape, strips, local, out):
         compliance[0] if a.size > 0 else 0.0,
         compliance[strips.split] if strips.split < a.size else 0.0,
         shape.rule[WEIGHT],
-        *(
-            four(lanes, 0)
-            + four(lanes, 4)
-            + four(lanes, 8)
-            + four(lanes, 12)
-            + four(lanes, 16)
-            + four(lanes, 20)
-            + four(lanes, 24)
-            + four(lanes, 28)
-        ),
+        *(rows + more),
     )
     slowest = np.inf
     for p in range(lanes.shape[1]):
@@ -269,23 +272,26 @@ def evaluate_gradient(s, a, moving, shape, strips, local, out):
         gradient[i] = -numbers[ON_POINTS + i]
         out[2] -= numbers[ON_POINTS + i] * points[i]
     add_slopes(moving, d1, d2, four(lanes, 4), gradient)
-    if numbers[SPRING] > 0.0:  # of roots that turn
-        for i in range(2):
-            push = numbers[SPRING + i] * points[i]
+    turns, apart = 2 * (numbers[SPRING] > 0.0), 2 * (numbers[SHEAR] > 0.0)
+    for i in range(turns + apart):  # roots that turn, and the spring of shear
+        push = (numbers[SPRING + i] if i < turns else numbers[SHEAR]) * points[i]
+        gradient[i] += push
+        if i < turns:
             bending += 0.5 * push * points[i]
-            gradient[i] += push
+        else:
+            axial += 0.5 * push * points[i]
     out[0] += bending
-    out[1] += axial
+    out[1] += axial + _add_gaps(s, a, shape, strips, local)
     out[3] = min(out[3], slowest)
 
 
 @part()
 def evaluate_points(s, a, moving, shape, strips, local, out):
-    """The same with upper Hessian, coupling and gap, and with all of the axial energy."""
-    evaluate_gradient(s, a, moving, shape, strips, local, out)
+    """The same with upper Hessian and coupling."""
+    evaluate_residual(s, a, moving, shape, strips, local, out)
     numbers, hessian = strips.numbers[s], local.nodal[s]
-    add_hessian(moving, shape.products, local.pairs, local.lanes[s], hessian)
-    if numbers[SPRING] > 0.0:
-        for i in range(2):
-            hessian[i, i] = numbers[SPRING + i]
-    out[1] += add_axial(s, a, moving, shape, strips, local)
+    _add_hessian(moving, shape.products, local.pairs, local.lanes[s], hessian)
+    turns, apart = 2 * (numbers[SPRING] > 0.0), 2 * (numbers[SHEAR] > 0.0)
+    for i in range(turns + apart):
+        hessian[i, i] = numbers[SPRING + i] if i < turns else numbers[SHEAR]
+    _add_axial(s, a.size, moving, shape, strips, local)

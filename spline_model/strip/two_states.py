@@ -24,7 +24,7 @@ GAUSS = (
 
 
 @part()
-def powers_between(v0, v1, measure):
+def _powers_between(v0, v1, measure):
     """Mean of s^-k, its divided difference, derivatives of both in s1; s^-k of each state, its derivative.
 
     k = 1 for the material measure and 3/2 for the spatial one.
@@ -77,7 +77,7 @@ def bending_between(
 
     a0, b0, a2, b2: C' and C'' of the first state; x1, y1, x2, y2 of the second.
     """
-    mean, divided, mean_s, divided_s, r0, r1, slope = powers_between(v0, v1, measure)
+    mean, divided, mean_s, divided_s, r0, r1, slope = _powers_between(v0, v1, measure)
     c0, c1 = a0 * b2 - b0 * a2, x1 * y2 - y1 * x2
     scale = 1.0 / speed if measure == MATERIAL else 1.0
     w = speed if measure == MATERIAL else 0.5 * (v0 + v1)

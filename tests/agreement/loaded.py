@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from studies.answers.models import built, model_of
+from studies.answers.models import built, model_of, static_path
 from studies.answers.settings import FeSettings, Settings, SplineSettings
 from studies.cases.design import Design
 from studies.cases.effects import DEFAULT, Effects
@@ -122,11 +122,7 @@ def solution(asked: Design, settings: Settings) -> tuple[Any, Any]:
     """Return the model's own answer for the static path, and its fields along the strips."""
     model = model_of(settings)
     given, _ = built(model, asked, settings, moving=False)
-    how = {"rotation": asked.rotation, "increments": asked.increments, "order": asked.order}
-    if isinstance(asked, Problem):
-        found = model.statics.solve_statics(given, **how)
-    else:
-        found = model.statics.solve_mechanism(given, body=asked.body, **how)
+    found = static_path(model, asked, given)
     return found, model.static_fields(given, found.states)
 
 

@@ -3,9 +3,10 @@
 import numpy as np
 import pytest
 
+from studies.answers.adapters import answer_static
+from studies.answers.fields import fields_of
 from studies.answers.settings import FeSettings, Settings, SplineSettings
 from studies.cases.design import read_design
-from studies.exchange.solve import static_fields
 from tests import gates
 
 NATURAL_CURVATURE = 1.5
@@ -43,7 +44,8 @@ def left_over(folder, settings: Settings) -> tuple[float, float]:
     """Largest moment over EI kappa_n, and error of the tip's turn over kappa_n L: zero for a free arc."""
     path = folder / "arc.toml"
     path.write_text(ARC)
-    fields = static_fields(read_design(path), settings)
+    design = read_design(path)
+    fields = fields_of(answer_static(design, settings), design)
     turn = NATURAL_CURVATURE * fields.arc_length[0, -1]
     moment = np.abs(fields.bending_moment[-1]).max() / (RIGIDITY * NATURAL_CURVATURE)
     return float(moment), float(abs(fields.rotation[-1, 0, -1] / turn - 1.0))

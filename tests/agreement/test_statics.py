@@ -157,13 +157,32 @@ def test_section_force_gate_has_teeth():
         gates.check("agreement_section_forces", section_forces(**gates.teeth("agreement_section_forces")))
 
 
+def derived(model):
+    """What the elements derive from the given data: rigidities, density, clamps and tangents, masses."""
+    strip, body = model.strips[0], model.body
+    section = strip.section
+    ends = np.array([np.diff(each.nodes, axis=0)[[0, -1]] for each in model.strips])
+    return {
+        "flexural_rigidity": section.flexural_rigidity,
+        "axial_rigidity": section.axial_rigidity,
+        "linear_density": section.linear_density,
+        "clamp_points": np.array([each.nodes[[0, -1]] for each in model.strips]),
+        "clamp_directions": ends / np.linalg.norm(ends, axis=2, keepdims=True),
+        "centre": body.centre,
+        "strip_mass": section.linear_density * strip.length,
+        "body_mass": body.mass,
+        "body_moment_of_inertia": body.moment_of_inertia,
+    }
+
+
 def test_derived_data_agree():
     """Requirement: both models derive EI, EA, clamps, directions and masses alike, to round-off."""
     for change in DESIGNS.values():
         design = TABLE_ONE | change
-        ours = spline_model.pivot.cross_axis_pivot(**design).derived()
-        theirs = fe_reference.pivot.cross_axis_pivot(**design).derived()
-        assert ours.keys() == theirs.keys()
-        for name, value in ours.items():
+        ours = spline_model.pivot.cross_axis_pivot(**design)
+        theirs = derived(fe_reference.pivot.cross_axis_pivot(**design))
+        assert len(theirs) == 9
+        for name in theirs:
+            value = getattr(ours, name)
             scale = np.abs(value).max()
             assert np.abs(np.asarray(value) - theirs[name]).max() <= 1e-14 * scale, name

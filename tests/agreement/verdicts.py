@@ -9,10 +9,9 @@ from typing import Any
 
 import numpy as np
 
-from studies.answers.models import built, model_of
+from studies.answers.models import built, model_of, static_path
 from studies.answers.settings import FeSettings, Settings, SplineSettings
 from studies.cases.design import Design
-from studies.cases.problem import Problem
 from tests.agreement.random_scenes import described, scene
 
 #: Differences below are those of Newton's tolerances, over the scales of `_scales` [1].
@@ -36,13 +35,9 @@ def answer(asked: Design, settings: Settings, times: int = 1) -> Answer:
     """Return the answer with `times` as many increments, at those of the scene."""
     model = model_of(settings)
     given, _ = built(model, asked, settings, moving=False)
-    how = {"rotation": asked.rotation, "increments": times * asked.increments, "raise_on_failure": False}
-    if isinstance(asked, Problem):
-        found = model.statics.solve_statics(given, **how)
-        place = np.column_stack((found.centre, found.rotation))
-    else:
-        found = model.statics.solve_mechanism(given, body=asked.body, **how)
-        place = np.hstack([found.bodies[body.name] for body in asked.bodies])
+    how = {"increments": times * asked.increments, "raise_on_failure": False}
+    found = static_path(model, asked, given, **how)
+    place = np.hstack([found.bodies[body.name] for body in asked.bodies])
     energy = found.bending_energy + found.axial_energy + getattr(found, "shear_energy", 0.0)
     values = {"path": place, "energy": energy + found.gravity_energy}
     if asked.rotation is not None:
@@ -103,10 +98,8 @@ def judged(seed: int, control_points: int = CONTROL_POINTS[1]) -> Verdict:
 
 def _scales(asked: Design, values: dict[str, np.ndarray]) -> dict[str, Any]:
     """Return what each quantity is related to: lengths of strips, 1 rad, and the largest of the path."""
-    first = asked if isinstance(asked, Problem) else asked.strips[0]
-    length = (
-        first.length if isinstance(asked, Problem) else float(np.hypot(*np.subtract(first.end, first.start)))
-    )
+    first = asked.strips[0]
+    length = first.length
     moment = first.youngs_modulus * first.second_moment_of_area / length
     bodies = values["path"].shape[1] // 3
     scales: dict[str, Any] = {"path": np.tile([length, length, 1.0], bodies)}

@@ -8,8 +8,7 @@ import numpy as np
 
 from spline_model.pivot import cross_axis_pivot
 from spline_model.sensitivity.parameters import Section
-from spline_model.sensitivity.result import Sensitivities
-from spline_model.sensitivity.solve import sensitivities
+from spline_model.sensitivity.solve import Sensitivities, sensitivities
 from spline_model.statics import solve_statics
 from tests.table_one import TABLE_ONE
 

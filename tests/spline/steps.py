@@ -15,7 +15,7 @@ class Step:
     def __init__(self, scene, seed=3, size=0.03):
         system = compile_scene(scene)
         motion = set_in_motion(system)
-        self.model = moving(system, motion)
+        self.model = moving(motion)
         self.generator = np.random.default_rng(seed)
         nothing = np.zeros(len(motion.mass))
         self.state, self.work = self.model.arrays(system.rest, nothing, nothing)

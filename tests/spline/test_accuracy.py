@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from spline_model import accuracy as accuracies
-from spline_model.accurate_path import distances
+from spline_model.accuracy import distances
 from spline_model.errors import ConvergenceError, InvalidParameter
 from spline_model.pivot import cross_axis_pivot
 from spline_model.solution import Status

@@ -5,7 +5,7 @@ import pytest
 
 from spline_model.errors import ConvergenceError
 from spline_model.pivot import cross_axis_pivot
-from spline_model.statics import solve_loads, solve_mechanism, solve_path, solve_statics
+from spline_model.statics import solve_loads, solve_mechanism, solve_statics
 from tests import gates
 from tests.spline.frames import column, lees_frame, toggle
 from tests.table_one import SIX
@@ -104,7 +104,7 @@ def test_a_driven_path_may_use_arc_length():
     pivot = cross_axis_pivot(**SIX)
     mechanism = pivot
     by_arc = solve_mechanism(mechanism, rotation=1.5, control="arc-length")
-    by_load = solve_path(mechanism, 1.5)
+    by_load = solve_mechanism(mechanism, rotation=1.5)
     assert by_arc.load_factor[-1] == 1.0
     scale = np.abs(by_load.states[-1]).max()
     assert np.abs(by_arc.states[-1] - by_load.states[-1]).max() < 1e-9 * scale

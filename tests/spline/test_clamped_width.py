@@ -4,12 +4,11 @@ import numpy as np
 import pytest
 
 from spline_model.batch import solve_many
+from spline_model.effects.plate import plate_factors, profile_of
 from spline_model.effects.registry import DEFAULT_EFFECTS
 from spline_model.errors import InvalidParameter
 from spline_model.mechanism import BodyDesign, StripDesign, mechanism
 from spline_model.pivot import cross_axis_pivot
-from spline_model.plate.factors import plate_factors
-from spline_model.plate.profile import profile_of
 from spline_model.statics import solve_mechanism, solve_statics
 from tests import gates
 from tests.table_one import TABLE_ONE
@@ -88,8 +87,8 @@ def test_plate_factors_are_converged(monkeypatch):
     def error(across=16, cells=26):
         found = [[plate_factors(ratio, 0.45) for ratio in (0.05, 0.5, 2.0)]]
         with monkeypatch.context() as finer:
-            finer.setattr("spline_model.plate.factors.ACROSS", across)
-            finer.setattr("spline_model.plate.factors.CELLS", cells)
+            finer.setattr("spline_model.effects.plate.ACROSS", across)
+            finer.setattr("spline_model.effects.plate.CELLS", cells)
             found.append([plate_factors(ratio, 0.45) for ratio in (0.05, 0.5, 2.0)])
         return np.abs(np.subtract(*found)).max()
 

@@ -11,7 +11,7 @@ from spline_model.continuation.bordered import Bordered
 from spline_model.continuation.critical import reduced_tangent
 from spline_model.errors import InvalidParameter
 from spline_model.pivot import cross_axis_pivot
-from spline_model.statics import solve_loads, solve_mechanism, solve_path, solve_statics
+from spline_model.statics import solve_loads, solve_mechanism, solve_statics
 from tests import gates
 from tests.spline.frames import column, opposed
 from tests.table_one import SIX, TABLE_ONE
@@ -139,7 +139,7 @@ def test_inertia_counts_the_negative_eigenvalues():
     """Requirement: the inertia of a state is the number of negative eigenvalues of its reduced tangent."""
     pivot = opposed(offset=0.03, control_points=7)
     rotation = -0.05
-    path = solve_path(pivot, rotation, 8)
+    path = solve_mechanism(pivot, rotation=rotation, increments=8)
     work = Bordered.of(compile_scene(pivot.driven(rotation)))
     assert path.inertia.max() > 0
     for z, factor, inertia in zip(path.states, path.load_factor, path.inertia, strict=True):
@@ -151,7 +151,7 @@ def test_inertia_counts_the_negative_eigenvalues():
 def test_a_critical_point_is_where_an_eigenvalue_vanishes():
     """Requirement: at a located point the reduced tangent is singular, along the mode."""
     pivot = opposed(offset=0.02, control_points=8)
-    path = solve_path(pivot, -0.1, 10)
+    path = solve_mechanism(pivot, rotation=-0.1, increments=10)
     (point,) = [c for c in path.critical_points if c.kind == "bifurcation"]
     system = compile_scene(pivot.driven(-0.1))
     work = Bordered.of(system)

@@ -13,8 +13,9 @@ from spline_model.errors import ConvergenceError, InvalidParameter
 from spline_model.modes import natural_frequencies, static_state
 from spline_model.motion import bordered, energy_consistent, generalised_alpha
 from spline_model.motion.records import KINETIC, STRAIN
-from spline_model.motion.start import initial_acceleration, set_in_motion
+from spline_model.motion.start import Start, Steps, set_in_motion
 from spline_model.pivot import cross_axis_pivot, swinging_slide_stiffness
+from spline_model.solution import Later
 from tests import gates
 from tests.spline.scenes import LENGTH, swinging
 from tests.table_one import TABLE_ONE
@@ -185,8 +186,7 @@ def free_flight(step, steps=400):
     v[:body] = (np.column_stack((-points[:, 1], points[:, 0])) * spin + (0.4, -0.2)).ravel()
     v[1:body:2] += 40.0 * (points[:, 0] / LENGTH) ** 2 * (np.arange(len(points)) < len(points) - 2)
     v[body : body + 3] = (0.4, -0.2, spin)
-    acceleration, z = initial_acceleration(system, motion, system.rest, v)
-    run = energy_consistent.integrate(system, motion, z, v, acceleration, step=step, steps=steps, every=1)
+    run = energy_consistent.integrate(Start(motion, Later(system.rest[None].copy), v), Steps(step, steps, 1))
     assert not run.message
     momentum = momenta(scene, *run.whole.both)
     energy = run.rows[:, KINETIC] + run.rows[:, STRAIN]
@@ -214,7 +214,7 @@ def test_initial_acceleration_is_consistent():
     start = solve_release(pivot, duration=1e-6, step=1e-7)
     motion = set_in_motion(system)
     v = np.zeros(system.layout.coordinate_count)
-    acceleration, _ = initial_acceleration(system, motion, start.states[0], v)
+    acceleration, _ = motion.accelerated(start.states[0], v)
     turn = motion.turns[0]
     mean = start.velocities[1][turn] / 1e-7
     assert abs(mean / acceleration[turn] - 1) < 1e-5  # (axial frequency x step)^2 / 12
@@ -227,12 +227,10 @@ def test_generalised_alpha_is_that_with_multipliers():
     motion = set_in_motion(system)
     z = static_state(pivot, 1.0)[: system.layout.size]
     v = np.zeros(system.layout.coordinate_count)
-    acceleration, z = initial_acceleration(system, motion, z, v)
-    start = system, motion, z, v, acceleration
-    steps = {"step": 1e-5, "steps": 20, "every": 10}
-    ours = generalised_alpha.integrate(*start, **steps)
-    stepper = bordered.Stepper(*start, generalised_alpha.constants(generalised_alpha.SPECTRAL_RADIUS))
-    other = energy_consistent.carry(stepper, None, **steps)
+    start, steps = Start(motion, Later(z[None].copy), v), Steps(1e-5, 20, 10)
+    ours = generalised_alpha.integrate(start, steps)
+    stepper = bordered.Stepper(start, generalised_alpha.constants(generalised_alpha.SPECTRAL_RADIUS))
+    other = energy_consistent.carry(stepper, steps)
     places = slice(0, len(v))
     assert np.abs(ours.whole.both[0] - other.whole.both[0])[:, places].max() < 1e-12
     assert np.abs(ours.rows[1:, KINETIC] / other.rows[1:, KINETIC] - 1.0).max() < 1e-9

@@ -34,9 +34,10 @@ def states(model, shares):
     for share in shares:
         act(share, preload, bodies, strips)
         counters = np.zeros(3, dtype=np.int64)
-        assert newton(y, 0.0, bodies, strips, model.shape, local, space, TOLERANCE, counters) == 0
+        given = bodies, strips, model.shape, local, space
+        assert newton(y, 0.0, False, *given, TOLERANCE, counters)[0] == 0
         energy = space.out[[BENDING, AXIAL, DEAD]].sum() + share * preload.hung[1]
-        slope, bend = swell(y, share, preload, bodies, strips, model.shape, local, space)
+        slope, bend = swell(y, share, preload, *given)
         yield y.copy(), energy, slope, bend, space.rate.copy()
 
 

@@ -68,7 +68,7 @@ def phase_error(omega_h, mode=14, periods=400):
     z = system.rest.copy()
     z[:count] += 1e-7 / np.abs(shape).max() * shape
     steps = math.ceil(2 * math.pi * periods / omega_h)
-    start = flight(system, motion, z, np.zeros(count), 1, "leapfrog")
+    start = flight(motion, z, np.zeros(count), 1, "leapfrog")
     assert start.fly(omega_h / omega, steps) == 1
     (z,), (v,) = start.model.unknowns(start.records[1:])
     weighted = motion.mass @ shape

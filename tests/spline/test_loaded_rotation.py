@@ -7,7 +7,7 @@ import pytest
 
 from spline_model.errors import ConvergenceError, InvalidParameter
 from spline_model.pivot import cross_axis_pivot
-from spline_model.statics import solve_from, solve_mechanism, solve_path, solve_statics
+from spline_model.statics import solve_from, solve_mechanism, solve_statics
 from tests import gates
 from tests.table_one import TABLE_ONE
 
@@ -138,7 +138,7 @@ def test_accuracy_and_guesses_have_the_sign_of_the_load():
     made, rotation = loaded(LOADS["force"]), math.radians(-30)
     accurate = solve_statics(made, rotation=rotation, accuracy=1e-3)
     guessed = solve_from(made, rotation=rotation, guess=right.states[-1])
-    path = solve_path(made, rotation, 5)
+    path = solve_mechanism(made, rotation=rotation, increments=5)
     assert abs(accurate.torque[-1] / right.torque[-1] - 1) < 1e-2
     assert abs(guessed.torque[-1] / right.torque[-1] - 1) < 1e-9
     assert np.abs(path.states[-1] - right.states[-1]).max() < 1e-9 * np.abs(right.states[-1]).max()

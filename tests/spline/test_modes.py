@@ -9,7 +9,6 @@ from scipy.optimize import brentq
 from spline_model.compile import compile_scene
 from spline_model.effects.registry import DEFAULT_EFFECTS
 from spline_model.errors import InvalidParameter
-from spline_model.mass import mass_matrix
 from spline_model.modes import linear_modes, natural_frequencies
 from spline_model.pivot import cross_axis_pivot
 from tests import gates
@@ -53,7 +52,7 @@ def end_body_equation(mass, inertia):
 def frequencies(scene, count):
     """First circular frequencies in sqrt(EI/mu)/L^2."""
     system = compile_scene(scene)
-    squares = linear_modes(system, system.rest, mass_matrix(scene, system.layout))[0]
+    squares = linear_modes(system, system.rest, system.mass)[0]
     return np.sqrt(squares[:count] / RIGIDITY) * LENGTH**2
 
 

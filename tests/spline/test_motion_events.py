@@ -13,7 +13,7 @@ from spline_model.errors import InvalidParameter
 from spline_model.modes import static_state
 from spline_model.motion import energy_consistent
 from spline_model.motion.records import KINETIC, STRAIN, energy_gain, first_gain
-from spline_model.motion.start import initial_acceleration, set_in_motion
+from spline_model.motion.start import set_in_motion
 from spline_model.pivot import cross_axis_pivot, swinging_slide_stiffness
 from tests import gates
 from tests.table_one import TABLE_ONE
@@ -31,12 +31,17 @@ def pivot(control_points=4, **settings):
 SUDDEN, GROWING = ((0.0, 0.0), (1.0003e-3, 0.0), (1.0003e-3 + 1e-9, 1.0)), ((0.0, 0.0), (4e-3, 1.0))
 
 
+def under(history):
+    """What a pivot under a moment with a history is given."""
+    return {
+        "effects": (*EFFECTS, "applied_moment"),
+        "parameters": {"applied_moment": {"moment": 50.0, "history": history}},
+    }
+
+
 def jump_error(step, history=SUDDEN):
     """Error of the rotation after a moment with a history, against a fine grid."""
-    loaded = pivot(
-        effects=(*EFFECTS, "applied_moment"),
-        parameters={"applied_moment": {"moment": 50.0, "history": history}},
-    )
+    loaded = pivot(**under(history))
 
     def end(h):
         return solve_motion(loaded, duration=4e-3, step=h, records=1).rotation[-1]
@@ -71,13 +76,16 @@ def test_a_drive_off_the_grid_ends_where_it_should():
     assert np.abs(books - books[0]).max() < 1e-9 * np.abs(run.work).max()
 
 
-def test_a_motion_goes_on_where_another_ended():
-    """Requirement: two halves, one after the other, are the whole run, work and clock included."""
-    whole = solve_release(pivot(), start=1.0, duration=4e-3, step=5e-5)
-    half = solve_release(pivot(), start=1.0, duration=2e-3, step=5e-5)
-    rest = solve_motion(pivot(), after=half, duration=2e-3, step=5e-5)
+@pytest.mark.parametrize("settings", [{}, under(GROWING)], ids=["free", "loaded"])
+def test_a_motion_goes_on_where_another_ended(settings):
+    """Requirement: two halves, one after the other, are the whole run, work and the loads' clock included."""
+    given = pivot(**settings)
+    whole = solve_release(given, start=1.0, duration=4e-3, step=5e-5, check=False)
+    half = solve_release(given, start=1.0, duration=2e-3, step=5e-5, check=False)
+    rest = solve_motion(given, after=half, duration=2e-3, step=5e-5)
     assert rest.time[0] == pytest.approx(half.time[-1]) and rest.time[-1] == pytest.approx(whole.time[-1])
     assert abs(rest.rotation[-1] - whole.rotation[-1]) < 1e-11
+    assert abs(rest.work[-1] - whole.work[-1]) < 1e-11 * whole.strain_energy[0]
     with pytest.raises(InvalidParameter, match="after: got 'a motion of another mechanism'"):
         solve_motion(pivot(control_points=5), after=half, duration=1e-3)
 
@@ -138,8 +146,8 @@ def test_energy_content_adds_up_and_names_the_mode():
     motion = set_in_motion(system)
     start = static_state(released, math.pi / 2)[: system.layout.size]
     v = np.zeros(system.layout.coordinate_count)
-    acceleration, z = initial_acceleration(system, motion, start, v)
-    content = energy_content(system, motion, z, v, acceleration)
+    acceleration, z = motion.accelerated(start, v)
+    content = energy_content(motion, z, v, acceleration)
     assert sum(mode.share for mode in content) == pytest.approx(1.0)
     assert content[0].kind == "swing" and content[0].share > 0.99
     assert {mode.kind for mode in content} == {"swing", "bending", "stretching"}

@@ -23,7 +23,11 @@ from tests.table_one import SIX, TABLE_ONE
     "effects, parameters, line",
     [
         (("bending", "gravty"), {}, "effects: got 'gravty', expected one of bending, .*nearest: gravity"),
-        (("bending", "stretching", "shear"), {}, "effects: got 'shear', expected none: .* fe_reference"),
+        (
+            ("bending", "stretching", "shear", "gravity"),
+            {},
+            "'shear and gravity', expected one of .* not both",
+        ),
         (("bending", "stretching", "inextensible"), {}, "not both"),
         (("bending",), {}, "stretching or inextensible beside bending"),
         (("stretching",), {}, "bending, without which"),

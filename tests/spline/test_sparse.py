@@ -5,9 +5,8 @@ import pytest
 
 from spline_model import newton
 from spline_model.compile import compile_scene
-from spline_model.newton import Workspace
+from spline_model.newton import Workspace, filled_entries
 from spline_model.pivot import cross_axis_pivot
-from spline_model.sparse import filled_entries
 from spline_model.statics import solve_statics
 from tests import gates
 from tests.spline.frames import opposed
@@ -23,10 +22,10 @@ def pivot(**settings):
 
 def both(monkeypatch, dense=None, **settings):
     """The path by the sparse and by the dense factorisation, the latter of changed settings if given."""
-    sparse = solve_statics(pivot(**settings), rotation=1.5, increments=12)
+    sparse = solve_statics(pivot(**settings), rotation=1.5, increments=6)
     with monkeypatch.context() as patch:
         patch.setattr(newton, "pattern_of", lambda system: None)
-        return sparse, solve_statics(pivot(**(settings | (dense or {}))), rotation=1.5, increments=12)
+        return sparse, solve_statics(pivot(**(settings | (dense or {}))), rotation=1.5, increments=6)
 
 
 def difference(one, other, *names):
@@ -86,10 +85,10 @@ def test_the_pattern_holds_every_entry(settings):
 def test_both_factorisations_count_the_same_inertia(monkeypatch):
     """Requirement: a long B-spline's states have the same inertia by either factorisation."""
     made = opposed(offset=0.03, basis="bspline", control_points=40)
-    sparse = solve_statics(made, rotation=-0.3, increments=12)
+    sparse = solve_statics(made, rotation=-0.3, increments=8)
     with monkeypatch.context() as patch:
         patch.setattr(newton, "pattern_of", lambda system: None)
-        dense = solve_statics(made, rotation=-0.3, increments=12)
+        dense = solve_statics(made, rotation=-0.3, increments=8)
     assert set(sparse.inertia) == {0, 1}
     assert np.array_equal(sparse.inertia, dense.inertia)
     points = [[c.rotation for c in answer.critical_points] for answer in (sparse, dense)]

@@ -8,9 +8,8 @@ import pytest
 
 from spline_model.batch import solve_many
 from spline_model.compile import compile_scene
-from spline_model.continuation.balance import jumped
 from spline_model.continuation.bordered import Bordered
-from spline_model.continuation.point import stand
+from spline_model.continuation.point import jumped, stand
 from spline_model.continuation.resolution import LARGEST_DEFECT
 from spline_model.design import Discretisation, StripDesign
 from spline_model.errors import ConvergenceError, InvalidParameter
@@ -19,7 +18,7 @@ from spline_model.newton import Workspace, solve
 from spline_model.path import follow
 from spline_model.pivot import cross_axis_pivot
 from spline_model.reduced.path import is_work, work_of
-from spline_model.statics import solve_from, solve_mechanism, solve_path, solve_statics
+from spline_model.statics import solve_from, solve_mechanism, solve_statics
 from tests import gates
 from tests.spline.frames import opposed
 from tests.table_one import SIX, TABLE_ONE
@@ -147,7 +146,7 @@ def _reordered(z, layout, order):
 def test_bad_starts_recover(name, control_points):
     """Requirement: from any guess the primary state is found, by it or from rest, and it is said which."""
     pivot = cross_axis_pivot(**TABLE_ONE, control_points=control_points)
-    right = solve_path(pivot, 1.2)
+    right = solve_mechanism(pivot, rotation=1.2)
     layout = compile_scene(pivot.driven(1.2)).layout
     guess = GUESSES[name](right.states[-1], layout, np.random.default_rng(3))
     with np.errstate(all="ignore"):
@@ -165,7 +164,7 @@ def test_wrong_branches_near_the_right_one_are_not_believed():
     pivot = cross_axis_pivot(**TABLE_ONE, control_points=6)
     system = compile_scene(pivot.driven(2.5))
     layout, work = system.layout, Workspace.of(system)
-    right, rng = solve_path(pivot, 2.5).states[-1], np.random.default_rng(1)
+    right, rng = solve_mechanism(pivot, rotation=2.5).states[-1], np.random.default_rng(1)
     others = []
     with np.errstate(all="ignore"):
         for _ in range(100):
@@ -182,7 +181,7 @@ def test_wrong_branches_near_the_right_one_are_not_believed():
 def test_a_pivot_wound_up_the_other_way_round_is_not_believed():
     """Requirement: the same pose reached by a turn less passes every local check, and is not believed."""
     pivot = cross_axis_pivot(**TABLE_ONE, control_points=16, gauss_points=32)
-    wound = solve_path(pivot, 0.3 - 2 * math.pi, 72).states[-1].copy()
+    wound = solve_mechanism(pivot, rotation=0.3 - 2 * math.pi, increments=72).states[-1].copy()
     system = compile_scene(pivot.driven(0.3))
     wound[system.layout.body("body").stop - 1] += 2 * math.pi
     work = Workspace.of(system)

@@ -1,0 +1,283 @@
+"""A state with the factors of one beside it: what a residual there asks for, and states solved so, compiled.
+
+The prediction of a path is soon so good that one correction ends in round-off. Behind it the tangent H is
+not formed again: the gradient is seen to vanish, and with the tangent K of the state before and the predicted
+rate v, the rate is
+
+    v - K^-1 H v,
+
+off by K^-1 H - 1 times what v is, and so is the stiffness.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from spline_model.reduced.assembly import (
+    AXIAL,
+    BENDING,
+    DEAD,
+    FORCE,
+    MOVE,
+    RATE,
+    RAW,
+    REACTION,
+    REACTION_RATE,
+    SLOWEST,
+    SPARE,
+    move_strips,
+    place_of,
+)
+from spline_model.reduced.equilibrium import CLOSE, CONFIRMED, ITERATIONS, NEARLY, carry, newton, tangent
+from spline_model.strip.compiled import called, kernel, lane, part
+from spline_model.strip.element import (
+    FORCE_AT,
+    GRADIENT,
+    HESSIAN_AT,
+    LAST,
+    MODES,
+    POINTS,
+    PULL_AT,
+    SHEAR,
+    SPRING,
+    place_points,
+)
+from spline_model.strip.ends import by_roots, by_tip, to_ends
+from spline_model.strip.laws import MATERIAL
+from spline_model.strip.points import add_slopes, curve_at, evaluate_residual, four
+
+COVECTOR, ALONG = 0, 1
+"""Rows of ``Local.nodal`` that are free once the Hessian is condensed: H v, and the rates of the points."""
+FIRM = 1e4
+"""Least pivot, over the residual of the state that was factorised, that has its sign in the state solved for:
+over such a step a pivot changes by up to 400 times the residual, large ones most."""
+
+
+@part()
+def to_coordinates(s, v, last, strips, local):
+    """A covector v of the control points in the coordinates of the element, into g of strip s."""
+    first = v.size - 8
+    g = local.reduced[s, LAST]
+    for i in range(first):
+        g[i] = v[i]
+    to_ends(v, first, local.map[s], strips.tips[s] >= 0, strips.roots[s] >= 0, g, first, last)
+    if strips.numbers[s, SPRING] > 0.0:
+        by_roots(v, first, local.nodal[s, POINTS], g)
+    if strips.numbers[s, SHEAR] > 0.0:
+        by_tip(v, first, 2 * (strips.numbers[s, SPRING] > 0.0), g)
+
+
+@part()
+def _forward(own, last, end, coupled, outer, gain, h, b, gap, g):
+    """Eliminate a right-hand side, g of w and the ends and gap of a, as the strip was condensed."""
+    for k in range(gap.size):
+        push = gain[k] * gap[k]
+        for i in range(end):
+            if i < own or i >= last:
+                g[i] += push * b[k, i]
+    for k in range(coupled):
+        g[end if k < outer else own + k - outer] = gap[k]
+    for i in range(last):
+        factor = g[i] / h[i, i]
+        for j in range(i + 1, end + outer):
+            g[j] -= factor * h[i, j]
+
+
+@part()
+def condense_again(bodies, strips, shape, local, space):
+    """Add to FORCE what the strips' g, overwritten, and gaps are at the ends by the factors at hand."""
+    force, modes, own = space.vectors[FORCE], strips.compliance.shape[1], 2 * shape.order.size - 6
+    last = own + strips.coupled - strips.outer
+    for s in range(strips.roots.size):
+        h, tip, root = local.reduced[s], strips.tips[s], strips.roots[s]
+        g, b, end = h[LAST], h[h.shape[1] : h.shape[1] + modes], last + 3 * (tip >= 0) + 3 * (root >= 0)
+        _forward(own, last, end, strips.coupled, strips.outer, strips.gain[s], h, b, local.axial[s, LAST], g)
+        for i in range(last, end + strips.outer):
+            force[place_of(i - last, tip, root, bodies.rest.size + s)] += g[i]
+
+
+@called()
+def respond(bodies, strips, shape, local, space, out):
+    """The change (Y,) by which a residual beside a condensed state vanishes, into ``out``.
+
+    The residual: FORCE of the vectors without the strips, and each strip's g and gap in its element, which
+    are overwritten. REACTION_RATE: what the drives then bear.
+    """
+    move = space.vectors[MOVE]
+    condense_again(bodies, strips, shape, local, space)
+    carry(REACTION_RATE, bodies, space)
+    for i in range(bodies.rest.size):
+        out[i] = move[i]
+    move_strips(1.0, bodies, strips, shape, local, space, out)
+
+
+@part()
+def take_residual(y, load, bodies, strips, shape, local, space):
+    """As ``assemble``, but for the tangent, which is kept. Of the strips the largest."""
+    out, force, raw, poses = space.out, space.vectors[FORCE], space.vectors[RAW], bodies.rest.size
+    n, modes = shape.order.size, strips.compliance.shape[1]
+    own, last = 2 * n - 6, 2 * n - 6 + strips.coupled - strips.outer
+    out[BENDING] = out[AXIAL] = out[DEAD] = 0.0
+    out[SLOWEST] = np.inf
+    for i in range(bodies.load.size):
+        force[i] = raw[i] = -load * bodies.load[i] - bodies.weight[i]
+    for i in range(poses):
+        out[DEAD] -= bodies.weight[i] * y[i]
+    norm = 0.0
+    for s in range(strips.roots.size):
+        at, tip, root = poses + s * (own + modes), strips.tips[s], strips.roots[s]
+        place_points(s, y[at : at + own], y, strips, local)
+        evaluate_residual(s, y[at + own : at + own + modes], n, shape, strips, local, out)
+        to_coordinates(s, local.nodal[s, GRADIENT], last, strips, local)
+        g, gap = local.reduced[s, LAST], local.axial[s, LAST]
+        for i in range(own):
+            norm = max(norm, abs(g[i]))
+        for k in range(modes):
+            norm = max(norm, abs(gap[k]))
+        for i in range(last, last + 3 * (tip >= 0) + 3 * (root >= 0)):
+            raw[place_of(i - last, tip, root, 0)] += g[i]
+    return norm
+
+
+@lane()
+def _product_at(
+    x1, y1, x2, y2, h00, h01, h11, h02, h03, h12, h13, h22, h23, h33, tx, ty, mixed, force,
+    g0, g1, g2, g3, strain,
+):  # fmt: skip
+    """What the derivatives of the energy change by, as those of the curve and the axial force do.
+
+    strain: the change of their derivative in the axial force but for its own compliance.
+    """
+    for p in range(x1.size):
+        a1, b1, a2, b2, pull = x1[p], y1[p], x2[p], y2[p], mixed[p] * force[p]
+        g0[p] = h00[p] * a1 + h01[p] * b1 + h02[p] * a2 + h03[p] * b2 + pull * tx[p]
+        g1[p] = h01[p] * a1 + h11[p] * b1 + h12[p] * a2 + h13[p] * b2 + pull * ty[p]
+        g2[p] = h02[p] * a1 + h12[p] * b1 + h22[p] * a2 + h23[p] * b2
+        g3[p] = h03[p] * a1 + h13[p] * b1 + h23[p] * a2 + h33[p] * b2
+        strain[p] = mixed[p] * (tx[p] * a1 + ty[p] * b1)
+
+
+@part()
+def _add_product(s, a, points, shape, strips, local, covector):
+    """What gradient (2 n), into ``covector``, and gaps of strip s change by, as points (2 n) and forces a do.
+
+    Behind ``evaluate_residual``, in the material measure; all but moment and speed is overwritten.
+    """
+    lanes, along, gap = local.lanes[s], strips.along[s], local.axial[s, LAST]
+    d1, d2, force, strain = shape.curve[0], shape.curve[1], lanes[FORCE_AT], lanes[PULL_AT]
+    curve_at(points, d1, d2, four(lanes, 0))
+    for p in range(along.shape[0]):
+        total = 0.0
+        for k in range(a.size):
+            total += along[p, MODES + k] * a[k]
+        force[p] = total
+    h, more = four(lanes, HESSIAN_AT) + four(lanes, HESSIAN_AT + 4), four(lanes, HESSIAN_AT + 8)
+    slopes = four(lanes, 4)
+    _product_at(*(four(lanes, 0) + h + more + (lanes[PULL_AT + 1], force) + slopes + (strain,)))
+    for i in range(covector.size):
+        covector[i] = 0.0
+    add_slopes(d1.shape[0], d1, d2, slopes, covector)
+    for k in range(a.size):
+        total = -strips.compliance[s, k] * a[k]
+        for p in range(along.shape[0]):
+            total += along[p, MODES + k] * strain[p]
+        gap[k] = total
+
+
+@part()
+def _move_end(body, inner, outer, stick, lever, reach, rate, ends, along):
+    """Rates of an end's two control points, by that of the body and of s_A or s_B."""
+    x = y = turn = 0.0
+    if body >= 0:
+        x, y, turn = rate[3 * body], rate[3 * body + 1], rate[3 * body + 2]
+    along[inner] = x + ends[lever] * turn + ends[stick] * reach
+    along[inner + 1] = y + ends[lever + 1] * turn + ends[stick + 1] * reach
+    along[outer], along[outer + 1] = x + ends[lever + 2] * turn, y + ends[lever + 3] * turn
+
+
+@part()
+def _turn_end(body, inner, outer, stick, reach, turn, rate, ends, along, f, g):
+    """Add what an end's points do to the gradient f as their directions in s_A or s_B and the pose turn."""
+    if body >= 0:
+        x, y = rate[3 * body], rate[3 * body + 1]
+        g[reach] += rate[3 * body + 2] * (ends[stick] * f[inner + 1] - ends[stick + 1] * f[inner])
+        g[turn] += (along[inner] - x) * f[inner + 1] - (along[inner + 1] - y) * f[inner]
+        g[turn] += (along[outer] - x) * f[outer + 1] - (along[outer + 1] - y) * f[outer]
+
+
+@part()
+def _take_product(rate, load_rate, bodies, strips, shape, local, space):
+    """H v of a state just evaluated by ``_take_residual`` along a rate v (Y,): its g, gap and FORCE."""
+    force, poses = space.vectors[FORCE], bodies.rest.size
+    n, modes = shape.order.size, strips.compliance.shape[1]
+    own, last, first = 2 * n - 6, 2 * n - 6 + strips.coupled - strips.outer, 2 * n - 8
+    for i in range(bodies.load.size):
+        force[i] = -load_rate * bodies.load[i]
+    for s in range(strips.roots.size):
+        at, tip, root, ends = poses + s * (own + modes), strips.tips[s], strips.roots[s], local.map[s]
+        along, f, g = local.nodal[s, ALONG], local.nodal[s, GRADIENT], local.reduced[s, LAST]
+        for i in range(first):
+            along[i] = rate[at + i]
+        _move_end(root, first, first + 6, 0, 8, rate[at + own - 2], rate, ends, along)
+        _move_end(tip, first + 2, first + 4, 2, 4, rate[at + own - 1], rate, ends, along)
+        covector = local.nodal[s, COVECTOR]
+        _add_product(s, rate[at + own : at + own + modes], along, shape, strips, local, covector)
+        to_coordinates(s, covector, last, strips, local)
+        _turn_end(root, first, first + 6, 0, own - 2, last + 3 * (tip >= 0) + 2, rate, ends, along, f, g)
+        _turn_end(tip, first + 2, first + 4, 2, own - 1, last + 2, rate, ends, along, f, g)
+
+
+@part()
+def _is_firm(least, strips, shape, local, space):
+    """Whether all pivots of strips and bodies are ``least`` or more."""
+    firm, last = True, 2 * shape.order.size - 6 + strips.coupled - strips.outer
+    for i in range(space.factors.shape[0]):
+        firm = firm and abs(space.factors[i, i]) >= least
+    for s in range(strips.roots.size):
+        for i in range(last):
+            firm = firm and abs(local.reduced[s, i, i]) >= least
+    return firm
+
+
+@kernel()
+def _confirm(y, load, norm, held_rate, load_rate, bodies, strips, shape, local, space, tolerance):
+    """Whether y, one correction behind a state of residual ``norm``, is solved; with reactions and rates.
+
+    RATE: as predicted, which becomes the state's own.
+    """
+    left = take_residual(y, load, bodies, strips, shape, local, space)
+    for i in range(bodies.free.size):
+        left = max(left, abs(space.vectors[RAW, bodies.free[i]]))
+    if not left <= CLOSE * tolerance:
+        return False
+    rate, change, most = space.states[RATE], space.states[SPARE], 0.0
+    for d in range(bodies.held.size):
+        space.vectors[REACTION, d] = space.vectors[RAW, bodies.held[d]]
+        rate[bodies.held[d]] = held_rate[d]
+    _take_product(rate, load_rate, bodies, strips, shape, local, space)
+    respond(bodies, strips, shape, local, space, change)
+    for i in range(y.size):
+        rate[i] += change[i]
+        most = max(most, abs(change[i]))
+    return norm * most <= tolerance
+
+
+@called()
+def solve(y, load, alone, held_rate, load_rate, bodies, strips, shape, local, space, tolerance, counters):
+    """Solve in place at the held coordinates in y, with rates and reactions; negative eigenvalues, or -1.
+
+    alone: whether the stiffness follows from the rates, so that the tangent need not be that of the state.
+    """
+    springs = strips.numbers[0, SPRING] > 0.0 or strips.numbers[0, SHEAR] > 0.0
+    early = alone and strips.measure == MATERIAL and not springs
+    negative, norm = newton(y, load, early, bodies, strips, shape, local, space, tolerance, counters)
+    if early and negative >= 0 and norm > NEARLY * tolerance:
+        counters[ITERATIONS] += 1
+        if _is_firm(FIRM * norm, strips, shape, local, space):
+            counters[CONFIRMED] += 1
+            if _confirm(y, load, norm, held_rate, load_rate, bodies, strips, shape, local, space, tolerance):
+                return negative
+        negative, _ = newton(y, load, False, bodies, strips, shape, local, space, tolerance, counters)
+    if negative >= 0:
+        tangent(held_rate, load_rate, bodies, strips, shape, local, space)
+    return negative
