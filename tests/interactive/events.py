@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from studies.interactive.session.session import Session
+from studies.interactive.pivot.session import Session
 
 FRAME = 0.04
 

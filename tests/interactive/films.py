@@ -7,10 +7,10 @@ from functools import cache
 import numpy as np
 
 from spline_model.held import HeldPivot
-from studies.interactive.film.painter import Film, Finger, Marker, Optics, Painter
 from studies.interactive.pivot.design import SIDE, Placing, build, turned
 from studies.interactive.pivot.presets import PRESETS
 from studies.interactive.tracking import tracker as tracking
+from studies.interactive.tracking.painter import Film, Finger, Marker, Optics, Painter
 from studies.interactive.tracking.planar import CORNERS, project
 from studies.interactive.tracking.tracker import Tracker
 

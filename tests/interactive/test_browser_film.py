@@ -13,10 +13,10 @@ pytest.importorskip("uvicorn", reason="the extra `interactive` is not installed"
 
 from PIL import Image
 
-from studies.interactive.film.painter import Optics
 from studies.interactive.pivot.design import Placing, build
 from studies.interactive.pivot.presets import PRESETS
 from studies.interactive.tracking.detector import encoded
+from studies.interactive.tracking.painter import Optics
 from studies.interactive.tracking.planar import project
 from studies.interactive.web.browser import Browser, executable
 from studies.interactive.web.server import Hosted, Settings

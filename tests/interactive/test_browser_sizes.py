@@ -33,3 +33,26 @@ def test_pivot_and_sliders_are_seen_together(width, height):
             browser.ask("document.querySelector('.slider:last-child').scrollIntoView({ block: 'center' })")
         assert browser.ask(f"{inside}('#stage')")
         assert browser.ask(f"{inside}('#sliders .slider:last-child')")
+
+
+#: Smaller sides [px] of what a finger is to hit, by what it is.
+TARGETS = """
+const all = [...document.querySelectorAll("button, select, input:not([type=file])")];
+all.filter((e) => e.offsetParent).map((e) => {
+  const { width, height } = e.getBoundingClientRect();
+  return [e.type, e.id || e.ariaLabel, Math.min(width, height), width];
+})
+"""
+
+
+def test_fingers_hit_what_they_should():
+    """Requirement: on a phone buttons and choices are at least 44 px high, everything else at least 24 px
+    (WCAG 2.2), and a slider is as wide as the screen allows."""
+    with Hosted(Settings(camera="none")) as hosted, Browser(width=390, height=844) as browser:
+        browser.call("Emulation.setTouchEmulationEnabled", enabled=True)
+        load(browser, hosted.server)
+        targets = browser.ask(TARGETS)
+    assert len(targets) > 40
+    for kind, name, side, width in targets:
+        assert side >= {"submit": 44.0, "select-one": 44.0}.get(kind, 24.0), name
+        assert kind != "range" or name == "scrub" or width >= 300.0, name

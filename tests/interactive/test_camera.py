@@ -1,6 +1,8 @@
 """Cameras: of unknown and known constants, and what they make of light."""
 
 import math
+import re
+from dataclasses import asdict
 from itertools import product
 
 import numpy as np
@@ -8,14 +10,13 @@ import pytest
 
 pytest.importorskip("cv2", reason="the extra `interactive` is not installed")
 
+from studies.__main__ import main
 from studies.errors import BadInput
-from studies.interactive.film.painter import Marker, Optics
-from studies.interactive.pivot.design import SIDE
-from studies.interactive.session.session import Session
+from studies.interactive.pivot.design import PRINTED
+from studies.interactive.pivot.session import Session
 from studies.interactive.tracking import tracker as tracking
-from studies.interactive.tracking.calibration import Camera, calibrated
-from studies.interactive.tracking.detector import Detector
-from studies.interactive.tracking.edges import refine
+from studies.interactive.tracking.calibration import Camera
+from studies.interactive.tracking.painter import Marker, Optics
 from studies.interactive.tracking.tracker import Tracker
 from tests import gates
 from tests.interactive.events import session, turned
@@ -96,23 +97,51 @@ def test_unloaded_pivot_before_any_camera():
     assert (np.mean(np.abs(gaps) > 3.0, axis=0) <= 0.01).all()
 
 
-def test_camera_is_calibrated_from_views():
-    """Requirement: five views of both markers at a known distance give the focal length to 1 %."""
-    flat = [Marker(number=0, pose=(0.0, 0.0, 0.0)), Marker(number=1, pose=(0.0, 0.15, 0.0))]
-    points, pictures = [], []
-    for tilt, roll in ((-35, 5), (-15, -40), (10, 30), (25, -10), (40, 15)):
-        optics = Optics(tilt=math.radians(tilt), roll=math.radians(roll))
-        picture = film(optics, frames=1, markers=lambda k: flat).picture(0)
-        quads = Detector().find(picture).corners
-        seen = refine(picture, np.stack((quads[0], quads[1]))).corners
-        own = [np.array([[-1, 1], [1, 1], [1, -1], [-1, -1]]) * SIDE / 2 + m.pose[:2] for m in flat]
-        points.append(np.concatenate(own))
-        pictures.append(seen.reshape(-1, 2))
-    camera = calibrated(points, pictures, (640, 480))
-    assert abs(camera.fx / 600 - 1) < 0.01
-    assert abs(camera.fy / 600 - 1) < 0.01
-    with pytest.raises(BadInput, match="views: got 2"):
-        calibrated(points[:2], pictures[:2], (640, 480))
+#: Tilts and rolls [deg] of a sheet that a hand shows to the camera.
+SHOWN = [(tilt, roll) for tilt in (-40, -25, 0, 25, 40) for roll in (-60, 0, 60)]
+
+
+def sheet_film(folder, shown):
+    """A film of the uncut sheet before a camera with a lens."""
+    import cv2
+
+    flat = [Marker(number=0, pose=(0.0, 0.0, 0.0)), Marker(number=1, pose=PRINTED)]
+    path, kind = str(folder / "sheet.avi"), cv2.VideoWriter.fourcc(*"MJPG")
+    writer = cv2.VideoWriter(path, kind, 25.0, (640, 480), False)
+    for tilt, roll in shown:
+        optics = Optics(tilt=math.radians(tilt), roll=math.radians(roll), k1=-0.1)
+        writer.write(film(optics, frames=1, markers=lambda k: flat, samples=2).picture(0))
+    writer.release()
+    return path
+
+
+@pytest.mark.slow
+def test_camera_is_calibrated_from_a_film(tmp_path, capsys):
+    """Requirement: the command finds a camera's constants from a film of the sheet within three of the
+    spreads that it says, the focal length to 1 %, and writes the file that `--calibration` reads."""
+    out = tmp_path / "camera.json"
+    assert main(["calibrate", sheet_film(tmp_path, SHOWN), "--out", str(out)]) == 0
+    found, said = Camera.read(out), capsys.readouterr().out
+    spread = dict(re.findall(r"(\w+) = \S+ ± (\S+)", said))
+    for name, true in asdict(Optics(k1=-0.1).camera).items():
+        assert abs(getattr(found, name) - true) <= 3.0 * float(spread[name]), (name, said)
+    assert max(abs(found.fx / 600 - 1), abs(found.fy / 600 - 1)) < 0.01
+    assert re.search(r"camera.json: \d+ views of 640 x 480 px, corners within 0\.\d+ px\n", said)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("shown", "message"),
+    [
+        ([(20, 0)] * 3, "views: got 1, expected at least 3"),
+        ([(0, 0), (14, 0), (-14, 0)], "tilt the sheet more"),
+    ],
+)
+def test_views_that_do_not_suffice_are_named(tmp_path, capsys, shown, message):
+    """Requirement: views that are alike, or too few, are refused in one line with what to do."""
+    assert main(["calibrate", sheet_film(tmp_path, shown), "--out", str(tmp_path / "camera.json")]) == 2
+    assert message in capsys.readouterr().err
+    assert not (tmp_path / "camera.json").exists()
 
 
 def test_camera_file(tmp_path):

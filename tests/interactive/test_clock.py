@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 
+from studies.interactive.pivot.input import Clock
 from studies.interactive.pivot.mechanics import Mechanics
-from studies.interactive.session.input import Clock
 from tests.interactive.events import FRAME, codes, session, turned
 
 

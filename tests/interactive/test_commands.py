@@ -121,7 +121,7 @@ def test_packages_of_the_extra_are_those_of_pyproject():
 def test_sheet_is_a_page(tmp_path):
     """Requirement: the sheet is a PDF of A4, the same bytes each time."""
     pytest.importorskip("cv2", reason="the extra `interactive` is not installed")
-    from studies.interactive.film.sheet import sheet
+    from studies.interactive.tracking.sheet import sheet
 
     target = tmp_path / "markers.pdf"
     done = run("markers", "--out", str(target))
@@ -137,8 +137,8 @@ def test_sheet_is_read_in_size():
     """Requirement: both markers are read from the sheet as it is printed, 60 mm wide, upright and as far
     apart as the session takes them to be."""
     pytest.importorskip("cv2", reason="the extra `interactive` is not installed")
-    from studies.interactive.film.sheet import page
-    from studies.interactive.session.session import Session
+    from studies.interactive.pivot.session import Session
+    from studies.interactive.tracking.sheet import page
     from studies.interactive.tracking.tracker import Tracker
 
     stream = io.BytesIO()

@@ -5,10 +5,14 @@ import math
 import numpy as np
 import pytest
 
-from studies.interactive.pivot.presets import PRESETS
-from studies.interactive.session.session import Session
+from spline_model.pivot import cross_axis_pivot
+from spline_model.statics import solve_statics
+from studies.interactive.pivot.design import SLIDE_STIFFNESS
+from studies.interactive.pivot.presets import PRESETS, as_case, values_of
+from studies.interactive.pivot.session import Session
 from tests import gates
 from tests.interactive.events import FRAME, codes, seen, session, turned
+from tests.table_one import SIX
 
 SD = np.array([3e-5, 3e-5, 3e-4])
 
@@ -105,3 +109,60 @@ def test_still_readings_are_averaged_and_moving_ones_are_not():
     assert state["force"][2] == pytest.approx(there["force"][2], rel=1e-6)
     assert math.degrees(state["pose"][2]) == pytest.approx(50.0)
     assert true["force"][2] < there["force"][2]
+
+
+def loaded(load, preset="polymer"):
+    """A session whose hand holds the rotation of a body under a load [N]."""
+    made = session(preset)
+    made.feed({"do": "parameter", "name": "load", "value": load, "t": 0.0})
+    return made
+
+
+@pytest.mark.parametrize("degrees", [1, 30])
+def test_load_is_that_of_the_model(degrees):
+    """Requirement: a body under a dead load, its rotation held, stands where the path of the model with that
+    load ends, and needs its moment; no force holds its centre."""
+    load = 2e3
+    state = turned(loaded(load, "table-1"), degrees)
+    force = {"applied_force": {"force": (0.0, -load)}}
+    given = {"effects": ("bending", "stretching", "applied_force"), "parameters": force}
+    pivot = cross_axis_pivot(**SIX, **given, slide_stiffness=SLIDE_STIFFNESS)
+    path = solve_statics(pivot, rotation=math.radians(degrees))
+    assert np.abs(np.array(state["pose"][:2]) - path.centre[-1]).max() < 1e-9
+    assert state["force"][2] == pytest.approx(path.torque[-1], rel=1e-9)
+    assert np.abs(state["force"][:2]).max() < 1e-6 * load
+
+
+@pytest.mark.parametrize("solver", ["impulse", "energy"])
+def test_released_load_swings_and_gains_nothing(solver):
+    """Requirement: under a load the energy of strips, body and load never rises; let go where it balances,
+    the body stays there."""
+    made = loaded(0.05)
+    made.feed({"do": "solver", "name": solver, "t": 0.0})
+    rest = turned(made, 0)
+    made.feed({"do": "release", "t": 0.0})
+    for k in range(10):
+        state = made.feed({"do": "tick", "t": 0.04 * k})
+    assert np.abs(np.subtract(state["pose"], rest["pose"])).max() < 1e-6
+    made.feed({"do": "catch", "t": 1.0})
+    held = turned(made, 20, 40)
+    before = held["energy"]["strain"] + held["energy"]["potential"]
+    assert held["energy"]["potential"] < 0.0
+    made.feed({"do": "release", "t": 1.0})
+    for k in range(50):
+        energy = made.feed({"do": "tick", "t": 1.0 + 0.04 * k})["energy"]
+        now = energy["strain"] + energy["potential"] + energy["kinetic"]
+        assert now <= before + 1e-6 * held["energy"]["strain"]
+        assert energy["start"] - now == pytest.approx(energy["dissipated"] + energy["lost"], abs=1e-9)
+        before = now
+
+
+def test_load_is_in_the_case_file_and_curve():
+    """Requirement: a design's load is written into its case file and read from it; its curve is that of the
+    loaded body."""
+    made = loaded(0.05)
+    assert values_of(as_case(made.mechanics.values))["load"] == 0.05
+    curve, without = made.mechanics.curve, session().mechanics.curve
+    state = turned(made, math.degrees(curve.rotation[7]))
+    assert state["force"][2] == pytest.approx(curve.moment[7], rel=1e-9)
+    assert abs(curve.moment[7] / without.moment[7] - 1) > 0.05

@@ -12,7 +12,7 @@ pytest.importorskip("uvicorn", reason="the extra `interactive` is not installed"
 
 from websockets.sync.client import connect
 
-from studies.interactive.film.painter import Optics
+from studies.interactive.tracking.painter import Optics
 from studies.interactive.web import protocol
 from studies.interactive.web.server import Hosted, Settings
 from studies.interactive.web.sources import FilmSource

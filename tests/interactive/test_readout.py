@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from studies.interactive.pivot.presets import PRESETS
-from studies.interactive.session.view import fixed, quantity, scales
+from studies.interactive.pivot.view import fixed, quantity, scales
 from tests.interactive.events import seen, session, turned
 
 

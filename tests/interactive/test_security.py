@@ -1,16 +1,22 @@
 """What the server lets in: hosts, pages, tokens, sizes, rates."""
 
 import contextlib
+import socket as sockets
 import time
 
+import numpy as np
 import pytest
 
 pytest.importorskip("cv2", reason="the extra `interactive` is not installed")
 pytest.importorskip("uvicorn", reason="the extra `interactive` is not installed")
 
 from websockets.exceptions import ConnectionClosed, InvalidStatus
+from websockets.sync.client import connect
 
+from studies.commands import interactive
+from studies.errors import BadInput
 from studies.interactive.web import protocol
+from studies.interactive.web.server import Hosted, Server, Settings
 from tests.interactive.sockets import answer, closing, get, opened, say
 
 
@@ -134,3 +140,105 @@ def test_sockets_without_the_token_take_no_place(server):
         with opened(server) as socket:
             say(socket, do="pose", pose=[0, 0, 0.1])
             assert answer(socket)["pose"][2] == pytest.approx(0.1)
+
+
+#: An address of this machine that is not its usual one, for a network of one's own.
+NETWORK = "127.0.0.2"
+
+
+def test_page_is_shared_at_one_more_address():
+    """Requirement: shared, the page is there for this machine and at one address of its network, for those
+    with the token and pages of its own alone; other hosts and origins are refused; the page says so."""
+    with Hosted(Settings(camera="none", share=NETWORK)) as hosted:
+        server = hosted.server
+        own, theirs = f"127.0.0.1:{server.port}", f"{NETWORK}:{server.port}"
+        assert server.address_at(NETWORK).startswith(f"http://{theirs}/#token=")
+        response, _ = get(server, "/", host=theirs)
+        assert f"ws://{theirs}" in response.getheader("Content-Security-Policy")
+        assert get(server, "/", host="evil.example")[0].status == 400
+        for place in (own, theirs):
+            with connect(f"ws://{place}/ws", origin=f"http://{place}") as socket:
+                say(socket, do="hello", version=1, token=server.token)
+                assert answer(socket, "welcome")["shared"]
+        with connect(f"ws://{theirs}/ws", origin=f"http://{theirs}") as socket:
+            say(socket, do="hello", version=1, token="x" * 32)
+            assert closing(socket)[0] == 4403
+        with pytest.raises(InvalidStatus), connect(f"ws://{theirs}/ws", origin="http://evil.example"):
+            pass
+
+
+def test_page_is_not_shared_unless_asked(server):
+    """Requirement: without being asked the server listens to this machine alone, and knows no other name."""
+    with pytest.raises(OSError), connect(f"ws://{NETWORK}:{server.port}/ws"):
+        pass
+    assert get(server, "/", host=f"{NETWORK}:{server.port}")[0].status == 400
+    with opened(server, hello=False) as socket:
+        say(socket, do="hello", version=1, token=server.token)
+        assert not answer(socket, "welcome")["shared"]
+
+
+@pytest.mark.parametrize("address", ["0.0.0.0", "8.8.8.8", "example.org", "10.254.253.252"])
+def test_page_is_shared_with_a_network_of_ones_own_only(address):
+    """Requirement: all addresses at once, those of the internet and names are refused in one line."""
+    with pytest.raises(BadInput, match=rf"--share: got {address}, expected this machine's address in"):
+        Server(Settings(share=address)).bind()
+
+
+def test_shared_link_is_said_plainly_and_as_a_code(capsys):
+    """Requirement: the link is printed with what it opens, and as a code that a phone's camera reads."""
+    link = f"http://{NETWORK}:41234/#token={protocol.new_token()}"
+    interactive._say_shared(link, "server")
+    said = capsys.readouterr().err
+    for words in (link, "SEES WHAT THIS MACHINE'S CAMERA SEES", "nothing is encrypted"):
+        assert words in said
+    rows = [line for line in said.splitlines() if set(line) <= set(" ▄▀█")]
+    cells = [[(" ▄▀█".index(mark) >> bit & 1) for mark in row] for row in rows for bit in (1, 0)]
+    code = np.kron(np.array(cells, dtype=np.uint8) * 255, np.ones((8, 8), dtype=np.uint8))
+    import cv2
+
+    assert cv2.QRCodeDetector().detectAndDecode(code)[0] == link
+
+
+def test_answers_leave_at_once(server):
+    """Requirement: no answer waits for the acknowledgement of the one before (40 ms): asyncio lets them leave
+    at once on sockets of a listener that says it speaks TCP."""
+    assert {each.proto for each in server._listeners} == {sockets.IPPROTO_TCP}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("rate", [144.0, 240.0])
+def test_poses_of_a_fast_screen_keep_their_session(server, rate):
+    """Requirement: of the poses of a fast screen those that cannot be solved in time are dropped, never the
+    newest: answers come meanwhile, and a key that is pressed then is taken."""
+    count = round(4 * rate)
+    with opened(server) as socket:
+        say(socket, do="drive", by="rotation")
+        answer(socket)
+        begin = time.monotonic()
+        for k in range(count):
+            say(socket, do="pose", pose=[0, 0, 0.5 * k / count], seq=k)
+            if k % 10 == 9:
+                time.sleep(max(0.0, begin + k / rate - time.monotonic()))
+        say(socket, do="pose", pose=[0, 0, 0.5], seq=count)
+        say(socket, do="undo")
+        taken = [0]
+        while (state := answer(socket))["seq"] != count:
+            taken.append(state["seq"])
+        assert state["pose"][2] == pytest.approx(0.5)
+        assert [w["code"] for w in answer(socket)["warnings"]] == ["empty"]
+    assert len(taken) > 2  # how far they are apart is a matter of the machine
+    assert taken == sorted(taken)
+
+
+def test_flood_of_poses_is_thinned(server):
+    """Requirement: of poses at once only as many as the rate allows are solved, and the last of them is."""
+    with opened(server) as socket:
+        say(socket, do="drive", by="rotation")
+        begin = time.monotonic()
+        for k in range(400):
+            say(socket, do="pose", pose=[0, 0, 1e-3 * k], seq=k)
+        solved = 0
+        while (state := answer(socket))["seq"] != 399:
+            solved += 1
+        assert state["pose"][2] == pytest.approx(0.399)
+        assert solved <= protocol.BURST + protocol.RATE * (time.monotonic() - begin)

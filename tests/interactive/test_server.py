@@ -2,7 +2,6 @@
 
 import json
 import math
-import time
 from itertools import pairwise
 
 import pytest
@@ -12,10 +11,10 @@ pytest.importorskip("uvicorn", reason="the extra `interactive` is not installed"
 
 from studies.cases.problem import read_case
 from studies.errors import BadInput
-from studies.interactive.film.painter import counter
-from studies.interactive.session.recording import Recorder, mark, replay
-from studies.interactive.session.session import Session
+from studies.interactive.pivot.recording import Recorder, mark, replay
+from studies.interactive.pivot.session import Session
 from studies.interactive.tracking.detector import encoded
+from studies.interactive.tracking.painter import counter
 from studies.interactive.web import protocol
 from studies.interactive.web.server import Hosted, Server, Settings
 from studies.interactive.web.sources import FilmSource, VideoSource
@@ -71,7 +70,9 @@ def test_recording_is_sent_and_replays(server):
         say(socket, do="drive", by="rotation")
         say(socket, do="record", on=True)
         for k in range(8):
-            say(socket, do="pose", pose=[0, 0, 0.05 * k])
+            say(socket, do="pose", pose=[0, 0, 0.05 * k], seq=k)
+            while answer(socket)["seq"] != k:
+                pass
         say(socket, do="release")
         say(socket, do="pause")
         for _ in range(3):
@@ -265,36 +266,3 @@ def test_taken_port_is_one_line(server):
     """Requirement: a port that is taken is refused in one line."""
     with pytest.raises(BadInput, match=rf"--port: got {server.port}, expected a free one"):
         Server(Settings(port=server.port)).bind()
-
-
-@pytest.mark.slow
-def test_poses_of_a_fast_screen_keep_their_session(server):
-    """Requirement: poses that come faster than the rate are dropped, the newest is answered, a key that is
-    pressed meanwhile is taken; the socket stays open."""
-    with opened(server) as socket:
-        say(socket, do="drive", by="rotation")
-        rate, count = 2.0 * protocol.RATE, round(3 * protocol.BURST)
-        begin = time.monotonic()
-        for k in range(count):
-            say(socket, do="pose", pose=[0, 0, 0.5 * k / count], seq=k)
-            time.sleep(max(0.0, begin + k / rate - time.monotonic()))
-        say(socket, do="pose", pose=[0, 0, 0.5], seq=count)
-        say(socket, do="undo")
-        while (state := answer(socket))["seq"] != count:
-            pass
-        assert state["pose"][2] == pytest.approx(0.5)
-        assert [w["code"] for w in answer(socket)["warnings"]] == ["empty"]
-
-
-def test_flood_of_poses_is_thinned(server):
-    """Requirement: of poses at once only as many as the rate allows are solved, and the last of them is."""
-    with opened(server) as socket:
-        say(socket, do="drive", by="rotation")
-        begin = time.monotonic()
-        for k in range(400):
-            say(socket, do="pose", pose=[0, 0, 1e-3 * k], seq=k)
-        solved = 0
-        while (state := answer(socket))["seq"] != 399:
-            solved += 1
-        assert state["pose"][2] == pytest.approx(0.399)
-        assert solved <= protocol.BURST + protocol.RATE * (time.monotonic() - begin)

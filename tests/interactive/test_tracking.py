@@ -7,13 +7,13 @@ import pytest
 
 pytest.importorskip("cv2", reason="the extra `interactive` is not installed")
 
-from studies.interactive.film.painter import Marker, Optics, counter
 from studies.interactive.pivot.design import SIDE
-from studies.interactive.session.session import Session
+from studies.interactive.pivot.session import Session
 from studies.interactive.tracking import tracker as tracking
 from studies.interactive.tracking.calibration import Camera
 from studies.interactive.tracking.detector import Detector
 from studies.interactive.tracking.edges import refine
+from studies.interactive.tracking.painter import Marker, Optics, counter
 from studies.interactive.tracking.planar import fit
 from studies.interactive.tracking.tracker import Tracker
 from tests import gates

@@ -1,1 +1,2 @@
-"""The pivot at work: designs to start from, their mechanics held and released, where the markers sit."""
+"""The pivot at work: designs to start from, their mechanics held and released, and the session that drives
+them."""

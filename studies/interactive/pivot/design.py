@@ -1,8 +1,10 @@
-"""A pivot of the environment: built from its parameters, what its strips tell, and where its markers sit."""
+"""A pivot of the environment: built from its parameters, what its strips tell, what a moment alone does to
+it, and where its markers sit."""
 
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
 from numpy.polynomial import legendre
@@ -22,10 +24,23 @@ POISSON_RATIO = 0.3
 EFFECTS = ("bending", "stretching", "strip_inertia", "body_inertia")
 
 
-def build(values: Mapping[str, float]) -> Pivot:
-    """Return the pivot of the parameters, in SI units; strips with a damping time are damped."""
+def scene(
+    values: Mapping[str, float], *, loaded: bool = True
+) -> tuple[tuple[str, ...], dict[str, dict[str, Any]]]:
+    """Return the effects of a design and their parameters: strips with a damping time are damped, a load acts
+    at the body's centre."""
+    parameters: dict[str, dict[str, Any]] = {}
+    if values["relaxation_time"] > 0.0:
+        parameters["strip_damping"] = {"relaxation_time": values["relaxation_time"]}
+    if loaded and values["load"]:
+        parameters["applied_force"] = {"force": (0.0, -values["load"])}
+    return (*EFFECTS, *parameters), parameters
+
+
+def build(values: Mapping[str, float], *, loaded: bool = False) -> Pivot:
+    """Return the pivot of the parameters, in SI units, and what acts on it but for its load."""
     thickness, width = values["thickness"], values["width"]
-    damped = values["relaxation_time"] > 0.0
+    effects, parameters = scene(values, loaded=loaded)
     return cross_axis_pivot(
         length=values["length"],
         inclination=values["inclination"],
@@ -37,8 +52,8 @@ def build(values: Mapping[str, float]) -> Pivot:
         density=values["density"],
         body_mass=values["body_mass"],
         body_moment_of_inertia=values["body_moment_of_inertia"],
-        effects=(*EFFECTS, "strip_damping") if damped else EFFECTS,
-        parameters={"strip_damping": {"relaxation_time": values["relaxation_time"]}} if damped else None,
+        effects=effects,
+        parameters=parameters,
         control_points=CONTROL_POINTS,
         slide_stiffness=SLIDE_STIFFNESS,
     )
@@ -65,9 +80,7 @@ class Reader:
     modes times E; leaves out what the clamps' fillets add.
     """
 
-    length: float
-    youngs_modulus: float
-    thickness: float
+    values: Mapping[str, float]
     _basis: tuple[Array, Array, Array] = field(init=False)
     _points: tuple[Array, Array] = field(init=False)
 
@@ -81,25 +94,50 @@ class Reader:
         object.__setattr__(self, "_basis", tables)
         object.__setattr__(self, "_points", (basis.evaluate((u + 1.0) / 2.0, 1), spread))
 
-    @classmethod
-    def of(cls, values: Mapping[str, float]) -> "Reader":
-        """Return the reader of the design with these parameters."""
-        return cls(
-            length=values["length"],
-            youngs_modulus=values["youngs_modulus"],
-            thickness=values["thickness"],
-        )
-
     def read(self, points: Array) -> Reading:
         """Return the reading of control points (2, n, 2) [m]."""
+        length, half = self.values["length"], self.values["thickness"] / 2.0
         shape, tangent, bend = (table @ points for table in self._basis)
         cross = tangent[..., 0] * bend[..., 1] - tangent[..., 1] * bend[..., 0]
-        curvature = cross / np.einsum("spi,spi->sp", tangent, tangent) / self.length
+        curvature = cross / np.einsum("spi,spi->sp", tangent, tangent) / length
         slope, spread = self._points
-        stretch = np.linalg.norm(slope @ points, axis=-1) / self.length - 1.0
+        stretch = np.linalg.norm(slope @ points, axis=-1) / length - 1.0
         axial = stretch @ spread.T
-        stress = self.youngs_modulus * (np.abs(axial) + np.abs(curvature) * self.thickness / 2.0)
+        stress = self.values["youngs_modulus"] * (np.abs(axial) + np.abs(curvature) * half)
         return Reading(shape=shape, stress=stress, strain=axial.mean(axis=1))
+
+
+#: Rotation up to which it is known [rad], and at how many places.
+REACH, PLACES = 1.8, 25
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Curve:
+    """A rotations [rad] from 0 on as far as the body goes; the other side is the mirror's picture.
+
+    shift (A, 2): of the centre from rest [m]; moment (A,) [N m]; stress (A,): largest in the strips [Pa].
+    """
+
+    rotation: Array
+    shift: Array
+    moment: Array
+    stress: Array
+
+    def gap(self, displacement: Array) -> float:
+        """Return the distance [m] of a displacement (3,) from the path; 0 beyond its end."""
+        x, y, turn = displacement
+        if abs(turn) > self.rotation[-1]:
+            return 0.0
+        along, across = (float(np.interp(abs(turn), self.rotation, self.shift[:, k])) for k in range(2))
+        return math.hypot(x - math.copysign(1.0, turn) * along, y - across)
+
+    def where(self, stress: float) -> tuple[float, float] | None:
+        """Return rotation [rad] and moment [N m] at which the largest stress is `stress` [Pa], None where it
+        stays below."""
+        if self.stress[-1] < stress:
+            return None
+        turn, moment = (float(np.interp(stress, self.stress, y)) for y in (self.rotation, self.moment))
+        return turn, moment
 
 
 def scales(values: Mapping[str, float]) -> dict[str, float]:

@@ -10,10 +10,21 @@ import numpy as np
 from spline_model.content import STEPS_PER_PERIOD
 from spline_model.held import HeldPivot, HeldState
 from spline_model.modes import natural_frequencies
-from studies.interactive.pivot.curve import Curve
-from studies.interactive.pivot.design import Reader, Reading, build, free_stiffness, free_turn, pole, scales
+from studies.interactive.pivot.design import (
+    PLACES,
+    REACH,
+    Curve,
+    Reader,
+    Reading,
+    build,
+    free_stiffness,
+    free_turn,
+    pole,
+    scales,
+)
 from studies.interactive.pivot.motion import MOTIONS, Motion, released
 from studies.interactive.pivot.presets import STEP
+from studies.interactive.pivot.pull import Pull
 from studies.kinds import Array
 
 #: Time over which strips follow the hand's velocity at a release [s]: short enough that no pose leaves its
@@ -22,9 +33,6 @@ HAND_STEP = 1e-4
 #: Rotation rate below which a moving body has no instantaneous centre worth drawing, over the step [rad].
 LEAST_TURN = 2e-4
 
-#: Most steps of the centre in the balance of strips and a spring, the longest over the strips' length, how
-#: often one is halved, and the force that is none, over EI / L^2.
-MOST_PULLS, LONGEST_PULL, HALVINGS, BALANCED = 40, 0.1, 12, 1e-7
 #: Part of a standard deviation over which a stiffness is taken to be linear.
 PART = 1e-3
 
@@ -39,8 +47,8 @@ class Snapshot:
         force: what holds the body (3,) [N, N, N m], zero when released; tangent (3, 3) its derivative or
             None.
         stiffness: rotational, with the body's centre free [N m/rad], None when released.
-        strain, kinetic, dissipated, lost: energies [J], dissipated by the strips' damping, lost to the
-            steps' own.
+        strain, kinetic, potential, dissipated, lost: energies [J], potential of the load from rest on,
+            dissipated by the strips' damping, lost to the steps' own.
         centre: the instantaneous centre of rotation, None where the body does not turn.
         iterations: of Newton's method.
     """
@@ -53,6 +61,7 @@ class Snapshot:
     stiffness: float | None
     strain: float
     kinetic: float
+    potential: float
     dissipated: float
     lost: float
     centre: tuple[float, float] | None
@@ -71,8 +80,10 @@ class Mechanics:
         self.pivot = build(values)
         self.step = STEP * values["time_scale"]
         self._held = HeldPivot(self.pivot)
-        self._system = released(self.pivot)
-        self._reader = Reader.of(values)
+        self._acting = build(values, loaded=True)
+        self._system = released(self._acting)
+        self._load = np.array([0.0, -values["load"], 0.0])
+        self._reader = Reader(values=self.values)
         self._motion: Motion | None = None
         self._unheld: Array | None = None
         self.snapshot = self._static(self._held.reset())
@@ -118,6 +129,8 @@ class Mechanics:
 
     def turn(self, rotation: float) -> float:
         """Hold the rotation alone; returns as `hold`."""
+        if self._load.any():
+            return self.grip(np.array([*self.pivot.centre, rotation]), 0.0)
         state = self._held.turn(rotation)
         if state.solved:
             self.snapshot = self._static(state)
@@ -127,48 +140,23 @@ class Mechanics:
         """Hold the centre by a spring of `stiffness` [N/m] to `pose` (3,), and the turn unless it `turns`;
         as `hold`.
 
-        The pose minimises the energy of strips and spring, sought from where no force acts on the centre.
+        The pose minimises the energy of strips, spring and load, sought from where no force acts on it.
         """
-        held, known, pull = (
-            self._held,
-            self._held.unknowns,
-            _Pull(pose, stiffness, self.values["length"], turns),
-        )
+        held, known = self._held, self._held.unknowns
         if self._unheld is not None:
             held.restore(self._unheld)
         state = held.turn(float(self.snapshot.pose[2] if turns else pose[2]))
         if not state.solved:
             held.restore(known)
             return state.reached
-        self._unheld, work = held.unknowns, state.iterations
-        least = scales(self.values)["force"]
-        for _ in range(MOST_PULLS):
-            force, tangent = pull.force(state)
-            if np.linalg.norm(force) <= BALANCED * (least + stiffness * math.dist(pose[:2], state.pose[:2])):
-                self.snapshot = self._static(state, work)
-                return 1.0
-            values, ways = np.linalg.eigh(tangent)
-            step = -ways @ ((ways.T @ force) / np.abs(values))
-            step *= min(1.0, LONGEST_PULL * self.values["length"] / max(float(np.linalg.norm(step)), 1e-300))
-            state, used = self._lower(state, pull, step)
-            work += used
-            if used == 0:
-                break
-        held.restore(known)
-        return 0.0
-
-    def _lower(self, state: HeldState, pull: "_Pull", step: Array) -> tuple[HeldState, int]:
-        """Return the state after a step of the pose, or the part of it that lowers the energy of strips and
-        spring, or the force; and the iterations, 0 where no part does."""
-        known, before = self._held.unknowns, pull.energy(state)
-        least = np.linalg.norm(pull.force(state)[0])
-        for halved in range(HALVINGS):
-            found = self._held.hold(*pull.moved(state.pose, 0.5**halved * step))
-            lower = found.solved and pull.energy(found) < before
-            if lower or (found.solved and np.linalg.norm(pull.force(found)[0]) < least):
-                return found, max(1, found.iterations)
-            self._held.restore(known)
-        return state, 0
+        self._unheld = held.unknowns
+        pull = Pull(pose, stiffness, self.values["length"], turns, self._load)
+        found, work = pull.balanced(held, state, scales(self.values)["force"])
+        if found is None:
+            held.restore(known)
+            return 0.0
+        self.snapshot = self._static(found, state.iterations + work)
+        return 1.0
 
     def stiffness_spread(self, ways: Array) -> float:
         """Return the standard deviation of the stiffness [N m/rad] where the pose's is the sum of the
@@ -183,13 +171,23 @@ class Mechanics:
 
     @cached_property
     def curve(self) -> Curve:
-        """What a moment alone does to the design."""
-        return Curve.of(self.pivot, self._reader)
+        """What a moment alone does to the design, and its load; without any turn whatever is found."""
+        other = Mechanics(self.values)
+        rows: list[list[float]] = []
+        for angle in np.linspace(0.0, REACH, PLACES):
+            if other.turn(float(angle)) < 1.0 and rows:
+                break
+            now = other.snapshot
+            shift, stress = now.pose[:2] - self.pivot.centre, now.reading.stress.max()
+            rows.append([now.pose[2], *shift, now.force[2], stress])
+        table = np.array(rows)
+        return Curve(rotation=table[:, 0], shift=table[:, 1:3], moment=table[:, 3], stress=table[:, 4])
 
     def release(self, velocity: Array, solver: str) -> None:
         """Let go of the held body with a `velocity` (3,) of its pose; the strips follow it."""
         z = self._held.full_state(self._system)
-        self._motion = MOTIONS[solver](self.pivot, z, self._rates(velocity))
+        self._motion = MOTIONS[solver](self._acting, z, self._rates(velocity))
+        self._begun = self._potential(self.snapshot.pose)
         self.snapshot = self._dynamic()
 
     def advance(self, steps: int) -> bool:
@@ -223,17 +221,22 @@ class Mechanics:
             return np.zeros(count)
         return np.asarray((ends[0] - ends[1]) / (2.0 * HAND_STEP))
 
+    def _potential(self, pose: Array) -> float:
+        """Energy of the load [J] from the body's place at rest on."""
+        return float(self._load[:2] @ (self.pivot.centre - pose[:2]))
+
     def _static(self, state: HeldState, iterations: int | None = None) -> Snapshot:
         way = free_turn(state.tangent)
         return Snapshot(
             pose=state.pose,
             velocity=np.zeros(3),
             reading=self._reader.read(self._held.control_points),
-            force=state.force,
+            force=state.force - self._load,
             tangent=state.tangent,
             stiffness=free_stiffness(state.tangent),
             strain=state.bending_energy + state.axial_energy,
             kinetic=0.0,
+            potential=self._potential(state.pose),
             dissipated=0.0,
             lost=0.0,
             centre=pole(state.pose, way, 0.0),
@@ -243,6 +246,7 @@ class Mechanics:
     def _dynamic(self) -> Snapshot:
         assert self._motion is not None
         state = self._motion.state()
+        potential = self._potential(state.pose)
         return Snapshot(
             pose=state.pose,
             velocity=state.velocity,
@@ -252,37 +256,9 @@ class Mechanics:
             stiffness=None,
             strain=state.strain,
             kinetic=state.kinetic,
+            potential=potential,
             dissipated=state.dissipated,
-            lost=state.lost,
+            lost=state.lost - (potential - self._begun),
             centre=pole(state.pose, state.velocity, LEAST_TURN / self.step),
             iterations=state.iterations,
         )
-
-
-@dataclass(frozen=True, eq=False)
-class _Pull:
-    """A spring of some stiffness [N/m] from the body's centre to `pose` (3,); the turn is measured by the way
-    of a point at `length` [m]."""
-
-    pose: Array
-    stiffness: float
-    length: float
-    turns: bool
-
-    def force(self, state: HeldState) -> tuple[Array, Array]:
-        """Return the force that is out of balance, (2,) or (3,) where the body turns, and its derivative."""
-        unit, spring = np.array([1.0, 1.0, 1.0 / self.length]), self.stiffness * np.array([1.0, 1.0, 0.0])
-        count = 3 if self.turns else 2
-        force = (state.force + spring * (state.pose - self.pose)) * unit
-        tangent = (state.tangent + np.diag(spring)) * np.outer(unit, unit)
-        return force[:count], tangent[:count, :count]
-
-    def energy(self, state: HeldState) -> float:
-        """Return the energy of strips and spring [J]."""
-        stretch = float(np.sum((state.pose[:2] - self.pose[:2]) ** 2))
-        return state.bending_energy + state.axial_energy + 0.5 * self.stiffness * stretch
-
-    def moved(self, pose: Array, step: Array) -> tuple[float, float, float]:
-        """Return a pose after a step as of `force`."""
-        turn = pose[2] + (step[2] / self.length if self.turns else 0.0)
-        return float(pose[0] + step[0]), float(pose[1] + step[1]), float(turn)

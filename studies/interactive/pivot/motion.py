@@ -10,10 +10,11 @@ from spline_model.compile import System, compile_scene
 from spline_model.impulses.solver import Run
 from spline_model.motion.energy_consistent import Stepper
 from spline_model.motion.records import DISSIPATED, KINETIC, STRAIN
-from spline_model.motion.start import initial_acceleration, set_in_motion
+from spline_model.motion.start import Start, set_in_motion
 from spline_model.motion.step import HALVED, NEWTON
 from spline_model.pivot import BODY, STRIPS, Pivot
 from spline_model.sequential_impulse import impulse_solver
+from spline_model.solution import Later
 from studies.kinds import Array
 
 #: Least part of a step before the motion is given up: work stays bounded.
@@ -21,7 +22,7 @@ SMALLEST_PART = 2.0**-6
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Moving:
+class _Moving:
     """A state of the released pivot.
 
     pose, velocity (3,) of the body [m, m, rad and a second]; points (2, n, 2) [m]; energies [J]: kinetic,
@@ -45,18 +46,17 @@ class Motion(Protocol):
         """Take `steps` steps of `step` seconds; False where the solver fails, the last good state being
         kept."""
 
-    def state(self) -> Moving:
+    def state(self) -> _Moving:
         """Return the present state."""
 
 
-class EnergyMotion:
+class _EnergyMotion:
     """The energy-consistent integrator, one call a frame."""
 
     def __init__(self, pivot: Pivot, z: Array, velocity: Array) -> None:
         self.system = released(pivot)
         motion = set_in_motion(self.system)
-        acceleration, z = initial_acceleration(self.system, motion, z, velocity)
-        self._stepper = Stepper(self.system, motion, z, velocity, acceleration)
+        self._stepper = Stepper(Start(motion, Later(z[None].copy), velocity))
         self._iterations = 0
         row = self._stepper.look()[2][0]
         self._start = float(row[KINETIC] + row[STRAIN])
@@ -77,7 +77,7 @@ class EnergyMotion:
         """Steps that were halved so far."""
         return int(self._stepper.counters[HALVED])
 
-    def state(self) -> Moving:
+    def state(self) -> _Moving:
         """Return the present state."""
         (z,), (v,), (row,) = self._stepper.look()
         kinetic, strain, dissipated = (float(row[place]) for place in (KINETIC, STRAIN, DISSIPATED))
@@ -85,7 +85,7 @@ class EnergyMotion:
         return moving(self.system, z, v, energies, self._iterations)
 
 
-class ImpulseMotion:
+class _ImpulseMotion:
     """Sequential impulses in the form that is stable at any step, all impulses at once (Eq 30)."""
 
     def __init__(self, pivot: Pivot, z: Array, velocity: Array) -> None:
@@ -99,7 +99,7 @@ class ImpulseMotion:
         """Take steps; where one must be cut below its least part, none counts."""
         solver, begin = self._solver, self._out.state
         run = Run(solver, begin)
-        free = np.zeros(len(solver.motion.tables.drives.row), dtype=np.int64)
+        free = np.zeros(len(solver.motion.drives.row), dtype=np.int64)
         taken = run.go(0, steps, step, begin.time, steps, free, solver.motion)
         out = run.outcome(taken, steps, begin.time + taken * step, False)
         if not out.complete:
@@ -108,7 +108,7 @@ class ImpulseMotion:
         self._dissipated += float(run.moving.totals[1])
         return True
 
-    def state(self) -> Moving:
+    def state(self) -> _Moving:
         """Return the present state; what the strips' damping did not take is lost to that of the steps."""
         out, start = self._out, self._start
         lost = start.kinetic_energy + start.strain_energy - out.kinetic_energy - out.strain_energy
@@ -129,10 +129,10 @@ def released(pivot: Pivot) -> System:
 
 def moving(
     system: System, z: Array, v: Array, energies: tuple[float, float, float, float], iterations: int
-) -> Moving:
-    """Return the state from the unknowns, the velocities and the energies [J] as in `Moving`."""
+) -> _Moving:
+    """Return the state from the unknowns, the velocities and the energies [J] as in `_Moving`."""
     body = system.layout.body(BODY)
-    return Moving(
+    return _Moving(
         pose=z[body].copy(),
         velocity=v[body].copy(),
         points=np.stack([z[system.layout.strip(name)].reshape(-1, 2) for name in STRIPS]),
@@ -146,6 +146,6 @@ def moving(
 
 #: Solvers of the released pivot by the name that the user chooses.
 MOTIONS: dict[str, Callable[[Pivot, Array, Array], Motion]] = {
-    "impulse": ImpulseMotion,
-    "energy": EnergyMotion,
+    "impulse": _ImpulseMotion,
+    "energy": _EnergyMotion,
 }

@@ -13,7 +13,7 @@ from studies.cases.materials import MATERIALS
 from studies.cases.problem import Problem, named_case, read_case
 from studies.cases.write import as_toml
 from studies.errors import BadInput
-from studies.interactive.pivot.design import EFFECTS, POISSON_RATIO, build
+from studies.interactive.pivot.design import POISSON_RATIO, build, scene
 
 #: Simulated time of one step over the time scale [s]: four of them make a frame of 25 Hz (section 4.1).
 STEP = 0.01
@@ -21,12 +21,13 @@ STEPS_A_FRAME = 4
 
 
 @dataclass(frozen=True, kw_only=True)
-class Parameter:
+class _Parameter:
     """One number of a design that the user sets, between low and high in SI units.
 
     Attributes:
         unit: what the user types it in, and how many of it make one SI unit.
         logarithmic: whether a slider should run over its decades.
+        least: above nought, from where on it should to either side.
     """
 
     name: str
@@ -36,6 +37,7 @@ class Parameter:
     low: float
     high: float
     logarithmic: bool = False
+    least: float = 0.0
 
     def checked(self, value: object) -> float:
         """Return `value` as a float in SI units.
@@ -51,42 +53,43 @@ class Parameter:
         return float(value)  # type: ignore[arg-type]
 
 
-PARAMETERS: dict[str, Parameter] = {
+PARAMETERS: dict[str, _Parameter] = {
     parameter.name: parameter
     for parameter in (
-        Parameter(name="length", label="strip length", unit="mm", per_si=1e3, low=0.04, high=0.12),
-        Parameter(
+        _Parameter(name="length", label="strip length", unit="mm", per_si=1e3, low=0.04, high=0.12),
+        _Parameter(
             name="thickness", label="strip thickness", unit="mm", per_si=1e3, low=1e-4, high=8e-3,
             logarithmic=True,
         ),
-        Parameter(name="width", label="strip width", unit="mm", per_si=1e3, low=2e-3, high=0.05),
-        Parameter(
+        _Parameter(name="width", label="strip width", unit="mm", per_si=1e3, low=2e-3, high=0.05),
+        _Parameter(
             name="inclination", label="inclination", unit="°", per_si=math.degrees(1),
             low=math.radians(25), high=math.radians(65),
         ),
-        Parameter(name="crossing_ratio", label="crossing", unit="of L", per_si=1.0, low=0.2, high=0.8),
-        Parameter(
+        _Parameter(name="crossing_ratio", label="crossing", unit="of L", per_si=1.0, low=0.2, high=0.8),
+        _Parameter(
             name="youngs_modulus", label="Young's modulus", unit="GPa", per_si=1e-9, low=1e7, high=5e11,
             logarithmic=True,
         ),
-        Parameter(
+        _Parameter(
             name="yield_strength", label="yield strength", unit="MPa", per_si=1e-6, low=1e6, high=5e9,
             logarithmic=True,
         ),
-        Parameter(
+        _Parameter(
             name="density", label="density", unit="kg/m³", per_si=1.0, low=100.0, high=2e4, logarithmic=True
         ),
-        Parameter(
+        _Parameter(
             name="body_mass", label="body mass", unit="g", per_si=1e3, low=1e-3, high=2.0, logarithmic=True
         ),
-        Parameter(
+        _Parameter(
             name="body_moment_of_inertia", label="body inertia", unit="g·cm²", per_si=1e7, low=1e-7, high=0.1,
             logarithmic=True,
         ),
-        Parameter(
+        _Parameter(
             name="relaxation_time", label="strip damping", unit="ms", per_si=1e3, low=0.0, high=0.05
         ),
-        Parameter(
+        _Parameter(name="load", label="load, downward", unit="N", per_si=1.0, low=-5e4, high=5e4, least=1e-3),
+        _Parameter(
             name="time_scale", label="time scale", unit="s/s", per_si=1.0, low=1e-4, high=1.0,
             logarithmic=True,
         ),
@@ -100,6 +103,7 @@ class Preset:
 
     Attributes:
         yield_strength: of the material [Pa], a choice; relaxation_time: of the strips' damping [s], a choice.
+        load: on the body's centre, downward [N].
         time_scale: simulated seconds in one second; note: why, in a sentence.
     """
 
@@ -109,6 +113,7 @@ class Preset:
     relaxation_time: float
     time_scale: float
     note: str
+    load: float = 0.0
 
     def values(self) -> dict[str, float]:
         """Return all parameters of the design by name, in SI units."""
@@ -119,6 +124,7 @@ class Preset:
             "width": problem.area / thickness,
             "yield_strength": self.yield_strength,
             "relaxation_time": self.relaxation_time,
+            "load": self.load,
             "time_scale": self.time_scale,
         }
         return {
@@ -153,19 +159,21 @@ OWN = "own"
 def own(case: str) -> Preset:
     """Return the design of a case file as a preset; its time runs so that it swings once a second.
 
-    Of its scene the damping of the strips acts here, nothing else beside what always does.
+    Of its scene the damping of the strips acts here and the upright part of a force on the body, nothing else
+    beside what always does.
 
     Raises:
         BadInput: the file cannot be used, or a number of the design is beyond what a slider may set.
     """
     problem = read_case(case)
-    damping = problem.effects.parameters().get("strip_damping", {})
+    given = problem.effects.parameters()
     strength = problem.yield_strength
     made = Preset(
         case=case,
         title=Path(case).stem.replace("_", " "),
         yield_strength=PARAMETERS["yield_strength"].high if strength is None else strength,
-        relaxation_time=damping.get("relaxation_time", 0.0),
+        relaxation_time=given.get("strip_damping", {}).get("relaxation_time", 0.0),
+        load=-given.get("applied_force", {}).get("force", (0.0, 0.0))[1],
         time_scale=1.0,
         note="of one's own" if strength is not None else "of one's own; its yield strength is not known",
     )
@@ -191,10 +199,10 @@ def values_of(text: str) -> dict[str, float]:
 
 def as_case(values: Mapping[str, float]) -> str:
     """Return the text of the case file of a design, which the other commands read."""
-    width, thickness, time = values["width"], values["thickness"], values["relaxation_time"]
-    damped = Effects(names=(*EFFECTS, "strip_damping"), tables={"strip_damping": {"relaxation_time": time}})
+    width, thickness = values["width"], values["thickness"]
+    names, tables = scene(values)
     given: dict[str, Any] = {
-        name: values[name] for name in PARAMETERS if name not in ("relaxation_time", "time_scale")
+        name: values[name] for name in PARAMETERS if name not in ("relaxation_time", "load", "time_scale")
     }
     problem = Problem(
         **given,
@@ -203,7 +211,7 @@ def as_case(values: Mapping[str, float]) -> str:
         poisson_ratio=POISSON_RATIO,
         rotation=math.radians(45),
         increments=45,
-        effects=damped if time > 0.0 else Effects(names=EFFECTS),
+        effects=Effects(names=names, tables=tables),
     )
     return as_toml(problem, ["a design of the interactive environment"])
 

@@ -1,1 +1,1 @@
-"""Two square markers in a picture: found, their edges refined, their relative pose in the plane fitted."""
+"""The markers in pictures: found there, and drawn, as films with known truth and as the printable sheet."""

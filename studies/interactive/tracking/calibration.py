@@ -1,7 +1,6 @@
 """A camera's constants: optional, for lens distortion and as a check that the markers lie in one plane."""
 
 import json
-from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
@@ -49,31 +48,3 @@ class Camera:
     def write(self, path: Path) -> None:
         """Store the camera."""
         path.write_text(json.dumps(asdict(self), indent=2) + "\n", encoding="utf-8")
-
-
-def calibrated(points: Sequence[Array], pictures: Sequence[Array], size: tuple[int, int]) -> Camera:
-    """Return the camera that saw plane points (P, 2) [m] as pictures (P, 2) [px] in three views or more.
-
-    Args:
-        size: width and height of the pictures [px].
-
-    Raises:
-        BadInput: fewer than three views.
-    """
-    import cv2
-
-    if len(points) < 3:
-        raise BadInput(f"views: got {len(points)}, expected at least 3 of the sheet at different tilts")
-    flat = [np.column_stack((view, np.zeros(len(view)))).astype(np.float32) for view in points]
-    seen = [np.asarray(view, dtype=np.float32)[:, None] for view in pictures]
-    flags = cv2.CALIB_FIX_K3 | cv2.CALIB_ZERO_TANGENT_DIST
-    _, matrix, lens, _, _ = cv2.calibrateCamera(flat, seen, size, None, None, flags=flags)
-    k1, k2 = (float(value) for value in np.ravel(lens)[:2])
-    return Camera(
-        fx=float(matrix[0, 0]),
-        fy=float(matrix[1, 1]),
-        cx=float(matrix[0, 2]),
-        cy=float(matrix[1, 2]),
-        k1=k1,
-        k2=k2,
-    )

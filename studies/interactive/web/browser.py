@@ -10,7 +10,6 @@ import time
 from collections.abc import Sequence
 from contextlib import ExitStack
 from pathlib import Path
-from types import TracebackType
 from typing import Any, Self
 
 from websockets.sync.client import connect
@@ -170,9 +169,10 @@ class Browser:
         fingers = [{"x": x, "y": y, "id": k} for k, (x, y) in enumerate(points)]
         self.call("Input.dispatchTouchEvent", type=kind, touchPoints=fingers)
 
-    def picture(self) -> bytes:
-        """Return a PNG of the page as it is shown."""
-        return base64.b64decode(self.call("Page.captureScreenshot", format="png")["data"])
+    def picture(self, quality: int | None = None) -> bytes:
+        """Return a PNG of the page as it is shown, or a JPEG of that quality."""
+        kind: dict[str, Any] = {} if quality is None else {"format": "jpeg", "quality": quality}
+        return base64.b64decode(self.call("Page.captureScreenshot", **kind)["data"])
 
     def canvas(self, name: str) -> bytes:
         """Return a PNG of the canvas with that id, pixel by pixel."""
@@ -182,9 +182,7 @@ class Browser:
     def __enter__(self) -> Self:
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *raised: object) -> None:
         try:
             self._stack.close()
         finally:

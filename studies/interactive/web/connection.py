@@ -1,10 +1,8 @@
-"""One socket: its session, its tracker, its recording; everything that is slow runs in a thread of its
-own."""
+"""One socket: its session, its tracker, its recording; all that is slow runs in a thread of its own."""
 
 import asyncio
 import logging
 import time
-from collections.abc import Callable
 from typing import Any
 
 from numpy.linalg import LinAlgError
@@ -14,14 +12,14 @@ from studies.errors import BadInput
 from studies.interactive.pivot import presets
 from studies.interactive.pivot.mechanics import Mechanics
 from studies.interactive.pivot.motion import MOTIONS
-from studies.interactive.session.recording import Recorder, line
-from studies.interactive.session.session import Session
-from studies.interactive.session.view import DRIVES, curved
-from studies.interactive.tracking.calibration import Camera
+from studies.interactive.pivot.recording import Recorder, line
+from studies.interactive.pivot.session import Session
+from studies.interactive.pivot.view import DRIVES, curved
+from studies.interactive.tracking.detector import Picture
 from studies.interactive.tracking.tracker import Tracker
 from studies.interactive.web import protocol
 from studies.interactive.web.player import Player
-from studies.interactive.web.sources import Shot, Source, grey_of
+from studies.interactive.web.sources import Settings, Shot, Source, grey_of
 
 LOG = logging.getLogger(__name__)
 
@@ -33,51 +31,34 @@ SIDES = (0.01, 0.3)
 
 
 class Connection:
-    """Serves one socket from the first message to the last.
+    """Serves one socket from the first message to the last; that of the `first` page is recorded."""
 
-    Args:
-        source: pictures of this machine, or None where the page sends them or there are none.
-        keep: takes every line of the session as it is recorded, for `--record`.
-    """
-
-    def __init__(
-        self,
-        socket: WebSocket,
-        *,
-        camera: str,
-        source: Source | None = None,
-        calibration: Camera | None = None,
-        preset: str = "polymer",
-        keep: Callable[[str], None] | None = None,
-    ) -> None:
-        self._socket, self._source, self._camera_name = socket, source, camera
-        self._calibration = calibration
-        self.session = Session(preset, lock_step=source is not None and source.lock_step)
-        self._tracker = Tracker(camera=calibration)
-        self._keep = keep
+    def __init__(self, socket: WebSocket, settings: Settings, *, first: bool) -> None:
+        self._socket, self._settings = socket, settings
+        self._source = settings.source() if settings.source else None
+        self._keep = settings.keep if first else None
+        self.session = Session(settings.preset, lock_step=self._source is not None and self._source.lock_step)
+        self._tracker = Tracker(camera=settings.calibration)
         self._recorder: Recorder | None = None
-        self._begin = time.monotonic()
-        self._lock = asyncio.Lock()
+        self._begin, self._lock = time.monotonic(), asyncio.Lock()
         self._pending: protocol.Sent | None = None
         self._late: dict[str, Any] | None = None
-        self._wake = asyncio.Event()
+        self._wake, self._moved = asyncio.Event(), asyncio.Event()
         self._last_picture = -1e9
         self._offset: float | None = None
-        self._shown = self._sent = 0
+        self._shown, self._sent, self._seen_shown = 0, 0, asyncio.Event()
         self._player = Player()
         self._curved: Mechanics | None = None
-        self._seen_shown = asyncio.Event()
 
     async def serve(self) -> None:
         """Answer until the socket closes; raises BadInput for a message that is none."""
         await self._say(self._welcome())
         if self._keep is not None:
-            recorder = Recorder(self.session)
-            for text in recorder.lines:
+            for text in Recorder(self.session).lines:
                 self._keep(text)
         await self._feed({"do": "tick"}, None)
         await self._show_curve(self.session)
-        workers = [asyncio.create_task(self._ticks()), asyncio.create_task(self._pictures())]
+        workers = [asyncio.create_task(work()) for work in (self._ticks, self._pictures, self._poses)]
         if self._source is not None:
             workers.append(asyncio.create_task(self._play(self._source)))
         receiver = asyncio.create_task(self._receive())
@@ -96,7 +77,8 @@ class Connection:
         return {
             "kind": "welcome",
             "version": protocol.VERSION,
-            "camera": self._camera_name,
+            "camera": self._settings.camera,
+            "shared": self._settings.share is not None,
             "drives": list(DRIVES),
             "solvers": list(MOTIONS),
             "side": self._tracker.side,
@@ -112,25 +94,31 @@ class Connection:
                 return
             data = message.get("bytes")
             event = protocol.event(message.get("text") or "") if data is None else {}
-            if event.get("do") == "pose" and not meter.passes(time.monotonic(), protocol.KEPT):
+            if event.get("do") == "pose":  # read on: only the newest counts, however long one takes
                 self._late = event
+                if meter.passes(time.monotonic(), protocol.KEPT):
+                    self._moved.set()
                 continue
-            if event.get("do") != "pose" and not meter.passes(time.monotonic()):
+            if not meter.passes(time.monotonic()):
                 raise BadInput(f"messages: got too many, expected at most {protocol.RATE:.0f} a second")
             if data is not None and (part := protocol.sent_part(data)) is not None:
                 await self._part(*part)
             elif data is not None:
                 self._pending = protocol.sent_picture(data)
                 self._wake.set()
-            elif event["do"] == "pose":
-                self._late = None
-                await self._text(event)
             else:
                 await self._catch_up()
                 await self._text(event)
 
+    async def _poses(self) -> None:
+        """Solve the newest pose of those that came while the one before was solved."""
+        while True:
+            await self._moved.wait()
+            self._moved.clear()
+            await self._catch_up()
+
     async def _catch_up(self) -> None:
-        """Take the newest pose of those that came too fast, if no later one was taken."""
+        """Take the newest pose, if it was not taken yet."""
         late, self._late = self._late, None
         if late is not None:
             await self._text(late)
@@ -190,7 +178,7 @@ class Connection:
         good = isinstance(side_mm, int | float) and not isinstance(side_mm, bool)
         if not good or not SIDES[0] <= side_mm / 1e3 <= SIDES[1]:  # type: ignore[operator]
             raise BadInput(f"side_mm: got {side_mm!r}, expected {SIDES[0] * 1e3:g} to {SIDES[1] * 1e3:g}")
-        self._tracker = Tracker(side=float(side_mm) / 1e3, camera=self._calibration)  # type: ignore[arg-type]
+        self._tracker = Tracker(side=float(side_mm) / 1e3, camera=self._settings.calibration)  # type: ignore[arg-type]
 
     async def _record(self, on: bool) -> None:
         """Begin a recording, or end it and send its lines."""
@@ -203,8 +191,7 @@ class Connection:
 
     async def _feed(self, event: dict[str, Any], seq: object, **more: Any) -> None:
         """Give one event to the session and send its state."""
-        content = await self._state_after(event)
-        await self._say({**content, **more, "seq": seq})
+        await self._say({**await self._state_after(event), **more, "seq": seq})
 
     async def _state_after(self, event: dict[str, Any]) -> dict[str, Any]:
         async with self._lock:
@@ -230,11 +217,15 @@ class Connection:
             self._keep(line(event, state))
         return {"kind": "state", **state, "solve_ms": 1e3 * took}
 
-    def _on_clock(self, captured: float) -> float:
-        """A picture's time on the session's clock: the first one's is when it came."""
+    async def _tracked(self, picture: Picture, captured: float) -> tuple[dict[str, Any], dict[str, Any]]:
+        """The event of a picture on the session's clock, where the first one's time is when it came, and what
+        is said beside its state."""
+        begin = time.perf_counter()
+        event = await asyncio.to_thread(self._tracker.see, picture, captured)
         if self._offset is None:
             self._offset = time.monotonic() - self._begin - captured
-        return captured + self._offset
+        event["t"] = captured + self._offset
+        return event, {"track_ms": 1e3 * (time.perf_counter() - begin), "picture": picture.shape[::-1]}
 
     async def _ticks(self) -> None:
         """Drive a released body on where no pictures do."""
@@ -264,11 +255,8 @@ class Connection:
             picture = await asyncio.to_thread(grey_of, grey, sent.data, sent.width, sent.height)
             if picture is None:
                 raise BadInput("picture: got bytes that are none, expected a JPEG of the stated size")
-            begin = time.perf_counter()
-            event = await asyncio.to_thread(self._tracker.see, picture, sent.time)
-            event["t"] = self._on_clock(sent.time)
-            took = 1e3 * (time.perf_counter() - begin)
-            await self._feed(event, sent.seq, track_ms=took, picture=[sent.width, sent.height])
+            event, more = await self._tracked(picture, sent.time)
+            await self._feed(event, sent.seq, **more)
 
     async def _play(self, source: Source) -> None:
         """Track the pictures of a source and send each with its state, no faster than they are shown."""
@@ -277,9 +265,8 @@ class Connection:
         while True:
             shot: Shot | None = await asyncio.to_thread(next, shots, None)
             if shot is None:
-                await self._say(
-                    {"kind": "error", "text": "camera: got no picture, expected one: is it unplugged?"}
-                )
+                text = "camera: got no picture, expected one: is it unplugged?"
+                await self._say({"kind": "error", "text": text})
                 await asyncio.Event().wait()  # the page stays open until it is closed
                 continue
             await self._player.over()
@@ -287,13 +274,8 @@ class Connection:
                 self._seen_shown.clear()
                 await self._seen_shown.wait()
             self._last_picture = time.monotonic()
-            begin = time.perf_counter()
-            event = await asyncio.to_thread(self._tracker.see, shot.picture, shot.time)
-            event["t"] = self._on_clock(shot.time)
-            took = 1e3 * (time.perf_counter() - begin)
-            content = await self._state_after(event)
-            height, width = shot.picture.shape
-            head = {**content, "seq": shot.number, "track_ms": took, "picture": [width, height]}
+            event, more = await self._tracked(shot.picture, shot.time)
+            head = {**await self._state_after(event), **more, "seq": shot.number}
             self._sent += 1
             await self._socket.send_bytes(protocol.with_picture(head, shot.jpeg))
             due = max(due + 1.0 / source.rate, time.monotonic() - 0.5)

@@ -7,9 +7,9 @@ from collections.abc import Awaitable, Callable
 from typing import Any
 
 from studies.errors import BadInput
-from studies.interactive.session.input import number
-from studies.interactive.session.recording import Recorder, events, replay
-from studies.interactive.session.session import Session
+from studies.interactive.pivot.input import number
+from studies.interactive.pivot.recording import Recorder, events, replay
+from studies.interactive.pivot.session import Session
 
 Say = Callable[[dict[str, Any]], Awaitable[None]]
 

@@ -2,10 +2,11 @@
 here."""
 
 import hmac
+import ipaddress
 import json
 import secrets
 import struct
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -44,7 +45,7 @@ FIELDS: dict[str, frozenset[str]] = {
     "step": frozenset(),
     "reset": frozenset(),
     "parameter": frozenset({"name", "value", "part"}),
-    "preset": frozenset({"name", "values"}),
+    "preset": frozenset({"name", "values", "part"}),
     "undo": frozenset(),
     "redo": frozenset(),
     "drive": frozenset({"by"}),
@@ -179,6 +180,7 @@ class Meter:
 TOKEN_BYTES = 24
 #: Sockets at a time.
 MOST_SOCKETS = 4
+#: Names of this machine; who shares the page adds the one by which its network knows it.
 HOSTS = ("127.0.0.1", "localhost")
 
 
@@ -192,19 +194,28 @@ def same(token: str, given: object) -> bool:
     return isinstance(given, str) and hmac.compare_digest(token.encode(), given.encode())
 
 
-def good_host(host: str | None, port: int) -> bool:
+def good_host(host: str | None, port: int, names: Sequence[str] = HOSTS) -> bool:
     """Return whether a request's Host is this machine by a name that no foreign page can take."""
-    return host in {f"{name}:{port}" for name in HOSTS}
+    return host in {f"{name}:{port}" for name in names}
 
 
-def good_origin(origin: str | None, port: int) -> bool:
+def is_private(name: str) -> bool:
+    """Return whether a name is the address of one machine in a network of one's own."""
+    try:
+        address = ipaddress.IPv4Address(name)
+    except ValueError:
+        return False
+    return address.is_private and not address.is_unspecified
+
+
+def good_origin(origin: str | None, port: int, names: Sequence[str] = HOSTS) -> bool:
     """Return whether a socket was opened by a page of this server."""
-    return origin in {f"http://{name}:{port}" for name in HOSTS}
+    return origin in {f"http://{name}:{port}" for name in names}
 
 
-def headers(port: int) -> Mapping[str, str]:
+def headers(port: int, names: Sequence[str] = HOSTS) -> Mapping[str, str]:
     """Return the headers of every answer: nothing from elsewhere is loaded, framed, sniffed or kept."""
-    sockets = " ".join(f"ws://{name}:{port}" for name in HOSTS)
+    sockets = " ".join(f"ws://{name}:{port}" for name in names)
     policy = (
         "default-src 'none'; script-src 'self'; style-src 'self'; "
         "img-src 'self' blob: data:; media-src blob:; "

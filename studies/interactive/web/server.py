@@ -1,4 +1,5 @@
-"""The local web server: the page's files, and one web socket at /ws. Loopback only."""
+"""The local web server: the page's files, and one web socket at /ws; on the loopback, and, where the user
+shares it, at one address of the own network."""
 
 import asyncio
 import importlib.util
@@ -7,9 +8,10 @@ import socket as sockets
 import threading
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
+from concurrent.futures import ProcessPoolExecutor
 from importlib.resources import files
-from types import TracebackType
+from multiprocessing import get_context
+from pathlib import Path
 from typing import Self
 
 import uvicorn
@@ -20,13 +22,13 @@ from starlette.routing import Route, WebSocketRoute
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
+from spline_model.reduced import pose
 from studies.errors import BadInput
 from studies.interactive.pivot.motion import MOTIONS
-from studies.interactive.session.session import Session
-from studies.interactive.tracking.calibration import Camera
+from studies.interactive.pivot.session import Session
 from studies.interactive.web import protocol
 from studies.interactive.web.connection import Connection
-from studies.interactive.web.sources import Source
+from studies.interactive.web.sources import Settings
 
 LOG = logging.getLogger(__name__)
 
@@ -39,29 +41,11 @@ LAST_PORT = 65535
 PATIENCE = 5.0
 
 
-@dataclass(frozen=True, kw_only=True)
-class Settings:
-    """What one server serves.
-
-    Attributes:
-        port: 0 for any; camera: "browser", "none", "film" or "server", which the page is told.
-        source: makes the pictures of a socket, or None; keep: takes the lines of a recording, of the first
-            page that is open.
-    """
-
-    port: int = 0
-    camera: str = "browser"
-    source: Callable[[], Source] | None = None
-    calibration: Camera | None = None
-    preset: str = "polymer"
-    keep: Callable[[str], None] | None = None
-
-
 class _Guard:
     """Refuses foreign hosts and adds the headers of `security` to every answer."""
 
-    def __init__(self, app: ASGIApp, port: Callable[[], int]) -> None:
-        self._app, self._port = app, port
+    def __init__(self, app: ASGIApp, port: Callable[[], int], names: tuple[str, ...]) -> None:
+        self._app, self._port, self._names = app, port, names
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Answer one request."""
@@ -70,11 +54,11 @@ class _Guard:
             return
         given = {name.decode("latin-1"): value.decode("latin-1") for name, value in scope["headers"]}
         port = self._port()
-        if not protocol.good_host(given.get("host"), port):
+        if not protocol.good_host(given.get("host"), port, self._names):
             await self._refuse(scope, receive, send, 400, "host: expected this machine")
             return
         if scope["type"] == "websocket":
-            if not protocol.good_origin(given.get("origin"), port):
+            if not protocol.good_origin(given.get("origin"), port, self._names):
                 await self._refuse(scope, receive, send, 403, "origin: expected this page")
                 return
             await self._app(scope, receive, send)
@@ -82,7 +66,7 @@ class _Guard:
 
         async def with_headers(message: Message) -> None:
             if message["type"] == "http.response.start":
-                extra = [(k.encode(), v.encode()) for k, v in protocol.headers(port).items()]
+                extra = [(k.encode(), v.encode()) for k, v in protocol.headers(port, self._names).items()]
                 message["headers"] = [*message.get("headers", []), *extra]
             await send(message)
 
@@ -106,7 +90,7 @@ class Server:
         self.token = protocol.new_token()
         self.port = settings.port
         self.open = 0
-        self._listener: sockets.socket | None = None
+        self._listeners: list[sockets.socket] = []
         self._uvicorn: uvicorn.Server | None = None
         app = Starlette(
             routes=[
@@ -116,28 +100,43 @@ class Server:
                 WebSocketRoute("/ws", self._socket),
             ]
         )
-        self.app: ASGIApp = _Guard(app, lambda: self.port)
+        names = protocol.HOSTS if settings.share is None else (*protocol.HOSTS, settings.share)
+        self.app: ASGIApp = _Guard(app, lambda: self.port, names)
 
     @property
     def address(self) -> str:
         """The page's address with its token, which the browser keeps to itself."""
-        return f"http://127.0.0.1:{self.port}/#token={self.token}"
+        return self.address_at("127.0.0.1")
+
+    def address_at(self, name: str) -> str:
+        """The same by a name of this machine."""
+        return f"http://{name}:{self.port}/#token={self.token}"
 
     def bind(self) -> None:
-        """Take the port, on the loopback only; BadInput if it is taken."""
+        """Take the port, on the loopback and the address that is shared; BadInput if it is taken."""
         if not 0 <= self.settings.port <= LAST_PORT:
             raise BadInput(f"--port: got {self.settings.port}, expected 0 (any) to {LAST_PORT}")
-        listener = sockets.socket(sockets.AF_INET, sockets.SOCK_STREAM)
+        refusal = f"--share: got {self.settings.share}, expected this machine's address in its own network"
+        if (share := self.settings.share) is not None and not protocol.is_private(share):
+            raise BadInput(refusal)
+        self._listen("127.0.0.1", f"--port: got {self.settings.port}, expected a free one")
+        if share is not None:
+            self._listen(share, refusal)
+
+    def _listen(self, name: str, refusal: str) -> None:
+        """Listen at an address of this machine, at the port of those before."""
+        # asyncio lets small answers leave at once (TCP_NODELAY) where a socket says what it speaks
+        listener = sockets.socket(sockets.AF_INET, sockets.SOCK_STREAM, sockets.IPPROTO_TCP)
         listener.setsockopt(sockets.SOL_SOCKET, sockets.SO_REUSEADDR, 1)
         try:
-            listener.bind(("127.0.0.1", self.settings.port))
+            listener.bind((name, self.port))
             listener.listen(16)
         except OSError as error:
-            listener.close()
-            raise BadInput(
-                f"--port: got {self.settings.port}, expected a free one ({error.strerror})"
-            ) from None
-        self._listener, self.port = listener, listener.getsockname()[1]
+            for each in (listener, *self._listeners):
+                each.close()
+            raise BadInput(f"{refusal} ({error.strerror})") from None
+        self._listeners.append(listener)
+        self.port = listener.getsockname()[1]
 
     def run(self) -> None:
         """Serve until interrupted."""
@@ -145,9 +144,8 @@ class Server:
 
     async def serve(self) -> None:
         """Serve within a running loop, until `stop`."""
-        if self._listener is None:
+        if not self._listeners:
             self.bind()
-        assert self._listener is not None
         self._uvicorn = uvicorn.Server(
             uvicorn.Config(
                 self.app,
@@ -161,7 +159,7 @@ class Server:
                 server_header=False,
             )
         )
-        await self._uvicorn.serve(sockets=[self._listener])
+        await self._uvicorn.serve(sockets=self._listeners)
 
     def stop(self) -> None:
         """End `serve` soon."""
@@ -170,14 +168,14 @@ class Server:
 
     async def _file(self, request: Request) -> Response:
         name = request.path_params.get("name", "index.html")
-        known = {path.name: path for path in files("studies.interactive.page").iterdir()}
+        known = {path.name: path for path in (files("studies.interactive.web") / "page").iterdir()}
         suffix = "." + name.rpartition(".")[2]
         if name not in known or suffix not in KINDS:
             return PlainTextResponse("not found", status_code=404)
         return Response(known[name].read_bytes(), media_type=KINDS[suffix])
 
     async def _sheet(self, request: Request) -> Response:
-        from studies.interactive.film.sheet import sheet  # matplotlib, for who asks for it
+        from studies.interactive.tracking.sheet import sheet  # matplotlib, for who asks for it
 
         return Response(await asyncio.to_thread(sheet), media_type="application/pdf")
 
@@ -193,15 +191,7 @@ class Server:
                 return
             counted = True
             self.open += 1
-            source = self.settings.source() if self.settings.source else None
-            await Connection(
-                socket,
-                camera=self.settings.camera,
-                source=source,
-                calibration=self.settings.calibration,
-                preset=self.settings.preset,
-                keep=self.settings.keep if self.open == 1 else None,
-            ).serve()
+            await Connection(socket, self.settings, first=self.open == 1).serve()
         except BadInput as error:
             await _close(socket, BAD, str(error))
         except WebSocketDisconnect:
@@ -250,15 +240,25 @@ class Hosted:
         self._thread.start()
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *raised: object) -> None:
         self.server.stop()
         self._thread.join(10.0)
 
 
 def warm_up() -> None:
     """Enter every kernel once, so that no picture waits for a compiler.
+
+    What was never compiled is so in a process of its own: one that compiles a kernel may round otherwise
+    than one that loads it, and a session that it records would not replay digit by digit.
+    """
+    if not any((Path(pose.__file__).parent / "__pycache__").glob("pose.hold*.nbi")):
+        with ProcessPoolExecutor(1, mp_context=get_context("spawn")) as pool:
+            pool.submit(_enter_kernels).result()
+    _enter_kernels()
+
+
+def _enter_kernels() -> None:
+    """Enter what a session calls.
 
     A pivot is held, turned, released, caught and squeezed until it buckles; a picture is tracked where OpenCV
     is there.
@@ -279,7 +279,7 @@ def warm_up() -> None:
             session.feed({**event, "t": 0.0})
     if importlib.util.find_spec("cv2") is None:
         return
-    from studies.interactive.film.demo import demo_film
+    from studies.interactive.tracking.demo import demo_film
     from studies.interactive.tracking.tracker import Tracker
 
     Tracker().see(demo_film().picture(0), 0.0)

@@ -1,7 +1,7 @@
 """Where pictures come from when the page's own camera does not send them: a film file, a camera of this
 machine, the demo film."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Protocol
@@ -10,8 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from studies.errors import BadInput
-from studies.interactive.film.painter import Film
+from studies.interactive.tracking.calibration import Camera
 from studies.interactive.tracking.detector import Picture, cv2, decoded, encoded
+from studies.interactive.tracking.painter import Film
 
 #: Pictures a second of films that do not say.
 RATE = 25.0
@@ -35,6 +36,26 @@ class Source(Protocol):
 
     def shots(self) -> Iterator[Shot]:
         """Yield pictures for ever, or until the camera fails."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Settings:
+    """What one server serves.
+
+    Attributes:
+        port: 0 for any; share: the address of this machine by which its network reaches the page too.
+        camera: "browser", "none", "film" or "server", which the page is told.
+        source: makes the pictures of a socket, or None; keep: takes the lines of a recording, of the first
+            page that is open.
+    """
+
+    port: int = 0
+    share: str | None = None
+    camera: str = "browser"
+    source: Callable[[], Source] | None = None
+    calibration: Camera | None = None
+    preset: str = "polymer"
+    keep: Callable[[str], None] | None = None
 
 
 class FilmSource:
@@ -80,23 +101,27 @@ class VideoSource:
             )
         self.rate = rate if 1.0 <= rate <= 120.0 else RATE
 
+    def once(self) -> Iterator[Picture]:
+        """Yield the grey pictures of a film to its end, or of a camera until it fails."""
+        video = cv2.VideoCapture(str(self._place) if isinstance(self._place, Path) else self._place)
+        try:
+            while True:
+                good, picture = video.read()
+                if not good or picture is None:
+                    return
+                flat = picture if picture.ndim == 2 else cv2.cvtColor(picture, cv2.COLOR_BGR2GRAY)
+                yield np.array(flat, dtype=np.uint8)
+        finally:
+            video.release()
+
     def shots(self) -> Iterator[Shot]:
         """Yield the pictures; a film begins anew at its end, a camera ends when it fails."""
         number = 0
         while True:
-            video = cv2.VideoCapture(str(self._place) if isinstance(self._place, Path) else self._place)
             first = number
-            try:
-                while True:
-                    good, picture = video.read()
-                    if not good or picture is None:
-                        break
-                    flat = picture if picture.ndim == 2 else cv2.cvtColor(picture, cv2.COLOR_BGR2GRAY)
-                    grey: Picture = np.array(flat, dtype=np.uint8)
-                    yield Shot(number=number, time=number / self.rate, picture=grey, jpeg=encoded(grey))
-                    number += 1
-            finally:
-                video.release()
+            for grey in self.once():
+                yield Shot(number=number, time=number / self.rate, picture=grey, jpeg=encoded(grey))
+                number += 1
             if number == first or not self.lock_step:
                 return
 

@@ -7,12 +7,11 @@ from typing import Any
 import numpy as np
 
 from studies.interactive.pivot.bench import Bench
-from studies.interactive.pivot.curve import Curve
-from studies.interactive.pivot.design import Placing, scales
+from studies.interactive.pivot.design import Curve, Placing, scales
+from studies.interactive.pivot.input import Clock, Hand
 from studies.interactive.pivot.mechanics import Mechanics
 from studies.interactive.pivot.motion import MOTIONS
-from studies.interactive.session.input import Clock, Hand
-from studies.interactive.session.readings import Readings
+from studies.interactive.pivot.readings import Readings
 from studies.kinds import Array
 
 #: Least spread that is written, over its value.
@@ -64,7 +63,7 @@ def _readout(state: Mapping[str, Any], reading: Array) -> dict[str, str]:
     percent = 100.0 * of_yield if of_yield > ROUND_OFF else 0.0
     energy = {
         name: quantity(state["energy"][name], "J", least["energy"])
-        for name in ("strain", "kinetic", "dissipated", "lost")
+        for name in ("strain", "kinetic", "potential", "dissipated", "lost")
     }
     return energy | {
         "rotation": fixed(math.degrees(turn), 2)
@@ -146,7 +145,7 @@ def curved(curve: Curve, strength: float) -> dict[str, Any]:
     }
 
 
-class Warnings:
+class _Warnings:
     """The faults of one event by code, each said once."""
 
     def __init__(self) -> None:
@@ -168,7 +167,7 @@ class Instant:
     def _begin(self, preset: str, values: Mapping[str, object], lock_step: bool) -> None:
         """Everything as at the start, with these settings."""
         self.bench, self.clock = Bench(preset, values), Clock(lock_step=lock_step)
-        self.warnings = Warnings()
+        self.warnings = _Warnings()
         self.drive, self.solver = DRIVES[0], next(iter(MOTIONS))
         self.paused, self.time = False, 0.0
         self.sight: dict[str, Any] = {"state": "none"}
@@ -245,6 +244,7 @@ def shown(session: Instant) -> dict[str, Any]:
         "energy": {
             "strain": now.strain,
             "kinetic": now.kinetic,
+            "potential": now.potential,
             "dissipated": now.dissipated,
             "lost": now.lost,
             "start": session.start_energy if mechanics.moving else None,

@@ -3,7 +3,9 @@ const round = (span) => { const p = 10 ** Math.floor(Math.log10(span)), r = span
 const tidy = (value, step) => Number(value.toFixed(Math.max(0, -Math.floor(Math.log10(step)) + 1))).toString();
 // Colours of the page's own names, whatever scheme it is shown in.
 const known = new Map();
-matchMedia("(prefers-color-scheme: light)").addEventListener("change", () => known.clear());
+for (const media of ["(prefers-color-scheme: light)", "(prefers-contrast: more)", "(forced-colors: active)"]) {
+  matchMedia(media).addEventListener("change", () => known.clear());
+}
 function hue(name) {
   if (!known.has(name)) known.set(name, getComputedStyle(document.documentElement).getPropertyValue(name).trim());
   return known.get(name);

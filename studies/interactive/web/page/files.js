@@ -8,12 +8,28 @@ export function save(name, content, type) {
   window.studio.saved = { name, size: content.size ?? content.length, text: typeof content === "string" ? content : null };
 }
 
+// Record a canvas as a video until the recorder that is returned is stopped; null where the browser cannot.
+export function video(canvas, done) {
+  const type = ["video/webm", "video/mp4"].find((name) => window.MediaRecorder?.isTypeSupported(name)), parts = [];
+  if (!type) return null;
+  const stream = canvas.captureStream(), recorder = new MediaRecorder(stream, { mimeType: type, videoBitsPerSecond: 4e6 });
+  recorder.kept = 0;
+  recorder.ondataavailable = (event) => { parts.push(event.data); recorder.kept += event.data.size; };
+  recorder.onstop = () => {
+    for (const track of stream.getTracks()) track.stop();
+    if (recorder.kept) save(`pivot.${type.slice(6)}`, new Blob(parts, { type }), type);
+    done(recorder.kept > 0);
+  };
+  recorder.start(250);
+  return recorder;
+}
+
 const COLUMNS = [
   ["time_s", (s) => s.t], ["mode", (s) => s.mode], ["simulated_s", (s) => s.simulated],
   ["x_m", (s) => s.pose[0]], ["y_m", (s) => s.pose[1]], ["rotation_rad", (s) => s.pose[2]],
   ["force_x_N", (s) => s.force[0]], ["force_y_N", (s) => s.force[1]], ["moment_Nm", (s) => s.force[2]],
   ["stiffness_Nm_per_rad", (s) => s.stiffness], ["stress_max_Pa", (s) => s.stress.max],
-  ["strain_energy_J", (s) => s.energy.strain], ["kinetic_energy_J", (s) => s.energy.kinetic], ["dissipated_J", (s) => s.energy.dissipated],
+  ["strain_energy_J", (s) => s.energy.strain], ["kinetic_energy_J", (s) => s.energy.kinetic], ["potential_of_load_J", (s) => s.energy.potential], ["dissipated_J", (s) => s.energy.dissipated],
   ["lost_to_steps_J", (s) => s.energy.lost],
   ["centre_x_m", (s) => s.centre?.[0]], ["centre_y_m", (s) => s.centre?.[1]],
   ["sd_x_m", (s) => s.sd?.[0]], ["sd_y_m", (s) => s.sd?.[1]], ["sd_rotation_rad", (s) => s.sd?.[2]], ["solve_ms", (s) => s.solve_ms],

@@ -30,6 +30,7 @@ export class Numbers {
         ["lost by the steps", texts.lost],
       ]),
       ["strain energy", texts.strain],
+      ...(state.values.load ? [["the load's energy", texts.potential]] : []),
       ...(state.grip === null ? [] : [["grip", texts.grip]]),
       ["time scale", state.values.time_scale >= 1 ? "real time" : `1 : ${short(1 / state.values.time_scale)}`],
       ["solver", `${short(state.solve_ms, 2)} ms, ${state.iterations} iterations`],
@@ -83,21 +84,23 @@ export class Numbers {
     this.spoken = performance.now();
   }
 
-  // Curves that go on by a point are drawn ten times a second.
+  // Curves that go on by a point are drawn ten times a second; what comes sooner is not forgotten.
   plots(ring) {
-    const now = performance.now();
-    if (ring.live && now - this.drawn < 95) return;
+    const now = performance.now(), early = ring.live && 95 - (now - this.drawn);
+    clearTimeout(this.later);
+    if (early > 0) { this.later = setTimeout(() => this.plots(ring), early); return; }
     this.drawn = now;
     const states = ring.states.slice(0, ring.place + 1), end = ring.current?.at ?? 0;
     const recent = states.filter((s) => end - s.at <= 10);
     const scale = ring.current?.scale ?? { energy: 1, moment: 1 };
-    const top = Math.max(LEAST * scale.energy, ...recent.map((s) => s.energy.strain + s.energy.kinetic));
+    const sum = (e) => e.strain + e.kinetic + e.potential;
+    const top = Math.max(LEAST * scale.energy, ...recent.map((s) => Math.abs(sum(s.energy))));
     const [unit, per] = top < 1e-4 ? ["µJ", 1e6] : top < 0.1 ? ["mJ", 1e3] : ["J", 1];
     at("energy-unit").textContent = unit;
     const line = (value) => recent.map((s) => [s.at - end, per * value(s.energy)]);
     plot(at("energy"), [
-      { points: line((e) => e.strain + e.kinetic), colour: "--sum" },
-      { points: line((e) => e.kinetic), colour: "--kinetic" },
+      { points: line(sum), colour: "--sum" },
+      { points: line((e) => e.kinetic), colour: "--kinetic", dashed: true },
       { points: line((e) => e.strain), colour: "--strain" },
     ], { x: [-10, 0], fromZero: true, unitX: "s", least: LEAST * scale.energy * per });
     this.moments(ring, states);

@@ -1,11 +1,14 @@
 // Mouse and touch on the picture: drag turns the body, or moves it where its whole pose is held; two fingers do both.
+// While the design is shaped, a clamp that is dragged takes length, inclination and crossing with it.
 const WHEEL = 0.5 * Math.PI / 180;
 // Between two poses [ms]: a screen of 60 Hz sends each, one of 144 Hz every second.
 const SHORTEST = 12;
+// How near to a clamp a mouse and a finger take hold of it [px].
+const REACH = 14, FINGER = 30;
 
 export class Pointer {
-  constructor(canvas, view, studio, send) {
-    Object.assign(this, { canvas, view, studio, send, on: false, down: new Map(), start: null, waiting: null });
+  constructor(canvas, view, studio, send, controls) {
+    Object.assign(this, { canvas, view, studio, send, controls, on: false, down: new Map(), start: null, waiting: null, clamp: null });
     canvas.addEventListener("pointerdown", (event) => this.press(event));
     canvas.addEventListener("pointermove", (event) => this.move(event));
     for (const name of ["pointerup", "pointercancel"]) canvas.addEventListener(name, (event) => this.lift(event));
@@ -15,9 +18,11 @@ export class Pointer {
   get held() { return this.on && this.studio.state?.mode === "held"; }
 
   press(event) {
-    if (!this.held) return;
+    const clamp = this.view.shaping && !this.down.size ? this.nearest(event) : null;
+    if (!clamp && !this.held) return;
     this.canvas.setPointerCapture(event.pointerId);
     this.canvas.focus();
+    if (clamp) { this.clamp = { id: event.pointerId, end: clamp }; this.view.freeze(this.studio.state); return; }
     this.down.set(event.pointerId, this.view.from(event.clientX, event.clientY));
     this.begin();
   }
@@ -25,12 +30,43 @@ export class Pointer {
   begin() { this.start = { at: new Map(this.down), wanted: [...(this.studio.state.grip !== null ? this.studio.state.wanted : this.studio.state.displacement)], pose: [...this.studio.state.pose] }; }
 
   move(event) {
+    if (this.clamp?.id === event.pointerId) return this.shape(this.view.from(event.clientX, event.clientY), this.clamp.end);
     if (!this.down.has(event.pointerId) || !this.held) return;
     this.down.set(event.pointerId, this.view.from(event.clientX, event.clientY));
     this.post(this.down.size > 1 ? this.two() : this.one(event.shiftKey));
   }
 
-  lift(event) { this.down.delete(event.pointerId); if (this.down.size) this.begin(); }
+  lift(event) {
+    if (this.clamp?.id === event.pointerId) { this.clamp = null; this.view.freeze(null); this.controls.ended(); }
+    this.down.delete(event.pointerId);
+    if (this.down.size) this.begin();
+  }
+
+  // The strip and end, as [strip, end], of the clamp that a pointer takes hold of.
+  nearest(event) {
+    const near = [0, 1].flatMap((strip) => [0, 1].map((end) => {
+      const [x, y] = this.view.page(...this.view.clamp(this.studio.state, strip, end));
+      return [Math.hypot(x - event.clientX, y - event.clientY), [strip, end]];
+    })).sort((p, q) => p[0] - q[0])[0];
+    return near[0] <= (event.pointerType === "touch" ? FINGER : REACH) ? near[1] : null;
+  }
+
+  // Half the ground, half the body and the height between them are what a clamp changes; both sides stay alike.
+  shape([x, y], [strip, end]) {
+    const s = this.studio.state, [a, b] = s.placing.clamps, mid = (a[0][0] + b[0][0]) / 2, side = strip === end ? -1 : 1;
+    let ground = mid - a[0][0], body = a[1][0] - mid, high = a[1][1];
+    if (end) {
+      const [x0, y0] = s.placing.centre, cos = Math.cos(s.pose[2]), sin = Math.sin(s.pose[2]), dx = x - s.pose[0], dy = y - s.pose[1];
+      [x, y] = [x0 + cos * dx + sin * dy, y0 - sin * dx + cos * dy];
+      high = y;
+    }
+    const half = Math.max(1e-3, side * (x - mid));
+    if (end) body = half; else ground = half;
+    const values = { ...s.values }, wide = ground + body;
+    const wanted = { length: Math.hypot(wide, high), inclination: Math.atan2(Math.max(1e-3, high), wide), crossing_ratio: ground / wide };
+    for (const [name, value] of Object.entries(wanted)) values[name] = this.controls.within(name, value);
+    this.controls.change({ do: "preset", name: s.preset, values }, "shape", false);
+  }
 
   one(shift) {
     const [id] = this.down.keys(), p = this.start.at.get(id), q = this.down.get(id), [dx, dy, t] = this.start.wanted;

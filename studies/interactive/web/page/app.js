@@ -20,11 +20,11 @@ Object.assign(studio, { view, ring });
 const socket = new Socket(received, lost);
 const camera = new Camera(socket, say);
 const controls = new Controls(send, say);
-const pointer = new Pointer(at("stage"), view, studio, send);
+const pointer = new Pointer(at("stage"), view, studio, send, controls);
 
 function send(event) {
   if (event.do !== "pose") pointer.forget();
-  if (["preset", "undo", "redo"].includes(event.do) || (event.do === "parameter" && !event.part)) studio.fresh = true;
+  if (["preset", "parameter", "undo", "redo"].includes(event.do) && !event.part) studio.fresh = true;
   socket.send(event);
 }
 function say(text) { at("note").textContent = text; }
@@ -48,6 +48,7 @@ function received(message, picture) {
   ring.add(message);
   studio.shown += 1;
   if (ring.live) show(message, studio.picture);
+  if (bitmap) ring.film(bitmap);
 }
 
 function show(state, picture) {
@@ -86,7 +87,9 @@ function keep() {
 function welcome(message) {
   studio.welcome = message;
   controls.build(message);
-  at("source").textContent = { browser: "camera", film: "film", none: "no camera", server: "camera of the server" }[message.camera];
+  studio.source = { browser: "camera", film: "film", none: "no camera", server: "camera of the server" }[message.camera];
+  studio.shared = message.shared ? ", open to the network" : "";
+  at("source").textContent = studio.source + studio.shared;
   at("camera-box").hidden = message.camera === "none";
   at("camera-row").hidden = message.camera !== "browser";
   if (message.camera === "browser") camera.start(noCamera);
@@ -100,7 +103,7 @@ function welcome(message) {
 
 // Without pictures the page's own hand drives, by the rotation alone: a pull would stretch the strips at once.
 function noCamera(why) {
-  at("source").textContent = "no camera";
+  at("source").textContent = "no camera" + studio.shared;
   at("stage").classList.add("grab");
   pointer.on = true;
   at("hand-box").hidden = false;
@@ -130,7 +133,15 @@ const actions = {
   record: () => send({ do: "record", on: !at("record").classList.contains("on") }),
   rest: () => send({ do: "rest" }),
   csv: () => files.save("pivot.csv", files.csv(ring.states), "text/csv"),
-  png: () => at("stage").toBlob((blob) => files.save("pivot.png", blob, "image/png")),
+  png: () => { captioned(true); at("stage").toBlob((blob) => files.save("pivot.png", blob, "image/png")); captioned(false); },
+  video: () => {
+    if (studio.video) return studio.video.stop();
+    studio.video = files.video(at("stage"), (good) => { studio.video = null; filming(false); if (!good) say("Too short: nothing was recorded yet."); });
+    if (!studio.video) return say("This browser records no videos.");
+    filming(true);
+    say("Recording a video of the picture.");
+  },
+  shape: () => { at("shape").checked = !at("shape").checked; shape(); },
   save: () => send({ do: "save" }),
   open: () => at("case").click(),
   live: () => { ring.goLive(); if (studio.state) show(studio.state, studio.picture); },
@@ -143,16 +154,38 @@ const actions = {
   move: (x, y) => (studio.state?.drive === "rotation" ? say("The hand holds the rotation alone: M lets it hold the whole pose.") : pointer.nudge([x, y, 0])),
 };
 
-function scrub(place) {
-  ring.go(place);
-  const state = ring.current;
-  if (state) show(state, ring.live ? studio.picture : null);
+// What leaves the page has its words with it.
+function captioned(on) {
+  view.caption = on || Boolean(studio.video);
+  if (ring.live && studio.state) view.draw(studio.state, studio.picture, ring.centres);
+}
+function filming(on) {
+  at("video").classList.toggle("on", on);
+  at("video").firstChild.textContent = on ? "Stop " : "Video ";
+  captioned(on);
 }
 
-for (const id of ["release", "pause", "step", "reset", "undo", "redo", "record", "rest", "csv", "png", "save", "open", "live", "help", "replay"]) {
+function shape() {
+  view.shaping = at("shape").checked;
+  if (view.shaping) say("Drag a clamp: length, inclination and crossing follow.");
+  if (studio.state) show(studio.state, studio.picture);
+}
+
+async function scrub(place) {
+  ring.go(place);
+  const state = ring.current, kept = ring.small;
+  if (!state) return;
+  if (ring.live || !kept) return show(state, ring.live ? studio.picture : null);
+  const picture = Object.assign(await createImageBitmap(kept.blob), { size: kept.size });
+  if (ring.current === state && !ring.live) show(state, picture);
+  picture.close();
+}
+
+for (const id of ["release", "pause", "step", "reset", "undo", "redo", "record", "rest", "csv", "png", "video", "save", "open", "live", "help", "replay"]) {
   at(id).addEventListener("click", actions[id]);
 }
 at("scrub").addEventListener("input", () => scrub(Number(at("scrub").value)));
+at("shape").addEventListener("change", shape);
 at("mirror").addEventListener("change", () => at("stage").classList.toggle("mirrored", at("mirror").checked));
 at("side").addEventListener("change", () => at("side").checkValidity() && send({ do: "size", side_mm: Number(at("side").value) }));
 at("camera").addEventListener("change", () => camera.start(noCamera, at("camera").value));

@@ -26,15 +26,20 @@ export class Controls {
   }
 
   row(p) {
-    const on = (si) => (p.logarithmic ? Math.log(Math.max(si, p.low)) : si), back = (v) => (p.logarithmic ? Math.exp(v) : v);
+    const on = (si) => (p.least ? Math.asinh(si / p.least) : p.logarithmic ? Math.log(Math.max(si, p.low)) : si);
+    const back = (v) => (p.least ? p.least * Math.sinh(v) : p.logarithmic ? Math.exp(v) : v);
     const { line, range, number } = pair(p.label, p.unit);
     Object.assign(range, { min: on(p.low), max: on(p.high), step: (on(p.high) - on(p.low)) / 400 });
     Object.assign(number, { min: p.low * p.per_si, max: p.high * p.per_si, step: "any" });
-    const slid = (end) => { const si = Math.min(p.high, Math.max(p.low, back(Number(range.value)))); number.value = tidy(si * p.per_si); this.change(p.name, si, end); };
+    const slid = (end) => {
+      const v = Number(range.value), nought = p.least && Math.abs(v) < range.step / 2, si = nought ? 0 : this.within(p.name, back(v));
+      number.value = tidy(si * p.per_si);
+      this.change({ do: "parameter", name: p.name, value: si }, p.name, end);
+    };
     range.oninput = () => slid(false);
     range.onchange = () => slid(true);
     number.onchange = () => {
-      if (number.checkValidity() && number.value !== "") return this.change(p.name, Number(number.value) / p.per_si, true);
+      if (number.checkValidity() && number.value !== "") return this.change({ do: "parameter", name: p.name, value: Number(number.value) / p.per_si }, p.name, true);
       this.say(`${p.label}: from ${tidy(p.low * p.per_si)} to ${tidy(p.high * p.per_si)} ${p.unit}.`);
       if (this.state) number.value = tidy(this.state.values[p.name] * p.per_si);
     };
@@ -42,18 +47,27 @@ export class Controls {
     return line;
   }
 
-  // The newest value goes up as soon as the one before is answered; those of one drag are undone together.
-  change(name, value, end) {
-    this.next = { name, value, end };
+  // A value between the ends of its slider.
+  within(name, value) {
+    const { low, high } = this.welcome.parameters.find((p) => p.name === name);
+    return Math.min(high, Math.max(low, value));
+  }
+
+  // The newest event goes up as soon as the one before is answered; those of one drag, by its key, are undone together.
+  change(event, key, end) {
+    this.next = { event, key, end };
     this.flush();
   }
 
+  // A drag without an event of its own at its end is over, after the one that waits.
+  ended() { if (this.next) this.next.end = true; else this.drag = null; }
+
   flush() {
     if (this.flying !== null || !this.next) return;
-    const { name, value, end } = this.next, part = this.drag === name;
+    const { event, key, end } = this.next, part = this.drag === key;
     this.next = null;
-    this.drag = end ? null : name;
-    this.send({ do: "parameter", name, value, part, seq: (this.flying = -++this.count) });
+    this.drag = end ? null : key;
+    this.send({ ...event, part, seq: (this.flying = -++this.count) });
   }
 
   answered(seq) {

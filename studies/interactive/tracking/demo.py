@@ -7,9 +7,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.held import HeldPivot
-from studies.interactive.film.painter import Film, Finger, Marker, Optics, Painter
 from studies.interactive.pivot.design import Placing, build, turned
 from studies.interactive.pivot.presets import PRESETS
+from studies.interactive.tracking.painter import Film, Finger, Marker, Optics, Painter
 
 #: Length of the film, its turns and the frames in which a finger covers a corner and a hand a marker.
 FRAMES = 300
@@ -18,7 +18,7 @@ FINGER = range(150, 168)
 HIDDEN = range(235, 247)
 
 
-def demo_film(optics: Optics | None = None, samples: int = 3) -> Film:
+def demo_film() -> Film:
     """Return the demo film with its truth: the body follows the pivot's own path, the hand pushes nothing
     else."""
     pivot = build(PRESETS["polymer"].values())
@@ -30,7 +30,7 @@ def demo_film(optics: Optics | None = None, samples: int = 3) -> Film:
         markers = [Marker(number=0, pose=(0.0, 0.0, 0.0)), moving]
         return (markers[:1] if k in HIDDEN else markers), (_finger(poses[k]),) if k in FINGER else ()
 
-    return Film(painter=Painter(optics or Optics(), samples=samples), frames=FRAMES, scene=scene)
+    return Film(painter=Painter(Optics(), samples=2, numbered=False), frames=FRAMES, scene=scene)
 
 
 def rotation(k: int) -> float:

@@ -13,11 +13,11 @@ import numpy as np
 from studies.errors import BadInput
 from studies.interactive.pivot import presets
 from studies.interactive.pivot.design import wrapped
+from studies.interactive.pivot.input import choice, mapping, number, three, words
 from studies.interactive.pivot.mechanics import Mechanics
 from studies.interactive.pivot.motion import MOTIONS
 from studies.interactive.pivot.presets import STEP
-from studies.interactive.session.input import choice, mapping, number, three, words
-from studies.interactive.session.view import DRIVES, SPRUNG, Instant, shown
+from studies.interactive.pivot.view import DRIVES, SPRUNG, Instant, shown
 from studies.kinds import Array
 
 #: Farthest a pose may lie from rest: shift over the strips' length, and turn [rad].
@@ -39,6 +39,7 @@ class Session(Instant):
 
     def __init__(self, preset: str = "polymer", *, lock_step: bool = True) -> None:
         self._begin(preset, presets.preset(preset).values(), lock_step)
+        self._settle()
 
     def feed(self, event: Mapping[str, Any]) -> dict[str, Any]:
         """Take one event and return the state after it.
@@ -83,6 +84,7 @@ class Session(Instant):
         self.drive, self.solver = drive, solver
         if not np.array_equal(rest, self.placing.rest):
             self.bench.set_rest(rest)
+        self._settle()
 
     # -- poses ---------------------------------------------------------------------------------------------
 
@@ -144,10 +146,8 @@ class Session(Instant):
 
     def _hold(self) -> None:
         """Static solve at the wanted pose; on failure the last good state stays."""
-        target, mechanics = (
-            np.array([*(self.wanted[:2] + self.placing.centre), self.wanted[2]]),
-            self.mechanics,
-        )
+        mechanics = self.mechanics
+        target = np.array([*(self.wanted[:2] + self.placing.centre), self.wanted[2]])
         if self.drive in SPRUNG:
             reached = mechanics.grip(target, self.grip, turns=self.drive == "pull")
         else:
@@ -160,6 +160,11 @@ class Session(Instant):
             gap = mechanics.curve.gap(self.wanted)
             if gap > OFF_PATH * mechanics.values["length"]:
                 self.warnings.say("off-path", f"{1e3 * gap:.1f} mm")
+
+    def _settle(self) -> None:
+        """A load moves the body from where the strips are at rest."""
+        if self.mechanics.values["load"]:
+            self._hold()
 
     def _hand_is_here(self, turn: float) -> None:
         """Without a camera the hand is where the body is: a shift that it does not hold is not wanted."""
@@ -178,7 +183,7 @@ class Session(Instant):
         """Release the held body with a `velocity` (3,)."""
         self.mechanics.release(velocity, self.solver)
         now = self.mechanics.snapshot
-        self.start_energy = now.strain + now.kinetic
+        self.start_energy = now.strain + now.kinetic + now.potential
         self.clock.begin(time)
 
     def _catch(self, event: Mapping[str, Any], time: float) -> None:
@@ -218,6 +223,7 @@ class Session(Instant):
         self.wanted, self.paused = np.zeros(3), False
         self.clock.begin(None)
         self._hand.forget()
+        self._settle()
 
     # -- settings ------------------------------------------------------------------------------------------
 
@@ -230,7 +236,7 @@ class Session(Instant):
     def _preset(self, event: Mapping[str, Any], time: float) -> None:
         before, given, name = self.mechanics, dict(mapping(event, "values")), event.get("name")
         known = {} if name == presets.OWN and given else presets.preset(name).values()
-        self.bench.change(str(name), known | given)
+        self.bench.change(str(name), known | given, part=event.get("part") is True)
         self._rebuilt(before, time)
 
     def _undo(self, event: Mapping[str, Any], time: float) -> None:
@@ -253,13 +259,13 @@ class Session(Instant):
         self.clock.begin(None)
         self._hold()
 
-    def _set_drive(self, event: Mapping[str, Any], time: float) -> None:
+    def _drive(self, event: Mapping[str, Any], time: float) -> None:
         self.drive = choice(event, "by", DRIVES)
         if not self.mechanics.moving:
             self._hand_is_here(float(self.mechanics.snapshot.pose[2]))
             self._hold()
 
-    def _set_solver(self, event: Mapping[str, Any], time: float) -> None:
+    def _solver(self, event: Mapping[str, Any], time: float) -> None:
         self.solver = choice(event, "name", tuple(MOTIONS))
 
     def _rest(self, event: Mapping[str, Any], time: float) -> None:
@@ -273,22 +279,9 @@ class Session(Instant):
 
 #: What an event may do.
 ACTIONS = {
-    "setup": Session._setup,
-    "pose": Session._pose,
-    "seen": Session._seen,
-    "unseen": Session._unseen,
-    "tick": Session._tick,
-    "release": Session._release,
-    "catch": Session._catch,
-    "pause": Session._pause,
-    "resume": Session._resume,
-    "step": Session._step,
-    "reset": Session._reset,
-    "parameter": Session._parameter,
-    "preset": Session._preset,
-    "undo": Session._undo,
-    "redo": Session._redo,
-    "drive": Session._set_drive,
-    "solver": Session._set_solver,
-    "rest": Session._rest,
+    name: getattr(Session, f"_{name}")
+    for name in (
+        *("setup", "pose", "seen", "unseen", "tick", "release", "catch", "pause", "resume", "step", "reset"),
+        *("parameter", "preset", "undo", "redo", "drive", "solver", "rest"),
+    )
 }

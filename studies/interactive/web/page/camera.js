@@ -19,6 +19,7 @@ export class Camera {
 
   async start(failed, device) {
     this.stop();
+    if (!navigator.mediaDevices) return failed("A browser opens its camera to pages of its own machine only.");
     try {
       const size = { width: { ideal: 640 }, height: { ideal: 480 }, frameRate: { ideal: 25 } };
       this.stream = await navigator.mediaDevices.getUserMedia({ video: device ? { ...size, deviceId: { exact: device } } : size });

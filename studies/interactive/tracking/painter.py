@@ -93,12 +93,13 @@ class Finger:
 class Painter:
     """Draws pictures of markers through fixed optics; noise follows from `seed` and the frame's number.
 
-    samples: in each direction of a pixel, whose mean it becomes.
+    samples: in each direction of a pixel, whose mean it becomes; numbered: whether the number is burned in.
     """
 
     optics: Optics
     seed: int = 1
     samples: int = 5
+    numbered: bool = True
     _ground: Array = field(init=False)
 
     def __post_init__(self) -> None:
@@ -114,15 +115,14 @@ class Painter:
             + coarse[np.ix_(i, j + 1)] * (1 - fi) * fj
             + coarse[np.ix_(i + 1, j + 1)] * fi * fj
         )
-        self._ground = TABLE + texture
+        self._ground = WHITEST * ((TABLE + texture) / WHITEST) ** self.optics.gamma
 
     def draw(self, markers: list[Marker], number: int = 0, fingers: tuple[Finger, ...] = ()) -> Picture:
-        """Return the picture (height, width) of the markers and fingers; `number` is burned in and seeds
-        the noise."""
+        """Return the picture (height, width) of the markers and fingers; `number` seeds the noise."""
         import cv2
 
         optics = self.optics
-        picture = WHITEST * (self._ground / WHITEST) ** optics.gamma
+        picture = self._ground.copy()
         for marker in markers:
             self._marker(picture, marker)
         for finger in fingers:
@@ -130,14 +130,15 @@ class Painter:
         if optics.blur > 0:
             picture = np.asarray(cv2.GaussianBlur(picture, (0, 0), optics.blur), dtype=float)
         ramp = 1.0 - optics.light * np.arange(optics.width) / optics.width  # never brighter than white
-        light = optics.exposure * picture * ramp**optics.gamma / WHITEST
-        seen = WHITEST * np.clip(light, 0.0, None) ** (1.0 / optics.gamma)
+        light = np.asarray(optics.exposure * picture * ramp**optics.gamma / WHITEST, dtype=np.float32)
+        seen = WHITEST * np.clip(light, 0.0, None) ** np.float32(1.0 / optics.gamma)
         rng = np.random.default_rng((self.seed, number))
         noise = rng.standard_normal(picture.shape, dtype=np.float32) * np.float32(optics.noise)
         done = np.clip(np.rint(seen + noise), 0, 255).astype(np.uint8)
         if optics.mirrored:
             done = np.ascontiguousarray(done[:, ::-1])
-        _burn_in(done, number)
+        if self.numbered:
+            _burn_in(done, number)
         return done
 
     def _plane_of(self, marker: Marker) -> Array:
@@ -159,9 +160,7 @@ class Painter:
         if area is None:
             return
         rows, columns, x, y = area
-        own = self._straight(np.stack((x, y), axis=-1))
-        image = np.concatenate((own, np.ones((*own.shape[:-1], 1))), axis=-1) @ np.linalg.inv(plane).T
-        u, v = image[..., 0] / image[..., 2], image[..., 1] / image[..., 2]
+        u, v = np.moveaxis(self._back(plane, x, y), -1, 0)
         inside = (np.abs(u) < half) & (np.abs(v) < half)
         i = np.clip(np.floor((0.5 - v) * BITS), -1, BITS).astype(int)
         j = np.clip(np.floor((u + 0.5) * BITS), -1, BITS).astype(int)
@@ -175,11 +174,7 @@ class Painter:
         if area is None:
             return
         rows, columns, x, y = area
-        own = self._straight(np.stack((x, y), axis=-1))
-        image = (
-            np.concatenate((own, np.ones((*own.shape[:-1], 1))), axis=-1) @ np.linalg.inv(self.optics.plane).T
-        )
-        gap = image[..., :2] / image[..., 2:] - finger.centre
+        gap = self._back(self.optics.plane, x, y) - finger.centre
         inside = np.hypot(gap[..., 0], gap[..., 1]) < finger.radius
         self._mix(picture, rows, columns, np.full(inside.shape, SKIN), inside)
 
@@ -210,8 +205,12 @@ class Painter:
         grid_x, grid_y = np.meshgrid(x, y)
         return slice(top, bottom), slice(left, right), grid_x, grid_y
 
-    def _straight(self, picture: Array) -> Array:
-        return self.optics.camera.undistorted(picture) if self.optics.k1 else picture
+    def _back(self, plane: Array, x: Array, y: Array) -> Array:
+        """Places (..., 2) in the plane that are seen at (x, y) [px]."""
+        seen = np.stack((x, y), axis=-1)
+        straight = self.optics.camera.undistorted(seen) if self.optics.k1 else seen
+        image = np.concatenate((straight, np.ones((*x.shape, 1))), axis=-1) @ np.linalg.inv(plane).T
+        return np.asarray(image[..., :2] / image[..., 2:])
 
     def _lens(self, straight: Array) -> Array:
         if not self.optics.k1:

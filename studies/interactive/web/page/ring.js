@@ -1,5 +1,7 @@
-// The last minute of states, to scrub through, to plot and to export.
+// The last minute of states, with small pictures, to scrub through, to plot and to export.
 const SPAN = 60, MOST = 3000;
+// Width [px] and quality of a picture that is kept, and how long before a state one may be that stands for it [s].
+const WIDTH = 320, QUALITY = 0.6, BEFORE = 1;
 // Part of the largest rate of rotation below which no centre is drawn.
 const SLOW = 0.15;
 
@@ -26,6 +28,19 @@ export class Ring {
       if (!this.live && this.place > 0) this.place -= 1;
     }
     if (this.live) this.place = this.states.length - 1;
+  }
+
+  // Keep a picture with the newest state, copied at once, coded when there is time.
+  async film(picture) {
+    const state = this.states[this.states.length - 1], { width, height } = picture, small = new OffscreenCanvas(WIDTH, Math.round(WIDTH * height / width));
+    small.getContext("2d", { alpha: false }).drawImage(picture, 0, 0, small.width, small.height);
+    state.small = { size: [width, height], blob: await small.convertToBlob({ type: "image/jpeg", quality: QUALITY }) };
+  }
+
+  // The picture of the present place, or of shortly before.
+  get small() {
+    const now = this.current;
+    return this.states.slice(Math.max(0, this.place - 50), this.place + 1).reverse().find((s) => s.small && now.at - s.at < BEFORE)?.small;
   }
 
   go(place) {

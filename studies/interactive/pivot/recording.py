@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
 from studies.errors import BadInput
-from studies.interactive.session.session import Session
+from studies.interactive.pivot.session import Session
 
 #: Characters of the hash that marks a state.
 MARK = 16

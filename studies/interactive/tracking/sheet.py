@@ -7,9 +7,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
-from studies.interactive.film.painter import MARGIN
 from studies.interactive.pivot.design import SIDE, Placing, build
 from studies.interactive.pivot.presets import PRESETS
+from studies.interactive.tracking.painter import MARGIN
 from studies.interactive.tracking.planar import BITS, cells
 
 #: A4, and the pivot's origin on it [mm].

@@ -1,5 +1,5 @@
 // The picture with the pivot over it. Places are in the pivot's frame [m]; a homography takes them to pixels.
-const COLOURS = { ground: "#00e5ff", moving: "#ff2bd6", plate: "#dfe6ec", path: "#7dff6a" };
+const COLOURS = { ground: "#00e5ff", moving: "#ff2bd6", plate: "#dfe6ec", path: "#7dff6a", load: "#ffb000" };
 const WIDTH = 640, HEIGHT = 480;
 // Least width of a strip on the picture [px], and colours from no stress to yield.
 const THINNEST = 2.5, STRESS = [[47, 127, 214], [64, 190, 170], [242, 209, 60], [255, 59, 48]];
@@ -30,14 +30,18 @@ export class View {
 
   // Without a picture: the rest place of both plates in the middle, millimetres alike in x and y.
   own(state) {
-    const [a, b] = state.placing.clamps, x = (a[0][0] + b[0][0]) / 2, y = (a[0][1] + a[1][1]) / 2;
-    const zoom = 0.4 * HEIGHT / Math.max(0.02, a[1][1] - a[0][1]);
+    const [a, b] = state.placing.clamps, x = (a[0][0] + b[0][0]) / 2, { zoom, y } = this.frozen ?? this.scaled(state);
     return [zoom, 0, this.size[0] / 2 - zoom * x, 0, -zoom, this.size[1] * 0.56 + zoom * y, 0, 0, 1];
   }
 
+  scaled({ placing: { clamps: [a] } }) { return { zoom: 0.4 * HEIGHT / Math.max(0.02, a[1][1] - a[0][1]), y: (a[0][1] + a[1][1]) / 2 }; }
+
+  // As long as a clamp of this state is dragged, scale and height stay.
+  freeze(state) { this.frozen = state && this.scaled(state); }
+
   choose(state, picture) {
     if (picture) {
-      this.size = [picture.width, picture.height];
+      this.size = picture.size ?? [picture.width, picture.height];
       if (state.sight.plane) {
         const [gx, gy] = state.placing.ground;
         this.plane = multiply(state.sight.plane, [1, 0, -gx, 0, 1, -gy, 0, 0, 1]);
@@ -61,6 +65,20 @@ export class View {
     return [(c * e - b * f) / det, (a * f - c * d) / det];
   }
 
+  // From the pivot's frame to a place on the page.
+  page(x, y) {
+    const box = this.canvas.getBoundingClientRect(), [u, v] = this.to(x, y);
+    return [box.left + u / this.size[0] * box.width, box.top + v / this.size[1] * box.height];
+  }
+
+  // A place that moves with the body, by where it is at rest.
+  moved(state, [px, py]) {
+    const [x, y, t] = state.pose, [x0, y0] = state.placing.centre, cos = Math.cos(t), sin = Math.sin(t);
+    return [x + cos * (px - x0) - sin * (py - y0), y + sin * (px - x0) + cos * (py - y0)];
+  }
+
+  clamp(state, strip, end) { const place = state.placing.clamps[strip][end]; return end ? this.moved(state, place) : place; }
+
   draw(state, picture, centres) {
     this.choose(state, picture);
     const c = this.context, stale = state.warnings.some((w) => ["no-equilibrium", "absurd", "jump", "lost-0", "lost-1", "lost-both"].includes(w.code));
@@ -79,6 +97,33 @@ export class View {
     this.pull(state);
     if (state.centre) this.cross(...state.centre, COLOURS.path);
     this.dot(state.pose[0], state.pose[1], 3.5, COLOURS.plate);
+    this.load(state);
+    if (this.shaping) for (const strip of [0, 1]) for (const end of [0, 1]) this.handle(...this.clamp(state, strip, end));
+    if (this.caption) this.words(state);
+  }
+
+  handle(x, y) {
+    for (const [colour, width] of [["#000", 5], [COLOURS.plate, 2.5]]) {
+      const c = this.context;
+      c.beginPath(); c.arc(...this.to(x, y), 7, 0, 7); c.strokeStyle = colour; c.lineWidth = width; c.stroke();
+    }
+  }
+
+  // An arrow for the load on the body's centre, as long whatever it is.
+  load(state) {
+    const down = Math.sign(state.values.load), [x, y] = state.pose, long = 0.25 * Math.abs(state.placing.clamps[0][1][1]);
+    if (!down) return;
+    const tip = y - down * long, wing = 0.25 * long;
+    this.line([[x, y], [x, tip]], COLOURS.load, 3);
+    this.line([[x - wing / 2, tip + down * wing], [x, tip], [x + wing / 2, tip + down * wing]], COLOURS.load, 3);
+  }
+
+  // What a picture or a video says by itself.
+  words(state) {
+    const c = this.context;
+    c.font = "13px system-ui, sans-serif";
+    c.fillStyle = "#000c"; c.fillRect(0, 0, this.size[0], 20);
+    c.fillStyle = "#fff"; c.fillText(`${state.status} Strips ${Number((1e3 * state.values.length).toPrecision(3))} mm long.`, 8, 14);
   }
 
   // A strip at its thickness in the picture, its colour that of the stress at the places along it: a gradient
@@ -131,9 +176,7 @@ export class View {
   }
 
   plates(state) {
-    const [a, b] = state.placing.clamps, [x, y, t] = state.pose, [x0, y0] = state.placing.centre;
-    const cos = Math.cos(t), sin = Math.sin(t);
-    const moved = ([px, py]) => [x + cos * (px - x0) - sin * (py - y0), y + sin * (px - x0) + cos * (py - y0)];
+    const [a, b] = state.placing.clamps, moved = (place) => this.moved(state, place);
     const over = 0.006, bar = (p, q) => {
       const d = Math.hypot(q[0] - p[0], q[1] - p[1]) || 1, ex = (q[0] - p[0]) / d * over, ey = (q[1] - p[1]) / d * over;
       return [[p[0] - ex, p[1] - ey], [q[0] + ex, q[1] + ey]];

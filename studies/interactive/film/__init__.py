@@ -1,1 +1,0 @@
-"""Pictures of the markers that are drawn: films with known truth, the demo film, the printable sheet."""

@@ -1,1 +1,0 @@
-"""The page: plain HTML, CSS and modules, served as they are."""

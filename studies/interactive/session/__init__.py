@@ -1,1 +1,0 @@
-"""What the environment does, without input or output: events in, states out."""

@@ -1,0 +1,77 @@
+"""Pictures of the page for its description: what is on the screen, by number.
+
+python -m studies.interactive.web.pictures docs/pictures
+"""
+
+import sys
+import time
+from pathlib import Path
+
+from studies.interactive.tracking.demo import demo_film
+from studies.interactive.web.browser import Browser
+from studies.interactive.web.server import Hosted, Settings, warm_up
+from studies.interactive.web.sources import FilmSource
+
+#: What the numbers stand at, from 1 on.
+PARTS = (
+    *("#stage", "#status", "#release", "#scrub", "#record", "#preset", "#sliders", "#drive", "#numbers"),
+    *(".gauge", "#moment", "#energy"),
+)
+#: Puts a number at the left of each part.
+NUMBERED = """
+(parts => parts.forEach((name, k) => {
+  const box = document.querySelector(name).getBoundingClientRect(), mark = document.createElement("b");
+  mark.textContent = k + 1;
+  mark.style.cssText = `position: fixed; left: ${Math.max(0, box.left - 17)}px; top: ${box.top + 2}px;
+    width: 17px; background: #c2371a; color: #fff; font: bold 12px/17px sans-serif; text-align: center;
+    z-index: 9`;
+  document.body.append(mark);
+}))(%s)
+"""
+#: Frame of the demo film that is shown, and quality of a picture with a camera's noise in it.
+FRAME, QUALITY = 68, 70
+#: What is typed where, and how.
+TYPED = (("strip thickness in mm", 0.6), ("load, downward in N", 0.1), ("rotation in °", 40))
+TYPE = """
+((name, value) => { const e = document.querySelector(`input[aria-label='${name}']`);
+  e.value = value; e.dispatchEvent(new Event("change")); })
+"""
+
+
+def main(folder: Path) -> None:
+    """Write the pictures, as a laptop and a phone show the page."""
+    warm_up()
+    source = FilmSource(demo_film())
+    with Hosted(Settings(camera="none")) as hosted:
+        with Browser(width=1366, height=768) as browser:
+            _open(browser, hosted.server.address)
+            for name, value in TYPED:
+                browser.ask(f"{TYPE}({name!r}, {value})")
+            browser.ask(NUMBERED % list(PARTS))
+            _take(browser, folder / "interactive_hand.png")
+        with Browser(width=390, height=844) as browser:
+            browser.call("Emulation.setTouchEmulationEnabled", enabled=True)
+            _open(browser, hosted.server.address)
+            browser.ask(f"{TYPE}('rotation in °', 30)")
+            _take(browser, folder / "interactive_phone.png")
+    film = Hosted(Settings(camera="film", source=lambda: source))
+    with film as hosted, Browser(width=1366, height=768) as browser:
+        _open(browser, hosted.server.address)
+        browser.wait(f"studio.drawn.seq >= {FRAME}", 120.0)
+        _take(browser, folder / "interactive_camera.jpg")
+
+
+def _open(browser: Browser, address: str) -> None:
+    browser.open(address)
+    browser.wait("window.studio?.drawn ? true : false")
+    browser.wait("studio.curve")
+
+
+def _take(browser: Browser, path: Path) -> None:
+    time.sleep(1.0)  # plots are drawn, and what was typed is answered
+    path.write_bytes(browser.picture(None if path.suffix == ".png" else QUALITY))
+    print(f"{path}: {path.stat().st_size / 1e3:.0f} kB")
+
+
+if __name__ == "__main__":
+    main(Path(sys.argv[1]))

@@ -1,0 +1,137 @@
+"""The page in a real browser: the design shaped by hand, loads, and pictures that are kept."""
+
+import numpy as np
+import pytest
+
+pytest.importorskip("cv2", reason="the extra `interactive` is not installed")
+pytest.importorskip("uvicorn", reason="the extra `interactive` is not installed")
+
+from studies.interactive.web.browser import Browser, executable
+from studies.interactive.web.server import Hosted, Settings
+from studies.interactive.web.sources import FilmSource
+from tests.interactive.films import film
+from tests.interactive.pages import load
+from tests.interactive.test_browser_film import pixels
+
+pytestmark = [
+    pytest.mark.slow,
+    pytest.mark.skipif(executable() is None, reason="no Chromium on the PATH"),
+]
+
+
+@pytest.fixture(scope="module")
+def page():
+    """A page without a camera."""
+    with Hosted(Settings(camera="none")) as hosted, Browser() as browser:
+        load(browser, hosted.server)
+        yield browser
+
+
+#: Where a clamp of a strip's end is on the page [px], and what is dragged of the design.
+CLAMP = "studio.view.page(...studio.view.clamp(studio.state, {strip}, {end}))"
+DESIGN = "['length', 'inclination', 'crossing_ratio'].map((name) => studio.state.values[name])"
+
+
+@pytest.mark.parametrize("degrees", [0, 25])
+@pytest.mark.parametrize(
+    ("strip", "end", "way"), [(0, 0, (-25, 0)), (1, 1, (-15, 12))], ids=["ground", "body"]
+)
+def test_clamps_are_dragged(page, strip, end, way, degrees):
+    """Requirement: a clamp that is dragged stays under the pointer, to 2 px, length, inclination and crossing
+    following it and nothing else; one undo takes the whole drag back."""
+    page.key("0")
+    page.wait("studio.state.pose[2] === 0")
+    for _ in range(degrees // 5):
+        page.key("ArrowUp")
+    page.wait(f"Math.abs(studio.state.pose[2] - {np.radians(degrees)}) < 1e-9")
+    before, others = page.ask(DESIGN), page.ask("studio.state.values.thickness")
+    page.key("e")
+    at = np.array(page.ask(CLAMP.format(strip=end, end=end)))
+    page.drag([tuple(at + np.array(way) * k / 20) for k in range(21)])
+    page.wait(f"studio.state.values.length !== {before[0]}")
+    page.key("e")
+    after = page.ask(DESIGN)
+    assert np.abs(np.subtract(after, before)).min() > 1e-4
+    assert page.ask("studio.state.values.thickness") == others
+    page.key("z")
+    page.wait(f"Math.abs(studio.state.values.length - {before[0]}) < 1e-12")
+    assert page.ask(DESIGN) == pytest.approx(before)
+
+
+def test_clamp_follows_the_pointer(page):
+    """Requirement: while it is dragged, the clamp is where the pointer is, to 2 px."""
+    page.key("0")
+    page.wait("studio.state.pose[2] === 0")
+    page.key("e")
+    at, left = np.array(page.ask(CLAMP.format(strip=1, end=1))), {"button": "left", "buttons": 1}
+    x, y = at
+    page.call("Input.dispatchMouseEvent", type="mousePressed", x=x, y=y, clickCount=1, **left)
+    for k in range(1, 11):
+        x, y = at + k * np.array([-2.0, -3.0])
+        page.call("Input.dispatchMouseEvent", type="mouseMoved", x=x, y=y, **left)
+    near = f"(([u, v]) => Math.hypot(u - {x}, v - {y}) < 2)({CLAMP.format(strip=1, end=1)})"
+    page.wait(near)
+    page.call("Input.dispatchMouseEvent", type="mouseReleased", x=x, y=y, clickCount=1, **left)
+    page.key("e")
+    page.key("z")
+
+
+def test_load_is_set_and_seen(page):
+    """Requirement: a load that is typed in newtons acts, and its energy is in the table; its slider's
+    middle is no load."""
+    box = "document.querySelector(\"input[aria-label='load, downward in N']\")"
+    page.ask(f"(e => {{ e.value = '0.05'; e.dispatchEvent(new Event('change')); }})({box})")
+    page.wait("studio.state.values.load === 0.05 && studio.state.pose[1] < studio.state.placing.centre[1]")
+    assert "the load's energy" in page.ask("document.getElementById('numbers').textContent")
+    slider = "document.querySelector(\"input[aria-label='load, downward, slider']\")"
+    page.ask(f"(e => {{ e.value = '0'; e.dispatchEvent(new Event('change')); }})({slider})")
+    page.wait("studio.state.values.load === 0")
+
+
+def test_video_is_recorded(page):
+    """Requirement: a key begins a video of the picture, with its words, and ends it as a file."""
+    page.key("f")
+    page.wait("studio.view.caption && document.getElementById('video').textContent.startsWith('Stop')")
+    for _ in range(4):
+        page.key("ArrowUp")
+    page.key("r")
+    page.wait("studio.video.kept > 1000")
+    page.key("f")
+    page.wait("studio.saved?.name === 'pivot.webm' && studio.saved.size > 1000")
+    assert not page.ask("studio.view.caption")
+    assert page.ask("studio.errors") == []
+
+
+def test_scrubbing_shows_the_pictures():
+    """Requirement: back in the last minute the picture of that moment is shown under the strips, of the same
+    size, for less than 20 kB a picture."""
+    made = FilmSource(film(frames=12, samples=2))
+    with Hosted(Settings(camera="film", source=lambda: made)) as hosted, Browser() as browser:
+        load(browser, hosted.server)
+        browser.wait("studio.ring.states.filter((s) => s.small).length > 12")
+        browser.key("[")
+        assert browser.ask("document.getElementById('when').textContent").endswith("s ago")
+        browser.ask("new Promise((done) => setTimeout(done, 300))")
+        image = pixels(browser.canvas("stage"))
+        assert browser.ask("studio.view.size") == [640, 480]
+        assert 0 < browser.ask("studio.ring.small.blob.size") < 20000
+    assert 120.0 < np.median(image) < 180.0  # the table's grey, not the empty grid
+
+
+def test_centres_of_a_swing_stay_together(page):
+    """Requirement: the path of the centre of rotation that is drawn of a release stays within a third of the
+    strips' length: where the body all but stands, and has no centre, none is drawn."""
+    page.ask("document.getElementById('stage').focus()")
+    page.key("0")
+    page.wait("studio.state.mode === 'held' && studio.state.pose[2] === 0")
+    for _ in range(8):
+        page.key("ArrowUp")
+    page.wait("studio.state.pose[2] > 0.69")
+    page.key("r")
+    page.wait("studio.state.steps > 300")
+    page.key(" ")
+    page.wait("studio.state.paused")
+    drawn = np.array(page.ask("studio.ring.centres"))
+    length = page.ask("studio.state.values.length")
+    assert len(drawn) > 20
+    assert np.ptp(drawn, axis=0).max() < length / 3.0
