@@ -13,20 +13,20 @@ import hashlib
 import json
 import sys
 import warnings
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from importlib import import_module
 from pathlib import Path
 from typing import Any
 
 import typst
 
-from report.facts import Fact, Holds, Table, held, listed, written
+from report.facts import FACTS, HOLDS, LISTINGS, held, listed, written
 from report.results import ReportError, Results
 from studies.errors import BadInput
 from studies.record.files import require_writable_file, write_whole
 from studies.record.source import ROOT
 from studies.record.store import Store
-from studies.registry import STUDIES, question_of
+from studies.registry import STUDIES
 
 MAIN = ROOT / "report" / "report.typ"
 OUTPUT = ROOT / "report" / "validation.pdf"
@@ -109,20 +109,11 @@ CONTENT = (
 SOURCES = ("report.typ", "lib.typ", "drawing.typ", "references.yml", "sections/*.typ")
 
 
-def entries(kind: str) -> dict[str, Any]:
-    """Return the entries `kind` ("FACTS", "HOLDS", "LISTINGS") of all modules by name.
-
-    Raises:
-        ReportError: two modules give the same name.
-    """
-    found: dict[str, Any] = {}
+def quotable() -> dict[str, dict[str, Any]]:
+    """Return what `report.content` gives by kind and name."""
     for module in CONTENT:
-        some = getattr(import_module(f"report.content.{module}"), kind, {})
-        twice = sorted(set(found) & set(some))
-        if twice:
-            raise ReportError(f"report.content.{module}: got {twice[0]} twice, expected one of a name")
-        found |= some
-    return found
+        import_module(f"report.content.{module}")
+    return {"facts": FACTS, "holds": HOLDS, "listings": LISTINGS}
 
 
 def gathered(results: Results) -> dict[str, Any]:
@@ -131,32 +122,16 @@ def gathered(results: Results) -> dict[str, Any]:
     Raises:
         ReportError: a result is stale or missing, or does not have what is quoted.
     """
-    facts: dict[str, Fact] = entries("FACTS")
-    holds: dict[str, Holds] = entries("HOLDS")
-    listings: dict[str, Callable[[Results], Table]] = entries("LISTINGS")
+    made: dict[str, Any] = {"facts": written, "holds": held, "listings": listed}
     content: dict[str, Any] = {
-        "figures": _figures(results),
-        "facts": {name: written(name, given, results) for name, given in facts.items()},
-        "holds": {name: held(name, given, results) for name, given in holds.items()},
-        "listings": {name: listed(name, given, results) for name, given in listings.items()},
+        kind: {name: made[kind](name, entry, results) for name, entry in entries.items()}
+        for kind, entries in quotable().items()
     }
-    content["further"] = _further(results)
+    content["figures"] = _figures(results)
     content["date"] = max(results.record(study)["date"] for study in STUDIES)
     content["stale"] = sorted(results.stale)
     content["fingerprint"] = fingerprint(content)
     return content
-
-
-def _further(results: Results) -> list[dict[str, str]]:
-    """Return the figures that no section shows, with what their studies ask; they end the supplement."""
-    sections = sorted((ROOT / "report" / "sections").glob("*.typ"))
-    shown = "".join(path.read_text(encoding="utf-8") for path in sections)
-    return [
-        {"name": Path(file).stem, "question": question_of(study)}
-        for study in STUDIES
-        for file in results.record(study)["figures"]
-        if file.endswith(".svg") and f'#plot("{Path(file).stem}"' not in shown
-    ]
 
 
 def fingerprint(content: dict[str, Any]) -> str:

@@ -1,14 +1,20 @@
-"""Facts, sentences that hold, and tables: what the text may quote, and where each of them comes from."""
+"""Facts, sentences that hold, and tables: what the text may quote, and where each of them comes from.
+
+The modules of `report.content` enter them here by name: numbers with `facts`, conditions and tables as
+functions of the results under `holds` and `listing`.
+"""
 
 import math
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, TypeVar
 
 import pandas as pd
 
 from report.forms import Form, text
-from report.results import Pick, ReportError, Results
+from report.results import ReportError, Results, column, where
+
+Entry = TypeVar("Entry")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -43,35 +49,104 @@ class Holds:
 
 #: One cell of a table: text, or text with a colour beside it.
 Cell = str | dict[str, str]
-
-
-Rows = list[list[Cell]]
+Rows = list[Sequence[Cell]]
 #: A table of the report: its heading and rows of cells, one for each part of the heading.
 Table = tuple[list[str], Rows]
-#: Heading -> the column below it, and how its values are written.
-Shown = dict[str, tuple[str, Form]]
+#: Heading -> the column below it and how its values are written, or the cell made of a whole row.
+Shown = dict[str, tuple[str, Callable[[Any], Cell]] | Callable[[Any], Cell]]
+Listing = Callable[[Results], Table]
+
+#: What the text may quote, by name.
+FACTS: dict[str, Fact] = {}
+HOLDS: dict[str, Holds] = {}
+LISTINGS: dict[str, Listing] = {}
 
 
-def fact(study: str, table: str, pick: Pick, form: Form) -> Fact:
-    """Return a fact from one table."""
-    return Fact(made=lambda results: pick(results.table(study, table)), form=form, source=f"{study}/{table}")
+def _enter(entries: dict[str, Entry], name: str, entry: Entry) -> None:
+    if name in entries:
+        raise ReportError(f"report.content: got {name} twice, expected one of a name")
+    entries[name] = entry
+
+
+def facts(given: Mapping[str, Fact]) -> None:
+    """Enter facts by name."""
+    for name, fact in given.items():
+        _enter(FACTS, name, fact)
+
+
+def holds(name: str, *, timed: bool = False) -> Callable[[Callable[[Results], Any]], None]:
+    """Enter a condition: a function of the results whose docstring says what must be true."""
+
+    def enter(test: Callable[[Results], Any]) -> None:
+        _enter(HOLDS, name, Holds(words=" ".join((test.__doc__ or name).split()), test=test, timed=timed))
+
+    return enter
+
+
+def listing(name: str) -> Callable[[Listing], None]:
+    """Enter a table: a function of the results."""
+    return lambda made: _enter(LISTINGS, name, made)
+
+
+class Stored:
+    """Rows of a stored table, those with the values `equal`; methods narrow them further."""
+
+    def __init__(self, study: str, table: str, /, **equal: Any) -> None:
+        self._study, self._table, self._equal = study, table, equal
+
+    def where(self, /, **equal: Any) -> "Stored":
+        """Return those of the rows that have the values `equal` too."""
+        return Stored(self._study, self._table, **self._equal, **equal)
+
+    def rows(self, results: Results, /, **equal: Any) -> pd.DataFrame:
+        """Return the rows; LookupError when there are none."""
+        return where(results.table(self._study, self._table), **self._equal, **equal)
+
+    def value(self, results: Results, name: str, /, **equal: Any) -> Any:
+        """Return the value of a column in the one row that there is; LookupError when there are more."""
+        return _only(name, equal)(self.rows(results, **equal))
+
+    def fact(self, pick: Callable[[pd.DataFrame], Any], form: Form, /, **equal: Any) -> Fact:
+        """Return a fact that `pick` makes of the rows."""
+        source = f"{self._study}/{self._table}"
+        return Fact(made=lambda results: pick(self.rows(results, **equal)), form=form, source=source)
+
+    def at(self, name: str, form: Form, /, **equal: Any) -> Fact:
+        """Return the fact that is the value of a column in the one row that there is."""
+        return self.fact(_only(name, equal), form, **equal)
+
+    def largest(self, name: str, form: Form, /, **equal: Any) -> Fact:
+        """Return the fact that is the largest magnitude of a column."""
+        return self.fact(lambda rows: column(rows, name).abs().max(), form, **equal)
+
+    def least(self, name: str, form: Form, /, **equal: Any) -> Fact:
+        """Return the fact that is the smallest magnitude of a column."""
+        return self.fact(lambda rows: column(rows, name).abs().min(), form, **equal)
+
+
+def _only(name: str, equal: Mapping[str, Any]) -> Callable[[pd.DataFrame], Any]:
+    def pick(rows: pd.DataFrame) -> Any:
+        if len(rows) != 1:
+            raise LookupError(f"{len(rows)} rows with {equal}, expected one")
+        return column(rows, name).iloc[0]
+
+    return pick
 
 
 def columns(rows: pd.DataFrame, shown: Shown) -> Table:
     """Return a table with a row for each of `rows`."""
-    cells = ([form(row[name]) for name, form in shown.values()] for row in rows.to_dict("records"))
-    return list(shown), [list(each) for each in cells]
+    cells: Rows = [
+        [made(row) if callable(made) else made[1](row[made[0]]) for made in shown.values()]
+        for row in rows.to_dict("records")
+    ]
+    return list(shown), cells
 
 
 def unmet(results: Results, tables: Iterable[tuple[str, str]], form: Form, measured: str) -> Table:
     """Return the findings that do not hold, of (study, table) each, or that there are none."""
     found = pd.concat([results.table(*each).query("holds == 'no'") for each in tables])
-    shown = {
-        "claim that does not hold": ("claim", text),
-        "for": ("formulation", text),
-        measured: ("value", form),
-    }
-    head, rows = columns(found, {**shown, measured: ("value", form)})
+    words: Shown = {"claim that does not hold": ("claim", text), "for": ("formulation", text)}
+    head, rows = columns(found, {**words, measured: ("value", form)})
     return head, rows or [["none", "–", "–"]]
 
 
@@ -105,14 +180,14 @@ def held(name: str, condition: Holds, results: Results) -> dict[str, Any]:
     return {"holds": answer, "words": condition.words, "timed": condition.timed}
 
 
-def listed(name: str, listing: Callable[[Results], Table], results: Results) -> Mapping[str, Any]:
+def listed(name: str, made: Listing, results: Results) -> dict[str, Any]:
     """Return a table as heading and rows.
 
     Raises:
         ReportError: a row of another length than the heading, no row, or something that is not there.
     """
     try:
-        head, rows = listing(results)
+        head, rows = made(results)
     except (LookupError, TypeError) as error:
         raise ReportError(f"table {name}: {error}") from None
     if not rows or any(len(row) != len(head) for row in rows):

@@ -4,6 +4,8 @@ import math
 from collections.abc import Callable
 from typing import Any
 
+import pandas as pd
+
 #: Turns a value into text.
 Form = Callable[[Any], str]
 
@@ -85,6 +87,21 @@ def seconds(value: Any) -> str:
         if float(value) * scale >= 0.1:
             return unit(name, 2, scale)(value)
     return unit("ns", 2, 1e9)(value)
+
+
+def digits(number: int) -> Form:
+    """Return a form that writes so many significant digits."""
+    return lambda value: significant(value, number)
+
+
+def angle(number: int = 2) -> Form:
+    """Return a form that writes an angle given in degrees, with so many digits."""
+    return lambda value: f"{significant(value, number)}°"
+
+
+def dash(form: Form) -> Form:
+    """Return a form that writes a dash for an empty cell."""
+    return lambda value: "–" if pd.isna(value) else form(value)
 
 
 def degrees(value: Any) -> str:

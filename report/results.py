@@ -1,7 +1,7 @@
-"""What the report reads: stored results, all fresh, values picked out of their tables, and the gates."""
+"""What the report reads: stored results, all fresh, rows picked out of their tables, and the gates."""
 
 import tomllib
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from functools import cache
 from typing import Any
 
@@ -23,13 +23,11 @@ class Results:
     Attributes:
         store: where the results are.
         stale: study -> why, of those that are not fresh; filled only where `allow_stale` let them pass.
-        read: studies that were read from so far.
     """
 
     def __init__(self, store: Store, *, allow_stale: bool = False) -> None:
         self.store = store
         self.stale: dict[str, str] = {}
-        self.read: set[str] = set()
         self._allow_stale = allow_stale
         self._tables: dict[str, dict[str, pd.DataFrame]] = {}
 
@@ -53,7 +51,6 @@ class Results:
         if study not in self._tables:
             self._require_fresh(study)
             self._tables[study] = self.store.load_tables(study)
-            self.read.add(study)
         return self._tables[study]
 
     def _require_fresh(self, study: str) -> None:
@@ -74,62 +71,25 @@ class Results:
         self.stale[study] = state.reason
 
 
-#: What a number is taken from a table by.
-Pick = Callable[[pd.DataFrame], Any]
-
-
-def where(table: pd.DataFrame, **equal: Any) -> pd.DataFrame:
+def where(table: pd.DataFrame, /, **equal: Any) -> pd.DataFrame:
     """Return the rows of `table` whose columns have the values `equal`.
 
     Raises:
         LookupError: no such column, or no such row.
     """
-    for column, value in equal.items():
-        if column not in table:
-            raise LookupError(f"no column {column}, there are {', '.join(table.columns)}")
-        table = table[table[column] == value]
+    for name, value in equal.items():
+        table = table[column(table, name) == value]
         if table.empty:
-            raise LookupError(f"no row with {column} = {value}")
+            raise LookupError(f"no row with {name} = {value}")
     return table
 
 
-def at(column: str, **equal: Any) -> Pick:
-    """Return a pick of `column` in the one row with the values `equal`."""
-
-    def pick(table: pd.DataFrame) -> Any:
-        rows = where(table, **equal)
-        if len(rows) != 1:
-            raise LookupError(f"{len(rows)} rows with {equal}, expected one")
-        return _column(rows, column).iloc[0]
-
-    return pick
-
-
-def largest(column: str, **equal: Any) -> Pick:
-    """Return a pick of the largest magnitude of `column` among the rows with the values `equal`."""
-    return lambda table: _column(where(table, **equal), column).abs().max()
-
-
-def least(column: str, **equal: Any) -> Pick:
-    """Return a pick of the smallest magnitude of `column` among the rows with the values `equal`."""
-    return lambda table: _column(where(table, **equal), column).abs().min()
-
-
-def distinct(column: str, **equal: Any) -> Pick:
-    """Return a pick of how many different values `column` has among the rows with the values `equal`."""
-    return lambda table: _column(where(table, **equal), column).nunique()
-
-
-def _column(table: pd.DataFrame, name: str) -> "pd.Series[Any]":
+def column(table: pd.DataFrame, name: str) -> "pd.Series[Any]":
+    """Return a column of `table`; LookupError when it has none of that name."""
     if name not in table:
         raise LookupError(f"no column {name}, there are {', '.join(table.columns)}")
     found: pd.Series[Any] = table[name]
     return found
-
-
-def absent(value: Any) -> bool:
-    """Return whether a cell of a table is empty."""
-    return bool(pd.isna(value))
 
 
 @cache

@@ -1,175 +1,159 @@
 """The sample of the design space, its throughput, and the pivot sized by exact gradients."""
 
-from functools import partial
 from typing import Any
 
-import pandas as pd
-
 from report.content.problem import pivot
-from report.facts import Fact, Holds, Shown, Table, columns, fact, unmet
-from report.forms import count, degrees, percent, power, significant, text, times, unit
-from report.results import Results, at, distinct, largest, least
+from report.facts import Fact, Rows, Shown, Stored, Table, columns, facts, holds, listing, unmet
+from report.forms import angle, count, degrees, digits, percent, power, significant, times, unit
+from report.results import Results
 
-SPACE, THROUGHPUT = "sweep/design_space", "sweep/throughput"
-GAIN = "Two workers solve at least"
+SPACE, THROUGHPUT, SIZING = "sweep/design_space", "sweep/throughput", "design/sizing"
+SAMPLE, CHECKS, COMPARED = (Stored(SPACE, name) for name in ("designs", "checks", "comparison"))
+DESIGNS, ACTIVE, CHECKED = (Stored(SIZING, name) for name in ("designs", "active", "checks"))
+STARTS, TOLERANCES = Stored(SIZING, "starts"), Stored(SIZING, "tolerances")
+SHIFT, VARIATION = "least centre shift", "least variation of stiffness"
+NARROW, STEEL = ", narrow strips", ", spring steel"
+#: Question -> column of the factor by which it betters its baseline.
+QUESTIONS = (SHIFT, SHIFT + NARROW, VARIATION, VARIATION + NARROW, SHIFT + STEEL, VARIATION + STEEL)
+FACTORS = {
+    question: "factor_centre_shift" if SHIFT in question else "factor_stiffness_variation"
+    for question in QUESTIONS
+}
+#: Column of whose tolerance a row is of, and what begins the name of all of them together.
+DIMENSION, ALL = "dimension", "all, "
+#: A stress that designs of the sample stay below [Pa].
+STRENGTH = 600e6
 
 
 def _checked(results: Results, *, variation: bool = False) -> float:
     """Return the largest difference of splines and elements over the chosen designs: relative, of the
     variation, which is itself relative to the stiffness at rest, as it is."""
-    table = results.table(SPACE, "comparison")
+    table = COMPARED.rows(results)
     rows = table[(table["quantity"] == "stiffness_variation") == variation]
     return float(rows["error"].abs().max())
 
 
+@listing("chosen")
 def _chosen(results: Results) -> Table:
     shown: Shown = {
-        "design": ("design", text),
-        "crossing": ("crossing_ratio", partial(significant, digits=3)),
-        "inclination": ("inclination_deg", lambda value: f"{significant(value, 2)}°"),
-        "slenderness": ("slenderness", partial(significant, digits=3)),
+        "design": ("design", str),
+        "crossing": ("crossing_ratio", digits(3)),
+        "inclination": ("inclination_deg", angle()),
+        "slenderness": ("slenderness", digits(3)),
         "stiffness": ("stiffness_rest_Nm_per_rad", unit("N m/rad", 3)),
         "variation": ("stiffness_variation", percent),
         "shift": ("centre_shift_max_m", unit("mm", 2, 1e3)),
         "stress": ("stress_max_Pa", unit("GPa", 2, 1e-9)),
     }
-    return columns(results.table(SPACE, "checks"), shown)
+    return columns(CHECKS.rows(results), shown)
 
 
+@listing("space-unmet")
 def _unmet(results: Results) -> Table:
-    tables = ((SPACE, "findings"), (THROUGHPUT, "findings_of_time"))
-    return unmet(results, tables, significant, "measured")
+    return unmet(results, ((SPACE, "findings"), (THROUGHPUT, "findings_of_time")), significant, "measured")
 
 
-def _gains(results: Results) -> "pd.Series[Any]":
-    table = results.table(THROUGHPUT, "findings_of_time")
-    found: pd.Series[Any] = table.loc[table["claim"].str.startswith(GAIN), "value"]
-    return found
-
-
-def _front(table: pd.DataFrame) -> int:
-    return int((table["front"] == "yes").sum())
-
-
-def _best(column: str) -> Any:
-    """Return a pick of the least of `column` among the designs that no other betters."""
-    return least(column, front="yes")
-
-
-FACTS = {
-    "space.designs": fact(SPACE, "designs", len, count),
-    "space.front": fact(SPACE, "designs", _front, count),
-    "space.checked": Fact(made=_checked, form=percent),
-    "space.checked.variation": Fact(
-        made=lambda r: 100.0 * _checked(r, variation=True), form=lambda v: significant(v, 1)
-    ),
-    "throughput.rate": fact(THROUGHPUT, "timings", lambda t: (t["designs"] / t["wall_s"]).max(), significant),
-}
-
-HOLDS = {
-    "space.checked": Holds(
-        words="finite elements agree with every chosen design within 1 %",
-        test=lambda r: _checked(r) < 0.01,
-    ),
-}
-LISTINGS = {"chosen": _chosen, "space-unmet": _unmet}
-
-
-SIZING = "design/sizing"
-TABLE_1 = "Table 1"
-SHIFT, VARIATION = "least centre shift", "least variation of stiffness"
-NARROW, STEEL = ", narrow strips", ", spring steel"
-#: Question -> column of the factor by which it betters Table 1.
-FACTORS = {
-    SHIFT: "factor_centre_shift",
-    SHIFT + NARROW: "factor_centre_shift",
-    VARIATION: "factor_stiffness_variation",
-    VARIATION + NARROW: "factor_stiffness_variation",
-    SHIFT + STEEL: "factor_centre_shift",
-    VARIATION + STEEL: "factor_stiffness_variation",
-}
-#: What a check by the finite elements may be off by, and a gradient by.
-ELEMENTS, GRADIENT = 0.01, 1e-7
-
-
+@listing("sizing")
 def _designs(results: Results) -> Table:
-    found: Any = results.table(SIZING, "designs").set_index("design", drop=False)
-    baselines = dict.fromkeys(found["baseline"])
+    bounds = ACTIVE.rows(results).groupby("question")["constraint"].agg(", ".join)
     shown: Shown = {
-        "design": ("design", text),
+        "design": ("design", str),
         "length": ("length_m", unit("mm", 3, 1e3)),
         "inclination": ("inclination_rad", degrees),
-        "crossing": ("crossing_ratio", partial(significant, digits=3)),
+        "crossing": ("crossing_ratio", digits(3)),
         "depth": ("thickness_m", unit("mm", 3, 1e3)),
         "width": ("width_m", unit("mm", 3, 1e3)),
         "shift": ("centre_shift_m", unit("mm", 2, 1e3)),
         "variation": ("variation", percent),
+        "bounds that are active": ("design", lambda name: str(bounds.get(name, "–")).replace("_", " ")),
     }
-    head, rows = columns(found.loc[[*baselines, *FACTORS]], shown)
-    bounds = results.table(SIZING, "active").groupby("question")["constraint"].agg(", ".join)
-    more = [bounds.get(name, "–") for name in (*baselines, *FACTORS)]
-    return [*head, "bounds that are active"], [[*row, each] for row, each in zip(rows, more, strict=True)]
+    found: Any = DESIGNS.rows(results).set_index("design", drop=False)
+    return columns(found.loc[[*dict.fromkeys(found["baseline"]), *QUESTIONS]], shown)
+
+
+@listing("tolerances")
+def _tolerances(results: Results) -> Table:
+    """Return what all tolerances together do: the worst of whole solves, and the root of the squares."""
+    rows = TOLERANCES.rows(results)
+    both = rows[rows[DIMENSION].str.startswith(ALL)].set_index(["design", DIMENSION, "quantity"])
+    cells = both["solved"].map(percent) + " (" + both["squares"].map(percent) + ")"
+    wide = cells.unstack("quantity").reset_index()
+    wide[DIMENSION] = wide[DIMENSION].str.removeprefix(ALL)
+    table: Rows = list(wide.to_numpy().tolist())
+    return [str(name).replace("-", " ") for name in wide.columns], table
 
 
 def _farthest(results: Results, against: str) -> float:
     """Return the largest error of all checks against elements or differences."""
-    rows = results.table(SIZING, "checks")
+    rows = CHECKED.rows(results)
     return float(rows.loc[rows["against"].str.startswith(against), "error"].abs().max())
 
 
-def _plate() -> float:
+def _plate(results: Results) -> float:
     """Return by how much a strip of Table 1's material is stiffer where its section stays flat."""
-    square = pivot().poisson_ratio ** 2
+    square = float(pivot().poisson_ratio) ** 2
     return square / (1.0 - square)
 
 
+def _gain(results: Results, question: str) -> float:
+    return float(DESIGNS.value(results, FACTORS[question], design=question))
+
+
 def _factor(question: str) -> Fact:
-    return fact(SIZING, "designs", at(FACTORS[question], design=question), times)
+    return DESIGNS.at(FACTORS[question], times, design=question)
 
 
-def _reached(results: Results) -> int:
-    """Return how many starts led to the best optimum of their question, or its mirror image."""
-    rows = results.table(SIZING, "starts")
-    return int((rows["optimum"] == 1).sum())
-
-
-FACTS |= {
-    "sizing.shift": _factor(SHIFT),
-    "sizing.shift.narrow": _factor(SHIFT + NARROW),
-    "sizing.variation": _factor(VARIATION),
-    "sizing.variation.narrow": _factor(VARIATION + NARROW),
-    "sizing.elements": Fact(made=lambda r: _farthest(r, "finite elements"), form=power),
-    "sizing.questions": fact(SIZING, "starts", distinct("question"), count),
-    "sizing.starts": fact(SIZING, "starts", len, count),
-    "sizing.reached": Fact(made=_reached, form=count),
-    "sizing.plate": Fact(made=lambda _: _plate(), form=percent),
-    "sizing.range": fact(SIZING, "curves", largest("rotation_rad", design=TABLE_1), degrees),
-    "sizing.steel.shift": _factor(SHIFT + STEEL),
-    "sizing.steel.variation": _factor(VARIATION + STEEL),
-    "sizing.steel.stress": fact(
-        SIZING, "designs", largest("largest_stress_Pa", baseline="spring steel"), unit("MPa", 3, 1e-6)
-    ),
-}
-
-HOLDS |= {
-    "sizing.better": Holds(
-        words="each optimum betters Table 1 in what it was asked for",
-        test=lambda r: all(
-            at(column, design=question)(r.table(SIZING, "designs")) > 1.0
-            for question, column in FACTORS.items()
+facts(
+    {
+        "space.designs": SAMPLE.fact(len, count),
+        "space.front": SAMPLE.fact(len, count, front="yes"),
+        "space.below": SAMPLE.fact(lambda rows: (rows["stress_max_Pa"] < STRENGTH).sum(), count),
+        "space.strength": Fact(made=lambda _: STRENGTH, form=unit("MPa", 1, 1e-6)),
+        "space.checked": Fact(made=_checked, form=percent),
+        "space.checked.variation": Fact(made=lambda r: 100.0 * _checked(r, variation=True), form=digits(1)),
+        "throughput.rate": Stored(THROUGHPUT, "timings").fact(
+            lambda rows: (rows["designs"] / rows["wall_s"]).max(), significant
         ),
-    ),
-    "sizing.verified": Holds(
-        words="finite elements agree with every optimum within 1 %, differences with the gradients to 1e-7",
-        test=lambda r: _farthest(r, "finite elements") < ELEMENTS and _farthest(r, "differences") < GRADIENT,
-    ),
-    "sizing.wide-better": Holds(
-        words="narrow strips gain less than wide ones",
-        test=lambda r: all(
-            at(FACTORS[question], design=question)(r.table(SIZING, "designs"))
-            > at(FACTORS[question], design=question + NARROW)(r.table(SIZING, "designs"))
-            for question in (SHIFT, VARIATION)
+        "sizing.shift": _factor(SHIFT),
+        "sizing.shift.narrow": _factor(SHIFT + NARROW),
+        "sizing.variation": _factor(VARIATION),
+        "sizing.variation.narrow": _factor(VARIATION + NARROW),
+        "sizing.steel.shift": _factor(SHIFT + STEEL),
+        "sizing.steel.variation": _factor(VARIATION + STEEL),
+        "sizing.steel.stress": DESIGNS.largest(
+            "largest_stress_Pa", unit("MPa", 3, 1e-6), baseline="spring steel"
         ),
-    ),
-}
-LISTINGS |= {"sizing": _designs}
+        "sizing.elements": Fact(made=lambda r: _farthest(r, "finite elements"), form=power),
+        "sizing.questions": STARTS.fact(lambda rows: rows["question"].nunique(), count),
+        "sizing.starts": STARTS.fact(len, count),
+        "sizing.reached": STARTS.fact(len, count, optimum=1),
+        "sizing.plate": Fact(made=_plate, form=percent),
+        "tolerances.stiffness": TOLERANCES.largest("solved", percent, quantity="stiffness"),
+        "tolerances.shift": TOLERANCES.largest("solved", percent, quantity="centre-shift"),
+        "sizing.range": Stored(SIZING, "curves").largest("rotation_rad", degrees, design="Table 1"),
+    }
+)
+
+
+@holds("space.checked")
+def _(r: Results) -> Any:
+    """finite elements agree with every chosen design within 1 %"""
+    return _checked(r) < 0.01
+
+
+@holds("sizing.better")
+def _(r: Results) -> Any:
+    """each optimum betters Table 1 in what it was asked for"""
+    return all(_gain(r, question) > 1.0 for question in QUESTIONS)
+
+
+@holds("sizing.verified")
+def _(r: Results) -> Any:
+    """finite elements agree with every optimum within 1 %, differences with the gradients to 1e-7"""
+    return _farthest(r, "finite elements") < 0.01 and _farthest(r, "differences") < 1e-7
+
+
+@holds("sizing.wide-better")
+def _(r: Results) -> Any:
+    """narrow strips gain less than wide ones"""
+    return all(_gain(r, question) > _gain(r, question + NARROW) for question in (SHIFT, VARIATION))

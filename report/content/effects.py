@@ -1,215 +1,160 @@
 """Which effects matter where, what the paper leaves open, and its solver: sequential impulses."""
 
-import pandas as pd
+from collections.abc import Callable
+from typing import Any
 
-from report.facts import Fact, Holds, Rows, Table, fact
-from report.forms import count, percent, power, seconds, signed_percent, significant, times, unit
-from report.results import Results, at, distinct, largest, where
+from report.content.problem import TORQUE
+from report.facts import Cell, Fact, Rows, Shown, Stored, Table, columns, facts, holds, listing
+from report.forms import Form, count, dash, percent, power, seconds, signed_percent, times, unit
+from report.results import Results
 
-WORTH = "effects/worth"
-QUANTITIES = ("trajectory", "torque", "swing_frequency", "first_mode")
-
-
-def _worth(results: Results) -> Table:
-    table = results.table(WORTH, "worth").query("status != 'refused'")
-    designs = list(dict.fromkeys(table["design"]))
-    rows: Rows = []
-    order = table.groupby("scene")["largest"].max().sort_values(ascending=False).index
-    for scene in order:
-        found = where(table, scene=scene).set_index("design")["largest"]
-        rows.append([scene, *("–" if pd.isna(found[design]) else power(found[design]) for design in designs)])
-    return ["left out", *designs], rows
-
-
-def _cheapest(results: Results) -> Table:
-    rows: Rows = [
-        [str(row["design"]), str(row["scene"]), power(float(row["largest"]))]
-        for row in results.table(WORTH, "cheapest").to_dict("records")
-    ]
-    return ["design", "cheapest scene that suffices", "its largest change"], rows
-
-
-def _change(design: str, scene: str) -> Fact:
-    return fact(WORTH, "worth", at("largest", design=design, scene=scene), percent)
-
-
-def _scene_is(results: Results, scene: str, *, within: bool) -> bool:
-    """Whether leaving out `scene` keeps every design within the tolerance, or none."""
-    tolerance = float(results.table(WORTH, "cheapest")["tolerance"].iloc[0])
-    found = where(results.table(WORTH, "worth"), scene=scene)["largest"]
-    return bool((found <= tolerance).all() if within else (found > tolerance).all())
-
-
-def _exponent_miss(results: Results) -> float:
-    table: pd.DataFrame = results.table(WORTH, "findings")
-    return float(table[table["claim"].str.startswith("The frequency shift by massless")]["value"].iloc[0])
-
-
-FACTS = {
-    "effects.designs": fact(WORTH, "worth", distinct("design"), count),
-    "effects.tolerance": fact(WORTH, "cheapest", largest("tolerance"), percent),
-    "effects.inextensible": _change("Table 1", "inextensible strips"),
-    "effects.massless": _change("Table 1", "massless strips"),
-    "effects.massless.light": _change("body ten times lighter", "massless strips"),
-    "effects.gravity.slender": _change("ten times more slender", "no gravity"),
-    "effects.gravity": _change("Table 1", "no gravity"),
-}
-HOLDS = {
-    "effects.stretching-small": Holds(
-        words="inextensible strips keep every design within the tolerance",
-        test=lambda r: _scene_is(r, "inextensible strips", within=True),
-    ),
-}
-LISTINGS = {"effects": _worth, "cheapest": _cheapest}
-
-
+WORTH, CHEAPEST = (Stored("effects/worth", name) for name in ("worth", "cheapest"))
+REFERENCE = WORTH.where(design="Table 1")
 IMPULSES = "impulses/step_size"
+READINGS, QUADRATURE = (Stored("paper/readings", name) for name in ("readings", "quadrature"))
+LIMITS, STEPS = Stored(IMPULSES, "limits"), Stored(IMPULSES, "steps")
+OVER = Stored(IMPULSES, "findings", claim="Section 4.1: h = 1/100 s")
 #: Groups of modes in the order of their frequencies.
 GROUPS = ("axial", "bending", "swing")
-PAPERS_STEP = "Section 4.1: h = 1/100 s"
 
 
-def _limits(results: Results) -> Table:
-    table = where(results.table(IMPULSES, "limits"), sweeps=0)
-    over = where(results.table(IMPULSES, "findings"), claim=PAPERS_STEP).set_index("formulation")["value"]
-    rows: Rows = []
-    for design in dict.fromkeys(table["design"]):
-        for group in GROUPS:
-            row = where(table, design=design, group=group).iloc[0]
-            ratio = float(over[f"{design}, {group} modes, as printed"])
-            rows.append(
-                [
-                    f"{design}, {group} modes",
-                    seconds(float(row["predicted_s"])),
-                    seconds(float(row["measured_s"])),
-                    times(ratio),
-                ]
-            )
-    return ["fastest modes that are kept", "2/ω", "measured limit", "the paper's step over it"], rows
+@listing("effects")
+def _worth(results: Results) -> Table:
+    rows = WORTH.rows(results).query("status != 'refused'")
+    largest = rows.pivot(index="scene", columns="design", values="largest")[
+        list(dict.fromkeys(rows["design"]))
+    ]
+    order = largest.max(axis=1).sort_values(ascending=False, kind="stable").index
+    cells = ([str(scene), *map(dash(power), largest.loc[scene])] for scene in order)
+    return ["left out", *largest.columns], list(cells)
 
 
-def _limit(group: str) -> Fact:
-    return fact(IMPULSES, "limits", at("measured_s", design="Table 1", group=group, sweeps=0), seconds)
-
-
-def _over(results: Results) -> float:
-    return float(
-        at("value", claim=PAPERS_STEP, formulation="Table 1, axial modes, as printed")(
-            results.table(IMPULSES, "findings")
-        )
+@listing("cheapest")
+def _cheapest(results: Results) -> Table:
+    return columns(
+        CHEAPEST.rows(results),
+        {
+            "design": ("design", str),
+            "cheapest scene that suffices": ("scene", str),
+            "its largest change": ("largest", power),
+        },
     )
 
 
-FACTS |= {
-    **{f"impulses.limit.{group}": _limit(group) for group in GROUPS},
-    "impulses.over": Fact(made=_over, form=times),
-    "impulses.one-sweep": fact(
-        IMPULSES, "limits", at("ratio", design="Table 1", group="axial", sweeps=1), percent
-    ),
-    "impulses.agreement": fact(
-        IMPULSES, "limits", lambda t: (where(t, sweeps=0)["ratio"] - 1.0).abs().max(), power
-    ),
-    "impulses.drift": fact(IMPULSES, "steps", largest("drift", form="printed", status="converged"), power),
-    "impulses.drift.stable": fact(
-        IMPULSES, "steps", largest("drift", form="stable", status="converged"), power
-    ),
-    "impulses.lost": fact(
-        IMPULSES,
-        "steps",
-        at("energy_change", design="Table 1", form="stable", step_s=0.01),
-        lambda v: percent(abs(v)),
-    ),
-    "impulses.lost.polymer": fact(
-        IMPULSES,
-        "steps",
-        at("energy_change", design="polymer", form="stable", step_s=0.01),
-        lambda v: percent(abs(v)),
-    ),
-    "impulses.polymer.time": fact(
-        IMPULSES,
-        "steps",
-        lambda t: at("steps", design="polymer", form="stable", step_s=0.01)(t) * 0.01,
-        seconds,
-    ),
-    "impulses.picture": fact(
-        IMPULSES, "timings_of_pictures", largest("cpu_95_ms"), lambda v: f"{significant(v)}\u00a0ms"
-    ),
-}
-HOLDS |= {
-    "impulses.printed-fails": Holds(
-        words="the paper's step is beyond every limit of Table 1 in the form as printed",
-        test=lambda r: (
-            r.table(IMPULSES, "findings")
-            .query(
-                "claim == @claim and formulation.str.startswith('Table 1')", local_dict={"claim": PAPERS_STEP}
-            )["value"]
-            .gt(1.0)
-            .all()
-        ),
-    ),
-    "impulses.no-gain": Holds(
-        words="the stable form gains no energy at any step",
-        test=lambda r: float(where(r.table(IMPULSES, "steps"), form="stable")["energy_gain"].max()) <= 0.0,
-    ),
-    "impulses.in-time": Holds(
-        words="four steps of the stable form take at most 1 ms at the 95th percentile",
-        test=lambda r: (r.table(IMPULSES, "findings_of_time")["holds"] == "yes").all(),
-        timed=True,
-    ),
-}
-LISTINGS |= {"impulse-limits": _limits}
-
-
-READINGS = "paper/readings"
-
-
-def _assumptions(results: Results) -> Table:
-    table = results.table(READINGS, "readings")
-    chosen = table.sort_values("rotation_rad").iloc[0]
+@listing("impulse-limits")
+def _limits(results: Results) -> Table:
+    table = LIMITS.rows(results, sweeps=0)
     rows: Rows = []
-    for row in table[table["reading"] != chosen["reading"]].to_dict("records"):
-        rows.append(
-            [
-                str(row["reading"]),
-                f"{unit('mm', 3, 1e3)(row['travel_m'])} ({unit('mm', 3, 1e3)(chosen['travel_m'])})",
-                f"{unit('Hz', 4)(row['frequency_Hz'])} ({unit('Hz', 4)(chosen['frequency_Hz'])})",
-                unit("rad")(row["rotation_rad"]),
-            ]
-        )
-    return ["reading", "travel of the centre (Fig 4)", "frequency (Fig 6)", "rotation changes by"], rows
+    for design in dict.fromkeys(table["design"]):
+        for group in GROUPS:
+            name = f"{design}, {group} modes"
+            row = LIMITS.where(sweeps=0, design=design, group=group)
+            limits = (seconds(row.value(results, each)) for each in ("predicted_s", "measured_s"))
+            over = OVER.value(results, "value", formulation=f"{name}, as printed")
+            rows.append([name, *limits, times(over)])
+    return ["fastest modes that are kept", "2/ω", "measured limit", "the paper's step over it"], rows
 
 
-HOLDS["effects.shear-more"] = Holds(
-    words="shear changes the torque by more than stretching does",
-    test=lambda r: (
-        at("torque", what="difference of the theories")(r.table("baselines/peers", "theories"))
-        > at("largest", design="Table 1", scene="inextensible strips")(r.table(WORTH, "worth"))
-    ),
-)
-LISTINGS["assumptions"] = _assumptions
+@listing("assumptions")
+def _assumptions(results: Results) -> Table:
+    table = READINGS.rows(results).sort_values("rotation_rad")
+    chosen = table.iloc[0]
+
+    def beside(name: str, form: Form) -> Callable[[Any], Cell]:
+        return lambda row: f"{form(row[name])} ({form(chosen[name])})"
+
+    shown: Shown = {
+        "reading": ("reading", str),
+        "travel of the centre (Fig 4)": beside("travel_m", unit("mm", 3, 1e3)),
+        "frequency (Fig 6)": beside("frequency_Hz", unit("Hz", 4)),
+        "rotation changes by": ("rotation_rad", unit("rad")),
+    }
+    return columns(table[table["reading"] != chosen["reading"]].sort_values("reading"), shown)
 
 
+@listing("quadrature")
 def _quadrature(results: Results) -> Table:
-    table = results.table(READINGS, "quadrature").sort_values("gauss_points")
-    rows: Rows = [
-        [
-            count(row["gauss_points"]),
-            percent(row["error_torque"]),
-            percent(row["error_stiffness"]),
-            signed_percent(row["error_stiffness_end"]),
-        ]
-        for row in table.to_dict("records")
-    ]
-    return ["Gauss points a strip", "torque", "stiffness", "stiffness at the end"], rows
+    shown: Shown = {
+        "Gauss points a strip": ("gauss_points", count),
+        "torque": ("error_torque", percent),
+        "stiffness": ("error_stiffness", percent),
+        "stiffness at the end": ("error_stiffness_end", signed_percent),
+    }
+    return columns(QUADRATURE.rows(results).sort_values("gauss_points"), shown)
 
 
-HOLDS["quadrature.none"] = Holds(
-    words="no quadrature gives a torque within three percent and a stiffness that is too high",
-    test=lambda r: (
-        not (
-            (r.table(READINGS, "quadrature")["error_torque"] < 0.03)
-            & (r.table(READINGS, "quadrature")["error_stiffness_end"] > 0.0)
-        ).any()
-    ),
+def _lost(design: str) -> Fact:
+    step = STEPS.where(design=design, form="stable", step_s=0.01)
+    return step.at("energy_change", lambda value: percent(abs(value)))
+
+
+facts(
+    {
+        f"impulses.limit.{group}": LIMITS.at("measured_s", seconds, design="Table 1", group=group, sweeps=0)
+        for group in GROUPS
+    }
 )
-LISTINGS["quadrature"] = _quadrature
+facts(
+    {
+        "effects.designs": WORTH.fact(lambda rows: rows["design"].nunique(), count),
+        "effects.tolerance": CHEAPEST.largest("tolerance", percent),
+        "effects.inextensible": REFERENCE.at("largest", percent, scene="inextensible strips"),
+        "effects.massless": REFERENCE.at("largest", percent, scene="massless strips"),
+        "effects.massless.light": WORTH.at(
+            "largest", percent, design="body ten times lighter", scene="massless strips"
+        ),
+        "effects.gravity.slender": WORTH.at(
+            "largest", percent, design="ten times more slender", scene="no gravity"
+        ),
+        "effects.gravity": REFERENCE.at("largest", percent, scene="no gravity"),
+        "impulses.over": OVER.at("value", times, formulation="Table 1, axial modes, as printed"),
+        "impulses.one-sweep": LIMITS.at("ratio", percent, design="Table 1", group="axial", sweeps=1),
+        "impulses.agreement": LIMITS.fact(lambda rows: (rows["ratio"] - 1.0).abs().max(), power, sweeps=0),
+        "impulses.drift": STEPS.largest("drift", power, form="printed", status="converged"),
+        "impulses.drift.stable": STEPS.largest("drift", power, form="stable", status="converged"),
+        "impulses.lost": _lost("Table 1"),
+        "impulses.lost.polymer": _lost("polymer"),
+        "impulses.polymer.time": STEPS.at(
+            "steps", lambda steps: seconds(0.01 * steps), design="polymer", form="stable", step_s=0.01
+        ),
+        "impulses.picture": Stored(IMPULSES, "timings_of_pictures").largest("cpu_95_ms", unit("ms")),
+    }
+)
+
+
+@holds("effects.stretching-small")
+def _(r: Results) -> Any:
+    """inextensible strips keep every design within the tolerance"""
+    tolerance = CHEAPEST.rows(r)["tolerance"].iloc[0]
+    return (WORTH.rows(r, scene="inextensible strips")["largest"] <= tolerance).all()
+
+
+@holds("effects.shear-more")
+def _(r: Results) -> Any:
+    """shear changes the torque by more than stretching does"""
+    return TORQUE.value(r, "torque") > REFERENCE.value(r, "largest", scene="inextensible strips")
+
+
+@holds("impulses.printed-fails")
+def _(r: Results) -> Any:
+    """the paper's step is beyond every limit of Table 1 in the form as printed"""
+    rows = OVER.rows(r)
+    return rows.loc[rows["formulation"].str.startswith("Table 1"), "value"].gt(1.0).all()
+
+
+@holds("impulses.no-gain")
+def _(r: Results) -> Any:
+    """the stable form gains no energy at any step"""
+    return STEPS.rows(r, form="stable")["energy_gain"].max() <= 0.0
+
+
+@holds("impulses.in-time", timed=True)
+def _(r: Results) -> Any:
+    """four steps of the stable form take at most 1 ms at the 95th percentile"""
+    return (r.table(IMPULSES, "findings_of_time")["holds"] == "yes").all()
+
+
+@holds("quadrature.none")
+def _(r: Results) -> Any:
+    """no quadrature gives a torque within three percent and a stiffness that is too high"""
+    return QUADRATURE.rows(r).query("error_torque < 0.03 and error_stiffness_end > 0.0").empty

@@ -1,27 +1,35 @@
 """The pivot of Table 1 and the references that all errors are held against."""
 
-from report.facts import Fact, Holds, Rows, Table, fact
-from report.forms import Form, count, degrees, power, significant, unit
-from report.results import Results, at
-from studies.answers.reference import SWING_MESHES
+from typing import Any
+
+from report.facts import Fact, Stored, Table, facts, holds, listing
+from report.forms import Form, count, degrees, digits, power, significant, unit
+from report.results import Results
 from studies.cases.problem import Problem, named_case
 
-CASE = "cross_axis_pivot"
+STATICS = Stored("convergence/control_points", "reference")
+RELEASE = Stored("paper/fig06_release", "reference")
+FINE = Stored("work_precision/dynamics", "reference")
+SHEAR = {"what": "difference of the theories"}
+TORQUE = Stored("baselines/peers", "theories", **SHEAR)
+SWING = Stored("baselines/peers", "swing_theories", **SHEAR)
+SPATIAL = Stored("work_precision/statics", "reference", theory="spatial")
+AT_REST = Stored("paper/fig05_stiffness", "curves", formulation="FE refined", rotation_rad=0.0)
 
 
 def pivot() -> Problem:
     """Return the case of Table 1."""
-    return named_case(CASE)
+    return named_case("cross_axis_pivot")
 
 
-def flexural_rigidity(problem: Problem) -> float:
+def _flexural_rigidity() -> float:
     """Return EI of a strip [N m^2]."""
-    return problem.youngs_modulus * problem.second_moment_of_area
+    return pivot().youngs_modulus * pivot().second_moment_of_area
 
 
-def small_angle_stiffness(problem: Problem) -> float:
+def _small_angle_stiffness() -> float:
     """Return 2 EI / L [N m/rad]: the pivot of two strips that cross at mid-length."""
-    return 2.0 * flexural_rigidity(problem) / problem.length
+    return 2.0 * _flexural_rigidity() / pivot().length
 
 
 #: Rows of Table 1: what, symbol, attribute, form.
@@ -41,89 +49,58 @@ _GIVEN: tuple[tuple[str, str, str, Form], ...] = (
 )
 
 
+@listing("given")
 def _given(results: Results) -> Table:
     problem = pivot()
-    rows: Rows = [[what, symbol, form(getattr(problem, name))] for what, symbol, name, form in _GIVEN]
-    rows += [
-        ["derived: flexural rigidity", "EI", unit("N m²", 4)(flexural_rigidity(problem))],
-        ["derived: axial rigidity", "EA", unit("MN", 3, 1e-6)(problem.youngs_modulus * problem.area)],
-        ["derived: slenderness", "L/h", significant(problem.length / problem.depth, 3)],
-        ["derived: stiffness at small angles", "2EI/L", unit("N m/rad", 4)(small_angle_stiffness(problem))],
+    axial = unit("MN", 3, 1e-6)(problem.youngs_modulus * problem.area)
+    return ["quantity", "symbol", "value"], [
+        *([what, symbol, form(getattr(problem, name))] for what, symbol, name, form in _GIVEN),
+        ["derived: flexural rigidity", "EI", unit("N m²", 4)(_flexural_rigidity())],
+        ["derived: axial rigidity", "EA", axial],
+        ["derived: slenderness", "L/t", significant(problem.length / problem.depth, 3)],
+        ["derived: stiffness at small angles", "2EI/L", unit("N m/rad", 4)(_small_angle_stiffness())],
     ]
-    return ["quantity", "symbol", "value"], rows
 
 
-def _static(quantity: str) -> Fact:
-    return fact("convergence/control_points", "reference", at("uncertainty", quantity=quantity), power)
+def _closed_form(results: Results) -> float:
+    stiffness = AT_REST.value(results, "stiffness_Nm_per_rad")
+    return abs(float(stiffness) / _small_angle_stiffness() - 1.0)
 
 
-def _swing(quantity: str, form: Form) -> Fact:
-    return fact("paper/fig06_release", "reference", at("uncertainty", quantity=quantity), form)
+facts(
+    {
+        f"reference.{name}": STATICS.at("uncertainty", power, quantity=name)
+        for name in ("trajectory", "torque", "stiffness")
+    }
+)
+facts(
+    {
+        "pivot.slenderness": Fact(made=lambda _: pivot().length / pivot().depth, form=digits(2)),
+        "pivot.stiffness": Fact(made=lambda _: _small_angle_stiffness(), form=unit("N m/rad", 4)),
+        "pivot.depth": Fact(made=lambda _: pivot().depth, form=unit("mm", 2, 1e3)),
+        "pivot.width": Fact(made=lambda _: pivot().area / pivot().depth, form=unit("mm", 2, 1e3)),
+        "pivot.quarter-turn": Fact(made=lambda _: pivot().rotation, form=degrees),
+        "reference.frequency": RELEASE.at("uncertainty", power, quantity="frequency"),
+        "reference.rotation": RELEASE.at("uncertainty", unit("rad"), quantity="rotation_rad"),
+        "reference.fine.rotation": FINE.at("uncertainty", unit("rad"), quantity="rotation_rad"),
+        "theory.shear.torque": TORQUE.at("torque", power),
+        "theory.shear.swing": SWING.at("rotation_rad", unit("rad")),
+        "theory.spatial.torque": SPATIAL.at("distance_to_material", power, quantity="torque"),
+        "theory.spatial.trajectory": SPATIAL.at("distance_to_material", power, quantity="trajectory"),
+        "small-angle.error": Fact(made=_closed_form, form=power),
+    }
+)
 
 
-def _theory_matters(results: Results) -> bool:
-    static = results.table("paper/fig05_stiffness", "summary")
-    moving = results.table("paper/fig06_release", "summary")
+@holds("theory.matters")
+def _(r: Results) -> Any:
+    """shear changes torque and swing by more than six control points or twenty elements are off"""
+    compared = (
+        (Stored("paper/fig05_stiffness", "summary"), "error_torque_largest", TORQUE.value(r, "torque")),
+        (Stored("paper/fig06_release", "summary"), "error_rotation_rad", SWING.value(r, "rotation_rad")),
+    )
     return all(
-        abs(at("error_torque_largest", formulation=name)(static)) < FACTS["theory.shear.torque"].made(results)
-        and at("error_rotation_rad", formulation=name)(moving) < FACTS["theory.shear.swing"].made(results)
-        for name in ("n = 6", "FE, 20 elements")
+        abs(summary.value(r, name, formulation=each)) < shear
+        for summary, name, shear in compared
+        for each in ("n = 6", "FE, 20 elements")
     )
-
-
-FACTS = {
-    "pivot.slenderness": Fact(
-        made=lambda _: pivot().length / pivot().depth, form=lambda value: significant(value, 2)
-    ),
-    "pivot.stiffness": Fact(made=lambda _: small_angle_stiffness(pivot()), form=unit("N m/rad", 4)),
-    "pivot.depth": Fact(made=lambda _: pivot().depth, form=unit("mm", 2, 1e3)),
-    "pivot.width": Fact(made=lambda _: pivot().area / pivot().depth, form=unit("mm", 2, 1e3)),
-    "reference.trajectory": _static("trajectory"),
-    "reference.torque": _static("torque"),
-    "reference.stiffness": _static("stiffness"),
-    "reference.frequency": _swing("frequency", power),
-    "reference.rotation": _swing("rotation_rad", unit("rad")),
-    "reference.meshes": Fact(made=lambda _: len(SWING_MESHES), form=count),
-    "reference.fine.rotation": fact(
-        "work_precision/dynamics", "reference", at("uncertainty", quantity="rotation_rad"), unit("rad")
-    ),
-    "theory.shear.torque": fact(
-        "baselines/peers", "theories", at("torque", what="difference of the theories"), power
-    ),
-    "theory.shear.swing": fact(
-        "baselines/peers",
-        "swing_theories",
-        at("rotation_rad", what="difference of the theories"),
-        unit("rad"),
-    ),
-    "theory.spatial.torque": fact(
-        "work_precision/statics",
-        "reference",
-        at("distance_to_material", theory="spatial", quantity="torque"),
-        power,
-    ),
-    "theory.spatial.trajectory": fact(
-        "work_precision/statics",
-        "reference",
-        at("distance_to_material", theory="spatial", quantity="trajectory"),
-        power,
-    ),
-    "small-angle.error": Fact(
-        made=lambda results: abs(
-            at("stiffness_Nm_per_rad", formulation="FE refined", rotation_rad=0.0)(
-                results.table("paper/fig05_stiffness", "curves")
-            )
-            / small_angle_stiffness(pivot())
-            - 1.0
-        ),
-        form=power,
-    ),
-    "pivot.quarter-turn": Fact(made=lambda _: pivot().rotation, form=degrees),
-}
-HOLDS = {
-    "theory.matters": Holds(
-        words="shear changes torque and swing by more than six control points or twenty elements are off",
-        test=_theory_matters,
-    )
-}
-LISTINGS = {"given": _given}

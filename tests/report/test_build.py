@@ -10,9 +10,9 @@ import pytest
 
 import report.build
 from report.build import FAILED, main, typeset
-from report.facts import Holds, fact, held, listed, written
+from report.facts import Holds, Stored, held, listed, written
 from report.forms import percent
-from report.results import ReportError, Results, at
+from report.results import ReportError, Results
 from studies.record.source import ROOT
 from studies.record.store import RESULTS, Store
 
@@ -98,7 +98,7 @@ class _Given:
 )
 def test_number_that_is_not_there_is_refused(columns, reason):
     """A fact that is no number, or not one number, is named with its table."""
-    given = fact("study", "table", at("value", formulation="a"), percent)
+    given = Stored("study", "table").at("value", percent, formulation="a")
     if columns.get("value") == ["word"]:
         assert written("name", given, _Given(**columns | {"value": [0.5]})) == "50\u00a0%"
         return
@@ -110,7 +110,7 @@ def test_condition_and_table_without_their_data_are_refused():
     """A condition or table that asks for what is not there is named."""
     missing = _Given(a=[1])
     with pytest.raises(ReportError, match=r"^condition name: no column b.* \(some words\)$"):
-        held("name", Holds(words="some words", test=lambda r: at("b")(r.table("", ""))), missing)
+        held("name", Holds(words="some words", test=lambda r: Stored("", "").value(r, "b")), missing)
     with pytest.raises(ReportError, match=r"^table name: got no rows"):
         listed("name", lambda r: (["a"], []), missing)
 

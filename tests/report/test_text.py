@@ -4,7 +4,7 @@ import re
 
 import pytest
 
-from report.build import entries
+from report.build import quotable
 from studies.record.store import Store
 from studies.registry import STUDIES
 from tests.report.sources import FOLDER, SECTIONS, prose, quoted, text
@@ -51,19 +51,24 @@ def test_name_with_a_digit_is_no_number(named, tmp_path):
 @pytest.mark.parametrize(
     ("kind", "functions"),
     [
-        ("FACTS", ("fact",)),
-        ("HOLDS", ("supported", "either", "condition")),
-        ("LISTINGS", ("listing",)),
+        ("facts", ("fact",)),
+        ("holds", ("supported", "either", "condition")),
+        ("listings", ("listing",)),
     ],
 )
 def test_what_is_given_is_quoted(kind, functions):
     """Every fact, condition and table is used by a section, and every one that is used is given."""
-    assert set().union(*map(quoted, functions)) == set(entries(kind))
+    assert set().union(*map(quoted, functions)) == set(quotable()[kind])
+
+
+def _further(content):
+    """Return the figures that the supplement names without showing them."""
+    return {row[0].replace("\u200b", "") for row in content["listings"]["further"]["rows"]}
 
 
 def test_every_figure_of_every_study_is_shown_and_referred_to(content):
-    """All stored figures appear, those of no section at the end, and the text refers to its own."""
-    further = {each["name"] for each in content["further"]}
+    """All stored figures are shown, or named at the end, and the text refers to its own."""
+    further = _further(content)
     assert quoted("plot") - LATER <= set(content["figures"])
     assert set(content["figures"]) == (quoted("plot") & set(content["figures"])) | further
     for path in SECTIONS:
@@ -73,11 +78,10 @@ def test_every_figure_of_every_study_is_shown_and_referred_to(content):
 
 
 def test_every_study_appears(content):
-    """Each study of the register has a figure in the report and a line in its provenance."""
+    """Each study of the register has a figure shown or named in the report, and a line in its provenance."""
     for study in STUDIES:
         names = {name.partition(".")[0] for name in Store().record(study)["figures"]}
-        further = {each["name"] for each in content["further"]}
-        assert names & (quoted("plot") | further), study
+        assert names & (quoted("plot") | _further(content)), study
     lines = [row[0].replace("\u200b", "") for row in content["listings"]["provenance"]["rows"]]
     assert lines == list(STUDIES)
 

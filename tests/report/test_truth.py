@@ -7,12 +7,11 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from report.build import entries
+from report.build import quotable
 from report.content.hard_cases import kinds
 from studies.record.source import ROOT
 from studies.record.store import Store
 from studies.stability.family import COLUMNS, DEFAULT, VARIED
-from studies.stability.statics.axial_modes import settings
 from tests.report.sources import SECTIONS, text
 
 
@@ -73,7 +72,7 @@ def test_rotations_where_a_surrogate_is_nearer_are_counted(content, name, model)
 
 def test_surrogate_that_is_nearer_to_the_end_takes_the_sentence_with_it():
     """Requirement: the sentence on where the splines are nearer falls when the four-bar wins at the end."""
-    condition = entries("HOLDS")["surrogates.not-everywhere"]
+    condition = quotable()["holds"]["surrogates.not-everywhere"]
     models = ("four-bar", "n = 4, as the paper", "n = 4, locking-free")
 
     def given(*spline):
@@ -95,7 +94,7 @@ def test_what_was_fitted_is_not_called_published():
 
 def test_default_is_counted_by_itself():
     """Requirement: cases of the default are those with its settings; settings that vary are counted apart."""
-    assert DEFAULT not in {each.model for each in settings()}
+    assert DEFAULT not in set(_stored("stability/axial_modes", "outcomes")["model"])
     random = _stored("stability/fuzz", "outcomes")
     assert {DEFAULT, VARIED} == set(random["model"])
     assert COLUMNS[DEFAULT].control_points is None
@@ -133,13 +132,30 @@ def test_readme_and_report_print_the_same_numbers(content, fact):
     assert content["facts"][fact].replace("\u00a0", " ") in readme
 
 
+def test_findings_and_report_print_the_same_verdicts(content):
+    """Requirement: docs/findings.md has the verdicts and measured values of the report, claim by claim."""
+    page = (ROOT / "docs" / "findings.md").read_text(encoding="utf-8")
+    lines = [line.strip("| ").split(" | ") for line in page.splitlines()]
+    told = {line[0]: line[1:] for line in lines if line[0].startswith("Fig ")}
+    reported = {row[0]: row[1:] for row in content["listings"]["claims"]["rows"]}
+    assert told and set(told) <= set(reported)
+    for claim, cells in told.items():
+        for short, full in zip(cells, reported[claim], strict=True):
+            assert short.startswith("no") == ("not as claimed" in full), claim
+            values = (re.search(r"\((.*?)\s*%", cell)[1].replace("−", "-") for cell in (short, full))
+            assert len(set(map(float, values))) == 1, claim
+
+
 def test_cost_is_compared_by_one_criterion(content):
-    """Requirement: every time of the table of cost comes with its setting, its quartiles and the spline's."""
-    table = content["listings"]["cost"]
+    """Requirement: every time of the table of cost has its setting and quartiles in the table of settings."""
+    table, settings = (content["listings"][name] for name in ("cost", "cost-settings"))
+    assert table["head"] == settings["head"]
     assert table["head"][:3] == ["task, error", "spline", "finite elements"]
-    for row in table["rows"]:
-        for cell in row[1:]:
-            assert cell == "–" or re.search(r": .+ \(.+ to .+\)", cell), cell
+    for row, full in zip(table["rows"], settings["rows"], strict=True):
+        assert row[0] == full[0]
+        for cell, setting in zip(row[1:], full[1:], strict=True):
+            median = cell.partition(",")[0]
+            assert cell == setting == "–" or re.search(rf": {re.escape(median)} \(.+ to .+\)", setting), cell
 
 
 def test_floor_is_what_a_formulation_ends_on():
@@ -148,13 +164,13 @@ def test_floor_is_what_a_formulation_ends_on():
         basis="bezier", measure="spatial", stretch="mixed", control_points=[6, 6, 12, 12],
         error_trajectory=[0.0005, 0.0008, 0.00075, 0.00075],
     )  # fmt: skip
-    assert entries("FACTS")["map.spatial.trajectory"].made(given) == 0.00075
+    assert quotable()["facts"]["map.spatial.trajectory"].made(given) == 0.00075
 
 
 def test_energy_at_the_start_is_that_of_the_start():
     """Requirement: the energy that a swing begins with is taken at its first instant."""
     given = _One(formulation="FE refined", time_s=[0.0, 0.01], strain_J=[726.19, 728.45])
-    assert entries("FACTS")["fig06.energy"].made(given) == 726.19
+    assert quotable()["facts"]["fig06.energy"].made(given) == 726.19
 
 
 def test_elements_and_errors_are_called_what_they_are():
@@ -167,3 +183,12 @@ def test_elements_and_errors_are_called_what_they_are():
     assert "corotational finite elements" in readme
     assert "geometrically exact finite elements" not in front + readme
     assert "relative state by state" in findings
+
+
+def test_other_thresholds_are_told(content):
+    """Requirement: the claims of a size are held against other thresholds, the suite's own among them."""
+    table = content["listings"]["thresholds"]
+    stated = {float(each) for row in table["rows"] for each in re.findall(r"(\d+) %", row[0])}
+    shown = {float(word.split()[1].replace("%", "")) for word in table["head"][1:]}
+    assert stated <= shown
+    assert [row[0].split(":")[0] for row in table["rows"]].count("Fig 5") == 2
