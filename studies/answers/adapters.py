@@ -1,108 +1,253 @@
-"""Put a design to either model, and get a neutral answer: static paths here, motions from `moving`."""
+"""Put a design to either model, and get a neutral answer: its static path, its release, its natural modes."""
 
 from collections.abc import Callable
+from contextlib import suppress
+from functools import partial
 from typing import Any
 
-from studies.answers.models import Model, built, effects_of, model_of, refusals
-from studies.answers.moving import WARM_UP_ROTATION, answer_modes, answer_release, solve_s, spline_mechanism
-from studies.answers.response import MechanismResponse, Response, mechanism_response, response
-from studies.answers.settings import Settings
-from studies.cases.design import Design
-from studies.cases.mechanism import Mechanism
+import numpy as np
+
+from studies.answers.models import (
+    Model,
+    built,
+    effects_of,
+    is_given,
+    mode_bodies,
+    model_of,
+    refusals,
+    static_path,
+)
+from studies.answers.motion import Motion, Spectrum, motion, no_motion
+from studies.answers.response import Response, chosen_by, estimate_of, response
+from studies.answers.settings import Settings, SplineSettings
+from studies.cases.design import Design, flexural_scale
 from studies.cases.problem import Problem
+from studies.errors import BadInput
 from studies.kinds import Progress
 from studies.record.timing import measure
 
-__all__ = [
-    "answer_mechanism",
-    "answer_modes",
-    "answer_path",
-    "answer_release",
-    "answer_static",
-    "spline_mechanism",
-]
+#: Rotation of the first solve, which only compiles [rad]: small enough for any design and discretisation.
+WARM_UP_ROTATION = 1e-3
+#: Duration of the first release, which only compiles [s], unless its step is longer.
+WARM_UP_DURATION = 1e-3
 
 
-def answer_static(problem: Problem, settings: Settings, **options: Any) -> Response:
-    """Solve the static path of `problem` with the model that `settings` belongs to.
-
-    `wall_s` of the response is the median time of `repeat` solves of the whole path, without import,
-    compilation and set-up: a short solve comes before, and when `repeat` is above 1 a whole one. `solve_s` is
-    the median of what the model says its increments alone took.
-
-    Args:
-        problem: the design and the path.
-        settings: names the model and its discretisation.
-        options: as of `_timed`.
-
-    Raises:
-        BadInput: a setting that the model refuses; one line.
-    """
-    model = model_of(settings)
-    pivot, keywords = built(model, problem, settings, moving=False)
-
-    def path(**how: Any) -> Any:
-        given = {"rotation": problem.rotation, "increments": problem.increments, "order": problem.order}
-        return model.statics.solve_statics(pivot, **(given | how))
-
-    result, times = _timed(model, settings, path, {"rotation": WARM_UP_ROTATION}, **options)
-    return response(
-        problem, result, model=settings.model, settings=keywords, effects=effects_of(pivot), **times
-    )
-
-
-def answer_mechanism(mechanism: Mechanism, settings: Settings, **options: Any) -> MechanismResponse:
-    """Solve the path of any mechanism from load factor 0 to 1; arguments and errors as of `answer_static`.
-
-    The path is that of the driven rotation and of the loads in the design's order, or of the loads alone.
-    """
-    model = model_of(settings)
-    asked, keywords = built(model, mechanism, settings, moving=False)
-
-    def path(**how: Any) -> Any:
-        given = {"body": mechanism.body, "rotation": mechanism.rotation, "order": mechanism.order}
-        return model.statics.solve_mechanism(asked, **(given | {"increments": mechanism.increments} | how))
-
-    result, times = _timed(model, settings, path, {}, **options)
-    return mechanism_response(mechanism, result, model=settings.model, settings=keywords, **times)
-
-
-def answer_path(design: Design, settings: Settings, **options: Any) -> Response | MechanismResponse:
-    """Solve the static path of any design; arguments and errors as of `answer_static`."""
-    if isinstance(design, Problem):
-        return answer_static(design, settings, **options)
-    return answer_mechanism(design, settings, **options)
-
-
-def _timed(
-    model: Model,
+def answer_static(
+    design: Design,
     settings: Settings,
-    path: Callable[..., Any],
-    short: dict[str, Any],
     *,
     accuracy: float | None = None,
     repeat: int = 1,
     raise_on_failure: bool = False,
     progress: Progress | None = None,
-) -> tuple[Any, dict[str, float]]:
-    """Return a model's solution of a path, and its times.
+) -> Response:
+    """Solve the static path of a design from load factor 0 to 1 with the model that `settings` belongs to.
+
+    The path is that of the driven rotation and of the loads in the design's order, or of the loads alone.
+    `wall_s` of the response is the median time of `repeat` solves of the whole path, without import,
+    compilation and set-up: a short solve comes before, and when `repeat` is above 1 a whole one. `solve_s` is
+    the median of what the model says its increments alone took.
 
     Args:
-        path: solves it; short: what makes of it a short one.
+        design: the pivot or mechanism, and its path.
+        settings: names the model and its discretisation.
         accuracy: wanted error of trajectory and torque [1], which control points or elements are raised for;
             None for those of the settings.
         repeat: timed solves of the whole path [1].
         raise_on_failure: raise the model's `ConvergenceError` rather than return the converged part of the
             path.
         progress: called with increments done and increments in all.
+
+    Raises:
+        BadInput: a setting that the model refuses; one line.
     """
+    model = model_of(settings)
+    asked, keywords = built(model, design, settings, moving=False)
+    path = partial(static_path, model, design, asked)
     wanted = {} if accuracy is None else {"accuracy": accuracy}
+    short = {} if design.rotation is None else {"rotation": WARM_UP_ROTATION}
     with refusals(model, settings):
         path(**short, increments=1, raise_on_failure=False)
         timing = measure(
             lambda: path(raise_on_failure=raise_on_failure, progress=progress, **wanted),
             repeat=repeat,
             warm_up=1 if repeat > 1 else 0,
-            part=solve_s,
+            part=_solve_s,
         )
-    return timing.result, {"wall_s": timing.median, "solve_s": timing.median_part}
+    about = {"model": settings.model, "settings": keywords, "effects": effects_of(asked)}
+    return response(design, timing.result, wall_s=timing.median, solve_s=timing.median_part, **about)
+
+
+def answer_release(
+    design: Design,
+    settings: Settings,
+    *,
+    duration: float,
+    start: float | None = None,
+    records: int | None = None,
+    repeat: int = 1,
+    check: bool = False,
+    swings: bool = True,
+    **options: Any,
+) -> Motion:
+    """Let a design go at rest from a static state and follow the motion.
+
+    The start is in equilibrium with the body driven to a rotation, weight and pre-strain in full, and every
+    load and driven displacement at its value times its history at t = 0. Then the rotation is let go, unless
+    the design leads it on, and driven displacements without a history; loads follow their histories.
+
+    `wall_s` of the motion is the median time of `repeat` releases, less that of releases that are over after
+    their first record: so the static path to the start, and what is set up, are left out. A short release
+    comes before, and when `repeat` is above 1 a whole one.
+
+    Args:
+        design: the pivot or mechanism; of one without a rotation none is driven: it begins where all that
+            acts at t = 0 settles it.
+        settings: names the model and its discretisation.
+        duration: of the motion [s].
+        start: rotation at the start [rad]; None for the end of the design's path.
+        check: whether a companion motion says how far the model's control points, or elements, resolve it.
+        swings: whether a body must be there, whose swing is told; if not, strips alone are followed too.
+        records: largest number of records; None for what the model keeps.
+        repeat: timed releases [1].
+        options: `step` [s], `integrator` and `accuracy` [rad], as the model names and checks them; None for
+            its own choice.
+
+    Raises:
+        BadInput: a setting or option that the model refuses, a design without bodies; one line.
+    """
+    if design.body is None and swings:
+        expected = "`export --analysis release` has the motion of strips alone"
+        raise BadInput(f"bodies: got none, expected a body whose swing is followed; {expected}")
+    model = model_of(settings)
+    asked, keywords = built(model, design, settings, moving=True)
+    about = {"model": settings.model, "settings": keywords, "effects": effects_of(asked), "body": design.body}
+    at = {"start": design.rotation if start is None else start, "body": design.body}
+    with refusals(model, settings):
+        at |= _drive_of(model, design)
+    given = {name: value for name, value in options.items() if value is not None} | model.release_options
+    if records is not None:
+        given[model.records] = records
+    release = partial(model.dynamics.solve_motion, asked, duration=duration, check=False, **at, **given)
+    with suppress(model.errors.InvalidParameter, model.errors.ConvergenceError):
+        short = min(duration, max(WARM_UP_DURATION, given.get("step", 0.0)))
+        release(start=WARM_UP_ROTATION, duration=short)
+    try:
+        with refusals(model, settings):
+            timing = measure(release, repeat=repeat, warm_up=1 if repeat > 1 else 0, part=_solve_s)
+    except model.errors.ConvergenceError as error:
+        return no_motion(f"statics does not reach the start: {error}", design, **about)
+    result = timing.result
+    wall_s = max(timing.median - _wall_of_start(release, result, repeat), 0.0)
+    if check:
+        result = model.dynamics.checked(asked, result, **at)
+    return motion(result, energy=flexural_scale(design), wall_s=wall_s, solve_s=timing.median_part, **about)
+
+
+def answer_modes(
+    design: Design,
+    settings: Settings,
+    *,
+    rotation: float | None = None,
+    count: int = 10,
+    held: bool = False,
+    accuracy: float | None = None,
+) -> Spectrum:
+    """Return the lowest natural modes about a static state, by the settings' model.
+
+    They are of what a release from that state lets go of: the driven rotation, unless it is `held`, and
+    driven displacements without a history. In the state weight, pre-strain, driven displacements and loads
+    are in full.
+
+    Args:
+        design: the pivot or mechanism.
+        settings: names the model and its discretisation.
+        rotation: of the static state [rad]; None for 0 of a pivot, and for no driven rotation of a mechanism.
+        count: of modes [1].
+        held: whether the rotation is held; if not, the driving torque acts on as it is.
+        accuracy: wanted relative error of the frequencies [1], which control points or elements are raised
+            for; None for those of the settings.
+
+    Raises:
+        BadInput: a setting or option that the model refuses; one line.
+    """
+    model = model_of(settings)
+    asked, keywords = built(model, design, settings, moving=is_given(settings))
+    how: dict[str, Any] = {"count": count, "held": held, "body": design.body}
+    how |= {} if accuracy is None else {"accuracy": accuracy}
+    still = rotation is None and (held or isinstance(design, Problem))
+    solve = partial(model.modes.natural_frequencies, asked, rotation=0.0 if still else rotation, **how)
+    nothing = np.zeros(0)
+    about: dict[str, Any] = {
+        "model": settings.model,
+        "effects": effects_of(asked),
+        "rotation": rotation or 0.0,
+        "body": design.body,
+    }
+    try:
+        with refusals(model, settings):
+            timing = measure(solve, repeat=1, warm_up=0)
+    except model.errors.ConvergenceError as error:
+        lost: dict[str, Any] = {
+            "status": "not_converged",
+            "message": f"statics does not reach the state: {error}",
+        }
+        lost |= {"settings": keywords, "wall_s": 0.0, "held": held}
+        lost |= {"frequency": nothing, "body_shapes": np.zeros((0, 3)), "slide_frequency": nothing}
+        return Spectrum(**lost, **about)
+    return _spectrum(timing.result, design, settings=keywords, wall_s=timing.median, **about)
+
+
+def _spectrum(modes: Any, design: Design, **about: Any) -> Spectrum:
+    """Return the neutral form of a model's modes; only a spline has slide modes."""
+    names = [body.name for body in design.bodies]
+    shapes = mode_bodies(modes, names)
+    about["settings"] = about["settings"] | chosen_by(modes)
+    return Spectrum(
+        status="converged",
+        message="",
+        solution=modes,
+        held=modes.held,
+        frequency=np.asarray(modes.frequency, dtype=float),
+        body_shapes=shapes[:, names.index(design.body)] if design.body else np.zeros((len(shapes), 3)),
+        slide_frequency=np.asarray(getattr(modes, "slide_frequency", ()), dtype=float),
+        estimate=estimate_of(modes),
+        **about,
+    )
+
+
+def spline_mechanism(design: Design, settings: SplineSettings) -> Any:
+    """Return the spline model's mechanism of a design, as it is in motion; errors as of `answer_release`."""
+    return built(model_of(settings), design, settings, moving=True)[0]
+
+
+def _solve_s(result: Any) -> float:
+    """Return what the increments or steps of a solution took, without what is made before and after [s]."""
+    return float(result.seconds["solve"])
+
+
+def _wall_of_start(release: Callable[..., Any], result: Any, repeat: int) -> float:
+    """Return the median time of releases that are over after the first record of `result` [s]."""
+    if len(result.time) <= 2:
+        return 0.0
+    # a little longer than the first record, lest round-off make the step longer than the duration
+    brief: dict[str, float | None] = {"duration": float(result.time[1]) * (1.0 + 1e-9)}
+    if getattr(result, "estimate", None) is not None:  # the step that was chosen, without the search for it
+        brief["accuracy"] = None
+    brief |= {name: value for name, value in (("step", result.settings.get("step_s")),) if value}
+    return measure(lambda: release(**brief), repeat=repeat, warm_up=0).median
+
+
+def _drive_of(model: Model, design: Design) -> dict[str, Any]:
+    """Return the model's drive of a rotation that a motion goes on with, by its keyword; none if it lets go.
+
+    Raises:
+        BadInput: a mechanism without a rotation; InvalidParameter of the model.
+    """
+    given = {"history": design.history, "held": design.held}
+    given = {name: value for name, value in given.items() if value is not None}
+    if not given:
+        return {}
+    if design.rotation is None:
+        raise BadInput("drive.rotation_deg: got none, expected the rotation that a history or held_s leads")
+    return {"drive": model.drive(body=design.body, angle=design.rotation, **given)}

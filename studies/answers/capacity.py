@@ -75,8 +75,7 @@ def capacity(
     Raises:
         BadInput: what the model refuses; a design without bodies; one line.
     """
-    known = ["body"] if isinstance(design, Problem) else [each.name for each in design.bodies]
-    name = body or ("body" if isinstance(design, Problem) else design.body)
+    known, name = [each.name for each in design.bodies], body or design.body
     if name not in known:
         expected = f"one of {', '.join(known)}" if known else "a design with a body that the force acts on"
         raise BadInput(f"body: got {name or 'none'}, expected {expected}")
@@ -148,13 +147,8 @@ def _of(design: Design, settings: Settings, direction: float, held: bool, body: 
 
 def _unit(design: Design) -> float:
     """Return the Euler loads of all strips, clamped at both ends, together: 4 pi^2 EI / L^2 [N]."""
-    parts: tuple[Any, ...] = (design, design) if isinstance(design, Problem) else design.strips
-    loads = (part.youngs_modulus * part.second_moment_of_area / _length(part) ** 2 for part in parts)
+    loads = (part.youngs_modulus * part.second_moment_of_area / part.length**2 for part in design.strips)
     return 4.0 * math.pi**2 * float(sum(loads))
-
-
-def _length(part: Any) -> float:
-    return float(part.length if isinstance(part, Problem) else math.dist(part.start, part.end))
 
 
 def _loaded(design: Design, force: tuple[float, float], body: str) -> Design:

@@ -1,15 +1,34 @@
-"""Fields along the strips of any design, and its bodies: arrays that do not tell which model they are of."""
+"""Fields along the strips of any design, and its bodies, of what a model has solved: its static solution,
+its trajectory or its modes. The arrays do not tell which model they are of."""
 
-from dataclasses import dataclass, field, fields
+from collections.abc import Sequence
+from dataclasses import dataclass, field, fields, replace
 from typing import Any
 
 import numpy as np
 
-from studies.answers.response import Answered
+from studies.answers.models import (
+    Model,
+    built,
+    effects_of,
+    mode_bodies,
+    model_of,
+    settings_of,
+)
+from studies.answers.response import Answered, Response, assembled
+from studies.answers.settings import FeSettings, SplineSettings
 from studies.cases.design import Design
 from studies.cases.keys import GROUND
-from studies.cases.problem import Problem
+from studies.errors import BadInput
 from studies.kinds import Array
+
+#: Arrays of the design, not of its states.
+GIVEN = ("arc_length", "rest_shape", "rest_bodies")
+#: Energies of a path and of a motion, as solutions name them and as `Fields` does.
+OF_PATH = {f"{name}_energy": name for name in ("bending", "axial", "shear", "gravity")}
+OF_MOTION = {f"{name}_energy": name for name in ("kinetic", "strain", "gravity")} | {
+    "dissipated": "dissipated"
+}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -115,36 +134,161 @@ class Fields(Answered):
         return np.asarray(self.stress.max(axis=(1, 2)))
 
 
-def strip_arrays(found: Any) -> dict[str, Any]:
-    """Return the arrays of a model's fields along the strips, by the names that `Fields` has."""
-    return {field.name: np.asarray(getattr(found, field.name), dtype=float) for field in fields(found)}
-
-
-def parts_of(design: Design) -> tuple[Part, ...]:
-    """Return the strips of a design; a mechanism's sections are taken as rectangles, sqrt(12 I / A) deep."""
-    if isinstance(design, Problem):
-        shared = section_of(design) | {"depth": design.depth}
-        return tuple(Part(name=f"strip_{k}", root=GROUND, tip="body", **shared) for k in (1, 2))
-    return tuple(
-        Part(name=strip.name, root=strip.root, tip=strip.tip, **section_of(strip)) for strip in design.strips
+def fields_of(answer: Answered, design: Design) -> Fields:
+    """Return the fields of what a neutral answer to `design` was made of; BadInput if it has no state."""
+    if answer.solution is None:
+        raise BadInput(f"{answer.model}: got no state, expected a solution with one: {answer.message}")
+    settings = settings_of(answer)
+    model = model_of(settings)
+    asked, keywords = built(model, design, settings, moving=not isinstance(answer, Response))
+    found = _solved(model, asked, answer.solution, design.body)
+    parts = zip(found.parts, design.strips, strict=True)
+    return replace(
+        found,
+        model=answer.model,
+        settings=keywords | answer.settings,
+        parts=tuple(replace(part, depth=strip.depth) for part, strip in parts),
     )
 
 
-def section_of(given: Any) -> dict[str, float]:
-    """Return what a `Part` knows of its section: of whatever has A, I and E, as a rectangle."""
+def own_fields(solution: Any, asked: Any) -> Fields:
+    """Return the fields of a solution, trajectory or modes of either model, of a pivot or mechanism of it.
+
+    Args:
+        solution: what a function of `spline_model` or `fe_reference` returned.
+        asked: the pivot or mechanism that it was called with.
+
+    Raises:
+        BadInput: something else, or of two models; one line.
+    """
+    package = type(solution).__module__.partition(".")[0]
+    if type(solution).__name__ not in KINDS or type(asked).__module__.partition(".")[0] != package:
+        got = f"{type(solution).__name__} and {type(asked).__name__}"
+        raise BadInput(
+            f"solution: got {got}, expected a static solution, a trajectory or modes, with their design"
+        )
+    asked = _as_fine(asked, solution)
+    splines = package == "spline_model"
+    settings = SplineSettings() if splines else FeSettings(element=asked.element)
+    body = getattr(solution, "driven", None) or getattr(solution, "body", None)
+    return replace(_solved(model_of(settings), asked, solution, body), model=settings.model)
+
+
+def _as_fine(asked: Any, solution: Any) -> Any:
+    """Return the pivot or mechanism with the control points, or elements, that an accuracy has taken."""
+    if hasattr(asked, "with_control_points"):
+        chosen = getattr(solution, "settings", {}).get("control_points", asked.design.discretisation.points)
+        return asked.with_control_points(getattr(solution, "control_points", chosen))
+    from fe_reference.refined import finer
+
+    meshes = getattr(solution.estimate, "meshes", ())
+    for _ in meshes[1:]:
+        asked = finer(asked)
+    return asked
+
+
+def _solved(model: Model, asked: Any, result: Any, body: str | None) -> Fields:
+    """Return the fields of a model's result about a design in the model, discretised as the result is."""
+    blocks = _bodies_of(asked)
+    return Fields(
+        model="",
+        settings={},
+        parts=_strips_of(asked),
+        blocks=blocks,
+        driven=[block.name for block in blocks].index(body) if body else 0,
+        **KINDS[type(result).__name__](model, asked, result),
+    )
+
+
+def _path(model: Model, asked: Any, result: Any) -> dict[str, Any]:
+    driven = not np.isnan(result.torque).all()
+    along = _arrays(model.static_fields(asked, result.states))
+    # as the solution has them: by balance of moments, where a spline has chosen its control points
+    own = {name: np.asarray(getattr(result, name), dtype=float) for name in ("axial_force", "bending_moment")}
+    along |= {name: forces for name, forces in own.items() if forces.shape == along[name].shape}
     return {
-        "axial_rigidity": given.youngs_modulus * given.area,
-        "flexural_rigidity": given.youngs_modulus * given.second_moment_of_area,
-        "youngs_modulus": given.youngs_modulus,
-        "depth": float(np.sqrt(12.0 * given.second_moment_of_area / given.area)),
+        **_ended(result, OF_PATH),
+        "analysis": "static",
+        "effects": assembled(effects_of(asked)),
+        "series": "load_factor",
+        "values": np.asarray(result.load_factor),
+        "torque": np.asarray(result.torque) if driven else None,
+        "stiffness": np.asarray(result.stiffness) if driven else None,
+        **along,
     }
 
 
-def blocks_of(design: Design) -> tuple[Block, ...]:
-    """Return the bodies of a design."""
-    if isinstance(design, Problem):
-        return (Block(name="body", mass=design.body_mass, moment_of_inertia=design.body_moment_of_inertia),)
+def _motion(model: Model, asked: Any, result: Any) -> dict[str, Any]:
+    return {
+        **_ended(result, OF_MOTION),
+        "analysis": "release",
+        "effects": effects_of(asked),
+        "series": "time_s",
+        "values": np.asarray(result.time),
+        **_arrays(model.moving_fields(asked, result.states)),
+    }
+
+
+def _modes(model: Model, asked: Any, result: Any) -> dict[str, Any]:
+    count = len(result.frequency)
+    still = _arrays(model.static_fields(asked, np.asarray(result.state)[None]))
+    moving = {name: np.repeat(array, count, axis=0) for name, array in still.items() if name not in GIVEN}
+    return {
+        "status": "converged",
+        "message": "",
+        "analysis": "modes",
+        "effects": effects_of(asked),
+        "series": "mode",
+        "values": np.arange(1.0, count + 1.0),
+        "frequency": np.asarray(result.frequency),
+        "mode_shape": np.asarray(result.shapes),
+        "mode_bodies": mode_bodies(result, [block.name for block in _bodies_of(asked)]),
+        **(still | moving),
+    }
+
+
+#: What either model calls its answers, and who makes fields of them.
+KINDS = {"StaticSolution": _path, "Trajectory": _motion, "Modes": _modes}
+
+
+def _ended(result: Any, names: dict[str, str]) -> dict[str, Any]:
+    """Return how a path or motion ended, and its energies."""
+    energies = {
+        name: np.asarray(getattr(result, theirs)) for theirs, name in names.items() if hasattr(result, theirs)
+    }
+    return {"status": str(result.status.value), "message": result.message, "energies": energies}
+
+
+def _arrays(found: Any) -> dict[str, Any]:
+    """Return the arrays of a model's fields along the strips, by the names that `Fields` has."""
+    return {each.name: np.asarray(getattr(found, each.name), dtype=float) for each in fields(found)}
+
+
+def _strips_of(asked: Any) -> tuple[Part, ...]:
+    """Return the strips of a pivot or mechanism of a model, their sections taken as rectangles."""
+    if hasattr(asked, "design"):
+        return tuple(_part(strip.name, strip.root, strip.tip, strip) for strip in asked.design.strips)
+    names: dict[int, str | None] = dict(enumerate(asked.body_names))
+    names |= {-1: GROUND, -2: None}
     return tuple(
-        Block(name=body.name, mass=body.mass, moment_of_inertia=body.moment_of_inertia)
-        for body in design.bodies
+        _part(strip.name, names[strip.root], names[strip.tip], strip.section) for strip in asked.strips
+    )
+
+
+def _part(name: str, root: str | None, tip: str | None, section: Any) -> Part:
+    return Part(
+        name=name,
+        root=root,
+        tip=tip,
+        axial_rigidity=section.youngs_modulus * section.area,
+        flexural_rigidity=section.youngs_modulus * section.second_moment_of_area,
+        youngs_modulus=section.youngs_modulus,
+        depth=float(np.sqrt(12.0 * section.second_moment_of_area / section.area)),
+    )
+
+
+def _bodies_of(asked: Any) -> tuple[Block, ...]:
+    bodies: Sequence[Any] = asked.design.bodies if hasattr(asked, "design") else asked.bodies
+    return tuple(
+        Block(name=body.name, mass=body.mass, moment_of_inertia=body.moment_of_inertia) for body in bodies
     )

@@ -1,12 +1,13 @@
-"""Measures that compare one path with another: arrays in, numbers out, no model."""
+"""Measures that compare one path with another, and the answers of several models: no model."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from scipy.interpolate import CubicSpline
 
+from studies.answers.response import Response
 from studies.kinds import Array
 
 #: Part of the largest value of a path below which a value is round-off.
@@ -140,3 +141,43 @@ def quasi_static_frequency(
     left = 2.0 * (strain_energy[-1] - energy(angle))
     quarter = 0.25 * np.pi * float(weights @ (np.sqrt(inertia / left) * amplitude * np.cos(phi)))
     return 1.0 / (4.0 * quarter)
+
+
+#: What is compared, by name: arrays over the states; angles count as they are, in rad.
+COMPARED: dict[str, Callable[[Response], Array]] = {
+    "path": lambda answer: _moved(answer),
+    "torque": lambda answer: answer.torque,
+    "stiffness": lambda answer: answer.stiffness,
+    "energy": lambda answer: answer.strain_energy,
+    "stress": lambda answer: answer.max_stress,
+    "body_stiffness": lambda answer: _without_units(answer.body_stiffness),
+}
+
+
+def differences(answer: Response, other: Response) -> dict[str, float | None]:
+    """Return the largest difference of every quantity over the states that both reached, over its largest
+    value in `other` [1]; None where there is nothing to compare."""
+    both = min(len(answer.load_factor), len(other.load_factor))
+    found: dict[str, float | None] = {}
+    for name, of in COMPARED.items():
+        if name == "body_stiffness" and (answer.driven is None or answer.solution is None):
+            continue
+        mine, theirs = of(answer)[:both], of(other)[:both]
+        scale = float(np.abs(theirs).max(initial=0.0))
+        found[name] = float(np.abs(mine - theirs).max()) / scale if scale > 0.0 else None
+    return found
+
+
+def _moved(answer: Response) -> Array:
+    """Return the displacements of all centres (S, B) [m], as complex numbers."""
+    if not answer.bodies:
+        return np.zeros((len(answer.load_factor), 0))
+    centres = np.stack(list(answer.centres.values()), axis=1)
+    moved = centres - centres[0]
+    return np.asarray(moved[..., 0] + 1j * moved[..., 1])
+
+
+def _without_units(stiffness: Array) -> Array:
+    """Return stiffness matrices (S, 3, 3) over the units that make the diagonal at rest one."""
+    unit = np.sqrt(np.abs(np.einsum("ii->i", stiffness[0])))
+    return np.asarray(stiffness / (unit[:, None] * unit))

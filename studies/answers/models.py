@@ -1,15 +1,18 @@
 """The two models side by side: the one file that knows both, and how a design is put to either."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, fields
 from types import ModuleType
 from typing import Any
+
+import numpy as np
 
 from studies.answers.settings import FeSettings, Settings, SplineSettings
 from studies.cases.design import Design
 from studies.cases.problem import Problem
 from studies.errors import BadInput
+from studies.kinds import Array
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -19,8 +22,6 @@ class Model:
     Attributes:
         records: keyword for the largest number of records of a motion.
         release_options: keywords that every release takes.
-        moving: discretisation keywords of a pivot in motion, from its settings, where they say nothing.
-        all_shapes: whether modes hold the shapes of all bodies side by side, or of one.
         drive: of a rotation in a motion.
         static_fields, moving_fields: fields along the strips from the design in the model and its states.
     """
@@ -33,8 +34,6 @@ class Model:
     errors: ModuleType
     records: str
     release_options: dict[str, Any]
-    moving: Callable[[Settings], dict[str, Any]]
-    all_shapes: bool
     drive: type
     static_fields: Callable[[Any, Any], Any]
     moving_fields: Callable[[Any, Any], Any]
@@ -43,68 +42,40 @@ class Model:
 def model_of(settings: Settings) -> Model:
     """Return the settings' model; the other one is not even imported."""
     if isinstance(settings, FeSettings):
-        import fe_reference.drives
-        import fe_reference.dynamics
-        import fe_reference.errors
-        import fe_reference.mechanism
-        import fe_reference.modes
-        import fe_reference.pivot
-        import fe_reference.section_forces
-        import fe_reference.statics
+        from fe_reference import drives, dynamics, errors, mechanism, modes, pivot, section_forces, statics
 
         return Model(
-            pivot=fe_reference.pivot,
-            mechanism=fe_reference.mechanism,
-            statics=fe_reference.statics,
-            dynamics=fe_reference.dynamics,
-            modes=fe_reference.modes,
-            errors=fe_reference.errors,
+            pivot=pivot,
+            mechanism=mechanism,
+            statics=statics,
+            dynamics=dynamics,
+            modes=modes,
+            errors=errors,
             records="samples",
             release_options={"raise_on_failure": False},
-            moving=lambda settings: {},
-            all_shapes=True,
-            drive=fe_reference.drives.DrivenRotation,
-            static_fields=fe_reference.section_forces.strip_fields,
-            moving_fields=fe_reference.section_forces.strip_fields,
+            drive=drives.DrivenRotation,
+            static_fields=section_forces.strip_fields,
+            moving_fields=section_forces.strip_fields,
         )
-    import spline_model.dynamics
-    import spline_model.effects
-    import spline_model.errors
-    import spline_model.mechanism
-    import spline_model.modes
-    import spline_model.pivot
-    import spline_model.section_forces
-    import spline_model.statics
+    return _spline()
+
+
+def _spline() -> Model:
+    from spline_model import dynamics, effects, errors, mechanism, modes, pivot, section_forces, statics
 
     return Model(
-        pivot=spline_model.pivot,
-        mechanism=spline_model.mechanism,
-        statics=spline_model.statics,
-        dynamics=spline_model.dynamics,
-        modes=spline_model.modes,
-        errors=spline_model.errors,
+        pivot=pivot,
+        mechanism=mechanism,
+        statics=statics,
+        dynamics=dynamics,
+        modes=modes,
+        errors=errors,
         records="records",
         release_options={},
-        moving=_swinging_spline,
-        all_shapes=False,
-        drive=spline_model.effects.DrivenRotation,
-        static_fields=spline_model.section_forces.static_fields,
-        moving_fields=spline_model.section_forces.moving_fields,
+        drive=effects.DrivenRotation,
+        static_fields=section_forces.static_fields,
+        moving_fields=section_forces.moving_fields,
     )
-
-
-def model_named(package: str, element: str = "") -> tuple[Model, str]:
-    """Return the model that is the package of that name, and what it is called with these elements."""
-    settings = SplineSettings() if package == "spline_model" else FeSettings(element=element)
-    return model_of(settings), settings.model
-
-
-def _swinging_spline(settings: Settings) -> dict[str, Any]:
-    """Return the slide stiffness that goes with the control points of a spline in motion, where given."""
-    from spline_model.pivot import swinging_slide_stiffness
-
-    points = settings.keywords().get("control_points")
-    return {} if points is None else {"slide_stiffness": swinging_slide_stiffness(points)}
 
 
 def built(model: Model, design: Design, settings: Settings, *, moving: bool) -> tuple[Any, dict[str, Any]]:
@@ -114,8 +85,9 @@ def built(model: Model, design: Design, settings: Settings, *, moving: bool) -> 
         BadInput: a setting or an effect that the model refuses; one line.
     """
     keywords = settings.keywords()
-    if moving:
-        keywords = model.moving(settings) | keywords
+    if moving and "control_points" in keywords:  # the slide stiffness that goes with those of a spline
+        stiffness = model.pivot.swinging_slide_stiffness(keywords["control_points"])
+        keywords = {"slide_stiffness": stiffness} | keywords
     scene = {"effects": design.effects.names, "parameters": design.effects.parameters()}
     with refusals(model, settings):
         if isinstance(design, Problem):
@@ -133,15 +105,6 @@ def built(model: Model, design: Design, settings: Settings, *, moving: bool) -> 
 def is_given(settings: Settings) -> bool:
     """Return whether settings say how fine the discretisation is, or leave that to the model's accuracy."""
     return getattr(settings, "control_points", 0) is not None
-
-
-def as_solved(
-    model: Model, design: Design, settings: Settings, result: Any, *, moving: bool
-) -> tuple[Any, dict[str, Any]]:
-    """Return what `built` does, with the control points that a result was answered with."""
-    if isinstance(settings, SplineSettings) and not is_given(settings):
-        settings = replace(settings, control_points=result.control_points)
-    return built(model, design, settings, moving=moving)
 
 
 def settings_of(answer: Any) -> Settings:
@@ -165,3 +128,23 @@ def refusals(model: Model, settings: Settings) -> Iterator[None]:
         yield
     except model.errors.InvalidParameter as error:
         raise BadInput(f"{settings.model}: {error}") from None
+
+
+def static_path(model: Model, design: Design, asked: Any, **how: Any) -> Any:
+    """Return the model's static solution of a design, `asked` as `built` returned it.
+
+    The path is the design's own, unless `rotation`, `increments` or `order` say otherwise; the other keywords
+    are those of the model.
+    """
+    given = {"rotation": design.rotation, "increments": design.increments, "order": design.order} | how
+    if isinstance(design, Problem):
+        return model.statics.solve_statics(asked, **given)
+    return model.statics.solve_mechanism(asked, body=design.body, **given)
+
+
+def mode_bodies(modes: Any, names: Sequence[str]) -> Array:
+    """Return the modal displacements of bodies (C, B, 3), which one model holds by name, one by place."""
+    count = len(modes.frequency)
+    if hasattr(modes, "bodies"):
+        return np.array([modes.bodies[name] for name in names]).reshape(-1, count, 3).swapaxes(0, 1)
+    return np.asarray(modes.body_shapes, dtype=float).reshape(count, -1, 3)

@@ -1,14 +1,14 @@
-"""The neutral answer to a release: arrays that do not tell which model they are of."""
+"""The neutral answers to a release and to small motion: arrays that do not tell which model they are of."""
 
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from studies.answers.frequency import Frequency, swing_frequency
-from studies.answers.response import Solved, chosen_by, estimate_of
+from studies.answers.response import Answered, Solved, chosen_by, estimate_of
+from studies.cases.design import Design
 from studies.kinds import Array
 
 #: Arrays that a motion takes over from a model's trajectory as they are.
@@ -42,7 +42,7 @@ class Motion(Solved):
         time: (T,) [s]; empty when statics does not reach the start.
         bodies: (T, 3) by name: centre of mass x, y [m], rotation, counter-clockwise [rad]; a pivot's origin
             is A1.
-        body: name of the one that swings: that was let go.
+        body: name of the one that swings: that was let go; None of strips alone.
         kinetic_energy, strain_energy: (T,) of strips and bodies together [J].
         gravity_energy: (T,) against rest [J]; work, dissipated: (T,) by loads, and lost, since the start [J].
         constraint_residual: (T,) largest gap of clamps [m]; velocity_residual: (T,) its rate [m/s].
@@ -51,7 +51,7 @@ class Motion(Solved):
 
     time: Array
     bodies: dict[str, Array]
-    body: str
+    body: str | None
     kinetic_energy: Array
     strain_energy: Array
     gravity_energy: Array
@@ -64,12 +64,12 @@ class Motion(Solved):
     @property
     def rotation(self) -> Array:
         """(T,) of the body that swings, counter-clockwise [rad]."""
-        return self.bodies[self.body][:, 2]
+        return self.bodies[str(self.body)][:, 2]
 
     @property
     def centre(self) -> Array:
         """(T, 2) centre of mass of the body that swings [m]."""
-        return self.bodies[self.body][:, :2]
+        return self.bodies[str(self.body)][:, :2]
 
     @property
     def energy_error(self) -> float:
@@ -94,34 +94,46 @@ class Motion(Solved):
         return self.swing.value
 
 
-def motion(
-    result: Any, *, bodies: Mapping[str, Array], body: str, energy: float = 0.0, **identity: Any
-) -> Motion:
+def motion(result: Any, *, energy: float = 0.0, **about: Any) -> Motion:
     """Return the neutral form of a model's trajectory; only some say how well they resolve the swing.
 
     Args:
-        bodies: their places by name; body: the one that swings.
         energy: a scale of the design's [J]: a motion without a part of it stands still, and says so. With
             none that is not asked.
-        identity: model, settings, effects and times.
+        about: model, settings, effects, body that swings and times.
     """
     exact, still = np.zeros(len(result.time)), _still(result, energy)
     arrays: dict[str, Any] = {name: getattr(result, name) for name in SHARED_ARRAYS}
     arrays |= {name: getattr(result, name, exact) for name in RESIDUALS}
     arrays = {name: np.asarray(array, dtype=float) for name, array in arrays.items()}
-    identity["settings"] = identity["settings"] | dict(result.settings) | chosen_by(result)
+    about["settings"] = about["settings"] | dict(result.settings) | chosen_by(result)
     return Motion(
         status=str(result.status.value),
         message=result.message or (NOTHING_MOVES if still else ""),
         resolution="" if still else getattr(result, "resolution", ""),
-        bodies={name: np.asarray(place, dtype=float) for name, place in bodies.items()},
-        body=body,
+        bodies={name: np.asarray(place, dtype=float) for name, place in result.bodies.items()},
         solution=result,
         counters=dict(result.counters),
         estimate=estimate_of(result),
         rotation_error=getattr(result, "rotation_error", math.nan),
-        **identity,
+        **about,
         **arrays,
+    )
+
+
+def no_motion(message: str, design: Design, **about: Any) -> Motion:
+    """Return the motion of a design that statics does not bring to the start: without a record."""
+    nothing: dict[str, Any] = {name: np.zeros(0) for name in (*SHARED_ARRAYS, *RESIDUALS)}
+    return Motion(
+        status="not_converged",
+        message=message,
+        resolution="",
+        bodies={body.name: np.zeros((0, 3)) for body in design.bodies},
+        counters={},
+        wall_s=0.0,
+        solve_s=0.0,
+        **about,
+        **nothing,
     )
 
 
@@ -131,18 +143,25 @@ def _still(result: Any, energy: float) -> bool:
     return len(kinetic) > 0 and energy > 0.0 and float(kinetic.max()) <= STILL * energy
 
 
-def no_motion(message: str, *, names: list[str], body: str, **identity: Any) -> Motion:
-    """Return the motion of bodies that statics does not bring to the start: without a record."""
-    nothing: dict[str, Any] = {name: np.zeros(0) for name in (*SHARED_ARRAYS, *RESIDUALS)}
-    return Motion(
-        status="not_converged",
-        message=message,
-        resolution="",
-        bodies={name: np.zeros((0, 3)) for name in names},
-        body=body,
-        counters={},
-        wall_s=0.0,
-        solve_s=0.0,
-        **identity,
-        **nothing,
-    )
+@dataclass(frozen=True, kw_only=True)
+class Spectrum(Answered):
+    """Natural modes of small motion about a static state, F modes, the lowest first.
+
+    Attributes:
+        rotation: of the static state [rad]; held: whether it is held.
+        frequency: (F,) [Hz]; negative where the state is unstable.
+        body: name of the body that may be driven; None without one.
+        body_shapes: (F, 3) its displacement x, y and rotation at unit modal mass.
+        slide_frequency: frequencies that are left out because they are the discretisation's alone [Hz].
+        wall_s: time of the static path to the state and of the modes [s].
+        estimate: of the frequencies' error, by name; None of a model that was not asked for an accuracy.
+    """
+
+    rotation: float
+    held: bool
+    frequency: Array
+    body: str | None
+    body_shapes: Array
+    slide_frequency: Array
+    wall_s: float
+    estimate: dict[str, Any] | None = None

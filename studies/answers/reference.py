@@ -11,7 +11,7 @@ from studies.answers.adapters import answer_release, answer_static
 from studies.answers.frequency import swing_frequency
 from studies.answers.metrics import extrapolate, relative_error, trajectory_error
 from studies.answers.motion import Motion
-from studies.answers.response import MechanismResponse, Response
+from studies.answers.response import Response
 from studies.answers.settings import FeSettings
 from studies.cases.problem import Problem
 from studies.kinds import Array
@@ -82,7 +82,7 @@ def reference(problem: Problem) -> Reference:
     return limit_of([answer_static(problem, FeSettings(elements=count)) for count in MESHES])
 
 
-def limit_of(answers: Sequence[Response | MechanismResponse]) -> Reference:
+def limit_of(answers: Sequence[Response]) -> Reference:
     """Return the limit of finite-element answers, each on twice as many elements as the one before.
 
     Raises:
@@ -113,7 +113,7 @@ def _error_of(name: str) -> Callable[[Array, Array], Array]:
     return trajectory_error if name == "trajectory" else relative_error
 
 
-def errors(answer: Response | MechanismResponse, against: Reference) -> Errors:
+def errors(answer: Response, against: Reference) -> Errors:
     """Return the errors of `answer`, of which only the states it reached count."""
     return Errors(
         trajectory=trajectory_error(answer.centre, against.centre),

@@ -1,4 +1,4 @@
-"""The neutral answers to a static problem: arrays that do not tell which model they came from."""
+"""The neutral answer to a static problem: arrays that do not tell which model they came from."""
 
 from collections.abc import Iterable
 from dataclasses import asdict, dataclass, field
@@ -7,26 +7,25 @@ from typing import Any
 
 import numpy as np
 
-from studies.answers.strength import extreme_fibre_strain
+from studies.answers.strength import moduli_of, strains_of
+from studies.cases.design import Design
 from studies.cases.effects import MOTION_ONLY
-from studies.cases.mechanism import Mechanism
-from studies.cases.problem import Problem
 from studies.kinds import Array
 
-#: Arrays that an answer takes over from a model's solution as they are: of any path, of a pivot's, and of a
-#: mechanism's.
-OF_PATHS = (
+#: Arrays that an answer takes over from a model's solution as they are.
+ARRAYS = (
     "load_factor",
     "torque",
     "stiffness",
     "bending_energy",
     "axial_energy",
+    "shear_energy",
+    "gravity_energy",
+    "work",
     "stations",
     "axial_force",
     "bending_moment",
 )
-OF_PIVOTS = ("rotation", "centre", "clamp_reactions", "shape", "shear_force")
-OF_MECHANISMS = ("gravity_energy", "work")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -39,7 +38,7 @@ class Answered:
         effects: names of what was assembled.
         status: "converged", or how it ended early; `message` says why and where or when, or what a path that
             reached its end has passed.
-        solution: the model's own, which `exchange.solutions` makes fields of; None where there is none.
+        solution: the model's own, which `answers.fields` makes fields of; None where there is none.
     """
 
     model: str
@@ -86,19 +85,22 @@ class Critical:
 
 
 @dataclass(frozen=True, kw_only=True)
-class StaticAnswer(Solved):
-    """A static path of S converged states, that of load factor 0 first.
+class Response(Solved):
+    """A static path of S converged states, that of load factor 0 first; G strips, P stations a strip.
 
     Attributes:
         critical_points: in the order of the path.
-        bodies: (S, 3) by name: centre of mass x, y [m], rotation, counter-clockwise [rad].
+        bodies: (S, 3) by name: centre of mass x, y [m], rotation, counter-clockwise [rad]; a pivot's origin
+            is A1.
         driven: name of the one that may be driven; None without one.
         load_factor: (S,) share of the loads that acts, of the rotation where there are none [1].
         torque: (S,) driving torque [N m]; stiffness: (S,) its derivative from the tangent [N m / rad]; NaN
             where nothing is driven.
         bending_energy, axial_energy, shear_energy: (S,) of all strips [J]; zero without shear.
+        gravity_energy: (S,) against rest [J]; work: (S,) of loads and drives since the first state [J].
         stations: (P,) reference arc length over L [1]; axial_force: (S, G, P) [N]; bending_moment: [N m];
             extreme_fibre_stress: its largest magnitude over the section's depth [Pa].
+        crossing: where a pivot's strips cross at rest [m]; None of a mechanism.
     """
 
     critical_points: tuple[Critical, ...] = ()
@@ -110,20 +112,43 @@ class StaticAnswer(Solved):
     bending_energy: Array
     axial_energy: Array
     shear_energy: Array
+    gravity_energy: Array
+    work: Array
     stations: Array
     axial_force: Array
     bending_moment: Array
     extreme_fibre_stress: Array
+    crossing: tuple[float, float] | None = None
 
     @property
-    def strain_energy(self) -> Array:
-        """(S,) bending, axial and shear energy together [J]."""
-        return self.bending_energy + self.axial_energy + self.shear_energy
+    def rotation(self) -> Array:
+        """(S,) of the body that may be driven, counter-clockwise [rad]."""
+        return self.bodies[str(self.driven)][:, 2]
+
+    @property
+    def centre(self) -> Array:
+        """(S, 2) centre of mass of the body that may be driven [m]."""
+        return self.bodies[str(self.driven)][:, :2]
 
     @property
     def centres(self) -> dict[str, Array]:
         """(S, 2) centres of mass of the bodies by name [m]."""
         return {name: place[:, :2] for name, place in self.bodies.items()}
+
+    @property
+    def centre_shift(self) -> Array:
+        """(S, 2) displacement of a pivot's point that lies at the strips' crossing at rest [m]."""
+        return centre_shift(np.array(self.crossing), self.rotation, self.centre)
+
+    @property
+    def shape(self) -> Array:
+        """(S, G, P, 2) of the strips at the stations [m]."""
+        return np.asarray(self.solution.shape)
+
+    @property
+    def strain_energy(self) -> Array:
+        """(S,) bending, axial and shear energy together [J]."""
+        return self.bending_energy + self.axial_energy + self.shear_energy
 
     @property
     def max_stress(self) -> Array:
@@ -137,101 +162,30 @@ class StaticAnswer(Solved):
         return np.asarray(self.solution.body_stiffness(self.driven))
 
 
-@dataclass(frozen=True, kw_only=True)
-class Response(StaticAnswer):
-    """Static answer over S converged states (the unloaded one first), G = 2 strips, P stations a strip.
+def response(design: Design, result: Any, **about: Any) -> Response:
+    """Return the neutral form of a model's path, with what follows from it and the given data.
 
-    Attributes:
-        rotation: (S,) of the body, counter-clockwise [rad].
-        centre: (S, 2) centre of mass of the body, origin at A1 [m].
-        clamp_reactions: (S, G, 2, 3) force x, force y [N], moment [N m] by the clamp on the strip, ground end
-            first.
-        shape: (S, G, P, 2) [m]; shear_force: (S, G, P) [N].
-        centre_shift: (S, 2) displacement of the body's point that lies at the strips' crossing at rest [m].
-        history: residual norms of every increment.
+    about: model, settings, effects and times.
     """
-
-    rotation: Array
-    centre: Array
-    clamp_reactions: Array
-    shape: Array
-    shear_force: Array
-    centre_shift: Array
-    history: tuple[tuple[float, ...], ...]
-
-
-@dataclass(frozen=True, kw_only=True)
-class MechanismResponse(StaticAnswer):
-    """Static answer of a mechanism over S converged states, that of load factor 0 first.
-
-    Attributes:
-        gravity_energy: (S,) against rest [J]; work: (S,) of loads and drives since the first state [J].
-    """
-
-    gravity_energy: Array
-    work: Array
-
-    @property
-    def centre(self) -> Array:
-        """(S, 2) centre of mass of the body that may be driven [m]."""
-        return self.centres[str(self.driven)]
-
-    @property
-    def rotation(self) -> Array:
-        """(S,) of the body that may be driven [rad]."""
-        return self.bodies[str(self.driven)][:, 2]
-
-
-def response(problem: Problem, result: Any, **identity: Any) -> Response:
-    """Return the neutral form of a model's path of a pivot, with what follows from it and the given data.
-
-    identity: model, settings, effects and times.
-    """
-    given = _common(result, OF_PIVOTS, identity)
-    strain = extreme_fibre_strain(problem, given["axial_force"], given["bending_moment"])
+    arrays: dict[str, Any] = {name: np.asarray(getattr(result, name), dtype=float) for name in ARRAYS}
+    about["settings"] = about["settings"] | chosen_by(result)
+    about["effects"] = assembled(about["effects"])
+    strain = strains_of(design, arrays["axial_force"], arrays["bending_moment"])
     return Response(
-        driven="body",
-        centre_shift=centre_shift(problem, given["rotation"], given["centre"]),
-        extreme_fibre_stress=problem.youngs_modulus * strain,
-        history=result.history,
-        **given,
-    )
-
-
-def mechanism_response(design: Mechanism, result: Any, **identity: Any) -> MechanismResponse:
-    """Return the neutral form of a model's path of a mechanism; identity: model, settings and times."""
-    given = _common(result, OF_MECHANISMS, {**identity, "effects": result.effects})
-    forces = np.moveaxis(given["axial_force"], 1, 0), np.moveaxis(given["bending_moment"], 1, 0)
-    stress = [
-        strip.youngs_modulus * extreme_fibre_strain(strip, *each)
-        for strip, *each in zip(design.strips, *forces, strict=True)
-    ]
-    return MechanismResponse(
+        status=str(result.status.value),
+        message=result.message,
+        solution=result,
+        bodies={name: np.asarray(place, dtype=float) for name, place in result.bodies.items()},
         driven=design.body,
-        extreme_fibre_stress=np.stack(stress, axis=1),
-        **given,
-    )
-
-
-def _common(result: Any, names: tuple[str, ...], identity: dict[str, Any]) -> dict[str, Any]:
-    """Return what both answers have alike, and the arrays of these names."""
-    arrays = {name: np.asarray(getattr(result, name), dtype=float) for name in (*OF_PATHS, *names)}
-    shear = getattr(result, "shear_energy", np.zeros_like(arrays["torque"]))  # only elements may have it
-    return {
-        **identity,
-        "settings": identity["settings"] | chosen_by(result),
-        "effects": assembled(identity["effects"]),
-        "status": str(result.status.value),
-        "message": result.message,
-        "solution": result,
-        "bodies": {name: np.asarray(place, dtype=float) for name, place in result.bodies.items()},
-        "resolution": getattr(result, "resolution", ""),
-        "critical_points": _critical_of(result),
-        "counters": dict(result.counters),
-        "estimate": estimate_of(result),
-        "shear_energy": np.asarray(shear, dtype=float),
+        resolution=getattr(result, "resolution", ""),
+        critical_points=_critical_of(result),
+        counters=dict(result.counters),
+        estimate=estimate_of(result),
+        extreme_fibre_stress=moduli_of(design)[:, None] * strain,
+        crossing=getattr(design, "crossing_point", None),
+        **about,
         **arrays,
-    }
+    )
 
 
 def _critical_of(result: Any) -> tuple[Critical, ...]:
@@ -264,22 +218,24 @@ def assembled(names: Iterable[str]) -> tuple[str, ...]:
     return tuple(name for name in names if name not in MOTION_ONLY)
 
 
-def centre_shift(problem: Problem, rotation: Array, centre: Array) -> Array:
+def centre_shift(crossing: Any, rotation: Array, centre: Array) -> Array:
     """Return the displacement of the body's point that lies at the strips' crossing at rest.
 
     With x_c the crossing point at rest, g the centre of mass and R the rotation of the body,
     shift = g + R (x_c - g_0) - x_c, where g_0 is the centre at rest, the first state.
 
     Args:
-        problem: gives the crossing point.
-        rotation: (S,) [rad].
-        centre: (S, 2) [m].
+        crossing: x_c (..., 2) [m], of one path or side by side of several.
+        rotation: (..., S) [rad].
+        centre: (..., S, 2) [m].
 
     Returns:
-        (S, 2) [m].
+        (..., S, 2) [m].
     """
-    crossing = np.array(problem.crossing_point)
-    arm = crossing - centre[0]
+    crossing = np.asarray(crossing)[..., None, :]
+    arm = crossing - centre[..., :1, :]
     cosine, sine = np.cos(rotation), np.sin(rotation)
-    turned = np.stack((cosine * arm[0] - sine * arm[1], sine * arm[0] + cosine * arm[1]), axis=-1)
+    turned = np.stack(
+        (cosine * arm[..., 0] - sine * arm[..., 1], sine * arm[..., 0] + cosine * arm[..., 1]), axis=-1
+    )
     return np.asarray(centre + turned - crossing)

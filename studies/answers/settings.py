@@ -71,3 +71,13 @@ class FeSettings:
 
 
 Settings = SplineSettings | FeSettings
+
+#: Models as commands name them.
+MODELS = ("spline", "fe", "fe-shear")
+
+
+def settings_of_model(model: str, **given: Any) -> Settings:
+    """Return the settings of a model by its name: those that are given, the others as they are by default."""
+    if model == "spline":
+        return SplineSettings(**given)
+    return FeSettings(element="reissner" if model == "fe-shear" else "corotational", **given)

@@ -1,8 +1,7 @@
 """What the material says to an answer: stress at the outer fibres, where it is largest, where it yields."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -12,7 +11,7 @@ from studies.cases.problem import Problem
 from studies.kinds import Array
 
 if TYPE_CHECKING:
-    from studies.answers.response import StaticAnswer
+    from studies.answers.response import Response
 
 #: Part of a strip within which a place is its root, its middle or its tip.
 NEAR = 0.02
@@ -50,12 +49,12 @@ class Strength:
         return f"at {self.station:.2f} of its length"
 
 
-def strength(design: Design, answer: "StaticAnswer") -> Strength:
+def strength(design: Design, answer: "Response") -> Strength:
     """Return the largest stress of an answer to a design, and what of its path the material bears.
 
     Between states the share of the yield strength is interpolated monotonically, by cubics.
     """
-    stress, limits = answer.extreme_fibre_stress, yield_strengths(design)
+    stress, limits = answer.extreme_fibre_stress, [strip.yield_strength for strip in design.strips]
     first = int(np.argmax(stress >= (1.0 - SAME) * stress.max()))
     state, strip, station = map(int, np.unravel_index(first, stress.shape))
     places = np.stack((answer.load_factor, _turns(answer)), axis=1)
@@ -63,7 +62,7 @@ def strength(design: Design, answer: "StaticAnswer") -> Strength:
     share = (stress.max(axis=2) / np.array(limits, dtype=float)).max(axis=1) if known else None
     return Strength(
         stress=float(stress.max()),
-        strip=_names(design)[strip],
+        strip=design.strips[strip].name,
         station=float(answer.stations[station]),
         load_factor=float(places[state, 0]),
         rotation=float(places[state, 1]),
@@ -71,12 +70,6 @@ def strength(design: Design, answer: "StaticAnswer") -> Strength:
         safety=float(1.0 / share.max()) if share is not None and share.max() > 0.0 else None,
         yields=None if share is None else _crossed(share, places),
     )
-
-
-def yield_strengths(design: Design) -> Sequence[float | None]:
-    """Return the yield strength of every strip [Pa]; None where none is given."""
-    parts: tuple[Any, ...] = (design, design) if isinstance(design, Problem) else design.strips
-    return tuple(part.yield_strength for part in parts)
 
 
 def extreme_fibre_strain(strip: Problem | Strip, axial_force: Array, bending_moment: Array) -> Array:
@@ -92,19 +85,24 @@ def extreme_fibre_strain(strip: Problem | Strip, axial_force: Array, bending_mom
         bending_moment: M, the same shape [N m].
     """
     modulus, inertia = strip.youngs_modulus, strip.second_moment_of_area
-    depth = strip.depth if isinstance(strip, Problem) else np.sqrt(12.0 * inertia / strip.area)
     axial = axial_force / (modulus * strip.area)
-    bending = bending_moment * depth / (2.0 * modulus * inertia)
+    bending = bending_moment * strip.depth / (2.0 * modulus * inertia)
     return np.asarray(np.abs(axial) + np.abs(bending))
 
 
-def _names(design: Design) -> tuple[str, ...]:
-    if isinstance(design, Problem):
-        return "strip_1", "strip_2"
-    return tuple(strip.name for strip in design.strips)
+def strains_of(design: Design, axial_force: Array, bending_moment: Array) -> Array:
+    """Return the extreme fibre strains of all strips (S, G, P) [1], of their forces (S, G, P) [N, N m]."""
+    forces = zip(np.moveaxis(axial_force, 1, 0), np.moveaxis(bending_moment, 1, 0), strict=True)
+    each = [extreme_fibre_strain(strip, *own) for strip, own in zip(design.strips, forces, strict=True)]
+    return np.stack(each, axis=1)
 
 
-def _turns(answer: "StaticAnswer") -> Array:
+def moduli_of(design: Design) -> Array:
+    """Return Young's modulus of every strip (G,) [Pa]."""
+    return np.array([strip.youngs_modulus for strip in design.strips])
+
+
+def _turns(answer: "Response") -> Array:
     """Return the rotation of the body that is driven or may be (S,); NaN without a body."""
     if answer.driven is None:
         return np.full(len(answer.load_factor), np.nan)

@@ -14,7 +14,6 @@ from typing import Any
 import numpy as np
 
 from studies.cases.design import Design
-from studies.cases.problem import Problem
 
 #: Effects that take in what a plain beam leaves out.
 CLAMPED_WIDTH, ANTICLASTIC, ROOTS = "clamped_width", "anticlastic", "root_compliance"
@@ -92,7 +91,7 @@ class Strip:
     @property
     def turned_roots(self) -> Any:
         """Stiffness that two roots from the same block take [1]."""
-        from spline_model.effects.by_name import MONOLITHIC
+        from spline_model.effects.registry import MONOLITHIC
 
         return 1.0 - 1.0 / (1.0 + 2.0 * MONOLITHIC * self.thickness_ratio)
 
@@ -108,7 +107,7 @@ def anticlastic_factor(ratio: Any, poisson_ratio: Any) -> Any:
 @cache
 def _plate(ratio: float, poisson_ratio: float) -> tuple[float, float]:
     from spline_model.effects.curl import WIDTHS
-    from spline_model.plate.factors import plate_factors
+    from spline_model.effects.plate import plate_factors
 
     constant, linear = plate_factors(min(max(ratio, WIDTHS[0]), WIDTHS[1]), poisson_ratio)
     return constant - 1.0, linear - 1.0
@@ -254,27 +253,24 @@ def passed(strips: Iterable[Strip], effects: Iterable[str]) -> Any:
 
 
 def strips_of(design: Design, forces: Any = None, yield_strength: float | None = None) -> list[Strip]:
-    """Return the strips of a design, those of a pivot as one, with the most that an answer says of them."""
-    parts: Any = (design,) if isinstance(design, Problem) else design.strips
+    """Return the strips of a design, with the most that an answer says of them."""
     found = []
-    for i, part in enumerate(parts):
-        rectangle = math.sqrt(12.0 * part.second_moment_of_area / part.area)
-        depth = part.depth if isinstance(part, Problem) else rectangle
+    for i, part in enumerate(design.strips):
         strip = Strip(
-            length=part.length if isinstance(part, Problem) else math.dist(part.start, part.end),
-            thickness=depth,
-            width=part.area / depth,
+            length=part.length,
+            thickness=part.depth,
+            width=part.area / part.depth,
             youngs_modulus=part.youngs_modulus,
             poisson_ratio=part.poisson_ratio,
             density=part.density,
             yield_strength=yield_strength or part.yield_strength or math.inf,
         )
         if forces is not None:
-            own = slice(None) if isinstance(design, Problem) else slice(i, i + 1)
-            rigidity = part.youngs_modulus * part.second_moment_of_area
-            curvature = np.abs(forces.bending_moment[:, own]) / rigidity
-            axial = np.abs(forces.axial_force[:, own]) / (part.youngs_modulus * part.area)
-            strain = float((axial + 0.5 * depth * curvature).max(initial=0.0))
+            curvature = np.abs(forces.bending_moment[:, i]) / (
+                part.youngs_modulus * part.second_moment_of_area
+            )
+            axial = np.abs(forces.axial_force[:, i]) / (part.youngs_modulus * part.area)
+            strain = float((axial + 0.5 * part.depth * curvature).max(initial=0.0))
             strip = replace(strip, strain=strain, curvature=float(curvature.max(initial=0.0)))
         found.append(strip)
     return found

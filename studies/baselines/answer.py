@@ -3,8 +3,8 @@
 import math
 import time
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
-from typing import Any
+from dataclasses import dataclass, replace
+from typing import Any, Self
 
 import numpy as np
 
@@ -23,14 +23,16 @@ class Followed:
     """What path and motion of any model say of how they came about.
 
     Attributes:
-        solve_s: median time of the increments or steps alone [s]: without set-up, without the static path to
-            a release, and without reading the answer.
         work: counters of the solve, by kind; "unknowns" is the size of its system.
+        again: solves once more and returns the time of the increments or steps alone [s]: without set-up,
+            without the static path to a release, and without reading the answer.
+        solve_s: median of such times [s], NaN of what was not timed.
         status: "converged" or how it ended; message: why and where or when it stopped.
     """
 
-    solve_s: float
     work: Mapping[str, float]
+    again: Callable[[], float] = lambda: math.nan
+    solve_s: float = math.nan
     status: str = "converged"
     message: str = ""
 
@@ -38,6 +40,19 @@ class Followed:
     def converged(self) -> bool:
         """Whether it was followed to its end."""
         return self.status == "converged"
+
+    def seconds(self, repeat: int) -> tuple[float, ...]:
+        """Return times of so many solves [s]; one that does not count comes before when there are several.
+
+        Raises:
+            BadInput: `repeat` below 1.
+        """
+        checked_count("repeat", repeat, 1)
+        return measure(self.again, repeat=repeat, warm_up=1 if repeat > 1 else 0, part=float).parts
+
+    def timed(self, repeat: int) -> Self:
+        """Return the same with its median time."""
+        return replace(self, solve_s=float(np.median(self.seconds(repeat))))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -113,23 +128,16 @@ def checked_count(name: str, value: Any, least: int) -> None:
         raise BadInput(f"{name}: got {value!r}, expected a whole number of at least {least}")
 
 
-def median_seconds(prepare: Callable[[], Callable[[], Any]], repeat: int) -> float:
-    """Return the median time [s] of what `prepare` returns, each time prepared afresh and untimed.
+def clocked(prepare: Callable[[], Callable[[], Any]]) -> Callable[[], float]:
+    """Return what times [s] what `prepare` returns, each time prepared afresh and untimed."""
 
-    Garbage collection is off; a run that does not count comes before when `repeat` is above 1.
-
-    Raises:
-        BadInput: `repeat` below 1.
-    """
-    checked_count("repeat", repeat, 1)
-
-    def work() -> float:
+    def again() -> float:
         prepared = prepare()
         begin = time.perf_counter()
         prepared()
         return time.perf_counter() - begin
 
-    return measure(work, repeat=repeat, warm_up=1 if repeat > 1 else 0, part=float).median_part
+    return again
 
 
 #: The effects of a scene that baselines can stand for: what they leave out of these is their error.

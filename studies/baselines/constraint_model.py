@@ -23,7 +23,7 @@ STEP = 0.1
 
 
 @dataclass(frozen=True, kw_only=True)
-class State:
+class _State:
     """Equilibria at S rotations: the body's place (S, 2) [L], V, V', V'' (S,) [EI/L] and M (S,) [kg L^2]."""
 
     place: Array
@@ -34,12 +34,12 @@ class State:
 
 
 @dataclass(frozen=True, kw_only=True)
-class ConstraintModel:
+class _ConstraintModel:
     """The law of one pivot by its data and its strips; see `studies.baselines.one_coordinate.Law`."""
 
     problem: Problem
     strips: Strips
-    _last: dict[bytes, State] = field(default_factory=dict, repr=False)
+    _last: dict[bytes, _State] = field(default_factory=dict, repr=False)
 
     def centre(self, p: Array) -> Array:
         """Return the centre of mass; solves the equilibria, which the others then read."""
@@ -68,7 +68,7 @@ class ConstraintModel:
         given = self.problem
         return given.youngs_modulus * given.second_moment_of_area / given.length
 
-    def _states(self, p: Array) -> State:
+    def _states(self, p: Array) -> _State:
         """Return the equilibria at rotations (S,), each reached from rest in equal steps."""
         key = np.asarray(p, dtype=float).tobytes()
         if key not in self._last:
@@ -83,14 +83,14 @@ class ConstraintModel:
             self._last[key] = self._state(y, slope)
         return self._last[key]
 
-    def _state(self, y: Array, slope: Array) -> State:
+    def _state(self, y: Array, slope: Array) -> _State:
         """Return the answers at equilibria with the derivative of their coordinates by the rotation."""
         energy, gradient, hessian = self.strips.assembled(y)
         given = self.problem
         speed = np.einsum("si,si->s", slope[:, -3:-1], slope[:, -3:-1])
         mass = given.density * given.area * given.length
         turning = given.body_moment_of_inertia / given.length**2
-        return State(
+        return _State(
             place=y[:, -3:-1],
             energy=energy,
             torque=gradient[:, -1],
@@ -99,10 +99,10 @@ class ConstraintModel:
         )
 
 
-def with_beams(count: int) -> Callable[[Problem], ConstraintModel]:
+def with_beams(count: int) -> Callable[[Problem], _ConstraintModel]:
     """Return what makes the law of a pivot with so many beams a strip."""
 
-    def law(problem: Problem) -> ConstraintModel:
+    def law(problem: Problem) -> _ConstraintModel:
         at_rest, length = geometry_of(problem), problem.length
         strips = Strips(
             root=at_rest.root / length,
@@ -111,7 +111,7 @@ def with_beams(count: int) -> Callable[[Problem], ConstraintModel]:
             compliance=problem.second_moment_of_area / (problem.area * length**2),
             count=count,
         )
-        return ConstraintModel(problem=problem, strips=strips)
+        return _ConstraintModel(problem=problem, strips=strips)
 
     return law
 

@@ -38,7 +38,7 @@ CUBIC = np.array([[156, 22, 54, -13], [22, 4, 13, -3], [54, 13, 156, -22], [-13,
 TOLERANCE, ITERATIONS = 1e-10, 40
 
 
-def element(u: Array, v: Array, compliance: float) -> tuple[Array, Array, Array]:
+def _element(u: Array, v: Array, compliance: float) -> tuple[Array, Array, Array]:
     """Return V (S,), its gradient (S, 3) and its Hessian (S, 3, 3) by (u, y, theta).
 
     Args:
@@ -69,7 +69,7 @@ def placed(
     across = np.stack((-along[:, 1], along[:, 0]), axis=1)
     apart = (end - start)[:, :2] / length
     x, y = (apart * along).sum(axis=1), (apart * across).sum(axis=1)
-    values, gradient, hessian = element(x - 1.0, np.stack((y, end[:, 2] - start[:, 2]), axis=1), compliance)
+    values, gradient, hessian = _element(x - 1.0, np.stack((y, end[:, 2] - start[:, 2]), axis=1), compliance)
     frame = np.stack((along, across), axis=1) / length
     jacobian = np.zeros((len(x), 3, 6))
     jacobian[:, :2, :2], jacobian[:, :2, 3:5] = -frame, frame

@@ -30,7 +30,7 @@ from studies.baselines.answer import (
     checked_choice,
     checked_release,
     checked_rotations,
-    median_seconds,
+    clocked,
 )
 from studies.cases.problem import Problem
 from studies.kinds import Array
@@ -63,7 +63,7 @@ class System:
     reaction: int
 
 
-class Strips(Protocol):
+class _Strips(Protocol):
     """A frozen dataclass of how strips are discretised, which refuses what it cannot be."""
 
     def system(self, problem: Problem) -> System:
@@ -75,7 +75,7 @@ class Exudyn:
     """A kind of strip as a baseline: its name; keywords in `settings` are those of the strips."""
 
     model: str
-    strips: Callable[..., Strips]
+    strips: Callable[..., _Strips]
 
     def installed(self) -> bool:
         """Return whether Exudyn can be imported."""
@@ -86,7 +86,6 @@ class Exudyn:
         problem: Problem,
         rotations: Any,
         *,
-        repeat: int = 1,
         relative_tolerance: float = 1e-8,
         solver: str = "tuned",
         **settings: Any,
@@ -94,7 +93,6 @@ class Exudyn:
         """Drive the body through `rotations` (S,) [rad], the first of which is 0, one load step each.
 
         Args:
-            repeat: timed solves of the whole path [1].
             relative_tolerance: of Newton's residual against that at the step's start [1].
             solver: "tuned", or "as delivered" for Exudyn's own defaults but for files and messages.
 
@@ -113,7 +111,7 @@ class Exudyn:
             centre=centre,
             torque=torque,
             stiffness=np.full(len(turns), np.nan),
-            solve_s=median_seconds(_again(system, system.exu.MainSolverStatic, asked), repeat),
+            again=_again(system, system.exu.MainSolverStatic, asked),
             work=_work(solved),
         )
 
@@ -124,7 +122,6 @@ class Exudyn:
         start: float,
         duration: float,
         step: float,
-        repeat: int = 1,
         relative_tolerance: float = 1e-4,
         spectral_radius: float = 0.9,
         **settings: Any,
@@ -146,24 +143,23 @@ class Exudyn:
         _checked(system, solver, lambda: solver.SolveSystem(system.mbs, moving))
         record = np.array(system.mbs.GetSensorStoredData(system.place))
         moving.solution.sensors.active = False
-        again = _again(system, system.exu.MainSolverImplicitSecondOrder, moving)
         return SolvedMotion(
             time=record[:, 0],
             rotation=record[:, 3],
-            solve_s=median_seconds(again, repeat),
+            again=_again(system, system.exu.MainSolverImplicitSecondOrder, moving),
             work=_work(solver) | {"steps": steps},
         )
 
 
-def _again(system: System, make: Callable[[], Any], asked: Any) -> Callable[[], Callable[[], Any]]:
-    """Return what prepares one more run of a solver, whose steps alone are timed."""
+def _again(system: System, make: Callable[[], Any], asked: Any) -> Callable[[], float]:
+    """Return what times the steps alone of one more run of a solver."""
 
     def prepare() -> Callable[[], Any]:
         fresh = make()
         fresh.InitializeSolver(system.mbs, asked)
         return lambda: fresh.SolveSteps(system.mbs, asked)
 
-    return prepare
+    return clocked(prepare)
 
 
 def _hold_at(system: System, start: float) -> None:

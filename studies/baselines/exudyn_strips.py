@@ -47,7 +47,7 @@ from studies.kinds import Array
 SHEAR_CORRECTION = 5.0 / 6.0
 
 
-def loaded() -> tuple[Any, Any]:
+def _loaded() -> tuple[Any, Any]:
     """Return Exudyn, in its build without range checks, and its items."""
     vars(sys)["exudynFast"] = True  # asks for the fast build
     with contextlib.redirect_stdout(io.StringIO()):  # it announces the build
@@ -63,7 +63,7 @@ def _system_of(problem: Problem, strip: Callable[..., tuple[int, float]]) -> Sys
     `strip(items, mbs, ground, root, direction)` adds one with its clamp, `ground` being a marker of a
     coordinate that is zero, and returns the number of the last node and the angle of its axes at rest [rad].
     """
-    exu, items = loaded()
+    exu, items = _loaded()
     at_rest = geometry_of(problem)
     container = exu.SystemContainer()
     mbs = container.AddSystem()
@@ -112,7 +112,7 @@ def _hold(items: Any, mbs: Any, zero: int, node: int, coordinate: int) -> None:
 
 
 @dataclass(frozen=True)
-class Cables:
+class _Cables:
     """Strips of ANCF cables: elements a strip [1]; integration: rule, 0, 1 or 2."""
 
     elements: int = 8
@@ -167,7 +167,7 @@ def _clamp(items: Any, mbs: Any, zero: int, node: int, direction: Array) -> None
 
 
 @dataclass(frozen=True)
-class Beams:
+class _Beams:
     """Strips of exact beams: elements a strip, nodes of an element, 2 or 3, and a factor on k G A [1]."""
 
     elements: int = 4
@@ -212,5 +212,5 @@ class Beams:
         return _system_of(problem, strip)
 
 
-exudyn_ancf = Exudyn(model="exudyn ancf", strips=Cables)
-exudyn_exact = Exudyn(model="exudyn exact", strips=Beams)
+exudyn_ancf = Exudyn(model="exudyn ancf", strips=_Cables)
+exudyn_exact = Exudyn(model="exudyn exact", strips=_Beams)

@@ -52,7 +52,7 @@ def spring(problem: Problem) -> float:
 
 
 @dataclass(frozen=True, kw_only=True)
-class FourBar:
+class _FourBar:
     """The law of one pivot; see `studies.baselines.one_coordinate.Law`.
 
     Attributes:
@@ -141,14 +141,14 @@ class FourBar:
         return 1j * w * (height - sine), 1j * (w_1 * (height - sine) + w * height_1)
 
 
-def _law(problem: Problem) -> FourBar:
+def _law(problem: Problem) -> _FourBar:
     """Return the law of a pivot."""
     at_rest, link = geometry_of(problem), link_length(problem) * problem.length
     left = 0.5 * (problem.length - link)
     ground = problem.crossing_ratio * problem.length - left
     body = (1.0 - problem.crossing_ratio) * problem.length - left
     linear = problem.density * problem.area
-    return FourBar(
+    return _FourBar(
         at_rest=at_rest,
         inclination=problem.inclination,
         ground=ground,

@@ -65,7 +65,7 @@ def stiffness_coefficient(ratio: float) -> float:
 
 
 @dataclass(frozen=True, kw_only=True)
-class LinearPivot:
+class _LinearPivot:
     """The law of one pivot with a constant stiffness; see `studies.baselines.one_coordinate.Law`."""
 
     at_rest: Geometry
@@ -103,13 +103,13 @@ class LinearPivot:
         return np.asarray(self.turning_inertia + self.mass * (x**2 + y**2))
 
 
-def _linear_law(problem: Problem) -> LinearPivot:
+def _linear_law(problem: Problem) -> _LinearPivot:
     """Return the law of the linear pivot."""
     away = 1.0 - problem.crossing_ratio
     b, c = 3.0 * away - 1.0, 1.0 - 2.0 * away
     strip = problem.density * problem.area * problem.length**3
     strips = 2.0 * strip * (b**2 / 5.0 + b * c / 3.0 + c**2 / 7.0)
-    return LinearPivot(
+    return _LinearPivot(
         at_rest=geometry_of(problem),
         constant=small_angle_stiffness(problem),
         shift=shift_coefficient(problem),
@@ -118,7 +118,7 @@ def _linear_law(problem: Problem) -> LinearPivot:
     )
 
 
-def _pinned_law(problem: Problem) -> LinearPivot:
+def _pinned_law(problem: Problem) -> _LinearPivot:
     """Return the law of the pin joint: that of the linear pivot without a shift.
 
     Raises:
@@ -134,7 +134,7 @@ def _pinned_law(problem: Problem) -> LinearPivot:
         raise BadInput(f"{PIN_JOINT}: got height / width {ratio:.3g}, expected {RANGE[0]:g} to {RANGE[1]:g}")
     rigidity = problem.youngs_modulus * problem.second_moment_of_area
     strips = 2.0 * problem.density * problem.area * (0.5 * problem.length) ** 3 / 3.0
-    return LinearPivot(
+    return _LinearPivot(
         at_rest=geometry_of(problem),
         constant=stiffness_coefficient(ratio) * rigidity / (2.0 * problem.length),
         shift=0.0,

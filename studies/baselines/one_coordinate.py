@@ -22,7 +22,7 @@ from studies.baselines.answer import (
     SolvedPath,
     checked_release,
     checked_rotations,
-    median_seconds,
+    clocked,
 )
 from studies.cases.problem import Problem
 from studies.kinds import Array
@@ -54,7 +54,7 @@ class Law(Protocol):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Series:
+class _Series:
     """Chebyshev series of M, M' and V' in p / reach."""
 
     reach: float
@@ -74,7 +74,7 @@ class Surrogate:
         """Return True: the model is of this package."""
         return True
 
-    def static_path(self, problem: Problem, rotations: Any, *, repeat: int = 1) -> SolvedPath:
+    def static_path(self, problem: Problem, rotations: Any) -> SolvedPath:
         """Return the path through `rotations` (S,) [rad], the first of which is 0.
 
         Timed is the evaluation of place, V' and V''.
@@ -87,20 +87,17 @@ class Surrogate:
         def evaluate() -> tuple[Array, Array, Array]:
             return law.centre(turns), law.torque(turns), law.stiffness(turns)
 
-        seconds = median_seconds(lambda: evaluate, repeat)
         centre, torque, stiffness = evaluate()
         return SolvedPath(
             rotation=turns,
             centre=centre,
             torque=torque,
             stiffness=stiffness,
-            solve_s=seconds,
+            again=clocked(lambda: evaluate),
             work={"unknowns": 1},
         )
 
-    def release(
-        self, problem: Problem, *, start: float, duration: float, step: float, repeat: int = 1
-    ) -> SolvedMotion:
+    def release(self, problem: Problem, *, start: float, duration: float, step: float) -> SolvedMotion:
         """Return the motion after a release at rest at `start` [rad] for `duration` in steps of `step` [s].
 
         Timed is the compiled integration alone.
@@ -112,21 +109,20 @@ class Surrogate:
         series = series_of(law, abs(start) or 1.0)
         states = np.empty((steps + 1, 2))
         tables = (series.reach, series.inertia, series.inertia_rate, series.torque)
-        integrate(start, duration / steps, states[:1], *tables)  # compiles
 
         def run() -> None:
             integrate(start, duration / steps, states, *tables)
 
-        seconds = median_seconds(lambda: run, repeat)
+        run()
         return SolvedMotion(
             time=np.linspace(0.0, duration, steps + 1),
             rotation=states[:, 0].copy(),
-            solve_s=seconds,
+            again=clocked(lambda: run),
             work={"unknowns": 1, "steps": steps, "evaluations": 4 * steps},
         )
 
 
-def series_of(law: Law, amplitude: float) -> Series:
+def series_of(law: Law, amplitude: float) -> _Series:
     """Return the series of a law for swings up to an amplitude [rad]."""
     reach = (1.0 + MARGIN) * amplitude
     u = np.asarray(chebyshev.chebpts1(DEGREE + 1), dtype=float)
@@ -137,7 +133,7 @@ def series_of(law: Law, amplitude: float) -> Series:
         return terms[: kept[-1] + 1]
 
     inertia = fitted(law.inertia)
-    return Series(
+    return _Series(
         reach=reach,
         inertia=inertia,
         inertia_rate=np.asarray(chebyshev.chebder(inertia), dtype=float) / reach,

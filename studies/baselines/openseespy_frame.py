@@ -33,8 +33,8 @@ from studies.baselines.answer import (
     checked_count,
     checked_release,
     checked_rotations,
+    clocked,
     geometry_of,
-    median_seconds,
 )
 from studies.cases.problem import Problem
 from studies.errors import BadInput
@@ -54,14 +54,14 @@ BODY = 1
 def installed() -> bool:
     """Return whether OpenSees can be imported."""
     try:
-        loaded()
+        _loaded()
     except (ImportError, OSError, RuntimeError):
         return False
     return True
 
 
 @cache
-def loaded() -> Any:
+def _loaded() -> Any:
     """Return OpenSees' commands; its own library of linear algebra is loaded first, lest it is not found."""
     place = importlib.util.find_spec("openseespylinux")
     if place is not None and place.origin is not None:
@@ -74,14 +74,13 @@ def loaded() -> Any:
 
 
 def static_path(
-    problem: Problem, rotations: Any, *, repeat: int = 1, elements: int = 20, tolerance: float = 1e-8
+    problem: Problem, rotations: Any, *, elements: int = 20, tolerance: float = 1e-8
 ) -> SolvedPath:
     """Drive the body through `rotations` [rad], equal increments from 0.
 
     Args:
         problem: the pivot.
         rotations: (S,) [rad].
-        repeat: timed solves of the whole path [1].
         elements: a strip [1].
         tolerance: of the energy of Newton's last iteration, in EI/L [1].
 
@@ -98,7 +97,6 @@ def static_path(
         ops = _driven(problem, asked, float(increments[0]), moving=False)
         return lambda: ops.analyze(len(increments))
 
-    seconds = median_seconds(prepare, repeat)
     ops = _driven(problem, asked, float(increments[0]), moving=False)
     states, iterations = [np.zeros(3)], 0
     for turn in turns[1:]:
@@ -112,7 +110,7 @@ def static_path(
         centre=geometry_of(problem).centre + answer[:, :2],
         torque=answer[:, 2],
         stiffness=np.full(len(turns), np.nan),
-        solve_s=seconds,
+        again=clocked(prepare),
         work={
             "unknowns": ops.systemSize(),
             "newton_iterations": iterations,
@@ -127,7 +125,6 @@ def release(
     start: float,
     duration: float,
     step: float,
-    repeat: int = 1,
     elements: int = 20,
     tolerance: float = 1e-8,
     alpha: float = 0.9,
@@ -147,7 +144,6 @@ def release(
         ops = _let_go(problem, asked, start)
         return lambda: ops.analyze(steps, duration / steps)
 
-    seconds = median_seconds(prepare, repeat)
     ops = _let_go(problem, asked, start)
     rotation, iterations = np.full(steps + 1, start), 0
     for row in range(1, steps + 1):
@@ -158,7 +154,7 @@ def release(
     return SolvedMotion(
         time=np.linspace(0.0, duration, steps + 1),
         rotation=rotation,
-        solve_s=seconds,
+        again=clocked(prepare),
         work={
             "unknowns": ops.systemSize(),
             "newton_iterations": iterations,
@@ -171,7 +167,7 @@ def release(
 def _build(problem: Problem, elements: int, *, moving: bool) -> Any:
     """Make nodes, strips and body anew, OpenSees having one model at a time; with masses if it is to move."""
     checked_count("elements", elements, 1)
-    ops, at_rest = loaded(), geometry_of(problem)
+    ops, at_rest = _loaded(), geometry_of(problem)
     ops.wipe()
     ops.model("basic", "-ndm", 2, "-ndf", 3)
     ops.node(BODY, *map(float, at_rest.centre))

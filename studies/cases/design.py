@@ -1,6 +1,5 @@
 """Designs: what a case file may hold, a cross-axis pivot or any mechanism of strips and bodies."""
 
-import math
 from pathlib import Path
 
 from studies.cases.document import parsed
@@ -28,12 +27,7 @@ def read_design(path: str | Path, *, changes: str | None = None) -> Design:
 
 def flexural_scale(design: Design) -> float:
     """Return the largest EI/L of the strips [N m], which torques and energies are compared with."""
-    if isinstance(design, Problem):
-        return design.youngs_modulus * design.second_moment_of_area / design.length
-    return max(
-        strip.youngs_modulus * strip.second_moment_of_area / math.dist(strip.start, strip.end)
-        for strip in design.strips
-    )
+    return max(strip.youngs_modulus * strip.second_moment_of_area / strip.length for strip in design.strips)
 
 
 def named_design(name: str) -> Design:

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from studies.cases.rules import Key
+from studies.cases.rules import Key, Rule
 from studies.errors import BadInput
 
 
@@ -45,18 +45,18 @@ def values(where: str, keys: Iterable[Key], content: Mapping[str, Any], label: s
     found = {}
     for key in keys:
         if key.name in content:
-            found[key.attribute] = value(where, key, content[key.name], label)
+            found[key.attribute] = admitted(where, f"{label}.{key.name}", key.rule, content[key.name])
         elif not key.optional:
             raise missing(where, key, label)
     return found
 
 
-def value(where: str, key: Key, given: Any, label: str) -> Any:
-    """Return one value in SI; CaseError unless its rule admits it."""
+def admitted(where: str, label: str, rule: Rule, given: Any) -> Any:
+    """Return a value in SI; CaseError, which names it by the label, unless its rule admits it."""
     try:
-        return key.rule.parse(given)
+        return rule.parse(given)
     except ValueError as error:
-        raise CaseError(f"{where}: {label}.{key.name}: {error}") from None
+        raise CaseError(f"{where}: {label}: {error}") from None
 
 
 def missing(where: str, key: Key, label: str) -> CaseError:

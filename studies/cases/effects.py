@@ -13,7 +13,7 @@ from typing import Any
 
 from studies.cases import document
 from studies.cases.document import CaseError
-from studies.cases.effect_keys import KEYS
+from studies.cases.keys import EFFECT_KEYS
 from studies.cases.rules import shown
 from studies.errors import BadInput
 
@@ -28,9 +28,6 @@ MOTION_ONLY = (
     "strip_drag",
     "body_damping",
 )
-
-#: Why shear is no effect of a scene.
-SHEAR = "sections of a spline's strip stay normal to its curve, and shear is in the choice of the elements"
 
 #: How a scene is named.
 WORDS = "+NAME and -NAME, or names alone"
@@ -137,19 +134,17 @@ def _read_tables(path: str, content: Mapping[str, Any]) -> dict[str, dict[str, A
 
 def require_known(where: str, name: str) -> None:
     """Raise CaseError that lists what there is unless `name` is an effect, also one added to the splines'."""
-    if name in KEYS or name in _registered():
+    if name in EFFECT_KEYS or name in _registered():
         return
-    if name in ("shear", "shear_deformation"):
-        raise CaseError(f"{where}: got {name}, expected --model fe-shear in its place: {SHEAR}")
-    near = difflib.get_close_matches(name, KEYS, n=1)
+    near = difflib.get_close_matches(name, EFFECT_KEYS, n=1)
     hint = f"{near[0]} (the nearest name), or " if near else ""
-    raise CaseError(f"{where}: got {name}, expected {hint}one of {', '.join(KEYS)}")
+    raise CaseError(f"{where}: got {name}, expected {hint}one of {', '.join(EFFECT_KEYS)}")
 
 
 def _require_parameters(where: str, effects: Effects) -> None:
     """Raise CaseError if a named effect lacks a parameter that it needs."""
     for name in effects.names:
-        for key in KEYS.get(name, ()):
+        for key in EFFECT_KEYS.get(name, ()):
             if not key.optional and key.attribute not in effects.tables.get(name, {}):
                 raise document.missing(where, key, key.section)
 
@@ -162,9 +157,9 @@ def _registered() -> Mapping[str, Any]:
 
 def _parameters(path: str, name: str, given: Mapping[str, Any]) -> dict[str, Any]:
     """Return the parameters of a table in SI; those of an effect without keys here as they stand."""
-    if name not in KEYS:
+    if name not in EFFECT_KEYS:
         return {key: tuple(value) if isinstance(value, list) else value for key, value in given.items()}
-    found = document.values(path, KEYS[name], given, f"effects.{name}")
+    found = document.values(path, EFFECT_KEYS[name], given, f"effects.{name}")
     return _free_fall(path, found) if name == "gravity" else found
 
 
@@ -172,7 +167,7 @@ def _free_fall(path: str, found: Mapping[str, Any]) -> dict[str, Any]:
     """Return the acceleration of gravity that is given by its parts, or by size and direction."""
     if not found:
         return {}
-    beside = [key.name for key in KEYS["gravity"][1:] if key.attribute in found]
+    beside = [key.name for key in EFFECT_KEYS["gravity"][1:] if key.attribute in found]
     if "acceleration" in found and beside:
         raise CaseError(
             f"{path}: effects.gravity.{beside[0]}: got it beside acceleration_m_per_s2, expected one of them"

@@ -1,22 +1,27 @@
-"""The keys of case files, of a pivot and of a mechanism, and the attribute that each fills."""
+"""The keys of case files, of a pivot, of a mechanism and of effects, and the attribute that each fills."""
 
 import math
 from dataclasses import replace
+from typing import Any
 
 from studies.cases.materials import MATERIALS
 from studies.cases.rules import (
     FREE,
-    Choice,
-    History,
-    Interval,
+    HISTORY,
+    INTERVAL,
+    Key,
     Number,
+    Rule,
     Text,
-    Whole,
+    choice,
     finite,
     finite_pair,
+    free_pair,
     keys_of,
     not_negative,
+    number_or,
     positive,
+    whole,
 )
 
 GROUND = "ground"
@@ -26,7 +31,7 @@ LOADS_FIRST, TOGETHER = "loads first", "together"
 
 def degrees(expected: str, low: float, high: float, *, closed: bool = True) -> Number:
     """Return the rule for an angle that a file gives in degrees."""
-    ends = {"closed_low": closed, "closed_high": closed}
+    ends: Any = {"closed_low": closed, "closed_high": closed}
     return Number(
         expected=f"{expected} [deg]", low=low, high=high, to_si=math.radians, from_si=math.degrees, **ends
     )
@@ -34,7 +39,7 @@ def degrees(expected: str, low: float, high: float, *, closed: bool = True) -> N
 
 ROTATION = degrees("a number from -360 to 360", -360.0, 360.0)
 INCLINATION = degrees("a number between 0 and 90, both excluded", 0.0, 90.0, closed=False)
-INCREMENTS = Whole(expected="a whole number from 1 to 100000", low=1, high=100_000)
+INCREMENTS = whole(1, 100_000)
 POISSON = Number(expected="a number above -1 and at most 0.5 [1]", low=-1.0, high=0.5, closed_high=True)
 RATIO = Number(expected="a number between 0 and 1, both excluded [1]", low=0.0, high=1.0)
 NAME, PLACE = Text(expected="a name"), Text(expected=f"{GROUND} or the name of a body")
@@ -61,7 +66,7 @@ SECTION = (*SIDES, *MOMENTS)
 
 MATERIAL = NAMED, *_VALUES = keys_of(
     "material",
-    ("name", "material", Choice(names=tuple(MATERIALS)), "none: every key is given",
+    ("name", "material", choice(*MATERIALS), "none: every key is given",
      '"spring_steel"', "a material of the suite, whose values hold where no key gives another"),
     ("youngs_modulus_Pa", "youngs_modulus", positive("Pa"), "the named material's",
      "206e9", "Young's modulus E"),
@@ -78,11 +83,11 @@ ELASTIC = tuple(_VALUES[:-1])
 _PATH = keys_of(
     "drive",
     ("increments", "increments", INCREMENTS, "", "20", "equal increments of the path"),
-    ("order", "order", Choice(names=(LOADS_FIRST, TOGETHER)), f'"{LOADS_FIRST}"',
+    ("order", "order", choice(LOADS_FIRST, TOGETHER), f'"{LOADS_FIRST}"',
      f'"{TOGETHER}"', "loads come on before the rotation and stay, or both grow together"),
-    ("history", "history", History(), "a motion lets go",
+    ("history", "history", HISTORY, "a motion lets go",
      "[[0, 1], [0.01, 0.5]]", "of a motion that drives the rotation on: its factor over time"),
-    ("held_s", "held", Interval(), "a motion lets go at once",
+    ("held_s", "held", INTERVAL, "a motion lets go at once",
      "[0, 0.01]", "of a motion: from when until when it holds the rotation"),
 )
 
@@ -158,3 +163,88 @@ OWN = tuple(
     for key in (*SECTION, *MATERIAL)
 )
 SECTIONS = ("strips", "bodies", "section", "material", "drive", "scene", "effects")
+
+#: Effect -> what it is.
+EFFECTS: dict[str, str] = {
+    "bending": "the strips resist curvature",
+    "stretching": "the strips resist stretch",
+    "inextensible": "the strips keep their length, in place of stretching (spline)",
+    "strip_inertia": "mass of the strips, in motions and modes",
+    "section_rotary_inertia": "rotary inertia of the strips' sections, in motions and modes",
+    "body_inertia": "mass and moment of inertia of the bodies, in motions and modes",
+    "gravity": "weight of bodies and strips",
+    "strip_damping": "damping of the strips' strain rates",
+    "strip_drag": "damping of the strips' velocity, over their mass",
+    "body_damping": "damping of the bodies' velocity and angular velocity",
+    "applied_force": "a force on a body at its centre of mass, in fixed directions",
+    "applied_moment": "a moment on a body",
+    "tip_force": "a force on the free end of a strip, in fixed directions",
+    "driven_displacement": "leads the centre of mass of a body from where it is at rest, in x, y or both",
+    "clamped_width": "clamps over the whole width, which stiffen wide strips (of known sides)",
+    "anticlastic": "sections that flatten as wide strips bend, which stiffens them (of known sides)",
+    "root_compliance": "clamped ends that turn, as in a body of the strips' material (of known sides)",
+    "shear": "sections that turn against the strips, in statics (spline; of the elements fe-shear has it)",
+    "pre_strain": "curvature and strain that the strips would have if they were free",
+}
+
+# Rows: name in the file, parameter, rule, default ("": it is needed), example, meaning.
+# fmt: off
+_Row = tuple[str, str, Rule, str, str, str]
+_BODY: _Row = (
+    "body", "body", Text(expected="the name of a body"), "the only one",
+    '"body"', "on which body, of a mechanism",
+)
+_HISTORY: _Row = (
+    "history", "history", HISTORY, "the whole load at all times",
+    "[[0, 0], [0.01, 1]]", "in motion: factor of the load over time, constant behind the last instant",
+)
+_FORCE: _Row = ("force_N", "force", finite_pair("N"), "", "[0, -1]", "the force [x, y]")
+_FREE_TIP = Text(expected="the name of a strip with a free end")
+_LED, _ROOT = free_pair("m"), number_or("monolithic", not_negative("1"))
+#: Effect -> its keys.
+_PARAMETERS: dict[str, tuple[_Row, ...]] = {
+    "gravity": (
+        ("acceleration_m_per_s2", "acceleration", finite_pair("m/s^2"), "of magnitude and direction",
+         "[0, -9.81]", "acceleration of free fall [x, y]"),
+        ("magnitude_m_per_s2", "magnitude", not_negative("m/s^2"), "9.81",
+         "9.81", "size of the acceleration of free fall"),
+        ("direction_deg", "direction", ROTATION, "-90, against the y axis",
+         "-90", "where it points, counter-clockwise from the x axis"),
+    ),
+    "strip_damping": (
+        ("relaxation_time_s", "relaxation_time", not_negative("s"), "",
+         "1e-4", "stress by strain rate, over E"),
+    ),
+    "strip_drag": (
+        ("rate_per_s", "rate", not_negative("1/s"), "", "10", "force by velocity, over the strip's mass"),
+    ),
+    "body_damping": (
+        ("translation_Ns_per_m", "translation", not_negative("N s/m"), "0", "0.1", "force by velocity"),
+        ("rotation_Nms", "rotation", not_negative("N m s"), "0", "1e-5", "moment by angular velocity"),
+    ),
+    "applied_force": (_FORCE, _BODY, _HISTORY),
+    "applied_moment": (
+        ("moment_Nm", "moment", finite("N m"), "", "0.01", "the moment, counter-clockwise"),
+        _BODY,
+        _HISTORY,
+    ),
+    "tip_force": (("strip", "strip", _FREE_TIP, "", '"strip"', "on which strip"), _FORCE, _HISTORY),
+    "driven_displacement": (
+        ("displacement_m", "displacement", _LED, "", "[1e-3, 0]", "from its place at rest [x, y]"),
+        _BODY,
+        _HISTORY,
+    ),
+    "root_compliance": (
+        ("root", "root", _ROOT, '"monolithic"', '"monolithic"',
+         "length of strip that turns as much as a root does, over the thickness; monolithic: 0.416"),
+    ),
+    "pre_strain": (
+        ("curvature_per_m", "curvature", finite("1/m"), "0",
+         "0.1", "natural curvature, counter-clockwise from root to tip"),
+        ("strain", "strain", finite("1"), "0", "1e-5", "natural axial strain"),
+    ),
+}
+# fmt: on
+EFFECT_KEYS: dict[str, tuple[Key, ...]] = {
+    effect: keys_of(f"effects.{effect}", *_PARAMETERS.get(effect, ())) for effect in EFFECTS
+}

@@ -2,35 +2,43 @@
 
 import hashlib
 import json
+import math
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, fields
 from typing import Any
 
-from studies.cases import document
+from studies.cases import document, keys
 from studies.cases.document import CaseError
 from studies.cases.effects import Effects, read_effects
-from studies.cases.keys import (
-    BODY,
-    DRIVE,
-    GROUND,
-    LOADS_FIRST,
-    MATERIAL,
-    OWN,
-    SECTION,
-    SECTIONS,
-    STRIP,
-)
+from studies.cases.keys import GROUND, LOADS_FIRST, MOMENTS, NAMED, SECTION, SIDES
+from studies.cases.materials import MATERIALS
 from studies.cases.rules import FREE, shown
-from studies.cases.strips import completed, inherited, refuse_both, without
+
+Values = Mapping[str, Any]
+
+
+class Sectioned:
+    """What has a section: its area, second moment and, where it is no rectangle, its depth [m]."""
+
+    area: float
+    second_moment_of_area: float
+    section_depth: float | None
+
+    @property
+    def depth(self) -> float:
+        """Depth of the section [m]: as given, or sqrt(12 I / A) of the rectangle with its A and I."""
+        if self.section_depth is not None:
+            return self.section_depth
+        return math.sqrt(12.0 * self.second_moment_of_area / self.area)
 
 
 @dataclass(frozen=True, kw_only=True)
-class Strip:
+class Strip(Sectioned):
     """A strip between two points [m], on the ground or on a body at its root, free or on either at its tip.
 
     tip: None for a free end. rise: sagitta of the circular arc it is at rest [m], to the left of start to
-    end. width, thickness: of a rectangular section [m], None where only A and I are known. yield_strength:
-    that stresses must stay below [Pa], None where none is known.
+    end. width, thickness: of a rectangular section [m], None where only A and I are known. section_depth: of
+    one that is no rectangle [m]. yield_strength: that stresses must stay below [Pa]; None where unknown.
     """
 
     name: str
@@ -47,6 +55,12 @@ class Strip:
     poisson_ratio: float
     density: float
     yield_strength: float | None = None
+    section_depth: float | None = None
+
+    @property
+    def length(self) -> float:
+        """Distance of its ends at rest [m]."""
+        return math.dist(self.start, self.end)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -103,14 +117,15 @@ def read_mechanism(path: str, content: Mapping[str, Any], changes: str | None = 
         CaseError: a section or key is missing, unknown or misspelt, a value is out of range, a name comes
             twice or stands for nothing. One line: file, key, got, expected.
     """
-    document.refuse_sections(path, content, SECTIONS)
+    document.refuse_sections(path, content, keys.SECTIONS)
     shared = {
         **document.values(path, SECTION, document.table(path, content, "section"), "section"),
-        **document.values(path, MATERIAL, document.table(path, content, "material"), "material"),
+        **document.values(path, keys.MATERIAL, document.table(path, content, "material"), "material"),
     }
-    refuse_both(path, shared, "section")
+    _refuse_both(path, shared, "section")
     bodies = tuple(
-        Body(**document.values(path, BODY, given, label)) for label, given in _each(path, content, "bodies")
+        Body(**document.values(path, keys.BODY, given, label))
+        for label, given in _each(path, content, "bodies")
     )
     strips = tuple(_strip(path, given, label, shared) for label, given in _each(path, content, "strips"))
     names = [body.name for body in bodies]
@@ -122,7 +137,7 @@ def read_mechanism(path: str, content: Mapping[str, Any], changes: str | None = 
                 raise CaseError(f"{path}: strips.{strip.name}.{key}: got {place}, expected {expected}")
     if "drive" not in content:
         raise CaseError(f"{path}: [drive]: got no such section, expected one with increments")
-    drive = document.values(path, DRIVE, document.table(path, content, "drive"), "drive")
+    drive = document.values(path, keys.DRIVE, document.table(path, content, "drive"), "drive")
     return Mechanism(
         strips=strips,
         bodies=bodies,
@@ -138,7 +153,7 @@ def _keywords(part: Strip | Body) -> dict[str, Any]:
     """Return what the models take of a part; the sides of a section only where they are given."""
     given = {each.name: getattr(part, each.name) for each in fields(part)}
     unsaid = [name for name in ("width", "thickness") if given.get(name) is None]
-    return without(given, ["yield_strength", *unsaid])
+    return without(given, ["yield_strength", "section_depth", *unsaid])
 
 
 def _each(path: str, content: Mapping[str, Any], section: str) -> list[tuple[str, Mapping[str, Any]]]:
@@ -156,9 +171,9 @@ def _each(path: str, content: Mapping[str, Any], section: str) -> list[tuple[str
 
 def _strip(path: str, given: Mapping[str, Any], label: str, shared: Mapping[str, Any]) -> Strip:
     """Return one strip, its section and material its own or those of all."""
-    own = document.values(path, [*STRIP, *OWN], given, label)
-    refuse_both(path, own, label)
-    found = completed(path, inherited(shared, own), label, label, shared=True)
+    own = document.values(path, [*keys.STRIP, *keys.OWN], given, label)
+    _refuse_both(path, own, label)
+    found = completed(path, _inherited(shared, own), label, label, shared=True)
     found["tip"] = None if found["tip"] == FREE else found["tip"]
     if found["start"] == found["end"]:
         raise CaseError(
@@ -184,3 +199,71 @@ def _driven(path: str, body: str | None, names: list[str]) -> str | None:
         expected = document.nearest(body or "", names) if names else "none, as there are no bodies"
         raise CaseError(f"{path}: drive.body: got {got}, expected {expected}")
     return body
+
+
+def completed(
+    where: str, found: Values, section: str, material: str, *, shared: bool = False
+) -> dict[str, Any]:
+    """Return the values of a strip, by attribute in SI, with area, second moment and material complete.
+
+    Args:
+        where: file that errors name. found: what the case gives.
+        section, material: how errors name the tables that these keys stand in.
+        shared: whether they may also stand in [section] and [material].
+
+    Raises:
+        CaseError: both pairs of a section, half a pair, or a key of the material missing; one line.
+    """
+    _refuse_both(where, found, section)
+    values = dict(found)
+    named = values.pop(NAMED.attribute, None)
+    if named is not None:
+        values = MATERIALS[named].values() | values
+    pair = SIDES if any(key.attribute in values for key in SIDES) else MOMENTS
+    if not any(key.attribute in values for key in SECTION):
+        expected = "width_m and thickness_m, or area_m2 and second_moment_m4"
+        missing = " there nor in [section]" if shared else ""
+        raise CaseError(f"{where}: {section}.width_m: got no such key{missing}, expected {expected}")
+    for key, label in (*((key, section) for key in pair), *((key, material) for key in keys.ELASTIC)):
+        if key.attribute not in values:
+            named_one = " or the name of a material" if key in keys.ELASTIC and named is None else ""
+            missing = f" there nor in [{key.section}]" if shared else ""
+            expected = f"{key.rule.expected}{named_one}"
+            raise CaseError(f"{where}: {label}.{key.name}: got no such key{missing}, expected {expected}")
+    if pair is SIDES:
+        values |= of_sides(values["width"], values["thickness"])
+    return values
+
+
+def of_sides(width: Any, thickness: Any) -> dict[str, Any]:
+    """Return area b h [m^2] and second moment b h^3 / 12 [m^4] of a rectangle; sides may be arrays."""
+    return {"area": width * thickness, "second_moment_of_area": width * thickness**3 / 12.0}
+
+
+def _refuse_both(where: str, found: Values, label: str) -> None:
+    """Raise CaseError if both pairs, or parts of them, are given for one section."""
+    one = [key.name for key in SIDES if key.attribute in found]
+    other = [key.name for key in MOMENTS if key.attribute in found]
+    if one and other:
+        expected = "width_m and thickness_m, or area_m2 and second_moment_m4, not both"
+        raise CaseError(f"{where}: {label}.{one[0]}: got it beside {other[0]}, expected {expected}")
+
+
+def _inherited(shared: Values, own: Values) -> dict[str, Any]:
+    """Return what a strip has of its own and of what all have.
+
+    A strip's own pair of a section takes the place of the other pair that all have, and its own named
+    material that of all values of theirs.
+    """
+    left = dict(shared)
+    for pair, other in ((SIDES, MOMENTS), (MOMENTS, SIDES)):
+        if any(key.attribute in own for key in pair):
+            left = without(left, [key.attribute for key in other])
+    if NAMED.attribute in own:
+        left = without(left, [key.attribute for key in keys.ELASTIC] + ["yield_strength"])
+    return left | dict(own)
+
+
+def without(values: Values, names: list[str]) -> dict[str, Any]:
+    """Return the values but for those of these names."""
+    return {name: value for name, value in values.items() if name not in names}

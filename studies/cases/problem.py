@@ -1,17 +1,18 @@
 """Read a case file into a `Problem`: the given data of one pivot, in SI units and radians."""
 
+import cmath
 import hashlib
 import json
 import math
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, fields
 from pathlib import Path
 from typing import Any
 
 from studies.cases.document import CaseError, parsed, refuse_sections, table, values
 from studies.cases.effects import Effects, read_effects
 from studies.cases.keys import KEYS, LOADS_FIRST
-from studies.cases.strips import completed, of_sides
+from studies.cases.mechanism import Body, Sectioned, Strip, completed, of_sides
 
 __all__ = ["FOLDER", "CaseError", "Problem", "named_case", "read_case", "read_problem"]
 
@@ -34,12 +35,14 @@ PIVOT_PARAMETERS = (
 )
 #: Those of them that are passed on only where the case gives them: the sides of a rectangular section.
 SIDES = ("width", "thickness")
+#: What strips and body are called.
+STRIPS, BODY = ("strip_1", "strip_2"), "body"
 #: How far area and second moment may be from those of the sides [1].
 ROUNDED = 1e-9
 
 
 @dataclass(frozen=True, kw_only=True)
-class Problem:
+class Problem(Sectioned):
     """The given data of one cross-axis pivot and of the rotation it is driven through.
 
     Args:
@@ -117,17 +120,35 @@ class Problem:
             raise CaseError(f"{got}, expected both sides of a rectangle with A = {self.area:g} m^2")
 
     @property
-    def depth(self) -> float:
-        """Depth of the section [m]: as given, or sqrt(12 I / A) of the rectangle with the case's A and I."""
-        if self.section_depth is not None:
-            return self.section_depth
-        return math.sqrt(12.0 * self.second_moment_of_area / self.area)
-
-    @property
     def crossing_point(self) -> tuple[float, float]:
         """Where the two strips cross at rest [m], origin at A1."""
         distance, angle = self.crossing_ratio * self.length, self.inclination + self.orientation
         return distance * math.cos(angle), distance * math.sin(angle)
+
+    @property
+    def body(self) -> str:
+        """Name of the body, as of a mechanism."""
+        return BODY
+
+    @property
+    def strips(self) -> tuple[Strip, ...]:
+        """The two strips, as of a mechanism."""
+        own = {each.name: getattr(self, each.name) for each in fields(Strip) if hasattr(self, each.name)}
+        run, rise = self.length * math.cos(self.inclination), self.length * math.sin(self.inclination)
+        turn, found = cmath.rect(1.0, self.orientation), []
+        for name, x, way in zip(STRIPS, (0.0, 2.0 * self.crossing_ratio * run), (run, -run), strict=True):
+            start, end = x * turn, complex(x + way, rise) * turn
+            ends: Any = {"start": (start.real, start.imag), "end": (end.real, end.imag)}
+            found.append(Strip(name=name, tip=BODY, **ends, **own))
+        return tuple(found)
+
+    @property
+    def bodies(self) -> tuple[Body, ...]:
+        """The one body, as of a mechanism."""
+        middle = sum(complex(*strip.end) for strip in self.strips) / 2.0
+        centre = middle + complex(*self.centre_offset) * cmath.rect(1.0, self.orientation)
+        mass = {"mass": self.body_mass, "moment_of_inertia": self.body_moment_of_inertia}
+        return (Body(name=BODY, centre=(centre.real, centre.imag), **mass),)
 
     def pivot_parameters(self) -> dict[str, Any]:
         """Return the keyword arguments that `cross_axis_pivot` of either model takes."""

@@ -17,11 +17,39 @@ def _same(value: float) -> float:
     return float(value)
 
 
+class _Refused(Exception):
+    """A value that a rule does not admit."""
+
+
 @dataclass(frozen=True, kw_only=True)
-class Number:
-    """A finite number in an interval, whose ends are excluded unless closed, converted to SI by `to_si`."""
+class Rule:
+    """What a value of a case file may be.
+
+    Attributes:
+        expected: what a refusal says. read: makes of a value what is kept.
+    """
 
     expected: str
+    read: Callable[[Any], Any]
+
+    def parse(self, value: Any) -> Any:
+        """Return `value` (in the file's unit) as it is kept, in SI; ValueError says what was got and
+        expected."""
+        try:
+            return self.read(value)
+        except _Refused:
+            raise ValueError(f"got {shown(value)}, expected {self.expected}") from None
+
+    def verify(self, value: Any) -> None:
+        """Raise ValueError unless `value` (in SI) is admissible."""
+        self.parse(value)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Number(Rule):
+    """A finite number in an interval, whose ends are excluded unless closed, converted to SI by `to_si`."""
+
+    read: Callable[[Any], Any] = _same
     low: float = -math.inf
     high: float = math.inf
     closed_low: bool = False
@@ -31,164 +59,130 @@ class Number:
 
     def parse(self, value: Any) -> float:
         """Return `value` (in the file's unit) in SI; ValueError says what was got and expected."""
-        if isinstance(value, bool) or not isinstance(value, int | float):
-            raise ValueError(f"got {shown(value)}, expected {self.expected}")
-        number = _as_float(value)
-        above = number >= self.low if self.closed_low else number > self.low
-        below = number <= self.high if self.closed_high else number < self.high
-        if not (math.isfinite(number) and above and below):
-            raise ValueError(f"got {shown(value)}, expected {self.expected}")
-        return self.to_si(number)
+        if _is_number(value):
+            number = _as_float(value)
+            above = number >= self.low if self.closed_low else number > self.low
+            below = number <= self.high if self.closed_high else number < self.high
+            if math.isfinite(number) and above and below:
+                return self.to_si(number)
+        raise ValueError(f"got {shown(value)}, expected {self.expected}")
 
     def verify(self, value: Any) -> None:
         """Raise ValueError unless `value` (SI) is admissible."""
-        if isinstance(value, bool) or not isinstance(value, int | float):
-            raise ValueError(f"got {shown(value)}, expected {self.expected}")
-        self.parse(self.from_si(_as_float(value)))
+        self.parse(self.from_si(_as_float(value)) if _is_number(value) else value)
+
+
+def _is_number(value: Any) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool)
+
+
+def _pair(value: Any) -> tuple[float, float]:
+    if not isinstance(value, list | tuple) or len(value) != 2:
+        raise _Refused
+    if not all(_is_number(part) and math.isfinite(_as_float(part)) for part in value):
+        raise _Refused
+    return float(value[0]), float(value[1])
 
 
 @dataclass(frozen=True, kw_only=True)
-class _Parsed:
-    """A rule whose values in SI are those of the file."""
+class Pair(Rule):
+    """Two finite numbers [x, y], or what `read` makes of two."""
 
-    def parse(self, value: Any) -> Any:
-        """Return `value` as it is kept; raises ValueError that says what was got and expected."""
-        raise NotImplementedError
-
-    def verify(self, value: Any) -> None:
-        """Raise ValueError unless `value` is admissible."""
-        self.parse(value)
+    read: Callable[[Any], Any] = _pair
 
 
-@dataclass(frozen=True, kw_only=True)
-class Whole(_Parsed):
-    """A whole number from `low` to `high`, both included."""
+def free_pair(unit: str) -> Pair:
+    """Return the rule for two finite numbers, or one of them and "free" in place of the other, which is then
+    None."""
 
-    expected: str
-    low: int
-    high: int
-
-    def parse(self, value: Any) -> int:
-        """Return `value`; raises ValueError that says what was got and expected."""
-        if isinstance(value, bool) or not isinstance(value, int) or not self.low <= value <= self.high:
-            raise ValueError(f"got {shown(value)}, expected {self.expected}")
-        return value
-
-
-@dataclass(frozen=True, kw_only=True)
-class Pair(_Parsed):
-    """Two finite numbers [x, y]."""
-
-    expected: str
-
-    def parse(self, value: Any) -> tuple[float, float]:
-        """Return `value` as a tuple; raises ValueError that says what was got and expected."""
-        if not isinstance(value, list | tuple) or len(value) != 2:
-            raise ValueError(f"got {shown(value)}, expected {self.expected}")
-        for part in value:
-            if (
-                isinstance(part, bool)
-                or not isinstance(part, int | float)
-                or not math.isfinite(_as_float(part))
-            ):
-                raise ValueError(f"got {shown(value)}, expected {self.expected}")
-        return float(value[0]), float(value[1])
-
-
-@dataclass(frozen=True, kw_only=True)
-class FreePair(Pair):
-    """Two finite numbers [x, y], or one of them and "free" in place of the other, which is then None."""
-
-    def parse(self, value: Any) -> tuple[float | None, float | None]:  # type: ignore[override]
-        """Return `value` as a tuple; raises ValueError that says what was got and expected."""
+    def read(value: Any) -> tuple[float | None, float | None]:
         parts = list(value) if isinstance(value, list | tuple) else []
         free = [part in (FREE, None) for part in parts]
         if not any(free) or all(free):
-            return super().parse(value)
-        x, y = super().parse([0.0 if is_free else part for part, is_free in zip(parts, free, strict=True)])
+            return _pair(value)
+        x, y = _pair([0.0 if is_free else part for part, is_free in zip(parts, free, strict=True)])
         return (None, y) if free[0] else (x, None)
 
+    return Pair(expected=f'two finite numbers [x, y], one of them or "free" [{unit}]', read=read)
+
+
+def _text(value: Any) -> str:
+    if not isinstance(value, str) or not value:
+        raise _Refused
+    return value
+
 
 @dataclass(frozen=True, kw_only=True)
-class Text(_Parsed):
+class Text(Rule):
     """A text that is not empty."""
 
-    expected: str
-
-    def parse(self, value: Any) -> str:
-        """Return `value`; raises ValueError that says what was got and expected."""
-        if not isinstance(value, str) or not value:
-            raise ValueError(f"got {shown(value)}, expected {self.expected}")
-        return value
+    read: Callable[[Any], Any] = _text
 
 
-@dataclass(frozen=True, kw_only=True)
-class NumberOr(_Parsed):
-    """A number, or one word in its place."""
-
-    expected: str
-    word: str
-    number: Number
-
-    def parse(self, value: Any) -> float | str:
-        """Return `value`; raises ValueError that says what was got and expected."""
-        if value == self.word:
-            return self.word
-        try:
-            return self.number.parse(value)
-        except ValueError:
-            raise ValueError(f"got {shown(value)}, expected {self.expected}") from None
-
-
-@dataclass(frozen=True, kw_only=True)
-class Choice(_Parsed):
+class Choice(Rule):
     """One of some names."""
 
-    names: tuple[str, ...]
 
-    @property
-    def expected(self) -> str:
-        """The names."""
-        return "one of " + ", ".join(f'"{name}"' for name in self.names)
+def choice(*names: str) -> Choice:
+    """Return the rule for one of these names."""
 
-    def parse(self, value: Any) -> str:
-        """Return `value`; raises ValueError that says what was got and expected."""
-        if value not in self.names:
-            raise ValueError(f"got {shown(value)}, expected {self.expected}")
+    def read(value: Any) -> str:
+        if value not in names:
+            raise _Refused
         return str(value)
 
-
-@dataclass(frozen=True, kw_only=True)
-class History(_Parsed):
-    """Pairs [time in s, factor] in order of time."""
-
-    expected: str = "pairs [time, factor] with increasing times [s]"
-
-    def parse(self, value: Any) -> tuple[tuple[float, float], ...]:
-        """Return `value` as tuples; raises ValueError that says what was got and expected."""
-        if not isinstance(value, list | tuple) or not value:
-            raise ValueError(f"got {shown(value)}, expected {self.expected}")
-        points = tuple(Pair(expected=self.expected).parse(point) for point in value)
-        if any(after[0] <= before[0] for before, after in pairwise(points)):
-            raise ValueError(f"got {shown(value)}, expected {self.expected}")
-        return points
+    return Choice(expected="one of " + ", ".join(f'"{name}"' for name in names), read=read)
 
 
-@dataclass(frozen=True, kw_only=True)
-class Interval(_Parsed):
-    """Two instants [begin, end]."""
+def whole(low: int, high: int) -> Rule:
+    """Return the rule for a whole number between these, both included."""
 
-    expected: str = "two instants [begin, end], the first before the second [s]"
+    def read(value: Any) -> int:
+        if not isinstance(value, int) or isinstance(value, bool) or not low <= value <= high:
+            raise _Refused
+        return value
 
-    def parse(self, value: Any) -> tuple[float, float]:
-        """Return `value` as a tuple; raises ValueError that says what was got and expected."""
-        begin, end = Pair(expected=self.expected).parse(value)
-        if not begin < end:
-            raise ValueError(f"got {shown(value)}, expected {self.expected}")
-        return begin, end
+    return Rule(expected=f"a whole number from {low} to {high}", read=read)
 
 
-Rule = Number | NumberOr | Whole | Pair | Text | Choice | History | Interval
+def number_or(word: str, number: Number) -> Rule:
+    """Return the rule for a number, or one word in its place."""
+
+    def read(value: Any) -> float | str:
+        try:
+            return word if value == word else number.parse(value)
+        except ValueError:
+            raise _Refused from None
+
+    return Rule(expected=f'"{word}" or {number.expected}', read=read)
+
+
+def _history(value: Any) -> tuple[tuple[float, float], ...]:
+    if not isinstance(value, list | tuple) or not value:
+        raise _Refused
+    points = tuple(Pair(expected=HISTORY.expected).parse(point) for point in value)
+    if any(after[0] <= before[0] for before, after in pairwise(points)):
+        raise _Refused
+    return points
+
+
+def _interval(value: Any) -> tuple[float, float]:
+    begin, end = _pair(value)
+    if not begin < end:
+        raise _Refused
+    return begin, end
+
+
+def _truth(value: Any) -> bool:
+    if not isinstance(value, bool):
+        raise _Refused
+    return value
+
+
+#: A truth value; pairs [time in s, factor] in order of time; two instants.
+TRUTH = Rule(expected="true or false", read=_truth)
+HISTORY = Rule(expected="pairs [time, factor] with increasing times [s]", read=_history)
+INTERVAL = Rule(expected="two instants [begin, end], the first before the second [s]", read=_interval)
 
 
 @dataclass(frozen=True, kw_only=True)

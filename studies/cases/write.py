@@ -4,8 +4,7 @@ import json
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
-from studies.cases.effect_keys import KEYS as EFFECT_KEYS
-from studies.cases.keys import KEYS, MOMENTS
+from studies.cases.keys import EFFECT_KEYS, KEYS, MOMENTS
 from studies.cases.problem import Problem
 from studies.cases.rules import FREE, Key, Number
 

@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
-from studies.engine.findings import Tables
+from studies.engine.study import Tables
 from studies.record.style import BLACK, BLUE, GREEN, ORANGE, PURPLE, SKY, page
 
 #: Quantity -> how it is written beside its charts.
@@ -24,7 +24,7 @@ LEAST_SHIFT = 0.5 - 5.0**0.5 / 6.0
 WIDTH = 6.3
 
 
-def charts(rows: tuple[str, ...], tables: Tables) -> Figure:
+def _charts(rows: tuple[str, ...], tables: Tables) -> Figure:
     """Draw a row of charts a quantity, a column a rotation."""
     table = tables["map"]
     turns = sorted(set(table["rotation_deg"]))
@@ -53,7 +53,7 @@ def _chart(panel: Axes, rows: pd.DataFrame, name: str) -> None:
     panel.set(xticks=(0.2, 0.5, 0.8), yticks=(30, 45, 60))
 
 
-def loads(tables: Tables) -> Figure:
+def _loads(tables: Tables) -> Figure:
     """Draw the stiffness at rest over the load by crossing ratio, and the load at which it buckles."""
     drawn = page(WIDTH, 2.7)
     along, across, most = drawn.subplots(1, 3)
@@ -81,7 +81,7 @@ def loads(tables: Tables) -> Figure:
     return drawn
 
 
-def validity(tables: Tables) -> Figure:
+def _validity(tables: Tables) -> Figure:
     """Draw where a plain beam is off by a percent: width and thickness over length, with pivots marked."""
     drawn = page(WIDTH, 3.1)
     panel = drawn.subplots()
@@ -108,8 +108,8 @@ def validity(tables: Tables) -> Figure:
 
 
 DRAWN: Mapping[str, Callable[[Tables], Figure]] = {
-    "charts_motion": lambda tables: charts(("stiffness", "shift"), tables),
-    "charts_strength": lambda tables: charts(("stress", "variation"), tables),
-    "charts_loads": loads,
-    "charts_validity": validity,
+    "charts_motion": lambda tables: _charts(("stiffness", "shift"), tables),
+    "charts_strength": lambda tables: _charts(("stress", "variation"), tables),
+    "charts_loads": _loads,
+    "charts_validity": _validity,
 }

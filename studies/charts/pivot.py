@@ -26,8 +26,7 @@ from studies.cases.effects import Effects
 from studies.cases.problem import Problem, named_case
 from studies.charts import figures
 from studies.charts.theory import PIVOTS, judged, limits
-from studies.engine.findings import Claim, Tables
-from studies.engine.study import Answer, Part, Study
+from studies.engine.study import Answer, Claim, Part, Study, Tables
 from studies.kinds import Array
 
 CASE = "cross_axis_pivot"
@@ -112,7 +111,7 @@ def _charts(ratios: Any, inclinations: Any, slenderness: float, points: int = PO
     return pd.concat(map(pd.DataFrame, parts), ignore_index=True)
 
 
-def charted() -> Answer:
+def _charted() -> Answer:
     """Return the charts' map, to five digits, and how far other slendernesses and designs are from it."""
     slender = _charts(RATIOS, INCLINATIONS, SLENDER)
     rows = []
@@ -127,7 +126,7 @@ def charted() -> Answer:
     return {"map": slender.assign(**digits), "collapse": rows}
 
 
-def ranges() -> Answer:
+def _ranges() -> Answer:
     """Return how far pivots at 45 degrees turn within a strength sigma_y L/(E t); none where farther."""
     designs = _grid(LISTED, (45.0,))
     found = turned(*designs, max(TURNS), SLENDER, POINTS)
@@ -149,7 +148,7 @@ def _crossed(turns: Array, path: Array, strength: float) -> float:
     return float(np.interp(strength, path[past - 1 : past + 1], turns[past - 1 : past + 1]))
 
 
-def points() -> Answer:
+def _points() -> Answer:
     """Return the least control points that keep an error up to a rotation in each of the designs."""
     designs = _grid(*COARSE)
     found = {n: turned(*designs, max(TURNS), SLENDER, n) for n in (*COUNTS, REFERENCE)}
@@ -225,9 +224,9 @@ def _held(tables: Tables) -> list[dict[str, Any]]:
 STUDY = Study(
     cases=PIVOTS,
     parts=(
-        Part(ask=charted),
-        Part(ask=ranges),
-        Part(ask=points),
+        Part(ask=_charted),
+        Part(ask=_ranges),
+        Part(ask=_points),
         Part(ask=limits),
         Part(at=_loads, ask=loaded),
         Part(at=lambda: PIVOTS, ask=judged),

@@ -3,7 +3,7 @@
 import numpy as np
 from scipy.optimize import brentq
 
-from spline_model.plate.factors import plate_factors
+from spline_model.effects.plate import plate_factors
 from studies.answers.adapters import answer_static
 from studies.answers.settings import FeSettings, SplineSettings
 from studies.answers.validity import Strip

@@ -23,22 +23,22 @@ import pandas as pd
 
 from studies.answers.reference import NoReference
 from studies.cases.design import Design
-from studies.commands.answer import deliver, not_converged, number, require_target
-from studies.commands.arguments import ACCURACY, CASE, JSON, turned_design
+from studies.commands import arguments as take
+from studies.commands.answer import deliver, not_converged, require_target
 from studies.commands.parser import Argument, command
 from studies.record.progress import Bar
 from studies.work_precision.advice import MOTION_ERRORS, PATH_ERRORS, advise_motion, advise_path
 
 
 @command(
-    CASE,
-    ACCURACY.but(default=1e-3, help="wanted relative error, default 1e-3"),
+    take.CASE,
+    take.ACCURACY.but(default=1e-3, help="wanted relative error, default 1e-3"),
     Argument("--dynamic", action="store_true", help="advise on the motion after the release"),
-    JSON,
+    take.JSON,
 )
 def main(arguments: argparse.Namespace) -> int:
     """Try, report; return the exit code."""
-    problem = turned_design(arguments, "rotation to relate errors to")
+    problem = take.turned_design(arguments, "rotation to relate errors to")
     require_target(arguments)
     advise, judged = (advise_motion, MOTION_ERRORS) if arguments.dynamic else (advise_path, PATH_ERRORS)
     try:
@@ -48,7 +48,7 @@ def main(arguments: argparse.Namespace) -> int:
         return not_converged(error)
     failure = None if found["meets"].any() else f"no model meets {arguments.accuracy:g} here"
     table = _readable(problem, found, judged, arguments.accuracy)
-    return deliver(arguments, as_document(found, arguments.accuracy), table, failure=failure)
+    return deliver(arguments, _document(found, arguments.accuracy), table, failure=failure)
 
 
 def _errors_of(found: pd.DataFrame) -> list[str]:
@@ -56,7 +56,7 @@ def _errors_of(found: pd.DataFrame) -> list[str]:
     return [name for name in map(str, found) if name.startswith("error_")]
 
 
-def as_document(found: pd.DataFrame, error: float) -> dict[str, Any]:
+def _document(found: pd.DataFrame, error: float) -> dict[str, Any]:
     """Return the advice as the JSON object of the command."""
     uncertain = ("uncertainty", "uncertainty_stress")
     rows = [
@@ -64,9 +64,9 @@ def as_document(found: pd.DataFrame, error: float) -> dict[str, Any]:
             "model": row["series"],
             "setting": row["setting"],
             "meets": row["meets"],
-            **{name: number(row[name]) for name in _errors_of(found)},
+            **{name: row[name] for name in _errors_of(found)},
             **{f"reference_{name}": row[name] for name in uncertain if name in row},
-            "solve_s": number(row["solve_s"]),
+            "solve_s": row["solve_s"],
             "message": row["message"],
         }
         for row in found.to_dict("records")

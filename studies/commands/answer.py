@@ -1,4 +1,4 @@
-"""Delivering an answer: as JSON to a file or the output stream, or as a table, and its exit code."""
+"""Delivering an answer: as JSON, CSV and a picture where they are asked for, or as a table; its exit code."""
 
 import argparse
 import json
@@ -8,11 +8,22 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from studies.answers.response import MechanismResponse, Response
+import numpy as np
+
+from studies.answers.response import Response
+from studies.kinds import Array
 from studies.record.files import require_writable_file, write_whole
 
 if TYPE_CHECKING:
     import pandas as pd
+from studies.answers.response import Answered
+from studies.cases.design import Design
+from studies.commands.parser import Argument
+from studies.errors import BadInput
+from studies.record.files import PICTURES
+
+if TYPE_CHECKING:
+    from studies.pictures.shown import Shown
 
 NOT_CONVERGED = 3
 
@@ -40,14 +51,19 @@ def deliver(
 
     Args:
         arguments: of the command.
-        document: the answer as a JSON object.
+        document: the answer as a JSON object; its arrays and tuples are lists there, and null is what is no
+            finite number.
         table: the answer in lines to read.
         failure: why the answer is not complete; None when it is.
         frame: makes the answer as a table of numbers, of a command that has `--csv`.
     """
     csv = getattr(arguments, "csv", None)
     if arguments.json is not None:
-        _put(arguments.json, json.dumps(document, allow_nan=False, indent=1) + "\n", "the answer as JSON")
+        _put(
+            arguments.json,
+            json.dumps(_plain(document), allow_nan=False, indent=1) + "\n",
+            "the answer as JSON",
+        )
     if csv is not None and frame is not None:
         _put(csv, frame().to_csv(index=False, float_format="%.12g", lineterminator="\n"), "the answer as CSV")
     if arguments.json is None and csv is None:
@@ -77,7 +93,7 @@ def headed(answer: Any) -> dict[str, Any]:
     found = {"status": answer.status, "message": answer.message}
     if hasattr(answer, "resolution"):
         found["resolution"] = answer.resolution
-    about = {"model": answer.model, "settings": answer.settings, "effects": list(answer.effects)}
+    about = {"model": answer.model, "settings": answer.settings, "effects": answer.effects}
     return found | about
 
 
@@ -87,7 +103,7 @@ def described(model: str, settings: Mapping[str, Any], effects: Iterable[str]) -
     return f"{model}: {', '.join(given)}\neffects: {', '.join(effects)}"
 
 
-def remarks(answer: Response | MechanismResponse, points: Iterable[Mapping[str, Any]]) -> Iterator[str]:
+def remarks(answer: Response, points: Iterable[Mapping[str, Any]]) -> Iterator[str]:
     """Yield what is to be said of a path beside its numbers: what it passed, how uncertain it is.
 
     Why a path stopped early is told on the error stream, see `deliver`.
@@ -106,7 +122,7 @@ def passed(point: Mapping[str, Any]) -> str:
     force = f" (force {point['force_N']:.4g} N)" if "force_N" in point else ""
     turn = point["rotation_rad"]
     return f"load factor {point['load_factor']:.6g}{force}" + (
-        "" if turn is None else f", {math.degrees(turn):.6g} deg"
+        f", {math.degrees(turn):.6g} deg" if math.isfinite(turn) else ""
     )
 
 
@@ -130,16 +146,90 @@ def ending(status: str, counters: Mapping[str, int], wall_s: float) -> str:
     )
 
 
-def places(bodies: Mapping[str, Any]) -> dict[str, dict[str, list[float]]]:
+def places(bodies: Mapping[str, Array]) -> dict[str, dict[str, Array]]:
     """Return the places of bodies, (S, 3) x, y [m] and rotation [rad] by name, as JSON has them."""
     keys = ("x_m", "y_m", "rotation_rad")
-    return {name: dict(zip(keys, place.T.tolist(), strict=True)) for name, place in bodies.items()}
+    return {name: dict(zip(keys, place.T, strict=True)) for name, place in bodies.items()}
 
 
-def number(value: float) -> float | None:
-    """Return `value` as JSON has it: nothing for NaN."""
-    return value if math.isfinite(value) else None
+def _plain(value: Any) -> Any:
+    """Return a value as JSON has it: arrays and tuples as lists, null for what is not finite."""
+    if isinstance(value, Mapping):
+        return {name: _plain(each) for name, each in value.items()}
+    if isinstance(value, np.ndarray | np.generic):
+        value = value.tolist()
+    if isinstance(value, list | tuple):
+        return [_plain(each) for each in value]
+    return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
 def _short(value: Any) -> str:
     return f"{value:.6g}" if isinstance(value, float) else str(value)
+
+
+def _picture_file(text: str) -> Path:
+    """Parse the file of a picture, which must have one of the known endings and a place to be written to."""
+    path = Path(text)
+    if path.suffix[1:].lower() not in PICTURES:
+        raise argparse.ArgumentTypeError(f"got {text}, expected a file that ends in .svg, .png or .pdf")
+    try:
+        require_writable_file(path)
+    except BadInput as error:
+        raise argparse.ArgumentTypeError(str(error)) from None
+    return path
+
+
+PLOT = Argument(
+    "--plot",
+    type=_picture_file,
+    metavar="FILE",
+    help="draw the answer at the width of a page, as .svg, .png or .pdf (default: no picture)",
+)
+
+
+def pictured(arguments: argparse.Namespace, design: Design, *answers: Answered) -> None:
+    """Draw what there is of the answers to a design where --plot says, and say where it is."""
+    if arguments.plot is None:
+        return
+    from studies.answers.fields import fields_of
+    from studies.pictures.shown import Shown
+
+    strength = weakest(design)
+    draw(
+        arguments,
+        [
+            Shown(name=called(arguments.case, each), fields=fields_of(each, design), yield_strength=strength)
+            for each in answers
+            if each.solution is not None
+        ],
+        arguments.plot,
+    )
+
+
+def draw(arguments: argparse.Namespace, shown: "list[Shown]", target: Path) -> None:
+    """Draw answers over one another in a file, and say where they are."""
+    from studies.pictures.page import picture  # only who asks for a picture waits for matplotlib
+    from studies.record.style import printed
+
+    try:
+        write_whole(target, printed(picture(shown), target.suffix[1:].lower()))
+    except BadInput as error:
+        print(f"studies: {target}: nothing is drawn: {error}", file=sys.stderr)
+    else:
+        taken = "-" in (arguments.json, getattr(arguments, "csv", None))
+        stream = sys.stderr if taken else sys.stdout
+        print(f"{target}: the picture", file=stream)
+
+
+def called(case: str, answer: Any) -> str:
+    """Return what a picture calls an answer: its case, its model and how fine that was."""
+    settings = answer.settings
+    fine = {"control_points": "control points", "elements": "elements"}
+    counts = (f", {settings[key]} {word}" for key, word in fine.items() if key in settings)
+    return f"{Path(case).stem}: {answer.model}{''.join(counts)}"
+
+
+def weakest(design: Design) -> float | None:
+    """Return the least yield strength of a design's strips [Pa]; None where none is given."""
+    known = (strip.yield_strength for strip in design.strips)
+    return min((each for each in known if each is not None), default=None)

@@ -6,7 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any, TypeVar
 
-from studies.answers.settings import FeSettings, Settings, SplineSettings
+from studies.answers.settings import MODELS, Settings, settings_of_model
 from studies.cases import keys
 from studies.cases.design import Design, read_design
 from studies.cases.document import nearest
@@ -25,7 +25,7 @@ from studies.errors import BadInput
 Some = TypeVar("Some", bound=Design)
 
 
-def case_file(text: str) -> str:
+def _case_file(text: str) -> str:
     """Return the file of a case: of one by its name that comes with the suite, or the path as it is given."""
     own = FOLDER / f"{text}.toml"
     if Path(text).is_file() or text.endswith(".toml") or (Path(text).exists() and not own.is_file()):
@@ -39,7 +39,7 @@ def case_file(text: str) -> str:
 CASE = Argument(
     "case",
     metavar="CASE",
-    type=case_file,
+    type=_case_file,
     help="the design: a file, or the name of one that comes with the suite, such as cross_axis_pivot",
 )
 EFFECTS = Argument(
@@ -48,8 +48,6 @@ EFFECTS = Argument(
     help="changes of the scene's effects, as in --effects=+gravity,-strip_inertia; names alone are all "
     "(default: the case's)",
 )
-MODELS = ("spline", "fe", "fe-shear")
-
 CONTROL_POINTS = Argument(
     "--control-points",
     type=int,
@@ -203,16 +201,12 @@ def _settings(arguments: argparse.Namespace, models: Sequence[str]) -> list[Sett
         refuse(arguments, points, elements)
     elif set(models) == {"spline"}:
         refuse(arguments, elements, points)
-    given = {name: value for name in (*points, *elements) if (value := getattr(arguments, name)) is not None}
-    return [
-        SplineSettings(**{name: value for name, value in given.items() if name in points})
-        if model == "spline"
-        else FeSettings(
-            element="reissner" if model == "fe-shear" else "corotational",
-            **{name: value for name, value in given.items() if name in elements},
-        )
-        for model in models
-    ]
+    found = []
+    for model in models:
+        own = points if model == "spline" else elements
+        given = {name: value for name in own if (value := getattr(arguments, name)) is not None}
+        found.append(settings_of_model(model, **given))
+    return found
 
 
 def refuse(arguments: argparse.Namespace, unusable: tuple[str, ...], usable: tuple[str, ...]) -> None:

@@ -24,26 +24,26 @@ from dataclasses import asdict
 from typing import Any
 
 from studies.answers.settings import SplineSettings
-from studies.commands.answer import deliver, not_converged, number, require_target
-from studies.commands.arguments import CASE, CONTROL_POINTS, EFFECTS, JSON, chosen_design
+from studies.commands import arguments as take
+from studies.commands.answer import deliver, not_converged, require_target
 from studies.commands.parser import Argument, command, positive, whole_number
 from studies.effects.audit import Audit, audit
-from studies.effects.outcome import Outcome, Unanswered
+from studies.effects.scenes import Outcome, Unanswered
 from studies.record.progress import Bar
 
 
 @command(
-    CASE,
-    EFFECTS,
-    CONTROL_POINTS.but(type=whole_number(4), default=6, help="control points a strip, default 6"),
+    take.CASE,
+    take.EFFECTS,
+    take.CONTROL_POINTS.but(type=whole_number(4), default=6, help="control points a strip, default 6"),
     Argument(
         "--tolerance", type=positive, default=1e-3, metavar="T", help="allowed relative change, default 1e-3"
     ),
-    JSON,
+    take.JSON,
 )
 def main(arguments: argparse.Namespace) -> int:
     """Audit and report; return the exit code."""
-    design = chosen_design(arguments)
+    design = take.chosen_design(arguments)
     settings = SplineSettings(control_points=arguments.control_points)
     require_target(arguments)
     try:
@@ -51,10 +51,10 @@ def main(arguments: argparse.Namespace) -> int:
             found = audit(design, settings, arguments.tolerance, bar)
     except Unanswered as error:
         return not_converged(f"the full scene: {error}")
-    return deliver(arguments, as_document(found), _readable(found), failure=None)
+    return deliver(arguments, _document(found), _readable(found), failure=None)
 
 
-def as_document(found: Audit) -> dict[str, Any]:
+def _document(found: Audit) -> dict[str, Any]:
     """Return the audit as the JSON object of the command."""
     return {
         "tolerance": found.tolerance,
@@ -65,13 +65,7 @@ def as_document(found: Audit) -> dict[str, Any]:
         "full": _row(found, found.full),
         "rows": [_row(found, row) for row in found.rows],
         "tried": [_row(found, row) for row in found.tried],
-        "beyond": [
-            {
-                name: number(value) if isinstance(value, float) else value
-                for name, value in asdict(row).items()
-            }
-            for row in found.beyond
-        ],
+        "beyond": [asdict(row) for row in found.beyond],
         "cheapest": _row(found, found.cheapest) | {"time_ratio": found.ratio, "wall_s": found.seconds[1]},
         "full_wall_s": found.seconds[0],
     }
@@ -81,17 +75,17 @@ def _row(found: Audit, row: Outcome) -> dict[str, Any]:
     size = row.size
     return {
         "scene": row.variant.label,
-        "dropped": list(row.variant.dropped),
-        "effects": list(row.variant.effects.names),
+        "dropped": row.variant.dropped,
+        "effects": row.variant.effects.names,
         "status": row.status,
         "reason": row.reason,
-        "trajectory": number(row.trajectory),
-        "torque": number(row.torque),
-        "swing_frequency": number(row.swing),
-        "first_mode": number(row.mode),
-        "loss": number(row.loss),
-        "time_ratio": number(found.time_ratio(row)),
-        "wall_s": number(row.wall_s),
+        "trajectory": row.trajectory,
+        "torque": row.torque,
+        "swing_frequency": row.swing,
+        "first_mode": row.mode,
+        "loss": row.loss,
+        "time_ratio": found.time_ratio(row),
+        "wall_s": row.wall_s,
         "unknowns": size.unknowns if size else None,
         "degrees_of_freedom": size.degrees_of_freedom if size else None,
         "highest_frequency_Hz": size.highest_frequency if size else None,

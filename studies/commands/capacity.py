@@ -18,8 +18,8 @@ from collections.abc import Iterator
 from typing import Any
 
 from studies.answers.capacity import Capacity, capacity
-from studies.commands.answer import deliver, described, number, require_target
-from studies.commands.arguments import HELD, JSON, SEVERAL_MODELS, all_settings, chosen_design
+from studies.commands import arguments as take
+from studies.commands.answer import deliver, described, require_target
 from studies.commands.columns import one
 from studies.commands.parser import Argument, command, degrees
 from studies.record.progress import Bar
@@ -29,7 +29,7 @@ DIGITS, NO_TURN = 6, 1e-6
 
 
 @command(
-    *SEVERAL_MODELS,
+    *take.SEVERAL_MODELS,
     Argument(
         "--force-direction-deg",
         dest="direction",
@@ -38,13 +38,13 @@ DIGITS, NO_TURN = 6, 1e-6
         metavar="X",
         help="of the force, in deg from x to y, default -90: down",
     ),
-    HELD.but(help="hold the rotation of the body (default: it is free)"),
+    take.HELD.but(help="hold the rotation of the body (default: it is free)"),
     Argument("--body", metavar="NAME", help="that the force acts on (default: the case's)"),
-    JSON,
+    take.JSON,
 )
 def main(arguments: argparse.Namespace) -> int:
     """Raise the force and report; return the exit code."""
-    design, every = chosen_design(arguments), all_settings(arguments)
+    design, every = take.chosen_design(arguments), take.all_settings(arguments)
     require_target(arguments)
     how = {"direction": math.radians(arguments.direction), "held": arguments.held, "body": arguments.body}
     found = []
@@ -52,26 +52,26 @@ def main(arguments: argparse.Namespace) -> int:
         with Bar(f"capacity {settings.model}"):
             found.append(capacity(design, settings, **how))
     stopped = [f"{each.model}: {each.message}" for each in found if each.force is None and not each.whole]
-    every_one = [as_document(each) for each in found]
+    every_one = [_document(each) for each in found]
     document = every_one[0] if len(found) == 1 else {"answers": every_one}
     return deliver(arguments, document, _readable(found), failure="; ".join(stopped) or None)
 
 
-def as_document(found: Capacity) -> dict[str, Any]:
+def _document(found: Capacity) -> dict[str, Any]:
     """Return the answer as the JSON object of the command."""
     return {
         "status": "converged" if found.force is not None or found.whole else "not_converged",
         "message": found.message,
         "model": found.model,
         "settings": found.settings,
-        "effects": list(found.effects),
+        "effects": found.effects,
         "force_direction_rad": found.direction,
         "held": found.held,
         "capacity_N": found.force,
         "kind": found.kind,
-        "relative_error": number(found.uncertainty),
+        "relative_error": found.uncertainty,
         "borne_N": found.reached,
-        "rotation_rad": number(found.turned),
+        "rotation_rad": found.turned,
     }
 
 

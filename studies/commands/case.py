@@ -10,7 +10,7 @@ docs/cases.md tells the same with the rules. Exit code 0: done; 2: bad input.
 import argparse
 from pathlib import Path
 
-from studies.cases import template
+from studies.cases.page import template
 from studies.commands.arguments import OUT
 from studies.commands.parser import Argument, command
 from studies.errors import BadInput
@@ -26,8 +26,7 @@ def main(arguments: argparse.Namespace) -> int:
     """Print or write the template; return the exit code."""
     if arguments.pivot and arguments.mechanism:
         raise BadInput("case: got --pivot and --mechanism, expected one of them")
-    lines = template.mechanism() if arguments.mechanism else template.pivot()
-    text = "\n".join(lines)
+    text = "\n".join(template(mechanism=arguments.mechanism))
     if arguments.out is None:
         print(text)
         return 0

@@ -18,31 +18,21 @@ import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from studies.answers.adapters import answer_modes, answer_path
-from studies.answers.response import MechanismResponse, Response
+from studies.answers.adapters import answer_modes, answer_static
+from studies.answers.fields import fields_of
+from studies.answers.response import Response
 from studies.answers.settings import Settings
 from studies.answers.strength import strength
 from studies.cases.design import Design, read_design
-from studies.commands.answer import deliver, number, require_target
-from studies.commands.arguments import (
-    ACCURACY,
-    CASE,
-    INCREMENTS,
-    JSON,
-    ROTATION,
-    SEVERAL_MODELS,
-    all_settings,
-    driven,
-)
+from studies.commands import arguments as take
+from studies.commands.answer import PLOT, called, deliver, draw, require_target, weakest
 from studies.commands.columns import NOTHING, PREFIXES, plain, quantity, table
 from studies.commands.parser import Argument, command
-from studies.commands.picture import PLOT, called, draw, weakest
 from studies.errors import BadInput
-from studies.exchange.solutions import fields_of
 from studies.kinds import Array
 from studies.pictures.shown import LETTERS, Shown
 from studies.record.progress import Bar
@@ -72,25 +62,24 @@ class Compared:
     name: str
     case: str
     design: Design
-    answer: Response | MechanismResponse
+    answer: Response
     shown: Shown | None
     modes: Shown | None
     beside: dict[str, float]
 
 
-@dataclass(frozen=True, kw_only=True)
-class Row:
+class Row(NamedTuple):
     """A line of the table: what it is called there and in JSON, its unit, and what it is of what is shown."""
 
     name: str
     key: str
     unit: str = ""
-    highest: int = 0
     of: Callable[[Shown], float] = lambda each: math.nan
+    highest: int = 0
 
 
-def _last(values: Array | None) -> float:
-    return math.nan if values is None else float(values[-1])
+def _end(values: Array | None, state: int = -1) -> float:
+    return math.nan if values is None else float(values[state])
 
 
 def _largest(values: Array | None) -> float:
@@ -105,48 +94,26 @@ def _variation(shown: Shown) -> float:
     return variation if variation > ROUND_OFF else 0.0
 
 
-def _first_stiffness(shown: Shown) -> float:
-    stiffness = shown.fields.stiffness
-    return math.nan if stiffness is None else float(stiffness[0])
-
-
 ROWS = (
-    Row(name="rotation, end", key="rotation_rad", unit="deg", of=lambda each: _last(each.rotation)),
-    Row(name="torque, end", key="torque_Nm", unit="N m", of=lambda each: _last(each.fields.torque)),
-    Row(name="stiffness, begin", key="stiffness_begin_Nm_per_rad", unit="N m/rad", of=_first_stiffness),
+    Row("rotation, end", "rotation_rad", "deg", lambda each: _end(each.rotation)),
+    Row("torque, end", "torque_Nm", "N m", lambda each: _end(each.fields.torque)),
     Row(
-        name="stiffness, end",
-        key="stiffness_end_Nm_per_rad",
-        unit="N m/rad",
-        of=lambda each: _last(each.fields.stiffness),
+        "stiffness, begin",
+        "stiffness_begin_Nm_per_rad",
+        "N m/rad",
+        lambda each: _end(each.fields.stiffness, 0),
     ),
-    Row(name="stiffness, variation", key="stiffness_variation", of=_variation),
-    Row(
-        name="centre shift, largest",
-        key="largest_centre_shift_m",
-        unit="m",
-        highest=-3,
-        of=lambda each: _largest(each.shift),
-    ),
-    Row(
-        name="stress, largest",
-        key="max_stress_Pa",
-        unit="Pa",
-        highest=6,
-        of=lambda each: _largest(each.fields.max_stress),
-    ),
-    Row(
-        name="strain energy, end",
-        key="strain_energy_J",
-        unit="J",
-        of=lambda each: _last(each.fields.strain_energy),
-    ),
+    Row("stiffness, end", "stiffness_end_Nm_per_rad", "N m/rad", lambda each: _end(each.fields.stiffness)),
+    Row("stiffness, variation", "stiffness_variation", "", _variation),
+    Row("centre shift, largest", "largest_centre_shift_m", "m", lambda each: _largest(each.shift), -3),
+    Row("stress, largest", "max_stress_Pa", "Pa", lambda each: _largest(each.fields.max_stress), 6),
+    Row("strain energy, end", "strain_energy_J", "J", lambda each: _end(each.fields.strain_energy)),
 )
 #: Lines that are not of what a picture shows.
 SAFETY, YIELDS, FREQUENCY = BESIDE = (
-    Row(name="safety to yield", key="safety"),
-    Row(name="yields from", key="yield_rotation_rad", unit="deg"),
-    Row(name="first frequency", key="first_frequency_Hz", unit="Hz"),
+    Row("safety to yield", "safety"),
+    Row("yields from", "yield_rotation_rad", "deg"),
+    Row("first frequency", "first_frequency_Hz", "Hz"),
 )
 
 
@@ -155,20 +122,20 @@ SAFETY, YIELDS, FREQUENCY = BESIDE = (
         "cases",
         metavar="CASE",
         nargs="+",
-        type=CASE.keywords["type"],
+        type=take.CASE.keywords["type"],
         help="the designs: files, or names of those that come with the suite",
     ),
-    *(each for each in SEVERAL_MODELS if each is not CASE),
-    ROTATION.but(help="end of the paths, in deg (default: the cases')"),
-    INCREMENTS,
-    ACCURACY.but(help="wanted relative error of the paths, as of `solve` (default: that of `solve`)"),
-    JSON,
+    *(each for each in take.SEVERAL_MODELS if each is not take.CASE),
+    take.ROTATION.but(help="end of the paths, in deg (default: the cases')"),
+    take.INCREMENTS,
+    take.ACCURACY.but(help="wanted relative error of the paths, as of `solve` (default: that of `solve`)"),
+    take.JSON,
     PLOT,
     PLOT_MODES,
 )
 def main(arguments: argparse.Namespace) -> int:
     """Solve all, report and draw; return the exit code."""
-    asked = [(case, settings) for case in arguments.cases for settings in all_settings(arguments)]
+    asked = [(case, settings) for case in arguments.cases for settings in take.all_settings(arguments)]
     if not 2 <= len(asked) <= len(LETTERS):
         got = f"{len(asked)} (designs: {len(arguments.cases)}, models: {len(arguments.model)})"
         raise BadInput(f"compare: got {got}, expected 2 to {len(LETTERS)} designs, or a design by two models")
@@ -187,10 +154,10 @@ def main(arguments: argparse.Namespace) -> int:
     failed = (
         f"{LETTERS[k]}: {each.answer.message}" for k, each in enumerate(found) if not each.answer.converged
     )
-    return deliver(arguments, as_document(found), _readable(found), failure="; ".join(failed) or None)
+    return deliver(arguments, _document(found), _readable(found), failure="; ".join(failed) or None)
 
 
-def as_document(found: Sequence[Compared]) -> dict[str, Any]:
+def _document(found: Sequence[Compared]) -> dict[str, Any]:
     """Return the answer as the JSON object of the command."""
     return {
         "designs": [
@@ -201,7 +168,7 @@ def as_document(found: Sequence[Compared]) -> dict[str, Any]:
                 "settings": each.answer.settings,
                 "status": each.answer.status,
                 "message": each.answer.message,
-                **{row.key: number(_value(row, each)) for row in (*ROWS, *BESIDE)},
+                **{row.key: _value(row, each) for row in (*ROWS, *BESIDE)},
             }
             for each in found
         ]
@@ -209,9 +176,9 @@ def as_document(found: Sequence[Compared]) -> dict[str, Any]:
 
 
 def _solved(case: str, settings: Settings, arguments: argparse.Namespace) -> Compared:
-    design = driven(read_design(case, changes=arguments.effects), arguments)
+    design = take.driven(read_design(case, changes=arguments.effects), arguments)
     accuracy = arguments.accuracy
-    answer = answer_path(design, settings, accuracy=accuracy)
+    answer = answer_static(design, settings, accuracy=accuracy)
     spectrum = answer_modes(design, settings, count=1 if arguments.plot_modes is None else MODES)
     name, shown, modes, beside = called(case, answer), None, None, {}
     if len(answer.load_factor):

@@ -16,25 +16,29 @@ from dataclasses import replace
 from multiprocessing import get_context
 
 from studies.answers.settings import FeSettings, Settings, SplineSettings
+from studies.cases.problem import Problem
 from studies.commands.parser import command
 from studies.record.kernels import forget, forget_stale
 
 MIXED, CONSISTENT = SplineSettings(control_points=4), SplineSettings(control_points=4, stretch="consistent")
 ELEMENTS = FeSettings(elements=4)
 #: Small calls that between them enter every kernel, settings and what is solved with them: first what others
-#: stand on, then the rest, the longest first.
+#: stand on, and beside it what stands alone; then the rest, the longest first.
 CALLS: tuple[tuple[tuple[Settings, tuple[str, ...]], ...], ...] = (
     (
         (MIXED, ("accuracy",)),
         (ELEMENTS, ("static", "modes", "central-difference")),
         (replace(ELEMENTS, element="reissner"), ("static", "modes", "central-difference")),
+        (MIXED, ("energy from rest",)),
     ),
     (
-        (MIXED, ("energy", "massless")),
         (MIXED, ("sequential impulses",)),
-        (MIXED, ("leapfrog", "generalised-alpha")),
+        (MIXED, ("massless",)),
+        (MIXED, ("leapfrog",)),
+        (MIXED, ("generalised-alpha",)),
         (MIXED, ("many", "modes")),
         (CONSISTENT, ("static", "modes")),
+        (MIXED, ("energy",)),
     ),
 )
 
@@ -75,8 +79,26 @@ def call(settings: Settings, tasks: tuple[str, ...]) -> None:
             pivot = built(model_of(settings), problem, settings, moving=True)[0]
             for form in ("printed", "stable"):
                 solve_impulses(pivot, duration=1e-5, step=1e-6, form=form)
+        elif task == "energy from rest":
+            _from_rest(problem, settings)
         elif task == "massless":
             light = replace(problem, effects=Effects(names=("bending", "stretching", "body_inertia")))
             answer_release(light, settings, duration=1e-5, integrator="energy", step=1e-8)
         else:
             answer_release(problem, settings, duration=1e-5, integrator=task, step=1e-8)
+
+
+def _from_rest(problem: Problem, settings: Settings) -> None:
+    """Enter the default motion without statics, which another process compiles."""
+    import numpy as np
+
+    from spline_model.compile import compile_scene
+    from spline_model.motion.dispatch import integrate
+    from spline_model.motion.start import Start, Steps, set_in_motion
+    from spline_model.solution import Later
+    from studies.answers.models import built, model_of
+
+    pivot = built(model_of(settings), problem, settings, moving=True)[0].in_motion()
+    motion = set_in_motion(compile_scene(pivot.released()))
+    start = Start(motion, Later(motion.system.rest[None].copy), np.zeros(len(motion.mass)))
+    integrate("energy", start, Steps(1e-8, 4, 1), {})

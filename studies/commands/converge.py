@@ -18,21 +18,12 @@ from pathlib import Path
 
 import pandas as pd
 
-from studies.answers.adapters import answer_path
+from studies.answers.adapters import answer_static
 from studies.answers.reference import QUANTITIES, NoReference, Reference, errors
-from studies.answers.response import MechanismResponse, Response
+from studies.answers.response import Response
 from studies.answers.settings import SplineSettings
+from studies.commands import arguments as take
 from studies.commands.answer import not_converged
-from studies.commands.arguments import (
-    BASIS,
-    CASE,
-    CONTROL_POINTS,
-    ELEMENTS,
-    MEASURE,
-    OUT,
-    STRETCH,
-    turned_design,
-)
 from studies.commands.parser import command, counts
 from studies.convergence.sweep import (
     FINEST,
@@ -54,21 +45,21 @@ ACCURACIES = (1e-3, 1e-4, 1e-6)
 
 
 @command(
-    CASE,
-    CONTROL_POINTS.but(
+    take.CASE,
+    take.CONTROL_POINTS.but(
         type=counts(4), default=(4, 12), metavar="A:B", help="of the splines, in steps of 1, default 4:12"
     ),
-    ELEMENTS.but(
+    take.ELEMENTS.but(
         type=counts(1), default=(5, 160), metavar="A:B", help="of the meshes, by doubling, default 5:160"
     ),
-    BASIS.but(default="bezier"),
-    MEASURE.but(choices=("material", "spatial"), default="material"),
-    STRETCH.but(default="mixed"),
-    OUT.but(help="of tables and figure (default: results/designs/<name of the case>)"),
+    take.BASIS.but(default="bezier"),
+    take.MEASURE.but(choices=("material", "spatial"), default="material"),
+    take.STRETCH.but(default="mixed"),
+    take.OUT.but(help="of tables and figure (default: results/designs/<name of the case>)"),
 )
 def main(arguments: argparse.Namespace) -> int:
     """Refine, print, store and draw; return the exit code."""
-    problem = turned_design(arguments, "rotation to relate errors to")
+    problem = take.turned_design(arguments, "rotation to relate errors to")
     meshes = _doubled(*arguments.elements)
     first, last = arguments.control_points
     settings = [
@@ -86,7 +77,7 @@ def main(arguments: argparse.Namespace) -> int:
         return not_converged(f"{error}; begin with more elements, as --elements 20:160, or turn less far")
     with Bar("splines") as bar:
         splines = with_orders(spline_sweep(problem, settings, limit, bar), "control_points")
-    itself = answer_path(problem, replace(settings[0], control_points=None))
+    itself = answer_static(problem, replace(settings[0], control_points=None))
     print("\n".join((*_report(splines, elements, limit), *_by_itself(itself, limit))))
     with style.applied():
         figure = style.rendered(drawn(splines, elements, limit))
@@ -127,7 +118,7 @@ def _report(splines: pd.DataFrame, elements: pd.DataFrame, limit: Reference) -> 
     yield from _reached(splines, elements, QUANTITIES)
 
 
-def _by_itself(answer: Response | MechanismResponse, limit: Reference) -> Iterator[str]:
+def _by_itself(answer: Response, limit: Reference) -> Iterator[str]:
     """Yield what the spline does without a number of control points: its errors, its estimates of them."""
     yield ""
     estimate = answer.estimate or {}

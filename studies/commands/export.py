@@ -19,29 +19,16 @@ from typing import Any
 
 import numpy as np
 
-from studies.answers.fields import Fields
+from studies.answers.adapters import answer_modes, answer_release, answer_static
+from studies.answers.fields import Fields, fields_of
+from studies.answers.response import Answered
 from studies.answers.settings import Settings
 from studies.cases.design import Design
+from studies.commands import arguments as take
 from studies.commands.answer import described, not_converged
-from studies.commands.arguments import (
-    COUNT,
-    DURATION,
-    HELD,
-    INCREMENTS,
-    INTEGRATOR,
-    MODEL,
-    OUT,
-    ROTATION,
-    STEP,
-    chosen_design,
-    chosen_settings,
-    driven,
-    option,
-)
 from studies.commands.parser import Argument, command, degrees_list, names_of, whole_number
 from studies.errors import BadInput
 from studies.exchange.formats import FORMATS, contents, require_own, summary, write
-from studies.exchange.solve import NoState, mode_fields, release_fields, static_fields
 from studies.record.progress import Bar
 
 #: Options that belong to one analysis, with their defaults; given for another they are refused.
@@ -58,8 +45,8 @@ DRAWN = (0.5, 1.0)
 
 
 @command(
-    *MODEL,
-    OUT.but(required=True, help="new, empty, or of a former export"),
+    *take.MODEL,
+    take.OUT.but(required=True, help="new, empty, or of a former export"),
     Argument(
         "--formats",
         type=names_of(FORMATS),
@@ -68,7 +55,7 @@ DRAWN = (0.5, 1.0)
         help=f"of {', '.join(FORMATS)}, separated by commas, default vtk,svg",
     ),
     Argument("--analysis", choices=list(OPTIONS), default="static", help="what is solved, default static"),
-    ROTATION.but(
+    take.ROTATION.but(
         help="end of the path, start of the motion, or state of the modes, in deg "
         "(default: the case's; of modes 0)"
     ),
@@ -81,25 +68,25 @@ DRAWN = (0.5, 1.0)
     *(
         each.of("of one analysis")
         for each in (
-            INCREMENTS.but(help="static: of the path (default: the case's)"),
-            DURATION.but(help="release: in s, default 0.05"),
-            STEP.but(help="release: in s (default: the integrator's)"),
-            INTEGRATOR.but(help="release: as of `release` (default: the model's)"),
+            take.INCREMENTS.but(help="static: of the path (default: the case's)"),
+            take.DURATION.but(help="release: in s, default 0.05"),
+            take.STEP.but(help="release: in s (default: the integrator's)"),
+            take.INTEGRATOR.but(help="release: as of `release` (default: the model's)"),
             RECORDS,
-            COUNT.but(default=None, help="modes: number of modes, default 6"),
-            HELD.but(default=None, help="modes: hold the rotation of the body"),
+            take.COUNT.but(default=None, help="modes: number of modes, default 6"),
+            take.HELD.but(default=None, help="modes: hold the rotation of the body"),
         )
     ),
 )
 def main(arguments: argparse.Namespace) -> int:
     """Solve and write; return the exit code."""
-    design, settings = _asked(arguments), chosen_settings(arguments)
+    design, settings = _asked(arguments), take.chosen_settings(arguments)
     own = _own_options(arguments)
     require_own(arguments.out)
-    try:
-        fields = _solved(arguments.analysis, design, settings, own)
-    except NoState as error:
-        return not_converged(error)
+    answer = _solved(arguments.analysis, design, settings, own)
+    if answer.solution is None:
+        return not_converged(answer.message)
+    fields = fields_of(answer, design)
     files = contents(fields, arguments.formats, _drawn(fields, arguments.draw_deg))
     write(arguments.out, files, {"case": Path(arguments.case).name, **summary(fields)})
     print(described(fields.model, fields.settings, fields.effects))
@@ -109,7 +96,7 @@ def main(arguments: argparse.Namespace) -> int:
 
 def _asked(arguments: argparse.Namespace) -> Design:
     """Return the design with the path that the options ask for; modes are at rest unless they say more."""
-    design = driven(chosen_design(arguments), arguments)
+    design = take.driven(take.chosen_design(arguments), arguments)
     rest = arguments.analysis == "modes" and arguments.rotation is None
     return dataclasses.replace(design, rotation=0.0) if rest else design
 
@@ -120,7 +107,7 @@ def _own_options(arguments: argparse.Namespace) -> dict[str, Any]:
         for name in options:
             if analysis != arguments.analysis and getattr(arguments, name) is not None:
                 raise BadInput(
-                    f"{option(name)}: got it with --analysis {arguments.analysis}, expected {analysis}"
+                    f"{take.option(name)}: got it with --analysis {arguments.analysis}, expected {analysis}"
                 )
     if arguments.draw_deg is not None and (arguments.analysis == "modes" or "svg" not in arguments.formats):
         raise BadInput("--draw-deg: got it without a path or motion to draw, expected static or release, svg")
@@ -129,15 +116,13 @@ def _own_options(arguments: argparse.Namespace) -> dict[str, Any]:
     return {name: own[name] if value is None else value for name, value in given.items()}
 
 
-def _solved(analysis: str, design: Design, settings: Settings, own: dict[str, Any]) -> Fields:
+def _solved(analysis: str, design: Design, settings: Settings, own: dict[str, Any]) -> Answered:
     with Bar(f"export {settings.model}") as bar:
         if analysis == "static":
-            return static_fields(design, settings, progress=bar)
-        return (
-            release_fields(design, settings, **own)
-            if analysis == "release"
-            else mode_fields(design, settings, **own)
-        )
+            return answer_static(design, settings, progress=bar)
+        if analysis == "release":
+            return answer_release(design, settings, swings=False, **own)
+        return answer_modes(design, settings, rotation=design.rotation, **own)
 
 
 def _drawn(fields: Fields, degrees: tuple[float, ...] | None) -> list[int]:

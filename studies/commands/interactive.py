@@ -5,17 +5,21 @@
     python -m studies interactive --camera none --preset table-1
     python -m studies interactive my_pivot.toml
     python -m studies interactive --replay session.jsonl
+    python -m studies interactive --camera none --share
 
 Two printed markers (`python -m studies markers`) before the browser's camera drive the pivot; without a
 camera mouse, touch and keys do. A case file of one's own joins the presets; its dimensions must be those that
-the sliders reach, and no loads act here. The server is open to this machine only. It needs the extra
-`interactive`, which `make interactive` installs. Exit code 0: stopped with Ctrl-C, or a replay that gave the
-recorded states; 1: a replay that did not; 2: bad input.
+the sliders reach; of its loads an upright force on the body acts here. The server is open to this machine
+only, but for `--share`: then a phone or another machine of the own network drives a pivot of its own with the
+link that is printed, over a connection that is not encrypted. It needs the extra `interactive`, which
+`make interactive` installs. Exit code 0: stopped with Ctrl-C, or a replay that gave the recorded states; 1: a
+replay that did not; 2: bad input.
 """
 
 import argparse
 import contextlib
 import importlib.util
+import socket as sockets
 import sys
 import webbrowser
 from pathlib import Path
@@ -40,6 +44,13 @@ EXTRA = {
     ),
     Argument(
         "--port", type=whole_number(0), default=0, metavar="P", help="of the server, default any free one"
+    ),
+    Argument(
+        "--share",
+        nargs="?",
+        const="",
+        metavar="ADDRESS",
+        help="open the page to the own network too, at this machine's address there (default: closed)",
     ),
     Argument("--no-browser", action="store_true", help="print the address, open nothing"),
     Argument("--film", metavar="FILE|demo", help="pictures from a film, not a camera (default: none)"),
@@ -83,6 +94,7 @@ def main(arguments: argparse.Namespace) -> int:
     server = Server(
         Settings(
             port=arguments.port,
+            share=_address() if arguments.share == "" else arguments.share,
             camera=camera,
             source=source,
             calibration=None if arguments.calibration is None else Camera.read(arguments.calibration),
@@ -93,6 +105,8 @@ def main(arguments: argparse.Namespace) -> int:
     server.bind()
     warm_up()
     print(f"studies: open {server.address}   (Ctrl-C ends it)", file=sys.stderr, flush=True)
+    if server.settings.share is not None:
+        _say_shared(server.address_at(server.settings.share), camera)
     if not arguments.no_browser:
         webbrowser.open(server.address)
     with contextlib.suppress(KeyboardInterrupt):
@@ -111,12 +125,85 @@ def markers(arguments: argparse.Namespace) -> int:
     `interactive`. Exit code 0: done; 2: bad input.
     """
     _require_extra("markers")
-    from studies.interactive.film.sheet import sheet
+    from studies.interactive.tracking.sheet import sheet
 
     require_writable_file(arguments.out)
     write_whole(arguments.out, sheet())
     print(f"{arguments.out}: print at 100 %; the ruler must measure 100 mm")
     return 0
+
+
+@command(
+    Argument(
+        "source",
+        metavar="FILM|N",
+        help="a film file of the whole sheet, or number N of this machine's cameras",
+    ),
+    Argument("--views", type=whole_number(3), default=12, metavar="N", help="from other sides, default 12"),
+    OUT.but(default=Path("camera.json"), metavar="FILE", help="default camera.json"),
+)
+def calibrate(arguments: argparse.Namespace) -> int:
+    """Find a camera's constants from views of the uncut marker sheet, for `interactive --calibration`.
+
+        python -m studies calibrate 0 --out camera.json
+
+    Hold the sheet flat, both markers in view, and tilt it slowly to all sides, 30 degrees and more; each view
+    from another side counts. It says how uncertain the constants are, and refuses those that the views do not
+    tell. They hold for this camera at this size of picture. The environment works without them: they take a
+    lens's distortion out. It needs the extra `interactive`. Exit code 0: done; 2: bad input, or views that do
+    not suffice.
+    """
+    _require_extra("calibrate")
+    from studies.interactive.tracking.views import calibrated, views
+    from studies.interactive.web.sources import VideoSource
+
+    require_writable_file(arguments.out)
+    place = int(arguments.source) if arguments.source.isdecimal() else Path(arguments.source)
+    found, size = [], (0, 0)
+    for corners, seen in views(VideoSource(place).once(), arguments.views):
+        found.append(corners)
+        size = seen
+        print(f"\rview {len(found)} of {arguments.views}", end="", file=sys.stderr, flush=True)
+    print(file=sys.stderr)
+    made = calibrated(found, size)
+    made.camera.write(arguments.out)
+    for name, unit in (("fx", "px"), ("fy", "px"), ("cx", "px"), ("cy", "px"), ("k1", ""), ("k2", "")):
+        print(f"{name} = {getattr(made.camera, name):.4g} ± {getattr(made.sd, name):.2g} {unit}".rstrip())
+    print(
+        f"{arguments.out}: {len(found)} views of {size[0]} x {size[1]} px, corners within {made.rms:.2f} px"
+    )
+    return 0
+
+
+def _address() -> str:
+    """Return the address by which this machine leaves for its network."""
+    with sockets.socket(sockets.AF_INET, sockets.SOCK_DGRAM) as probe:
+        try:
+            probe.connect(("198.51.100.1", 9))  # sends nothing: the way there tells the address
+        except OSError:
+            raise BadInput("--share: got no network, expected one, or this machine's address in it") from None
+        return str(probe.getsockname()[0])
+
+
+def _say_shared(address: str, camera: str) -> None:
+    """Say what is open to the network, with the link as a code for a phone's camera."""
+    import cv2
+    import numpy as np
+
+    sees = {"film": " and sees the film", "server": " and SEES WHAT THIS MACHINE'S CAMERA SEES"}.get(
+        camera, ""
+    )
+    print(
+        f"studies: shared at {address}\n"
+        f"studies: who has this link, in this network, drives a pivot of his own{sees}; nothing is "
+        "encrypted; no file of this machine is read or written; a phone's own camera stays closed",
+        file=sys.stderr,
+    )
+    code = np.pad(cv2.QRCodeEncoder.create().encode(address) > 0, ((1, 2), (1, 1)), constant_values=True)
+    if (sys.stderr.encoding or "").lower().startswith("utf"):
+        for upper, lower in zip(code[0:-1:2], code[1::2], strict=False):
+            print("".join(" ▄▀█"[2 * a + b] for a, b in zip(upper, lower, strict=True)), file=sys.stderr)
+    sys.stderr.flush()
 
 
 def _require_extra(name: str) -> None:
@@ -131,7 +218,7 @@ def _require_extra(name: str) -> None:
 
 def _source(arguments: argparse.Namespace):  # type: ignore[no-untyped-def]
     """Return what makes the pictures, and how the page shall call it."""
-    from studies.interactive.film.demo import demo_film
+    from studies.interactive.tracking.demo import demo_film
     from studies.interactive.web.sources import FilmSource, VideoSource
 
     if arguments.film is not None:
@@ -161,7 +248,7 @@ def _stream(path: Path | None):  # type: ignore[no-untyped-def]
 
 def _replay(path: Path) -> int:
     """Replay a session file; 0 where every state is the recorded one."""
-    from studies.interactive.session.recording import replay
+    from studies.interactive.pivot.recording import replay
 
     try:
         lines = path.read_text(encoding="utf-8").splitlines()

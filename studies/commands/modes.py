@@ -21,21 +21,20 @@ from typing import Any
 import numpy as np
 
 from studies.answers.adapters import answer_modes
-from studies.answers.spectrum import Spectrum
-from studies.commands.answer import deliver, described, ending, estimated, headed, require_target
-from studies.commands.arguments import (
-    ACCURACY,
-    COUNT,
-    HELD,
-    JSON,
-    MODEL,
-    ROTATION,
-    chosen_design,
-    chosen_settings,
+from studies.answers.motion import Spectrum
+from studies.commands import arguments as take
+from studies.commands.answer import (
+    PLOT,
+    deliver,
+    described,
+    ending,
+    estimated,
+    headed,
+    pictured,
+    require_target,
 )
 from studies.commands.columns import plain, significant, table
 from studies.commands.parser import command
-from studies.commands.picture import PLOT, pictured
 from studies.kinds import Array
 
 #: Of displacement and rotation at unit modal mass; and what is round-off of the largest of all modes.
@@ -43,21 +42,21 @@ SHAPE_UNITS, NOISE = ("kg^-0.5", "kg^-0.5", "kg^-0.5/m"), 1e-7
 
 
 @command(
-    *MODEL,
-    ROTATION.but(help="of the static state, in deg (default: 0 of a pivot; a mechanism is not turned)"),
-    HELD,
-    COUNT,
-    ACCURACY.but(
+    *take.MODEL,
+    take.ROTATION.but(help="of the static state, in deg (default: 0 of a pivot; a mechanism is not turned)"),
+    take.HELD,
+    take.COUNT,
+    take.ACCURACY.but(
         help="wanted relative error of the frequencies: raises the control points (default 1e-4, or none "
         "with --control-points) or doubles the elements (default: none is asked for)"
     ),
-    JSON,
+    take.JSON,
     PLOT,
 )
 def main(arguments: argparse.Namespace) -> int:
     """Solve and report; return the exit code."""
-    design = chosen_design(arguments)
-    settings = chosen_settings(arguments)
+    design = take.chosen_design(arguments)
+    settings = take.chosen_settings(arguments)
     require_target(arguments)
     how = {"count": arguments.count, "held": arguments.held, "accuracy": arguments.accuracy}
     answer = answer_modes(design, settings, rotation=arguments.rotation, **how)
@@ -65,18 +64,18 @@ def main(arguments: argparse.Namespace) -> int:
         None if answer.converged else f"at {math.degrees(arguments.rotation or 0.0):g} deg: {answer.message}"
     )
     pictured(arguments, design, answer)
-    return deliver(arguments, as_document(answer), _readable(answer, arguments.count), failure=failure)
+    return deliver(arguments, _document(answer), _readable(answer, arguments.count), failure=failure)
 
 
-def as_document(answer: Spectrum) -> dict[str, Any]:
+def _document(answer: Spectrum) -> dict[str, Any]:
     """Return the answer as the JSON object of the command."""
     return {
         **headed(answer),
         "rotation_rad": answer.rotation,
         "held": answer.held,
-        "frequency_Hz": answer.frequency.tolist(),
-        "body_shapes": answer.body_shapes.tolist(),
-        "slide_frequency_Hz": answer.slide_frequency.tolist(),
+        "frequency_Hz": answer.frequency,
+        "body_shapes": answer.body_shapes,
+        "slide_frequency_Hz": answer.slide_frequency,
         **({} if answer.estimate is None else {"estimate": answer.estimate}),
         "wall_s": answer.wall_s,
     }

@@ -7,12 +7,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from studies.answers.response import MechanismResponse, Response
+from studies.answers.response import Response
 from studies.answers.strength import Strength, strength
 from studies.answers.validity import Validity, validity
 from studies.cases.design import Design, flexural_scale
-from studies.cases.problem import Problem
-from studies.commands.answer import described, ending, estimated, headed, number, places, remarks
+from studies.commands.answer import described, ending, estimated, headed, places, remarks
 from studies.commands.columns import (
     ANGLE_FLOOR,
     ENERGY_FLOOR,
@@ -30,8 +29,6 @@ from studies.kinds import Array
 
 if TYPE_CHECKING:
     import pandas as pd
-
-Path = Response | MechanismResponse
 
 #: Effects whose share a table shows beside the rotation.
 LOADS = {"applied_force", "applied_moment", "tip_force", "driven_displacement"}
@@ -52,10 +49,10 @@ DIGITS, ROUND_OFF = 4, 1e-9
 SHIFT_FLOOR = 1e-12
 
 
-def arrays(design: Design, answer: Path) -> dict[str, Array]:
+def arrays(design: Design, answer: Response) -> dict[str, Array]:
     """Return what is one number in every state, by names with units."""
     found = {"load_factor": answer.load_factor}
-    if isinstance(answer, Response):
+    if answer.crossing is not None:
         found |= {
             "rotation_rad": answer.rotation,
             "com_x_m": answer.centre[:, 0],
@@ -68,44 +65,41 @@ def arrays(design: Design, answer: Path) -> dict[str, Array]:
         "stiffness_Nm_per_rad": answer.stiffness,
         "strain_energy_J": answer.strain_energy,
     }
-    if isinstance(answer, MechanismResponse):
+    if answer.crossing is None:
         found |= {"gravity_energy_J": answer.gravity_energy, "work_J": answer.work}
     found["max_stress_Pa"] = answer.max_stress
     if answer.driven is not None:
         matrix = answer.body_stiffness
         found |= {f"body_stiffness_{name}": matrix[:, i, j] for name, (i, j) in ENTRIES.items()}
-        along_x, along_y = off_axis(design, answer)
+        along_x, along_y = _off_axis(design, answer)
         found |= {"off_axis_ratio_x": along_x, "off_axis_ratio_y": along_y}
     return found
 
 
-def off_axis(design: Design, answer: Path) -> tuple[Array, Array]:
+def _off_axis(design: Design, answer: Response) -> tuple[Array, Array]:
     """Return the stiffness in x and in y over that of the rotation, whose lever is a strip's length (S,) [1].
 
     In x and y all else is held; the rotation is free to shift.
     """
-    matrix, length = answer.body_stiffness, length_of(design)
+    matrix, length = answer.body_stiffness, _length(design)
     known = ~np.isnan(matrix).any(axis=(1, 2))
     turning = np.full(len(matrix), np.nan)
     turning[known] = 1.0 / np.linalg.inv(matrix[known])[:, 2, 2]
     return length**2 * matrix[:, 0, 0] / turning, length**2 * matrix[:, 1, 1] / turning
 
 
-def length_of(design: Design) -> float:
+def _length(design: Design) -> float:
     """Return the length of the longest strip [m]."""
-    if isinstance(design, Problem):
-        return design.length
-    return max(math.dist(strip.start, strip.end) for strip in design.strips)
+    return max(strip.length for strip in design.strips)
 
 
-def as_document(design: Design, answer: Path) -> dict[str, Any]:
+def as_document(design: Design, answer: Response) -> dict[str, Any]:
     """Return the answer as the JSON object of the command: of a pivot the one body, of a mechanism all."""
-    found = arrays(design, answer)
     return {
         **headed(answer),
         "critical_points": critical(design, answer),
-        **({} if isinstance(answer, Response) else {"bodies": places(answer.bodies)}),
-        **{name: [number(value) for value in values.tolist()] for name, values in found.items()},
+        **({} if answer.crossing is not None else {"bodies": places(answer.bodies)}),
+        **arrays(design, answer),
         "strength": _strength(strength(design, answer)),
         "validity": asdict(worth(design, answer)),
         **({} if answer.estimate is None else {"estimate": answer.estimate}),
@@ -114,7 +108,7 @@ def as_document(design: Design, answer: Path) -> dict[str, Any]:
     }
 
 
-def critical(design: Design, answer: Path) -> list[dict[str, Any]]:
+def critical(design: Design, answer: Response) -> list[dict[str, Any]]:
     """Return the critical points of a path as JSON has them, with the force that acts on a body there [N]."""
     acting = design.effects.parameters().get("applied_force")
     force = math.hypot(*acting["force"]) if acting and "applied_force" in answer.effects else None
@@ -122,17 +116,17 @@ def critical(design: Design, answer: Path) -> list[dict[str, Any]]:
         {
             "kind": point.kind,
             "load_factor": point.load_factor,
-            "rotation_rad": number(point.rotation),
+            "rotation_rad": point.rotation,
             **({} if force is None else {"force_N": force * point.load_factor}),
         }
         for point in answer.critical_points
     ]
 
 
-def as_frame(design: Design, answer: Path) -> "pd.DataFrame":
+def as_frame(design: Design, answer: Response) -> "pd.DataFrame":
     """Return a row a state: the model, its arrays, and of a mechanism the places of all bodies."""
     found: dict[str, Any] = {"model": answer.model} | arrays(design, answer)
-    if isinstance(answer, MechanismResponse):
+    if answer.crossing is None:
         for name, place in answer.bodies.items():
             keys = ("x_m", "y_m", "rotation_rad")
             found |= {f"{name}_{key}": column for key, column in zip(keys, place.T, strict=True)}
@@ -141,7 +135,7 @@ def as_frame(design: Design, answer: Path) -> "pd.DataFrame":
     return pd.DataFrame(found)
 
 
-def readable(design: Design, answer: Path) -> Iterator[str]:
+def readable(design: Design, answer: Response) -> Iterator[str]:
     """Yield the lines of the tables, and what is to be said of the answer."""
     yield described(answer.model, answer.settings, answer.effects)
     yield from table([*_states(design, answer), *_columns(design, answer)])
@@ -155,37 +149,36 @@ def readable(design: Design, answer: Path) -> Iterator[str]:
     yield ending(answer.status, answer.counters, answer.wall_s)
 
 
-def worth(design: Design, answer: Path) -> Validity:
+def worth(design: Design, answer: Response) -> Validity:
     """Return what a beam's answer to the design is worth; of yield `strength` tells."""
     return validity(design, answer, effects=answer.effects)
 
 
-def _the(answer: Path) -> str:
-    return "the body" if isinstance(answer, Response) else str(answer.driven)
+def _the(answer: Response) -> str:
+    return "the body" if answer.crossing is not None else str(answer.driven)
 
 
-def _states(design: Design, answer: Path) -> Iterator[Column]:
+def _states(design: Design, answer: Response) -> Iterator[Column]:
     """Yield the columns that say which state it is."""
-    pivot = isinstance(answer, Response)
+    pivot = answer.crossing is not None
     if not pivot or LOADS & set(answer.effects):
         yield plain("load", (f"{factor:.3f}" for factor in answer.load_factor))
-    if isinstance(answer, Response):
+    if answer.crossing is not None:
         yield angle(answer.rotation)
 
 
-def _columns(design: Design, answer: Path) -> Iterator[Column]:
+def _columns(design: Design, answer: Response) -> Iterator[Column]:
     """Yield the columns of places, torque, stiffness, energy and stress."""
-    pivot, scale = isinstance(answer, Response), flexural_scale(design)
-    if isinstance(answer, Response):
+    pivot, scale = answer.crossing is not None, flexural_scale(design)
+    if answer.crossing is not None:
         yield from quantity("m", highest=-3, x=answer.centre[:, 0], y=answer.centre[:, 1])
-        floor = SHIFT_FLOOR * length_of(design)
+        floor = SHIFT_FLOOR * _length(design)
         yield from quantity("m", highest=-3, floor=floor, digits=6, shift=np.hypot(*answer.centre_shift.T))
     if pivot or np.isfinite(answer.torque).any():
         yield from quantity("N m", floor=FORCE_FLOOR * scale, torque=answer.torque)
         yield from quantity("N m/rad", floor=FORCE_FLOOR * scale, stiffness=answer.stiffness)
     yield from quantity("J", floor=ENERGY_FLOOR * scale, energy=answer.strain_energy)
-    strips = (design,) if isinstance(design, Problem) else design.strips
-    floor = STRAIN_FLOOR * max(strip.youngs_modulus for strip in strips)
+    floor = STRAIN_FLOOR * max(strip.youngs_modulus for strip in design.strips)
     yield from quantity("Pa", floor=floor, highest=6, digits=6, stress=answer.max_stress)
     if not pivot:
         for name, place in answer.bodies.items():
@@ -193,22 +186,22 @@ def _columns(design: Design, answer: Path) -> Iterator[Column]:
             yield angle(place[:, 2], group=name)
 
 
-def _body_columns(design: Design, answer: Path) -> Iterator[Column]:
+def _body_columns(design: Design, answer: Response) -> Iterator[Column]:
     """Yield the columns of the stiffness of the body, at a few of the states."""
     last = len(answer.load_factor) - 1
     rows = sorted({round(last * part / SHOWN) for part in range(SHOWN + 1)})
     for column in _states(design, answer):
         yield Column(name=column.name, unit=column.unit, cells=tuple(column.cells[row] for row in rows))
-    if isinstance(answer, MechanismResponse) and np.isfinite(answer.torque).any():
+    if answer.crossing is None and np.isfinite(answer.torque).any():
         yield angle(answer.bodies[str(answer.driven)][rows, 2])
     matrix = answer.body_stiffness[rows]
     xx, yy, xy = matrix[:, 0, 0], matrix[:, 1, 1], matrix[:, 0, 1]
     floor = ROUND_OFF * float(np.nanmax(np.abs(xx) + np.abs(yy), initial=0.0))
     yield from wide("N/m", DIGITS, floor=floor, **{"x": xx, "y": yy, "x y": xy})
     coupled = {"x turn": matrix[:, 0, 2], "y turn": matrix[:, 1, 2]}
-    yield from wide("N", DIGITS, floor=floor * length_of(design), **coupled)
+    yield from wide("N", DIGITS, floor=floor * _length(design), **coupled)
     yield from wide("N m/rad", DIGITS, turn=matrix[:, 2, 2])
-    for name, ratio in zip(("x over", "y over"), off_axis(design, answer), strict=True):
+    for name, ratio in zip(("x over", "y over"), _off_axis(design, answer), strict=True):
         yield plain(name, (one(each, DIGITS) for each in ratio[rows]))
 
 
@@ -237,13 +230,13 @@ def _strength(found: Strength) -> dict[str, Any]:
     """Return the largest stress and what of it the material bears, as JSON has it."""
     yields = None
     if found.yields is not None:
-        yields = {"load_factor": found.yields[0], "rotation_rad": number(found.yields[1])}
+        yields = {"load_factor": found.yields[0], "rotation_rad": found.yields[1]}
     return {
         "max_stress_Pa": found.stress,
         "strip": found.strip,
         "station": found.station,
         "load_factor": found.load_factor,
-        "rotation_rad": number(found.rotation),
+        "rotation_rad": found.rotation,
         "yield_strength_Pa": found.yield_strength,
         "safety": found.safety,
         "yields_from": yields,

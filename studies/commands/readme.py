@@ -8,38 +8,231 @@ run, or a file has no marks.
 """
 
 import argparse
-from collections.abc import Callable, Iterable, Mapping
+import math
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from pathlib import Path
+from typing import Any
+
+import pandas as pd
 
 from studies.cases import page
-from studies.commands import tables
 from studies.commands.parser import command
 from studies.errors import BadInput
 from studies.record.files import write_whole
 from studies.record.source import ROOT
 from studies.record.store import Store
-from studies.stability.summary import lines
+from studies.stability.maps import lines
+
+QUANTITIES = ("trajectory", "torque", "stiffness")
+PAPER = "spline, {} control points, as the paper integrates it"
+LOCKING_FREE = "spline, {} control points, locking-free"
+ELEMENTS = "finite elements, {} a strip, as the paper"
+
+#: Control-point counts of the table of paths for the default formulation.
+COUNTS = (4, 6, 8, 12)
+#: Formulations of Fig 6 in the order of the table.
+SWINGS = {
+    "n = 4, as the paper": PAPER.format(4),
+    "n = 4, locking-free": LOCKING_FREE.format(4),
+    "n = 6": LOCKING_FREE.format(6),
+    "n = 10": LOCKING_FREE.format(10),
+    "FE, 20 elements": ELEMENTS.format(20),
+}
+#: Those of them that the first screen shows.
+SHORT = ("n = 4, as the paper", "n = 4, locking-free", "n = 6", "FE, 20 elements")
+CLAIMED = ("n = 4, as the paper", "n = 4, locking-free", "n = 6")
 
 
-def _digits(store: Store) -> Iterable[str]:
-    studies = ("work_precision/statics", "work_precision/dynamics")
-    return tables.digits(*(tables.stored(store, study, "digits_of_time") for study in studies))
+def _head(*names: str) -> str:
+    """Return the two lines that a table begins with."""
+    return f"| {' | '.join(names)} |\n|{'---|' * len(names)}"
 
 
-def _published(store: Store) -> Iterable[str]:
-    return tables.published_values(tables.stored(store, "published/problems", "values"))
+def short(store: Store) -> Iterator[str]:
+    """Yield the one table of the first screen: a row a formulation, errors in percent."""
+    paths = _paths(store)
+    swings = _rows(stored(store, "paper/fig06_release", "summary"), "formulation")
+    names = ("path", "torque", "stiffness", "swing frequency")
+    static = stored(store, "convergence/control_points", "reference").set_index("quantity")["uncertainty"]
+    moving = stored(store, "paper/fig06_release", "reference").set_index("quantity")["uncertainty"]
+    limits = [*(static[each] for each in QUANTITIES), moving["frequency"]]
+    yield _head("largest error, against refined finite elements", *names)
+    for name in SHORT:
+        errors = " | ".join(_percent(paths[SWINGS[name]][f"error_{each}"]) for each in QUANTITIES)
+        shift = swings[name]["frequency_shift"]
+        shown = f"{'+' if shift > 0.0 else ''}{_percent(shift)}"
+        if abs(shift) <= limits[-1]:
+            shown = f"< {_percent(limits[-1])}"
+        yield f"| {SWINGS[name]} | {errors} | {shown} |"
+    yield "| *uncertainty of the reference* | " + " | ".join(map(_percent, limits)) + " |"
+
+
+def sized(store: Store) -> Iterator[str]:
+    """Yield the table of the designs that gradients found, a row a design, beside what each began from."""
+    size = "length, depth, width [mm]"
+    yield _head("design", size, "inclination", "crossing", "shift [mm]", "stiffness varies by")
+    table = stored(store, "design/sizing", "designs")
+    for row in table.sort_values(["baseline", "factor_centre_shift"]).to_dict("records"):
+        size = ", ".join(f"{1e3 * row[f'{key}_m']:.3g}" for key in ("length", "thickness", "width"))
+        place = f"{math.degrees(row['inclination_rad']):.3g}° | {row['crossing_ratio']:.3g}"
+        shift = f"{1e3 * row['centre_shift_m']:.2g}{_less(row['factor_centre_shift'])}"
+        varies = f"{100 * row['variation']:.2g} %{_less(row['factor_stiffness_variation'])}"
+        yield f"| {row['design']} | {size} | {place} | {shift} | {varies} |"
+
+
+def _less(factor: float) -> str:
+    return "" if factor == 1.0 else f" (× 1/{factor:.3g})"
+
+
+def paths(store: Store) -> Iterator[str]:
+    """Yield the table of the static path: a row a formulation, and the uncertainty of the reference."""
+    limits = stored(store, "convergence/control_points", "reference").set_index("quantity")["uncertainty"]
+    yield _head("largest error over 0 to 90°", *QUANTITIES)
+    for label, row in _paths(store).items():
+        yield f"| {label} | " + " | ".join(f"{row[f'error_{name}']:.1e}" for name in QUANTITIES) + " |"
+    yield "| *uncertainty of the reference* | " + " | ".join(f"{limits[n]:.0e}" for n in QUANTITIES) + " |"
+
+
+def swings(store: Store) -> Iterator[str]:
+    """Yield the table of the swing after the release: shift of the frequency and error of the rotation."""
+    rows = _rows(stored(store, "paper/fig06_release", "summary"), "formulation")
+    limits = stored(store, "paper/fig06_release", "reference").set_index("quantity")["uncertainty"]
+    yield _head("swing of 0.05 s from 90°", "frequency", "rotation")
+    for name, label in SWINGS.items():
+        row = rows[name]
+        yield f"| {label} | {row['frequency_shift']:+.1e} | {row['error_rotation_rad']:.1e} rad |"
+    uncertain = f"{limits['frequency']:.0e} | {limits['rotation_rad']:.0e} rad"
+    yield f"| *uncertainty of the reference* | {uncertain} |"
+
+
+def claims(store: Store) -> Iterator[str]:
+    """Yield the table of the paper's claims: one row a claim, one column a formulation."""
+    studies = ("paper/fig04_trajectory", "paper/fig05_stiffness", "paper/fig06_release")
+    found = pd.concat([stored(store, study, "findings") for study in studies])
+    yield _head("claim of the paper", *CLAIMED)
+    for claim, rows in found.groupby("claim", sort=True):
+        verdicts = _rows(rows, "formulation")
+        cells = (f"{verdicts[name]['holds']} ({_percent(verdicts[name]['value'])})" for name in CLAIMED)
+        yield f"| {claim} | " + " | ".join(cells) + " |"
+
+
+def published(store: Store) -> Iterator[str]:
+    """Yield the table of published problems: of each and each kind of answer the value that is met worst, by
+    the splines where they answer."""
+    values = stored(store, "published/problems", "values")
+    yield _head("published problem", "asked", "in print", "ours", "difference", "limit")
+    for _, every in values.groupby(["problem", "answer"], sort=False):
+        rows = every[every["model"] == "spline"] if (every["model"] == "spline").any() else every
+        row = rows.iloc[int(rows["error"].abs().argmax())]
+        name = row["problem"] if row["answer"] == "beam" else f"{row['problem']}, {row['answer']}"
+        bound = "" if row["bound"] == "equal" else f"{row['bound']} "
+        unit = "" if row["unit"] == "1" else f" {row['unit']}"
+        printed = f"{bound}{row['published']:.6g} ± {row['uncertainty']:.1g}{unit}"
+        difference = f"{100 * row['error']:+.2g} %"
+        asked = row["quantity"].replace("_", " ")
+        limit = f"{100 * row['limit']:.2g} %"
+        yield f"| {name} | {asked} | {printed} | {row['found']:.6g}{unit} | {difference} | {limit} |"
+
+
+def stored(store: Store, study: str, name: str) -> pd.DataFrame:
+    """Return one stored table of a study.
+
+    Raises:
+        BadInput: the study was never run.
+    """
+    try:
+        return store.load_tables(study)[name]
+    except FileNotFoundError:
+        raise BadInput(f"{study}: got no stored tables, expected those of `make figures`") from None
+
+
+def _paths(store: Store) -> dict[str, Any]:
+    """Return the rows of the errors along the static path, by the label of their formulation."""
+    splines = stored(store, "convergence/control_points", "map")
+    meshes = stored(store, "convergence/elements", "meshes")
+    bezier = splines[splines["basis"] == "bezier"]
+    paper = bezier[(bezier["measure"] == "spatial") & (bezier["stretch"] == "consistent")]
+    found = {PAPER.format(4): paper[paper["control_points"] == 4]}
+    default = bezier[(bezier["measure"] == "material") & (bezier["stretch"] == "mixed")]
+    default = default[default["axial_modes"] == default["control_points"] - 2]
+    for n in COUNTS:
+        found[LOCKING_FREE.format(n)] = default[default["control_points"] == n]
+    twenty = meshes[(meshes["element"] == "corotational") & (meshes["elements"] == 20)]
+    found[ELEMENTS.format(20)] = twenty
+    return {label: rows.iloc[0] for label, rows in found.items()}
+
+
+def _rows(table: pd.DataFrame, column: str) -> Mapping[str, Any]:
+    """Return the rows of a table by what stands in one column."""
+    return {row[column]: row for row in table.to_dict("records")}
+
+
+def _percent(value: float) -> str:
+    return f"{100.0 * value:.2g} %" if abs(value) < 1.0 else f"{100.0 * value:.0f} %"
+
+
+#: Series in the order of the columns, with their labels.
+STATICS = {
+    "spline": "spline",
+    "exudyn exact": "Exudyn, exact beam",
+    "exudyn ancf": "Exudyn, ANCF cable",
+    "openseespy frame": "OpenSees",
+    "finite elements": "finite elements",
+    "four-bar": "pseudo-rigid",
+}
+DYNAMICS = {
+    "spline": "spline",
+    "spline, energy-consistent": "spline, large implicit steps",
+    "exudyn ancf": "Exudyn, ANCF cable",
+    "openseespy frame": "OpenSees",
+    "finite elements": "finite elements",
+}
+
+
+def digits(store: Store) -> Iterator[str]:
+    """Yield both tables of what an error costs: rows of errors, columns of models."""
+    statics, dynamics = (
+        stored(store, f"work_precision/{name}", "digits_of_time") for name in ("statics", "dynamics")
+    )
+    yield from _digits(statics, STATICS, "error of path and torque, 0 to 90°", "{:.0e}")
+    yield ""
+    yield from _digits(dynamics, DYNAMICS, "error of the rotation, 0.05 s of swing", "{:g} rad")
+
+
+def _digits(found: pd.DataFrame, labels: Mapping[str, str], title: str, shown: str) -> Iterator[str]:
+    """Yield a table; a code that is not installed has no column."""
+    names = [name for name in labels if name in set(found["series"])]
+    yield _head(title, *(labels[name] for name in names))
+    for target in sorted(set(found["target"]), reverse=True):
+        rows = found[found["target"] == target].set_index("series").to_dict("index")
+        cells = [_cell(rows[name], name == next(iter(labels))) for name in names]
+        yield f"| {shown.format(target)} | " + " | ".join(cells) + " |"
+
+
+def _cell(row: Mapping[str, Any], first: bool) -> str:
+    """Return setting and time, and of the others how many times that of the first."""
+    if pd.isna(row["solve_s"]):
+        return "–"
+    seconds = float(row["solve_s"])
+    time = f"{1e3 * seconds:.2g} ms" if seconds < 0.1 else f"{seconds:.2g} s"
+    ratio = "" if first or pd.isna(row["ratio"]) else f" (× {_rounded(float(row['ratio']))})"
+    return f"{row['setting']}: {time}{ratio}"
+
+
+def _rounded(ratio: float) -> str:
+    return f"{ratio:.2g}" if ratio < 100.0 else f"{float(f'{ratio:.2g}'):.0f}"
 
 
 #: File -> block -> the lines that stand between its marks.
 BLOCKS: dict[Path, Mapping[str, Callable[[Store], Iterable[str]]]] = {
-    ROOT / "README.md": {"agreement": tables.short, "published": _published},
+    ROOT / "README.md": {"agreement": short, "published": published},
     ROOT / "docs" / "findings.md": {
-        "paths": tables.paths,
-        "swings": tables.swings,
-        "claims": tables.claims,
-        "digits": _digits,
+        "paths": paths,
+        "swings": swings,
+        "claims": claims,
+        "digits": digits,
         "hard cases": lines,
-        "sized": tables.sized,
+        "sized": sized,
     },
     ROOT / "docs" / "cases.md": {
         "keys of a pivot": lambda store: page.pivot(),

@@ -29,38 +29,27 @@ import math
 from collections.abc import Iterator
 from typing import Any
 
-from studies.answers.adapters import answer_release
+import numpy as np
+
+from studies.answers.adapters import answer_modes, answer_release
 from studies.answers.motion import Motion
-from studies.answers.moving import pace
 from studies.answers.settings import Settings
 from studies.cases.design import Design, flexural_scale
 from studies.cases.effects import DEFAULT
 from studies.cases.problem import Problem
+from studies.commands import arguments as take
 from studies.commands.answer import (
+    PLOT,
     deliver,
     described,
     ending,
     headed,
-    number,
+    pictured,
     places,
     require_target,
 )
-from studies.commands.arguments import (
-    ACCURACY,
-    DURATION,
-    INTEGRATOR,
-    JSON,
-    MODEL,
-    REPEAT,
-    ROTATION,
-    STEP,
-    chosen_design,
-    chosen_settings,
-    refuse,
-)
 from studies.commands.columns import ENERGY_FLOOR, angle, plain, quantity, table
 from studies.commands.parser import Argument, command, whole_number
-from studies.commands.picture import PLOT, pictured
 
 #: Options of the motion that only the finite elements have, and those of both models.
 FE_OPTIONS = ("most_steps",)
@@ -72,21 +61,28 @@ ANGLES = ("accuracy", "rotation", "time", "space")
 #: Energy in EI/L below which what moves is round-off, whose balance says nothing [1].
 STILL = 1e-15
 
+#: Swings that are followed beyond what the design is led through, and steps in each.
+SWINGS, STEPS = 4, 256
+#: Modes that a step resolves, if they are at most so many times as fast as the first: steps in each period.
+MODES, FASTEST, LEAST_STEPS = 3, 40.0, 20
+#: Duration of what has no first frequency [s].
+USUAL = 0.05
+
 #: Lines of the table, beside the release itself.
 LINES = 20
 
 
 @command(
-    *MODEL,
-    ROTATION.but(help="at the release, in deg (default: the case's)"),
-    DURATION,
-    STEP,
-    INTEGRATOR,
-    ACCURACY.but(
+    *take.MODEL,
+    take.ROTATION.but(help="at the release, in deg (default: the case's)"),
+    take.DURATION,
+    take.STEP,
+    take.INTEGRATOR,
+    take.ACCURACY.but(
         help="wanted error of the rotation, in rad: chooses steps and raises the control points, or doubles "
         "the elements (default: none is asked for)"
     ),
-    REPEAT.but(help="wall_s is the median of R releases, default 1"),
+    take.REPEAT.but(help="wall_s is the median of R releases, default 1"),
     Argument(
         "--no-check",
         action="store_true",
@@ -98,15 +94,15 @@ LINES = 20
         metavar="N",
         help="explicit steps that are not too many to begin with (finite elements; default 20000000)",
     ),
-    JSON,
+    take.JSON,
     PLOT,
 )
 def main(arguments: argparse.Namespace) -> int:
     """Release and report; return the exit code."""
-    design = chosen_design(arguments)
-    settings = chosen_settings(arguments)
+    design = take.chosen_design(arguments)
+    settings = take.chosen_settings(arguments)
     if settings.model == "spline":
-        refuse(arguments, FE_OPTIONS, OPTIONS)
+        take.refuse(arguments, FE_OPTIONS, OPTIONS)
     require_target(arguments)
     options = {name: getattr(arguments, name) for name in (*OPTIONS, *FE_OPTIONS)}
     duration, options["step"] = _pace(arguments, design, settings)
@@ -121,7 +117,7 @@ def main(arguments: argparse.Namespace) -> int:
     )
     failure = None if answer.converged else answer.message
     pictured(arguments, design, answer)
-    return deliver(arguments, as_document(design, answer), _readable(design, answer), failure=failure)
+    return deliver(arguments, _document(design, answer), _readable(design, answer), failure=failure)
 
 
 def _pace(arguments: argparse.Namespace, design: Design, settings: Settings) -> tuple[float, float | None]:
@@ -134,40 +130,61 @@ def _pace(arguments: argparse.Namespace, design: Design, settings: Settings) -> 
     free = settings.model == "spline" and implicit and arguments.step is None
     if arguments.duration is not None and not free:
         return arguments.duration, arguments.step
-    usual = pace(design, settings)
-    duration = usual.duration if arguments.duration is None else arguments.duration
-    if not free or usual.step is None:
+    usual, step = _usual(design, settings)
+    duration = usual if arguments.duration is None else arguments.duration
+    if not free or step is None:
         return duration, arguments.step
-    return duration, min(usual.step, duration)
+    return duration, min(step, duration)
 
 
-def as_document(design: Design, answer: Motion) -> dict[str, Any]:
+def _usual(design: Design, settings: Settings) -> tuple[float, float | None]:
+    """Return duration and step [s] that suit the first mode at rest, after all histories of loads and drives;
+    of what has no stable mode the usual duration, in the model's own steps."""
+    found = answer_modes(design, settings, count=MODES)
+    frequency = found.frequency[found.frequency > 0.0]
+    led = _last_time(design)
+    if not found.converged or not frequency.size:
+        return led + USUAL, None
+    first = float(frequency[0])
+    last = float(frequency[frequency <= FASTEST * first].max())
+    return led + SWINGS / first, 1.0 / max(STEPS * first, LEAST_STEPS * last)
+
+
+def _last_time(design: Design) -> float:
+    """Return when the last history of a load or a drive is over [s]."""
+    histories = [design.history or ()]
+    histories += [design.effects.tables.get(name, {}).get("history") or () for name in design.effects.names]
+    times = [float(time) for history in histories for time, _ in np.reshape(history, (-1, 2))]
+    return float(max([0.0, *times, *(design.held or ())]))
+
+
+def _document(design: Design, answer: Motion) -> dict[str, Any]:
     """Return the answer as the JSON object of the command: of a pivot the one body, of a mechanism all.
 
     The energies of gravity, loads and damping are there where more than the usual effects act.
     """
     pivot = isinstance(design, Problem)
     place = {
-        "rotation_rad": answer.rotation.tolist(),
-        "com_x_m": answer.centre[:, 0].tolist(),
-        "com_y_m": answer.centre[:, 1].tolist(),
+        "rotation_rad": answer.rotation,
+        "com_x_m": answer.centre[:, 0],
+        "com_y_m": answer.centre[:, 1],
     }
     energies = {
-        "gravity_J": answer.gravity_energy.tolist(),
-        "work_J": answer.work.tolist(),
-        "dissipated_J": answer.dissipated.tolist(),
+        "gravity_J": answer.gravity_energy,
+        "work_J": answer.work,
+        "dissipated_J": answer.dissipated,
     }
     return {
         **headed(answer),
-        "rotation_error_rad": number(answer.rotation_error),
-        "frequency_Hz": number(answer.swing.value),
+        "rotation_error_rad": answer.rotation_error,
+        "frequency_Hz": answer.swing.value,
         "frequency_reason": answer.swing.reason,
-        "time_s": answer.time.tolist(),
+        "time_s": answer.time,
         **(place if pivot else {"bodies": places(answer.bodies)}),
-        "kinetic_J": answer.kinetic_energy.tolist(),
-        "strain_J": answer.strain_energy.tolist(),
+        "kinetic_J": answer.kinetic_energy,
+        "strain_J": answer.strain_energy,
         **({} if pivot and set(answer.effects) <= {*DEFAULT, "inextensible"} else energies),
-        "constraint_residual": answer.constraint_residual.tolist(),
+        "constraint_residual": answer.constraint_residual,
         **_estimate(answer),
         "counters": answer.counters,
         "wall_s": answer.wall_s,
@@ -178,12 +195,8 @@ def _estimate(answer: Motion) -> dict[str, Any]:
     """Return the estimate of the error as a part of the JSON object; none where no accuracy was asked for."""
     if answer.estimate is None:
         return {}
-    return {
-        "estimate": {
-            f"{name}_rad" if name in ANGLES else name: number(value) if name in ANGLES else value
-            for name, value in answer.estimate.items()
-        }
-    }
+    named = {f"{name}_rad" if name in ANGLES else name: value for name, value in answer.estimate.items()}
+    return {"estimate": named}
 
 
 def _readable(design: Design, answer: Motion) -> Iterator[str]:

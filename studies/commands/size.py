@@ -35,15 +35,15 @@ from studies.cases.document import parsed
 from studies.cases.keys import LOADS_FIRST
 from studies.cases.problem import Problem
 from studies.cases.write import as_toml, document_toml
+from studies.commands import arguments as take
 from studies.commands.answer import deliver, not_converged, require_target
-from studies.commands.arguments import CASE, JSON, OUT, ROTATION, option, turned_pivot
 from studies.commands.parser import Argument, command, positive, whole_number
 from studies.commands.sized import as_document, of_elements, question, readable, values_of
 from studies.design.evaluate import Answers, PathEnds, answers
 from studies.design.numbers import NumbersTask, by_sides, number_of
 from studies.design.optimise import Outcome, best, search, starts
 from studies.design.programme import Sizing, own
-from studies.design.task import OBJECTIVES, STRESS, Room, Task, sides_of, variables_of
+from studies.design.task import OBJECTIVES, STRESS, Task, sides_of, usual_bounds, variables_of
 from studies.errors import BadInput
 from studies.record.files import require_writable_file, write_whole
 from studies.record.progress import Bar
@@ -79,7 +79,7 @@ def _interval(most: float) -> Callable[[str], tuple[float, float]]:
 
 
 @command(
-    CASE,
+    take.CASE,
     Argument(
         "--objective",
         choices=[*OBJECTIVES, STRESS],
@@ -92,7 +92,7 @@ def _interval(most: float) -> Callable[[str], tuple[float, float]]:
         metavar="KEY[=LOW:HIGH]",
         help="a number of a mechanism's file to be found, repeatable (default bounds: half to twice its own)",
     ),
-    ROTATION.but(help="range to either side, in deg (default: the case's)"),
+    take.ROTATION.but(help="range to either side, in deg (default: the case's)"),
     Argument(
         "--stiffness", type=positive, metavar="K", help="at rotation 0, in N m/rad (default: the case's own)"
     ),
@@ -116,7 +116,7 @@ def _interval(most: float) -> Callable[[str], tuple[float, float]]:
     ),
     *(
         Argument(
-            option(attribute),
+            take.option(attribute),
             type=_interval(most),
             metavar="LOW:HIGH",
             help=f"bounds of the {name.replace('_', ' ')}, or the value to hold, {said}",
@@ -133,8 +133,8 @@ def _interval(most: float) -> Callable[[str], tuple[float, float]]:
     Argument(
         "--starts", type=whole_number(1), default=8, metavar="N", help="starts of the search, default 8"
     ),
-    OUT.but(metavar="FILE", help="write the optimum there as a case file (default: nowhere)"),
-    JSON,
+    take.OUT.but(metavar="FILE", help="write the optimum there as a case file (default: nowhere)"),
+    take.JSON,
 )
 def main(arguments: argparse.Namespace) -> int:
     """Search, check, report; return the exit code."""
@@ -163,7 +163,7 @@ def main(arguments: argparse.Namespace) -> int:
 
 def _start(arguments: argparse.Namespace) -> Problem:
     """Return the case over the range that is asked for; BadInput where it cannot be sized."""
-    start = turned_pivot(arguments, "range to size for")
+    start = take.turned_pivot(arguments, "range to size for")
     if start.section_depth is not None:
         expected = "none: both sides of a rectangular section are sized"
         raise BadInput(
@@ -185,7 +185,9 @@ def _refuse_others(arguments: argparse.Namespace, mechanism: bool) -> None:
     for name in others:
         if vars(arguments).get(name) is not None:
             expected = "--free KEY=LOW:HIGH for a mechanism" if mechanism else "it for a mechanism only"
-            raise BadInput(f"{option(name)}: got it for {Path(arguments.case).stem}, expected {expected}")
+            raise BadInput(
+                f"{take.option(name)}: got it for {Path(arguments.case).stem}, expected {expected}"
+            )
     wrong = "centre-shift" if mechanism else STRESS
     if arguments.objective == wrong:
         kinds = "stress or stiffness-variation" if mechanism else " or ".join(OBJECTIVES)
@@ -208,8 +210,8 @@ def _numbers(content: dict[str, Any], arguments: argparse.Namespace) -> NumbersT
         raise BadInput(f"{where}: bodies: got none, expected one whose stiffness or travel is held")
     other = "travel_mm" if task.held == "stiffness" else "stiffness"
     if getattr(arguments, other) is not None:
-        expected = option("stiffness" if other == "travel_mm" else "travel_mm")
-        raise BadInput(f"{option(other)}: got it for {Path(where).stem}, expected {expected}")
+        expected = take.option("stiffness" if other == "travel_mm" else "travel_mm")
+        raise BadInput(f"{take.option(other)}: got it for {Path(where).stem}, expected {expected}")
     task.require_numbers()
     return task
 
@@ -254,7 +256,7 @@ def _allowable(strength: float | None, arguments: argparse.Namespace, own: float
 
 def _task(start: Problem, arguments: argparse.Namespace) -> Task:
     case = answers(start)
-    bounds = Room().bounds(start)
+    bounds = usual_bounds(start)
     for name, (attribute, unit, _, _) in BOUNDS.items():
         given = getattr(arguments, attribute)
         if given is not None:

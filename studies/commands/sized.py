@@ -34,7 +34,7 @@ DIMENSIONS = ("length_m", "inclination_deg", "crossing_ratio", "thickness_m", "w
 Quantities = dict[str, float]
 
 
-def of_splines(task: Sizing, found: Answers) -> Quantities:
+def _of_splines(task: Sizing, found: Answers) -> Quantities:
     """Return what the splines say of a design, by name."""
     return of_spline(found).quantities() if isinstance(task, Task) else quantities(task, found)
 
@@ -55,16 +55,16 @@ def as_document(
         optimum = {
             **_dimensions(task, found),
             **_section(found.problem),
-            "spline": _named(of_splines(task, found.answers)),
+            "spline": _named(_of_splines(task, found.answers)),
             "finite_elements": _named(checked),
             "active": [{"constraint": each.name, "price": each.price} for each in found.active],
         }
     return {
         "objective": task.objective,
-        KEYS[_held(task)]: task.stiffness,
+        KEYS[task.held]: task.stiffness,
         "allowable_stress_Pa": task.allowable_stress,
         "bounds": {name: list(task.bounds[name]) for name in task.variables},
-        "case": _named(of_splines(task, own(task))),
+        "case": _named(_of_splines(task, own(task))),
         "optimum": optimum,
         "starts": [
             {
@@ -90,7 +90,7 @@ def question(task: Sizing) -> tuple[str, str]:
         "" if rotation is None else f" over {'+-' * isinstance(task, Task)}{math.degrees(rotation):.4g} deg"
     )
     wanted = f"{task.stiffness:.6g} N m/rad"
-    if _held(task) == "travel":
+    if task.held == "travel":
         wanted = f"a travel of {1e3 * task.stiffness:.6g} mm"
     return (
         f"least {task.objective.replace('-', ' ')}{degrees}"
@@ -98,10 +98,6 @@ def question(task: Sizing) -> tuple[str, str]:
         + (f" with {', '.join(taken)}" if taken else ""),
         f"at {wanted} and at most {task.allowable_stress / 1e6:.6g} MPa",
     )
-
-
-def _held(task: Sizing) -> str:
-    return task.held if isinstance(task, NumbersTask) else "stiffness"
 
 
 def _named(measured: Quantities) -> dict[str, float]:
@@ -132,7 +128,7 @@ def readable(
     task: Sizing, outcomes: list[Outcome], found: Outcome | None, checked: Quantities | None
 ) -> Iterator[str]:
     """Yield the lines of a table: case, optimum and finite elements, what holds it back, and the starts."""
-    case = of_splines(task, own(task))
+    case = _of_splines(task, own(task))
     yield from question(task)
     if found is not None and checked is not None:
         yield from _comparison(task, case, found, checked)
@@ -147,7 +143,7 @@ def readable(
 
 
 def _comparison(task: Sizing, case: Quantities, found: Outcome, fe: Quantities) -> Iterator[str]:
-    spline = of_splines(task, found.answers)
+    spline = _of_splines(task, found.answers)
     yield ""
     yield f"{'':<28}{'case':>12}{'sized':>12}{'in FE':>12}"
     for key, (label, factor) in SHOWN.items():

@@ -30,52 +30,37 @@ import math
 from collections.abc import Iterator, Sequence
 from typing import Any
 
-from studies.answers.adapters import answer_path
-from studies.answers.differences import differences
-from studies.answers.response import MechanismResponse, Response
+from studies.answers.adapters import answer_static
+from studies.answers.metrics import differences
+from studies.answers.response import Response
 from studies.answers.settings import Settings
 from studies.cases.design import Design
-from studies.cases.problem import Problem
-from studies.commands.answer import deliver, passed, require_target
-from studies.commands.arguments import (
-    ACCURACY,
-    CSV,
-    INCREMENTS,
-    JSON,
-    REPEAT,
-    ROTATION,
-    SEVERAL_MODELS,
-    all_settings,
-    chosen_design,
-    driven,
-)
+from studies.commands import arguments as take
+from studies.commands.answer import PLOT, deliver, passed, pictured, require_target
 from studies.commands.columns import fixed
 from studies.commands.parser import command
 from studies.commands.path_output import as_document, as_frame, critical, readable
-from studies.commands.picture import PLOT, pictured
 from studies.record.progress import Bar
-
-Path = Response | MechanismResponse
 
 
 @command(
-    *SEVERAL_MODELS,
-    ROTATION.but(help="end of the path, in deg (default: the case's)"),
-    INCREMENTS,
-    REPEAT,
-    ACCURACY.but(
+    *take.SEVERAL_MODELS,
+    take.ROTATION.but(help="end of the path, in deg (default: the case's)"),
+    take.INCREMENTS,
+    take.REPEAT,
+    take.ACCURACY.but(
         help="wanted relative error of path, torque, stiffness and stress, and of section forces (spline) or "
         "energy (fe): raises the control points (default 1e-4, or none with --control-points) or doubles "
         "the elements (default: none is asked for)"
     ),
-    JSON,
-    CSV,
+    take.JSON,
+    take.CSV,
     PLOT,
 )
 def main(arguments: argparse.Namespace) -> int:
     """Solve and report; return the exit code."""
-    design = driven(chosen_design(arguments), arguments)
-    every = all_settings(arguments)
+    design = take.driven(take.chosen_design(arguments), arguments)
+    every = take.all_settings(arguments)
     require_target(arguments)
     answers = [_answer(arguments, design, settings) for settings in every]
     stopped = [_stopped(design, answer) for answer in answers if not answer.converged]
@@ -89,14 +74,14 @@ def main(arguments: argparse.Namespace) -> int:
     )
 
 
-def _answer(arguments: argparse.Namespace, design: Design, settings: Settings) -> Path:
+def _answer(arguments: argparse.Namespace, design: Design, settings: Settings) -> Response:
     """Return the path by one model."""
     with Bar(f"solve {settings.model}") as bar:
         how = {"repeat": arguments.repeat, "accuracy": arguments.accuracy}
-        return answer_path(design, settings, progress=bar, **how)
+        return answer_static(design, settings, progress=bar, **how)
 
 
-def _stopped(design: Design, answer: Path) -> str:
+def _stopped(design: Design, answer: Response) -> str:
     """Return how far a path came, why it stopped, and what mends a discretisation that is too coarse."""
     given = answer.resolution and not answer.estimate
     mend = "; without --control-points their number is chosen" if given else ""
@@ -105,14 +90,14 @@ def _stopped(design: Design, answer: Path) -> str:
         mend += f"; it lost its stability before, first at {passed(points[0])}"
     if answer.model == "spline" and not given:
         mend += "; --model fe may go further"
-    if isinstance(answer, Response) and isinstance(design, Problem) and design.rotation:
+    if answer.crossing is not None and design.rotation:
         last = math.degrees(answer.rotation[-1]) if len(answer.rotation) else 0.0
         mend = f"{answer.message}{mend}"
         return f"reached {fixed(last, 3)} of {math.degrees(design.rotation):.3f} deg: {mend}"
     return f"{answer.message}{mend}"
 
 
-def _document(design: Design, answers: Sequence[Path]) -> dict[str, Any]:
+def _document(design: Design, answers: Sequence[Response]) -> dict[str, Any]:
     """Return the JSON object: of one answer, or of several with their differences."""
     if len(answers) == 1:
         return as_document(design, answers[0])
@@ -122,14 +107,14 @@ def _document(design: Design, answers: Sequence[Path]) -> dict[str, Any]:
     }
 
 
-def _frame(design: Design, answers: Sequence[Path]) -> Any:
+def _frame(design: Design, answers: Sequence[Response]) -> Any:
     """Return the rows of all answers as a table of pandas, which only who asks for one waits for."""
     import pandas as pd
 
     return pd.concat([as_frame(design, answer) for answer in answers])
 
 
-def _table(design: Design, answers: Sequence[Path]) -> Iterator[str]:
+def _table(design: Design, answers: Sequence[Response]) -> Iterator[str]:
     """Yield the lines to read: every answer, and how far those after the first are from it."""
     for answer in answers:
         yield from readable(design, answer)

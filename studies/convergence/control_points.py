@@ -10,8 +10,7 @@ from studies.answers.reference import QUANTITIES
 from studies.answers.settings import SplineSettings
 from studies.cases.problem import named_case
 from studies.convergence.sweep import reaching, spline_row
-from studies.engine.findings import Finding, Tables, percent
-from studies.engine.study import Part, Study
+from studies.engine.study import Finding, Part, Study, Tables, percent
 from studies.paper.formulations import CASE, refined
 from studies.record.style import BASES, STRETCH, page, uncertain
 
@@ -19,7 +18,7 @@ COUNTS = range(4, 13)
 MEASURES = ("material", "spatial")
 
 
-def settings() -> list[SplineSettings]:
+def _settings() -> list[SplineSettings]:
     """Return every discretisation of the map: basis, measure, stretch form, n, and m = 1 ... n - 1."""
     forms: list[tuple[int, str, int | None]] = []
     for n in COUNTS:
@@ -135,7 +134,7 @@ def _findings(tables: Tables) -> list[Finding]:
 STUDY = Study(
     cases=(CASE,),
     parts=(
-        Part(at=settings, ask=lambda each: {"map": spline_row(named_case(CASE), each, refined())}),
+        Part(at=_settings, ask=lambda each: {"map": spline_row(named_case(CASE), each, refined())}),
         Part(
             at=lambda: QUANTITIES,
             ask=lambda name: {"reference": {"quantity": name, "uncertainty": refined().uncertainty[name]}},

@@ -10,8 +10,7 @@ from matplotlib.figure import Figure
 from studies.answers.reference import QUANTITIES, Reference
 from studies.cases.problem import named_case
 from studies.convergence.sweep import element_sweep
-from studies.engine.findings import Claim, Tables
-from studies.engine.study import Answer, Part, Study
+from studies.engine.study import Answer, Claim, Part, Study, Tables
 from studies.paper.formulations import CASE
 from studies.record.style import ELEMENTS, page
 
@@ -27,7 +26,7 @@ def _refined(element: str) -> Answer:
     return {"meshes": rows, "limits": _limits(element, limit)}
 
 
-def figure(tables: Tables) -> Figure:
+def _figure(tables: Tables) -> Figure:
     """Draw the errors over the number of elements, one panel a quantity."""
     drawn = page(11.5, 3.9)
     panels = drawn.subplots(1, len(QUANTITIES))
@@ -108,5 +107,5 @@ STUDY = Study(
             most=0.01,
         ),
     ),
-    figures={"elements": figure},
+    figures={"elements": _figure},
 )

@@ -23,8 +23,7 @@ from studies.answers.reference import sampled
 from studies.answers.response import Response
 from studies.answers.settings import SplineSettings
 from studies.cases.problem import Problem, named_case
-from studies.engine.findings import Finding, Tables
-from studies.engine.study import Answer, Part, Study
+from studies.engine.study import Answer, Finding, Part, Study, Tables
 from studies.paper.formulations import CASE
 from studies.record.style import BLACK, BLUE, GREEN, ORANGE, RED, page
 
@@ -94,7 +93,7 @@ def drawn(
     return designs
 
 
-def period(problem: Problem) -> float:
+def _period(problem: Problem) -> float:
     """Return the period of the slowest small swing at rest [s]."""
     return 1.0 / float(answer_modes(problem, SplineSettings(control_points=6), count=1).frequency[0])
 
@@ -110,7 +109,7 @@ def _described(number: int, problem: Problem) -> dict[str, float]:
     }
 
 
-def figure(tables: Tables) -> Figure:
+def _figure(tables: Tables) -> Figure:
     """Draw the estimates against the true errors, and the true errors against what was asked for."""
     sheet = page(9.5, 4.6)
     panels = dict(zip(("statics", "motion"), sheet.subplots(1, 2), strict=True))
@@ -158,7 +157,7 @@ def _static(number: int, problem: Problem) -> Answer:
 
 def _swing_rows(number: int, problem: Problem) -> Iterator[dict[str, Any]]:
     """Yield the rows of one design's swings."""
-    let_go = partial(answer_release, problem, duration=PERIODS * period(problem))
+    let_go = partial(answer_release, problem, duration=PERIODS * _period(problem))
     exact, check = (
         let_go(SplineSettings(control_points=n), integrator="explicit")
         for n in (SWING_REFERENCE, SWING_CHECK)
@@ -277,5 +276,5 @@ STUDY = Study(
         Part(at=lambda: ACCURACIES, ask=lambda each: {"timings": _timed(each)}, alone=True),
     ),
     claims=(_findings,),
-    figures={"error_estimate": figure},
+    figures={"error_estimate": _figure},
 )

@@ -9,8 +9,7 @@ from matplotlib.figure import Figure
 
 from studies.convergence import swing_sweep
 from studies.convergence.swing_sweep import INTEGRATORS, MODES
-from studies.engine.findings import Finding, Tables
-from studies.engine.study import Part, Study
+from studies.engine.study import Finding, Part, Study, Tables
 from studies.paper import formulations
 from studies.paper.formulations import CASE
 from studies.record.style import BLACK, BLUE, LOOKS, ORANGE, page, uncertain

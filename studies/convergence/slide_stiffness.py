@@ -18,8 +18,7 @@ from studies.answers.frequency import swing_frequency
 from studies.answers.reference import QUANTITIES, errors
 from studies.answers.settings import SplineSettings
 from studies.cases.problem import named_case
-from studies.engine.findings import Finding, Tables
-from studies.engine.study import Answer, Part, Study
+from studies.engine.study import Answer, Finding, Part, Study, Tables
 from studies.paper import formulations
 from studies.paper.formulations import CASE
 from studies.record.style import COUNT_COLOURS, page
@@ -35,7 +34,7 @@ DURATION = 0.025
 NEAR = 3.0
 
 
-def defaults() -> list[dict[str, Any]]:
+def _defaults() -> list[dict[str, Any]]:
     """Return the models' own values."""
     own = [("statics", n, SLIDE_STIFFNESS) for n in COUNTS]
     own += [("motion", n, swinging_slide_stiffness(n)) for n in MOVING_COUNTS]
@@ -47,7 +46,7 @@ def _moving() -> list[tuple[int, float]]:
     return [(n, each) for n in MOVING_COUNTS for each in sorted({*VALUES, swinging_slide_stiffness(n)})]
 
 
-def figure(tables: Tables) -> Figure:
+def _figure(tables: Tables) -> Figure:
     """Draw the errors of torque, stiffness and rotation in motion over the slide stiffness."""
     drawn = page(9.5, 4.4)
     torque, stiffness, motion = drawn.subplots(1, 3)
@@ -123,11 +122,11 @@ STUDY = Study(
     parts=(
         Part(at=lambda: product(COUNTS, VALUES), ask=_static),
         Part(at=_moving, ask=_motion),
-        Part(ask=lambda: {"defaults": defaults()}),
+        Part(ask=lambda: {"defaults": _defaults()}),
     ),
     claims=(
         partial(_findings, problem="statics", column="error_torque", what="torque on the path"),
         partial(_findings, problem="motion", column="error_rotation_rad", what="rotation in motion"),
     ),
-    figures={"slide_stiffness": figure},
+    figures={"slide_stiffness": _figure},
 )

@@ -7,10 +7,10 @@ import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
-from studies.answers.adapters import answer_path
+from studies.answers.adapters import answer_static
 from studies.answers.metrics import observed_order
 from studies.answers.reference import QUANTITIES, Reference, errors, limit_of
-from studies.answers.response import MechanismResponse, Response
+from studies.answers.response import Response
 from studies.answers.settings import FeSettings, SplineSettings
 from studies.cases.design import Design
 from studies.kinds import Progress
@@ -43,7 +43,7 @@ def spline_row(problem: Design, setting: SplineSettings, against: Reference) -> 
     error_stress (largest magnitudes over the path; empty when the path was not completed),
     newton_iterations, message.
     """
-    return _described(setting) | _outcome(answer_path(problem, setting), against)
+    return _described(setting) | _outcome(answer_static(problem, setting), against)
 
 
 def element_sweep(
@@ -61,7 +61,7 @@ def element_sweep(
     answers = []
     for done, count in enumerate(counts):
         progress(done, len(counts))
-        answers.append(answer_path(problem, FeSettings(elements=count, element=element)))
+        answers.append(answer_static(problem, FeSettings(elements=count, element=element)))
     progress(len(counts), len(counts))
     limit = limit_of([answer for answer in answers if answer.settings["elements"] <= FINEST])
     rows = [
@@ -109,7 +109,7 @@ def _described(setting: SplineSettings) -> dict[str, Any]:
     }
 
 
-def _outcome(answer: Response | MechanismResponse, against: Reference) -> dict[str, Any]:
+def _outcome(answer: Response, against: Reference) -> dict[str, Any]:
     row: dict[str, Any] = {"status": answer.status, "reached_rad": answer.rotation[-1]}
     row |= dict.fromkeys(ERROR_COLUMNS, np.nan)
     if answer.converged:

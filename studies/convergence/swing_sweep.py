@@ -42,7 +42,7 @@ def of_control_points(stretch: str, n: int) -> dict[str, Any]:
     """
     settings = SplineSettings(control_points=n, stretch=stretch)
     motion = formulations.resolved(settings)
-    implied = static_frequency(answer_static(named_case(CASE), _as_in(motion, settings)))
+    implied = _static_frequency(answer_static(named_case(CASE), _as_in(motion, settings)))
     row = {"stretch": stretch, "control_points": n} | _outcome(motion)
     return row | {"shift_from_statics": implied / _finest_static_frequency() - 1.0}
 
@@ -107,17 +107,17 @@ def of_amplitude(name: str, amplitude: float) -> dict[str, Any]:
         "amplitude_rad": amplitude,
         "status": motion.status,
         "frequency_Hz": motion.frequency if motion.converged else math.nan,
-        "frequency_from_statics_Hz": static_frequency(answer_static(problem, SETTINGS[name])),
+        "frequency_from_statics_Hz": _static_frequency(answer_static(problem, SETTINGS[name])),
         "first_mode_Hz": answer_modes(named_case(CASE), SETTINGS[name], count=1).frequency[0],
     }
 
 
 @cache
 def _finest_static_frequency() -> float:
-    return static_frequency(answer_static(named_case(CASE), FeSettings(elements=160)))
+    return _static_frequency(answer_static(named_case(CASE), FeSettings(elements=160)))
 
 
-def static_frequency(answer: Response) -> float:
+def _static_frequency(answer: Response) -> float:
     """Return the frequency of the swing that a static path implies, with the case's body [Hz]."""
     problem = named_case(CASE)
     return quasi_static_frequency(

@@ -4,9 +4,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from spline_model.sensitivity.result import Quantity, Sensitivities
-from spline_model.sensitivity.solve import sensitivities
-from studies.answers.models import built, model_of, refusals
+from spline_model.sensitivity.solve import Quantity, Sensitivities, sensitivities
+from studies.answers.models import built, model_of, refusals, static_path
 from studies.answers.reference import reference
 from studies.answers.response import Response, centre_shift
 from studies.answers.settings import SplineSettings
@@ -76,7 +75,7 @@ def answers(problem: Problem, control_points: int = CONTROL_POINTS) -> Answers:
     sides = sides_of(problem)
     solved = [_to_one_side(problem, sign * problem.rotation, control_points) for sign in sides]
     found = [each for _, each in solved]
-    begin = first_state(problem, len(solved[0][0]))
+    begin = _first_state(problem, len(solved[0][0]))
     at_rest, by_rest = _at(begin, found[0].stiffness)
     shift, by_shift = _behind(begin, [each.centre_shift for each in found])
     shift_0, by_shift_0 = _at(begin, found[0].centre_shift)
@@ -94,8 +93,8 @@ def answers(problem: Problem, control_points: int = CONTROL_POINTS) -> Answers:
         by_variation=(by_stiffness - ratio[:, None] * by_rest) / at_rest,
         stress=np.concatenate([value.ravel() for value, _ in stress]),
         by_stress=np.concatenate([by.reshape(-1, len(VARIABLES)) for _, by in stress]),
-        rotation=behind_first(begin, [rotation for rotation, _ in solved]),
-        largest_stress=behind_first(begin, [each.largest_stress().value for each in found]),
+        rotation=_behind_first(begin, [rotation for rotation, _ in solved]),
+        largest_stress=_behind_first(begin, [each.largest_stress().value for each in found]),
         counters=found[0].counters,
     )
 
@@ -111,12 +110,12 @@ def _behind(begin: int, sides: list[Quantity]) -> tuple[Array, Array]:
     return values, np.concatenate([side.derivative[begin + 1 :] for side in sides])
 
 
-def first_state(problem: Problem, states: int) -> int:
+def _first_state(problem: Problem, states: int) -> int:
     """Return the state of a path at which the body begins to turn: loads have come on before."""
     return states - 1 - problem.increments
 
 
-def behind_first(begin: int, sides: list[Array]) -> Array:
+def _behind_first(begin: int, sides: list[Array]) -> Array:
     """Return the values of a path from the state at which the body begins to turn, those of each side."""
     return np.concatenate([sides[0][begin : begin + 1], *(side[begin + 1 :] for side in sides)])
 
@@ -126,10 +125,9 @@ def _to_one_side(problem: Problem, rotation: float, control_points: int) -> tupl
     settings = SplineSettings(control_points=control_points)
     model = model_of(settings)
     pivot, _ = built(model, problem, settings, moving=False)
-    how = {"rotation": rotation, "increments": problem.increments, "order": problem.order}
     with refusals(model, settings):
         try:
-            path = model.statics.solve_statics(pivot, **how)
+            path = static_path(model, problem, pivot, rotation=rotation)
         except model.errors.ConvergenceError as error:
             raise PathEnds(str(error)) from None
         if path.critical_points and len(sides_of(problem)) > 1:
@@ -179,12 +177,12 @@ def by_elements(problem: Problem) -> tuple[Measured, Response]:
         NoReference: they do not reach the end of the range.
     """
     limits = [reference(replace(problem, rotation=sign * problem.rotation)) for sign in sides_of(problem)]
-    begin = first_state(problem, len(limits[0].rotation))
-    shifts = [centre_shift(problem, limit.rotation, limit.centre) for limit in limits]
+    begin = _first_state(problem, len(limits[0].rotation))
+    shifts = [centre_shift(problem.crossing_point, limit.rotation, limit.centre) for limit in limits]
     measured = Measured(
-        rotation=behind_first(begin, [limit.rotation for limit in limits]),
-        shift=behind_first(begin, [np.hypot(*(shift - shift[begin]).T) for shift in shifts]),
-        stiffness=behind_first(begin, [limit.stiffness for limit in limits]),
-        stress=behind_first(begin, [limit.finest.max_stress for limit in limits]),
+        rotation=_behind_first(begin, [limit.rotation for limit in limits]),
+        shift=_behind_first(begin, [np.hypot(*(shift - shift[begin]).T) for shift in shifts]),
+        stiffness=_behind_first(begin, [limit.stiffness for limit in limits]),
+        stress=_behind_first(begin, [limit.finest.max_stress for limit in limits]),
     )
     return measured, limits[0].finest

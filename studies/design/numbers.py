@@ -11,8 +11,8 @@ import numpy as np
 
 from spline_model.sensitivity.parameters import CENTRES, MATERIAL, POINTS
 from spline_model.sensitivity.solve import sensitivities
-from studies.answers.adapters import answer_mechanism
-from studies.answers.models import built, model_of, refusals
+from studies.answers.adapters import answer_static
+from studies.answers.models import built, model_of, refusals, static_path
 from studies.answers.reference import MESHES, limit_of
 from studies.answers.settings import FeSettings, SplineSettings
 from studies.cases.keys import MOMENTS, SIDES
@@ -21,7 +21,7 @@ from studies.design.evaluate import CONTROL_POINTS, Answers, PathEnds
 from studies.design.task import STATIONS, STRESS, VARIATION, Bounded
 from studies.errors import BadInput
 from studies.kinds import Array
-from studies.sweep import keys
+from studies.sweep import plan
 
 #: Bounds of a number of a section or material where none are given, over its own.
 ROOM = (0.5, 2.0)
@@ -49,7 +49,7 @@ def number_of(where: str, document: Mapping[str, Any], text: str) -> Number:
     """Return the number that `KEY[,KEY...][=LOW:HIGH]` stands for; BadInput where it is none of the case."""
     names, _, bounds = text.partition("=")
     given = tuple(name.strip() for name in names.split(","))
-    known = keys.known(document, "spline")
+    known = plan.known(document, "spline")
     for name in given:
         if name not in known:
             near = [key for key in known if key.rpartition(".")[2] == name.rpartition(".")[2]] or list(known)
@@ -57,7 +57,7 @@ def number_of(where: str, document: Mapping[str, Any], text: str) -> Number:
     own = _value(document, given[0])
     if own is None:
         raise BadInput(f"--free: got {given[0]}, expected a number that stands in {where}")
-    if not bounds and (own <= 0.0 or given[0].split(".")[-1] in keys.PARTS):
+    if not bounds and (own <= 0.0 or given[0].split(".")[-1] in plan.PARTS):
         raise BadInput(f"--free: got {text} without bounds, expected {text}=LOW:HIGH, in the file's unit")
     try:
         low, high = map(float, bounds.split(":")) if bounds else (own * ROOM[0], own * ROOM[1])
@@ -86,10 +86,10 @@ def _value(document: Mapping[str, Any], key: str) -> float | None:
     section, *way = key.split(".")
     place: Any = document.get(section, {})
     for name in way:
-        if isinstance(place, list) and name not in keys.PARTS:
+        if isinstance(place, list) and name not in plan.PARTS:
             place = next((part for part in place if part.get("name") == name), {})
         elif isinstance(place, list):
-            place = place[keys.PARTS[name]]
+            place = place[plan.PARTS[name]]
         else:
             place = place.get(name)
         if place is None:
@@ -163,7 +163,7 @@ class NumbersTask(Bounded):
         document = copy.deepcopy(dict(self.document))
         for number, value in zip(self.numbers, values, strict=True):
             for key in number.keys:
-                keys.put(document, key, float(value))
+                plan.put(document, key, float(value))
         return document
 
     def problem(self, values: Array) -> Mechanism:
@@ -186,10 +186,9 @@ class NumbersTask(Bounded):
         settings = SplineSettings(control_points=CONTROL_POINTS)
         model = model_of(settings)
         asked, _ = built(model, design, settings, moving=False)
-        how = {"body": design.body, "rotation": design.rotation, "order": design.order}
         with refusals(model, settings):
             try:
-                path = model.statics.solve_mechanism(asked, increments=design.increments, **how)
+                path = static_path(model, design, asked)
             except model.errors.ConvergenceError as error:
                 raise PathEnds(str(error)) from None
             if path.critical_points:
@@ -275,7 +274,7 @@ def quantities_by_elements(task: NumbersTask, design: Mechanism) -> dict[str, fl
     Raises:
         NoReference: they do not reach the end of the path.
     """
-    limit = limit_of([answer_mechanism(design, FeSettings(elements=count)) for count in MESHES])
+    limit = limit_of([answer_static(design, FeSettings(elements=count)) for count in MESHES])
     begin = len(limit.rotation) - 1 - design.increments
     stress = {STRESS: float(limit.finest.max_stress[[begin, -1]].max())}
     if design.rotation is None:

@@ -10,7 +10,7 @@ from studies.design.evaluate import Answers, Measured, answers, by_elements, of_
 from studies.design.optimise import Outcome, best, search, starts
 from studies.design.task import CENTRE_SHIFT, UNITS, VARIATION, Task, variables_of
 from studies.effects.beyond import ALL, SECTIONS, relative_change, with_sections
-from studies.engine.findings import Claim, Ratio, Tables
+from studies.engine.study import Claim, Ratio, Tables
 from studies.record.progress import silent
 
 #: Starts of a search with the effects, beside the former optimum.

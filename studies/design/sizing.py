@@ -13,30 +13,11 @@ from spline_model.sensitivity.solve import sensitivities
 from spline_model.statics import solve_statics
 from studies.answers.response import Response
 from studies.cases.problem import Problem, named_case
-from studies.design import figures
+from studies.design import figures, sections, tolerances
+from studies.design import task as questions
 from studies.design.evaluate import Answers, Measured, answers, by_elements, of_spline
 from studies.design.optimise import Outcome, best, numbered, search, starts
 from studies.design.programme import gradient_error
-from studies.design.sections import CLAIMS, off, resized
-from studies.design.task import (
-    ALLOWABLE,
-    BASELINES,
-    CENTRE_SHIFT,
-    OBJECTIVES,
-    QUESTIONS,
-    SPRING_STEEL,
-    STARTS,
-    TABLE_ONE,
-    TRADE,
-    UNITS,
-    VARIATION,
-    WIDE,
-    Question,
-    Task,
-    baseline,
-    task_of,
-    variables_of,
-)
 from studies.engine.study import Answer, Part, Study
 from studies.record.progress import silent
 from studies.record.timing import measure
@@ -47,23 +28,23 @@ TIMED, REPEAT = (6, 8, 10), 21
 
 @cache
 def _baseline(name: str) -> tuple[Problem, Answers]:
-    problem = baseline(name)
+    problem = questions.baseline(name)
     return problem, answers(problem)
 
 
-def _task(question: Question, **limits: float) -> Task:
+def _task(question: questions.Question, **limits: float) -> questions.Task:
     """Return the task of a question at its baseline's own stiffness, and largest stress."""
     start, own = _baseline(question.baseline)
     largest = float(np.abs(own.stress).max())
-    return task_of(start, question, stiffness=own.stiffness, stress=largest, **limits)
+    return questions.task_of(start, question, stiffness=own.stiffness, stress=largest, **limits)
 
 
 @cache
-def _found(name: str) -> tuple[Task, list[Outcome]]:
+def _found(name: str) -> tuple[questions.Task, list[Outcome]]:
     """Return what a question asks and where its starts have led."""
-    question = QUESTIONS[name]
+    question = questions.QUESTIONS[name]
     task = _task(question)
-    return task, search(task, starts(task, STARTS), silent)
+    return task, search(task, starts(task, questions.STARTS), silent)
 
 
 def _optimum(name: str) -> Outcome:
@@ -88,7 +69,7 @@ def _searched(name: str) -> Answer:
         "starts": _starts(name, task, outcomes),
         "history": _history(name, outcomes),
         "active": _active(name, optimum),
-        "resized": resized(name, task, optimum),
+        "resized": sections.resized(name, task, optimum),
     }
 
 
@@ -97,7 +78,8 @@ def described(name: str, problem: Problem, found: Answers) -> dict[str, Any]:
 
     Tables: designs (variables, objectives, factor); curves (a row a model and rotation); shapes
     (finite-element stations at rest and at the end); checks (splines against finite elements, gradients
-    against differences); sections (what each effect of the third dimension changes).
+    against differences); sections (what each effect of the third dimension changes); tolerances (what
+    manufacture does).
     """
     measured, response = by_elements(problem)
     curves = [_curve(name, "spline", of_spline(found)), _curve(name, "FE", measured)]
@@ -106,7 +88,8 @@ def described(name: str, problem: Problem, found: Answers) -> dict[str, Any]:
         "curves": pd.concat(curves),
         "shapes": _shapes(name, response),
         "checks": _checks(name, found, measured),
-        "sections": off(name, problem, found),
+        "sections": sections.off(name, problem, found),
+        "tolerances": tolerances.toleranced(name, problem, found),
     }
 
 
@@ -116,9 +99,9 @@ def _trade() -> list[dict[str, Any]]:
     It lies between the optima of both objectives, and begins at the last one too.
     """
     rows: list[dict[str, Any]] = []
-    begin = [_optimum(name).at[:-1] for name in WIDE]
-    for limit in TRADE:
-        task = _task(QUESTIONS[WIDE[0]], variation=limit)
+    begin = [_optimum(name).at[:-1] for name in questions.WIDE]
+    for limit in questions.TRADE:
+        task = _task(questions.QUESTIONS[questions.WIDE[0]], variation=limit)
         found = best(search(task, np.array(begin), silent))
         rows.append(_trade_row(limit, found))
         begin = begin[:2] if found is None else [*begin[:2], found.at[:-1]]
@@ -131,28 +114,35 @@ def _trade_row(limit: float, found: Outcome | None) -> dict[str, Any]:
     return {
         "variation_limit": limit,
         "status": "optimum",
-        **dict(zip(UNITS, variables_of(found.problem), strict=True)),
-        "centre_shift_m": found.answers.largest(CENTRE_SHIFT),
-        "variation": found.answers.largest(VARIATION),
+        **_dimensions(questions.variables_of(found.problem)),
+        "centre_shift_m": found.answers.largest(questions.CENTRE_SHIFT),
+        "variation": found.answers.largest(questions.VARIATION),
     }
 
 
 def _design(name: str, problem: Problem, found: Answers) -> dict[str, Any]:
     """Return a design's variables and objectives; factors are the baseline's objective over the design's."""
-    other = name if name in BASELINES else QUESTIONS[name].baseline
+    other = name if name in questions.BASELINES else questions.QUESTIONS[name].baseline
     own, measured = _baseline(other)[1], of_spline(found)
-    reach = float(np.interp(ALLOWABLE, measured.stress, measured.rotation))
+    reach = float(np.interp(questions.ALLOWABLE, measured.stress, measured.rotation))
     return {
         "design": name,
         "baseline": other,
-        **dict(zip(UNITS, variables_of(problem), strict=True)),
+        **_dimensions(questions.variables_of(problem)),
         "stiffness_Nm_per_rad": found.stiffness,
         "largest_stress_Pa": float(measured.stress.max()),
-        "centre_shift_m": found.largest(CENTRE_SHIFT),
-        "variation": found.largest(VARIATION),
-        **{f"factor_{key.replace('-', '_')}": own.largest(key) / found.largest(key) for key in OBJECTIVES},
+        "centre_shift_m": found.largest(questions.CENTRE_SHIFT),
+        "variation": found.largest(questions.VARIATION),
+        **{
+            f"factor_{key.replace('-', '_')}": own.largest(key) / found.largest(key)
+            for key in questions.OBJECTIVES
+        },
         "range_at_500MPa_rad": reach,
     }
+
+
+def _dimensions(values: Any, before: str = "") -> dict[str, float]:
+    return {f"{before}{key}": value for key, value in zip(questions.UNITS, values, strict=True)}
 
 
 def _curve(name: str, model: str, measured: Measured) -> pd.DataFrame:
@@ -188,13 +178,13 @@ def _shapes(name: str, response: Response) -> pd.DataFrame:
     return pd.concat(rows)
 
 
-def _starts(name: str, task: Task, outcomes: list[Outcome]) -> list[dict[str, Any]]:
+def _starts(name: str, task: questions.Task, outcomes: list[Outcome]) -> list[dict[str, Any]]:
     return [
         {
             "question": name,
             "start": number,
-            **dict(zip((f"start_{key}" for key in UNITS), task.low + task.span * each.start, strict=True)),
-            **dict(zip(UNITS, variables_of(each.problem), strict=True)),
+            **_dimensions(task.low + task.span * each.start, "start_"),
+            **_dimensions(questions.variables_of(each.problem)),
             "optimum": optimum,
             "objective": each.objective,
             "violation": each.violation,
@@ -245,14 +235,14 @@ def _checks(name: str, found: Answers, elements: Measured) -> list[dict[str, Any
     ]
 
 
-def _gradient(name: str, task: Task, outcome: Outcome) -> dict[str, Any]:
+def _gradient(name: str, task: questions.Task, outcome: Outcome) -> dict[str, Any]:
     return {
         "design": name,
         "quantity": "gradients",
         "against": "differences, extrapolated",
         "value": math.nan,
         "reference": math.nan,
-        "error": gradient_error(task, variables_of(outcome.problem)),
+        "error": gradient_error(task, questions.variables_of(outcome.problem)),
     }
 
 
@@ -262,7 +252,7 @@ def timed(count: int) -> Answer:
     `ratio` is the latter over the former; by central differences it would be two paths a parameter,
     `paths_by_differences`, for a fraction of the digits.
     """
-    problem = named_case(BASELINES[TABLE_ONE])
+    problem = named_case(questions.BASELINES[questions.TABLE_ONE])
     pivot = cross_axis_pivot(**problem.pivot_parameters(), control_points=count)
     keywords: dict[str, Any] = {"rotation": problem.rotation, "increments": problem.increments}
     path = measure(partial(solve_statics, pivot, **keywords), repeat=REPEAT)
@@ -279,17 +269,17 @@ def timed(count: int) -> Answer:
 
 
 STUDY = Study(
-    cases=tuple(BASELINES.values()),
+    cases=tuple(questions.BASELINES.values()),
     parts=(
-        Part(at=lambda: BASELINES, ask=lambda name: described(name, *_baseline(name))),
-        Part(at=lambda: QUESTIONS, ask=_searched),
+        Part(at=lambda: questions.BASELINES, ask=lambda name: described(name, *_baseline(name))),
+        Part(at=lambda: questions.QUESTIONS, ask=_searched),
         Part(ask=lambda: {"trade": _trade()}),
         Part(at=lambda: TIMED, ask=timed, alone=True),
     ),
-    claims=CLAIMS,
+    claims=(*sections.CLAIMS, *tolerances.CLAIMS),
     figures={
-        "sizing": lambda tables: figures.designs(tables, TABLE_ONE),
-        "sizing_spring_steel": lambda tables: figures.designs(tables, SPRING_STEEL),
-        "sizing_search": lambda tables: figures.search(tables, TABLE_ONE),
+        "sizing": lambda tables: figures.designs(tables, questions.TABLE_ONE),
+        "sizing_spring_steel": lambda tables: figures.designs(tables, questions.SPRING_STEEL),
+        "sizing_search": lambda tables: figures.search(tables, questions.TABLE_ONE),
     },
 )

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from studies.cases.effects import MOTION_ONLY
+from studies.cases.mechanism import of_sides
 from studies.cases.problem import Problem, named_case
-from studies.cases.strips import of_sides
 
 #: Variables of a sizing, as keywords of the sensitivities; both strips are alike.
 VARIABLES = ("length", "inclination", "crossing_ratio", "thickness", "width")
@@ -97,6 +97,11 @@ class Task(Bounded):
         return tuple(OBJECTIVES)
 
     @property
+    def held(self) -> str:
+        """What the wanted stiffness is called."""
+        return "stiffness"
+
+    @property
     def fibres(self) -> int:
         """Fibre stresses that are held: at the end of each side, under loads before the body turns too."""
         return FIBRES * (1 if len(self.sides) == 1 else len(self.sides) + 1)
@@ -130,45 +135,22 @@ class Task(Bounded):
 
     def problem(self, variables: NDArray[np.float64]) -> Problem:
         """Return the design with these variables (5,) [m, rad, 1, m, m]."""
-        length, inclination, ratio, thickness, width = map(float, variables)
-        return replace(
-            self.start,
-            length=length,
-            inclination=inclination,
-            crossing_ratio=ratio,
-            width=width,
-            thickness=thickness,
-            **of_sides(width, thickness),
-        )
+        return varied(self.start, variables)
 
 
-@dataclass(frozen=True, kw_only=True)
-class Room:
-    """How far a designer may leave a design: what bounds are taken where none are given.
+def usual_bounds(start: Problem) -> dict[str, tuple[float, float]]:
+    """Return how far a designer may leave a design where no bounds are given [m, rad, 1, m, m].
 
-    Args:
-        length, thickness: of the start's own [1]. width: of the start's own, and of the start's length [1].
-        inclination: [rad]; crossing_ratio: [1].
-        largest_aspect: b / L [1]. The slenderness may not fall below the start's own.
+    The slenderness may not fall below the start's own, nor the width exceed the start's length.
     """
-
-    length: tuple[float, float] = (0.5, 1.0)
-    inclination: tuple[float, float] = (math.radians(20.0), math.radians(70.0))
-    crossing_ratio: tuple[float, float] = (0.1, 0.9)
-    thickness: tuple[float, float] = (0.1, 1.6)
-    width: tuple[float, float] = (0.2, 1.0)
-    largest_aspect: float = 1.0
-
-    def bounds(self, start: Problem) -> dict[str, tuple[float, float]]:
-        """Return the bounds of every variable about a design [m, rad, 1, m, m]."""
-        length, _, _, thickness, width = map(float, variables_of(start))
-        return {
-            "length": (self.length[0] * length, self.length[1] * length),
-            "inclination": self.inclination,
-            "crossing_ratio": self.crossing_ratio,
-            "thickness": (self.thickness[0] * thickness, self.thickness[1] * thickness),
-            "width": (self.width[0] * width, self.width[1] * length),
-        }
+    length, _, _, thickness, width = map(float, variables_of(start))
+    return {
+        "length": (0.5 * length, length),
+        "inclination": (math.radians(20.0), math.radians(70.0)),
+        "crossing_ratio": (0.1, 0.9),
+        "thickness": (0.1 * thickness, 1.6 * thickness),
+        "width": (0.2 * width, length),
+    }
 
 
 def variables_of(problem: Problem) -> NDArray[np.float64]:
@@ -176,6 +158,20 @@ def variables_of(problem: Problem) -> NDArray[np.float64]:
     thickness = math.sqrt(12.0 * problem.second_moment_of_area / problem.area)
     return np.array(
         [problem.length, problem.inclination, problem.crossing_ratio, thickness, problem.area / thickness]
+    )
+
+
+def varied(problem: Problem, variables: NDArray[np.float64]) -> Problem:
+    """Return a design with other variables (5,) [m, rad, 1, m, m]."""
+    length, inclination, ratio, thickness, width = map(float, variables)
+    return replace(
+        problem,
+        length=length,
+        inclination=inclination,
+        crossing_ratio=ratio,
+        width=width,
+        thickness=thickness,
+        **of_sides(width, thickness),
     )
 
 
@@ -252,7 +248,7 @@ def task_of(start: Problem, question: Question, *, stiffness: float, stress: flo
         objective=question.objective,
         stiffness=stiffness,
         allowable_stress=stress if question.stress is None else question.stress,
-        bounds=Room().bounds(start),
+        bounds=usual_bounds(start),
         least_slenderness=float(length / thickness),
         largest_aspect=question.aspect,
         limits={VARIATION: limits["variation"]} if limits else {},

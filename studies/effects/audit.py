@@ -6,11 +6,23 @@ from itertools import combinations
 
 import numpy as np
 
+from studies.answers.adapters import answer_release, answer_static
 from studies.answers.settings import SplineSettings
 from studies.cases.design import Design
 from studies.effects.beyond import Price, prices
-from studies.effects.outcome import Answer, Outcome, Run, Unanswered, answered, outcome, run_of, timed
-from studies.effects.variants import Variant, beside, full_scene, without
+from studies.effects.scenes import (
+    Answer,
+    Outcome,
+    Run,
+    Unanswered,
+    Variant,
+    answered,
+    beside,
+    full_scene,
+    outcome,
+    run_of,
+    without,
+)
 from studies.kinds import Progress
 from studies.record.progress import silent
 
@@ -90,7 +102,7 @@ def audit(design: Design, settings: SplineSettings, tolerance: float, progress: 
         rows=(*others[: len(rows)], *upset),
         tried=tuple(others[len(rows) :]),
         beyond=tuple(prices(whole)),
-        cheapest=_outcome(cheapest.variant, design, run, base).timed(duel[1]),
+        cheapest=replace(_outcome(cheapest.variant, design, run, base), wall_s=duel[1]),
         seconds=duel,
     )
 
@@ -129,15 +141,24 @@ def _combined(
     return found
 
 
+def _in_turn(scenes: Sequence[Design], run: Run, rounds: int) -> list[float]:
+    """Return the median times of static path and motion of scenes, taken round by round [s]."""
+
+    def wall_s(scene: Design) -> float:
+        motion = answer_release(scene, run.settings, duration=run.duration, step=run.step)
+        return answer_static(scene, run.settings).wall_s + motion.wall_s
+
+    walls = [[wall_s(scene) for scene in scenes] for _ in range(rounds)]
+    return [float(each) for each in np.median(walls, axis=0)]
+
+
 def _timed(outcomes: Sequence[Outcome], design: Design, run: Run) -> list[Outcome]:
     """Return the scenes with their median times, taken round by round in turn."""
     limit = SLOW * outcomes[0].wall_s
     again = [each for each in outcomes if each.wall_s <= limit]
-    walls = np.array(
-        [[timed(replace(design, effects=each.variant.effects), run) for each in again] for _ in range(ROUNDS)]
-    )
-    found = dict(zip(map(id, again), np.median(walls, axis=0), strict=True))
-    return [each.timed(float(found[id(each)])) if id(each) in found else each for each in outcomes]
+    walls = _in_turn([replace(design, effects=each.variant.effects) for each in again], run, ROUNDS)
+    found = dict(zip(map(id, again), walls, strict=True))
+    return [replace(each, wall_s=found[id(each)]) if id(each) in found else each for each in outcomes]
 
 
 def _cheapest(outcomes: Sequence[Outcome], tolerance: float) -> Outcome:
@@ -156,6 +177,5 @@ def _extent(each: Outcome) -> tuple[int, int, float]:
 def _duel(design: Design, run: Run, full: Outcome, cheapest: Outcome) -> tuple[float, float]:
     """Return the median times of two scenes, run in turn [s]."""
     scenes = [replace(design, effects=each.variant.effects) for each in (full, cheapest)]
-    walls = np.array([[timed(scene, run) for scene in scenes] for _ in range(DUELS)])
-    one, other = np.median(walls, axis=0)
-    return float(one), float(other)
+    one, other = _in_turn(scenes, run, DUELS)
+    return one, other

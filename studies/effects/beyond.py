@@ -6,13 +6,13 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from studies.answers.adapters import answer_modes, answer_path
-from studies.answers.response import MechanismResponse, Response
+from studies.answers.adapters import answer_modes, answer_static
+from studies.answers.response import Response
 from studies.answers.settings import FeSettings, Settings, SplineSettings
 from studies.cases.design import Design
 from studies.cases.mechanism import Mechanism, Strip
 from studies.cases.problem import Problem
-from studies.effects.outcome import Unanswered, reached
+from studies.effects.scenes import Unanswered, reached, strayed
 from studies.errors import BadInput
 from studies.kinds import Array
 
@@ -20,7 +20,7 @@ Either = TypeVar("Either", bound=Problem | Mechanism)
 
 #: Effects of the third dimension, which both models know by their names.
 SECTIONS = ("clamped_width", "anticlastic", "root_compliance")
-#: What stands for all of them at once, and for the shear that only the elements know.
+#: What stands for all of them at once, and for shear.
 ALL, SHEAR = "all three", "shear"
 #: Control points by which sections are priced, and elements by which shear is.
 CONTROL_POINTS, ELEMENTS = 10, 160
@@ -77,7 +77,8 @@ def _sides(strip: Problem | Strip) -> dict[str, Any]:
 
 
 def prices(design: Design) -> list[Price]:
-    """Return what each effect beside the design's own is worth: sections by the splines, shear by elements.
+    """Return what each effect beside the design's own is worth: sections by the splines, shear by elements,
+    whose modes have it too.
 
     Raises:
         BadInput: the splines refuse the design. Unanswered: it has no answer without these effects.
@@ -88,6 +89,8 @@ def prices(design: Design) -> list[Price]:
     missing = tuple(name for name in SECTIONS if name not in design.effects.names)
     asked = {name: (name,) for name in missing} | ({ALL: missing} if len(missing) > 1 else {})
     found = [_price(name, with_sections(design, added), spline, own) for name, added in asked.items()]
+    if SHEAR in design.effects.names:
+        return found
     try:
         stiff = _Answers.of(design, FeSettings(elements=ELEMENTS))
     except (BadInput, Unanswered) as error:
@@ -97,17 +100,19 @@ def prices(design: Design) -> list[Price]:
 
 @dataclass(frozen=True, kw_only=True)
 class _Answers:
-    """Static path as the body turns, and first mode at rest [Hz]."""
+    """Static path as the body turns, and first mode at rest [Hz], NaN of a design that names shear."""
 
-    path: Response | MechanismResponse
+    path: Response
     centres: dict[str, Array]
     mode: float
 
     @classmethod
     def of(cls, design: Design, settings: Settings) -> "_Answers":
-        path = reached(answer_path(design, settings))
+        path = reached(answer_static(design, settings))
         turned = slice(-design.increments - 1, None)
-        modes = reached(answer_modes(design, settings, count=1)).frequency
+        modes: Array = np.array([])
+        if SHEAR not in design.effects.names:
+            modes = reached(answer_modes(design, settings, count=1)).frequency
         return cls(
             path=path,
             centres={name: each[turned] for name, each in path.centres.items()},
@@ -120,12 +125,11 @@ def _price(effect: str, design: Design, settings: Settings, own: _Answers) -> Pr
         other = _Answers.of(design, settings)
     except (BadInput, Unanswered) as error:
         return _unpriced(effect, error)
-    travel = max((_farthest(path, path[:1]) for path in own.centres.values()), default=0.0)
-    apart = max((_farthest(other.centres[name], path) for name, path in own.centres.items()), default=0.0)
+    begins = {name: path[:1] for name, path in own.centres.items()}
     begin = -design.increments - 1
     return Price(
         effect=effect,
-        trajectory=_rounded(apart / travel) if travel > 0.0 else np.nan,
+        trajectory=_rounded(strayed(other.centres, own.centres, begins)),
         stiffness=relative_change(other.path.stiffness[begin], own.path.stiffness[begin]),
         torque=relative_change(other.path.torque[-1], own.path.torque[-1]),
         stress=relative_change(other.path.max_stress[-1], own.path.max_stress[-1]),
@@ -136,10 +140,6 @@ def _price(effect: str, design: Design, settings: Settings, own: _Answers) -> Pr
 def _unpriced(effect: str, error: Exception) -> Price:
     status = "refused" if isinstance(error, BadInput) else "not_converged"
     return Price(effect=effect, status=status, reason=str(error))
-
-
-def _farthest(path: Array, other: Array) -> float:
-    return float(np.linalg.norm(path - other, axis=1).max())
 
 
 def relative_change(value: float, own: float) -> float:

@@ -12,10 +12,8 @@ from studies.cases.problem import Problem, named_case
 from studies.effects import figures
 from studies.effects.audit import Audit, audit
 from studies.effects.beyond import ALL, SHEAR, prices
-from studies.effects.outcome import Outcome
-from studies.effects.variants import Variant, size_of, without
-from studies.engine.findings import Claim, Finding, Tables
-from studies.engine.study import Answer, Part, Study
+from studies.effects.scenes import Outcome, Variant, size_of, without
+from studies.engine.study import Answer, Claim, Finding, Part, Study, Tables
 
 CASE = "cross_axis_pivot"
 
@@ -42,7 +40,7 @@ PRICED = {
 STRETCHING, INERTIA = "stretching", "strip_inertia"
 
 
-def designs() -> dict[str, Problem]:
+def _designs() -> dict[str, Problem]:
     """Return the four designs: Table 1, ten times more slender, with a heavy and with a light body."""
     given = named_case(CASE)
     return {
@@ -58,7 +56,7 @@ def designs() -> dict[str, Problem]:
 def _audited(name: str) -> Answer:
     """Return the worth of a design's effects (a row a scene: changes, size, or why there is no answer), the
     times (of the full scene over the scene's) and the cheapest scene."""
-    found = audit(designs()[name], SETTINGS, TOLERANCE)
+    found = audit(_designs()[name], SETTINGS, TOLERANCE)
     return {
         "worth": [_row(name, row) for row in found.rows],
         "timings": _times(name, found),
@@ -220,7 +218,7 @@ def _exponent(tables: Tables) -> list[dict[str, Any]]:
 STUDY = Study(
     cases=tuple(PRICED.values()),
     parts=(
-        Part(at=designs, ask=_audited, alone=True),
+        Part(at=_designs, ask=_audited, alone=True),
         Part(at=lambda: PRICED, ask=lambda name: {"beyond": _priced(name)}),
         # highest frequency and explicit step with and without stretching
         Part(at=lambda: COUNTS, ask=lambda n: {"steps": _steps(n)}),
@@ -264,7 +262,7 @@ STUDY = Study(
     claims_of_time=(_findings_of_time,),
     varying=("cheapest",),
     figures={
-        "effects_worth": lambda tables: figures.worth(tables, list(designs()), TOLERANCE),
+        "effects_worth": lambda tables: figures.worth(tables, list(_designs()), TOLERANCE),
         "effects_savings": figures.savings,
     },
 )

@@ -13,6 +13,8 @@ from studies.exchange.tables import COLUMNS, tables
 from studies.record.files import replace_folder, require_writable_folder
 
 Contents = dict[str, bytes]
+#: Size of the drawing of a path or a motion [inch].
+SIZE = 4.6
 
 
 def contents(fields: Fields, formats: tuple[str, ...], drawn: list[int]) -> Contents:
@@ -36,9 +38,26 @@ def _vtk(fields: Fields, drawn: list[int]) -> Contents:
 
 
 def _svg(fields: Fields, drawn: list[int]) -> Contents:
-    from studies.exchange.svg import svg
+    """Return `<analysis>.svg`, to scale in millimetres: the same bytes for the same fields.
 
-    return svg(fields, drawn)
+    A path or a motion is one drawing of the chosen states over the shape at rest; modes are a drawing each,
+    over the state that they are about.
+    """
+    from studies.pictures import shapes
+    from studies.record import style
+
+    with style.applied():
+        if fields.mode_shape is not None:
+            figure = shapes.modes([(fields, "", "-")], drawn)
+        else:
+            figure = style.page(SIZE, SIZE + 0.9)
+            panel = figure.subplots()
+            handles = shapes.states_over_rest(panel, fields, drawn)
+            shapes.to_scale(panel)
+            what = {"static": "static path", "release": "motion after the release"}[fields.analysis]
+            panel.set_title(f"{shapes.NAMES[fields.model]}: {what}")
+            figure.legend(handles=handles, loc="outside lower center", ncols=3)
+        return {f"{fields.analysis}.svg": style.vector(figure)}
 
 
 def _csv(fields: Fields, drawn: list[int]) -> Contents:

@@ -21,11 +21,10 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from fe_reference import plate_factors
-from studies.answers.adapters import answer_mechanism
+from studies.answers.adapters import answer_static
 from studies.answers.settings import SplineSettings
 from studies.cases.mechanism import Mechanism
-from studies.engine.findings import Claim, Ratio, Tables
-from studies.engine.study import Answer, Part, Study
+from studies.engine.study import Answer, Claim, Part, Ratio, Study, Tables
 from studies.model_form.flattening import linear_factor
 from studies.model_form.solids import guide_compliance, solid_factor
 from studies.published.case import loaded, published
@@ -40,11 +39,13 @@ LOADS = (0.5, 1.0, 2.0, 5.0, 10.0, 20.0)
 STAGE, STAGE_LENGTH, RIGID = 5000.0 / 210.0, 0.2, 1000.0
 FINE = SplineSettings(control_points=12)
 BEAM, CLAMPED, BOTH = "beam", "clamped_width", "clamped_width, anticlastic"
+SHEARED = "clamped_width, shear"
 SHELL, COMPLETE = "shell", "complete"
 #: Kind of answer -> its words and colour.
 LOOKS = {
     BEAM: ("beam", GREY),
     CLAMPED: ("clamped width", BLUE),
+    SHEARED: ("and shear", BLACK),
     BOTH: ("and anticlastic", ORANGE),
     SHELL: ("flattened as a shell", PURPLE),
     COMPLETE: ("complete", GREEN),
@@ -92,7 +93,7 @@ def factors() -> dict[str, float]:
 def accounted(load: float) -> Answer:
     """Return a row a kind of answer and mesh at a load: its displacement and the difference to the solids."""
     strip, shape, known = guide_design().strips[0], guide_shape(), factors()
-    plate = answer_mechanism(loaded(guide_design(), CLAMPED, load), FINE)
+    plate = answer_static(loaded(guide_design(), CLAMPED, load), FINE)
     unit = strip.youngs_modulus * strip.second_moment_of_area / math.dist(strip.start, strip.end)
     square = np.trapezoid(plate.bending_moment[-1] ** 2, plate.stations).mean()
     moment = math.sqrt(3.0 * float(square)) / unit
@@ -104,7 +105,7 @@ def accounted(load: float) -> Answer:
         design = loaded(guide_design(), CLAMPED if answer in stiffer else answer, load)
         modulus = strip.youngs_modulus * stiffer.get(answer, 1.0)
         strips = tuple(replace(each, youngs_modulus=modulus) for each in design.strips)
-        found = float(answer_mechanism(replace(design, strips=strips), FINE).bodies["stage"][-1][1])
+        found = float(answer_static(replace(design, strips=strips), FINE).bodies["stage"][-1][1])
         for mesh, value in _solids(load):
             row = {"load": load, "answer": answer, "mesh_mm": mesh, "published": value, "found": found}
             rows.append({**row, "error": found / value - 1.0})

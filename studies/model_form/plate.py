@@ -11,8 +11,7 @@ from matplotlib.figure import Figure
 
 from fe_reference import plate_factors
 from studies.cases.problem import named_case
-from studies.engine.findings import Claim, Tables
-from studies.engine.study import Answer, Part, Study
+from studies.engine.study import Answer, Claim, Part, Study, Tables
 from studies.record.style import BLACK, BLUE, GREEN, GREY, ORANGE, RED, page
 
 CASE = "cross_axis_pivot"

@@ -11,8 +11,7 @@ from scipy.interpolate import CubicSpline
 
 from studies.answers.response import Response
 from studies.cases.problem import named_case
-from studies.engine.findings import Finding, Tables
-from studies.engine.study import Answer, Part, Study
+from studies.engine.study import Answer, Finding, Part, Study, Tables
 from studies.kinds import Array
 from studies.paper import formulations
 from studies.paper.formulations import CASE, FE, LOCKING_FREE, PAPER, REFINED, SETTINGS
@@ -47,7 +46,7 @@ def _compared(name: str) -> Answer:
     }
 
 
-def figure(tables: Tables) -> Figure:
+def _figure(tables: Tables) -> Figure:
     """Draw the snapshots in a row and the distance of the strips over the rotation below."""
     drawn = page(9.5, 5.8)
     panels = drawn.subplot_mosaic([list("abcde"), ["error"] * 5], height_ratios=(1.0, 1.2))
@@ -90,26 +89,21 @@ def _draw_pivot(panel: Axes, shapes: pd.DataFrame) -> None:
 
 def _snapshots(name: str, answer: Response) -> pd.DataFrame:
     """Return the strips' shapes at the snapshots that the path reached."""
-    steps = named_case(CASE).increments
-    rows = []
-    for part in SNAPSHOTS:
-        state = round(part * steps)
-        if state >= len(answer.rotation):
-            continue
-        for strip in (0, 1):
-            rows.append(
-                pd.DataFrame(
-                    {
-                        "formulation": name,
-                        "rotation_rad": answer.rotation[state],
-                        "strip": strip + 1,
-                        "station": answer.stations,
-                        "x_m": answer.shape[state, strip, :, 0],
-                        "y_m": answer.shape[state, strip, :, 1],
-                    }
-                )
-            )
-    return pd.concat(rows)
+    states = [round(part * named_case(CASE).increments) for part in SNAPSHOTS]
+    rows = [
+        {
+            "formulation": name,
+            "rotation_rad": answer.rotation[state],
+            "strip": strip + 1,
+            "station": answer.stations,
+            "x_m": answer.shape[state, strip, :, 0],
+            "y_m": answer.shape[state, strip, :, 1],
+        }
+        for state in states
+        for strip in (0, 1)
+        if state < len(answer.rotation)
+    ]
+    return pd.concat(map(pd.DataFrame, rows))
 
 
 def _distance(answer: Response, finest: Response) -> Array:
@@ -129,5 +123,5 @@ STUDY = Study(
         Part(ask=lambda: {"shapes": _snapshots(REFINED, formulations.refined().finest)}),
         Part(at=lambda: SETTINGS, ask=_compared),
     ),
-    figures={"fig03_snapshots": figure},
+    figures={"fig03_snapshots": _figure},
 )

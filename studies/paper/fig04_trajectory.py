@@ -6,8 +6,7 @@ from matplotlib.figure import Figure
 
 from studies.answers.metrics import trajectory_error
 from studies.answers.reference import errors
-from studies.engine.findings import Claim, Tables
-from studies.engine.study import Answer, Part, Study
+from studies.engine.study import Answer, Claim, Part, Study, Tables
 from studies.paper import formulations
 from studies.paper.formulations import CASE, FE, REFINED, SETTINGS
 from studies.record.style import LOOKS, page, uncertain
@@ -32,7 +31,7 @@ def _compared(name: str) -> Answer:
     return {"paths": _path(name, answer.rotation, answer.centre, error), "summary": summary}
 
 
-def refined() -> Answer:
+def _refined() -> Answer:
     """Return the reference: its path and its uncertainty."""
     limit = formulations.refined()
     return {
@@ -41,7 +40,7 @@ def refined() -> Answer:
     }
 
 
-def figure(tables: Tables) -> Figure:
+def _figure(tables: Tables) -> Figure:
     """Draw the paths beside their errors over the rotation."""
     drawn = page(9.5, 5.6)
     panels = drawn.subplot_mosaic([["path", "error"], ["end", "error"]])
@@ -84,7 +83,7 @@ def _path(name: str, rotation: np.ndarray, centre: np.ndarray, error: np.ndarray
 
 STUDY = Study(
     cases=(CASE,),
-    parts=(Part(ask=refined), Part(at=lambda: SETTINGS, ask=_compared)),
+    parts=(Part(ask=_refined), Part(at=lambda: SETTINGS, ask=_compared)),
     claims=(
         Claim(
             claim="Fig 4: the two trajectories differ by less than 1 % at the end of the movement",
@@ -95,5 +94,5 @@ STUDY = Study(
             holds=lambda row: row["status"] == "converged" and row["difference_to_fe20_end"] < BOUND,
         ),
     ),
-    figures={"fig04_trajectory": figure},
+    figures={"fig04_trajectory": _figure},
 )

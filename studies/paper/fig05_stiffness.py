@@ -8,8 +8,7 @@ from matplotlib.figure import Figure
 from studies.answers.metrics import relative_error
 from studies.answers.reference import Reference, errors
 from studies.answers.response import Response
-from studies.engine.findings import Finding, Tables
-from studies.engine.study import Answer, Part, Study
+from studies.engine.study import Answer, Finding, Part, Study, Tables
 from studies.kinds import Array
 from studies.paper import formulations
 from studies.paper.formulations import CASE, FE, REFINED, SETTINGS
@@ -17,12 +16,9 @@ from studies.record.style import LOOKS, page, uncertain
 
 #: "Negligible" is read as the width of a line in a printed plot, about this part of the full scale.
 NEGLIGIBLE = 0.03
-SAME_TORQUE = "Fig 5: the differences are negligible (torque within 3 % at every rotation)"
-SAME_STIFFNESS = "Fig 5: the differences are negligible (stiffness within 3 % at every rotation)"
-STIFFER = "Fig 5: the spline overestimates the stiffness (at the end of the movement)"
 
 
-def compared(name: str) -> Answer:
+def _compared(name: str) -> Answer:
     """Return torque and stiffness of a formulation with their errors, its summary and the findings."""
     answer, limit = formulations.answer(name), formulations.refined()
     error = errors(answer, limit)
@@ -47,7 +43,7 @@ def compared(name: str) -> Answer:
     }
 
 
-def refined() -> Answer:
+def _refined() -> Answer:
     """Return the reference: its curves and its uncertainties."""
     limit = formulations.refined()
     nothing = np.zeros(len(limit.rotation))
@@ -57,7 +53,7 @@ def refined() -> Answer:
     return {"curves": _curve(REFINED, limit, nothing, nothing), "reference": uncertainties}
 
 
-def figure(tables: Tables) -> Figure:
+def _figure(tables: Tables) -> Figure:
     """Draw torque and stiffness above their errors over the rotation."""
     drawn = page(9.0, 7.0)
     panels = drawn.subplots(2, 2, sharex=True)
@@ -99,32 +95,25 @@ def _annotate(above: Axes, below: Axes, curves: pd.DataFrame, column: str) -> No
 
 def _findings(name: str, answer: Response, against: Response) -> list[Finding]:
     """Return the claims of Fig 5 held against one formulation, compared with 20 elements as there."""
-    torque = relative_error(answer.torque, against.torque)
-    stiffness = relative_error(answer.stiffness, against.stiffness)
-    largest = {"torque": float(np.abs(torque).max()), "stiffness": float(np.abs(stiffness).max())}
-    return [
+    off = {of: relative_error(getattr(answer, of), getattr(against, of)) for of in ("torque", "stiffness")}
+    found = [
         Finding(
-            claim=SAME_TORQUE,
+            claim=f"Fig 5: the differences are negligible ({of} within 3 % at every rotation)",
             formulation=name,
-            quantity="the largest difference of the torque to 20 finite elements",
-            value=largest["torque"],
-            holds=answer.converged and largest["torque"] < NEGLIGIBLE,
-        ),
-        Finding(
-            claim=SAME_STIFFNESS,
-            formulation=name,
-            quantity="the largest difference of the stiffness to 20 finite elements",
-            value=largest["stiffness"],
-            holds=answer.converged and largest["stiffness"] < NEGLIGIBLE,
-        ),
-        Finding(
-            claim=STIFFER,
-            formulation=name,
-            quantity="the signed difference of the stiffness to 20 finite elements at the end",
-            value=float(stiffness[-1]),
-            holds=bool(answer.converged and stiffness[-1] > 0.0),
-        ),
+            quantity=f"the largest difference of the {of} to 20 finite elements",
+            value=float(np.abs(difference).max()),
+            holds=bool(answer.converged and np.abs(difference).max() < NEGLIGIBLE),
+        )
+        for of, difference in off.items()
     ]
+    stiffer = Finding(
+        claim="Fig 5: the spline overestimates the stiffness (at the end of the movement)",
+        formulation=name,
+        quantity="the signed difference of the stiffness to 20 finite elements at the end",
+        value=float(off["stiffness"][-1]),
+        holds=bool(answer.converged and off["stiffness"][-1] > 0.0),
+    )
+    return [*found, stiffer]
 
 
 def _curve(
@@ -144,6 +133,6 @@ def _curve(
 
 STUDY = Study(
     cases=(CASE,),
-    parts=(Part(ask=refined), Part(at=lambda: SETTINGS, ask=compared)),
-    figures={"fig05_stiffness": figure},
+    parts=(Part(ask=_refined), Part(at=lambda: SETTINGS, ask=_compared)),
+    figures={"fig05_stiffness": _figure},
 )

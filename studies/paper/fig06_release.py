@@ -10,8 +10,7 @@ from matplotlib.figure import Figure
 from studies.answers.motion import Motion
 from studies.answers.reference import Swing, SwingReference, sampled
 from studies.answers.settings import SplineSettings
-from studies.engine.findings import Finding, Tables
-from studies.engine.study import Answer, Part, Study
+from studies.engine.study import Answer, Finding, Part, Study, Tables
 from studies.paper import formulations
 from studies.paper.formulations import CASE, FE, LOCKING_FREE, MEANING, PAPER, REFINED, SETTINGS
 from studies.record.style import CHECK, LOOKS, page, uncertain
@@ -33,7 +32,7 @@ QUANTITIES = (
 )
 
 
-def compared(name: str) -> Answer:
+def _compared(name: str) -> Answer:
     """Return a motion with its differences to the limit of refinement, its summary and the findings."""
     motion, limit = _motion(name), formulations.refined_swing()
     return {
@@ -43,7 +42,7 @@ def compared(name: str) -> Answer:
     }
 
 
-def refined() -> Answer:
+def _refined() -> Answer:
     """Return the limit of refinement and its uncertainties: in rad, in m, relative for the frequency."""
     limit = formulations.refined_swing()
     largest = {
@@ -58,7 +57,7 @@ def refined() -> Answer:
     }
 
 
-def figure(tables: Tables) -> Figure:
+def _figure(tables: Tables) -> Figure:
     """Draw rotation, x and y over time beside their differences to the reference, and the energy below."""
     drawn = page(8.8, 8.0)
     panels = drawn.subplots(4, 2, sharex=True)
@@ -183,6 +182,6 @@ def _findings(name: str, motion: Motion, elements: Motion) -> list[Finding]:
 
 STUDY = Study(
     cases=(CASE,),
-    parts=(Part(ask=refined), Part(at=lambda: (*SPLINES, FE, REFINED_SPLINE), ask=compared)),
-    figures={"fig06_release": figure},
+    parts=(Part(ask=_refined), Part(at=lambda: (*SPLINES, FE, REFINED_SPLINE), ask=_compared)),
+    figures={"fig06_release": _figure},
 )

@@ -7,7 +7,8 @@ the machine and on what else it does; the snapshots are the page's own canvas.
 import base64
 import io
 import time
-from collections.abc import Hashable, Iterator
+from collections.abc import Callable, Hashable, Iterator
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -16,13 +17,11 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from PIL import Image
 
-from studies.engine.findings import Tables
-from studies.engine.study import Answer, Part, Study
-from studies.interactive.film.demo import rotation
+from studies.engine.study import Answer, Part, Study, Tables, absent, lacking
 from studies.interactive.pivot.presets import PRESETS, STEPS_A_FRAME
-from studies.interactive.session.session import Session
+from studies.interactive.pivot.session import Session
+from studies.interactive.tracking.demo import rotation
 from studies.record import style
-from studies.record.extras import absent, lacking
 
 #: The paper's pictures a second.
 PAPER_RATE = 25.0
@@ -39,7 +38,7 @@ PART, SIZE, COLOURS = (0.20, 0.15, 0.80, 0.85), (320, 280), 64
 REPEATS = 3
 
 
-def missing() -> str:
+def _missing() -> str:
     """Return what this machine lacks to compute the study, or nothing."""
     packages = lacking("interactive", absent(("cv2", "starlette", "uvicorn", "websockets")))
     if packages:
@@ -51,7 +50,7 @@ def missing() -> str:
 
 def _browsed() -> Answer:
     """Return snapshots, and the frames as they were shown."""
-    from studies.interactive.film.demo import demo_film
+    from studies.interactive.tracking.demo import demo_film
     from studies.interactive.web.browser import Browser
     from studies.interactive.web.server import Hosted, Settings, warm_up
     from studies.interactive.web.sources import FilmSource
@@ -128,6 +127,13 @@ def _small(canvas: str) -> str:
 def _alone(preset: str) -> Iterator[dict[str, Any]]:
     """Yield times of the solvers of one design without a browser: poses of the film, then frames of a
     swing."""
+
+    def timed(work: str, repeat: int, frame: int, call: Callable[[], Any]) -> dict[str, Any]:
+        begin = time.perf_counter()
+        call()
+        took = 1e3 * (time.perf_counter() - begin)
+        return {"preset": preset, "work": work, "repeat": repeat, "frame": frame, "time_ms": took}
+
     for repeat in range(REPEATS):
         session = Session(preset)
         session.feed({"do": "drive", "by": "rotation", "t": 0.0})
@@ -136,26 +142,14 @@ def _alone(preset: str) -> Iterator[dict[str, Any]]:
         for k in range(WATCHED):
             mechanics.turn(rotation(k))
             pose = mechanics.snapshot.pose + rng.normal(0.0, (3e-5, 3e-5, 4e-4))
-            begin = time.perf_counter()
-            mechanics.hold(pose)
-            took = time.perf_counter() - begin
-            yield {"preset": preset, "work": "pose", "repeat": repeat, "frame": k, "time_ms": 1e3 * took}
+            yield timed("pose", repeat, k, partial(mechanics.hold, pose))
         mechanics.turn(1.0)
         mechanics.release(np.zeros(3), session.solver)
         for k in range(WATCHED):
-            begin = time.perf_counter()
-            mechanics.advance(STEPS_A_FRAME)
-            took = time.perf_counter() - begin
-            yield {
-                "preset": preset,
-                "work": "four steps",
-                "repeat": repeat,
-                "frame": k,
-                "time_ms": 1e3 * took,
-            }
+            yield timed("four steps", repeat, k, partial(mechanics.advance, STEPS_A_FRAME))
 
 
-def figure(tables: Tables) -> Figure:
+def _figure(tables: Tables) -> Figure:
     """Draw the snapshots above the times."""
     page = style.page(7.2, 5.0)
     grid = page.add_gridspec(2, 6, height_ratios=(1.15, 1.0))
@@ -224,6 +218,6 @@ STUDY = Study(
         Part(at=lambda: PRESETS, ask=lambda preset: {"alone_times": _alone(preset)}, alone=True),
     ),
     varying=("snapshots",),
-    figures={"fig07_interactive": figure},
-    missing=missing,
+    figures={"fig07_interactive": _figure},
+    missing=_missing,
 )

@@ -20,8 +20,7 @@ from studies.answers.reference import MESHES, Reference, limit_of
 from studies.answers.settings import FeSettings, SplineSettings
 from studies.cases.effects import Effects
 from studies.cases.problem import Problem, named_case
-from studies.engine.findings import Tables
-from studies.engine.study import Answer, Part, Study
+from studies.engine.study import Answer, Part, Study, Tables
 from studies.paper.formulations import DURATION, INSTANTS
 from studies.record.style import ORANGE, RED, page
 
@@ -35,7 +34,7 @@ DAMPING = 0.01
 AS_READ = "midway between the upper clamps"
 
 
-def integrated(points: int) -> Answer:
+def _integrated(points: int) -> Answer:
     """Return the errors of the paper's formulation with so many Gauss points."""
     settings = SplineSettings(control_points=4, measure="spatial", stretch="consistent", gauss_points=points)
     path, limit = answer_static(named_case(CASE), settings), _limit()
@@ -83,7 +82,7 @@ def _swing(problem: Problem) -> np.ndarray:
     return np.interp(INSTANTS, motion.time, motion.rotation)
 
 
-def read() -> Answer:
+def _read() -> Answer:
     """Return a row a reading: travel of the centre [mm], frequency, and the rotation's largest difference."""
     rows, first = [], None
     for name, problem in _readings():
@@ -101,7 +100,7 @@ def read() -> Answer:
     return {"readings": rows}
 
 
-def figure(tables: Tables) -> Figure:
+def _figure(tables: Tables) -> Figure:
     """Draw the errors of torque and stiffness over the number of Gauss points."""
     drawn, rows = page(4.0, 2.4), tables["quadrature"].sort_values("gauss_points")
     panel = drawn.subplots()
@@ -114,6 +113,6 @@ def figure(tables: Tables) -> Figure:
 
 STUDY = Study(
     cases=(CASE,),
-    parts=(Part(at=lambda: GAUSS, ask=integrated), Part(ask=read)),
-    figures={"readings": figure},
+    parts=(Part(at=lambda: GAUSS, ask=_integrated), Part(ask=_read)),
+    figures={"readings": _figure},
 )

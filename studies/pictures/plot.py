@@ -7,9 +7,9 @@ from typing import Any
 
 from matplotlib.figure import Figure
 
+from studies.answers.fields import fields_of, own_fields
 from studies.answers.response import Answered
 from studies.errors import BadInput
-from studies.exchange.solutions import fields_of, own_fields
 from studies.pictures.page import picture
 from studies.pictures.shapes import NAMES
 from studies.pictures.shown import Shown

@@ -39,7 +39,7 @@ class Shown:
 
         None of a design that is not one body on two strips from the ground whose chords cross.
         """
-        crossing, fields = crossing_of(self.fields), self.fields
+        crossing, fields = _crossing_of(self.fields), self.fields
         if crossing is None:
             return None
         x, y = crossing - fields.rest_bodies[0]
@@ -48,7 +48,7 @@ class Shown:
         return np.asarray(np.hypot(*(fields.bodies[:, 0, :2] + arm - crossing).T))
 
 
-def crossing_of(fields: Fields) -> Array | None:
+def _crossing_of(fields: Fields) -> Array | None:
     """Return where the two strips of a pivot cross at rest (2,) [m]; None of what is no such pivot."""
     carried = [{part.root, part.tip} for part in fields.parts]
     if len(fields.blocks) != 1 or carried != 2 * [{GROUND, fields.blocks[0].name}]:

@@ -14,7 +14,7 @@ from studies.cases.design import Design
 from studies.cases.document import CaseError
 from studies.cases.mechanism import Mechanism, read_mechanism
 from studies.cases.problem import read_problem
-from studies.cases.rules import Choice, Key, Text, finite, not_negative, positive, shown
+from studies.cases.rules import Key, Text, choice, finite, not_negative, positive, shown
 
 FOLDER = Path(__file__).parent / "cases"
 
@@ -26,9 +26,9 @@ PLACES = (DISPLACEMENT_X, DISPLACEMENT_Y, ROTATION)
 QUANTITIES = (*PLACES, LIMIT_LOAD, LIMIT_POINTS, LOAD_AT_ROTATION, CENTRE_SHIFT)
 EQUAL, AT_MOST, AT_LEAST = "equal", "at most", "at least"
 MODELS = ("spline", "fe", "fe-shear")
-#: Kinds of answer: the plain beam, and beams with one effect more.
-BEAM, CLAMPED_WIDTH = "beam", "clamped_width"
-ANSWERS = (BEAM, CLAMPED_WIDTH)
+#: Kinds of answer: the plain beam, and beams with the effects that are named.
+BEAM, CLAMPED_WIDTH, SHEAR, SHEARED = "beam", "clamped_width", "shear", "clamped_width, shear"
+ANSWERS = (BEAM, CLAMPED_WIDTH, SHEAR, SHEARED)
 
 
 def _key(section: str, name: str, rule: Any, *, attribute: str = "", optional: bool = False) -> Key:
@@ -79,14 +79,14 @@ PROBLEM = (
     _key("problem", "answers", Names(known=ANSWERS)),
 )
 VALUE = (
-    _key("values", "quantity", Choice(names=QUANTITIES)),
+    _key("values", "quantity", choice(*QUANTITIES)),
     _key("values", "at", finite("1 or deg"), optional=True),
     _key("values", "load", positive("load of the design"), optional=True),
     _key("values", "published", finite("unit")),
     _key("values", "unit", Text(expected="the printed unit")),
     _key("values", "unit_SI", positive("SI"), attribute="scale"),
     _key("values", "uncertainty", not_negative("unit")),
-    _key("values", "bound", Choice(names=(EQUAL, AT_MOST, AT_LEAST)), optional=True),
+    _key("values", "bound", choice(EQUAL, AT_MOST, AT_LEAST), optional=True),
     _key("values", "limit", Limits(), attribute="limits"),
 )
 #: Parameters of loads, which grow with the load.

@@ -15,10 +15,19 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
-from studies.engine.findings import Claim, Tables
-from studies.engine.study import Answer, Part, Study
+from studies.engine.study import Answer, Claim, Part, Study, Tables
 from studies.errors import BadInput
-from studies.published.case import AT_LEAST, AT_MOST, BEAM, CLAMPED_WIDTH, EQUAL, Value, published
+from studies.published.case import (
+    AT_LEAST,
+    AT_MOST,
+    BEAM,
+    CLAMPED_WIDTH,
+    EQUAL,
+    SHEAR,
+    SHEARED,
+    Value,
+    published,
+)
 from studies.published.solve import ours
 from studies.record.style import BLACK, BLUE, GREY, ORANGE, page
 
@@ -37,18 +46,22 @@ PROBLEMS = (
     "catalogue_pivot",
 )
 COLOURS = {"spline": BLUE, "fe": BLACK, "fe-shear": ORANGE}
-MARKERS = {BEAM: "o", CLAMPED_WIDTH: "s"}
+MARKERS = {BEAM: "o", CLAMPED_WIDTH: "s", SHEAR: "^", SHEARED: "D"}
 #: Differences below it are drawn at it [1].
 FLOOR = 1e-6
 
 
 def asked() -> Iterator[tuple[str, str, str]]:
-    """Yield every problem with the models and the kinds of answer that are asked for."""
+    """Yield every problem with the models and the kinds of answer that are asked for.
+
+    Of the elements, one kind has shear and the other none.
+    """
     for name in PROBLEMS:
         problem = published(name)
         for model in problem.models:
             for answer in problem.answers:
-                yield name, model, answer
+                if model == "spline" or (model == "fe-shear") == (SHEAR in answer):
+                    yield name, model, answer
 
 
 def compared(name: str, model: str, answer: str) -> Answer:

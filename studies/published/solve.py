@@ -8,15 +8,15 @@ from functools import cache
 import numpy as np
 from scipy.interpolate import CubicSpline
 
-from studies.answers.adapters import answer_mechanism, answer_static
+from studies.answers.adapters import answer_static
 from studies.answers.settings import FeSettings, Settings, SplineSettings
 from studies.cases.mechanism import Mechanism
 from studies.cases.problem import Problem
 from studies.published import case
 from studies.published.case import Value, loaded
-from studies.stability.statics.element_arcs import element_arc
-from studies.stability.statics.frames import SIDE, Arc, frame_of, spline_arc
-from studies.stability.statics.questions import LIMIT
+from studies.stability.element_arcs import element_arc
+from studies.stability.frames import SIDE, Arc, frame_of, spline_arc
+from studies.stability.questions import LIMIT
 
 #: Fine enough that what is left is the model's, not its discretisation's.
 SETTINGS: dict[str, Settings] = {
@@ -58,7 +58,7 @@ def moved(name: str, model: str, answer: str, load: float) -> tuple[float, ...]:
     """Return how far the body moves under a load, x, y [m] and its turn [rad]; NaN where the path stops."""
     problem = case.published(name)
     assert isinstance(problem.design, Mechanism)
-    response = answer_mechanism(loaded(problem.design, answer, load), SETTINGS[model])
+    response = answer_static(loaded(problem.design, answer, load), SETTINGS[model])
     rest = next(body.centre for body in problem.design.bodies if body.name == problem.body)
     way = response.bodies[problem.body][-1] - (*rest, 0.0) if response.converged else np.full(3, np.nan)
     return tuple(float(part) for part in way)

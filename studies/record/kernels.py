@@ -12,7 +12,7 @@ from studies.record.source import ROOT, source_hash
 
 PACKAGES = ("spline_model", "fe_reference")
 #: What a module that holds kernels says.
-KERNEL = re.compile(r"^@(?:numba\.)?(?:njit|kernel|part)\b", flags=re.MULTILINE)
+KERNEL = re.compile(r"^@(?:numba\.)?(?:njit|kernel|called|lane|part)\b", flags=re.MULTILINE)
 
 
 def forget(root: Path = ROOT) -> int:

@@ -87,6 +87,9 @@ ELEMENTS: dict[str, Look] = {
     "reissner": Look(label="Reissner, with shear", colour=GREEN, marker="o"),
 }
 
+#: How the unit of an axis is written, whatever a figure calls it: a sign for degrees, none for a pure number.
+UNITS = {" [1]": "", "[deg]": "[°]", "[1e-4]": "[10⁻⁴]"}
+
 BASES: dict[str, str] = {"bezier": "Bézier curve of degree n - 1", "bspline": "cubic B-spline"}
 
 #: Stretch forms by colour, measures by line: (stretch, measure) -> look.
@@ -100,11 +103,8 @@ STRETCH: dict[tuple[str, str], Look] = {
 }
 
 
-#: What differs at the width of a page: letters of 8 points, 200 pixels an inch.
+#: What differs at the width of a page, beside letters of 8 points: 200 pixels an inch.
 PRINTED: Any = {
-    "font.size": 8.0,
-    "axes.labelsize": 8.0,
-    "axes.titlesize": 8.0,
     "xtick.labelsize": 8.0,
     "ytick.labelsize": 8.0,
     "figure.titlesize": 9.0,
@@ -160,6 +160,11 @@ def printed(figure: Figure, kind: str) -> bytes:
 def _saved(figure: Figure, kind: str, unsaid: str, **settings: Any) -> bytes:
     """Return `figure` in a format, without what differs from one day or machine to the next."""
     stream = io.BytesIO()
+    for axis in (each for panel in figure.axes for each in (panel.xaxis, panel.yaxis)):
+        label = axis.label.get_text()
+        for given, written in UNITS.items():
+            label = label.replace(given, written)
+        axis.set_label_text(label)
     with applied(**settings):
         figure.savefig(stream, format=kind, metadata={unsaid: None})
     return stream.getvalue()

@@ -2,15 +2,14 @@
 
 import math
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import asdict, dataclass, field
+from dataclasses import dataclass, field
 from typing import Any
 
 import pandas as pd
 from matplotlib.figure import Figure
 
 from studies.answers.settings import FeSettings, Settings, SplineSettings
-from studies.engine.findings import Tables
-from studies.engine.study import Answer, Part, Study
+from studies.engine.study import Answer, Claim, Part, Study, Tables
 from studies.errors import BadInput
 from studies.record.store import Digits
 
@@ -93,11 +92,12 @@ class Found:
 
 
 def said(answer: Any, error: float, *, checked: bool = True, fault: str = "") -> Found:
-    """Return a neutral answer with its error; without `checked`, as if it said nothing of its resolution."""
+    """Return an answer, neutral or a model's, with its error; without `checked` as if it was silent on its
+    resolution."""
     resolution = answer.resolution if checked else ""
     return Found(
         error=error,
-        reached=answer.converged,
+        reached=getattr(answer.status, "value", answer.status) == "converged",
         reason=answer.message or resolution,
         states_limit=bool(resolution),
         warned=bool(answer.resolution),
@@ -106,29 +106,12 @@ def said(answer: Any, error: float, *, checked: bool = True, fault: str = "") ->
     )
 
 
-@dataclass(frozen=True, kw_only=True)
-class Verdict:
-    """The outcome of a case: one of `OUTCOMES`, the error [1], the reason in words and the work.
+def judged(attempt: Callable[[], Found], tolerance: float) -> dict[str, Any]:
+    """Return how `attempt` ends, right within `tolerance` [1], as columns of a table.
 
-    `stopped` is whether it did not reach its end, `warned` that of `Found`: with both, every model can be
-    judged with its own warnings and without.
-    """
-
-    outcome: str
-    error: float
-    reason: str
-    iterations: int
-    halvings: int
-    stopped: bool = False
-    warned: bool = False
-
-    def row(self) -> dict[str, Any]:
-        """Return the verdict as columns of a table."""
-        return asdict(self)
-
-
-def judged(attempt: Callable[[], Found], tolerance: float) -> Verdict:
-    """Return how `attempt` ends: right within `tolerance` [1].
+    Columns: outcome, one of `OUTCOMES`; error [1]; reason in words; iterations and halvings; stopped, whether
+    it did not reach its end, and warned, that of `Found`: with both, every model can be judged with its own
+    warnings and without.
 
     An answer that is off, or not a finite number, is wrong unless the model said so itself. Bad input is a
     refusal of the question (`BadInput`); any other exception is a fault of the model, and wrong.
@@ -136,21 +119,26 @@ def judged(attempt: Callable[[], Found], tolerance: float) -> Verdict:
     try:
         found = attempt()
     except BadInput as refusal:
-        return _without_answer(BAD_INPUT, str(refusal))
+        return _ended(BAD_INPUT, Found(error=math.nan, reason=" ".join(str(refusal).split())))
     except (
         Exception
     ) as fault:  # whatever escapes a model is a wrong outcome to be counted, not the study's end
-        return _without_answer(WRONG, f"{type(fault).__name__}: {fault}")
+        reason = " ".join(f"{type(fault).__name__}: {fault}".split())
+        return _ended(WRONG, Found(error=math.nan, reason=reason))
+    return _ended(_outcome(found, tolerance), found)
+
+
+def _ended(outcome: str, found: Found) -> dict[str, Any]:
     work = found.counters
-    return Verdict(
-        outcome=_outcome(found, tolerance),
-        error=found.error,
-        reason=found.fault or found.reason,
-        iterations=work.get("newton_iterations", work.get("iterations", 0)),
-        halvings=work.get("halved_increments", 0) + work.get("halved_steps", 0),
-        stopped=not found.reached,
-        warned=found.warned,
-    )
+    return {
+        "outcome": outcome,
+        "error": found.error,
+        "reason": found.fault or found.reason,
+        "iterations": work.get("newton_iterations", work.get("iterations", 0)),
+        "halvings": work.get("halved_increments", 0) + work.get("halved_steps", 0),
+        "stopped": not found.reached,
+        "warned": found.warned,
+    }
 
 
 def _outcome(found: Found, tolerance: float) -> str:
@@ -160,11 +148,6 @@ def _outcome(found: Found, tolerance: float) -> str:
     if math.isfinite(found.error) and found.error <= tolerance:
         return RIGHT if found.reached else REFUSED
     return REFUSED if found.states_limit else WRONG
-
-
-def _without_answer(outcome: str, reason: str) -> Verdict:
-    one_line = " ".join(reason.split())
-    return Verdict(outcome=outcome, error=math.nan, reason=one_line, iterations=0, halvings=0)
 
 
 CASE = "cross_axis_pivot"
@@ -181,20 +164,20 @@ DIGITS = {
 Task = tuple[str, str, Callable[[], Found], float]
 
 
-def family(
+def study(
     *parts: Part,
     cases: tuple[str, ...] = (CASE,),
-    made: Mapping[str, Callable[[Tables], pd.DataFrame | Iterable[dict[str, Any]]]] | None = None,
+    claims: tuple[Claim, ...] = (),
     figures: Mapping[str, Callable[[Tables], Figure]],
 ) -> Study:
     """Return the study of a family whose parts give the table `outcomes`; `counts` follows from it."""
     counts = {"counts": lambda tables: counted(tables["outcomes"])}
-    return Study(cases=cases, parts=parts, made={**(made or {}), **counts}, figures=figures, digits=DIGITS)
+    return Study(cases=cases, parts=parts, made=counts, claims=claims, figures=figures, digits=DIGITS)
 
 
 def outcome_of(case: str, model: str, attempt: Callable[[], Found], tolerance: float) -> Answer:
     """Return how one task ends."""
-    return {"outcomes": {"case": case, "model": model, **judged(attempt, tolerance).row()}}
+    return {"outcomes": {"case": case, "model": model, **judged(attempt, tolerance)}}
 
 
 def names(tasks: Iterable[Task]) -> list[str]:

@@ -1,6 +1,7 @@
 """Random designs and command sequences: each is answered rightly, refused, or called bad input."""
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
@@ -9,11 +10,11 @@ import numpy as np
 
 from studies.answers.adapters import answer_release
 from studies.answers.models import built, model_of, refusals
-from studies.answers.settings import Settings, SplineSettings
+from studies.answers.settings import FeSettings, Settings, SplineSettings
 from studies.cases.problem import Problem, named_case
-from studies.engine.study import Answer, Part
-from studies.stability import maps
-from studies.stability.family import CASE, DEFAULT, VARIED, Found, family, judged, said
+from studies.engine.study import Answer, Claim, Part, Tables
+from studies.errors import BadInput
+from studies.stability import family, maps
 
 EXAMPLES, SEED = 400, 20260101
 #: Largest error of torque at the ends of the legs, over the largest of them, that is right [1]: the distance
@@ -23,9 +24,12 @@ TOLERANCE, BOOKS = 0.05, 1e-8
 UNLOADED = 1e-6
 #: Least control points and increments of the reference; control points of that of the default.
 REFINED, REFINED_INCREMENTS, FINEST = 12, 24, 17
+#: Paths that are held against elements as well, which share nothing with the splines, and elements a strip.
+SAMPLE, ELEMENTS = 100, 80
 #: Steps of a motion.
 STEPS = 6
 STATIC, MOTION = "path", "motion"
+MODELS = (family.VARIED, family.DEFAULT)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -57,7 +61,7 @@ class Example:
 
     def problem(self) -> Problem:
         """Return the design; CaseError for a value outside its range."""
-        given = named_case(CASE)
+        given = named_case(family.CASE)
         depth = self.length / self.slenderness
         return replace(
             given,
@@ -74,10 +78,10 @@ class Example:
         )
 
 
-def examples() -> list[tuple[int, Example]]:
+def _examples() -> list[tuple[int, Example]]:
     """Return the random examples with their numbers, the same every time."""
     generator = np.random.default_rng(SEED)
-    return [(number, drawn(generator)) for number in range(EXAMPLES)]
+    return [(number, _drawn(generator)) for number in range(EXAMPLES)]
 
 
 def _outcomes(number: int, example: Example) -> Answer:
@@ -88,19 +92,16 @@ def _outcomes(number: int, example: Example) -> Answer:
         "x": math.degrees(max(example.targets, key=abs)),
         "y": example.slenderness,
     }
-    models = {
-        VARIED: SplineSettings(control_points=example.control_points),
-        DEFAULT: SplineSettings(),
-    }
+    models = (SplineSettings(control_points=example.control_points), SplineSettings())
     rows = [
-        {**place, "model": model, "panel": f"{model}: {example.kind}", **found.row()}
-        for model, settings in models.items()
-        for found in [judged(partial(asked, example, settings), TOLERANCE)]
+        {**place, "model": model, "panel": f"{model}: {example.kind}"}
+        | family.judged(partial(asked, example, settings), TOLERANCE)
+        for model, settings in zip(MODELS, models, strict=True)
     ]
     return {"outcomes": rows}
 
 
-def drawn(generator: np.random.Generator) -> Example:
+def _drawn(generator: np.random.Generator) -> Example:
     """Return a random example, one in twenty with a value that no design can have."""
     uniform = generator.uniform
     legs = int(generator.integers(1, 4))
@@ -123,39 +124,24 @@ def drawn(generator: np.random.Generator) -> Example:
     return example
 
 
-def asked(example: Example, settings: SplineSettings) -> Found:
+def asked(example: Example, settings: SplineSettings) -> family.Found:
     """Ask the spline for what the example says and compare it with what is known to be right."""
     return _path(example, settings) if example.step is None else _motion(example, settings)
 
 
-def _path(example: Example, settings: SplineSettings) -> Found:
+def _path(example: Example, settings: SplineSettings) -> family.Found:
     """Compare the torque at the ends of the legs with a refined path; the books of energy as well."""
-    problem = example.problem()
-    unit = problem.youngs_modulus * problem.second_moment_of_area / problem.length
+    unit = _unit(example)
     path = _legs(example, settings, example.increments)
-    ends = _ends(path.rotation, example)
     books = np.abs(path.bending_energy + path.axial_energy - path.work).max()
     stored = np.abs(path.bending_energy + path.axial_energy).max()
     if not np.isfinite(path.torque).all():
-        return Found(error=math.inf, fault="the torque is not a finite number")
+        return family.Found(error=math.inf, fault="the torque is not a finite number")
     points = settings.control_points
     refined = replace(settings, control_points=FINEST if points is None else max(REFINED, points + 3))
-    reference = _legs(example, refined, max(REFINED_INCREMENTS, example.increments))
-    known = _ends(reference.rotation, example)
-    both = min(len(ends), len(known))
-    scale = max(float(np.abs(reference.torque).max()), UNLOADED * unit)
-    error = np.abs(path.torque[ends[:both]] - reference.torque[known[:both]]).max() if both else 0.0
-    return Found(
-        error=float(error / scale),
-        reached=path.status.value == "converged",
-        reason=path.message or path.resolution,
-        states_limit=bool(path.resolution),
-        warned=bool(path.resolution),
-        fault=""
-        if books <= max(0.5 * stored, UNLOADED * unit) or example.increments < 5
-        else "work and energy differ",
-        counters=path.counters,
-    )
+    error, both = _apart(path, _legs(example, refined, _finer(example)), example)
+    closed = books <= max(0.5 * stored, UNLOADED * unit) or example.increments < 5
+    return family.said(path, error if both else 0.0, fault="" if closed else "work and energy differ")
 
 
 def _legs(example: Example, settings: Settings, increments: int) -> Any:
@@ -165,6 +151,55 @@ def _legs(example: Example, settings: Settings, increments: int) -> Any:
         return model.statics.solve_statics(
             pivot, rotation=list(example.targets), increments=increments, raise_on_failure=False
         )
+
+
+def _unit(example: Example) -> float:
+    """Return EI/L [N m]."""
+    problem = example.problem()
+    return problem.youngs_modulus * problem.second_moment_of_area / problem.length
+
+
+def _finer(example: Example) -> int:
+    """Return the increments of a leg of what an example is held against."""
+    return max(REFINED_INCREMENTS, example.increments)
+
+
+def _apart(path: Any, reference: Any, example: Example) -> tuple[float, int]:
+    """Return the largest difference of torque at the ends of legs that both reach, over the reference's
+    largest [1], and how many these are; NaN for none."""
+    ends, known = (_ends(each.rotation, example) for each in (path, reference))
+    both = min(len(ends), len(known))
+    scale = max(float(np.abs(reference.torque).max()), UNLOADED * _unit(example))
+    apart = np.abs(path.torque[ends[:both]] - reference.torque[known[:both]]).max(initial=0.0)
+    return float(apart / scale) if both else math.nan, both
+
+
+def sample() -> Iterator[tuple[int, Example]]:
+    """Yield the first paths of designs that can be."""
+    left = SAMPLE
+    for number, example in _examples():
+        if example.step is None and left:
+            try:
+                example.problem()
+            except BadInput:
+                continue
+            left -= 1
+            yield number, example
+
+
+def independent(number: int, example: Example, count: int = ELEMENTS) -> Answer:
+    """Return how far the default's path is from that of so many elements a strip."""
+    path = _legs(example, SplineSettings(), example.increments)
+    elements = _legs(example, FeSettings(elements=count), _finer(example))
+    error, both = _apart(path, elements, example)
+    row = {"case": f"example {number:03d}", "legs": len(example.targets), "legs_compared": both}
+    return {"elements": row | {"error": error, "reason": path.message or elements.message}}
+
+
+def _compared(tables: Tables) -> list[dict[str, Any]]:
+    """Return how many paths elements were asked for, how many can be compared, and the largest difference."""
+    errors = tables["elements"]["error"]
+    return [{"asked": len(errors), "compared": int(errors.notna().sum()), "error": errors.max()}]
 
 
 def _ends(rotation: Any, example: Example) -> list[int]:
@@ -179,7 +214,7 @@ def _ends(rotation: Any, example: Example) -> list[int]:
     return found
 
 
-def _motion(example: Example, settings: SplineSettings) -> Found:
+def _motion(example: Example, settings: SplineSettings) -> family.Found:
     """Let the pivot go: whatever the step, the books of energy close and the clamps hold."""
     problem = example.problem()
     inertia = problem.body_moment_of_inertia + problem.body_mass * problem.length**2
@@ -188,7 +223,7 @@ def _motion(example: Example, settings: SplineSettings) -> Found:
     step = period * float(example.step or 0.0)
     motion = answer_release(problem, settings, duration=STEPS * step, step=step)
     if not len(motion.time):
-        return Found(error=0.0, reached=False, reason=motion.message, counters=motion.counters)
+        return family.Found(error=0.0, reached=False, reason=motion.message, counters=motion.counters)
     stored = motion.kinetic_energy + motion.strain_energy
     scale = max(float(stored[0]), UNLOADED * rigidity / problem.length)
     gain, lost = float((stored - stored[0]).max()) / scale, float(np.abs(stored - stored[0]).max()) / scale
@@ -200,16 +235,27 @@ def _motion(example: Example, settings: SplineSettings) -> Found:
         "the motion is not of finite numbers": not finite,
     }
     fault = next((fault for fault, holds in faults.items() if holds), "")
-    return said(motion, max(lost, gap), fault=fault)
+    return family.said(motion, max(lost, gap), fault=fault)
 
 
-STUDY = family(
-    Part(at=examples, ask=_outcomes),
+STUDY = family.study(
+    Part(at=_examples, ask=_outcomes),
+    Part(at=sample, ask=independent),
+    claims=(
+        Claim(
+            claim=f"Random paths are those of elements within {100 * TOLERANCE:g} % of the largest torque",
+            formulation="{compared} of {asked} paths that both models follow",
+            quantity="the largest difference of the torque at the ends of their legs",
+            rows=_compared,
+            value="error",
+            most=TOLERANCE,
+        ),
+    ),
     figures={
         "stability_fuzz": lambda tables: maps.outcome_map(
             tables["outcomes"],
             panels_by="panel",
-            order=[f"{model}: {kind}" for kind in (STATIC, MOTION) for model in (DEFAULT, VARIED)],
+            order=[f"{model}: {kind}" for kind in (STATIC, MOTION) for model in reversed(MODELS)],
             title="Random designs and commands, spline",
             xlabel="largest rotation [deg]",
             ylabel="slenderness L/h [1]",

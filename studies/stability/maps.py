@@ -1,4 +1,4 @@
-"""The map of a family: where each model is right, refuses, is wrong, or is asked what it cannot be."""
+"""What families show: maps of where each model is right, refuses, is wrong or cannot be asked, and counts."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -8,8 +8,12 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from studies.record.store import Store
 from studies.record.style import GREEN, GREY, RED, YELLOW, page
-from studies.stability.family import BAD_INPUT, ORDER, REFUSED, RIGHT, WRONG
+from studies.registry import STUDIES
+from studies.stability.family import BAD_INPUT, DEFAULT, ORDER, OUTCOMES, REFUSED, RIGHT, WRONG
+
+GROUP = "stability/"
 
 #: Outcome -> colour and marker, the same in every map.
 LOOKS: dict[str, tuple[str, str]] = {
@@ -51,10 +55,7 @@ def outcome_map(
     ylabel = axes.pop("ylabel", "")
     for place, (panel, model) in enumerate(zip(panels, models, strict=True)):
         mine = outcomes[outcomes[panels_by] == model]
-        for outcome, (colour, marker) in LOOKS.items():
-            some = mine[mine["outcome"] == outcome]
-            if len(some):  # an empty line that is not clipped has no place for the layout
-                panel.plot(some["x"], some["y"], marker, color=colour, markersize=5.0, clip_on=False)
+        _marked(panel, mine, mine["x"], mine["y"], markersize=5.0, clip_on=False)
         counts = ", ".join(
             f"{count} {name}" for name in LOOKS if (count := int((mine["outcome"] == name).sum()))
         )
@@ -72,6 +73,14 @@ def outcome_map(
     figure.legend(handles=handles, loc="outside lower center", ncols=len(LOOKS))
     figure.suptitle(title)
     return figure
+
+
+def _marked(panel: Axes, rows: pd.DataFrame, x: pd.Series, y: pd.Series, **look: Any) -> None:
+    """Draw a mark a row at (x, y), by its outcome."""
+    for outcome, (colour, marker) in LOOKS.items():
+        some = rows["outcome"] == outcome
+        if some.any():  # an empty line that is not clipped has no place for the layout
+            panel.plot(x[some], y[some], marker, color=colour, label=LABELS[outcome], **look)
 
 
 def _grid(count: int) -> tuple[Figure, list[Axes], int]:
@@ -93,14 +102,7 @@ def listed(outcomes: pd.DataFrame, cases: Sequence[str], *, title: str) -> Figur
     across = {model: i for i, model in enumerate(models)}
     figure = page(0.95 * len(models) + 3.2, 1.3 + 0.2 * len(cases))
     panel = figure.subplots()
-    for outcome, (colour, marker) in LOOKS.items():
-        some = outcomes[outcomes["outcome"] == outcome]
-        if some.empty:
-            continue
-        panel.plot(
-            some["model"].map(across), some["case"].map(place), marker, color=colour, label=LABELS[outcome],
-            markersize=6.0,
-        )  # fmt: skip
+    _marked(panel, outcomes, outcomes["model"].map(across), outcomes["case"].map(place), markersize=6.0)
     panel.set_xticks(range(len(models)), labels=[_broken(model) for model in models], fontsize=7.5)
     panel.set_yticks(list(place.values()), labels=list(place), fontsize=7.5)
     panel.set(xlim=(-0.6, len(models) - 0.4), ylim=(-0.7, len(cases) - 0.3))
@@ -112,3 +114,31 @@ def listed(outcomes: pd.DataFrame, cases: Sequence[str], *, title: str) -> Figur
 def _broken(model: str) -> str:
     """Return the model's name in two lines, to stand below a column."""
     return model.replace(", ", ",\n")
+
+
+def _summary(store: Store) -> pd.DataFrame:
+    """Return the stored counts of all families that were run: a row a family and model."""
+    tables = []
+    for study in STUDIES:
+        if study.startswith(GROUP):
+            try:
+                counts = store.load_tables(study)["counts"]
+            except FileNotFoundError:
+                continue
+            tables.append(counts.assign(family=study.removeprefix(GROUP)))
+    if not tables:
+        return pd.DataFrame(columns=["family", "model", "tried", *OUTCOMES])
+    return pd.concat(tables)[["family", "model", "tried", *OUTCOMES]]
+
+
+def lines(store: Store) -> list[str]:
+    """Return the summary as the lines of a Markdown table: "right / refused / wrong / bad input" a cell."""
+    rows = _summary(store)
+    models = list(dict.fromkeys((DEFAULT, *rows["model"])))
+    found = ["| family | " + " | ".join(models) + " |", "|---" * (len(models) + 1) + "|"]
+    for family, some in rows.groupby("family", sort=False):
+        cells = {
+            row["model"]: " / ".join(str(row[name]) for name in OUTCOMES) for row in some.to_dict("records")
+        }
+        found.append(f"| {family} | " + " | ".join(cells.get(model, "") for model in models) + " |")
+    return found

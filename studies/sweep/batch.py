@@ -8,14 +8,16 @@ import pyarrow as pa
 from numpy.typing import NDArray
 
 from studies.answers.models import model_of
+from studies.answers.response import centre_shift
+from studies.answers.settings import SplineSettings
 from studies.answers.validity import Strip
 from studies.cases import keys as case_keys
 from studies.cases.effects import DEFAULT, MOTION_ONLY
+from studies.cases.mechanism import of_sides
 from studies.cases.problem import PIVOT_PARAMETERS, SIDES, Problem
 from studies.cases.rules import Pair
-from studies.cases.strips import of_sides
 from studies.kinds import Array
-from studies.sweep import keys, points, quantities
+from studies.sweep import plan, points, quantities
 from studies.sweep.plan import Task
 from studies.sweep.points import CONVERGED
 from studies.sweep.quantities import Paths
@@ -27,7 +29,7 @@ PLAIN = {"bending", "stretching"}
 Columns = dict[str, Array]
 _KEYS = {f"{key.section}.{key.name}": key for key in case_keys.KEYS if key is not case_keys.NAMED}
 _PARTS = {
-    f"{name}.{part}" for name, key in _KEYS.items() if isinstance(key.rule, Pair) for part in keys.PARTS
+    f"{name}.{part}" for name, key in _KEYS.items() if isinstance(key.rule, Pair) for part in plan.PARTS
 }
 
 
@@ -69,12 +71,12 @@ def takes(task: Task) -> bool:
 
     What it refuses in the end (other curves, or strips too slender) goes one by one.
     """
-    own = {*_KEYS, *_PARTS, keys.SLENDERNESS}
+    own = {*_KEYS, *_PARTS, plan.SLENDERNESS}
     if task.model != "spline" or task.analysis.kind != "static" or isinstance(task.case.get("strips"), list):
         return False
     effects = set(task.case.get("scene", {}).get("effects", DEFAULT))
     return PLAIN <= effects <= PLAIN | set(MOTION_ONLY) and all(
-        key in own or key.startswith(f"{keys.SETTINGS}.") for key in task.keys
+        key in own or key.startswith(f"{plan.SETTINGS}.") for key in task.keys
     )
 
 
@@ -126,16 +128,16 @@ def _attributes(task: Task, design: Problem, columns: Mapping[str, list[Any]], c
                 given[key.attribute] = values
         elif name in _PARTS:
             pair, _, part = name.rpartition(".")
-            given[_KEYS[pair].attribute][:, keys.PARTS[part]] = column
+            given[_KEYS[pair].attribute][:, plan.PARTS[part]] = column
     if sides:
         width, thickness = (given.pop(name) for name in sides)
-        if keys.SLENDERNESS in columns:
-            thickness = given["length"] / np.array(columns[keys.SLENDERNESS], dtype=float)
+        if plan.SLENDERNESS in columns:
+            thickness = given["length"] / np.array(columns[plan.SLENDERNESS], dtype=float)
         given |= of_sides(width, thickness)
-    elif keys.SLENDERNESS in columns:
+    elif plan.SLENDERNESS in columns:
         section = design.area, design.second_moment_of_area
-        slenderness = np.array(columns[keys.SLENDERNESS], dtype=float)
-        given["area"], given["second_moment_of_area"] = keys.of_slenderness(
+        slenderness = np.array(columns[plan.SLENDERNESS], dtype=float)
+        given["area"], given["second_moment_of_area"] = plan.of_slenderness(
             slenderness, given["length"], *section
         )
     rectangle = np.sqrt(12.0 * given["second_moment_of_area"] / given["area"])
@@ -148,7 +150,7 @@ def _groups(
 ) -> Iterator[tuple[dict[str, Any], int, NDArray[np.int64]]]:
     """Yield the rows that share settings and increments, with these."""
     increments = columns.get("drive.increments", [design.increments] * (rows.max(initial=0) + 1))
-    varied = [key for key in task.keys if key.startswith(f"{keys.SETTINGS}.")]
+    varied = [key for key in task.keys if key.startswith(f"{plan.SETTINGS}.")]
     alike: dict[tuple[Any, ...], list[int]] = {}
     for row in rows:
         alike.setdefault((increments[row], *(columns[key][row] for key in varied)), []).append(row)
@@ -165,7 +167,7 @@ def _paths(
 
     turns, depth = given["rotation"], given["depth"]
     designs = {name: given[name] for name in PIVOT_PARAMETERS}
-    chosen = points.settings_of("spline", settings)
+    chosen = SplineSettings(**settings)
     model = model_of(chosen)
     try:
         batch = solve_many(
@@ -191,13 +193,20 @@ def _paths(
         defect=batch.moment_defect,
         unstable=unstable,
         iterations=sides * batch.iterations,
-        shift=_shift(given, batch.rotation, batch.centre),
+        shift=centre_shift(_crossing(given), batch.rotation, batch.centre),
         places={},
         strips=(_strip(given).bent(batch.strain.max(axis=1)),),
         effects=tuple(PLAIN),
     )
     sure = batch.converged & (unstable == 0) & ~turning
     return sure, quantities.values(points.stored(task), task.quantities, paths)
+
+
+def _crossing(given: Columns) -> Array:
+    """Return where the strips cross at rest (D, 2) [m]."""
+    reach = given["crossing_ratio"] * given["length"]
+    angle = given["inclination"] + given["orientation"]
+    return np.column_stack((reach * np.cos(angle), reach * np.sin(angle)))
 
 
 def _strip(given: Columns) -> Strip:
@@ -211,14 +220,3 @@ def _strip(given: Columns) -> Strip:
         density=given["density"],
         yield_strength=given["yield_strength"],
     )
-
-
-def _shift(given: Columns, rotation: Array, centre: Array) -> Array:
-    """Return g + R (x_c - g_0) - x_c of the crossing point x_c, (D, S, 2), as `response.centre_shift`."""
-    reach = given["crossing_ratio"] * given["length"]
-    angle = given["inclination"] + given["orientation"]
-    crossing = np.column_stack((reach * np.cos(angle), reach * np.sin(angle)))[:, None]
-    arm = crossing - centre[:, :1]
-    cos, sin = np.cos(rotation), np.sin(rotation)
-    turned = np.stack((cos * arm[..., 0] - sin * arm[..., 1], sin * arm[..., 0] + cos * arm[..., 1]), axis=-1)
-    return np.asarray(centre + turned - crossing)

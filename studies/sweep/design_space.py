@@ -15,8 +15,7 @@ import numpy as np
 import pandas as pd
 
 from studies.cases.problem import named_case
-from studies.engine.findings import Finding
-from studies.engine.study import Answer, Part, Study
+from studies.engine.study import Answer, Finding, Part, Study
 from studies.kinds import Array
 from studies.sweep import space_figure
 from studies.sweep.points import CONVERGED

@@ -8,20 +8,22 @@ from typing import Any
 import numpy as np
 
 from studies.answers.adapters import answer_modes, answer_release
-from studies.answers.models import built, model_of, refusals
+from studies.answers.models import built, model_of, refusals, static_path
 from studies.answers.response import centre_shift
-from studies.answers.settings import FeSettings, Settings, SplineSettings
-from studies.answers.strength import extreme_fibre_strain
+from studies.answers.settings import Settings, settings_of_model
+from studies.answers.strength import moduli_of, strains_of
 from studies.answers.validity import strips_of
 from studies.cases.design import Design
-from studies.cases.mechanism import Mechanism, read_mechanism
+from studies.cases.mechanism import read_mechanism
 from studies.cases.problem import Problem, read_problem
 from studies.errors import BadInput
 from studies.kinds import Array
-from studies.sweep import keys, quantities
+from studies.sweep import plan, quantities
 from studies.sweep.plan import Task
 from studies.sweep.quantities import Answer, Paths, Quantity
 
+#: Control points of a spline unless said otherwise.
+CONTROL_POINTS = 6
 CONVERGED, NOT_CONVERGED = "converged", "not_converged"
 
 
@@ -45,12 +47,8 @@ def static_answer(design: Design, settings: Settings, *, both_sides: bool) -> tu
 def _static_result(design: Design, settings: Settings) -> Any:
     model = model_of(settings)
     asked, _ = built(model, design, settings, moving=False)
-    how = {"rotation": design.rotation, "increments": design.increments, "order": design.order}
-    how |= {"raise_on_failure": False}
     with refusals(model, settings):
-        if isinstance(design, Problem):
-            return model.statics.solve_statics(asked, **how)
-        return model.statics.solve_mechanism(asked, body=design.body, **how)
+        return static_path(model, design, asked, raise_on_failure=False)
 
 
 def _paths_of(design: Design, result: Any) -> Paths:
@@ -58,46 +56,30 @@ def _paths_of(design: Design, result: Any) -> Paths:
     states = len(result.torque)
     inertia = getattr(result, "inertia", None)
     energy = result.bending_energy + result.axial_energy + getattr(result, "shear_energy", 0.0)
+    places = {name: np.asarray(place)[None] for name, place in result.bodies.items()}
+    nowhere = np.full((1, states, 3), np.nan)
+    place = places[design.body] if design.body else nowhere
+    strain = strains_of(design, result.axial_force, result.bending_moment).max(axis=2)
+    shift = nowhere[..., :2]
     if isinstance(design, Problem):
-        rotation, places = result.rotation, {}
-        shift = centre_shift(design, result.rotation, result.centre)
-        strain = extreme_fibre_strain(design, result.axial_force, result.bending_moment)
-        stress = design.youngs_modulus * strain.max(axis=(1, 2))
-        strips = [strip.bent(np.array([strain.max()])) for strip in strips_of(design)]
-    else:
-        places = {name: np.asarray(place)[None] for name, place in result.bodies.items()}
-        rotation = result.bodies[design.body][:, 2] if design.body else np.full(states, np.nan)
-        shift = np.full((states, 2), np.nan)
-        each = _strain(design, result)
-        stress = (each * [strip.youngs_modulus for strip in design.strips]).max(axis=1)
-        most = each.max(axis=0)
-        strips = [strip.bent(most[i : i + 1]) for i, strip in enumerate(strips_of(design))]
+        shift = centre_shift(design.crossing_point, place[..., 2], place[..., :2])
     return Paths(
         rest=0,
-        rotation=np.asarray(rotation)[None],
+        rotation=place[..., 2],
         torque=result.torque[None],
         stiffness=result.stiffness[None],
-        stress=stress[None],
+        stress=(strain * moduli_of(design)).max(axis=1)[None],
         energy=np.asarray(energy)[None],
         defect=np.asarray(getattr(result, "moment_defect", np.full(states, np.nan)))[None],
         unstable=np.array([-1 if inertia is None else np.count_nonzero(inertia)]),
         iterations=np.array([result.counters["newton_iterations"]]),
-        shift=shift[None],
+        shift=shift,
         places=places,
-        strips=tuple(strips),
+        strips=tuple(
+            strip.bent(strain[:, k].max(keepdims=True)) for k, strip in enumerate(strips_of(design))
+        ),
         effects=tuple(design.effects.names),
     )
-
-
-def _strain(mechanism: Mechanism, result: Any) -> Array:
-    """Return |N| / (E A) + |M| d / (2 E I) of rectangles, the largest along each strip, (S, G) [1]."""
-    each = []
-    for i, strip in enumerate(mechanism.strips):
-        depth = np.sqrt(12.0 * strip.second_moment_of_area / strip.area)
-        axial = np.abs(result.axial_force[:, i]) / strip.area
-        bending = np.abs(result.bending_moment[:, i]) * depth / (2.0 * strip.second_moment_of_area)
-        each.append((axial + bending).max(axis=1) / strip.youngs_modulus)
-    return np.stack(each, axis=1)
 
 
 def joined(one: Paths, other: Paths) -> Paths:
@@ -165,31 +147,25 @@ def solve_each(
 def design_of(task: Task, values: Mapping[str, Any]) -> Design:
     """Return one design of the sweep; CaseError where a value is out of its range."""
     document = copy.deepcopy(task.case)
-    keys.put_all(document, values)
+    plan.put_all(document, values)
     read = read_mechanism if isinstance(document.get("strips"), list) else read_problem
     return read(task.where, document)
 
 
-def settings_of(model: str, given: Mapping[str, Any]) -> Settings:
-    """Return the settings of a model; a spline of a sweep has 6 control points unless said otherwise."""
-    if model == "spline":
-        return SplineSettings(**{"control_points": 6, **given})
-    return FeSettings(element="reissner" if model == "fe-shear" else "corotational", **given)
-
-
 def varied_settings(task: Task, values: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the settings of one design: those of the sweep, and those that it varies."""
+    """Return the keywords of the settings of one design: those of the sweep, and those that it varies."""
     own = {
-        key.partition(".")[2]: value for key, value in values.items() if key.startswith(f"{keys.SETTINGS}.")
+        key.partition(".")[2]: value for key, value in values.items() if key.startswith(f"{plan.SETTINGS}.")
     }
-    return task.settings | own
+    usual = {"control_points": CONTROL_POINTS} if task.model == "spline" else {}
+    return usual | task.settings | own
 
 
 def _answered(task: Task, values: Mapping[str, Any]) -> tuple[str, str, Answer | None]:
     """Return status, reason and answer of one design."""
     try:
         design = design_of(task, values)
-        settings = settings_of(task.model, varied_settings(task, values))
+        settings = settings_of_model(task.model, **varied_settings(task, values))
         return _solved(task, design, settings)
     except BadInput as error:
         return REFUSED, str(error), None

@@ -11,8 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from studies.answers import validity
-from studies.answers.motion import Motion
-from studies.answers.spectrum import Spectrum
+from studies.answers.motion import Motion, Spectrum
 from studies.answers.validity import Strip
 from studies.kinds import Array
 

@@ -8,29 +8,36 @@ from pathlib import Path
 from typing import Any
 
 from studies.answers.models import built, model_of
+from studies.answers.settings import MODELS, settings_of_model
 from studies.cases import document
 from studies.cases.document import CaseError
 from studies.cases.keys import ROTATION
 from studies.cases.problem import FOLDER
-from studies.cases.rules import Whole, positive, shown
-from studies.sweep import batch, keys, points
+from studies.cases.rules import TRUTH, Rule, Text, positive, shown, whole
+from studies.sweep import batch, plan, points
 from studies.sweep.plan import KINDS, Analysis, Plan, Sample, Task
-from studies.sweep.sample import POINTS, leaves, parsed, require_known, sample_of
+from studies.sweep.sample import POINTS, leaves, require_known, sample_of
 
 SECTIONS = ("settings", "set", "analysis", "sample", "vary", "store")
 #: Designs a chunk, smallest and largest: of the batch kernel (a third of a second), of single solves.
 CHUNK, CHUNK_OF_SINGLE = (64, 2048), (1, 16)
 #: Chunks that a sweep has at least, where they are not too small: enough for a few workers.
 CHUNKS = 16
-MOST_MODES = Whole(expected="a whole number from 1 to 100", low=1, high=100)
+MOST_MODES = whole(1, 100)
 #: Options of an analysis: key -> (keyword, rule).
-OPTIONS: dict[str, dict[str, tuple[str, Any]]] = {
-    "static": {},
-    "modes": {"rotation_deg": ("rotation", ROTATION), "count": ("count", MOST_MODES)},
-    "release": {"duration_s": ("duration", positive("s")), "step_s": ("step", positive("s"))},
+OPTIONS: dict[str, dict[str, tuple[str, Rule]]] = {
+    "static": {"both_sides": ("both_sides", TRUTH)},
+    "modes": {
+        "rotation_deg": ("rotation", ROTATION),
+        "count": ("count", MOST_MODES),
+        "held": ("held", TRUTH),
+    },
+    "release": {
+        "duration_s": ("duration", positive("s")),
+        "step_s": ("step", positive("s")),
+        "integrator": ("integrator", Text(expected="the name of an integrator")),
+    },
 }
-#: Those that are truth values or names.
-SWITCHES = {"static": ("both_sides",), "modes": ("held",), "release": ()}
 STANDARD: dict[str, dict[str, Any]] = {"static": {}, "modes": {"count": 3}, "release": {"duration": 0.05}}
 
 
@@ -50,14 +57,14 @@ def plan_of(where: str, content: Mapping[str, Any], folder: Path) -> Plan:
     if not tables["vary"] and "file" not in tables["sample"]:
         raise CaseError(f"{where}: [vary]: got nothing to vary, expected keys of the case, as strip.length_m")
     case = _case(where, content.get("case"), folder)
-    model = _one_of(where, "model", content.get("model", "spline"), tuple(keys.MODELS))
-    known = keys.known(case, model)
+    model = _one_of(where, "model", content.get("model", "spline"), MODELS)
+    known = plan.known(case, model)
     for key, value in leaves(tables["set"]):
-        if key.startswith(f"{keys.SETTINGS}."):
+        if key.startswith(f"{plan.SETTINGS}."):
             raise CaseError(f"{where}: set.{key}: got a setting, expected it in [settings]")
         require_known(where, "set", key, known)
-        parsed(where, f"set.{key}", known[key], value)
-    keys.put_all(case, dict(leaves(tables["set"])))
+        document.admitted(where, f"set.{key}", known[key], value)
+    plan.put_all(case, dict(leaves(tables["set"])))
     settings = _settings(where, tables["settings"], known)
     sample = sample_of(where, tables["sample"], tables["vary"], known, folder)
     _refuse_overlaps(where, [axis.key for axis in sample.axes], case)
@@ -76,7 +83,7 @@ def plan_of(where: str, content: Mapping[str, Any], folder: Path) -> Plan:
     least, most = CHUNK if task.batch else CHUNK_OF_SINGLE
     chunk = max(least, min(most, -(-sample.points // CHUNKS)))
     if "chunk" in tables["sample"]:
-        chunk = parsed(where, "sample.chunk", POINTS, tables["sample"]["chunk"])
+        chunk = document.admitted(where, "sample.chunk", POINTS, tables["sample"]["chunk"])
     return Plan(task=task, sample=sample, chunk=chunk, content=_content(content, task, sample, chunk))
 
 
@@ -113,10 +120,10 @@ def _one_of(where: str, label: str, value: Any, names: tuple[str, ...]) -> str:
 
 def _settings(where: str, given: Mapping[str, Any], known: Mapping[str, Any]) -> dict[str, Any]:
     """Return the keywords of the model's settings."""
-    own = [key.partition(".")[2] for key in known if key.startswith(f"{keys.SETTINGS}.")]
-    document.refuse_unknown(where, keys.SETTINGS, given, own)
+    own = [key.partition(".")[2] for key in known if key.startswith(f"{plan.SETTINGS}.")]
+    document.refuse_unknown(where, plan.SETTINGS, given, own)
     return {
-        name: parsed(where, f"settings.{name}", known[f"{keys.SETTINGS}.{name}"], value)
+        name: document.admitted(where, f"settings.{name}", known[f"{plan.SETTINGS}.{name}"], value)
         for name, value in given.items()
     }
 
@@ -127,31 +134,21 @@ def _refuse_overlaps(where: str, varied: list[str], case: Mapping[str, Any]) -> 
         whole = key.rpartition(".")[0]
         if whole in varied:
             raise CaseError(f"{where}: vary.{key}: got it beside {whole}, expected one of them")
-    if keys.SLENDERNESS in varied:
-        both = [key for key in keys.SECTION if key in varied]
+    if plan.SLENDERNESS in varied:
+        both = [key for key in plan.SECTION if key in varied]
         given = "section_depth_m" in case.get("strip", {})
         if both or given:
-            other = both[0] if both else keys.SECTION[-1]
-            raise CaseError(f"{where}: vary.{keys.SLENDERNESS}: got it beside {other}, which it sets itself")
+            other = both[0] if both else plan.SECTION[-1]
+            raise CaseError(f"{where}: vary.{plan.SLENDERNESS}: got it beside {other}, which it sets itself")
 
 
 def _analysis(where: str, given: Mapping[str, Any]) -> Analysis:
     kind = _one_of(where, "analysis.kind", given.get("kind", "static"), KINDS)
-    options, switches = OPTIONS[kind], SWITCHES[kind]
-    names = ["kind", *options, *switches, *(["integrator"] if kind == "release" else [])]
-    document.refuse_unknown(where, "analysis", given, names)
+    document.refuse_unknown(where, "analysis", given, ["kind", *OPTIONS[kind]])
     found = dict(STANDARD[kind])
-    for name, (keyword, rule) in options.items():
+    for name, (keyword, rule) in OPTIONS[kind].items():
         if name in given:
-            found[keyword] = parsed(where, f"analysis.{name}", rule, given[name])
-    for name in switches:
-        value = given.get(name, False)
-        if not isinstance(value, bool):
-            raise CaseError(f"{where}: analysis.{name}: got {shown(value)}, expected true or false")
-        if value:
-            found[name] = value
-    if "integrator" in given:
-        found["integrator"] = str(given["integrator"])
+            found[keyword] = document.admitted(where, f"analysis.{name}", rule, given[name])
     return Analysis(kind=kind, both_sides=found.pop("both_sides", False), options=found)
 
 
@@ -179,7 +176,7 @@ def _checked(task: Task, sample: Sample) -> Task:
     if task.analysis.both_sides and design.rotation is None:
         raise CaseError(f"{task.where}: analysis.both_sides: got true, expected it with a driven rotation")
     for chosen in _settings_of(task, sample):
-        settings = points.settings_of(task.model, chosen)
+        settings = settings_of_model(task.model, **chosen)
         built(model_of(settings), design, settings, moving=task.analysis.kind != "static")
     takes = batch.takes(task)
     return Task(**{**vars(task), "batch": takes})
@@ -189,7 +186,7 @@ def _settings_of(task: Task, sample: Sample) -> Iterator[dict[str, Any]]:
     """Yield the settings of the sweep with each value of each setting that it varies."""
     yield points.varied_settings(task, {})
     for axis in sample.axes:
-        if axis.key.startswith(f"{keys.SETTINGS}."):
+        if axis.key.startswith(f"{plan.SETTINGS}."):
             for value in axis.values or ():
                 yield points.varied_settings(task, {axis.key: value})
 

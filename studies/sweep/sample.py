@@ -11,13 +11,13 @@ from scipy.stats import qmc
 
 from studies.cases import document
 from studies.cases.document import CaseError
-from studies.cases.rules import Number, Whole, shown
-from studies.errors import BadInput
+from studies.cases.rules import Number, shown, whole
 from studies.kinds import Array
 from studies.sweep.plan import METHODS, Axis, Sample
 
-POINTS = Whole(expected="a whole number from 1 to 100000000", low=1, high=100_000_000)
-SEED = Whole(expected="a whole number from 0 to 4294967295", low=0, high=2**32 - 1)
+MOST = 100_000_000
+POINTS = whole(1, MOST)
+SEED = whole(0, 2**32 - 1)
 FIELDS = ("from", "to", "points", "scale", "values")
 SCALES = ("linear", "log")
 
@@ -42,14 +42,14 @@ def sample_of(
     if random:
         if "points" not in given:
             raise CaseError(f"{where}: sample.points: got no such key, expected {POINTS.expected}")
-        points = parsed(where, "sample.points", POINTS, given["points"])
+        points = document.admitted(where, "sample.points", POINTS, given["points"])
     elif method == "list":
         points = _length(where, axes)
     else:
         points = math.prod(axis.count for axis in axes)
-        if points > POINTS.high:
-            raise CaseError(f"{where}: [vary]: got a grid of {points} points, expected at most {POINTS.high}")
-    seed = parsed(where, "sample.seed", SEED, given.get("seed", 0))
+        if points > MOST:
+            raise CaseError(f"{where}: [vary]: got a grid of {points} points, expected at most {MOST}")
+    seed = document.admitted(where, "sample.seed", SEED, given.get("seed", 0))
     return Sample(method=method, axes=axes, points=points, seed=seed)
 
 
@@ -71,14 +71,6 @@ def require_known(where: str, section: str, key: str, known: Mapping[str, Any]) 
     if key not in known:
         expected = document.nearest(key, list(known))
         raise CaseError(f"{where}: {section}.{key}: got no key of the case, expected {expected}")
-
-
-def parsed(where: str, label: str, rule: Any, value: Any) -> Any:
-    """Return a value by its rule; CaseError unless that admits it."""
-    try:
-        return rule.parse(value)
-    except (ValueError, BadInput) as error:
-        raise CaseError(f"{where}: {label}: {error}") from None
 
 
 def _axis(where: str, key: str, given: Any, known: Mapping[str, Any], method: str) -> Axis:
@@ -108,7 +100,7 @@ def _listed(where: str, label: str, rule: Any, values: Any) -> tuple[Any, ...]:
     if not isinstance(values, list) or not values:
         raise CaseError(f"{where}: {label}.values: got {shown(values)}, expected a list of values")
     for value in values:
-        parsed(where, label, rule, value)
+        document.admitted(where, label, rule, value)
     kept = [float(v) if isinstance(rule, Number) else tuple(v) if isinstance(v, list) else v for v in values]
     return tuple(kept)
 
@@ -125,7 +117,7 @@ def _range(where: str, key: str, given: Mapping[str, Any], rule: Any, *, grid: b
         raise CaseError(f"{where}: {label}.points: got it without a grid, expected sample.points alone")
     low, high = given["from"], given["to"]
     for name, value in (("from", low), ("to", high)):
-        parsed(where, f"{label}.{name}", rule, value)
+        document.admitted(where, f"{label}.{name}", rule, value)
     if not low < high:
         raise CaseError(
             f"{where}: {label}: got an empty range from {shown(low)} to {shown(high)}, expected from < to"
@@ -136,7 +128,7 @@ def _range(where: str, key: str, given: Mapping[str, Any], rule: Any, *, grid: b
         raise CaseError(f"{where}: {label}.scale: got {shown(scale)}, expected {expected}")
     if scale == "log" and low <= 0:
         raise CaseError(f"{where}: {label}.from: got {low}, expected it above 0 for a logarithm")
-    points = parsed(where, f"{label}.points", POINTS, given.get("points", 1))
+    points = document.admitted(where, f"{label}.points", POINTS, given.get("points", 1))
     return Axis(key=key, rule=rule, low=float(low), high=float(high), points=points, log=scale == "log")
 
 

@@ -18,9 +18,7 @@ import pandas as pd
 import pyarrow.parquet as pq
 from matplotlib.figure import Figure
 
-from studies.engine.findings import Finding, Tables
-from studies.engine.study import Answer, Part, Study
-from studies.record.extras import absent, lacking
+from studies.engine.study import Answer, Finding, Part, Study, Tables, absent, lacking
 from studies.record.style import BLUE, GREEN, ORANGE, page
 from studies.sweep.design_space import SPACE
 from studies.sweep.read import plan_of
@@ -30,11 +28,12 @@ from studies.sweep.workers import Pool, cluster, loopback, processes, threads
 KINDS = {"threads": "threads", "processes": "processes", "dask": "Dask workers on loopback"}
 ONE_WORKER = "Dask worker on loopback"
 WORKERS = (1, 2)
-#: Designs of a sweep -> how often it is timed; the largest by two workers, and not by processes again.
-SIZES: dict[int, int] = {1_000: 3, 10_000: 2, 100_000: 1}
-LARGEST = 100_000
-#: Chunks that the same designs are cut into, by one worker.
-CUT, CHUNKS = 4096, (2, 16, 64, 256)
+#: Designs of a sweep that is timed twice by all, and of the one by two threads alone.
+SIZES, LARGEST = (1_000, 10_000), 100_000
+#: Chunks that the same designs are cut into, by one worker: few designs, so that the chunks are what counts.
+CUT, CHUNKS = 1024, (2, 32, 128)
+#: How often a sweep is timed.
+REPEAT = 2
 #: The wanted time of a hundred thousand designs [s].
 WANTED = 40.0
 #: What a chunk may cost beside its designs, a twentieth of those of the usual size [s].
@@ -56,12 +55,12 @@ def timed(kind: str, count: int) -> Answer:
     timings, cuts = [], []
     with _pool_of(kind, count) as pool:
         _timed(pool, 64 * count, chunk=32)  # loads the kernels in every worker
-        for size, repeats in SIZES.items():
-            if size < LARGEST or (count == max(WORKERS) and kind != "processes"):
-                seconds = min(_timed(pool, size) for _ in range(repeats))
-                timings.append(row | {"designs": size, "wall_s": seconds})
+        for size in SIZES:
+            timings.append(row | {"designs": size, "wall_s": min(_timed(pool, size) for _ in range(REPEAT))})
+        if (kind, count) == ("threads", max(WORKERS)):
+            timings.append(row | {"designs": LARGEST, "wall_s": _timed(pool, LARGEST)})
         for chunks in CHUNKS if count == 1 else ():
-            seconds = min(_timed(pool, CUT, chunk=CUT // chunks) for _ in range(2))
+            seconds = min(_timed(pool, CUT, chunk=CUT // chunks) for _ in range(REPEAT))
             cuts.append(row | {"chunks": chunks, "wall_s": seconds})
     return {"timings": timings, "timings_of_chunks": cuts}
 
@@ -144,7 +143,7 @@ def _findings(tables: Tables) -> list[Finding]:
     """Return what more workers bring, and whether the wanted time is met."""
     times = tables["timings"].set_index(["workers", "count", "designs"])["wall_s"].to_dict()
     cores = tables["timings"]["cores"].iloc[0]
-    middle = 10_000
+    middle = max(SIZES)
     found = []
     for kind, label in KINDS.items():
         gain = times[kind, 1, middle] / times[kind, 2, middle]
@@ -189,11 +188,7 @@ STUDY = Study(
     cases=("cross_axis_pivot",),
     parts=(
         Part(at=lambda: product(KINDS, WORKERS), ask=timed, alone=True),
-        Part(
-            at=lambda: [size for size in SIZES if size < LARGEST],
-            ask=lambda size: {"work": _work(size)},
-            alone=True,
-        ),
+        Part(at=lambda: SIZES, ask=lambda size: {"work": _work(size)}, alone=True),
     ),
     claims_of_time=(_findings,),
     figures={"sweep_throughput": figure},

@@ -16,8 +16,7 @@ from studies.kinds import Progress
 from studies.record.progress import silent
 from studies.work_precision import series
 from studies.work_precision.equal_error import coarsest, worst
-from studies.work_precision.motions import at, motion_errors, moving
-from studies.work_precision.paths import limit_of_theory, path_errors
+from studies.work_precision.members import at, limit_of_theory, motion_errors, moving, path_errors
 
 #: What a setting is judged by.
 PATH_ERRORS = ("error_trajectory", "error_torque")

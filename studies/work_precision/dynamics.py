@@ -12,17 +12,16 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
+from studies.answers.adapters import answer_release
 from studies.answers.frequency import swing_frequency
 from studies.answers.settings import SplineSettings
 from studies.baselines.answer import SolvedMotion
-from studies.baselines.registry import missing
+from studies.baselines.variants import missing
 from studies.cases.problem import named_case
-from studies.engine.findings import Claim, Ratio, Tables
-from studies.engine.study import Answer, Part, Study
+from studies.engine.study import Answer, Claim, Part, Ratio, Study, Tables
 from studies.kinds import Array
 from studies.work_precision.equal_error import cheapest, diagram, finer, less
-from studies.work_precision.motions import at, motion_errors, moving
-from studies.work_precision.paths import Member
+from studies.work_precision.members import RECORDS, Member, at, motion_errors
 from studies.work_precision.series import SPLINE, Series, looks, moving_others, moving_series
 
 CASE = "cross_axis_pivot"
@@ -45,7 +44,7 @@ QUANTITIES = {
 }
 
 
-def members() -> list[tuple[Series, int, Member]]:
+def _members() -> list[tuple[Series, int, Member]]:
     """Return every setting with its series and its rank there."""
     return [
         (series, rank, member)
@@ -95,10 +94,11 @@ def _reference() -> tuple[Array, list[dict[str, Any]]]:
     """Return the rotation at the instants (T,) [rad] and how uncertain it and its frequency are."""
     rotations = []
     for n, step in REFERENCE.items():
-        member = moving(
-            SplineSettings(control_points=n), f"n = {n}", "reference", integrator="leapfrog", step=step
-        )
-        rotations.append(at(member.solve(named_case(CASE), DURATION), INSTANTS))
+        motion = answer_release(
+            named_case(CASE), SplineSettings(control_points=n), duration=DURATION, records=RECORDS,
+            integrator="leapfrog", step=step,
+        )  # fmt: skip
+        rotations.append(at(motion, INSTANTS))
     coarse, fine = rotations
     frequencies = [swing_frequency(INSTANTS, rotation).value for rotation in rotations]
     source = " and ".join(f"n = {n} at {1e6 * step:g} µs" for n, step in REFERENCE.items())
@@ -121,7 +121,7 @@ STUDY = Study(
     cases=(CASE,),
     parts=(
         Part(ask=lambda: {"reference": _reference()[1]}, alone=True),
-        Part(at=members, ask=_solved, alone=True),
+        Part(at=_members, ask=_solved, alone=True),
     ),
     made={
         "digits": lambda tables: _cheapest(tables, "flops"),

@@ -7,7 +7,7 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from studies.engine.findings import Claim, Ratio, Tables, records
+from studies.engine.study import Claim, Ratio, Tables, records
 from studies.record.style import Look, page
 from studies.work_precision.series import SPLINE
 
@@ -159,7 +159,7 @@ def diagram(
         panels[1, column].set_xlabel(below)
         panels[1, column].invert_xaxis()
     handles, labels = panels[0, 0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside lower center", ncols=4)
+    figure.legend(handles, labels, loc="outside lower center", ncols=3)
     return figure
 
 

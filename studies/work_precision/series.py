@@ -14,8 +14,7 @@ from studies.baselines.exudyn_strips import exudyn_ancf, exudyn_exact
 from studies.baselines.four_bar import four_bar
 from studies.baselines.linear_pivot import linear_pivot, pin_joint
 from studies.record.style import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, RED, SKY, YELLOW, Look
-from studies.work_precision.motions import moving, moving_baseline
-from studies.work_precision.paths import Member, of_baseline, of_settings
+from studies.work_precision.members import Member, moving, moving_baseline, of_baseline, of_settings
 
 SPLINE, ITSELF = "spline", "spline, by itself"
 ELEMENTS, SHEAR = "finite elements", "finite elements with shear"
@@ -51,7 +50,7 @@ class Series:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Other:
+class _Other:
     """A baseline in the diagrams.
 
     Attributes:
@@ -68,20 +67,20 @@ class Other:
 
 
 OTHERS = (
-    Other(baseline=linear_pivot, look=Look(label="linear closed form", colour=GREY, line="", marker="P")),
-    Other(
+    _Other(baseline=linear_pivot, look=Look(label="linear closed form", colour=GREY, line="", marker="P")),
+    _Other(
         baseline=pin_joint, look=Look(label="pseudo-rigid: pin joint", colour=YELLOW, line="", marker="*")
     ),
-    Other(baseline=four_bar, look=Look(label="pseudo-rigid: four-bar", colour=RED, line="", marker="X")),
-    Other(
+    _Other(baseline=four_bar, look=Look(label="pseudo-rigid: four-bar", colour=RED, line="", marker="X")),
+    _Other(
         baseline=exudyn_ancf, look=Look(label="Exudyn, ANCF cable", colour=PURPLE, marker="^"),
         meshes=(2, 4, 8, 16, 32), moving_meshes=(4, 8), steps=(2e-4, 1e-4, 5e-5, 2e-5, 1e-5, 5e-6),
     ),
-    Other(
+    _Other(
         baseline=exudyn_exact, look=Look(label="Exudyn, exact beam", colour=PURPLE, line=":", marker="v"),
         theory="shear", meshes=(2, 4, 8, 16, 32), steps=(),
     ),
-    Other(
+    _Other(
         baseline=openseespy_frame,
         look=Look(label="OpenSees, corotational", colour=ORANGE, line="--", marker="<"),
         meshes=(10, 20, 40, 80), moving_meshes=(20,), steps=(1e-4, 5e-5, 2e-5),
@@ -202,7 +201,7 @@ def moving_others(scale: float = 1.0) -> list[Series]:
     ]
 
 
-def _moving_members(each: Other, scale: float) -> Iterator[Member]:
+def _moving_members(each: _Other, scale: float) -> Iterator[Member]:
     for step in (scale * step for step in each.steps):
         if not each.moving_meshes:
             yield moving_baseline(each.baseline, "closed form", "all", step)

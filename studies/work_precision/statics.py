@@ -13,26 +13,20 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
-from studies.answers.adapters import answer_release
+from studies.answers.adapters import answer_release, answer_static
 from studies.answers.reference import QUANTITIES
-from studies.answers.settings import FeSettings
-from studies.baselines.registry import missing
+from studies.answers.settings import FeSettings, SplineSettings
+from studies.baselines.variants import missing
 from studies.cases.problem import named_case
-from studies.engine.findings import Claim, Tables
-from studies.engine.study import Answer, Part, Study
-from studies.record.style import BASES
-from studies.work_precision import scaling
+from studies.engine.study import Answer, Claim, Part, Study, Tables
+from studies.record.style import BASES, BLUE, GREEN, page
 from studies.work_precision.equal_error import cheapest, diagram, finer, less
-from studies.work_precision.paths import (
-    THEORIES,
-    Limit,
-    Member,
-    limit_of_theory,
-    path_errors,
-)
+from studies.work_precision.members import THEORIES, Limit, Member, limit_of_theory, path_errors
 from studies.work_precision.series import ELEMENTS, SPLINE, Series, looks, other_series, own_series
-from studies.work_precision.work import ELEMENT_FORCES, STRIPS
+from studies.work_precision.work import ELEMENT_FORCES, STRIPS, work_of
 
 CASE = "cross_axis_pivot"
 
@@ -50,15 +44,20 @@ TITLES = {"trajectory": "trajectory", "torque": "torque", "stiffness": "stiffnes
 #: Elements of the compiled motion from which the speed of compiled elements is taken.
 COMPILED_ELEMENTS = 20
 
+#: Basis -> control points; the range from which the exponent is taken.
+COUNTS = {"bezier": (4, 6, 8, 12, 16, 20, 24), "bspline": (8, 12, 16, 24, 32, 48, 64)}
+#: Increments of the path that is timed, and how often it is.
+INCREMENTS, REPEAT = 20, 7
 
-def members() -> list[tuple[Series, Member]]:
+
+def _members() -> list[tuple[Series, Member]]:
     """Return every setting with its series."""
     return [(series, member) for series in (*own_series(), *other_series()) for member in series.members]
 
 
-def solved(series: Series, member: Member) -> Answer:
+def _solved(series: Series, member: Member) -> Answer:
     """Return errors over the path and at its end, those of the reference, work, and times of a setting."""
-    path, exact = member.solve(named_case(CASE), series.repeat), limit(series.theory)
+    path, exact = member.solve(named_case(CASE), series.repeat), _limit(series.theory)
     name = {"series": series.name, "setting": member.setting}
     errors = {
         "series": series.name,
@@ -77,7 +76,7 @@ def solved(series: Series, member: Member) -> Answer:
 
 
 @cache
-def limit(theory: str) -> Limit:
+def _limit(theory: str) -> Limit:
     """Return what settings of a theory are held against."""
     return limit_of_theory(named_case(CASE), theory)
 
@@ -94,8 +93,8 @@ def _joined(tables: Tables) -> pd.DataFrame:
 
 def _reference(theory: str) -> list[dict[str, Any]]:
     """Return a limit's uncertainty, and how far it is from the material one."""
-    found = limit(theory)
-    apart = path_errors(found.path, limit("material").path)
+    found = _limit(theory)
+    apart = path_errors(found.path, _limit("material").path)
     return [
         {
             "theory": theory,
@@ -158,16 +157,88 @@ def _growth(tables: Tables) -> list[dict[str, Any]]:
     limits = {"bezier": ("no faster than n^3", 3.0), "bspline": ("about linearly, up to n = 64", 1.25)}
     return [
         {"basis": BASES[basis], "power": power, "grows": limits[basis][0], "most": limits[basis][1]}
-        for basis, power in scaling.exponents(tables).items()
+        for basis, power in _exponents(tables).items()
     ]
+
+
+def _iterations_asked() -> list[tuple[str, int]]:
+    """Return bases and control points."""
+    return [(basis, n) for basis, counts in COUNTS.items() for n in counts]
+
+
+def _iteration(basis: str, n: int) -> Answer:
+    """Return scaling (unknowns, evaluations, flops of one) and scaling_of_time."""
+    settings = SplineSettings(control_points=n, basis=basis)
+    answer = answer_static(named_case(CASE), settings, repeat=REPEAT)
+    work, evaluations = work_of(settings, answer.counters), answer.counters["factorisations"]
+    row = {"basis": basis, "control_points": n}
+    counted = {
+        "status": answer.status,
+        "unknowns": work.unknowns,
+        "evaluations": evaluations,
+        "assembly_flops": work.assembly_flops,
+        "factorisation_flops": work.factorisation_flops,
+    }
+    timed = {"iteration_s": answer.solve_s / evaluations, "solve_s": answer.solve_s}
+    return {"scaling": row | counted, "scaling_of_time": row | timed}
+
+
+def _of_basis(table: pd.DataFrame, basis: str) -> pd.DataFrame:
+    """Return the rows of one basis, sorted by count."""
+    return table[table["basis"] == basis].sort_values("control_points")
+
+
+def _exponents(tables: Tables) -> dict[str, float]:
+    """Return p of time ~ n^p of one iteration by least squares for each basis, beyond the smallest counts."""
+    found = {}
+    for basis, least in {"bezier": 8, "bspline": 16}.items():
+        rows = _of_basis(tables["scaling_of_time"], basis)
+        used = rows[rows["control_points"] >= least]
+        found[basis] = float(np.polyfit(np.log(used["control_points"]), np.log(used["iteration_s"]), 1)[0])
+    return found
+
+
+def _scaling_figure(tables: Tables) -> Figure:
+    """Draw time and counted work of one Newton iteration over the control points."""
+    drawn = page(9.5, 3.8)
+    timed, counted = drawn.subplots(1, 2)
+    styles = {
+        "bezier": ("Bézier curve, condensed", BLUE, "x-"),
+        "bspline": ("cubic B-spline, sparse from n = 24 on", GREEN, "o-."),
+    }
+    for basis, (label, colour, line) in styles.items():
+        times, flops = (_of_basis(tables[name], basis) for name in ("scaling_of_time", "scaling"))
+        n = times["control_points"].to_numpy(float)
+        timed.loglog(n, 1e6 * times["iteration_s"], line, color=colour, label=label)
+        total = flops["assembly_flops"] + flops["factorisation_flops"]
+        counted.loglog(n, total, line, color=colour, label=label)
+    counts = sorted(set(tables["scaling"]["control_points"]))
+    for panel in (timed, counted):
+        _slopes(panel, counts[0], counts[-1])
+        panel.set_xlabel("control points a strip, n")
+        panel.set_xticks(counts, labels=[str(each) for each in counts])
+        panel.minorticks_off()
+    timed.set_ylabel("time of one iteration [µs]")
+    counted.set_ylabel("operations of one iteration [1]")
+    timed.legend()
+    return drawn
+
+
+def _slopes(panel: Axes, first: int, last: int) -> None:
+    """Draw lines of slope 1 and 3 from the lower left, within the panel."""
+    low, high = panel.get_ylim()
+    for power, line in ((1, ":"), (3, "--")):
+        n = np.array([first, min(last, first * (high / low) ** (1.0 / power))])
+        panel.plot(n, low * (n / first) ** power, line, color="#888888", linewidth=0.9, label=f"n^{power}")
+    panel.set_ylim(low, high)
 
 
 STUDY = Study(
     cases=(CASE,),
     parts=(
         Part(at=lambda: THEORIES, ask=lambda theory: {"reference": _reference(theory)}),
-        Part(at=members, ask=solved, alone=True),
-        Part(at=scaling.points, ask=scaling.iteration, alone=True),
+        Part(at=_members, ask=_solved, alone=True),
+        Part(at=_iterations_asked, ask=_iteration, alone=True),
     ),
     made={
         "digits": lambda tables: _cheapest(tables, "flops"),
@@ -220,7 +291,7 @@ STUDY = Study(
             part="increments",
             width=10.0,
         ),
-        "work_precision_scaling": scaling.figure,
+        "work_precision_scaling": _scaling_figure,
     },
     missing=missing,
 )

@@ -14,10 +14,9 @@ from matplotlib.figure import Figure
 
 from studies.answers.adapters import answer_static
 from studies.answers.settings import FeSettings, Settings, SplineSettings
-from studies.baselines.comparison.variants import spread
+from studies.baselines.variants import spread
 from studies.cases.problem import named_case
-from studies.engine.findings import Tables
-from studies.engine.study import Answer, Part, Study
+from studies.engine.study import Answer, Part, Study, Tables
 from studies.record.source import ROOT
 from studies.record.style import BLACK, BLUE, page
 
@@ -28,7 +27,7 @@ MODELS: dict[str, tuple[Settings, tuple[str, ...]]] = {
     "80 elements": (FeSettings(elements=80), ("--model", "fe", "--elements", "80")),
 }
 #: Runs of a process of its own, and calls within one.
-PROCESSES, CALLS = 7, 25
+PROCESSES, CALLS = 5, 25
 #: What a process is asked that makes one call: what importing and the call took [s].
 FIRST = """
 import json, time
@@ -42,7 +41,7 @@ print(json.dumps([ready - begin, time.perf_counter() - ready]))
 """
 
 
-def waited(label: str) -> Answer:
+def _waited(label: str) -> Answer:
     """Return the times of a model: a row each of what is waited for."""
     settings, words = MODELS[label]
     command = ("-m", "studies", "solve", CASE, *words)
@@ -75,7 +74,7 @@ def _call(settings: Settings) -> tuple[float, float]:
     return time.perf_counter() - begin, answer.solve_s
 
 
-def figure(tables: Tables) -> Figure:
+def _figure(tables: Tables) -> Figure:
     """Draw median and quartiles of every wait, by model."""
     drawn = page(6.3, 2.2)
     panel = drawn.subplots()
@@ -94,6 +93,6 @@ def figure(tables: Tables) -> Figure:
 
 STUDY = Study(
     cases=(CASE,),
-    parts=(Part(at=lambda: tuple(MODELS), ask=waited, alone=True),),
-    figures={"waits": figure},
+    parts=(Part(at=lambda: tuple(MODELS), ask=_waited, alone=True),),
+    figures={"waits": _figure},
 )

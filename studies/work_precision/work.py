@@ -9,6 +9,7 @@ checks of a state, energies.
 Factorisations are those of symmetric elimination in the order of the unknowns that suits each model:
 
 - spline, condensed: m axial forces, then W = 2 n - 6 own coordinates of a strip leave three of its tip;
+  states behind a good prediction are confirmed with its factors;
 - spline, bordered: a dense LU of all N unknowns, 2/3 N^3 (Golub and Van Loan, Matrix Computations, 3.2);
 - B-spline, bordered, from 150 unknowns on: its sparse LU, a constant number for each unknown, which a test
   counts from the factors;
@@ -38,7 +39,7 @@ from studies.answers.settings import FeSettings, Settings, SplineSettings
 
 STRIPS = 2
 #: Operations of one element (see above): its forces and energy, and its tangent beside them.
-ELEMENT_FORCES, ELEMENT_TANGENT = 74, 43
+ELEMENT_FORCES, ELEMENT_TANGENT = 75, 43
 #: Operations of one Gauss point that depend neither on the control points nor on the axial forces.
 POINT = 163
 #: The sparse LU of a long B-spline: from so many unknowns on, and operations and entries of it for each.
@@ -46,7 +47,7 @@ SPARSE_FROM, SPARSE_FLOPS, SPARSE_ENTRIES = 150, 308, 27
 
 
 @dataclass(frozen=True, kw_only=True)
-class Work:
+class _Work:
     """Sizes and operations of one static path.
 
     Attributes:
@@ -70,7 +71,7 @@ class Work:
         return asdict(self)
 
 
-def work_of(settings: Settings, counters: Mapping[str, int]) -> Work:
+def work_of(settings: Settings, counters: Mapping[str, int]) -> _Work:
     """Return the work of a path of the pivot with its default effects, from its settings and counters."""
     if isinstance(settings, FeSettings):
         return _of_elements(settings, counters)
@@ -104,6 +105,18 @@ def condensation_flops(own: int, modes: int) -> int:
     return axial + sum(_pivot_flops(rows) + 2 * rows for rows in range(3, size))
 
 
+def confirmation_flops(points: int, functions: int, modes: int) -> int:
+    """Return the operations that confirm a state of one strip without a tangent: `evaluate_residual`, and its
+    Hessian times the rate."""
+    at_point = 16 * functions + 4 * modes
+    return points * (195 + 2 * at_point) + 8 * modes + 4 * functions - 2
+
+
+def forward_flops(own: int, modes: int) -> int:
+    """Return the operations that bring a right-hand side of one strip to its tip, by the factors at hand."""
+    return modes * (2 * own + 7) + own * (own + 6)
+
+
 def recovery_flops(own: int, modes: int) -> int:
     """Return the operations of `recover` for one strip: the substitution."""
     return own * (own + 7) + modes * (2 * own + 8)
@@ -120,24 +133,28 @@ def _points(settings: SplineSettings) -> int:
     return (settings.gauss_points or degree + 3) * (settings.points - degree)
 
 
-def _condensed(settings: SplineSettings, counters: Mapping[str, int]) -> Work:
+def _condensed(settings: SplineSettings, counters: Mapping[str, int]) -> _Work:
     n, modes, points = settings.points, _modes(settings), _points(settings)
     own = 2 * n - 6
     assembly = STRIPS * assembly_flops(points, n - 1, modes)
     factorisation = STRIPS * condensation_flops(own, modes)
     solves = counters["newton_iterations"] + counters["increments"] + 1
-    return Work(
+    confirmed = counters["residual_evaluations"] - counters["factorisations"]
+    confirmation = (
+        confirmation_flops(points, n, modes) + forward_flops(own, modes) + recovery_flops(own, modes)
+    )
+    return _Work(
         unknowns=2 + STRIPS * (own + modes),
         points=STRIPS * points,
         iterations=counters["newton_iterations"],
         factorisation_flops=factorisation,
         assembly_flops=assembly,
         flops=counters["factorisations"] * (assembly + factorisation)
-        + solves * STRIPS * recovery_flops(own, modes),
+        + STRIPS * (confirmed * confirmation + solves * recovery_flops(own, modes)),
     )
 
 
-def _bordered(settings: SplineSettings, counters: Mapping[str, int]) -> Work:
+def _bordered(settings: SplineSettings, counters: Mapping[str, int]) -> _Work:
     n, modes, points = settings.points, _modes(settings), _points(settings)
     bezier = settings.basis == "bezier"
     # a hat basis has two modes at a point, and the slide mode reaches everywhere
@@ -147,18 +164,20 @@ def _bordered(settings: SplineSettings, counters: Mapping[str, int]) -> Work:
     sparse = settings.basis == "bspline" and size >= SPARSE_FROM
     factorisation = SPARSE_FLOPS * size if sparse else 2 * size**3 // 3
     substitution = 2 * size * (SPARSE_ENTRIES if sparse else size)
-    return Work(
+    confirmation = STRIPS * confirmation_flops(points, n if bezier else 4, at_point)
+    return _Work(
         unknowns=size,
         points=STRIPS * points,
         iterations=counters["newton_iterations"],
         factorisation_flops=factorisation,
         assembly_flops=assembly,
-        flops=counters["residual_evaluations"] * assembly
+        flops=counters["tangent_evaluations"] * assembly
+        + (counters["residual_evaluations"] - counters["tangent_evaluations"]) * (confirmation + substitution)
         + counters["factorisations"] * (factorisation + substitution),
     )
 
 
-def _of_elements(settings: FeSettings, counters: Mapping[str, int]) -> Work:
+def _of_elements(settings: FeSettings, counters: Mapping[str, int]) -> _Work:
     inner = max(settings.elements - 1, 0)
     counted = settings.element == "corotational"
     rows = STRIPS * ([5, 4, 3] * max(inner - 1, 0) + [4, 3, 2] * min(inner, 1)) + [1, 0]
@@ -167,7 +186,7 @@ def _of_elements(settings: FeSettings, counters: Mapping[str, int]) -> Work:
     tangents = counters["tangent_evaluations"] * count * (ELEMENT_FORCES + ELEMENT_TANGENT)
     residuals = counters["residual_evaluations"] * count * ELEMENT_FORCES
     solves = counters["factorisations"] * (factorisation + sum(4 * row + 1 for row in rows))
-    return Work(
+    return _Work(
         unknowns=STRIPS * 3 * inner + 2,
         points=count,
         iterations=counters["newton_iterations"],

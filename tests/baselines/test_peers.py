@@ -9,15 +9,14 @@ import pytest
 from studies.answers.adapters import answer_static
 from studies.answers.reference import limit_of
 from studies.answers.settings import FeSettings
-from studies.baselines import elements, openseespy_frame, spline
+from studies.baselines import openseespy_frame, tasks, variants
 from studies.baselines.answer import BaselineFailed
-from studies.baselines.comparison import tasks, variants
-from studies.baselines.comparison.peers import kept, ratios
-from studies.baselines.comparison.tasks import Limit
-from studies.baselines.comparison.variants import Variant, spread, tried
 from studies.baselines.exudyn_solve import SOLVERS
 from studies.baselines.exudyn_strips import exudyn_ancf, exudyn_exact
-from studies.baselines.registry import PEERS
+from studies.baselines.own import elements, spline
+from studies.baselines.peers import ratios
+from studies.baselines.tasks import Limit
+from studies.baselines.variants import PEERS, Variant, kept, spread, tried
 from studies.cases.problem import named_case
 from studies.errors import BadInput
 from tests import gates
@@ -172,7 +171,7 @@ def test_what_is_not_installed_is_said_in_one_line(name, monkeypatch):
     module = PEERS[name]
     monkeypatch.setattr(module, "installed", lambda: False)
     asked = [Variant(module=module, group="x", theory="y", settings={"elements": n}) for n in (1, 2)]
-    rows, times = tried(asked, None, ["worst"])
+    rows, times = tried(asked, None, ["worst"], judged="worst", repeat=1)
     assert [(row["status"], row["model"]) for row in rows] == [("not installed", name)]
     assert rows[0]["reason"] == "not installed: python -m pip install '.[peers]'"
     assert math.isnan(rows[0]["worst"])
@@ -201,7 +200,7 @@ def test_failed_variant_keeps_its_row():
     def fails(variant):
         raise BaselineFailed("stopped at 0.1 rad")
 
-    rows, times = tried(variants.static_variants()[:1], fails, ["worst"])
+    rows, times = tried(variants.static_variants()[:1], fails, ["worst"], judged="worst", repeat=1)
     assert (rows[0]["status"], rows[0]["reason"]) == ("failed", "stopped at 0.1 rad")
     assert math.isnan(rows[0]["worst"])
     assert times == []

@@ -6,9 +6,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from studies.baselines import one_coordinate, spline
+from studies.baselines import one_coordinate
 from studies.baselines.answer import SolvedMotion, SolvedPath
-from studies.baselines.comparison.surrogates import first_above
 from studies.baselines.constraint_model import chained_constraint_model, constraint_model, with_beams
 from studies.baselines.constraint_strips import guide, placed
 from studies.baselines.four_bar import four_bar, link_length, spring
@@ -18,7 +17,9 @@ from studies.baselines.linear_pivot import (
     small_angle_stiffness,
     stiffness_coefficient,
 )
-from studies.baselines.registry import SURROGATES
+from studies.baselines.own import spline
+from studies.baselines.surrogates import first_above
+from studies.baselines.variants import SURROGATES
 from studies.cases.effects import Effects
 from studies.cases.problem import named_case
 from studies.errors import BadInput
@@ -243,8 +244,8 @@ def test_pin_joint_swings_harmonically():
 def test_every_surrogate_answers_alike(name):
     """Requirement: path and motion come in the neutral arrays, with the time of the solver alone."""
     module = SURROGATES[name]
-    path = module.static_path(CASE, TURNS, repeat=2)
-    motion = module.release(CASE, start=0.5, duration=0.01, step=1e-4)
+    path = module.static_path(CASE, TURNS).timed(2)
+    motion = module.release(CASE, start=0.5, duration=0.01, step=1e-4).timed(1)
     assert isinstance(path, SolvedPath)
     assert isinstance(motion, SolvedMotion)
     assert (path.rotation.shape, path.centre.shape) == ((21,), (21, 2))
@@ -262,7 +263,7 @@ def test_every_surrogate_answers_alike(name):
     [
         (lambda m: m.static_path(CASE, [0.1, 0.2]), "rotations: got"),
         (lambda m: m.static_path(CASE, [0.0, math.nan]), "rotations: got"),
-        (lambda m: m.static_path(CASE, TURNS, repeat=0), "repeat: got 0"),
+        (lambda m: m.static_path(CASE, TURNS).timed(0), "repeat: got 0"),
         (lambda m: m.release(CASE, start=1.0, duration=0.01, step=0.02), "step: got 0.02"),
         (lambda m: m.release(CASE, start=math.inf, duration=0.01, step=1e-4), "start: got inf"),
         (

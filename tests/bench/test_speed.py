@@ -10,9 +10,9 @@ from fe_reference.statics import solve_statics as solve_element_statics
 from spline_model.batch import solve_many
 from spline_model.compile import compile_scene
 from spline_model.dynamics import STEP, solve_release
-from spline_model.modes import static_state
+from spline_model.modes import settle
 from spline_model.motion import energy_consistent
-from spline_model.motion.start import initial_acceleration, set_in_motion
+from spline_model.motion.start import Start, Steps, set_in_motion
 from spline_model.pivot import cross_axis_pivot
 from spline_model.reduced.elements import Elements
 from spline_model.reduced.model import at_rest
@@ -84,13 +84,10 @@ def test_single_step(benchmark):
     mechanism = cross_axis_pivot(**SIX)
     system = compile_scene(mechanism.released())
     motion, layout = set_in_motion(system), system.layout
-    z, v = np.zeros(layout.size), np.zeros(layout.coordinate_count)
-    z[:] = static_state(mechanism, QUARTER_TURN)[: layout.size]
-    acceleration, z = initial_acceleration(system, motion, z, v)
+    start = Start(motion, settle(mechanism, QUARTER_TURN), np.zeros(layout.coordinate_count))
 
     def step():
-        state = (z.copy(), v.copy(), acceleration.copy())
-        return energy_consistent.integrate(system, motion, *state, step=STEP, steps=1, every=1)
+        return energy_consistent.integrate(start, Steps(STEP, 1, 1))
 
     run = benchmark(step)
     benchmark.extra_info.update(run.counters)

@@ -5,7 +5,7 @@ import json
 import pytest
 
 from studies.__main__ import main
-from studies.answers.adapters import answer_mechanism
+from studies.answers.adapters import answer_static
 from studies.answers.settings import SplineSettings
 from studies.cases.design import read_design
 from studies.cases.problem import FOLDER, named_case, read_case
@@ -148,7 +148,7 @@ def test_a_mechanism_is_sized_by_numbers_of_its_file(tmp_path, capsys):
         *optimum["spline"],
     }
     best = read_design(path)
-    answer = answer_mechanism(best, SplineSettings(control_points=10))
+    answer = answer_static(best, SplineSettings(control_points=10))
     assert answer.max_stress[-1] == pytest.approx(stress)
     assert answer.stiffness[-best.increments - 1] == pytest.approx(case["stiffness_Nm_per_rad"], rel=1e-6)
 

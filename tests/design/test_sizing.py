@@ -7,6 +7,7 @@ import pytest
 
 from studies.cases.effects import Effects
 from studies.design import task as questions
+from studies.design import tolerances
 from studies.design.evaluate import PathEnds, answers, by_elements, of_spline
 from studies.design.optimise import best, numbered, optimise, search, starts
 from studies.design.programme import OUTSIDE, Programme, gradient_error
@@ -142,6 +143,25 @@ def test_gradients_at_the_optimum(narrow):
     with pytest.raises(AssertionError, match="x the gate"):
         teeth = gates.teeth("sizing_gradients")
         gates.check("sizing_gradients", gradient_error(task, variables_of(found.problem), **teeth))
+
+
+@pytest.mark.slow
+def test_tolerances_change_what_whole_solves_say(own, monkeypatch):
+    """Changes at the tolerances are those of whole solves; all follows the width, and only stiffness does."""
+    design = replace(own[0], increments=4)
+
+    def rows():
+        every = list(tolerances.toleranced("Table 1", design, answers(design)))
+        return {(row["dimension"], row["quantity"]): row for row in every}
+
+    found = rows()
+    gates.check("tolerances", max(abs(row["worst"] - row["solved"]) for row in found.values()))
+    width = variables_of(design)[4]
+    assert found["width 0.05 mm", "stiffness"]["worst"] == pytest.approx(tolerances.LENGTH / width, rel=1e-9)
+    assert found["width 0.05 mm", VARIATION]["worst"] == pytest.approx(0.0, abs=1e-12)
+    monkeypatch.setattr(tolerances, "GRADE", gates.teeth("tolerances")["grade"])
+    with pytest.raises(AssertionError, match="x the gate"):
+        gates.check("tolerances", max(abs(row["worst"] - row["solved"]) for row in rows().values()))
 
 
 def _difference(problem, found):

@@ -14,15 +14,13 @@ import pandas as pd
 import pytest
 
 from studies.__main__ import main
-from studies.answers.adapters import answer_path
-from studies.answers.fields import Fields
+from studies.answers.adapters import answer_modes, answer_release, answer_static
+from studies.answers.fields import Fields, fields_of
 from studies.answers.settings import FeSettings, SplineSettings
 from studies.cases.design import named_design
 from studies.cases.problem import FOLDER
 from studies.commands.path_output import as_frame
 from studies.exchange.formats import FORMATS, contents
-from studies.exchange.solutions import fields_of
-from studies.exchange.solve import mode_fields, release_fields, static_fields
 from studies.exchange.tables import COLUMNS, tables
 from studies.exchange.vtk import BODY_ARM, BODY_CENTRE, CLAMP, STRIP, mesh, mode_scale
 
@@ -37,15 +35,16 @@ def fields(kind: str) -> Fields:
     pivot, linkage = (replace(named_design(name), increments=3) for name in
                       ("cross_axis_pivot", "four_bar_of_flexures"))  # fmt: skip
     if kind == "static":
-        return static_fields(pivot, spline)
+        return fields_of(answer_static(pivot, spline), pivot)
     if kind == "mechanism":
-        return static_fields(linkage, elements)
+        return fields_of(answer_static(linkage, elements), linkage)
     if kind == "modes":
-        return mode_fields(linkage, spline, count=3, held=False)
+        return fields_of(answer_modes(linkage, spline, rotation=linkage.rotation, count=3), linkage)
     if kind == "loads":
-        return static_fields(replace(named_design("parallel_strip_guide"), increments=2), spline)
+        guide = replace(named_design("parallel_strip_guide"), increments=2)
+        return fields_of(answer_static(guide, spline), guide)
     step = {"step": 1e-4, "integrator": "generalised-alpha"}
-    return release_fields(pivot, elements, duration=5e-4, records=5, **step)
+    return fields_of(answer_release(pivot, elements, duration=5e-4, records=5, **step), pivot)
 
 
 KINDS = pytest.mark.parametrize("kind", ["static", "mechanism", "loads", "modes", "release"])
@@ -125,7 +124,7 @@ def test_states_have_the_columns_of_the_solved_table(name):
     """What `solve --csv` and the exported table of states both have is the same, row by row; tables are
     joined by the number of the state, as a load factor stays 1 while a loaded pivot is turned."""
     design = replace(named_design(name), increments=2)
-    answer = answer_path(design, SplineSettings(control_points=6))
+    answer = answer_static(design, SplineSettings(control_points=6))
     found = tables(fields_of(answer, design))
     states, rows = found["states"], as_frame(design, answer)
     both = [column for column in states if column in rows]

@@ -6,11 +6,10 @@ from functools import cache
 import numpy as np
 import pytest
 
-from studies.answers.adapters import answer_static
-from studies.answers.fields import Fields
+from studies.answers.adapters import answer_modes, answer_release, answer_static
+from studies.answers.fields import Fields, fields_of
 from studies.answers.settings import FeSettings, Settings, SplineSettings
 from studies.cases.design import Design, named_design, read_design
-from studies.exchange.solve import mode_fields, release_fields, static_fields
 from tests import gates
 
 SPLINE, ELEMENTS = SplineSettings(control_points=12), FeSettings(elements=40)
@@ -26,6 +25,10 @@ def design_of(case: str) -> Design:
 @cache
 def solved(case: str, settings: Settings) -> Fields:
     return static_fields(design_of(case), settings)
+
+
+def static_fields(design: Design, settings: Settings) -> Fields:
+    return fields_of(answer_static(design, settings), design)
 
 
 def force(fields: Fields, state: int = -1) -> np.ndarray:
@@ -172,7 +175,8 @@ def test_fields_are_those_of_the_answer(settings):
 def test_a_release_begins_with_the_static_section_forces(settings):
     """The first record of a motion has the fields of the static state that was let go."""
     step = {"step": 1e-4} if settings is SPLINE else {"integrator": "generalised-alpha", "step": 1e-4}
-    begin = release_fields(design_of("cross_axis_pivot"), settings, duration=2e-4, records=2, **step)
+    pivot = design_of("cross_axis_pivot")
+    begin = fields_of(answer_release(pivot, settings, duration=2e-4, records=2, **step), pivot)
     static = solved("cross_axis_pivot", settings)
     assert begin.bending_moment[0] == pytest.approx(static.bending_moment[-1], rel=1e-3)
     # by the moments' balance the spline's shear force is a derivative, and its strips are stiffer in motion
@@ -187,7 +191,7 @@ def test_motion_keeps_the_bodies_and_strips_together(settings):
     """Ends of strips stay on their bodies in every record of a mechanism whose reference points differ."""
     design = design_of("four_bar_of_flexures")
     step = {} if settings is SPLINE else {"integrator": "generalised-alpha", "step": 1e-4}
-    fields = release_fields(design, settings, duration=1e-3, records=4, **step)
+    fields = fields_of(answer_release(design, settings, duration=1e-3, records=4, **step), design)
     crank = [block.name for block in fields.blocks].index("crank")
     turn, centre = fields.bodies[:, crank, 2], fields.bodies[:, crank, :2]
     offset = fields.rest_shape[0, -1] - fields.rest_bodies[crank]
@@ -206,7 +210,8 @@ def test_modes_move_strips_with_their_bodies():
     """A mode moves the tip of a strip as its body carries it, in both models alike."""
     found = []
     for settings in (SPLINE, ELEMENTS):
-        fields = mode_fields(design_of("four_bar_of_flexures"), settings, count=2, held=False)
+        linkage = design_of("four_bar_of_flexures")
+        fields = fields_of(answer_modes(linkage, settings, rotation=linkage.rotation, count=2), linkage)
         x, y = fields.shape[0, 0, -1] - fields.bodies[0, 0, :2]
         body = fields.mode_bodies[:, 0]
         carried = body[:, :2] + body[:, 2:] * np.array([-y, x])

@@ -3,10 +3,11 @@
 import numpy as np
 import pytest
 
+from studies.answers.adapters import answer_static
+from studies.answers.fields import fields_of
 from studies.answers.settings import FeSettings, SplineSettings
 from studies.cases.effects import Effects
 from studies.cases.mechanism import Mechanism, Strip
-from studies.exchange.solve import static_fields
 from studies.exchange.tables import tables
 
 LENGTH, PULL, LIFT = 0.1, 0.02, 0.01
@@ -43,7 +44,7 @@ MODELS = [
 @pytest.mark.parametrize("settings", MODELS, ids=lambda s: s.model)
 def test_signs_of_a_cantilever_that_is_pulled_and_lifted(settings):
     """Requirement: positive are tension, a force to the left and the moment that lifts the strip."""
-    table = tables(static_fields(CANTILEVER, settings))
+    table = tables(fields_of(answer_static(CANTILEVER, settings), CANTILEVER))
     strips, reactions = (table[name][table[name]["load_factor"] == 1.0] for name in ("strips", "reactions"))
     x, y, at = (strips[name].to_numpy() for name in ("x_m", "y_m", "arc_length_m"))
     moment = LIFT * (x[-1] - x) - PULL * (y[-1] - y)  # about each section, of the force at the tip

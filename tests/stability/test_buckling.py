@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from studies.engine.answer import answered
+from studies.stability import buckling
+from studies.stability.buckling import OTHER, PRIMARY
 from studies.stability.family import DEFAULT, FE, PAPER, TWELVE
-from studies.stability.statics import buckling
-from studies.stability.statics.buckling import OTHER, PRIMARY
 from tests import gates
 
 pytestmark = pytest.mark.slow

@@ -9,7 +9,7 @@ import pytest
 from scipy.optimize import brentq
 
 from studies.__main__ import main
-from studies.answers.adapters import answer_path
+from studies.answers.adapters import answer_static
 from studies.answers.capacity import capacity
 from studies.answers.settings import FeSettings, SplineSettings
 from studies.cases.design import named_design
@@ -60,14 +60,14 @@ def loaded(ratio, pull):
 def test_stiffness_under_load_is_haringx_and_wittricks(settings, ratio, share):
     """Requirement: pushed and pulled through its crossing, a pivot has the stiffness of the beam-column."""
     pull = share * EULER
-    answer = answer_path(loaded(ratio, pull), settings, accuracy=1e-6)
+    answer = answer_static(loaded(ratio, pull), settings, accuracy=1e-6)
     expected = stiffness(pull, ratio)
     gates.check("haringx", abs(answer.stiffness[-1] - expected) / (RIGIDITY / LENGTH))
 
 
 def test_haringx_gate_has_teeth():
     """Requirement: few elements without their limit do not pass."""
-    answer = answer_path(loaded(0.3, -0.4 * EULER), FeSettings(**gates.teeth("haringx")))
+    answer = answer_static(loaded(0.3, -0.4 * EULER), FeSettings(**gates.teeth("haringx")))
     with pytest.raises(AssertionError, match="x the gate"):
         gates.check("haringx", abs(answer.stiffness[-1] - stiffness(-0.4 * EULER, 0.3)) * LENGTH / RIGIDITY)
 

@@ -7,9 +7,8 @@ import pytest
 
 from studies.engine.answer import answered
 from studies.registry import STUDIES, study_of
+from studies.stability import long_run, rotation, slenderness, step_size
 from studies.stability.family import DEFAULT, GENERALISED_ALPHA, PAPER, PATHS, SIX, VARIED
-from studies.stability.motion import long_run, step_size
-from studies.stability.statics import rotation, slenderness
 from tests import gates
 
 pytestmark = pytest.mark.slow

@@ -1,6 +1,7 @@
 """Random designs and commands: three outcomes, and never a fourth."""
 
 import math
+from itertools import islice
 
 import pytest
 from hypothesis import HealthCheck, given, settings
@@ -8,7 +9,8 @@ from hypothesis import strategies as st
 
 from studies.answers.settings import SplineSettings
 from studies.stability.family import judged
-from studies.stability.fuzz import TOLERANCE, Example, asked
+from studies.stability.fuzz import TOLERANCE, Example, asked, independent, sample
+from tests import gates
 
 #: Values that no design can have, among those that it can.
 BAD = (-1.0, 0.0, math.nan, math.inf)
@@ -42,8 +44,8 @@ def hold(example):
     """Ask the spline with both settings, and refuse the outcome that must not be."""
     for settings_ in (SplineSettings(control_points=example.control_points), SplineSettings()):
         verdict = judged(lambda: asked(example, settings_), TOLERANCE)  # noqa: B023 - called at once
-        assert verdict.outcome in ("right", "refused", "bad input"), (example, verdict)
-        assert verdict.outcome == "right" or len(verdict.reason) > 10, (example, verdict)
+        assert verdict["outcome"] in ("right", "refused", "bad input"), (example, verdict)
+        assert verdict["outcome"] == "right" or len(verdict["reason"]) > 10, (example, verdict)
 
 
 @settings(max_examples=60, deadline=None, derandomize=True, database=None)
@@ -65,3 +67,21 @@ def test_some_designs(example):
 def test_two_thousand_designs(example):
     """Requirement: two thousand random examples are right, refused or bad input."""
     hold(example)
+
+
+def from_elements(paths=2, **settings):
+    """Largest difference of the first random paths from those of elements, over their largest torque."""
+    found = [independent(*each, **settings)["elements"] for each in islice(sample(), paths)]
+    assert all(row["legs_compared"] == row["legs"] for row in found)
+    return max(row["error"] for row in found)
+
+
+def test_random_paths_are_those_of_elements():
+    """Requirement: paths of random designs, with all their legs, are those of finite elements."""
+    gates.check("random_paths_by_elements", from_elements())
+
+
+def test_random_paths_gate_has_teeth():
+    """Requirement: the check notices few elements."""
+    with pytest.raises(AssertionError, match="x the gate"):
+        gates.check("random_paths_by_elements", from_elements(**gates.teeth("random_paths_by_elements")))

@@ -12,7 +12,7 @@ from studies.record.store import Store
 from studies.stability import family as columns
 from studies.stability import maps
 from studies.stability.family import OUTCOMES, Found, counted, judged
-from studies.stability.summary import lines
+from studies.stability.maps import lines
 
 
 def raising(error):
@@ -43,7 +43,7 @@ def raising(error):
 def test_every_ending_has_its_outcome(attempt, outcome):
     """An answer is right, refused, wrong or bad input; a refusal must leave a good state."""
     verdict = judged(attempt, 0.05)
-    assert verdict.outcome == outcome
+    assert verdict["outcome"] == outcome
     assert outcome in OUTCOMES
 
 
@@ -82,7 +82,7 @@ def test_summary_reads_the_stored_counts(tmp_path):
     store.save_tables(
         "stability/geometry",
         {"counts": counted(pd.DataFrame(rows))},
-        module="studies.stability.statics.geometry",
+        module="studies.stability.geometry",
         cases=("cross_axis_pivot",),
         command="test",
         elapsed=0.0,

@@ -15,7 +15,7 @@ from studies.commands import advise as command
 from studies.errors import BadInput
 from studies.work_precision import advice, series
 from studies.work_precision.equal_error import cheapest, coarsest, kept
-from studies.work_precision.paths import WORK, Member, of_baseline, path_errors, unsolved
+from studies.work_precision.members import WORK, Member, of_baseline, path_errors, unsolved
 
 CASE = str(FOLDER / "cross_axis_pivot.toml")
 

@@ -72,8 +72,8 @@ def test_a_hinge_at_the_crossing_has_no_centre_shift():
         axis=-1,
     )
     moved = np.outer(rotation, [0.002, -0.001])
-    assert centre_shift(TABLE_1, rotation, crossing + turned) == pytest.approx(0.0, abs=1e-16)
-    assert centre_shift(TABLE_1, rotation, crossing + turned + moved) == pytest.approx(moved, abs=1e-16)
+    assert centre_shift(crossing, rotation, crossing + turned) == pytest.approx(0.0, abs=1e-16)
+    assert centre_shift(crossing, rotation, crossing + turned + moved) == pytest.approx(moved, abs=1e-16)
 
 
 def test_extreme_fibre_strain_is_the_larger_of_the_two_fibres():

@@ -18,9 +18,9 @@ from studies.cases.design import named_design
 from studies.cases.effects import Effects
 from studies.cases.problem import FOLDER, named_case
 from studies.effects import audit as module
-from studies.effects import outcome
+from studies.effects import scenes
 from studies.effects.beyond import prices
-from studies.effects.variants import Variant, full_scene, size_of, without
+from studies.effects.scenes import Variant, full_scene, size_of, without
 from studies.record.store import Store
 
 TABLE_1 = FOLDER / "cross_axis_pivot.toml"
@@ -45,9 +45,11 @@ def audited(tmp_path_factory):
 
     path = tmp_path_factory.mktemp("audit") / "audit.json"
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(outcome, "SWINGS", 1.5)
-        for name in ("answer_path", "answer_release"):
-            patch.setattr(outcome, name, counted(getattr(outcome, name)))
+        patch.setattr(scenes, "SWINGS", 1.5)
+        for name in ("answer_static", "answer_release"):
+            by_work = counted(getattr(scenes, name))
+            for where in (scenes, module):
+                patch.setattr(where, name, by_work)
         assert main(["audit", str(TABLE_1), "--tolerance", str(TOLERANCE), "--json", str(path)]) == 0
     return json.loads(path.read_text(encoding="utf-8"))
 
@@ -142,7 +144,7 @@ def test_leaving_out_an_effect():
 @pytest.mark.slow
 def test_audit_of_a_mechanism_without_a_drive(command, monkeypatch):
     """A guide that follows its load has no torque and no swing, and is judged by path and first mode."""
-    monkeypatch.setattr(outcome, "SWINGS", 0.5)
+    monkeypatch.setattr(scenes, "SWINGS", 0.5)
     monkeypatch.setattr(module, "ROUNDS", 1)
     monkeypatch.setattr(module, "DUELS", 1)
     case = FOLDER / "parallel_strip_guide.toml"
@@ -156,7 +158,7 @@ def test_audit_of_a_mechanism_without_a_drive(command, monkeypatch):
 
 def test_audit_reads_well(command, monkeypatch):
     """Without --json: a line a scene, and the cheapest with what it was verified by."""
-    monkeypatch.setattr(outcome, "SWINGS", 0.2)
+    monkeypatch.setattr(scenes, "SWINGS", 0.2)
     monkeypatch.setattr(module, "ROUNDS", 1)
     monkeypatch.setattr(module, "DUELS", 1)
     out = command("audit", TABLE_1, "--tolerance", "1e-2", "--control-points", 4).out
@@ -241,7 +243,7 @@ def test_stored_worth_says_where_effects_matter():
 
 def test_weight_that_makes_a_design_unstable_is_a_finding(monkeypatch):
     """The polymer pivot, which its weight would tip over, is audited without it, and a row says why."""
-    monkeypatch.setattr(outcome, "SWINGS", 0.05)
+    monkeypatch.setattr(scenes, "SWINGS", 0.05)
     monkeypatch.setattr(module, "ROUNDS", 1)
     monkeypatch.setattr(module, "DUELS", 1)
     found = module.audit(named_design("polymer_pivot"), SplineSettings(control_points=6), 1e-3)
@@ -256,7 +258,7 @@ def test_weight_that_makes_a_design_unstable_is_a_finding(monkeypatch):
 @pytest.mark.parametrize("name", sorted(path.stem for path in FOLDER.glob("*.toml")))
 def test_every_shipped_case_can_be_audited(name, monkeypatch, capsys):
     """None of the cases that come with the suite is refused."""
-    monkeypatch.setattr(outcome, "SWINGS", 0.2)
+    monkeypatch.setattr(scenes, "SWINGS", 0.2)
     assert main(["audit", str(FOLDER / f"{name}.toml")]) == 0
     assert "cheape" in capsys.readouterr().out
 

@@ -8,9 +8,8 @@ import pytest
 from studies.answers.settings import SplineSettings
 from studies.cases.effects import Effects
 from studies.cases.problem import named_case
-from studies.effects import audit, outcome
-from studies.effects.outcome import Answer, Outcome, Run
-from studies.effects.variants import Size, Variant
+from studies.effects import audit, scenes
+from studies.effects.scenes import Answer, Outcome, Run, Size, Variant
 
 TOLERANCE = 1e-3
 WITHIN = {"trajectory": 1e-4, "torque": 1e-4, "swing": 1e-4, "mode": 1e-4, "loss": 1e-4}
@@ -55,13 +54,13 @@ CHANGED = {
 def test_every_change_is_measured(change, monkeypatch):
     """Requirement: a scene whose answer differs in one thing by a tenth has that change and no other."""
     given = {each.name: getattr(ANSWER, each.name) for each in fields(Answer)}
-    monkeypatch.setattr(outcome, "answered", lambda *_: Answer(**(given | CHANGED[change])))
-    monkeypatch.setattr(outcome, "size_of", lambda *_: SIZE)
+    monkeypatch.setattr(scenes, "answered", lambda *_: Answer(**(given | CHANGED[change])))
+    monkeypatch.setattr(scenes, "size_of", lambda *_: SIZE)
     design, run = (
         named_case("cross_axis_pivot"),
         Run(settings=SplineSettings(control_points=6), duration=1.0, step=1.0),
     )
-    found = outcome.outcome(Variant(dropped=(), effects=design.effects), design, run, ANSWER)
+    found = scenes.outcome(Variant(dropped=(), effects=design.effects), design, run, ANSWER)
     assert {name: getattr(found, name) for name in CHANGED} == pytest.approx(
         {name: 0.1 if name == change else 0.0 for name in CHANGED}
     )

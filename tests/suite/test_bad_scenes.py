@@ -95,11 +95,6 @@ BAD_SCENES = {
         '"gravty"]',
         "scene.effects: got gravty, expected gravity (the nearest name)",
     ),
-    "shear": (
-        '"gravity"]',
-        '"gravity", "shear"]',
-        "scene.effects: got shear, expected --model fe-shear in its place: sections of a spline's strip stay",
-    ),
     "effects no list": (
         'effects = ["bending"',
         'effects = "bending" #',

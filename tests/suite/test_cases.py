@@ -10,10 +10,8 @@ import pytest
 
 from studies.cases import page
 from studies.cases.design import named_design, read_design
-from studies.cases.effect_keys import EFFECTS
-from studies.cases.effect_keys import KEYS as EFFECT_KEYS
 from studies.cases.effects import Effects
-from studies.cases.keys import OWN
+from studies.cases.keys import EFFECT_KEYS, EFFECTS, OWN
 from studies.cases.materials import MATERIALS
 from studies.cases.mechanism import Mechanism
 from studies.cases.problem import FOLDER, CaseError, Problem, read_case

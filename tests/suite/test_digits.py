@@ -1,12 +1,14 @@
-"""What a digit costs: the tables of docs/findings.md."""
+"""What accuracy costs: the tables of docs/findings.md."""
 
 import math
+from types import SimpleNamespace
+from typing import Any
 
 import pandas as pd
 import pytest
 
 from studies.commands import readme
-from studies.commands.tables import DYNAMICS, STATICS, digits
+from studies.commands.readme import DYNAMICS, STATICS, digits
 from studies.errors import BadInput
 from studies.work_precision import series
 
@@ -27,7 +29,9 @@ def test_tables_of_digits():
         ]
     )
     dynamics = found([(0.1, "exudyn ancf", "4 elements", math.nan, math.nan)])
-    lines = "\n".join(digits(statics, dynamics)).splitlines()
+    tables = {"work_precision/statics": statics, "work_precision/dynamics": dynamics}
+    store: Any = SimpleNamespace(load_tables=lambda study: {"digits_of_time": tables[study]})
+    lines = "\n".join(digits(store)).splitlines()
     assert lines == [
         "| error of path and torque, 0 to 90° | spline | finite elements |",
         "|---|---|---|",

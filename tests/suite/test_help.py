@@ -22,6 +22,7 @@ PARSED = {
     "run paper": "takes minutes, and `make results` runs it",
     "interactive": "serves until it is stopped; tests/interactive runs it",
     "sweep DESIGNS.toml --out designs --scheduler": "needs a cluster; tests/sweep/test_cluster.py has one",
+    "calibrate": "needs a camera; tests/interactive gives it a film",
     "compile": "removes the kernels that other tests run at the same time; `make setup` runs it",
     "readme": "rewrites README.md; tests/suite/test_digits.py and others call it on a copy",
 }

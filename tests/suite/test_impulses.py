@@ -6,7 +6,7 @@ import pytest
 from spline_model.modes import natural_frequencies
 from spline_model.sequential_impulse import solve_impulses, stability_limit
 from studies.answers.motion import motion
-from studies.impulses.step_tables import GROUPS, designs, pivot
+from studies.convergence.impulse_tables import GROUPS, designs, pivot
 
 
 def test_a_motion_by_impulses_is_a_neutral_answer():
@@ -17,7 +17,6 @@ def test_a_motion_by_impulses_is_a_neutral_answer():
         model="spline",
         settings={},
         effects=run.effects,
-        bodies=run.bodies,
         body=run.body,
         wall_s=0.0,
         solve_s=0.0,

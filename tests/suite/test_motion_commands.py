@@ -6,7 +6,7 @@ import math
 import numpy as np
 import pytest
 
-from studies.answers import moving
+from studies.answers import adapters
 
 MODELS = ("spline", "fe", "fe-shear")
 ARRAYS = {"time_s", "rotation_rad", "com_x_m", "com_y_m", "kinetic_J", "strain_J", "constraint_residual"}
@@ -122,14 +122,14 @@ def test_modes_beyond_those_that_there_are_told(case, command):
 def test_release_is_timed_without_its_static_path(case, command, monkeypatch):
     """R releases are timed after a warm-up, and R that end at the first record are taken off."""
     asked = []
-    genuine = moving.measure
+    genuine = adapters.measure
 
     def counted(work, *, repeat, warm_up, **part):
         timing = genuine(work, repeat=repeat, warm_up=warm_up, **part)
         asked.append((repeat, warm_up, round(timing.median, 9), float(timing.result.time[-1])))
         return timing
 
-    monkeypatch.setattr(moving, "measure", counted)
+    monkeypatch.setattr(adapters, "measure", counted)
     words = ["release", case(), "--model", "spline", *COARSE["spline"], "--duration", 0.01, "--json", "-"]
     answer = json.loads(command(*words, "--repeat", 3).out)
     (whole, brief) = asked

@@ -13,14 +13,13 @@ import fe_reference
 import spline_model
 import studies
 from studies.__main__ import main
-from studies.answers.adapters import answer_modes, answer_path, answer_release
+from studies.answers.adapters import answer_modes, answer_release, answer_static
+from studies.answers.fields import fields_of, own_fields
 from studies.answers.settings import FeSettings, SplineSettings
 from studies.cases.design import named_design
 from studies.errors import BadInput
-from studies.exchange.solutions import fields_of, own_fields
 from studies.pictures.charts import APART, WITHIN, apart
-from studies.pictures.contents import turning
-from studies.pictures.page import picture
+from studies.pictures.page import picture, turning
 from studies.pictures.shown import Shown
 from studies.record import style
 from tests.table_one import SIX, TABLE_ONE
@@ -48,7 +47,7 @@ def shown(kind):
     elif kind.startswith("modes"):
         answer = answer_modes(design, settings, count=3)
     else:
-        answer = answer_path(design, settings)
+        answer = answer_static(design, settings)
     return Shown(name=kind, fields=fields_of(answer, design), yield_strength=1.1e9), answer
 
 
@@ -193,7 +192,7 @@ def test_compare_tells_what_the_answers_tell(tmp_path, capsys):
     assert main([*words, "--json", "-"]) == 0
     first, second = json.loads(capsys.readouterr().out)["designs"]
     design = replace(named_design(PIVOT), rotation=math.radians(10))
-    answer, spectrum = answer_path(design, SPLINE), answer_modes(design, SPLINE, count=1)
+    answer, spectrum = answer_static(design, SPLINE), answer_modes(design, SPLINE, count=1)
     assert first["torque_Nm"] == answer.torque[-1]
     assert first["max_stress_Pa"] == pytest.approx(answer.max_stress.max())
     assert first["largest_centre_shift_m"] == pytest.approx(np.hypot(*answer.centre_shift.T).max())

@@ -161,13 +161,13 @@ def test_heading_names_the_effects(model, command, tmp_path):
 
 def test_critical_points_of_a_pivot_have_their_angle(case, command, monkeypatch):
     """Of a pivot the line of a critical point has degrees, and the message stands beside it."""
-    genuine = solve.answer_path
+    genuine = solve.answer_static
 
     def passing(*arguments, **keywords):
         point = Critical(kind="limit point", load_factor=0.5, rotation=math.radians(15))
         answer = genuine(*arguments, **keywords)
         return dataclasses.replace(answer, message="the torque has a limit", critical_points=(point,))
 
-    monkeypatch.setattr(solve, "answer_path", passing)
+    monkeypatch.setattr(solve, "answer_static", passing)
     out = command("solve", case(), "--model", "fe", "--rotation-deg", 30, "--increments", 1).out
     assert out.splitlines()[-3:-1] == ["the torque has a limit", "limit point: load factor 0.5, 15 deg"]

@@ -16,7 +16,7 @@ from studies.record import provenance, style
 from studies.record.source import ROOT
 from studies.record.store import Store, as_csv, as_json, same
 from studies.registry import STUDIES, study_of
-from studies.stability.family import DIGITS
+from studies.stability.family import DEFAULT, DIGITS
 
 
 @pytest.mark.parametrize("name", STUDIES)
@@ -96,6 +96,16 @@ def test_pages_agree_with_the_results(page):
     for name in readme.BLOCKS[page]:
         begin, end = readme.marks(name)
         assert text.index(begin) < text.index("|---|", text.index(begin)) < text.index(end)
+
+
+def test_no_outcome_of_a_hard_case_is_a_slip_of_the_code():
+    """A wrong outcome is an answer, never an exception of Python; and the default has none, as is said."""
+    said = (ROOT / "docs" / "findings.md").read_text(encoding="utf-8")
+    for study in (each for each in STUDIES if each.startswith("stability/")):
+        outcomes = Store().load_tables(study)["outcomes"]
+        assert not outcomes["reason"].astype(str).str.contains(r"^\w*Error: ").any(), study
+        wrong = outcomes[(outcomes["model"] == DEFAULT) & (outcomes["outcome"] == "wrong")]
+        assert ("The default is nowhere wrong" in said) and wrong.empty, study
 
 
 def test_pages_are_not_written_without_results_or_marks(tmp_path, monkeypatch):

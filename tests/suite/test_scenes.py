@@ -7,8 +7,8 @@ import pytest
 
 from spline_model.effects import registry
 from studies.cases.design import named_design
-from studies.cases.effect_keys import KEYS
 from studies.cases.effects import DEFAULT, MOTION_ONLY
+from studies.cases.keys import EFFECT_KEYS as KEYS
 from studies.cases.mechanism import Mechanism
 from studies.cases.problem import FOLDER, Problem
 from tests import gates

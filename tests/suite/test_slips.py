@@ -2,6 +2,7 @@
 
 import ast
 import random
+from functools import cache
 
 import pytest
 
@@ -12,6 +13,7 @@ SLIPS = mutate.slips()
 TRIED = random.Random(len(SLIPS)).sample([slip for slip in SLIPS if slip.caught_by], 4)
 
 
+@cache
 def functions(path):
     """Names of the test functions of a file."""
     return {each.name for each in ast.walk(ast.parse(path.read_text())) if isinstance(each, ast.FunctionDef)}

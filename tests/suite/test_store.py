@@ -178,3 +178,13 @@ def test_figures_are_as_wide_as_the_page():
     """No figure is wider than the text of a page, so that its letters are printed as large as drawn."""
     assert style.page(9.5, 4.0).get_figwidth() == pytest.approx(style.PAGE_WIDTH)
     assert style.page(4.0, 2.0).get_figwidth() == 4.0
+
+
+def test_axes_write_their_units_in_one_way():
+    """Degrees are written by their sign and a pure number without a unit, whatever a figure calls them."""
+    with style.applied():
+        figure = style.page(4.0, 2.0)
+        panel = figure.subplots()
+        panel.set(xlabel="rotation [deg]", ylabel="error of the path / travel [1]")
+        style.vector(figure)
+    assert (panel.get_xlabel(), panel.get_ylabel()) == ("rotation [°]", "error of the path / travel")

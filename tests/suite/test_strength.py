@@ -9,8 +9,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from studies.answers.adapters import answer_path
-from studies.answers.differences import differences
+from studies.answers.adapters import answer_static
+from studies.answers.metrics import differences
 from studies.answers.settings import FeSettings, SplineSettings
 from studies.answers.strength import strength
 from studies.cases.design import named_design
@@ -28,23 +28,23 @@ def yielding(limit):
 def test_the_range_ends_where_the_stress_is_that_of_yield():
     """Requirement: a path to the rotation from which on the material yields ends at its yield strength."""
     design = yielding(YIELD)
-    found = strength(design, answer_path(design, SIX))
+    found = strength(design, answer_static(design, SIX))
     assert found.safety == pytest.approx(YIELD / found.stress)
-    there = answer_path(replace(TABLE_1, rotation=found.yields[1]), SIX)
+    there = answer_static(replace(TABLE_1, rotation=found.yields[1]), SIX)
     assert there.max_stress[-1] == pytest.approx(YIELD, rel=2e-3)
 
 
 def test_a_design_that_bears_its_path_has_no_end_of_range():
     """Requirement: below the yield strength all along there is a safety above one and no such angle."""
     design = yielding(1e12)
-    found = strength(design, answer_path(design, SIX))
+    found = strength(design, answer_static(design, SIX))
     assert (found.yields, found.safety > 1.0) == (None, True)
     assert found.yield_strength == 1e12
 
 
 def test_without_a_yield_strength_there_is_the_stress_alone():
     """Requirement: what is largest has its strip, its place in words, and its state."""
-    found = strength(TABLE_1, answer_path(TABLE_1, SIX))
+    found = strength(TABLE_1, answer_static(TABLE_1, SIX))
     assert (found.strip, found.place, found.safety, found.yields) == ("strip_1", "at its root", None, None)
     assert math.degrees(found.rotation) == pytest.approx(90.0)
 
@@ -62,7 +62,7 @@ def test_stress_of_a_strip_bent_by_a_moment(settings, command):
     design = named_design("cantilever_with_body")
     effects = replace(design.effects, names=("bending", "stretching", "applied_moment"))
     effects = replace(effects, tables={"applied_moment": {"moment": 0.1}})
-    answer = answer_path(replace(design, rotation=None, effects=effects, increments=2), settings)
+    answer = answer_static(replace(design, rotation=None, effects=effects, increments=2), settings)
     (strip,) = design.strips
     modulus = math.sqrt(strip.area * strip.second_moment_of_area / 3.0)
     assert answer.max_stress[-1] == pytest.approx(0.1 / modulus, rel=1e-5)
@@ -83,7 +83,7 @@ def test_several_models_are_answered_with_their_differences(case, command):
 def test_what_does_not_differ_from_nothing_is_left_out():
     """Requirement: quantities that are zero in both are not compared, and an answer is as itself."""
     design = replace(named_design("parallel_strip_guide"), increments=2)
-    answer = answer_path(design, SIX)
+    answer = answer_static(design, SIX)
     found = differences(answer, answer)
     assert found["path"] == 0.0
     assert found["torque"] is None or found["torque"] == 0.0

@@ -4,8 +4,7 @@ import pandas as pd
 import pytest
 
 from studies.engine.answer import Kept, answered, processes
-from studies.engine.findings import Claim, Finding
-from studies.engine.study import Part, Study
+from studies.engine.study import Claim, Finding, Part, Study
 
 ASKED: list[int] = []
 

@@ -14,11 +14,11 @@ from spline_model.motion.arrays import Flexures
 from spline_model.motion.grid import Grid, grid_of
 from spline_model.motion.mechanism import moving
 from spline_model.motion.start import set_in_motion
-from spline_model.newton import Workspace
+from spline_model.newton import LEAST_SIZE, Workspace
 from spline_model.path import follow
 from spline_model.pivot import cross_axis_pivot, swinging_slide_stiffness
+from spline_model.reduced import beside
 from spline_model.reduced.model import reduced
-from spline_model.sparse import LEAST_SIZE
 from spline_model.strip import condense as strip_condense
 from spline_model.strip import points
 from spline_model.strip.element import POINTS
@@ -49,6 +49,9 @@ def test_operations_of_the_condensed_spline(monkeypatch, n):
         if hasattr(called, "py_func"):
             monkeypatch.setattr(points, name, called.py_func)
     monkeypatch.setattr(points, "math", SimpleNamespace(sqrt=lambda value: value.sqrt()))
+    for name in ("add_slopes", "curve_at", "four"):
+        monkeypatch.setattr(beside, name, getattr(points, name))
+    monkeypatch.setattr(beside, "_product_at", beside._product_at.py_func)
     monkeypatch.setattr(strip_condense, "eliminate", strip_condense.eliminate.py_func)
     modes, own = strips.compliance.shape[1], 2 * n - 6
     curve = np.column_stack((np.linspace(0.0, 1.0, n), 0.01 * np.sin(np.arange(n))))
@@ -68,6 +71,14 @@ def test_operations_of_the_condensed_spline(monkeypatch, n):
     b = counting(np.ones((modes, size)))
     condense = (strip_condense.condense.py_func, own, size, gain, g, h, b, gap)
     assert operations(*condense) == work.condensation_flops(own, modes)
+    count = len(shape.rule[0]), n, modes
+    strip = 0, ones, n, shape, strips._replace(**counted), local
+    along, covector = counting(np.ones(2 * n)), counting(np.zeros(2 * n))
+    product = beside._add_product.py_func, 0, ones, along, *strip[3:], covector
+    confirmed = operations(points.evaluate_residual, *strip, out) + operations(*product)
+    assert confirmed == work.confirmation_flops(*count)
+    forward = beside._forward.py_func, own, own, size, 0, 0, gain, h, b, gap, g
+    assert operations(*forward) == work.forward_flops(own, modes)
     change = (counting(np.zeros(k)) for k in (3, own, modes))
     recover = (strip_condense.recover.py_func, own, size, Counted(1.0), 0, 0, gain, g, h, b, gap, *change)
     assert operations(*recover) == work.recovery_flops(own, modes)
@@ -133,7 +144,7 @@ def test_operations_of_a_strip_in_motion(monkeypatch, n):
     slide = swinging_slide_stiffness(n)
     pivot = cross_axis_pivot(**TABLE_ONE, control_points=n, slide_stiffness=slide)
     system = compile_scene(pivot.released())
-    strips = moving(system, set_in_motion(system)).strips
+    strips = moving(set_in_motion(system)).strips
     for name in ("bending_law", "stretching_law"):
         monkeypatch.setattr(forces, name, getattr(forces, name).py_func)
     monkeypatch.setattr(forces, "math", SimpleNamespace(sqrt=lambda value: value.sqrt()))

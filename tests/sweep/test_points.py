@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from studies.answers.adapters import answer_mechanism, answer_modes, answer_release, answer_static
+from studies.answers.adapters import answer_modes, answer_release, answer_static
 from studies.answers.settings import FeSettings, SplineSettings
 from studies.cases.design import named_design
 from studies.cases.problem import named_case
@@ -181,7 +181,7 @@ def test_a_mechanism_is_swept_by_its_parts():
         for strip in design.strips
     )
     turned = replace(design, strips=strips, rotation=math.radians(5), increments=2)
-    answer = answer_mechanism(turned, SplineSettings(control_points=6))
+    answer = answer_static(turned, SplineSettings(control_points=6))
     assert found["torque_Nm"][2] == answer.torque[-1]
     assert found["rocker_rotation_rad"][2] == answer.bodies["rocker"][-1, 2]
     assert found["coupler_y_m"][3] - found["coupler_y_m"][2] == pytest.approx(0.02, rel=0.2)

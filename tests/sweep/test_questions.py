@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from studies.record import extras
+from studies.engine import study
 from studies.record.source import ROOT
 from studies.sweep import throughput
 from studies.sweep.design_space import SPACE, WITTRICK, rounded
@@ -55,7 +55,7 @@ def test_cost_of_a_chunk_is_the_slope():
 
 def test_throughput_is_left_out_without_the_cluster(monkeypatch):
     """Requirement: without Dask the study says what is missing instead of failing."""
-    monkeypatch.setattr(extras.importlib.util, "find_spec", lambda name: name)
+    monkeypatch.setattr(study.importlib.util, "find_spec", lambda name: name)
     assert throughput.missing() == ""
-    monkeypatch.setattr(extras.importlib.util, "find_spec", lambda name: None)
+    monkeypatch.setattr(study.importlib.util, "find_spec", lambda name: None)
     assert throughput.missing() == "it needs distributed: python -m pip install '.[cluster]'"

@@ -1,1 +1,0 @@
-"""Studies that hold the baselines against the spline."""

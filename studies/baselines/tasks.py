@@ -1,0 +1,180 @@
+"""Path and swing of the spline and of other codes: errors against the limit of each theory, and times."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from scipy.interpolate import CubicSpline
+
+from studies.answers.adapters import answer_release, answer_static
+from studies.answers.metrics import relative_error, trajectory_error
+from studies.answers.reference import MESHES, RECORDS, limit_of, limit_of_swings, sampled
+from studies.answers.settings import FeSettings, SplineSettings
+from studies.baselines import openseespy_frame
+from studies.baselines.answer import Followed
+from studies.baselines.exudyn_strips import exudyn_ancf, exudyn_exact
+from studies.baselines.own import spline
+from studies.baselines.variants import (
+    WITH_SHEAR,
+    WITHOUT_SHEAR,
+    Variant,
+    release_variants,
+    static_variants,
+    tried,
+)
+from studies.cases.problem import Problem
+from studies.kinds import Array
+from studies.paper import formulations
+
+Rows = list[dict[str, Any]]
+
+#: Control points of the limit without shear, and those whose difference is its uncertainty.
+REFINED, CHECK = 14, 12
+#: Finest settings of the other codes, for the limits that they tend to by themselves.
+FINEST: dict[Any, dict[str, Any]] = {
+    exudyn_ancf: {"elements": 64, "relative_tolerance": 1e-9},
+    exudyn_exact: {"elements": 64, "relative_tolerance": 1e-10},
+    openseespy_frame: {"elements": 320, "tolerance": 1e-14},
+}
+#: Timed solves of a path in a pass.
+REPEAT = 5
+
+PATH_ERRORS = ("trajectory", "torque", "torque_at_end", "worst", "fineness")
+WORK = ("unknowns", "newton_iterations", "factorisations")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Limit:
+    """What a path is held against: centre (S, 2) [m] and torque (S,) [N m]."""
+
+    centre: Array
+    torque: Array
+
+    def errors(self, centre: Array, torque: Array) -> dict[str, float]:
+        """Return the largest errors over the path, the torque's at its end, and the worst of both."""
+        trajectory = float(trajectory_error(centre, self.centre).max())
+        by_state = np.abs(relative_error(torque[1:], self.torque[1:]))  # at rest there is none
+        return {
+            "trajectory": trajectory,
+            "torque": float(by_state.max()),
+            "torque_at_end": float(by_state[-1]),
+            "worst": max(trajectory, float(by_state.max())),
+        }
+
+
+def _rotations(problem: Problem) -> Array:
+    """Return the states of the case's path [rad]."""
+    return np.linspace(0.0, problem.rotation, problem.increments + 1)
+
+
+def path_limits(problem: Problem) -> tuple[dict[str, Limit], Rows]:
+    """Return the limit of either theory, and rows of how certain they are and how far they are apart.
+
+    Without shear it is a refined spline; with shear that of this repository's Reissner elements.
+    """
+    turns = _rotations(problem)
+    refined = spline.static_path(problem, turns, control_points=REFINED)
+    check = spline.static_path(problem, turns, control_points=CHECK)
+    reissner = limit_of([answer_static(problem, FeSettings(elements=n, element="reissner")) for n in MESHES])
+    found = {
+        WITHOUT_SHEAR: Limit(centre=refined.centre, torque=refined.torque),
+        WITH_SHEAR: Limit(centre=reissner.centre, torque=reissner.torque),
+    }
+    unsure = {name: reissner.uncertainty[name] for name in ("trajectory", "torque")}
+    apart = found[WITH_SHEAR].errors(refined.centre, refined.torque)
+    rows = [
+        _row("uncertainty", WITHOUT_SHEAR, found[WITHOUT_SHEAR].errors(check.centre, check.torque)),
+        _row("uncertainty", WITH_SHEAR, unsure),
+        _row("difference of the theories", "", apart),
+    ]
+    for module, settings in FINEST.items():
+        if not module.installed():
+            continue
+        theory = WITH_SHEAR if module is exudyn_exact else WITHOUT_SHEAR
+        path = module.static_path(problem, turns, **settings)
+        away = found[theory].errors(path.centre, path.torque)
+        rows.append(_row(f"{module.model}, {settings['elements']} elements", theory, away))
+    return found, rows
+
+
+def compared_paths(problem: Problem, against: dict[str, Limit]) -> tuple[Rows, Rows]:
+    """Return errors and work, and times, a row a variant."""
+    turns = _rotations(problem)
+
+    def solve(variant: Variant) -> tuple[dict[str, Any], Followed]:
+        path = variant.module.static_path(problem, turns, **variant.settings)
+        work = {name: path.work.get(name, np.nan) for name in WORK}
+        found = against[variant.theory].errors(path.centre, path.torque)
+        counts = (variant.settings.get(name) for name in ("elements", "control_points"))
+        fineness = next((float(count) for count in counts if count), np.nan)  # a closed form has none
+        return found | {"fineness": fineness} | work, path
+
+    return tried(static_variants(), solve, PATH_ERRORS, judged="worst", repeat=REPEAT)
+
+
+def _row(what: str, theory: str, errors: dict[str, float]) -> dict[str, Any]:
+    return {"what": what, "theory": theory} | {name: errors[name] for name in ("trajectory", "torque")}
+
+
+#: The same of the swing.
+SWING_REFINED, SWING_CHECK = 10, 8
+#: Meshes of the limit with shear, a third apart: linear elements, whose waves need finer ones.
+SHEAR_MESHES = (36, 54, 81, 121)
+#: What the other codes' rods with shear have beside it.
+ROTARY = "section_rotary_inertia"
+SWING_ERRORS = ("rotation_rad", "uncertainty_rad", "step_s", "fineness")
+
+
+def swing_limits(problem: Problem) -> tuple[dict[str, Array], Rows]:
+    """Return the rotation of either theory at the common instants, with rows of how certain they are."""
+    refined, check = (
+        sampled(formulations.resolved(SplineSettings(control_points=n)), formulations.INSTANTS).rotation
+        for n in (SWING_REFINED, SWING_CHECK)
+    )
+    with_rotary = replace(problem, effects=problem.effects.renamed([*problem.effects.names, ROTARY]))
+    reissner = limit_of_swings(
+        [
+            answer_release(
+                with_rotary,
+                FeSettings(elements=n, element="reissner"),
+                duration=formulations.DURATION,
+                records=RECORDS,
+            )
+            for n in SHEAR_MESHES
+        ],
+        formulations.INSTANTS,
+    )
+    rows = [
+        _swing_row("uncertainty", WITHOUT_SHEAR, float(np.abs(check - refined).max())),
+        _swing_row("uncertainty", WITH_SHEAR, float(reissner.uncertainty.max())),
+        _swing_row("difference of the theories", "", float(np.abs(reissner.swing.rotation - refined).max())),
+    ]
+    return {WITHOUT_SHEAR: refined, WITH_SHEAR: reissner.swing.rotation}, rows
+
+
+def compared_swings(
+    problem: Problem, against: dict[str, Array], uncertainty: Mapping[str, float]
+) -> tuple[Rows, Rows]:
+    """Return errors with the uncertainty of their limit and work, and times, a row a variant."""
+
+    def solve(variant: Variant) -> tuple[dict[str, Any], Followed]:
+        motion = variant.module.release(
+            problem,
+            start=problem.rotation,
+            duration=formulations.DURATION,
+            **variant.settings,
+        )
+        unsure = float(uncertainty[variant.theory])
+        work = {name: motion.work.get(name, np.nan) for name in ("steps", "newton_iterations")}
+        rotation = CubicSpline(motion.time, motion.rotation)(formulations.INSTANTS)
+        apart = float(np.abs(rotation - against[variant.theory]).max())
+        step = variant.settings["step"]
+        errors = {"rotation_rad": apart, "uncertainty_rad": unsure, "step_s": step, "fineness": -step}
+        return errors | work, motion
+
+    return tried(release_variants(), solve, SWING_ERRORS, judged="rotation_rad", repeat=1)
+
+
+def _swing_row(what: str, theory: str, error: float) -> dict[str, Any]:
+    return {"what": what, "theory": theory, "rotation_rad": error}

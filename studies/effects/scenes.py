@@ -1,0 +1,298 @@
+"""The scenes that an audit compares: effects, sizes, answers, and how far these are from the full one's."""
+
+import math
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
+from typing import TypeVar
+
+import numpy as np
+
+from spline_model.compile import compile_scene
+from spline_model.dynamics import highest_frequency
+from spline_model.mechanism import Mechanism
+from spline_model.modes import linear_modes, static_state
+from spline_model.motion.explicit import stability_limit
+from spline_model.motion.start import set_in_motion
+from studies.answers.adapters import answer_modes, answer_release, answer_static, spline_mechanism
+from studies.answers.models import model_of, refusals
+from studies.answers.motion import Motion, Spectrum
+from studies.answers.response import Response
+from studies.answers.settings import SplineSettings
+from studies.cases.design import Design
+from studies.cases.effects import Effects
+from studies.cases.mechanism import Mechanism as MechanismData
+from studies.cases.problem import Problem
+from studies.errors import BadInput
+from studies.kinds import Array
+
+#: Effects that a scene may do without but that could matter, with what they need beside them.
+BESIDE = {"section_rotary_inertia": "strip_inertia", "gravity": "bending"}
+#: Effects that cannot be left out for nothing, with their simpler form.
+SIMPLER = {"stretching": "inextensible"}
+#: What goes with an effect when it goes.
+TOGETHER = {"strip_inertia": ("section_rotary_inertia",)}
+#: What a scene without an effect is called.
+CALLED = {"stretching": "inextensible strips", "strip_inertia": "massless strips"}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Variant:
+    """A scene in place of the full one.
+
+    Attributes:
+        dropped: effects of the full scene that were left out or simplified.
+        added: those that were put in though the full scene could not have them.
+        effects: of the scene.
+    """
+
+    dropped: tuple[str, ...]
+    effects: Effects
+    added: tuple[str, ...] = ()
+
+    @property
+    def label(self) -> str:
+        """What was changed, in words."""
+        words = [f"with {name.replace('_', ' ')}" for name in self.added]
+        words += [CALLED.get(name, f"no {name.replace('_', ' ')}") for name in self.dropped]
+        return ", ".join(words) or "full scene"
+
+
+def full_scene(effects: Effects, omitted: Iterable[str] = ()) -> Variant:
+    """Return the scene with what could matter beside its own effects, but for what is omitted."""
+    names = [*effects.names, *(name for name in beside(effects) if name not in omitted)]
+    return Variant(dropped=(), effects=effects.renamed(names))
+
+
+def beside(effects: Effects) -> list[str]:
+    """Return the effects that a scene does not have but that could matter."""
+    return [name for name, base in BESIDE.items() if name not in effects.names and base in effects.names]
+
+
+def without(full: Variant, dropped: Iterable[str]) -> Variant:
+    """Return the full scene without these effects, or with their simpler forms."""
+    chosen = tuple(dropped)
+    gone = {*chosen, *(other for name in chosen for other in TOGETHER.get(name, ()))}
+    names = [SIMPLER.get(name, "") if name in gone else name for name in full.effects.names]
+    return Variant(dropped=chosen, effects=full.effects.renamed([name for name in names if name]))
+
+
+@dataclass(frozen=True, kw_only=True)
+class Size:
+    """Size of a scene in motion.
+
+    Attributes:
+        unknowns: coordinates, axial forces and multipliers of a step's equations [1].
+        degrees_of_freedom: independent coordinates that have inertia [1].
+        highest_frequency: largest natural frequency at rest and at the start of the motion [Hz].
+        explicit_step: largest stable step of the explicit integrator there, 2.83 over that [s].
+    """
+
+    unknowns: int
+    degrees_of_freedom: int
+    highest_frequency: float
+    explicit_step: float
+
+
+def size_of(design: Design, settings: SplineSettings) -> Size:
+    """Return the size of the design's scene in motion, let go from the end of its path.
+
+    Raises:
+        BadInput: what the model refuses; one line. spline_model.errors.ConvergenceError: statics does not
+        reach the start.
+    """
+    mechanism: Mechanism = spline_mechanism(design, settings)
+    body = design.body if isinstance(design, MechanismData) else None
+    with refusals(model_of(settings), settings):
+        system = compile_scene(mechanism.released())
+        motion = set_in_motion(system)
+        start = static_state(mechanism.at_start(), design.rotation, body=body)[: system.layout.size]
+        highest = highest_frequency(motion, start)
+        modes = linear_modes(system, system.rest, motion.mass)[0]
+    return Size(
+        unknowns=system.layout.size,
+        degrees_of_freedom=len(modes),
+        highest_frequency=highest / (2.0 * math.pi),
+        explicit_step=stability_limit("explicit", motion) / highest,
+    )
+
+
+#: Duration of the motion and its steps, in swings of the first mode of the full scene. With so many steps the
+#: frequency of Table 1's swing is within 1e-4 of the limit.
+SWINGS, STEPS_A_SWING = 3.0, 240
+#: A scene whose first mode is off by more than this is not followed in motion: it is another machine.
+LOST = 1.0
+
+
+class Unanswered(RuntimeError):
+    """A scene that has no answer; the text says why."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Run:
+    """What all scenes of an audit are asked: a static path, then a motion of `duration` in steps of `step`
+    [s]."""
+
+    settings: SplineSettings
+    duration: float
+    step: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class Answer:
+    """What a scene says.
+
+    Attributes:
+        path: (S, 2) centres of all bodies along the static path, side by side [m]; torque: (S,) [N m].
+        mode: first natural frequency at rest [Hz].
+        swing: frequency of the swing after the release [Hz], NaN where none is driven or none is whole.
+        loss: energy dissipated in the motion over the largest kinetic and strain energy [1].
+        wall_s: of the static path and the motion [s]; NaN without a whole motion.
+        stopped: whether the motion stopped early; note: why there is no whole motion.
+    """
+
+    path: dict[str, Array]
+    torque: Array
+    mode: float
+    swing: float = math.nan
+    loss: float = math.nan
+    wall_s: float = math.nan
+    stopped: bool = False
+    note: str = ""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Outcome:
+    """A scene held against the full one.
+
+    Attributes:
+        variant: the scene. status: "converged", "refused", "not_converged" or "unstable"; reason: in a line,
+            also why there was no motion.
+        trajectory: largest distance of a body's centre along the static path over the largest travel [1].
+        torque: largest change along the path over the largest torque [1]; NaN where nothing is driven.
+        swing, mode: change of the frequencies [1]; loss: change of the energy lost [1].
+        size: None where the scene has no answer.
+        wall_s: time of static path and motion, the median where it was timed more than once [s].
+    """
+
+    variant: Variant
+    status: str = "converged"
+    reason: str = ""
+    trajectory: float = math.nan
+    torque: float = math.nan
+    swing: float = math.nan
+    mode: float = math.nan
+    loss: float = math.nan
+    size: Size | None = None
+    wall_s: float = math.nan
+
+    @property
+    def largest(self) -> float:
+        """The largest change of all [1]; infinite where the scene has no whole answer."""
+        if self.status != "converged":
+            return math.inf
+        changes = (self.trajectory, self.torque, self.swing, self.mode, self.loss)
+        return max((abs(each) for each in changes if not math.isnan(each)), default=math.inf)
+
+
+def run_of(design: Design, settings: SplineSettings) -> Run:
+    """Return the motion to ask of a design's scenes: some swings of its first mode.
+
+    Raises:
+        BadInput: what the model refuses. Unanswered: the design is not stable at rest.
+    """
+    modes = answer_modes(design, settings, count=1)
+    first = float(modes.frequency[0]) if modes.converged and len(modes.frequency) else math.nan
+    if not first > 0.0:
+        raise Unanswered(modes.message or f"the first natural frequency at rest is {first:.4g} Hz")
+    return Run(settings=settings, duration=SWINGS / first, step=1.0 / (STEPS_A_SWING * first))
+
+
+def answered(design: Design, run: Run, full: Answer | None = None) -> Answer:
+    """Return what the design's scene says; without a motion where its first mode is far from the full one's,
+    or where the motion stops early, which only the full scene's must not.
+
+    Raises:
+        BadInput: what the model refuses. Unanswered: a path that stopped early, and why.
+    """
+    static = reached(answer_static(design, run.settings))
+    mode = float(reached(answer_modes(design, run.settings, count=1)).frequency[0])
+    # as the body turns: a scene without loads has no states before
+    turned = slice(-design.increments - 1, None)
+    path = {name: each[turned] for name, each in static.centres.items()}
+    answer = Answer(path=path, torque=static.torque[turned], mode=mode)
+    if full is not None and abs(mode / full.mode - 1.0) > LOST:
+        return replace(answer, note="no motion: the first mode is another")
+    motion = answer_release(design, run.settings, duration=run.duration, step=run.step)
+    if full is not None and not motion.converged:
+        return replace(answer, stopped=True, note=f"motion: {motion.message}")
+    reached(motion)
+    driven = bool(design.rotation)
+    return replace(
+        answer,
+        swing=motion.frequency if driven else math.nan,
+        loss=_loss(motion),
+        wall_s=static.wall_s + motion.wall_s,
+    )
+
+
+def outcome(variant: Variant, design: Design, run: Run, full: Answer) -> Outcome:
+    """Return how far a scene is from the full one; a scene without an answer keeps its reason.
+
+    Args:
+        variant: the scene. design: with it. run: what is asked. full: answer of the full scene.
+    """
+    try:
+        answer = answered(design, run, full)
+        size = size_of(design, run.settings)
+    except BadInput as error:
+        return Outcome(variant=variant, status="refused", reason=str(error))
+    except Unanswered as error:
+        return Outcome(variant=variant, status="not_converged", reason=str(error))
+    torque = float(np.abs(full.torque).max())
+    change = float(np.abs(answer.torque - full.torque).max())
+    return Outcome(
+        variant=variant,
+        status="not_converged" if answer.stopped else "converged",
+        reason=answer.note,
+        trajectory=strayed(answer.path, full.path, _rest(design, full)),
+        torque=change / torque if torque > 0.0 else math.nan,
+        swing=answer.swing / full.swing - 1.0,
+        mode=answer.mode / full.mode - 1.0,
+        loss=answer.loss - full.loss,
+        size=size,
+        wall_s=answer.wall_s,
+    )
+
+
+Reached = TypeVar("Reached", Response, Spectrum, Motion)
+
+
+def reached(answer: Reached) -> Reached:
+    """Return the answer; Unanswered unless it is complete."""
+    if not answer.converged:
+        raise Unanswered(answer.message)
+    return answer
+
+
+def _rest(design: Design, full: Answer) -> dict[str, Array]:
+    """Return the centres before weight and drives act [m]; of a pivot before it turns, which hardly sags."""
+    if isinstance(design, Problem):
+        return {name: path[0] for name, path in full.path.items()}
+    return {body.name: np.array(body.centre) for body in design.bodies}
+
+
+def strayed(path: Mapping[str, Array], full: Mapping[str, Array], rest: Mapping[str, Array]) -> float:
+    """Return the largest distance of centres (S, 2) from those of the full scene, over the largest travel of
+    these from `rest` [1]; NaN where none moves."""
+
+    def farthest(paths: Mapping[str, Array], others: Mapping[str, Array]) -> float:
+        gaps = (float(np.linalg.norm(paths[name] - others[name], axis=1).max()) for name in full)
+        return max(gaps, default=0.0)
+
+    travel = farthest(full, rest)
+    return farthest(path, full) / travel if travel > 0.0 else math.nan
+
+
+def _loss(motion: Motion) -> float:
+    largest = float((motion.kinetic_energy + motion.strain_energy).max())
+    return float(motion.dissipated[-1]) / largest if largest > 0.0 else 0.0

@@ -1,0 +1,208 @@
+"""Compression and buckling: the column and the elastica, frames that snap through, the pivot pushed down.
+
+The spline follows the branch that crosses at a bifurcation. The elements do not: they are led onto it by a
+small side load, or by a tilt of the body that is let go. The forces as printed have no potential, so there is
+no stability to be asked of them. Beside the outcomes: load against deflection, critical points, and the
+branches of the pushed pivot.
+"""
+
+import math
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+from studies.engine.study import Part
+from studies.kinds import Array
+from studies.record.style import BLACK, BLUE, GREEN, GREY, PURPLE, RED, page
+from studies.stability import family, questions
+from studies.stability.frames import EULER, PUBLISHED, Arc, Frame, frame_of, load_ratio, tip
+
+ELASTICA, PRINT = "elastica", "published"
+DRAWN = (family.PAPER, family.DEFAULT, family.TWELVE, family.FE)
+PUSHED = (family.DEFAULT, family.EIGHT, family.TWELVE, family.FE)
+#: Turn of the tip of a column that is still straight [rad].
+STRAIGHT = 1e-6
+PRIMARY, OTHER = "primary", "other"
+#: Depths that only the figure has [m].
+BETWEEN = (3e-3, 7e-3, 1.5e-2)
+
+
+def _tables() -> dict[str, pd.DataFrame]:
+    """Return curves and critical points (a row a state) and branches (a row a depth, model and branch)."""
+    column = questions.post_buckling(max(PUBLISHED))
+    curves, critical = _elastica(), []
+    for part, case in {
+        questions.COLUMN: column,
+        questions.TOGGLE: _plain(column, frame_of("williams_toggle")),
+        questions.LEE: _plain(column, frame_of("lees_frame")),
+    }.items():
+        for model in DRAWN:
+            arc = questions.answer(case, (family.COLUMNS | family.FINER)[model])
+            curves += _states(part, model, case.frame, arc)
+            for point in arc.critical:
+                at = _at(part, case.frame, point.load, point.place)
+                critical.append({"part": part, "model": model, "kind": point.kind, **at})
+    branches = [
+        _branch(questions.pushed(depth), model, branch)
+        for depth in sorted({*questions.DEPTHS, *BETWEEN})
+        for model in PUSHED
+        for branch in (PRIMARY, OTHER)
+    ]
+    return {
+        "curves": pd.DataFrame(curves),
+        "critical": pd.DataFrame(critical),
+        "branches": pd.DataFrame(branches),
+    }
+
+
+def _plain(case: questions.BucklingCase, frame: Frame) -> questions.BucklingCase:
+    """Return the case of another frame, on its primary branch."""
+    return replace(case, frame=frame, bent=None, branch="primary")
+
+
+def _states(part: str, model: str, frame: Frame, arc: Arc) -> list[dict[str, Any]]:
+    """Return the states of a path, and where it leaves a column's straight branch: its corner."""
+    name = {"part": part, "model": model}
+    rows = [
+        {**name, "state": float(state), **_at(part, frame, float(arc.load[state]), place),
+         "unstable_directions": int(arc.inertia[state])}
+        for state, place in enumerate(arc.place)
+    ]  # fmt: skip
+    for point in arc.critical:
+        if part == questions.COLUMN and point.kind == questions.BIFURCATION:
+            last = int(np.argmax(np.abs(arc.place[:, 2]) > STRAIGHT)) - 0.5
+            corner = _at(part, frame, point.load, point.place)
+            rows.append({**name, "state": last, **corner, "unstable_directions": 0})
+    return rows
+
+
+def _at(part: str, frame: Frame, load: float, place: Array) -> dict[str, float]:
+    """Return load and deflection as drawn: over Euler's and the length, or in the frame's units, down."""
+    if part == questions.COLUMN:
+        return {"load": load / EULER, "deflection": abs(float(place[1]))}
+    rest = next(body.centre for body in frame.design.bodies if body.name == frame.body)
+    return {"load": load, "deflection": rest[1] - float(place[1])}
+
+
+def _elastica() -> list[dict[str, Any]]:
+    """Return the closed form and the published loads at the deflection of their angles."""
+    angles = np.linspace(0.0, math.radians(max(PUBLISHED)), 177)
+    rows = []
+    for model, chosen in ((ELASTICA, angles), (PRINT, np.radians(list(PUBLISHED)))):
+        loads = list(PUBLISHED.values()) if model == PRINT else [load_ratio(one) for one in chosen]
+        for state, (load, (_, across)) in enumerate(zip(loads, tip(chosen), strict=True)):
+            at = {"load": load, "deflection": float(across)}
+            rows.append({"part": questions.COLUMN, "model": model, "state": state, **at})
+    return rows
+
+
+def _branch(case: questions.BucklingCase, model: str, branch: str) -> dict[str, Any]:
+    """Return the last state of the pushed pivot on a branch; stable where it has no unstable direction."""
+    asked = replace(case, branch="primary", tilt=0.0) if branch == PRIMARY else case
+    arc: Arc = questions.answer(asked, (family.COLUMNS | family.FINER)[model])
+    return {
+        "model": model,
+        "branch": branch,
+        "asked_mm": 1e3 * case.frame.load,
+        "reached_mm": 1e3 * float(arc.load[-1]),
+        "turn_deg": questions.turned(arc),
+        "energy_J": float(arc.energy[-1]),
+        "unstable_directions": int(arc.inertia[-1]),
+        "first_bifurcation_mm": min((1e3 * point.load for point in arc.critical), default=math.nan),
+        "says": arc.message or arc.warning,
+    }
+
+
+LOOKS: dict[str, dict[str, Any]] = {
+    ELASTICA: {"color": BLACK, "linewidth": 0.9},
+    PRINT: {"color": BLACK, "linestyle": "", "marker": "+", "markersize": 8.0},
+    family.PAPER: {"color": RED},
+    family.DEFAULT: {"color": BLUE},
+    family.EIGHT: {"color": PURPLE, "linestyle": "", "marker": "v", "markersize": 8.0, "fillstyle": "none"},
+    family.TWELVE: {"color": GREEN, "linestyle": "--"},
+    family.FE: {"color": GREY, "linestyle": "", "marker": "s", "markersize": 3.0},
+}
+AXES = {
+    questions.COLUMN: ("deflection of the tip across [L]", "load [Euler load]"),
+    questions.TOGGLE: ("deflection of the apex [in]", "load [lb]"),
+    questions.LEE: ("deflection below the load [cm]", "load [t]"),
+    questions.PIVOT: ("way down [mm]", "turn of the body [deg]"),
+}
+
+
+def _figure(tables: Mapping[str, pd.DataFrame]) -> Figure:
+    """Draw the four panels of the tables outcomes, curves, critical and branches."""
+    drawn = page(8.6, 6.6)
+    panels = dict(zip(AXES, drawn.subplots(2, 2).flat, strict=True))
+    for part, panel in panels.items():
+        panel.set(title=part, xlabel=AXES[part][0], ylabel=AXES[part][1])
+    for part in (questions.COLUMN, questions.TOGGLE, questions.LEE):
+        _loads(panels[part], tables, part)
+    for published in _published(tables["outcomes"], questions.TOGGLE):
+        panels[questions.TOGGLE].axhline(published, color=BLACK, linewidth=0.6, linestyle=":")
+    for published in _published(tables["outcomes"], questions.LEE):
+        panels[questions.LEE].axhline(published, color=BLACK, linewidth=0.6, linestyle=":")
+    panels[questions.COLUMN].set(ylim=(0.0, 10.0))
+    _pivot(panels[questions.PIVOT], tables["branches"])
+    handles = [Line2D([], [], label=model, **look) for model, look in LOOKS.items()]
+    handles += [
+        Line2D([], [], linestyle="", marker="o", color=BLACK, markerfacecolor="none", label="critical point"),
+        Line2D([], [], color=BLACK, linewidth=0.6, linestyle=":", label="published limit load"),
+        Line2D([], [], linestyle="", marker="x", color=BLACK, markersize=7.0, label="stopped, and says so"),
+    ]
+    drawn.legend(handles=handles, loc="outside lower center", ncols=5)
+    return drawn
+
+
+def _loads(panel: Axes, tables: Mapping[str, pd.DataFrame], part: str) -> None:
+    """Draw the curves of a part and mark their critical points."""
+    curves, critical = (tables[name][tables[name]["part"] == part] for name in ("curves", "critical"))
+    for model, look in LOOKS.items():
+        mine = curves[curves["model"] == model].sort_values("state")
+        if len(mine):
+            panel.plot(mine["deflection"], mine["load"], **look)
+        points = critical[critical["model"] == model]
+        if len(points):
+            panel.plot(
+                points["deflection"], points["load"], "o", color=look["color"], markerfacecolor="none",
+                markersize=7.0,
+            )  # fmt: skip
+
+
+def _published(outcomes: pd.DataFrame, part: str) -> list[float]:
+    """Return the published limit loads of a part."""
+    asked = outcomes["case"].str.startswith(part) & outcomes["quantity"].str.startswith("limit load")
+    return sorted(set(outcomes[asked]["published"]))
+
+
+def _pivot(panel: Axes, branches: pd.DataFrame) -> None:
+    """Draw the branch on which the body turns, and the one on which it does not: dotted where unstable."""
+    refined = branches[(branches["model"] == family.TWELVE) & (branches["branch"] == PRIMARY)]
+    crossing, deepest = refined["first_bifurcation_mm"].min(), refined["reached_mm"].max()
+    panel.plot([0.0, crossing], [0.0, 0.0], color=BLACK, label="stable")
+    panel.plot([crossing, deepest], [0.0, 0.0], color=BLACK, linestyle=":", label="unstable")
+    for model, look in LOOKS.items():
+        mine = branches[(branches["model"] == model) & (branches["branch"] == OTHER)].sort_values("asked_mm")
+        if mine.empty:
+            continue
+        reached = mine[mine["says"].str.startswith("stopped") != True]  # noqa: E712 - nan: nothing is said
+        panel.plot(reached["reached_mm"], reached["turn_deg"], **look)
+        stopped = mine.drop(reached.index)
+        if len(stopped):
+            ends = {"marker": "x", "linestyle": "", "color": look["color"], "markersize": 7.0}
+            panel.plot(stopped["reached_mm"], stopped["turn_deg"], **ends)
+    panel.plot(crossing, 0.0, "o", color=GREEN, markerfacecolor="none", markersize=7.0)
+    panel.legend(loc="upper left")
+
+
+STUDY = family.study(
+    Part(at=questions.cases, ask=questions.outcomes_of),
+    Part(ask=_tables),
+    figures={"stability_buckling": _figure},
+)
