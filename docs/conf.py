@@ -36,8 +36,12 @@ _OTHERS = (
     "argparse|ast|collections|concurrent|contextlib|enum|matplotlib|meshio|numpy|np|pandas|pathlib|pyarrow|"
     "scipy|skfem|subprocess|types"
 )
-# Numbers are the bounds of parameters, which stand in their annotations.
-nitpick_ignore_regex = [("py:(class|obj)", rf"({_OTHERS})\..*"), ("py:class", r"[\d.]+")]
+# Numbers are the bounds of parameters, which stand in their annotations; what is a module's own has no page.
+nitpick_ignore_regex = [
+    ("py:(class|obj)", rf"({_OTHERS})\..*"),
+    ("py:class", r"[\d.]+"),
+    ("py:class", r"\w+(\.\w+)*\._\w+"),
+]
 nitpick_ignore = [
     ("py:class", name)
     for name in (
@@ -62,7 +66,7 @@ html_show_sourcelink = False
 
 def setup(app):
     """Import what the pages show; hand docstrings and signatures to `prose` before Sphinx reads them."""
-    for package in prose.PACKAGES[:2]:
+    for package in (*prose.PACKAGES[:2], "studies.answers"):
         import_whole(package)
     app.connect("include-read", prose.process_included)
     app.connect("autodoc-process-docstring", prose.process_docstring)
