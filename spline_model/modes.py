@@ -47,8 +47,7 @@ class Modes:
     the body (x, y, theta; zero without one) at unit modal mass; bodies: those of every body by
     name; slide_frequency: those left out as slide modes [Hz]; rotation of the static state [rad],
     nan where none was driven; held: whether the body's rotation was held; state: unknowns of the
-    static state (N,); control_points: of a strip; estimate: of the error, where they were chosen for an
-    accuracy.
+    static state (N,); control_points: of a strip; estimate: of the error, where an accuracy was asked for.
     """
 
     frequency: Array
@@ -195,9 +194,8 @@ def settle(
 def linear_modes(system: System, z: Array, mass: Array) -> tuple[Array, Array, Array]:
     """Squared circular frequencies, shapes in q (columns) and slide share, of a state.
 
-    K and M in the coordinates of the strips' elements that are free, in which clamps hold by
-    construction; axial forces are condensed, and what inextensible strips ask for is a constraint on
-    whose null space the problem is solved. The last answers are kept: a motion asks twice.
+    K and M in the free coordinates of the strips' elements, in which clamps hold; axial forces are condensed,
+    inextensible strips solved on the null space of their constraint. A motion asks twice: answers are kept.
     """
     if not np.any(mass):
         raise InvalidParameter("effects", "no inertia", "strip or body inertia for a natural mode")
