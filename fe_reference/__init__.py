@@ -2,9 +2,9 @@
 
 Data flow one way, and so do the imports:
 
-    effects -> model (pivot, mechanism) -> mesh -> structure (law, bending, rigid, matrix) -> control -> path
-    control (with Newton's method) -> response -> path, arc_length, critical -> follow -> statics
-    structure -> mass, loads -> drives, actions -> motion -> explicit, implicit -> dynamics
+    effects -> model (mechanism) -> mesh -> structure (law, bending, matrix) -> control
+    control (with Newton's method) -> response -> arc_length -> critical -> path -> statics
+    structure -> mass, loads -> actions -> motion -> schemes -> dynamics
     statics -> modes; all -> solution, trajectory
     solution -> refined (meshes to a wanted accuracy) -> statics, modes, dynamics
     plate: one strip as a plate, which says what beams leave out, and the rigidity that has it -> mesh
@@ -17,14 +17,13 @@ forms, integrated and assembled by scikit-fem, give the same energy, forces and 
 rest; a test holds both elements to that.
 """
 
-from .drives import DrivenRotation
 from .dynamics import solve_motion, solve_release
 from .effects import DEFAULT_EFFECTS
 from .errors import ConvergenceError, InvalidParameter
-from .mechanism import BodyDesign, StripDesign
+from .loads import DrivenRotation
+from .mechanism import BodyDesign, StripDesign, cross_axis_pivot
 from .model import Body, Model, Section, Strip
 from .modes import Modes, natural_frequencies
-from .pivot import cross_axis_pivot
 from .plate import PlateFactors, plate_factors
 from .section_forces import StripFields, strip_fields
 from .solution import CriticalPoint, ErrorEstimate, StaticSolution, Status

@@ -7,6 +7,7 @@ Every effect has its own table, of length zero where the scene does not name it:
     grip (B, 4)          dampers of the bodies: translation, rotation, and the offset of the centre
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,12 +15,14 @@ import numpy as np
 from .arrays import Array, Indices, inlined, kernel
 from .effects import BodyDamping, StripDamping, StripDrag
 from .law import FORCES, MATERIAL, Written, elements
-from .loads import Histories, applied, load_forces, load_power, load_tables, put_loads
+from .loads import Pull, applied
 from .mass import body_blocks
 from .matrix import Symmetric
-from .rigid import RESULTANTS, body_forces, carry, carry_velocity, gravity_energy, put_weight, turned
+from .mesh import RESULTANTS, body_forces, carry, carry_velocity, gravity_energy, turned
 from .structure import Structure, Tables
 
+#: Loads while time passes, as `_load_tables` makes them.
+Histories = tuple[Indices, Array, Indices, Array, Array]
 Pair = tuple[Array, Array]
 #: What acts in a motion, and the displacements and velocities of nodes and of bodies that it acts at.
 Acting = tuple[Tables, tuple[Array, Array, Array], Histories, Written, Pair]
@@ -46,7 +49,7 @@ class Actions:
     Attributes:
         dissipative: relaxation (E,), drag (nodes,), grip (B, 4). histories: tables of the loads.
         written: as of `law.elements`. resultants: of the bodies (B, 5), and the forces (K, 3) of the loads.
-        acting: all of it, for `act`.
+        acting: all of it, for `_act`.
     """
 
     def __init__(self, structure: Structure) -> None:
@@ -60,7 +63,7 @@ class Actions:
         self.damped = any(len(table) for table in self.dissipative)
         pulls = [pull for pull in applied(structure) if pull.row[:3].any()]
         self.named = self.damped or bool(pulls)
-        self.histories, (force, scratch) = load_tables(pulls), structure.work
+        self.histories, (force, scratch) = _load_tables(pulls), structure.work
         self.written = (force, np.zeros((many, 5)), np.zeros((len(relaxation), 6, 6)), scratch)
         self.resultants = (np.zeros((len(structure.points), RESULTANTS)), np.zeros((len(pulls), 3)))
         tables = (structure.tables, self.dissipative, self.histories)
@@ -79,8 +82,8 @@ class Actions:
         """Return what resists at coordinates y, velocities v and an instant [s]."""
         s, u = self.structure, self.structure.displacement(y)
         bodies, rates = (part[s.first_body :].reshape(-1, 3) for part in (y, v))
-        strain, loads, loss = act(self.acting, (u, s.velocity(y, v), bodies, rates), time)
-        force = np.concatenate([self.written[0][s.free_nodes].ravel(), self.resultants[0][:, :3].ravel()])
+        strain, loads, loss = _act(self.acting, (u, s.velocity(y, v), bodies, rates), time)
+        force = s.gathered(self.written[0], self.resultants[0][:, :3])
         gravity = float(gravity_energy(s.tables[2], bodies, u))
         return Resistance(force=force, strain=strain, gravity=gravity, load_power=loads, loss_power=loss)
 
@@ -116,6 +119,58 @@ class Actions:
             turning = grip[:, 1] + grip[:, 0] * np.sum(grip[:, 2:] ** 2, axis=1)
             rate += float(np.max(grip[:, 0] / mass + turning / inertia))
         return rate
+
+
+def _load_tables(pulls: Sequence[Pull]) -> Histories:
+    """Return targets (K,), rows (K, 5), begins (K + 1,) of the histories in instants and factors (H,)."""
+    points = np.array([point for pull in pulls for point in pull.history]).reshape(-1, 2)
+    instants, factors = np.ascontiguousarray(points.T)
+    begins = np.cumsum([0, *(len(pull.history) for pull in pulls)])
+    rows = np.array([pull.row for pull in pulls]).reshape(-1, 5)
+    return np.array([pull.target for pull in pulls], dtype=np.int64), rows, begins, instants, factors
+
+
+@kernel()
+def _factor_at(instants: Array, factors: Array, begin: int, end: int, time: float) -> float:
+    """Return the factor of a piecewise linear history at an instant; constant before and after it."""
+    factor: float = factors[begin]
+    for k in range(begin + 1, end):
+        part = (time - instants[k - 1]) / (instants[k] - instants[k - 1])
+        factor += min(max(part, 0.0), 1.0) * (factors[k] - factors[k - 1])
+    return factor
+
+
+@kernel()
+def _load_forces(histories: Histories, time: float, bodies: Array, pulls: Array) -> None:
+    """Write the generalised forces (K, 3) of the loads at an instant."""
+    targets, rows, begins, instants, factors = histories
+    for k in range(len(targets)):
+        factor, moment = _factor_at(instants, factors, begins[k], begins[k + 1], time), rows[k, 2]
+        if targets[k] >= 0:
+            x, y = turned(bodies[targets[k], 2], rows[k, 3], rows[k, 4])
+            moment += x * rows[k, 1] - y * rows[k, 0]
+        pulls[k, 0], pulls[k, 1], pulls[k, 2] = factor * rows[k, 0], factor * rows[k, 1], factor * moment
+
+
+@kernel()
+def _load_power(targets: Indices, pulls: Array, v: Array, bodies_v: Array) -> float:
+    """Return the power of the loads [W]."""
+    power = 0.0
+    for k in range(len(targets)):
+        rate = bodies_v[targets[k]] if targets[k] >= 0 else v[-1 - targets[k]]
+        power += pulls[k, 0] * rate[0] + pulls[k, 1] * rate[1] + pulls[k, 2] * rate[2]
+    return power
+
+
+@kernel()
+def _put_loads(targets: Indices, pulls: Array, force: Array, resultants: Array) -> None:
+    """Take the loads from the forces that resist."""
+    for k in range(len(targets)):
+        for i in range(3):
+            if targets[k] >= 0:
+                resultants[targets[k], i] -= pulls[k, i]
+            else:
+                force[-1 - targets[k], i] -= pulls[k, i]
 
 
 @kernel()
@@ -160,7 +215,7 @@ def _grip_forces(grip: Array, bodies: Array, bodies_v: Array, out: Array) -> flo
 
 
 @inlined()
-def act(acting: Acting, state: State, time: float) -> tuple[float, float, float]:
+def _act(acting: Acting, state: State, time: float) -> tuple[float, float, float]:
     """Write all that resists on nodes and bodies; return strain energy, power of the loads, power lost."""
     (given, carried, weights), (relaxation, drag, grip), histories, written, (resultants, pulls) = acting
     u, v, bodies, bodies_v = state
@@ -168,12 +223,11 @@ def act(acting: Acting, state: State, time: float) -> tuple[float, float, float]
     strain = elements(given, 1.0, MATERIAL if len(relaxation) else FORCES, u, written)
     if len(relaxation) or len(drag):
         loss += _viscous_forces(relaxation, first, matrices, v, force) + _drag_forces(drag, v, force)
-    body_forces(bodies, carried, force, resultants)
-    put_weight(1.0, weights, bodies, force, resultants)
+    body_forces(1.0, bodies, carried, weights, force, resultants)
     loss += _grip_forces(grip, bodies, bodies_v, resultants)
-    load_forces(histories, time, bodies, pulls)
-    put_loads(targets, pulls, force, resultants)
-    return strain[0] + strain[1] + strain[2], load_power(targets, pulls, v, bodies_v), loss
+    _load_forces(histories, time, bodies, pulls)
+    _put_loads(targets, pulls, force, resultants)
+    return strain[0] + strain[1] + strain[2], _load_power(targets, pulls, v, bodies_v), loss
 
 
 @kernel()
@@ -201,13 +255,13 @@ def advance(
     for n in range(steps):
         if viscous:
             carry_velocity(bodies, bodies_v, carried, v)
-        _, power, loss = act(acting, state, time + n * step)
+        _, power, loss = _act(acting, state, time + n * step)
         for b in range(len(bodies)):
             for k in range(3):
                 if compliance[1][b, k] == 0.0:
                     totals[0] += step * resultants[b, k] * bodies_v[b, k]
         _move(compliance[0], written[0], step, v, u)
         _move(compliance[1], resultants, step, bodies_v, bodies)
-        totals[0] += 0.5 * step * (power + load_power(histories[0], pulls, v, bodies_v))
+        totals[0] += 0.5 * step * (power + _load_power(histories[0], pulls, v, bodies_v))
         totals[1] += step * loss
         carry(bodies, carried, u)

@@ -77,9 +77,7 @@ class Control:
     @cached_property
     def is_held(self) -> Flags:
         """Which coordinates are held (size,)."""
-        held = np.zeros(self.structure.size, dtype=bool)
-        held[self.held] = True
-        return held
+        return self.structure.flags(self.held)
 
     @cached_property
     def free(self) -> Indices:
@@ -154,31 +152,24 @@ def spans(
     grow with the load factor over all legs, or `first`: in a leg of their own before the rotation, and then
     they stay.
     """
-    ends = [0.0, *rotations] if rotations is not None else [0.0, 0.0]
-    ends = [0.0, *ends] if first else ends
     at = structure.body_slice(0 if body is None else body).start
     centre = structure.body_slice(led).start if led is not None else at
-    parts = {} if displacement is None else {k: d for k, d in enumerate(displacement) if d is not None}
-    held = [centre + axis for axis in parts]
-    held += [at + 2] if rotations is not None else []
-    legs = len(ends) - 1
-
-    def share(leg: int) -> float:
-        return min(float(leg), 1.0) if first else leg / legs
-
-    def values(leg: int) -> list[float]:
-        place = [share(leg) * part for part in parts.values()]
-        return place + ([ends[leg]] if rotations is not None else [])
-
+    legs = max(len(rotations or ()), 1) + first
+    parameters = [leg / legs for leg in range(legs + 1)]
+    shares = [min(float(leg), 1.0) for leg in range(legs + 1)] if first else parameters
+    ways = {centre + k: np.multiply(shares, d) for k, d in enumerate(displacement or ()) if d is not None}
+    if rotations is not None:
+        ways[at + 2] = np.array([0.0] * (1 + first) + [*rotations])
+    values = np.reshape([*ways.values()], (-1, legs + 1)).T
     return [
         Control(
             structure=structure,
-            held=np.array(held, dtype=np.int64),
-            values=np.array([values(leg), values(leg + 1)]),
-            span=(leg / legs, (leg + 1) / legs),
+            held=np.array([*ways], dtype=np.int64),
+            values=values[leg : leg + 2],
+            span=(parameters[leg], parameters[leg + 1]),
             load=load,
             watched=watched,
-            shares=(share(leg), share(leg + 1)),
+            shares=(shares[leg], shares[leg + 1]),
         )
         for leg in range(legs)
     ]
@@ -205,21 +196,13 @@ class Outcome:
 Correct = Callable[[Array, float, Balance, Factors], tuple[Array, float]]
 
 
-def at_the_parameter(y: Array, parameter: float, balance: Balance, factors: Factors) -> tuple[Array, float]:
-    """Return Newton's correction with the parameter as it is."""
-    return -factors.solve(balance.residual), 0.0
-
-
 def equilibrate(
-    control: Control,
-    start: Array,
-    parameter: float,
-    counters: Counter[str],
-    correct: Correct = at_the_parameter,
+    control: Control, start: Array, parameter: float, counters: Counter[str], correct: Correct | None = None
 ) -> Outcome:
     """Iterate from `start` to equilibrium at `parameter`, with the consistent tangent at every iteration.
 
     One compiled call gives residual and tangent; the factors at the equilibrium serve what is asked there.
+    correct: by default Newton's step, which leaves the parameter as it is.
     """
     tolerance = max(TOLERANCE, control.structure.round_off)
     y, norms = start.copy(), []
@@ -251,8 +234,11 @@ def equilibrate(
                 factors=factors,
             )
         counters["newton_iterations"] += 1
-        move, change = correct(y, parameter, balance, factors)
-        y, parameter = y + move, parameter + change
+        if correct is None:
+            y = y - factors.solve(balance.residual)
+        else:
+            move, change = correct(y, parameter, balance, factors)
+            y, parameter = y + move, parameter + change
 
 
 def taken(control: Control, y: Array, parameter: float) -> Outcome:

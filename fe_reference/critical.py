@@ -1,21 +1,18 @@
-"""Critical points between two neighbouring states of a path, and what is said of them in words of design."""
+"""Critical points between or beyond the states of a path, and what is said of them in words of design."""
 
 from collections import Counter
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
+from itertools import islice
 
 import numpy as np
 from scipy.optimize import brentq
 
+from .arc_length import Walk
 from .arrays import Array, Flags
-from .control import Control, equilibrate
-from .matrix import Symmetric
-from .response import respond
+from .control import Control, equilibrate, taken
+from .matrix import Singular, Symmetric
+from .response import State, respond
 from .solution import CriticalPoint
-
-if TYPE_CHECKING:
-    from .path import State
-
 
 #: Largest motion of a body over that of the nodes in a mode of the strips alone.
 STANDS = 0.25
@@ -23,26 +20,28 @@ STANDS = 0.25
 INVERSE_ITERATIONS = 6
 #: Stiffness below which it is round-off, in EI/L, and part of an increment within which its zero is placed.
 ROUND_OFF, PLACED = 1e-9, 1e-6
+#: First and longest step to a limit point, in strip lengths and rad, and how many there may be.
+FIRST, LONGEST, MOST = 1e-3, 0.05, 60
+#: A limit point is what stopped the path if it lies within this part of it.
+NEAR = 1e-2
 PREFIXES = {9: "G", 6: "M", 3: "k", 0: "", -3: "m", -6: "u", -9: "n"}
 
 
-def critical_point(control: Control, before: "State", after: "State") -> CriticalPoint:
+def critical_point(control: Control, before: State, after: State) -> CriticalPoint:
     """Return the bifurcation between two states beside it.
 
     It is where the line through the eigenvalues nearest to zero has its zero.
     """
     (first, _), (last, mode) = (
-        critical_mode(state.balance.at.tangent, control.is_held) for state in (before, after)
+        _critical_mode(state.balance.at.tangent, control.is_held) for state in (before, after)
     )
     part = first / (first - last) if first * last < 0.0 else 0.5
-    inertia = after.response.inertia
-    moves = "the strips buckle" if bodies_stand(control, mode) else "the strips give way with the body"
-    what = moves if inertia > before.response.inertia else "the strips are stable again"
+    what = _moves(control, mode) if after.inertia > before.inertia else "the strips are stable again"
     y, parameter = _between(before, after, part)
-    return point(control, "bifurcation", y, parameter, inertia, f"bifurcation: {what}")
+    return _point(control, "bifurcation", y, parameter, after.inertia, f"bifurcation: {what}")
 
 
-def critical_mode(tangent: Symmetric, held: Flags) -> tuple[float, Array]:
+def _critical_mode(tangent: Symmetric, held: Flags) -> tuple[float, Array]:
     """Return the eigenvalue nearest to zero of the tangent, scaled to units on its diagonal, and its mode.
 
     The mode (size,) is in the coordinates of the tangent, of any size, and zero at those that are held.
@@ -57,15 +56,14 @@ def critical_mode(tangent: Symmetric, held: Flags) -> tuple[float, Array]:
     return float(moved @ tangent.times(moved)), moved
 
 
-def tipping(control: Control, before: "State", after: "State", counters: Counter[str]) -> list[CriticalPoint]:
+def tipping(control: Control, before: State, after: State, counters: Counter[str]) -> list[CriticalPoint]:
     """Return where the stiffness of a driven turn at fixed loads vanishes between two states, if it does.
 
     Without loads its torque is stationary there, which is not unstable; let go under loads the body tips
     over.
     """
-    stiff, soft = before.response.stiffness, after.response.stiffness
-    same = before.response.inertia == after.response.inertia  # else it may have gone through infinity
-    least = ROUND_OFF * control.structure.moment_unit
+    stiff, soft, least = before.stiffness, after.stiffness, ROUND_OFF * control.structure.moment_unit
+    same = before.inertia == after.inertia  # else it may have gone through infinity
     if control.watched not in control.held or not same or stiff * soft >= 0.0:
         return []
     if min(abs(stiff), abs(soft)) <= least:
@@ -80,29 +78,52 @@ def tipping(control: Control, before: "State", after: "State", counters: Counter
 
     part = brentq(remaining, 0.0, 1.0, xtol=PLACED)
     y, parameter = _between(before, after, part)
-    loaded = control.load is not None or control.structure.constant_effects
+    loaded = control.load is not None or control.structure.constant_words
     what = "limit point: the body's own stiffness vanishes, let go it tips over" if loaded else ""
-    return [point(control, "limit point", y, parameter, after.response.inertia, what)]
+    return [_point(control, "limit point", y, parameter, after.inertia, what)]
 
 
-def _between(before: "State", after: "State", part: float) -> tuple[Array, float]:
+def limit_point(control: Control, last: State, toward: float, counters: Counter[str]) -> list[CriticalPoint]:
+    """Return the limit point that a path ran into after its last state on its way to a parameter, if it did.
+
+    The path is followed in its arc length until the parameter turns back. It goes on there along its tangent,
+    at the same load.
+    """
+    walk = Walk(control=control, counters=counters)
+    along = (np.zeros_like(last.y), toward - last.parameter)
+    try:
+        here = walk.place(taken(control, last.y, last.parameter), along)
+    except Singular:
+        return []
+    for stride in islice(walk.onward(here, FIRST, LONGEST), MOST):
+        if stride.turned:
+            at = walk.before(stride, lambda state: state.pace * here.pace > 0.0)
+            kind = "turning point" if control.watched in control.held else "limit point"
+            what = f"{kind}: {_moves(control, at.rate)}"
+            return [_point(control, kind, at.y, at.parameter, at.inertia + 1, what)]
+        if abs(stride.end.parameter - last.parameter) > NEAR:
+            return []
+    return []
+
+
+def _between(before: State, after: State, part: float) -> tuple[Array, float]:
     """Return coordinates and parameter at a part of the way between two states."""
     step = after.parameter - before.parameter
     return before.y + part * (after.y - before.y), before.parameter + part * step
 
 
-def point(control: Control, kind: str, y: Array, parameter: float, inertia: int, what: str) -> CriticalPoint:
+def _point(control: Control, kind: str, y: Array, parameter: float, inertia: int, what: str) -> CriticalPoint:
     """Return the critical point at a state; its text tells what happens there, if that is to be told."""
     return CriticalPoint(
         kind=kind,
         load_factor=0.0 if control.settling else control.share(parameter),
-        rotation=rotation(control, y),
+        rotation=_rotation(control, y),
         inertia=inertia,
-        text=f"{what} at {', '.join(places(control, y, parameter))}" if what else "",
+        text=f"{what} at {', '.join(_places(control, y, parameter))}" if what else "",
     )
 
 
-def rotation(control: Control, y: Array) -> float:
+def _rotation(control: Control, y: Array) -> float:
     """Return the turn of the watched body, or of the only one [rad]; nan if there is no such."""
     turns = control.structure.turns
     if control.watched is not None:
@@ -110,7 +131,7 @@ def rotation(control: Control, y: Array) -> float:
     return float(y[turns[0]]) if len(turns) == 1 else np.nan
 
 
-def places(control: Control, y: Array, parameter: float) -> Iterator[str]:
+def _places(control: Control, y: Array, parameter: float) -> Iterator[str]:
     """Yield what acts there: loads, driven rotation, share of the weight, load factor."""
     if control.settling:
         yield f"{100.0 * parameter:.4g} % of {control.structure.constant_words}"
@@ -119,19 +140,20 @@ def places(control: Control, y: Array, parameter: float) -> Iterator[str]:
     if control.load is not None:
         vector = control.share(parameter) * control.load
         force, moment = np.hypot(vector[0::3].sum(), vector[1::3].sum()), abs(vector[2::3].sum())
-        yield from (quantity(size, unit) for size, unit in ((force, "N"), (moment, "N m")) if size > 0.0)
-    if control.watched is not None and control.watched in control.held[control.slope != 0.0]:
+        yield from (_quantity(size, unit) for size, unit in ((force, "N"), (moment, "N m")) if size > 0.0)
+    if control.watched in control.held[control.slope != 0.0]:
         yield f"rotation {np.degrees(y[control.watched]):.4g} deg"
-    yield f"load factor {parameter if control.settling else control.share(parameter):.4g}"
+    yield f"load factor {control.share(parameter):.4g}"
 
 
-def quantity(size: float, unit: str) -> str:
+def _quantity(size: float, unit: str) -> str:
     """Return a positive size in its unit with the prefix that leaves one to three digits before the point."""
     power = int(np.clip(3 * np.floor(np.log10(size) / 3.0), min(PREFIXES), max(PREFIXES)))
     return f"{size / 10.0**power:.4g} {PREFIXES[power]}{unit}"
 
 
-def bodies_stand(control: Control, mode: Array) -> bool:
-    """Return whether only the strips move in a mode (size,)."""
+def _moves(control: Control, mode: Array) -> str:
+    """Return what moves in a mode (size,): the strips alone, or the bodies as well."""
     size = np.abs(np.where(control.is_held, 0.0, mode) * control.structure.measure)
-    return bool(size[control.structure.first_body :].max(initial=0.0) <= STANDS * size.max())
+    stand = size[control.structure.first_body :].max(initial=0.0) <= STANDS * size.max()
+    return "the strips buckle" if stand else "the strips give way with the body"

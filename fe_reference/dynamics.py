@@ -9,21 +9,19 @@ from typing import Annotated, Any
 import numpy as np
 
 from .arrays import Array
-from .drives import DrivenRotation, drive_spans
-from .effects import DEFAULT_EFFECTS, DrivenDisplacement, needs_inertia, read_effects
+from .effects import DEFAULT_EFFECTS, DrivenDisplacement, Effects
 from .errors import Checked, InvalidParameter, choice, count, finite, optional, positive, within
-from .explicit import Explicit, critical_step
-from .implicit import Implicit
-from .loads import full_load
+from .loads import DrivenRotation, drive_spans, full_load
 from .mass import about_mass_centre, carried_over
 from .model import Model
 from .modes import natural_frequencies
-from .motion import Progress, Samples, course, sampling
+from .motion import ENERGIES, Progress, Samples, course
 from .refined import limit_of
+from .schemes import Explicit, Implicit, critical_step
 from .solution import Stopwatch
 from .statics import settled_state
 from .structure import structure_of
-from .trajectory import ENERGIES, Trajectory, trajectory, with_companion
+from .trajectory import Trajectory, trajectory, with_companion
 
 INTEGRATORS = ("central-difference", "generalised-alpha")
 #: Default of the implicit step: so many in the first period of small motion; strips are fifty times as fast.
@@ -145,6 +143,7 @@ def _limit(model: Model, run: Run, accuracy: float) -> Trajectory:
 
 def _moved(model: Model, run: Run) -> Trajectory:
     """Return the motion of a model, however it ended."""
+    model.effects.require_inertia()
     watch = Stopwatch()
     y, remarks = _start(model, run) if run.settled else (np.zeros(structure_of(model).size), [])
     watch.stop("start")
@@ -176,7 +175,6 @@ def checked(
 
 def _start(model: Model, run: Run) -> tuple[Array, list[str]]:
     """Return the coordinates of the start about the bodies' centres, and what is to be said of them."""
-    needs_inertia(model.effects)
     load = full_load(structure_of(model), time=0.0)
     led = model.effects.find(DrivenDisplacement)
     if led is not None:
@@ -187,7 +185,6 @@ def _start(model: Model, run: Run) -> tuple[Array, list[str]]:
 
 def _integrate(model: Model, y: Array, run: Run, watch: Stopwatch) -> tuple[Samples, dict[str, float | str]]:
     """Integrate from rest at y; return the samples and the settings."""
-    needs_inertia(model.effects)
     own = structure_of(model)
 
     @cache
@@ -213,16 +210,23 @@ def _integrate(model: Model, y: Array, run: Run, watch: Stopwatch) -> tuple[Samp
     spans = drive_spans(model, run.drive, steps * h)
     watch.stop("compile")
     began = carried_over(own, y, home), np.zeros_like(y)
-    samples = course(scheme_of, spans, *began, h, sampling(steps, run.samples), run.progress)
+    samples = course(scheme_of, spans, *began, h, _sampling(steps, run.samples), run.progress)
     watch.stop("solve")
     settings: dict[str, float | str] = {"integrator": run.integrator, "duration_s": run.duration, "step_s": h}
     return samples, settings | choices
 
 
+def _sampling(steps: int, samples: int) -> list[int]:
+    """Return the numbers of steps between samples: equal ones, the last perhaps shorter."""
+    every = -(-steps // samples)
+    whole, rest = divmod(steps, every)
+    return [every] * whole + ([rest] if rest else [])
+
+
 def _first_frequency(model: Model) -> float:
     """Return the first frequency about the shape at rest, of inertia and elasticity alone [Hz]."""
     kept = [name for name in model.effects.names if name in DEFAULT_EFFECTS]
-    bare = replace(model, effects=read_effects(kept, {}))
+    bare = replace(model, effects=Effects.read(kept, {}))
     frequency = float(natural_frequencies(bare, rotation=None, count=1, mass="lumped").frequency[0])
     if frequency <= 0.0:
         raise InvalidParameter("step", None, "a step: the model can move freely and has no first period [s]")

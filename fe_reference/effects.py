@@ -33,33 +33,33 @@ CURL = SIDES[:2]
 
 
 @dataclass(frozen=True, kw_only=True)
-class Effect(Checked):
+class _Effect(Checked):
     """An effect without parameters."""
 
 
 @dataclass(frozen=True, kw_only=True)
-class Gravity(Effect):
+class Gravity(_Effect):
     """Weight of strips and bodies: acceleration (g_x, g_y) [m/s^2]. Acts whether or not they have inertia."""
 
     acceleration: Annotated[Pair, pair, "m/s^2"]
 
 
 @dataclass(frozen=True, kw_only=True)
-class StripDamping(Effect):
+class StripDamping(_Effect):
     """Kelvin-Voigt material: stress E (strain + b d strain/dt) with relaxation time b [s] in every strain."""
 
     relaxation_time: Annotated[float, not_negative, "s"]
 
 
 @dataclass(frozen=True, kw_only=True)
-class StripDrag(Effect):
+class StripDrag(_Effect):
     """Force -a mu v per unit length on the strips, in proportion to their mass, with the rate a [1/s]."""
 
     rate: Annotated[float, not_negative, "1/s"]
 
 
 @dataclass(frozen=True, kw_only=True)
-class BodyDamping(Effect):
+class BodyDamping(_Effect):
     """Damper between every body and ground: translation of its centre [N s/m] and rotation [N m s]."""
 
     translation: Annotated[float, not_negative, "N s/m"] = 0.0
@@ -67,7 +67,7 @@ class BodyDamping(Effect):
 
 
 @dataclass(frozen=True, kw_only=True)
-class AppliedForce(Effect):
+class AppliedForce(_Effect):
     """Dead force (f_x, f_y) [N] at the centre of a body, times load factor or history."""
 
     force: Annotated[Pair, pair, "N"]
@@ -76,7 +76,7 @@ class AppliedForce(Effect):
 
 
 @dataclass(frozen=True, kw_only=True)
-class AppliedMoment(Effect):
+class AppliedMoment(_Effect):
     """Moment [N m] on a body, times load factor or history."""
 
     moment: Annotated[float, finite, "N m"]
@@ -85,7 +85,7 @@ class AppliedMoment(Effect):
 
 
 @dataclass(frozen=True, kw_only=True)
-class TipForce(Effect):
+class TipForce(_Effect):
     """Dead force (f_x, f_y) [N] at the free end of a strip, times load factor or history."""
 
     strip: str
@@ -94,7 +94,7 @@ class TipForce(Effect):
 
 
 @dataclass(frozen=True, kw_only=True)
-class DrivenDisplacement(Effect):
+class DrivenDisplacement(_Effect):
     """Displacement (d_x, d_y) [m] that the centre of a body is led to, times the load factor.
 
     None in place of one of them leaves the body free that way.
@@ -114,7 +114,7 @@ class DrivenDisplacement(Effect):
 
 
 @dataclass(frozen=True, kw_only=True)
-class PreStrain(Effect):
+class PreStrain(_Effect):
     """Natural curvature [1/m] and natural strain [1] of every strip: where it is free of stress.
 
     They are counted from the shape at rest: the section laws are M = EI (kappa - curvature) and
@@ -125,25 +125,25 @@ class PreStrain(Effect):
     strain: Annotated[float, finite, "1"] = 0.0
 
 
-def root_length(name: str, value: Any) -> float:
+def _root_length(name: str, value: Any) -> float:
     """Return the extra length of a root in thicknesses of the strip, by number or by name."""
     return MONOLITHIC if value == "monolithic" else not_negative(name, value, "thicknesses")
 
 
 @dataclass(frozen=True, kw_only=True)
-class RootCompliance(Effect):
+class RootCompliance(_Effect):
     """Clamped ends turn against springs of EI / (root t) [N m]; root: number, or "monolithic": MONOLITHIC."""
 
-    root: Annotated[float, root_length]
+    root: Annotated[float, _root_length]
 
 
 #: Every effect that these elements can have.
-KNOWN: Mapping[str, type[Effect]] = {
-    "bending": Effect,
-    "stretching": Effect,
-    "strip_inertia": Effect,
-    "section_rotary_inertia": Effect,  # shear-deformable elements have it in any case
-    "body_inertia": Effect,
+KNOWN: Mapping[str, type[_Effect]] = {
+    "bending": _Effect,
+    "stretching": _Effect,
+    "strip_inertia": _Effect,
+    "section_rotary_inertia": _Effect,  # shear-deformable elements have it in any case
+    "body_inertia": _Effect,
     "gravity": Gravity,
     "strip_damping": StripDamping,
     "strip_drag": StripDrag,
@@ -153,20 +153,45 @@ KNOWN: Mapping[str, type[Effect]] = {
     "tip_force": TipForce,
     "driven_displacement": DrivenDisplacement,
     "pre_strain": PreStrain,
-    "clamped_width": Effect,
-    "anticlastic": Effect,
+    "clamped_width": _Effect,
+    "anticlastic": _Effect,
     "root_compliance": RootCompliance,
-    "shear": Effect,  # of shear-deformable elements, which have it in any case
+    "shear": _Effect,  # of shear-deformable elements, which have it in any case
 }
 DEFAULT_EFFECTS = ("bending", "stretching", "strip_inertia", "body_inertia")
-T = TypeVar("T", bound=Effect)
+T = TypeVar("T", bound=_Effect)
 
 
 @dataclass(frozen=True, kw_only=True)
 class Effects:
     """The named effects of one scene, in the order they were named."""
 
-    named: Mapping[str, Effect] = field(default_factory=lambda: {name: Effect() for name in DEFAULT_EFFECTS})
+    named: Mapping[str, _Effect] = field(default_factory=lambda: dict.fromkeys(DEFAULT_EFFECTS, _Effect()))
+
+    @classmethod
+    def read(cls, effects: Iterable[str], parameters: Mapping[str, Mapping[str, Any]]) -> "Effects":
+        """Return the effects of these names with their parameters.
+
+        Raises:
+            InvalidParameter: a name that is not known or comes twice, "bending" or "stretching" left out,
+                rotary inertia of strips without inertia, parameters that are missing, unknown or of no named
+                effect.
+        """
+        names = tuple(effects)
+        for name in names:
+            _known(name)
+        rotary = "section_rotary_inertia" not in names or "strip_inertia" in names
+        for holds, expected in (
+            (len(set(names)) == len(names), "every name once"),
+            ({"bending", "stretching"} <= set(names), "bending and stretching, which every element has"),
+            (rotary, "strip_inertia beside section_rotary_inertia"),
+        ):
+            if not holds:
+                raise InvalidParameter("effects", names, f"{expected} [name]")
+        if stray := [name for name in parameters if name not in names]:
+            expected = f"one of the named effects {', '.join(names)} [name]"
+            raise InvalidParameter("parameters", stray[0], expected)
+        return cls(named={name: _made(name, parameters.get(name, {})) for name in names})
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -176,41 +201,18 @@ class Effects:
     def __contains__(self, name: str) -> bool:
         return name in self.named
 
+    def require_inertia(self) -> None:
+        """Refuse a scene whose motion is asked for though nothing in it has inertia."""
+        if not {"strip_inertia", "body_inertia"} & set(self.names):
+            raise InvalidParameter("effects", self.names, "strip_inertia or body_inertia for a motion [name]")
+
     def find(self, kind: type[T]) -> T | None:
         """Return the effect of this class, or None if it is not named."""
         return next((each for each in self.named.values() if isinstance(each, kind)), None)
 
-    def changed(self, name: str, effect: Effect) -> "Effects":
+    def changed(self, name: str, effect: _Effect) -> "Effects":
         """Return the effects with another one of this name."""
         return Effects(named={**self.named, name: effect})
-
-
-def read_effects(effects: Iterable[str], parameters: Mapping[str, Mapping[str, Any]]) -> Effects:
-    """Return the effects of these names with their parameters.
-
-    Raises:
-        InvalidParameter: a name that is not known or comes twice, "bending" or "stretching" left out, rotary
-            inertia of strips without inertia, parameters that are missing, unknown or of no named effect.
-    """
-    names = tuple(effects)
-    for name in names:
-        _known(name)
-    if len(set(names)) != len(names):
-        raise InvalidParameter("effects", names, "every name once [name]")
-    if not {"bending", "stretching"} <= set(names):
-        raise InvalidParameter("effects", names, "bending and stretching, which every element has [name]")
-    if "section_rotary_inertia" in names and "strip_inertia" not in names:
-        raise InvalidParameter("effects", names, "strip_inertia beside section_rotary_inertia [name]")
-    for name in parameters:
-        if name not in names:
-            raise InvalidParameter("parameters", name, f"one of the named effects {', '.join(names)} [name]")
-    return Effects(named={name: _made(name, parameters.get(name, {})) for name in names})
-
-
-def needs_inertia(effects: Effects) -> None:
-    """Refuse a scene whose motion is asked for though nothing in it has inertia."""
-    if not {"strip_inertia", "body_inertia"} & set(effects.names):
-        raise InvalidParameter("effects", effects.names, "strip_inertia or body_inertia for a motion [name]")
 
 
 def _known(name: str) -> None:
@@ -223,7 +225,7 @@ def _known(name: str) -> None:
         raise InvalidParameter("effects", name, there)
 
 
-def _made(name: str, parameters: Mapping[str, Any]) -> Effect:
+def _made(name: str, parameters: Mapping[str, Any]) -> _Effect:
     """Return the effect `name` with its parameters, refused by name if they are not those it has."""
     known = {each.name: each.default is MISSING for each in fields(KNOWN[name])}
     for key in parameters:

@@ -101,9 +101,14 @@ def optional(name: str, value: Any, read: Callable[..., Any], *domain: object) -
     return None if value is None else read(name, value, *domain)
 
 
+def _parts(value: Any) -> list[Any]:
+    """Return the parts of a sequence or of an array; of anything else that alone."""
+    return list(value) if isinstance(value, list | tuple) or getattr(value, "ndim", 0) > 0 else [value]
+
+
 def several(name: str, value: Any, unit: str) -> list[float]:
     """Return a number, or a sequence of such, as a list of floats; refuse anything else, and none at all."""
-    parts = list(value) if isinstance(value, list | tuple) or getattr(value, "ndim", 0) == 1 else [value]
+    parts = _parts(value)
     if not parts:
         raise InvalidParameter(name, value, f"at least one finite number [{unit}]")
     return [finite(name, part, unit) for part in parts]
@@ -111,7 +116,7 @@ def several(name: str, value: Any, unit: str) -> list[float]:
 
 def pair(name: str, value: Any, unit: str) -> Pair:
     """Return `value` as two floats, or refuse it if it is not two finite numbers."""
-    parts = list(value) if isinstance(value, list | tuple) or hasattr(value, "tolist") else []
+    parts = _parts(value)
     if len(parts) != 2:
         raise InvalidParameter(name, value, f"two finite numbers [{unit}]")
     return finite(name, parts[0], unit), finite(name, parts[1], unit)
@@ -119,8 +124,8 @@ def pair(name: str, value: Any, unit: str) -> Pair:
 
 def partly(name: str, value: Any, unit: str) -> tuple[float | None, float | None]:
     """Return `value` as two floats, None where it is None, or refuse it if that leaves no finite number."""
-    parts = list(value) if isinstance(value, list | tuple) or hasattr(value, "tolist") else []
-    if len(parts) != 2 or parts == [None, None]:
+    parts = _parts(value)
+    if len(parts) != 2 or all(part is None for part in parts):
         raise InvalidParameter(name, value, f"two finite numbers [{unit}], or one and None where it is free")
     return optional(name, parts[0], finite, unit), optional(name, parts[1], finite, unit)
 

@@ -29,7 +29,7 @@ import numpy as np
 
 from .arrays import Array
 from .matrix import Symmetric
-from .rigid import swept, turned
+from .mesh import swept, turned
 from .structure import Structure
 
 MASSES = ("consistent", "lumped")
@@ -50,6 +50,11 @@ class RigidBodies:
     centre: Array
     moment_of_inertia: Array
 
+    def diagonal(self, structure: Structure) -> Array:
+        """Return the lumped masses (size,) of a structure that is reduced about these centres."""
+        carried = np.stack([self.mass, self.mass, self.moment_of_inertia], axis=1)
+        return structure.gathered(lumped_nodes(structure), carried)
+
 
 def lumped_elements(structure: Structure) -> Array:
     """Return the diagonal masses of the elements (6, E) [kg, kg m^2]."""
@@ -69,7 +74,7 @@ def lumped_nodes(structure: Structure) -> Array:
     return masses.reshape(-1, 3)
 
 
-def own_inertia(structure: Structure) -> Array:
+def _own_inertia(structure: Structure) -> Array:
     """Return mass [kg] and moment of inertia [kg m^2] of the bodies alone, (B, 2)."""
     bodies = structure.model.bodies if "body_inertia" in structure.model.effects else ()
     own = np.zeros((len(structure.model.bodies), 2))
@@ -77,11 +82,11 @@ def own_inertia(structure: Structure) -> Array:
     return own
 
 
-def rigid_bodies(structure: Structure) -> RigidBodies:
+def _rigid_bodies(structure: Structure) -> RigidBodies:
     """Return the bodies of the model together with the lumped masses of the attached nodes."""
-    ends, own = structure.attachments, own_inertia(structure)
+    ends, own = structure.attachments, _own_inertia(structure)
     nodes = lumped_nodes(structure)[ends.node]
-    centres = np.array([body.centre for body in structure.model.bodies]).reshape(-1, 2)
+    centres = structure.model.centres
     carrier = np.append(ends.body, np.arange(len(own)))
     masses = np.append(nodes[:, 0], own[:, 0])
     places = np.vstack([ends.offsets + structure.points[ends.body], centres])
@@ -102,7 +107,7 @@ def about_mass_centre(structure: Structure, led: Sequence[int] = ()) -> tuple[St
     centrifugal terms in the equations of motion, which are exact. Bodies whose centre is `led` are reduced
     about that: at a constant velocity of it their moment of inertia about it is all that is left.
     """
-    bodies = rigid_bodies(structure)
+    bodies = _rigid_bodies(structure)
     points = bodies.centre.copy()
     for body in led:
         points[body] = structure.model.bodies[body].centre
@@ -124,13 +129,6 @@ def carried_over(before: Structure, y: Array, after: Structure, v: Array | None 
     return moved
 
 
-def lumped_diagonal(structure: Structure, bodies: RigidBodies) -> Array:
-    """Return the lumped masses (size,) of a structure that is reduced about the centres of `bodies`."""
-    free = lumped_nodes(structure)[structure.free_nodes]
-    carried = np.stack([bodies.mass, bodies.mass, bodies.moment_of_inertia], axis=1)
-    return np.concatenate([free.ravel(), carried.ravel()])
-
-
 def mass_matrix(structure: Structure, y: Array, kind: str) -> Symmetric:
     """Return the mass matrix (size, size) of strips and bodies at y, "consistent" or "lumped"."""
     if kind == "lumped" or "strip_inertia" not in structure.model.effects:
@@ -140,7 +138,7 @@ def mass_matrix(structure: Structure, y: Array, kind: str) -> Symmetric:
     else:
         masses = _cubic_elements(structure, y)
     whole = structure.reduced_matrix(masses.transpose(2, 0, 1), y)
-    body_blocks(structure, y, own_inertia(structure), whole)
+    body_blocks(structure, y, _own_inertia(structure), whole)
     return whole
 
 

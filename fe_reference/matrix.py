@@ -16,7 +16,7 @@ from scipy.sparse import csc_matrix
 from skfem.assembly.form.coo_data import COOData
 
 from .arrays import Array, Flags, Indices, kernel
-from .rigid import Carried, turned
+from .mesh import Carried, turned
 
 #: Where the entries of the rows of a matrix are, and where its factors have theirs.
 Lines = tuple[Indices, Indices, Indices, Indices]
@@ -27,7 +27,7 @@ class Singular(ArithmeticError):
 
 
 @kernel()
-def assemble(
+def _assemble(
     matrices: Array, ends: Indices, carried: Carried, turns: Array, places: Indices, data: Array
 ) -> None:
     """Add element matrices (E, 6, 6) to the entries of a matrix; the ends on bodies are reduced in place.
@@ -145,6 +145,12 @@ class Envelope:
     def zero(self) -> "Symmetric":
         """Return a matrix of zeros."""
         return Symmetric(self, np.zeros(len(self.rows)))
+
+    def assembled(self, matrices: Array, ends: Indices, carried: Carried, turns: Array) -> "Symmetric":
+        """Return the sum of element matrices (E, 6, 6), the ends on bodies reduced: see `_assemble`."""
+        whole = self.zero()
+        _assemble(matrices.copy(), ends, carried, turns, self.places, whole.data)
+        return whole
 
 
 def _pairs(numbers: Indices) -> tuple[Indices, Indices]:

@@ -1,4 +1,7 @@
-"""Mechanisms of any number of strips and rigid bodies, from designs that name what is joined to what."""
+"""Mechanisms of any number of strips and rigid bodies, from designs that name what is joined to what.
+
+The cross-axis flexural pivot is the one of two straight strips that cross without touching, and their body.
+"""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
@@ -7,9 +10,9 @@ from typing import Any
 import numpy as np
 
 from .arrays import Array
-from .effects import DEFAULT_EFFECTS, read_effects
-from .errors import InvalidParameter, count, finite, pair
-from .model import FREE, GROUND, Body, Model, Section, Strip
+from .effects import DEFAULT_EFFECTS, Effects
+from .errors import InvalidParameter, count, finite, pair, positive, within
+from .model import FREE, GROUND, Body, Model, Section, Strip, rotation_matrix
 
 #: A body is its own design.
 BodyDesign = Body
@@ -59,7 +62,7 @@ def mechanism(
         strips=tuple(_strip(design, names, elements) for design in strips),
         bodies=tuple(bodies),
         element=element,
-        effects=read_effects(effects, parameters or {}),
+        effects=Effects.read(effects, parameters or {}),
     )
 
 
@@ -105,3 +108,69 @@ def _axis(design: StripDesign, elements: int) -> Array:
     left = np.array([-chord[1], chord[0]])
     nodes: Array = start + along[:, None] * chord + across[:, None] * left
     return nodes
+
+
+def cross_axis_pivot(
+    *,
+    length: float,
+    inclination: float,
+    crossing_ratio: float,
+    body_mass: float,
+    body_moment_of_inertia: float,
+    centre_offset: Sequence[float] = (0.0, 0.0),
+    orientation: float = 0.0,
+    effects: Sequence[str] = DEFAULT_EFFECTS,
+    parameters: Mapping[str, Mapping[str, Any]] | None = None,
+    elements: int = 20,
+    element: str = "corotational",
+    **section: Any,
+) -> Model:
+    """Return the pivot at rest, with the ground end A1 of the first strip at the origin.
+
+    With strip length L, inclination a and crossing ratio r (distance of the crossing from ground over L):
+
+        A1 = (0, 0),  A2 = (2 r L cos a, 0),  B1 = A1 + L (cos a, sin a),  B2 = A2 + L (-cos a, sin a)
+
+    and the body's centre at (B1 + B2)/2 + centre_offset; then the orientation turns all of it about A1.
+
+    Args:
+        length: L [m]. inclination: a [rad], between 0 and pi/2. crossing_ratio: r, between 0 and 1.
+        body_mass [kg], body_moment_of_inertia about its centre [kg m^2]; zero is legal.
+        centre_offset: (2,) [m]. orientation: of the whole, counter-clockwise [rad].
+        effects: names of the effects of the scene. parameters: of those that have any, by name.
+        elements: number of elements a strip. element: "corotational" or "reissner".
+        section: of both strips, as of `model.Section`: youngs_modulus [Pa], poisson_ratio [1], density
+            [kg/m^3], and area [m^2] with second_moment_of_area [m^4], or width with thickness [m].
+
+    Raises:
+        InvalidParameter: a value outside its domain; one line with name, value, expectation and unit.
+    """
+    ground, ends = _clamps(
+        positive("length", length, "m"),
+        within("inclination", inclination, 0.0, 0.5 * np.pi, "rad"),
+        within("crossing_ratio", crossing_ratio, 0.0, 1.0, "1"),
+    )
+    turn = rotation_matrix(finite("orientation", orientation, "rad")).T
+    offset = np.array(pair("centre_offset", centre_offset, "m"))
+    ground, ends, offset = ground @ turn, ends @ turn, offset @ turn
+    centre = ends.mean(axis=0) + offset
+    body = BodyDesign(centre=centre, mass=body_mass, moment_of_inertia=body_moment_of_inertia)
+    strips = [
+        StripDesign(name=f"strip_{number}", start=a, end=b, tip=body.name, **section)
+        for number, (a, b) in enumerate(zip(ground, ends, strict=True), start=1)
+    ]
+    return mechanism(
+        strips=strips,
+        bodies=[body],
+        effects=effects,
+        parameters=parameters,
+        elements=elements,
+        element=element,
+    )
+
+
+def _clamps(length: float, angle: float, ratio: float) -> tuple[Array, Array]:
+    """Return the ends of both strips on ground and on the body (2, 2) [m]."""
+    run, rise = length * np.cos(angle), length * np.sin(angle)
+    ground = np.array([[0.0, 0.0], [2.0 * ratio * run, 0.0]])
+    return ground, ground + np.array([[run, rise], [-run, rise]])

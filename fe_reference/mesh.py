@@ -13,15 +13,113 @@ derivative P of the map; the tangent is P^T K P plus the curvature of the map, -
 of theta, with f the force of the element on the end.
 """
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 from skfem import Basis, ElementLineP1, ElementVector, MeshLine
 
-from .arrays import Array, Indices
+from .arrays import Array, Indices, kernel
 from .effects import CURL, PreStrain, RootCompliance
 from .model import FREE, Model, Strip
 from .plate import left_by_clamps, shares
+
+#: Numbers of a body's resultants: forces x, y [N], the moment [N m], and what the carrying of nodes and of
+#: the weight adds to the stiffness of its turn [N m].
+RESULTANTS = 5
+
+#: Attached nodes (K,), the bodies that carry them, and their offsets (K, 2) from these bodies' points.
+Carried = tuple[Indices, Indices, Array]
+#: Weight of nodes (nodes, 3) and bodies (B, 4): force x, y [N], and the offset of its point from the body's
+#: [m].
+Weights = tuple[Array, Array]
+
+
+@kernel()
+def turned(angle: float, x: float, y: float) -> tuple[float, float]:
+    """Return R (x, y) with the matrix R of a turn."""
+    c, s = math.cos(angle), math.sin(angle)
+    return c * x - s * y, s * x + c * y
+
+
+@kernel()
+def swept(angle: float, x: float, y: float) -> tuple[float, float]:
+    """Return (R - 1) (x, y), written with sines: no cancellation at small turns."""
+    sine, less = math.sin(angle), 2.0 * math.sin(0.5 * angle) ** 2
+    return -less * x - sine * y, sine * x - less * y
+
+
+@kernel()
+def carry(bodies: Array, carried: Carried, u: Array) -> None:
+    """Move the attached nodes with their bodies (B, 3) (displacement x, y and turn): exact rigid motion."""
+    attached, carrier, offsets = carried
+    for k in range(len(attached)):
+        i, b = attached[k], carrier[k]
+        x, y = swept(bodies[b, 2], offsets[k, 0], offsets[k, 1])
+        u[i, 0], u[i, 1], u[i, 2] = bodies[b, 0] + x, bodies[b, 1] + y, bodies[b, 2]
+
+
+@kernel()
+def carry_velocity(bodies: Array, bodies_v: Array, carried: Carried, v: Array) -> None:
+    """Write the velocities of the attached nodes."""
+    attached, carrier, offsets = carried
+    for k in range(len(attached)):
+        i, b = attached[k], carrier[k]
+        x, y = turned(bodies[b, 2], offsets[k, 0], offsets[k, 1])
+        v[i, 0] = bodies_v[b, 0] - bodies_v[b, 2] * y
+        v[i, 1] = bodies_v[b, 1] + bodies_v[b, 2] * x
+        v[i, 2] = bodies_v[b, 2]
+
+
+@kernel()
+def body_forces(
+    share: float, bodies: Array, carried: Carried, weights: Weights, force: Array, out: Array
+) -> None:
+    """Write the resultants (B, 5) of the forces on attached nodes about the bodies' points.
+
+    A share of the weight of nodes and bodies is taken from the forces that resist.
+    """
+    attached, carrier, offsets = carried
+    for b in range(len(out)):
+        for k in range(RESULTANTS):
+            out[b, k] = 0.0
+    for k in range(len(attached)):
+        i, b = attached[k], carrier[k]
+        x, y = turned(bodies[b, 2], offsets[k, 0], offsets[k, 1])
+        out[b, 0] += force[i, 0]
+        out[b, 1] += force[i, 1]
+        out[b, 2] += force[i, 2] + x * force[i, 1] - y * force[i, 0]
+        out[b, 3] -= x * force[i, 0] + y * force[i, 1]
+    _put_weight(share, weights, bodies, force, out)
+
+
+@kernel()
+def _put_weight(share: float, weights: Weights, bodies: Array, force: Array, resultants: Array) -> None:
+    """Take a share of the weight of nodes and bodies from the forces that resist."""
+    weight, body_weight = weights
+    for i in range(len(weight)):
+        force[i, 0] -= share * weight[i, 0]
+        force[i, 1] -= share * weight[i, 1]
+    for b in range(len(body_weight)):
+        w_x, w_y = share * body_weight[b, 0], share * body_weight[b, 1]
+        x, y = turned(bodies[b, 2], body_weight[b, 2], body_weight[b, 3])
+        resultants[b, 0] -= w_x
+        resultants[b, 1] -= w_y
+        resultants[b, 2] -= x * w_y - y * w_x
+        resultants[b, 4] += x * w_x + y * w_y
+
+
+@kernel()
+def gravity_energy(weights: Weights, bodies: Array, u: Array) -> float:
+    """Return the energy of the full weight, zero in the shape at rest [J]."""
+    (weight, body_weight), energy = weights, 0.0
+    for i in range(len(weight)):
+        energy -= weight[i, 0] * u[i, 0] + weight[i, 1] * u[i, 1]
+    for b in range(len(body_weight)):
+        x, y = swept(bodies[b, 2], body_weight[b, 2], body_weight[b, 3])
+        energy -= body_weight[b, 0] * (bodies[b, 0] + x) + body_weight[b, 1] * (bodies[b, 1] + y)
+    return energy
+
 
 #: One-point rule: what the shear-deformable element is free of locking by.
 MIDPOINT = (np.array([[0.5]]), np.array([1.0]))
@@ -51,6 +149,20 @@ class Elements:
     plate: Array
     roots: Array
 
+    @classmethod
+    def of(cls, model: Model) -> "Elements":
+        """Return those of all elements of a model, strip by strip."""
+        chord = np.hstack([np.diff(strip.nodes, axis=0).T for strip in model.strips])
+        many = [len(strip.nodes) - 1 for strip in model.strips]
+        rigid = ("axial_rigidity", "flexural_rigidity", "shear_rigidity", "linear_density", "rotary_density")
+        return cls(
+            chord=chord,
+            length=np.hypot(*chord),
+            plate=np.vstack([_plate(model, strip) for strip in model.strips]),
+            roots=np.vstack([_roots(model, strip) for strip in model.strips]),
+            **{name: np.repeat([getattr(s.section, name) for s in model.strips], many) for name in rigid},
+        )
+
     def table(self, natural: PreStrain) -> Array:
         """Return the rows of `law`, (E, 14)."""
         own = [np.full_like(self.length, part) for part in (natural.strain, natural.curvature)]
@@ -65,26 +177,12 @@ def strip_basis(model: Model) -> Basis:
     """Return the scikit-fem basis of (u_x, u_y, phi) on all strips; nodes are numbered strip by strip."""
     arcs, connections, first = [], [], 0
     for strip in model.strips:
-        lengths = np.linalg.norm(np.diff(strip.nodes, axis=0), axis=1)
-        arcs.append(np.concatenate([[0.0], np.cumsum(lengths)]))
-        node = first + np.arange(len(lengths))
+        arcs.append(strip.arcs)
+        node = first + np.arange(len(strip.nodes) - 1)
         connections.append(np.array([node, node + 1]))
         first += len(strip.nodes)
     mesh = MeshLine(np.concatenate(arcs)[None, :], np.hstack(connections))
     return Basis(mesh, ElementVector(ElementLineP1(), 3), quadrature=MIDPOINT)
-
-
-def reference_elements(model: Model) -> Elements:
-    """Return the reference geometry and rigidities of all elements, strip by strip."""
-    chord = np.hstack([np.diff(strip.nodes, axis=0).T for strip in model.strips])
-    many = [len(strip.nodes) - 1 for strip in model.strips]
-    names = ("axial_rigidity", "flexural_rigidity", "shear_rigidity", "linear_density", "rotary_density")
-    constants = {
-        name: np.repeat([getattr(strip.section, name) for strip in model.strips], many) for name in names
-    }
-    plate = np.vstack([_plate(model, strip) for strip in model.strips])
-    roots = np.vstack([_roots(model, strip) for strip in model.strips])
-    return Elements(chord=chord, length=np.hypot(*chord), plate=plate, roots=roots, **constants)
 
 
 def nodal_shares(model: Model) -> Array:
@@ -142,5 +240,4 @@ class Attachments:
         self.node: Indices = strip * stations + end * (stations - 1)
         self.ends: Indices = np.full((len(model.strips) * (stations - 1), 2), -1)
         self.ends[strip * (stations - 1) + end * (stations - 2), end] = np.arange(len(self.node))
-        rest = np.concatenate([each.nodes for each in model.strips])
-        self.offsets: Array = rest[self.node] - points[self.body]
+        self.offsets: Array = model.rest.reshape(-1, 2)[self.node] - points[self.body]

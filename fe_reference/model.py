@@ -135,6 +135,11 @@ class Strip:
         object.__setattr__(self, "nodes", nodes)
 
     @property
+    def arcs(self) -> Array:
+        """Arc lengths at rest of the nodes (P,) [m]."""
+        return np.append(0.0, np.cumsum(np.linalg.norm(np.diff(self.nodes, axis=0), axis=1)))
+
+    @property
     def length(self) -> float:
         """Reference length [m]."""
         return float(np.linalg.norm(np.diff(self.nodes, axis=0), axis=1).sum())
@@ -142,9 +147,7 @@ class Strip:
     @property
     def places(self) -> Array:
         """Parts of the length at which the nodes are (P,), from 0 to 1."""
-        steps = np.linalg.norm(np.diff(self.nodes, axis=0), axis=1)
-        places: Array = np.concatenate([[0.0], np.cumsum(steps)]) / steps.sum()
-        return places
+        return self.arcs / self.length
 
     @property
     def straight(self) -> bool:
@@ -237,6 +240,16 @@ class Model:
                 raise InvalidParameter("clamped_width", strip.name, "strips clamped at both ends [name]")
 
     @property
+    def rest(self) -> Array:
+        """Positions of the nodes at rest (G, P, 2) [m]."""
+        return np.array([strip.nodes for strip in self.strips])
+
+    @property
+    def centres(self) -> Array:
+        """Centres of the bodies at rest (B, 2) [m]."""
+        return np.array([body.centre for body in self.bodies]).reshape(-1, 2)
+
+    @property
     def strip_names(self) -> tuple[str, ...]:
         """Names of the strips in order."""
         return tuple(strip.name for strip in self.strips)
@@ -254,9 +267,7 @@ class Model:
     def body_index(self, name: str | None) -> int:
         """Return the place of the body of this name; None means the only one there is."""
         known = ", ".join(self.body_names) or "no bodies"
-        if name is None and len(self.bodies) != 1:
-            raise InvalidParameter("body", name, f"one of {known} [name]")
-        if name is not None and name not in self.body_names:
+        if len(self.bodies) != 1 if name is None else name not in self.body_names:
             raise InvalidParameter("body", name, f"one of {known} [name]")
         return 0 if name is None else self.body_names.index(name)
 

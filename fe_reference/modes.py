@@ -8,7 +8,7 @@ from scipy.sparse import csc_matrix
 from scipy.sparse.linalg import eigsh, splu
 
 from .arrays import Array, Flags
-from .effects import DrivenDisplacement, needs_inertia
+from .effects import DrivenDisplacement
 from .errors import ConvergenceError, InvalidParameter, choice
 from .errors import count as at_least_one
 from .mass import MASSES, mass_matrix
@@ -79,24 +79,14 @@ def natural_frequencies(
         ConvergenceError: the static state cannot be reached, or the accuracy is not.
     """
     kind = choice("mass", mass, MASSES)
-    needs_inertia(pivot.effects)
+    pivot.effects.require_inertia()
     if rotation is None and held:
         raise InvalidParameter("held", held, "a driven rotation to hold [1]")
 
     def solve(model: Model) -> Modes:
-        structure = structure_of(model)
         y, _ = settled_state(model, rotation, body, increments)
-        values, full = _lowest(structure, y, ~_held(structure, body, held), kind, count)
-        moves = np.array([structure.velocity(y, mode)[:, :2] for mode in full])
-        return Modes(
-            rotation=np.nan if rotation is None else float(rotation),
-            held=held,
-            mass=kind,
-            frequency=np.sign(values) * np.sqrt(np.abs(values)) / (2.0 * np.pi),
-            shapes=moves.reshape(len(full), structure.strips, structure.stations, 2),
-            body_shapes=full[:, structure.first_body :],
-            state=y,
-        )
+        modes = _modes(structure_of(model), y, _held(model, body, held), kind, count)
+        return replace(modes, rotation=np.nan if rotation is None else float(rotation), held=held)
 
     if accuracy is None:
         return solve(pivot)
@@ -108,15 +98,31 @@ def natural_frequencies(
     return modes
 
 
+def _modes(structure: Structure, y: Array, held: Flags, kind: str, count: int) -> Modes:
+    """Return the modes about a state whose coordinates are free but for those that are `held` (size,)."""
+    values, full = _lowest(structure, y, ~held, kind, count)
+    moves = np.array([structure.velocity(y, mode)[:, :2] for mode in full])
+    return Modes(
+        rotation=np.nan,
+        held=False,
+        mass=kind,
+        frequency=np.sign(values) * np.sqrt(np.abs(values)) / (2.0 * np.pi),
+        shapes=moves.reshape(len(full), structure.strips, structure.stations, 2),
+        body_shapes=full[:, structure.first_body :],
+        state=y,
+    )
+
+
 def _frequencies(modes: Modes) -> Quantities:
     """Return the frequencies by name, each with the largest as its unit."""
     largest = float(np.abs(modes.frequency).max())
     return {f"frequency_{k}": (value, largest) for k, value in enumerate(modes.frequency, start=1)}
 
 
-def _held(structure: Structure, body: str | None, turn: bool) -> Flags:
+def _held(model: Model, body: str | None, turn: bool) -> Flags:
     """Return which coordinates a release does not let go (size,): what is led on, and a held turn."""
-    held, model = np.zeros(structure.size, dtype=bool), structure.model
+    structure = structure_of(model)
+    held = np.zeros(structure.size, dtype=bool)
     if turn:
         held[structure.turns[model.body_index(body)]] = True
     led = model.effects.find(DrivenDisplacement)

@@ -8,8 +8,8 @@ import numpy as np
 
 from .actions import Actions, Resistance
 from .arrays import Array, Flags
-from .drives import Piece, Span, pieces
-from .mass import RigidBodies, carried_over, lumped_diagonal
+from .loads import Piece, Span
+from .mass import RigidBodies, carried_over
 from .structure import Structure
 
 Progress = Callable[[int, int], None]
@@ -17,6 +17,8 @@ Progress = Callable[[int, int], None]
 BLOW_UP = 0.1
 #: Part of EI/L that is at stake in any motion.
 FLOOR = 1e-12
+#: Energies of a state and what loads and dampers did until then [J], with their signs in what is conserved.
+ENERGIES = {"kinetic_energy": 1, "strain_energy": 1, "gravity_energy": 1, "work": -1, "dissipated": 1}
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -46,7 +48,7 @@ class Scheme:
 
     def __init__(self, structure: Structure, bodies: RigidBodies) -> None:
         self.structure, self.bodies = structure, bodies
-        self.mass, self.actions = lumped_diagonal(structure, bodies), Actions(structure)
+        self.mass, self.actions = bodies.diagonal(structure), Actions(structure)
         self.held = np.zeros(structure.size, dtype=bool)
 
     def start(self, time: float, y: Array, v: Array, held: Flags) -> Instant:
@@ -65,37 +67,13 @@ class Scheme:
         return []
 
 
-@dataclass(frozen=True, kw_only=True)
-class Energy:
-    """Energies of a state and what loads and dampers did until then [J].
-
-    What is conserved is kinetic + strain + gravity - work + dissipated.
-    """
-
-    kinetic: float
-    strain: float
-    gravity: float = 0.0
-    work: float = 0.0
-    dissipated: float = 0.0
-
-    @property
-    def balance(self) -> float:
-        """The conserved sum."""
-        return self.kinetic + self.strain + self.gravity - self.work + self.dissipated
-
-    @property
-    def scale(self) -> float:
-        """The energy that is at stake."""
-        return max(self.kinetic + self.strain, abs(self.gravity), abs(self.work), self.dissipated)
-
-
 @dataclass(kw_only=True, eq=False)
 class Samples:
     """States of a motion in the reduced coordinates at the sampled instants, the start first.
 
     Attributes:
         home: the scheme in whose coordinates they are.
-        time [s], y (size,), v (size,), energy: instants, coordinates, velocities, energies.
+        time [s], y (size,), v (size,), energy (5,): instants, coordinates, velocities, `ENERGIES`.
         unstable: whether the motion was stopped because its energy blew up.
         message: why and when the motion stopped early ("" if it did not).
         books: work of loads and drives, and what dampers took, until now [J]. content: sums of a.M a and
@@ -106,7 +84,7 @@ class Samples:
     time: list[float] = field(default_factory=list)
     y: list[Array] = field(default_factory=list)
     v: list[Array] = field(default_factory=list)
-    energy: list[Energy] = field(default_factory=list)
+    energy: list[Array] = field(default_factory=list)
     counters: Counter[str] = field(default_factory=Counter)
     history: list[tuple[float, ...]] = field(default_factory=list)
     unstable: bool = False
@@ -131,57 +109,42 @@ class Samples:
         return self.kinetic(scheme, at.y, at.v) - 0.5 * float(scheme.mass @ at.v**2)
 
     def take(self, scheme: Scheme, at: Instant, begun: float) -> bool:
-        """Keep an instant if its energy is sound; begun: `beside` at the beginning of the span.
+        """Keep an instant if its energy is sound; otherwise note when it was lost and return False.
 
-        At constant rates drives do the work of what is beside the scheme's energy as well.
+        The gain is measured against the largest energy at stake before this sample. At constant rates drives
+        do the work of what is beside the scheme's energy as well, which was `begun` as the span began.
         """
-        work, dissipated = self.books
-        energy = Energy(
-            kinetic=self.kinetic(scheme, at.y, at.v),
-            strain=at.acting.strain,
-            gravity=at.acting.gravity,
-            work=float(work) + self.beside(scheme, at) - begun,
-            dissipated=float(dissipated),
-        )
-        places = (scheme.structure, at.y, self.home.structure)
-        return self.keep(at.time, carried_over(*places), carried_over(*places, at.v), energy)
-
-    def keep(self, time: float, y: Array, v: Array, energy: Energy) -> bool:
-        """Keep a state if its energy is sound; otherwise note when it was lost and return False.
-
-        The gain is measured against the largest energy at stake before this sample.
-        """
-        start = self.energy[0] if self.time else energy
-        self._stake = max(self._stake, (self.energy[-1] if self.time else energy).scale)
-        at_stake = max(self._stake, abs(energy.work), abs(energy.gravity), self.floor)
-        if not np.isfinite(energy.balance) or energy.balance - start.balance > self.home.blow_up * at_stake:
+        acting, work = at.acting, float(self.books[0]) + self.beside(scheme, at) - begun
+        kinetic = self.kinetic(scheme, at.y, at.v)
+        energy = np.array([kinetic, acting.strain, acting.gravity, work, float(self.books[1])])
+        former = self.energy[-1] if self.energy else energy
+        self._stake = max(self._stake, float(former[:2].sum()), *np.abs(former[2:]).tolist())
+        start, now = (_conserved(each) for each in (self.energy[0] if self.energy else energy, energy))
+        at_stake = max(self._stake, abs(work), abs(acting.gravity), self.floor)
+        if not np.isfinite(now) or now - start > self.home.blow_up * at_stake:
             self.unstable = True
             self.message = (
-                f"the energy grew from {start.balance:.6g} J to {energy.balance:.6g} J"
-                f" between {self.time[-1]:.6g} s and {time:.6g} s"
+                f"the energy grew from {start:.6g} J to {now:.6g} J"
+                f" between {self.time[-1]:.6g} s and {at.time:.6g} s"
             )
             return False
-        self.time.append(time)
-        self.y.append(y.copy())
-        self.v.append(v.copy())
+        places = (scheme.structure, at.y, self.home.structure)
+        self.time.append(at.time)
+        self.y.append(carried_over(*places))
+        self.v.append(carried_over(*places, at.v))
         self.energy.append(energy)
         return True
 
     def lost(self) -> float:
         """Return the part of the energy at stake that is gone at the end, neither work nor dissipation."""
         at_stake = max(self._stake, self.floor)
-        return (self.energy[0].balance - self.energy[-1].balance) / at_stake if at_stake > 0.0 else 0.0
-
-    def energies(self, name: str) -> Array:
-        """Return one part of the energies over the samples (T,) [J]."""
-        return np.array([getattr(each, name) for each in self.energy])
+        gone = _conserved(self.energy[0]) - _conserved(self.energy[-1])
+        return gone / at_stake if at_stake > 0.0 else 0.0
 
 
-def sampling(steps: int, samples: int) -> list[int]:
-    """Return the numbers of steps between samples: equal ones, the last perhaps shorter."""
-    every = -(-steps // samples)
-    whole, rest = divmod(steps, every)
-    return [every] * whole + ([rest] if rest else [])
+def _conserved(energy: Array) -> float:
+    """Return what is conserved of energies (5,) [J]."""
+    return float(energy @ [*ENERGIES.values()])
 
 
 def course(
@@ -213,7 +176,7 @@ def course(
         begun = samples.beside(scheme, now)
         if not samples.time:
             samples.take(scheme, now, begun)
-        for piece in pieces(span, step, chunks):
+        for piece in span.pieces(step, chunks):
             after = scheme.go(replace(now, time=piece.time), piece, samples)
             if after is None or (piece.kept and not samples.take(scheme, after, begun)):
                 return samples

@@ -1,5 +1,9 @@
 """Following an equilibrium path: predictor, Newton, a check of every state, halved increments on failure.
 
+A request (what is driven, what is loaded) is followed from rest through the spans of its controls, after the
+scene has settled under gravity and natural strains. Where a path ends for want of an equilibrium, the limit
+point beyond its last state is looked for.
+
 An increment at which the number of negative eigenvalues changes is halved like one that fails, until the
 change goes away (it was another branch, or a sharp bend of this one) or until it is within so small a part of
 the path that the two states beside it are one: a critical point.
@@ -9,17 +13,29 @@ from the third increment on, so that one or two iterations are left of an increm
 """
 
 from collections import Counter
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from .arrays import Array
-from .control import LAST, Balance, Control, Outcome, equilibrate, taken
-from .critical import critical_point, tipping
+from .control import LAST, Control, Outcome, equilibrate, taken
+from .critical import critical_point, limit_point, tipping
 from .errors import InvalidParameter
 from .matrix import Singular
-from .response import Response, respond
+from .response import State, respond
 from .solution import CriticalPoint
+
+Progress = Callable[[int, int], None]
+#: What is counted on a path.
+COUNTERS = (
+    "increments",
+    "halvings",
+    "newton_iterations",
+    "residual_evaluations",
+    "tangent_evaluations",
+    "factorisations",
+)
 
 #: An increment is halved at least so often before it is given up, and until it is this part of the path.
 HALVINGS, SMALLEST = 6, 2.0**-20
@@ -42,64 +58,12 @@ ROUND_OFF = 1e-10
 #: Largest turn of an element's end from its chord [rad]: beyond a quarter turn the element is folded, not
 #: bent.
 DISTORTION = 0.5 * np.pi
-
-
 #: States that the predictor looks back at.
 BACK = 3
 #: Least mean distance of these states, in parts of the step.
 CLOSEST = 0.5
 #: Step below which a path is straight, in parts of it.
 STRAIGHT = 2.0**-9
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class State:
-    """A state in equilibrium.
-
-    Attributes:
-        parameter: p. y: reduced coordinates (size,).
-        response: its derivatives along the path, torque and stiffness.
-        balance: of its forces.
-        work: of loads and drives since the first state [J].
-        norms: residual norms of the iteration that led here.
-        behind: parameter, coordinates and rate of the last states before on the same span, latest first.
-    """
-
-    parameter: float
-    y: Array
-    response: Response
-    balance: Balance
-    work: float
-    norms: tuple[float, ...]
-    behind: tuple[tuple[float, Array, Array], ...] = ()
-
-    @property
-    def trail(self) -> tuple[tuple[float, Array, Array], ...]:
-        """The same with this state first, no more than the predictor looks back at."""
-        return ((self.parameter, self.y, self.response.rate), *self.behind)[:BACK]
-
-    def ahead(self, parameter: float) -> Array:
-        """Return the coordinates at a parameter by the polynomial through the last states and their rates.
-
-        States that are too close for a step so long are left out: round-off would be carried far. A step that
-        was halved often is straight: next to a critical point the rest is round-off.
-        """
-        step, back = abs(parameter - self.parameter), self.trail
-        far = [k * CLOSEST * max(step, STRAIGHT) for k in range(len(back))]
-        known = [at for at, least in zip(back, far, strict=True) if abs(self.parameter - at[0]) >= least]
-        nodes = [node for node, _, _ in known for _ in range(2)]
-        column = [y for _, y, _ in known for _ in range(2)]
-        guess, factor = self.y.copy(), 1.0
-        for k in range(1, len(nodes)):
-            column = [
-                known[i // 2][2]
-                if nodes[i + k] == nodes[i]
-                else (column[i + 1] - column[i]) / (nodes[i + k] - nodes[i])
-                for i in range(len(nodes) - k)
-            ]
-            factor *= parameter - nodes[k - 1]
-            guess += factor * column[0]
-        return guess
 
 
 @dataclass(kw_only=True, eq=False)
@@ -116,6 +80,26 @@ class Path:
     critical: list[CriticalPoint] = field(default_factory=list)
     message: str = ""
     last: State = field(init=False)
+
+    @classmethod
+    def settled(cls, control: Control, increments: int) -> "Path":
+        """Return a path at its first state: rest, or the equilibrium under gravity and natural strains.
+
+        If that cannot be reached, the path holds the shape at rest and says why.
+        """
+        path = cls(control=control)
+        if not control.structure.constant_words:
+            path.begin()
+            return path
+        values = np.stack([control.values[0]] * 2)
+        settling = Control(structure=control.structure, held=control.held, values=values, settling=True)
+        before = cls(control=settling, counters=path.counters, failures=path.failures, critical=path.critical)
+        before.begin()
+        reached = all(before.advance(k / increments) for k in range(1, increments + 1))
+        path.counters["settling_increments"] = path.counters.pop("increments", 0)
+        path.begin(before.states[-1].y if reached else None)
+        path.message = before.message
+        return path
 
     def begin(self, y: Array | None = None) -> None:
         """Put down the first state: rest, or coordinates in equilibrium (size,)."""
@@ -134,9 +118,13 @@ class Path:
         self.states[-1] = replace(there, work=last.work, norms=last.norms)
 
     def advance(self, target: float) -> bool:
-        """Go from the last state to `target` in one increment or in halved ones, and keep its end."""
+        """Go from the last state to `target` in one increment or in halved ones, and keep its end.
+
+        If that is not reached, keep the limit point that is in the way.
+        """
         reached = self._reach(self.states[-1], target, 0)
         if reached is None:
+            self.critical += limit_point(self.control, self.last, target, self.counters)
             return False
         self.states.append(reached)
         self.counters["increments"] += 1
@@ -146,13 +134,13 @@ class Path:
         """Return what is to be said of the path: its critical points, why it ended early; else ""."""
         told = [point.text for point in self.critical if point.text]
         told += [self.message] if self.message else []
-        if self.states[-1].response.inertia:
+        if self.states[-1].inertia:
             told.append("the last state is unstable")
         return "; ".join(told)
 
     def _reach(self, state: State, target: float, depth: int) -> State | None:
         step = target - state.parameter
-        outcome = equilibrate(self.control, state.ahead(target), target, self.counters)
+        outcome = equilibrate(self.control, _ahead(state, target), target, self.counters)
         failure = outcome.failure
         if not failure:
             reached = self._state(outcome, state)
@@ -175,10 +163,10 @@ class Path:
         States that are taken for one are on one branch, whatever the rates at the point between them are.
         """
         step, moved = after.parameter - before.parameter, after.y - before.y
-        crossed = before.response.inertia != after.response.inertia
+        crossed = before.inertia != after.inertia
         if crossed and abs(step) > SMALLEST:
             return "the stability changes"
-        first, last = step * before.response.rate, step * after.response.rate
+        first, last = step * before.rate, step * after.rate
         size = self._size(moved)
         off = self._size(moved - 0.5 * (first + last)) > OFF_THE_PATH * size
         one = size <= (APART if abs(step) <= SMALLEST else 10.0 * LAST)  # or nothing moves but round-off
@@ -200,22 +188,13 @@ class Path:
 
     def _state(self, outcome: Outcome, before: State | None) -> State:
         """Complete a converged state by its response, potential and work."""
-        parameter, response = outcome.parameter, respond(self.control, outcome)
-        done, work = outcome.balance.load_work, 0.0
-        if before is not None:
-            # loads a F.q: their work is [a F.q] less the integral of F.q da, which is part of the conjugate
-            share = self.control.share
-            gain = share(parameter) * done - share(before.parameter) * before.balance.load_work
-            work = before.work + gain + _integral(parameter - before.parameter, before.response, response)
-        return State(
-            parameter=parameter,
-            y=outcome.y,
-            response=response,
-            balance=outcome.balance,
-            work=work,
-            norms=outcome.norms,
-            behind=() if before is None else before.trail,
-        )
+        state, share = respond(self.control, outcome), self.control.share
+        if before is None:
+            return state
+        # loads a F.q: their work is [a F.q] less the integral of F.q da, which is part of the conjugate
+        done, former = (share(at.parameter) * at.balance.load_work for at in (state, before))
+        work = before.work + (done - former) + _integral(before, state)
+        return replace(state, factors=None, work=work, behind=_trail(before))
 
     def _doubt(self, before: State, after: State) -> str:
         """Return why a converged state is not believed, or ""."""
@@ -223,16 +202,59 @@ class Path:
         if after.balance.at.ends[:, 4].max() > DISTORTION:
             return "an element is folded"
         step, gained = after.parameter - before.parameter, after.balance.potential - before.balance.potential
-        integral = _integral(step, before.response, after.response)
-        largest = abs(before.response.conjugate) + abs(after.response.conjugate)
+        largest = abs(before.conjugate) + abs(after.conjugate)
         unit = structure.moment_unit + abs(self.control.rates(after.y, after.parameter, 0.0)[2])
         scale = max(abs(gained), 0.5 * abs(step) * largest)
-        if abs(gained - integral) > WORK_MISMATCH * scale + ROUND_OFF * unit:
+        if abs(gained - _integral(before, after)) > WORK_MISMATCH * scale + ROUND_OFF * unit:
             return "the state lies on another branch (energy gained and work done differ)"
         return ""
 
 
-def _integral(step: float, before: Response, after: Response) -> float:
+def _trail(state: State) -> tuple[tuple[float, Array, Array], ...]:
+    """Return parameter, coordinates and rate of a state and of those before it, as many as are looked at."""
+    return ((state.parameter, state.y, state.rate), *state.behind)[:BACK]
+
+
+def _ahead(state: State, parameter: float) -> Array:
+    """Return the coordinates at a parameter by the polynomial through the last states and their rates.
+
+    States that are too close for a step so long are left out: round-off would be carried far. A step that
+    was halved often is straight: next to a critical point the rest is round-off.
+    """
+    step, back = abs(parameter - state.parameter), _trail(state)
+    far = [k * CLOSEST * max(step, STRAIGHT) for k in range(len(back))]
+    known = [at for at, least in zip(back, far, strict=True) if abs(state.parameter - at[0]) >= least]
+    nodes = [node for node, _, _ in known for _ in range(2)]
+    column = [y for _, y, _ in known for _ in range(2)]
+    guess, factor = state.y.copy(), 1.0
+    for k in range(1, len(nodes)):
+        column = [
+            known[i // 2][2]
+            if nodes[i + k] == nodes[i]
+            else (column[i + 1] - column[i]) / (nodes[i + k] - nodes[i])
+            for i in range(len(nodes) - k)
+        ]
+        factor *= parameter - nodes[k - 1]
+        guess += factor * column[0]
+    return guess
+
+
+def _integral(before: State, after: State) -> float:
     """Return the integral of the conjugate over a step [J] by Hermite's two-point rule, of fourth order."""
+    step = after.parameter - before.parameter
     mean = 0.5 * step * (before.conjugate + after.conjugate)
     return mean + step**2 / 12.0 * (before.slope - after.slope)
+
+
+def follow(controls: Sequence[Control], increments: int, progress: Progress | None = None) -> Path:
+    """Settle under gravity and natural strains, then walk through the spans as far as they can be reached."""
+    path, total = Path.settled(controls[0], increments), increments * len(controls)
+    for done in range(0 if path.message else total):
+        leg, k = divmod(done, increments)
+        if leg and not k:
+            path.turn_to(controls[leg])
+        if not path.advance((done + 1) / total):
+            break
+        if progress is not None:
+            progress(done + 1, total)
+    return path

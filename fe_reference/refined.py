@@ -46,7 +46,7 @@ def _halved(strip: Strip) -> Array:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Refined(Generic[Answer]):
+class _Refined(Generic[Answer]):
     """How a refinement ended.
 
     Attributes:
@@ -67,7 +67,7 @@ def refine(
     quantities: Callable[[Answer], Quantities],
     judged: Collection[str] | None = None,
     relative: bool = True,
-) -> Refined[Answer]:
+) -> _Refined[Answer]:
     """Double the elements until the estimated errors are below the accuracy or fall no more.
 
     Args:
@@ -78,7 +78,7 @@ def refine(
     positive("accuracy", accuracy, "1")
     known: list[list[Array]] = []
     meshes: list[int] = []
-    best = Refined(answer=solve(model), limits={}, estimate=None)
+    best = _Refined(answer=solve(model), limits={}, estimate=None)
     answer = best.answer
     while here := quantities(answer):
         meshes.append(len(model.strips[0].nodes) - 1)
@@ -92,12 +92,12 @@ def refine(
             }
             estimate = ErrorEstimate(accuracy=accuracy, meshes=tuple(meshes), errors=errors)
             if best.estimate is None or estimate.largest < best.estimate.largest:
-                best = Refined(answer=answer, limits=dict(zip(here, limits, strict=True)), estimate=estimate)
+                best = _Refined(answer=answer, limits=dict(zip(here, limits, strict=True)), estimate=estimate)
             if estimate is not best.estimate or estimate.largest <= accuracy or 2 * meshes[-1] > MOST:
                 return replace(best, message=_missed(best.estimate))
         model = finer(model)
         answer = solve(model)
-    return Refined(answer=answer, limits={}, estimate=None)
+    return _Refined(answer=answer, limits={}, estimate=None)
 
 
 def _missed(estimate: ErrorEstimate | None) -> str:

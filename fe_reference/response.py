@@ -1,4 +1,4 @@
-"""How an equilibrium changes: rates, torque and stiffness along its path, and the stiffness of a body."""
+"""States of equilibrium: rates, torque and stiffness along their path, and the stiffness of a body."""
 
 from dataclasses import dataclass
 
@@ -9,16 +9,16 @@ from .control import Control, Outcome
 from .effects import DrivenDisplacement
 from .law import Written
 from .matrix import Singular
+from .mesh import turned
 from .model import Model
-from .rigid import turned
 from .structure import Evaluation, Structure, Tables, structure_of
 
 Rates = tuple[float, float, float, float]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Response:
-    """How an equilibrium changes along its path.
+class State(Outcome):
+    """An equilibrium, and how it changes along its path.
 
     Attributes:
         rate: d y / d p (size,).
@@ -26,6 +26,9 @@ class Response:
         torque, stiffness: generalised force on the watched turn [N m] and its derivative [N m/rad], all that
             is not held being free; nan if no turn is watched.
         inertia: number of negative eigenvalues of the tangent on the free coordinates; 0: stable.
+        pace: rate of the parameter along the path, 1 where it leads.
+        work: of loads and drives since the first state of the path [J].
+        behind: parameter, coordinates and rate of the last states before on the same span, latest first.
     """
 
     rate: Array
@@ -34,10 +37,13 @@ class Response:
     torque: float
     stiffness: float
     inertia: int
+    pace: float = 1.0
+    work: float = 0.0
+    behind: tuple[tuple[float, Array, Array], ...] = ()
 
 
-def respond(control: Control, found: Outcome) -> Response:
-    """Return the response at an equilibrium: one solve for each drive and for the load; raises Singular.
+def respond(control: Control, found: Outcome) -> State:
+    """Return the state at an equilibrium: one solve for each drive and for the load; raises Singular.
 
     What is left of the residual is carried to the drives by the same solve: to first order what they exert
     is that of exact equilibrium, free of the round-off in the last elements' forces.
@@ -68,8 +74,9 @@ def respond(control: Control, found: Outcome) -> Response:
             move = factors.solve(unit)
             move /= move[control.watched]
         left = factors.solve(balance.residual)
-        stiffness = stiffness_between(control.structure, balance.at, y, move, move, left)
-    return Response(
+        stiffness = _stiffness_between(control.structure, balance.at, y, move, move, left)
+    return State(
+        **vars(found),
         rate=rate,
         conjugate=first + float(drive @ control.slope),
         slope=second + float(rate @ along),
@@ -79,7 +86,7 @@ def respond(control: Control, found: Outcome) -> Response:
     )
 
 
-def stiffness_between(
+def _stiffness_between(
     structure: Structure, at: Evaluation, y: Array, one: Array, other: Array, left: Array
 ) -> float:
     """Return the second derivative of the potential at y along two rates (size,), by its elements.
@@ -172,5 +179,5 @@ def body_stiffness(
             moves = prescribed - at.tangent.factors(held).solve(at.tangent.times(prescribed))
         except Singular:
             continue
-        found[k] = [[stiffness_between(structure, at, y, a, b, nothing) for b in moves] for a in moves]
+        found[k] = [[_stiffness_between(structure, at, y, a, b, nothing) for b in moves] for a in moves]
     return found

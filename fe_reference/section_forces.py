@@ -47,6 +47,19 @@ class StripFields:
     rest_bodies: Array
     bodies: Array
 
+    def outer_stress(self, model: Model) -> Array:
+        """Return the largest magnitude of stress at the nodes (S, G, P) [Pa], sections taken as rectangles.
+
+        |N| / A + |M| d / (2 I) with the depth d = sqrt(12 I / A). Of a strip that does not curl freely this
+        is the mean across the width, to which the stress is equal where the section is held flat or wholly
+        free.
+        """
+        sections = [strip.section for strip in model.strips]
+        area, inertia = np.array([(each.area, each.second_moment_of_area) for each in sections]).T[:, :, None]
+        stress: Array = np.abs(self.axial_force) / area
+        stress += np.abs(self.bending_moment) * np.sqrt(3.0 / (area * inertia))
+        return stress
+
 
 def strip_fields(model: Model, states: Array, ends: Array | None = None) -> StripFields:
     """Return the fields of states (S, size) in the reduced coordinates, natural strains in full.
@@ -74,26 +87,25 @@ def strip_fields(model: Model, states: Array, ends: Array | None = None) -> Stri
     roots = structure.elements.roots.reshape(*rows, 2)
     nodal[:, :, 0, 2] -= roots[:, 0, 0] * first[..., 0]
     nodal[:, :, -1, 2] -= roots[:, -1, 1] * last[..., -1]
-    force_x, force_y, moment = midpoints(force_x), midpoints(force_y), at_nodes(-first, last)
-    angle = nodal_angles(structure)
+    force_x, force_y, moment = _midpoints(force_x), _midpoints(force_y), _at_nodes(-first, last)
+    angle = _nodal_angles(structure)
     c, s = np.cos(angle + nodal[..., 2]), np.sin(angle + nodal[..., 2])
     axial, beyond = force_x * c + force_y * s, np.stack([force_x, force_y, moment], axis=-1)
     natural, elements = model.effects.find(PreStrain) or PreStrain(), structure.elements
     turning = np.diff(angle, axis=1) / elements.length.reshape(rows)
-    rest = np.array([strip.nodes for strip in model.strips])
     return StripFields(
         arc_length=structure.basis.mesh.p[0].reshape(grid),
-        rest_shape=rest,
-        shape=rest + nodal[..., :2],
+        rest_shape=model.rest,
+        shape=model.rest + nodal[..., :2],
         rotation=nodal[..., 2],
-        curvature=at_nodes(turning, turning) + _bent(model, moment) + natural.curvature,
+        curvature=_at_nodes(turning, turning) + _bent(model, moment) + natural.curvature,
         stretch=1.0 + axial / elements.axial_rigidity.reshape(rows)[:, :1] + natural.strain,
         axial_force=axial,
         shear_force=force_y * c - force_x * s,
         bending_moment=moment,
         reactions=np.stack([-beyond[:, :, 0], beyond[:, :, -1]], axis=2),
-        rest_bodies=np.array([body.centre for body in model.bodies]).reshape(-1, 2),
-        bodies=body_places(structure, y),
+        rest_bodies=model.centres,
+        bodies=structure.body_places(y),
     )
 
 
@@ -115,32 +127,19 @@ def _bent(model: Model, moment: Array) -> Array:
     return curvature.reshape(moment.shape)
 
 
-def outer_stress(model: Model, fields: StripFields) -> Array:
-    """Return the largest magnitude of stress at the nodes (S, G, P) [Pa], of sections taken as rectangles.
-
-    |N| / A + |M| d / (2 I) with the depth d = sqrt(12 I / A). Of a strip that does not curl freely this is
-    the mean across the width, to which the stress is equal where the section is held flat or wholly free.
-    """
-    given = np.array([(strip.section.area, strip.section.second_moment_of_area) for strip in model.strips])
-    area, inertia = given.T[:, :, None]
-    stress: Array = np.abs(fields.axial_force) / area
-    stress += np.abs(fields.bending_moment) * np.sqrt(3.0 / (area * inertia))
-    return stress
-
-
-def nodal_angles(structure: Structure) -> Array:
-    """Return the reference direction at the nodes (G, P) [rad] from those of the chords; see `midpoints`."""
+def _nodal_angles(structure: Structure) -> Array:
+    """Return the reference direction at the nodes (G, P) [rad] from those of the chords; see `_midpoints`."""
     chord = structure.elements.chord.reshape(2, structure.strips, -1)
-    return midpoints(np.unwrap(np.arctan2(chord[1], chord[0]), axis=1))
+    return _midpoints(np.unwrap(np.arctan2(chord[1], chord[0]), axis=1))
 
 
-def at_nodes(first: Array, last: Array) -> Array:
+def _at_nodes(first: Array, last: Array) -> Array:
     """Merge the end values of elements (..., E) at the nodes (..., P): the means of the adjacent elements."""
     inner = 0.5 * (first[..., 1:] + last[..., :-1])
     return np.concatenate([first[..., :1], inner, last[..., -1:]], axis=-1)
 
 
-def midpoints(values: Array) -> Array:
+def _midpoints(values: Array) -> Array:
     """Return values of the elements' middles (..., E) at the nodes (..., P).
 
     They are the means of the adjacent elements, and at the ends the line through the last two: a force there
@@ -152,10 +151,3 @@ def midpoints(values: Array) -> Array:
     first = 1.5 * values[..., :1] - 0.5 * values[..., 1:2]
     last = 1.5 * values[..., -1:] - 0.5 * values[..., -2:-1]
     return np.concatenate([first, 0.5 * (values[..., 1:] + values[..., :-1]), last], axis=-1)
-
-
-def body_places(structure: Structure, y: Array) -> Array:
-    """Return places of the bodies (S, B, 3) [m, rad] for coordinates (S, size) about their centres."""
-    places = y[:, structure.first_body :].reshape(len(y), -1, 3).copy()
-    places[..., :2] += structure.points
-    return places

@@ -91,16 +91,26 @@ class Answer:
     @property
     def rotation(self) -> Array:
         """Turn of the only body (S,) [rad]."""
-        return only(self.bodies)[:, 2]
+        return _only(self.bodies)[:, 2]
 
     @property
     def centre(self) -> Array:
         """Centre of mass of the only body (S, 2) [m]."""
-        return only(self.bodies)[:, :2]
+        return _only(self.bodies)[:, :2]
 
     def columns(self) -> dict[str, Array]:
         """Return what is one number in every state, by names with units."""
         raise NotImplementedError
+
+    @staticmethod
+    def body_columns(bodies: Mapping[str, Array], names: tuple[str, ...]) -> dict[str, Array]:
+        """Return the columns of arrays (S, 3) of bodies, named after them if there are many."""
+        many = len(bodies) > 1
+        return {
+            f"{body}_{name}" if many else name: values[:, k]
+            for body, values in bodies.items()
+            for k, name in enumerate(names)
+        }
 
     def to_frame(self) -> "pd.DataFrame":
         """Return the columns as a table, a row a state."""
@@ -192,7 +202,7 @@ class StaticSolution(Answer):
         """Return what is one number in every state, by names with units: the columns of a frame."""
         return {
             "load_factor": self.load_factor,
-            **body_columns(self.bodies, ("x_m", "y_m", "rotation_rad")),
+            **self.body_columns(self.bodies, ("x_m", "y_m", "rotation_rad")),
             "torque_Nm": self.torque,
             "stiffness_Nm_per_rad": self.stiffness,
             **{f"{name}_J": getattr(self, name) for name in ENERGIES},
@@ -229,19 +239,9 @@ class ErrorEstimate:
         return max(self.errors.values())
 
 
-def only(bodies: Mapping[str, Array]) -> Array:
+def _only(bodies: Mapping[str, Array]) -> Array:
     """Return what belongs to the one body there is."""
     if len(bodies) != 1:
         known = ", ".join(bodies) or "none"
         raise InvalidParameter("bodies", known, "one body, or the name of one in `bodies` [name]")
     return next(iter(bodies.values()))
-
-
-def body_columns(bodies: Mapping[str, Array], names: tuple[str, ...]) -> dict[str, Array]:
-    """Return the columns of arrays (S, 3) of bodies, named after them if there are many."""
-    many = len(bodies) > 1
-    return {
-        f"{body}_{name}" if many else name: values[:, k]
-        for body, values in bodies.items()
-        for k, name in enumerate(names)
-    }

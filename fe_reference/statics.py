@@ -11,13 +11,12 @@ from .arrays import Array
 from .control import Control, spans
 from .effects import DrivenDisplacement
 from .errors import InvalidParameter, choice, count, finite, pair, several
-from .follow import COUNTERS, Progress, follow
 from .law import FORCES
-from .loads import full_load, on_body
+from .loads import full_load
 from .model import Model
-from .path import Path
+from .path import COUNTERS, Path, Progress, follow
 from .refined import limit_of
-from .section_forces import outer_stress, strip_fields
+from .section_forces import strip_fields
 from .solution import ENERGIES, StaticSolution, Status, Stopwatch
 from .structure import structure_of
 
@@ -103,8 +102,7 @@ def solve_loads(
     turn = finite("moment", moment, "N m")
 
     def solve(each: Model) -> StaticSolution:
-        structure = structure_of(each)
-        load = full_load(structure, on_body(structure, None, force=pull, moment=turn))
+        load = full_load(structure_of(each), more=(pull, turn))
         return _solved(each, None, None, None, increments, progress, load=load, watch=True)
 
     return _answered(model, accuracy, solve, raise_on_failure)
@@ -148,7 +146,7 @@ def settled_state(
     load = full_load(structure) if load is None else load
     ends = None if rotation is None else [finite("rotation", rotation, "rad")]
     still = not rotation and load is None and not model.effects.find(DrivenDisplacement)
-    if still and not structure.constant_effects:
+    if still and not structure.constant_words:
         return np.zeros(structure.size), ""  # rest, whether or not clamps hold it
     solution = _solved(model, body, ends, None, increments, None, load=load).checked()
     return solution.states[-1], solution.message
@@ -214,8 +212,8 @@ def _packed(
     y, strain = np.array([state.y for state in states]), np.array([at.strain for at in here])
     fields = strip_fields(model, y, np.array([at.ends for at in here]))
     answers: dict[str, Any] = {
-        name: np.array([getattr(state.response, name) for state in states])
-        for name in ("torque", "stiffness", "inertia")
+        name: np.array([getattr(state, name) for state in states])
+        for name in ("torque", "stiffness", "inertia", "work")
     }
     return StaticSolution(
         status=Status.CONVERGED if len(states) == total + 1 else Status.NOT_CONVERGED,
@@ -228,9 +226,8 @@ def _packed(
         axial_energy=strain[:, 1],
         shear_energy=strain[:, 2],
         gravity_energy=np.array([at.gravity for at in here]),
-        work=np.array([state.work for state in states]),
         clamp_reactions=fields.reactions,
-        largest_stress=outer_stress(model, fields).max(axis=(1, 2)),
+        largest_stress=fields.outer_stress(model).max(axis=(1, 2)),
         stations=structure.basis.mesh.p[0, : structure.stations] / model.strips[0].length,
         **{name: getattr(fields, name) for name in ("shape", "axial_force", "shear_force", "bending_moment")},
         states=y,

@@ -8,28 +8,30 @@ Gravity and natural strains, where they are named, are part of the potential her
 part: `share` goes from 0 to 1 on the way from the shape at rest to the state under both.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .arrays import Array, Indices, kernel
+from .arrays import Array, Flags, Indices, kernel
 from .effects import Gravity, PreStrain
 from .law import FORCES, TANGENT, Energies, Given, Written, elements
-from .matrix import Envelope, Symmetric, assemble
-from .mesh import Attachments, reference_elements, strip_basis
-from .model import GROUND, Model
-from .rigid import (
+from .matrix import Envelope, Symmetric
+from .mesh import (
     RESULTANTS,
+    Attachments,
     Carried,
+    Elements,
     Weights,
     body_forces,
     carry,
     carry_velocity,
     gravity_energy,
-    put_weight,
+    strip_basis,
 )
+from .model import GROUND, Model
 
 #: What is known of a structure where all its elements are run through: elements, carried nodes, weights.
 Tables = tuple[Given, Carried, Weights]
@@ -68,10 +70,9 @@ class Structure:
     def __init__(self, model: Model, points: ArrayLike | None = None) -> None:
         self.model = model
         self.basis = strip_basis(model)
-        self.elements = reference_elements(model)
+        self.elements = Elements.of(model)
         self.shear = model.element == "reissner"
-        centres = np.array([body.centre for body in model.bodies])
-        self.points: Array = np.reshape(centres if points is None else np.asarray(points), (-1, 2))
+        self.points: Array = model.centres if points is None else np.reshape(np.asarray(points), (-1, 2))
         self.strips, self.stations = len(model.strips), len(model.strips[0].nodes)
         self.attachments = Attachments(model, self.points)
         self._number()
@@ -126,10 +127,7 @@ class Structure:
         nodes, bodies = np.zeros((len(masses), 3)), np.zeros((len(self.points), 4))
         nodes[self.free_nodes, :2] = masses[self.free_nodes, None] * g
         own = np.array([body.mass for body in self.model.bodies])
-        total, moments = own.copy(), np.zeros((len(own), 2))
-        if len(own):
-            centres = np.array([body.centre for body in self.model.bodies])
-            moments = own[:, None] * (centres - self.points)
+        total, moments = own.copy(), own[:, None] * (self.model.centres - self.points)
         np.add.at(total, ends.body, masses[ends.node])
         np.add.at(moments, ends.body, masses[ends.node][:, None] * ends.offsets)
         heavy = total > 0.0
@@ -137,14 +135,9 @@ class Structure:
         bodies[heavy, 2:] = moments[heavy] / total[heavy, None]
         return nodes, bodies
 
-    @property
-    def constant_effects(self) -> bool:
-        """Whether gravity or natural strains act, so that the shape at rest is not in equilibrium."""
-        return bool(self.constant_words)
-
     @cached_property
     def constant_words(self) -> str:
-        """What of weight and natural strains acts, in words."""
+        """What of weight and natural strains acts, in words; "" where the shape at rest is in equilibrium."""
         acting = {"the weight": Gravity, "the natural strains": PreStrain}
         return " and ".join(word for word, kind in acting.items() if self.model.effects.find(kind))
 
@@ -166,6 +159,14 @@ class Structure:
     def body_slice(self, body: int) -> slice:
         """Return where the coordinates of a body lie."""
         return slice(self.first_body + 3 * body, self.first_body + 3 * body + 3)
+
+    def flags(self, chosen: Sequence[int] | Indices) -> Flags:
+        """Return which of the coordinates are chosen (size,)."""
+        return np.isin(np.arange(self.size), chosen)
+
+    def gathered(self, nodes: Array, bodies: Array) -> Array:
+        """Return in the order of the coordinates (size,) what nodes (nodes, 3) and bodies (B, 3) have."""
+        return np.concatenate([nodes[self.free_nodes].ravel(), bodies.ravel()])
 
     def nodal_masses(self) -> Array:
         """Return the mass of the strips that falls to each node, half of every element (nodes,) [kg]."""
@@ -198,7 +199,7 @@ class Structure:
         written, out = (force, ends, matrices, scratch), (gradient, resultants)
         strain, gravity = _evaluate(self.tables, share, asked, u, bodies, self.free_nodes, written, out)
         if asked != FORCES:
-            self._assemble(matrices, y, tangent)
+            tangent = self.reduced_matrix(matrices, y)
         if asked == TANGENT:
             tangent.data[self.pattern.diagonal[self.turns]] += resultants[:, 3:].sum(axis=1)
         return Evaluation(
@@ -211,15 +212,15 @@ class Structure:
             curvature=resultants[:, 3:],
         )
 
-    def _assemble(self, matrices: Array, y: Array, into: Symmetric) -> None:
-        ends, places, turns = self.attachments.ends, self.pattern.places, y[self.turns]
-        assemble(matrices.copy(), ends, self.carried, turns, places, into.data)
-
     def reduced_matrix(self, matrices: Array, y: Array) -> Symmetric:
         """Assemble element matrices (E, 6, 6) into the reduced coordinates as P^T K P."""
-        whole = self.pattern.zero()
-        self._assemble(matrices, y, whole)
-        return whole
+        return self.pattern.assembled(matrices, self.attachments.ends, self.carried, y[self.turns])
+
+    def body_places(self, y: Array) -> Array:
+        """Return places of the bodies (S, B, 3) [m, rad] for coordinates (S, size) about their points."""
+        places = y[:, self.first_body :].reshape(len(y), -1, 3).copy()
+        places[..., :2] += self.points
+        return places
 
     def element_matrices(self, y: Array, asked: int) -> Array:
         """Return the tangents of the elements, or the part that is asked for, (E, 6, 6)."""
@@ -264,8 +265,7 @@ def _evaluate(
     """Write gradient and resultants `out`; return energies of the strips and of the full weight."""
     (given, carried, weights), (gradient, resultants), force = tables, out, written[0]
     strain = elements(given, share, asked, u, written)
-    body_forces(bodies, carried, force, resultants)
-    put_weight(share, weights, bodies, force, resultants)
+    body_forces(share, bodies, carried, weights, force, resultants)
     at = 0
     for i in free_nodes:
         for k in range(3):

@@ -12,12 +12,11 @@ import numpy as np
 
 from .arrays import Array
 from .errors import ConvergenceError, InvalidParameter
-from .explicit import critical_step
 from .mass import about_mass_centre, carried_over
 from .model import Model
-from .motion import Samples
-from .section_forces import body_places
-from .solution import Answer, ErrorEstimate, Status, Stopwatch, body_columns
+from .motion import ENERGIES, Samples
+from .schemes import critical_step
+from .solution import Answer, ErrorEstimate, Status, Stopwatch
 from .structure import structure_of
 
 #: Estimated error of the rotation over the swing that is not remarked on.
@@ -99,13 +98,10 @@ class Trajectory(Answer):
         """Return what is one number at every instant, by names with units: the columns of a frame."""
         return {
             "time_s": self.time,
-            **body_columns(self.bodies, ("x_m", "y_m", "rotation_rad")),
-            **body_columns(self.rates, ("x_rate_m_per_s", "y_rate_m_per_s", "rotation_rate_rad_per_s")),
+            **self.body_columns(self.bodies, ("x_m", "y_m", "rotation_rad")),
+            **self.body_columns(self.rates, ("x_rate_m_per_s", "y_rate_m_per_s", "rotation_rate_rad_per_s")),
             **{f"{name}_J": getattr(self, name) for name in ENERGIES},
         }
-
-
-ENERGIES = ("kinetic_energy", "strain_energy", "gravity_energy", "work", "dissipated")
 
 
 def trajectory(
@@ -114,14 +110,13 @@ def trajectory(
     """Turn samples in the reduced coordinates into the motion of all bodies; remarks: on its start."""
     structure, y, v = motion.home.structure, motion.y, motion.v
     model, pairs = structure.model, list(zip(y, v, strict=True))
-    nodes = np.array([strip.nodes for strip in model.strips])
     moved = np.array([structure.displacement(each)[:, :2] for each in y])
     # the motion is reduced about other points of the bodies than the model's own structure
     own = structure_of(model)
     states = np.array([carried_over(structure, each, own) for each in y])
     rates = np.array([carried_over(structure, at, own, rate)[own.first_body :] for at, rate in pairs])
-    places = body_places(own, states)
-    energies: dict[str, Any] = {name: motion.energies(name.removesuffix("_energy")) for name in ENERGIES}
+    places = own.body_places(states)
+    energies: dict[str, Any] = dict(zip(ENERGIES, np.array(motion.energy).T.copy(), strict=True))
     status = Status.CONVERGED if not motion.message else Status.NOT_CONVERGED
     return Trajectory(
         status=Status.UNSTABLE if motion.unstable else status,
@@ -130,7 +125,7 @@ def trajectory(
         bodies={name: places[:, k] for k, name in enumerate(model.body_names)},
         rates={name: rates[:, 3 * k : 3 * k + 3] for k, name in enumerate(model.body_names)},
         **energies,
-        shape=nodes + moved.reshape(-1, *nodes.shape),
+        shape=model.rest + moved.reshape(-1, *model.rest.shape),
         states=states,
         effects=model.effects.names,
         counters=dict(motion.counters),

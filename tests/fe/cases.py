@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 import pytest
 
+from fe_reference.mechanism import cross_axis_pivot
 from fe_reference.model import Body, Model, Section, Strip, rotation_matrix
-from fe_reference.pivot import cross_axis_pivot
 from tests import gates
 from tests.table_one import TABLE_ONE
 

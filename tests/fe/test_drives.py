@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from fe_reference.drives import DrivenRotation, drive_spans
 from fe_reference.dynamics import solve_motion
+from fe_reference.loads import DrivenRotation, drive_spans
 from fe_reference.mass import about_mass_centre, mass_matrix
 from fe_reference.model import Model
 from fe_reference.structure import structure_of

@@ -7,15 +7,15 @@ import pytest
 
 from fe_reference.actions import Actions
 from fe_reference.control import Control
-from fe_reference.drives import drive_spans
 from fe_reference.dynamics import INTEGRATORS, solve_motion, solve_release
-from fe_reference.explicit import Explicit, critical_step
-from fe_reference.follow import follow
-from fe_reference.mass import about_mass_centre, lumped_diagonal
+from fe_reference.loads import drive_spans
+from fe_reference.mass import about_mass_centre
 from fe_reference.mechanism import BodyDesign, StripDesign, mechanism
 from fe_reference.model import ELEMENTS, Model
 from fe_reference.modes import natural_frequencies
 from fe_reference.motion import course
+from fe_reference.path import follow
+from fe_reference.schemes import Explicit, critical_step
 from fe_reference.structure import structure_of
 from tests.fe.cases import EI, hold, pivot
 from tests.fe.scenes import (
@@ -230,7 +230,7 @@ def test_critical_step_with_dampers(name: str) -> None:
     rest, plain = np.zeros(structure.size), about_mass_centre(structure_of(four_bar(elements=3)))
     h = critical_step(structure, bodies, rest)
     assert h < 0.8 * critical_step(*plain, rest)
-    inverse = 1.0 / lumped_diagonal(structure, bodies)[:, None]
+    inverse = 1.0 / bodies.diagonal(structure)[:, None]
     stiffness = inverse * structure.evaluate(rest).tangent.sparse().toarray()
     damping = inverse * Actions(structure).damping_matrix(rest).sparse().toarray()
 

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from fe_reference.errors import ConvergenceError, InvalidParameter
+from fe_reference.mechanism import cross_axis_pivot
 from fe_reference.model import FREE, Body, Model, Section, Strip
-from fe_reference.pivot import cross_axis_pivot
 from fe_reference.solution import Status
 from fe_reference.statics import solve_loads, solve_statics
 from tests.fe.cases import SECTION, TABLE_1, cantilever, flat_strip, pivot
@@ -32,6 +32,7 @@ BAD = [
         "body_moment_of_inertia: got -1.0, expected a number not below 0 [kg m^2]",
     ),
     ("centre_offset", (0.0,), "centre_offset: got (0.0,), expected two finite numbers [m]"),
+    ("centre_offset", np.array(0.1), "centre_offset: got array(0.1), expected two finite numbers [m]"),
     ("elements", 0, "elements: got 0, expected an integer of at least 1 [1]"),
     ("elements", 2.5, "elements: got 2.5, expected an integer of at least 1 [1]"),
     ("element", "shell", "element: got 'shell', expected one of corotational, reissner [name]"),

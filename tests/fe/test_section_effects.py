@@ -9,10 +9,9 @@ import pytest
 from fe_reference.bending import section
 from fe_reference.effects import DEFAULT_EFFECTS
 from fe_reference.errors import InvalidParameter
-from fe_reference.mechanism import BodyDesign, StripDesign, mechanism
+from fe_reference.mechanism import BodyDesign, StripDesign, cross_axis_pivot, mechanism
 from fe_reference.model import ELEMENTS, Model
 from fe_reference.modes import natural_frequencies
-from fe_reference.pivot import cross_axis_pivot
 from fe_reference.plate import plate_factors
 from fe_reference.section_forces import strip_fields
 from fe_reference.statics import solve_loads, solve_statics

@@ -25,7 +25,8 @@ def test_inertia_counts_the_negative_eigenvalues():
     """The factorisation finds as many negative eigenvalues as there are, at stable and unstable states."""
     control = toggle(elements=6)
     path, seen = follow_arc(control), set()
-    for y, parameter, negative in zip(path.y, path.parameter, path.negative, strict=True):
+    for state in path.states:
+        y, parameter, negative = state.y, state.parameter, state.inertia
         balance = control.balance(y, parameter)
         block = balance.at.tangent.sparse().toarray()[np.ix_(control.free, control.free)]
         assert np.count_nonzero(np.linalg.eigvalsh(block) < 0.0) == negative
@@ -57,8 +58,8 @@ def test_a_bent_column_follows_the_elastica():
     def error(elements: int = 40) -> float:
         path = follow_arc(column(load=EULER * 2.5422, side=1e-4, slenderness=1e4, elements=elements))
         assert path.critical == ()
-        assert path.negative.max() == 0
-        return float(abs(abs(np.degrees(path.y[-1, -1])) - 140.0))
+        assert max(state.inertia for state in path.states) == 0
+        return float(abs(abs(np.degrees(path.states[-1].y[-1])) - 140.0))
 
     hold("fe_bent_column", error)
 
@@ -90,4 +91,4 @@ def test_the_driven_pivot_ends_as_in_rotation_control():
     control = spans(structure, body=0, rotations=[1.5], watched=int(structure.turns[0]))[0]
     path, plain = follow_arc(control), solve_statics(model, rotation=1.5)
     assert path.critical == ()
-    assert abs(path.torque[-1] / plain.torque[-1] - 1.0) < 1e-9
+    assert abs(path.states[-1].torque / plain.torque[-1] - 1.0) < 1e-9

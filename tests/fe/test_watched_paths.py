@@ -8,11 +8,9 @@ import pytest
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
-from fe_reference.follow import follow
-from fe_reference.mechanism import BodyDesign, StripDesign, mechanism
+from fe_reference.mechanism import BodyDesign, StripDesign, cross_axis_pivot, mechanism
 from fe_reference.model import ELEMENTS, Model
-from fe_reference.path import WORK_MISMATCH
-from fe_reference.pivot import cross_axis_pivot
+from fe_reference.path import WORK_MISMATCH, follow
 from fe_reference.statics import solve_mechanism, solve_statics
 from fe_reference.structure import structure_of
 from tests.fe.cases import extrapolated, hold, pivot

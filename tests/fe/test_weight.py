@@ -2,8 +2,8 @@
 
 import pytest
 
+from fe_reference.mechanism import cross_axis_pivot
 from fe_reference.model import ELEMENTS
-from fe_reference.pivot import cross_axis_pivot
 from fe_reference.statics import solve_statics
 from tests.fe.cases import MOMENT, TABLE_1, hold
 
