@@ -12,15 +12,15 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cache
-from typing import Generic, NamedTuple, TypeVar
+from typing import Generic, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.design import Design, Discretisation, StripDesign
 from spline_model.errors import InvalidParameter, require_positive
-from spline_model.estimate import ErrorEstimate
-from spline_model.solution import StaticSolution, Status
+from spline_model.solution import ErrorEstimate, Status
+from spline_model.static_answers import StaticSolution
 
 Array = NDArray[np.float64]
 Found = TypeVar("Found")
@@ -148,16 +148,6 @@ def _next_count(levels: list[tuple[int, float]], accuracy: float, tried: int) ->
     return n + max(MORE, math.ceil(math.log(error / accuracy) / math.log(gain)))
 
 
-class Errors(NamedTuple):
-    """Largest errors over a path, relative [1], as ``ErrorEstimate`` has them."""
-
-    trajectory: float
-    torque: float
-    stiffness: float
-    section_forces: float
-    stress: float
-
-
 def solve_accurately(
     design: Design, accuracy: float, solve: Callable[[int], StaticSolution], *, least: float | None = None
 ) -> StaticSolution:
@@ -170,12 +160,12 @@ def solve_accurately(
     """
     solved = cache(solve)
 
-    def attempt(fewer: int, more: int) -> tuple[float, tuple[StaticSolution, Errors]] | None:
+    def attempt(fewer: int, more: int) -> tuple[float, tuple[StaticSolution, dict[str, float]]] | None:
         coarse, fine = solved(fewer), solved(more)
         if not _end_alike(coarse, fine):
             return None
         errors = distances(design, coarse, fine)
-        return max(errors), (coarse, errors)
+        return max(errors.values()), (coarse, errors)
 
     outcome = search(design, accuracy, attempt)
     if outcome.found is None:
@@ -183,7 +173,7 @@ def solve_accurately(
     answer, errors = outcome.found
     estimate = ErrorEstimate(
         accuracy=accuracy,
-        **errors._asdict(),
+        **errors,
         control_points=outcome.control_points,
         trials=outcome.trials,
     )
@@ -198,8 +188,9 @@ def _end_alike(one: StaticSolution, other: StaticSolution) -> bool:
     return one.status is other.status and (one.status is Status.CONVERGED or _in_step(one, other))
 
 
-def distances(design: Design, answer: StaticSolution, better: StaticSolution) -> Errors:
-    """Errors of an answer against a better one, each over the largest magnitude on its path.
+def distances(design: Design, answer: StaticSolution, better: StaticSolution) -> dict[str, float]:
+    """Errors of an answer against a better one by the names of ``ErrorEstimate``, each over the largest
+    magnitude on its path.
 
     Places over the largest displacement, turns over the largest turn, section forces over the largest force
     and the largest moment. What is none but round-off is held against its unit: strip length, rad, EI/L.
@@ -214,16 +205,14 @@ def distances(design: Design, answer: StaticSolution, better: StaticSolution) ->
         mine, right = of(answer)[rows], of(better)[rows]
         return _relative(mine - right, right, unit)
 
-    return Errors(
-        trajectory=max(error(_moved, length), error(_turned, 1.0)),
-        torque=error(lambda path: path.torque, moment),
-        stiffness=error(lambda path: path.stiffness, moment),
-        section_forces=max(
-            error(lambda path: path.bending_moment, moment),
-            error(lambda path: np.stack((path.axial_force, path.shear_force), axis=1), moment / length),
-        ),
-        stress=error(lambda path: _stress(design, path), stress),
-    )
+    forces = error(lambda path: np.stack((path.axial_force, path.shear_force), axis=1), moment / length)
+    return {
+        "trajectory": max(error(_moved, length), error(_turned, 1.0)),
+        "torque": error(lambda path: path.torque, moment),
+        "stiffness": error(lambda path: path.stiffness, moment),
+        "section_forces": max(error(lambda path: path.bending_moment, moment), forces),
+        "stress": error(lambda path: _stress(design, path), stress),
+    }
 
 
 def _in_step(one: StaticSolution, other: StaticSolution) -> bool:

@@ -12,8 +12,8 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import cache, cached_property, partial
-from typing import TYPE_CHECKING, Any, NamedTuple
+from functools import cache, cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,16 +22,12 @@ from spline_model.compile import compile_scene
 from spline_model.design import swinging_slide_stiffness
 from spline_model.effects import DrivenRotation
 from spline_model.errors import InvalidParameter
-from spline_model.estimate import MotionEstimate
 from spline_model.mechanism import Mechanism
 from spline_model.modes import linear_modes, static_state
-from spline_model.motion.dispatch import highest_frequency
-from spline_model.motion.explicit import require_explicit, stability_limit
+from spline_model.motion.explicit import critical_step, require_explicit
+from spline_model.motion.records import Trajectory
 from spline_model.motion.start import set_in_motion
-from spline_model.solution import Status
-
-if TYPE_CHECKING:
-    from spline_model.motion.trajectory import Trajectory
+from spline_model.solution import MotionEstimate, Status
 
 Array = NDArray[np.float64]
 
@@ -59,32 +55,6 @@ MOST_STEPS = 500_000
 """Energy-consistent steps at which the search ends where there are no explicit ones."""
 
 
-class _Rung(NamedTuple):
-    """A scheme and how fine it is: steps between two instants, or the step over the critical one."""
-
-    integrator: str
-    fine: int
-    part: float
-
-
-class _Resolved(NamedTuple):
-    """Runs of one rung: the fine one, a coarser rotation (S,), and what the fine one still lacks.
-
-    correction (S,): of the fine rotation by the order of the scheme [rad]; doubt: how far the
-    runs depart from that order [rad].
-    """
-
-    fine: Trajectory
-    coarser: Array
-    correction: Array
-    doubt: float
-
-    @property
-    def error(self) -> float:
-        """Estimated error by the steps [rad]."""
-        return _largest(self.correction) + self.doubt
-
-
 @dataclass(frozen=True, kw_only=True)
 class Task:
     """A motion of a mechanism from the static state at the rotation ``start`` of a body; as ``solve_motion``,
@@ -104,22 +74,37 @@ class Task:
         squares = linear_modes(system, system.rest, set_in_motion(system).mass)[0]
         return math.sqrt(max(float(squares[0]), 0.0))
 
-    def run(self, chosen: Mechanism, integrator: str, step: float, records: int) -> Trajectory:
-        """The motion of a mechanism by an integrator, with a step [s] and a number of records."""
+    def run(self, n: int, integrator: str, step: float, records: int) -> Trajectory:
+        """The motion with n control points by an integrator, with a step [s] and a number of records."""
         asked = {name: getattr(self, name) for name in ("start", "body", "drive", "duration")}
-        return self.solve(chosen, **asked, step=step, integrator=integrator, records=records, check=False)
+        asked |= {"step": step, "integrator": integrator, "records": records}
+        return self.solve(self.with_points(n), **asked, check=False)
 
-    def critical(self, chosen: Mechanism) -> float:
-        """The longest stable explicit step with a mechanism [s], 0 where it cannot be used."""
+    def critical(self, n: int) -> float:
+        """The longest stable explicit step with n control points [s], 0 where it cannot be used."""
         if self.drive is not None:
             return 0.0
+        chosen = self.with_points(n)
         motion = set_in_motion(compile_scene(chosen.released()))
         try:
             require_explicit(motion, EXPLICIT)
         except InvalidParameter:
             return 0.0
         held = static_state(chosen.at_start(), self.start, body=self.body)[: motion.system.layout.size]
-        return stability_limit(EXPLICIT, motion) / highest_frequency(motion, held)
+        return critical_step(EXPLICIT, motion, held)
+
+    @cached_property
+    def with_points(self) -> Callable[[int], Mechanism]:
+        """The mechanism with n control points, and a slide stiffness in proportion; one object a number."""
+        mechanism, grid = self.mechanism, self.mechanism.design.discretisation
+
+        def made(n: int) -> Mechanism:
+            if n == grid.points:
+                return mechanism
+            slide = grid.slide * swinging_slide_stiffness(n) / swinging_slide_stiffness(grid.points)
+            return mechanism.with_discretisation(control_points=n, slide_stiffness=slide)
+
+        return cache(made)
 
 
 def solve_accurately(task: Task, accuracy: float, records: int | None) -> Trajectory:
@@ -130,36 +115,36 @@ def solve_accurately(task: Task, accuracy: float, records: int | None) -> Trajec
     more suggest, and how far the runs depart from that order. An accuracy that is not reached
     is the status NOT_CONVERGED of the best motion.
     """
-    mechanism = task.mechanism
     instants, every = _comparison(task, records)
-    runs = _Runs(task, instants)
-    n = mechanism.design.discretisation.points
+    n = task.mechanism.design.discretisation.points
+    runs = _Runs(task, instants, explicit=task.critical(n) > 0.0)
     while True:
-        rung = runs.resolve(n, runs.first(n, accuracy), accuracy)
-        by_steps, by_points = runs.solved(n, rung), runs.by_points(n, rung)
+        fineness = runs.resolve(n, accuracy)
+        fine, correction, doubt = runs.solved(n, fineness)
+        by_points = runs.coarser(n + MORE, fineness) - runs.coarser(n, fineness)
         estimate = MotionEstimate(
             accuracy=accuracy,
-            rotation=_largest(by_steps.correction + by_points) + by_steps.doubt,
-            time=by_steps.error,
+            rotation=_largest(correction + by_points) + doubt,
+            time=_largest(correction) + doubt,
             space=_largest(by_points),
             control_points=n,
             runs=runs.count,
         )
-        stuck = by_steps.error > SHARE * accuracy
+        stuck = estimate.time > SHARE * accuracy
         if estimate.rotation <= accuracy or stuck or n + MORE > MOST:
-            return _answer(by_steps.fine, estimate, _slide_stiffness(mechanism, n), every)
+            return _answer(fine, estimate, every)
         n += MORE
 
 
 def _comparison(task: Task, records: int | None) -> tuple[int, int]:
     """Spacings of the instants at which runs are compared, and every which fine record is kept."""
     least = max(math.ceil(INSTANTS * task.duration * task.frequency / (2 * math.pi)), INSTANTS)
+    if records is not None and records < least:
+        each = math.ceil(least / records)
+        return each * records, each * FINE
     if records is None or records >= FINE * least:
         return least, 1
-    if records >= least:
-        return least, FINE if records < FINE // 2 * least else FINE // 2
-    each = math.ceil(least / records)
-    return each * records, each * FINE
+    return least, FINE if records < FINE // 2 * least else FINE // 2
 
 
 def _largest(difference: Array) -> float:
@@ -168,7 +153,7 @@ def _largest(difference: Array) -> float:
     return magnitude if math.isfinite(magnitude) else math.inf
 
 
-def _answer(fine: Trajectory, estimate: MotionEstimate, slide_stiffness: float, every: int) -> Trajectory:
+def _answer(fine: Trajectory, estimate: MotionEstimate, every: int) -> Trajectory:
     """The trajectory with its estimate, and every so many of its records."""
     message, status = fine.message, fine.status
     if status is Status.CONVERGED and not estimate.rotation <= estimate.accuracy:
@@ -183,89 +168,78 @@ def _answer(fine: Trajectory, estimate: MotionEstimate, slide_stiffness: float, 
     }
     changes["whole"] = fine.whole.thinned(every)
     changes["bodies"] = {name: place[::every] for name, place in fine.bodies.items()}
-    changes["settings"] = fine.settings | {
-        "accuracy_rad": estimate.accuracy,
-        "control_points": estimate.control_points,
-        "slide_stiffness": slide_stiffness,
-    }
+    changes["settings"] = fine.settings | {"accuracy_rad": estimate.accuracy}
     return replace(fine, status=status, message=message, estimate=estimate, **changes)
 
 
 class _Runs:
-    """Runs of one mechanism, each solved once; compared at ``instants`` + 1 instants."""
+    """Runs of one task, each solved once; compared at ``instants`` + 1 instants.
 
-    def __init__(self, task: Task, instants: int) -> None:
-        self.task, self.instants = task, instants
-        self.spacing = task.duration / instants
-        self.count = 0
-        self.with_points = cache(partial(with_points, task.mechanism))
-        self.critical = cache(lambda n: task.critical(self.with_points(n)))
-        self.run = cache(self._run)
+    How fine one is, is a number: of an ``explicit`` one, its step over the critical one; else its steps
+    between two instants.
+    """
 
-    def first(self, n: int, accuracy: float) -> _Rung:
-        """Energy-consistent steps whose phase error, amplitude omega t (omega h)^2 / 12, is small enough.
+    def __init__(self, task: Task, instants: int, *, explicit: bool) -> None:
+        self.task, self.instants, self.explicit = task, instants, explicit
+        self.spacing, self.count = task.duration / instants, 0
+        self.critical, self.run = cache(task.critical), cache(self._run)
 
+    def resolve(self, n: int, accuracy: float) -> float:
+        """How fine the first runs are whose error leaves enough of the accuracy, or else the best.
+
+        The first energy-consistent steps have a small enough phase error, amplitude omega t (omega h)^2 / 12.
         The leapfrog's steps are a hundred times cheaper and resolve all from the start.
         """
-        task = self.task
-        if self.critical(n) > 0.0:
-            return _Rung(EXPLICIT, FINE, LARGEST_PART)
-        angle = abs(task.start or 0.0) * task.frequency * task.duration  # that the phase error is a part of
-        step = math.inf
-        if angle > 0:
-            step = math.sqrt(6 * SHARE * accuracy / angle) / task.frequency
-        return _Rung("energy", FINE * max(1, math.ceil(self.spacing / (FINE * step))), 0.0)
-
-    def resolve(self, n: int, rung: _Rung, accuracy: float) -> _Rung:
-        """The first rung from ``rung`` on whose error leaves enough of the accuracy, or else the best."""
-        best, least = rung, math.inf
-        following: _Rung | None = rung
+        following: float | None = LARGEST_PART
+        if not self.explicit:
+            task, step = self.task, math.inf
+            angle = abs(task.start or 0.0) * task.frequency * task.duration  # the phase error is a part of it
+            if angle > 0:
+                step = math.sqrt(6 * SHARE * accuracy / angle) / task.frequency
+            following = FINE * max(1, math.ceil(self.spacing / (FINE * step)))
+        errors: dict[float, float] = {}
         while following is not None:
-            rung = following
-            error = self.solved(n, rung).error
-            if error < least:
-                best, least = rung, error
+            fineness = following
+            _, correction, doubt = self.solved(n, fineness)
+            errors[fineness] = error = _largest(correction) + doubt
             if error <= SHARE * accuracy:
                 break
-            following = self.finer(rung, error / (SHARE * accuracy))
-        return best
+            following = self.finer(fineness, error / (SHARE * accuracy))
+        return min(errors, key=lambda each: errors[each])
 
-    def finer(self, rung: _Rung, excess: float) -> _Rung | None:
-        """The next rung after one whose error is ``excess`` times too large; None if there is none."""
-        if rung.integrator != "energy":
-            part = rung.part * min(max(0.9 * excess ** (-1.0 / ORDER), 0.3), 0.8)
-            return _Rung(EXPLICIT, FINE, part) if part >= SMALLEST_PART else None
+    def finer(self, fineness: float, excess: float) -> float | None:
+        """What follows on runs whose error is ``excess`` times too large; None if nothing does."""
+        if self.explicit:
+            part = fineness * min(max(0.9 * excess ** (-1.0 / ORDER), 0.3), 0.8)
+            return part if part >= SMALLEST_PART else None
         factor = min(max(1.2 * math.sqrt(min(excess, 1e6)), 2.0), 8.0)
-        fine = FINE * math.ceil(rung.fine * factor / FINE)
-        return _Rung("energy", fine, 0.0) if fine * self.instants <= MOST_STEPS else None
+        fine = FINE * math.ceil(fineness * factor / FINE)
+        return fine if fine * self.instants <= MOST_STEPS else None
 
-    def solved(self, n: int, rung: _Rung) -> _Resolved:
-        """The runs of a rung and what they say of the fine one."""
-        steps = self.steps(n, rung)
-        fine, coarser = self.run(n, rung.integrator, steps), self.coarser(n, rung)
+    def solved(self, n: int, fineness: float) -> tuple[Trajectory, Array, float]:
+        """The fine run, and what coarser ones say that it lacks.
+
+        That is the correction (S,) of its rotation by the order of the scheme [rad], and how far the runs
+        depart from that order [rad].
+        """
+        steps = self.steps(n, fineness)
+        fine, coarser = self.run(n, steps), self.coarser(n, fineness)
         change = self.rotation(fine) - coarser
-        if rung.integrator != "energy":
-            doubt = DOUBT * _largest(change)
-            gain = EXPLICIT_RATIO**ORDER - 1.0
-            return _Resolved(fine, coarser, change / gain, doubt)
-        before = coarser - self.rotation(self.run(n, rung.integrator, steps // 4))
-        return _Resolved(fine, coarser, change / 3.0, _largest(before - 4.0 * change) / 4.0)
+        if self.explicit:
+            return fine, change / (EXPLICIT_RATIO**ORDER - 1.0), DOUBT * _largest(change)
+        before = coarser - self.rotation(self.run(n, steps // 4))
+        return fine, change / 3.0, _largest(before - 4.0 * change) / 4.0
 
-    def by_points(self, n: int, rung: _Rung) -> Array:
-        """What some more control points change of the rotation (S,) [rad]."""
-        return self.coarser(n + MORE, rung) - self.coarser(n, rung)
+    def coarser(self, n: int, fineness: float) -> Array:
+        """Rotation (S,) of the second finest run [rad]."""
+        steps = self.steps(n, fineness)
+        return self.rotation(self.run(n, 3 * steps // 4 if self.explicit else steps // 2))
 
-    def coarser(self, n: int, rung: _Rung) -> Array:
-        """Rotation (S,) of the second finest run of a rung [rad]."""
-        steps = self.steps(n, rung)
-        fewer = 3 * steps // 4 if rung.integrator != "energy" else steps // 2
-        return self.rotation(self.run(n, rung.integrator, fewer))
-
-    def steps(self, n: int, rung: _Rung) -> int:
+    def steps(self, n: int, fineness: float) -> int:
         """Steps of the finest run between two instants."""
-        if rung.integrator != "energy":
-            return FINE * math.ceil(self.spacing / (FINE * rung.part * self.critical(n)))
-        return rung.fine
+        if self.explicit:
+            return FINE * math.ceil(self.spacing / (FINE * fineness * self.critical(n)))
+        return int(fineness)
 
     def rotation(self, run: Trajectory) -> Array:
         """Rotation at the instants (S,) [rad]; nan for a run that stopped."""
@@ -273,20 +247,7 @@ class _Runs:
             return np.full(self.instants + 1, np.nan)
         return run.rotation[:: (len(run.time) - 1) // self.instants]
 
-    def _run(self, n: int, integrator: str, steps: int) -> Trajectory:
+    def _run(self, n: int, steps: int) -> Trajectory:
         self.count += 1
         records = self.instants * (FINE if steps % FINE == 0 else 1)
-        return self.task.run(self.with_points(n), integrator, self.spacing / steps, records)
-
-
-def with_points(mechanism: Mechanism, n: int) -> Mechanism:
-    """The mechanism with n control points, and a slide stiffness in the proportion that goes with them."""
-    if n == mechanism.design.discretisation.points:
-        return mechanism
-    return mechanism.with_discretisation(control_points=n, slide_stiffness=_slide_stiffness(mechanism, n))
-
-
-def _slide_stiffness(mechanism: Mechanism, n: int) -> float:
-    """That of the mechanism, in the proportion that goes with n control points [EI/L^2]."""
-    grid = mechanism.design.discretisation
-    return grid.slide * swinging_slide_stiffness(n) / swinging_slide_stiffness(grid.points)
+        return self.task.run(n, EXPLICIT if self.explicit else "energy", self.spacing / steps, records)

@@ -75,6 +75,11 @@ class SplineBasis:
             return np.zeros((len(u), self.control_points))
         return np.asarray(_spline_functions(self.control_points, self.degree)(u, nu=derivative))
 
+    def areas(self, u: Array) -> Array:
+        """Integrals of the basis functions from 0 to u, (len(u), control_points)."""
+        whole = _spline_functions(self.control_points, self.degree).antiderivative()
+        return np.asarray(whole(u) - whole(0.0))
+
     def first_of_support(self, u: Array) -> NDArray[np.int64]:
         """Index of the first of the degree + 1 functions that do not vanish at u, shape (len(u),)."""
         span = np.searchsorted(self.breakpoints, u, side="right") - 1

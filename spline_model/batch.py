@@ -15,13 +15,13 @@ from numpy.typing import ArrayLike, NDArray
 from spline_model.compile import compile_scene
 from spline_model.design import Discretisation
 from spline_model.effects import Bending, MixedStretching
-from spline_model.effects.curl import CLAMPED_WIDTH
+from spline_model.effects.elastic import CLAMPED_WIDTH
 from spline_model.errors import InvalidParameter, require_count
 from spline_model.mechanism import Mechanism
 from spline_model.newton import TOLERANCE
 from spline_model.reduced.assembly import working_space
-from spline_model.reduced.designs import Designs, Given, designs_of, one_each, pivots, varied
-from spline_model.reduced.many import follow_share, stations_of
+from spline_model.reduced.designs import Given, designs_of, one_each, pivots, varied
+from spline_model.reduced.many import Designs, Share, follow_all, stations_of
 from spline_model.reduced.model import LEAST_COMPLIANCE, Reduced, reduced
 from spline_model.reduced.path import Route, empty_answer
 from spline_model.reduced.preload import preload_of
@@ -219,26 +219,20 @@ def _solve_share(
     factors, held = np.linspace(0.0, 1.0, increments + 1), len(bodies.held)
     route = Route(factor=factors, origin=np.zeros(held), target=np.zeros(held), growth=1.0, passes=True)
     grows = factors[[0, -1]] if model.system.is_preloaded else factors[:0]
-    follow_share(
-        worker,
-        workers,
-        rows,
-        designs,
-        depth,
-        stations_of(model, STATIONS),
-        route._replace(factor=grows, target=np.zeros(held), growth=0.0, swells=True),
-        route,
-        True,  # the moment defect refuses; a constant inside would be another type, compiled again
-        place,
-        preload._replace(**copies),
-        strips.along,
-        preload.curvature,
-        bodies,
-        strips._replace(**own),
-        model.shape,
-        model.local(),
-        working_space(bodies, model.size),
-        TOLERANCE,
-        empty_answer(len(factors), model.size, held),
-        tuple(array for name, array in vars(batch).items() if name != "rotation"),
+    share = Share(
+        rows=rows,
+        begin=worker,
+        stride=workers,
+        designs=designs,
+        depth=depth,
+        stations=stations_of(model, STATIONS),
+        growing=route._replace(factor=grows, target=np.zeros(held), growth=0.0, swells=True),
+        place=place,
+        along=strips.along,
+        curved=preload.curvature,
+        results=tuple(array for name, array in vars(batch).items() if name != "rotation"),
     )
+    strips, answer = strips._replace(**own), empty_answer(len(factors), model.size, held)
+    parts = bodies, strips, model.shape, model.local(), working_space(bodies, model.size)
+    # the moment defect refuses
+    follow_all(share, designs.start[0], route, True, preload._replace(**copies), *parts, TOLERANCE, answer)

@@ -9,75 +9,64 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from spline_model.accurate_motion import EXPLICIT, MORE, Task, with_points
+from spline_model.accurate_motion import EXPLICIT, MORE, Task
 from spline_model.errors import ConvergenceError, InvalidParameter
 from spline_model.mechanism import Mechanism
-from spline_model.motion.dispatch import QUASI_STATIC
+from spline_model.motion import quasi_static
+from spline_model.motion.records import Trajectory
 from spline_model.newton import Laps
-
-if TYPE_CHECKING:
-    from spline_model.motion.trajectory import Trajectory
 
 Array = NDArray[np.float64]
 
-UNRESOLVED = 0.05
-"""Largest difference to the companion over the swing that is not remarked on."""
-PART = 0.9
-"""Explicit step of the companion over the critical one."""
-MOST_SHORTER = 20.0
-"""Leapfrog steps that cost about as much as one step of the default integrator."""
-STILL = 1e-6
-"""Difference of a motion that hardly is one [rad]: its start differs by that alone."""
-INSTANTS = 1000
+UNRESOLVED, STILL = 0.05, 1e-6
+"""Largest difference to the companion that is not remarked on: over the swing, and [rad] of a motion that
+hardly is one, as its start differs by that alone."""
+PART, MOST_SHORTER = 0.9, 20.0
+"""Explicit step of the companion over the critical one; so many cost about as much as a default step."""
+COMPARED = 1000
 """Instants at which the two are compared, about: at least so many where the motion has as many records."""
 
 
 def with_companion(task: Task, motion: Trajectory) -> Trajectory:
     """The motion with its ``rotation_error``, and a remark in ``resolution`` where that is much of the swing.
 
-    task: that of the motion. A companion that fails leaves nothing to compare, and the
-    remark says so.
+    task: that of the motion. A companion that fails leaves nothing to compare, and the remark says so.
     """
-    laps, mechanism = Laps(), task.mechanism
-    points = mechanism.design.discretisation.points + MORE
-    every = _thinning(len(motion.time) - 1)
+    laps, count = Laps(), len(motion.time) - 1
+    points = task.mechanism.design.discretisation.points + MORE
+    # the largest divisor that leaves enough instants
+    every = max((each for each in range(1, count // COMPARED + 1) if count % each == 0), default=1)
     instants = motion.time[::every]
     try:
-        chosen = with_points(mechanism, points)
-        other = task.run(chosen, *_scheme(motion, task, chosen, float(instants[1])), len(instants) - 1)
+        scheme = _scheme(motion, PART * task.critical(points), float(instants[1]))
+        other = task.run(points, *scheme, len(instants) - 1)
         failed = other.message
-    except (ConvergenceError, InvalidParameter) as error:
-        failed = str(error)
-    seconds = laps.lap("check") | motion.seconds
-    if failed:
-        remark = f"not checked with {points} control points: {failed}"
-        return replace(motion, checked=remark, seconds=seconds)
-    apart = np.abs(other.rotation - motion.rotation[::every])
-    return replace(
-        motion,
-        rotation_error=float(apart.max()),
-        checked=_remark(mechanism, motion, instants, apart, points),
-        seconds=seconds,
+    except (ConvergenceError, InvalidParameter) as refused:
+        failed = str(refused)
+    error, remark, seconds = (
+        math.nan,
+        f"not checked with {points} control points: {failed}",
+        laps.lap("check"),
     )
+    if not failed:
+        apart = np.abs(other.rotation - motion.rotation[::every])
+        error, remark = float(apart.max()), _remark(task.mechanism, motion, instants, apart, points)
+    return replace(motion, rotation_error=error, checked=remark, seconds=seconds | motion.seconds)
 
 
-def _thinning(records: int) -> int:
-    """Every which record is compared: the largest divisor that leaves at least ``INSTANTS``."""
-    return max((each for each in range(1, records // INSTANTS + 1) if records % each == 0), default=1)
+def _scheme(motion: Trajectory, longest: float, spacing: float) -> tuple[str, float]:
+    """Integrator and step [s] of the companion, whole steps between two instants ``spacing`` [s] apart.
 
-
-def _scheme(motion: Trajectory, task: Task, chosen: Mechanism, spacing: float) -> tuple[str, float]:
-    """Integrator and step [s] of the companion, whole steps between two instants ``spacing`` [s] apart."""
+    longest: step of the leapfrog [s], 0 where it cannot be used.
+    """
     own, step = str(motion.settings["integrator"]), float(motion.settings["step_s"])
-    critical = PART * task.critical(chosen)
-    if critical > 0.0 and (own == EXPLICIT or step <= MOST_SHORTER * critical):
-        return EXPLICIT, spacing / math.ceil(spacing / critical)
-    return ("energy" if own == QUASI_STATIC else own), spacing / round(spacing / step)
+    if longest > 0.0 and (own == EXPLICIT or step <= MOST_SHORTER * longest):
+        return EXPLICIT, spacing / math.ceil(spacing / longest)
+    return ("energy" if own == quasi_static.NAME else own), spacing / round(spacing / step)
 
 
 def _remark(mechanism: Mechanism, motion: Trajectory, time: Array, apart: Array, points: int) -> str:

@@ -71,7 +71,7 @@ def energy_content(motion: Motion, z: Array, v: Array, acceleration: Array) -> l
     ]
 
 
-def resolution(content: list[Content], swing: float, step: float) -> str:
+def _resolution(content: list[Content], swing: float, step: float) -> str:
     """What a step leaves unresolved, or an empty string.
 
     content: of the start; swing: frequency of the lowest mode at rest [Hz], which a release
@@ -102,7 +102,7 @@ def unresolved(scene: Scene, start: Start, step: float) -> str:
     system = motion.system
     lowest = linear_modes(system, system.rest, motion.mass)[0][0]
     swing = math.sqrt(max(lowest, 0.0)) / (2 * math.pi)
-    return resolution(energy_content(motion, start.z, start.v, start.acceleration), swing, step)
+    return _resolution(energy_content(motion, start.z, start.v, start.acceleration), swing, step)
 
 
 def _stretching_share(system: System, z: Array, shapes: Array, squares: Array) -> Array:

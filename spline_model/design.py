@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.basis import HatModes, LegendreModes, SplineBasis, bezier, cubic_bspline, singular
-from spline_model.effects.constraints import GROUND
+from spline_model.effects.boundary import GROUND
 from spline_model.effects.elastic import MEASURES
 from spline_model.errors import (
     InvalidParameter,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from functools import partial
 
 import numpy as np
@@ -23,35 +24,28 @@ from spline_model.errors import (
 )
 from spline_model.mechanism import Mechanism
 from spline_model.modes import settle
-from spline_model.motion.dispatch import (
-    EXPLICIT_STEPS,
-    INTEGRATORS,
-    STEP,
-    count_steps,
-    default_step,
-    highest_frequency,
-    integrate,
-    require_options,
-)
+from spline_model.motion import energy_consistent, explicit, generalised_alpha, quasi_static
+from spline_model.motion.records import Records, Trajectory
 from spline_model.motion.start import Motion, Start, Steps, set_in_motion
-from spline_model.motion.trajectory import Trajectory, counted_on, trajectory_of
 from spline_model.newton import Laps
 from spline_model.pivot import Pivot
 from spline_model.scene import Scene
 from spline_model.solution import Later, Status
 
-__all__ = [
-    "EXPLICIT_STEPS",
-    "INTEGRATORS",
-    "STEP",
-    "Trajectory",
-    "checked",
-    "highest_frequency",
-    "solve_motion",
-    "solve_release",
-]
+__all__ = ["EXPLICIT_STEPS", "INTEGRATORS", "STEP", "Trajectory", "checked", "solve_motion", "solve_release"]
 
 Array = NDArray[np.float64]
+
+INTEGRATORS: dict[str, Callable[..., Records]] = {
+    "energy": energy_consistent.integrate,
+    "generalised-alpha": generalised_alpha.integrate,
+    **{name: partial(explicit.integrate, integrator=name) for name in explicit.SCHEMES},
+}
+EXPLICIT_STEPS = {"explicit": 0.5, "leapfrog": 0.9}
+"""Default explicit step over the longest stable one, which is that of the highest frequency at start and at
+rest: stress stiffens the strips on the way, and near its limit Runge-Kutta takes energy from axial waves."""
+STEP = 5e-5
+"""Default step of the implicit integrators [s]: some 240 steps a swing of Table 1."""
 
 
 def solve_release(
@@ -132,7 +126,9 @@ def solve_motion(
     """
     _check(integrator, duration, start, step, accuracy)
     options = {} if spectral_radius is None else {"spectral_radius": spectral_radius}
-    require_options(integrator, options)
+    if options and integrator != "generalised-alpha":
+        expected = f"none: the integrator {integrator} reads no option"
+        raise InvalidParameter("spectral_radius", spectral_radius, expected)
     if accuracy is not None and after is not None:
         raise InvalidParameter("accuracy", accuracy, "a step for a motion that goes on after another")
     laps, body = Laps(), mechanism.design.body_named(body)
@@ -150,7 +146,7 @@ def solve_motion(
     laps.lap("start")
     trajectory = _run(mechanism, begun, body, scene, (duration, step, records), integrator, options, laps)
     if after is not None:
-        return counted_on(trajectory, after)
+        return trajectory.counted_on(after)
     return checked(mechanism, trajectory, start=start, body=body, drive=drive) if check else trajectory
 
 
@@ -167,26 +163,38 @@ def _run(
     """The motion from its start on; scene: without drives; asked: duration, step and records."""
     (duration, step, records), layout = asked, begun.motion.system.layout
     if step is None:
-        step = default_step(integrator, begun, duration)
-    steps, every = count_steps(duration, step, records, layout.size + layout.coordinate_count + 7)
-    step = duration / steps
+        step = _default_step(integrator, begun, duration)
+    steps = Steps.of(duration, step, records, layout.size + layout.coordinate_count + 7)
     laps.lap("compile")
-    ran, run = integrate(integrator, begun, Steps(step, steps, every), options)
+    solve, ran = INTEGRATORS[integrator], integrator
+    if integrator == "energy" and begun.motion.massless:
+        solve, ran = quasi_static.integrate, quasi_static.NAME
+    run = solve(begun, steps, **options)
     laps.lap("solve")
-    return trajectory_of(
+    return Trajectory.of(
         begun.motion.system,
         run,
         effects=mechanism.effects,
         body=body,
         settings={
             "integrator": ran,
-            "step_s": step,
+            "step_s": steps.step,
             "slide_stiffness": mechanism.design.discretisation.slide,
             **options,
         },
-        unresolved=partial(unresolved, scene, begun, step),
+        unresolved=partial(unresolved, scene, begun, steps.step),
         laps=laps,
     )
+
+
+def _default_step(integrator: str, start: Start, duration: float) -> float:
+    """STEP, or that of EXPLICIT_STEPS where it is shorter; at most the duration [s]."""
+    step = min(STEP, duration)
+    if integrator in EXPLICIT_STEPS:
+        step = min(
+            step, EXPLICIT_STEPS[integrator] * explicit.critical_step(integrator, start.motion, start.z)
+        )
+    return step
 
 
 def checked(

@@ -8,7 +8,7 @@ from numbers import Real
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from spline_model.solution import StaticSolution
+    from spline_model.static_answers import StaticSolution
 
 
 class InvalidParameter(ValueError):

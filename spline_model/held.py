@@ -13,8 +13,8 @@ from spline_model.errors import InvalidParameter
 from spline_model.mechanism import Mechanism
 from spline_model.newton import TOLERANCE
 from spline_model.reduced import pose as compiled
-from spline_model.reduced.assembly import AXIAL, BENDING, NEGATIVE, SLOWEST, assemble, working_space
-from spline_model.reduced.equilibrium import EVALUATIONS, HALVED, ITERATIONS, newton, tangent
+from spline_model.reduced.assembly import AXIAL, BENDING, FORCE, NEGATIVE, working_space
+from spline_model.reduced.equilibrium import EVALUATIONS, HALVED, ITERATIONS, bear, turn
 from spline_model.reduced.model import Reduced, at_rest, reduced
 from spline_model.reduced.path import SMALLEST_STEP
 from spline_model.reduced.states import unknowns_of
@@ -147,40 +147,22 @@ class HeldPivot:
 
     def _turn(self, rotation: float, counters: NDArray[np.int64]) -> bool:
         """One part of the way of ``turn``, predicted by the tangent; the state stays if it fails."""
-        before, space, model = self._y.copy(), self._space, self.model
-        parts = (model.bodies, model.strips, model.shape, self._local, space)
-        if newton(self._y, 0.0, False, *parts, TOLERANCE, counters)[0] < 0:  # with the rotation as it is
-            self._y[:] = before
-            return False
-        tangent(np.ones(1), 0.0, *parts)
-        self._y += (rotation - before[2]) * space.rate
-        self._y[2] = rotation
-        solved = newton(self._y, 0.0, False, *parts, TOLERANCE, counters)[0] >= 0
-        forward = (self._strips[:, self._own - 2 : self._own] > 0.0).all()
-        if solved and forward and space.out[SLOWEST] > compiled.SLOWEST_SPEED:
+        model = self.model
+        parts = (model.bodies, model.strips, model.shape, self._local, self._space)
+        solved = bool(turn(rotation, np.ones(1), self._y, *parts, TOLERANCE, counters))
+        if solved:
             self.pose[:] = self._y[:3] * self._unit
-            return True
-        self._y[:] = before
-        return False
-
-    @property
-    def _own(self) -> int:
-        return 2 * len(self.model.shape.order) - 6
-
-    @property
-    def _strips(self) -> Array:
-        """w and a of the strips, (G, W + K)."""
-        return self._y[3:].reshape(len(self.model.strips.roots), -1)
+        return solved
 
     def _state(self, reached: float, counters: NDArray[np.int64]) -> HeldState:
         model, space = self.model, self._space
-        assemble(self._y, 0.0, model.bodies, model.strips, model.shape, self._local, space)
+        bear(self._y, model.bodies, model.strips, model.shape, self._local, space)
         stiffness, units = np.triu(space.tangent), 1.0 / self._unit
         return HeldState(
             solved=reached == 1.0,
             reached=reached,
             pose=self.pose.copy(),
-            force=space.force * units * model.energy,
+            force=space.vectors[FORCE, :3] * units * model.energy,
             tangent=(stiffness + np.triu(stiffness, 1).T) * np.outer(units, units) * model.energy,
             bending_energy=float(space.out[BENDING]) * model.energy,
             axial_energy=float(space.out[AXIAL]) * model.energy,
@@ -202,7 +184,7 @@ class HeldPivot:
         """The unknowns z (N,) of a compiled scene of the same mechanism, clamp reactions included."""
         model = reduced(system)
         assert model is not None, "the scene of a held mechanism"
-        reaction = self._space.force[model.bodies.held]
+        reaction = self._space.vectors[FORCE, model.bodies.held]
         return np.asarray(unknowns_of(model, self._y[None], reaction[None])[0])
 
 

@@ -19,8 +19,8 @@ from spline_model.design import (
 )
 from spline_model.effects import Clamp, DrivenDisplacement, DrivenRotation, Shear
 from spline_model.effects.base import Inertia
-from spline_model.effects.curl import CURLING
-from spline_model.effects.loads import Sized
+from spline_model.effects.boundary import Sized
+from spline_model.effects.elastic import CURLING
 from spline_model.effects.registry import DEFAULT_EFFECTS, INERTIA, build, check_names
 from spline_model.errors import InvalidParameter
 from spline_model.scene import Body, Effect, Scene, Strip

@@ -17,7 +17,6 @@ from spline_model.compile import System, compile_scene
 from spline_model.effects import DrivenDisplacement, DrivenRotation, MixedStretching
 from spline_model.effects.base import Constraint, Load
 from spline_model.errors import ConvergenceError, InvalidParameter, require_count, require_finite
-from spline_model.estimate import FrequencyEstimate
 from spline_model.mechanism import Mechanism
 from spline_model.path import follow
 from spline_model.pivot import Pivot
@@ -25,7 +24,7 @@ from spline_model.proportional import solve_mechanism
 from spline_model.reduced.model import Reduced, from_unknowns, reduced
 from spline_model.reduced.whole import coordinates_by, whole_tangents
 from spline_model.sections import STATIONS
-from spline_model.solution import Later
+from spline_model.solution import FrequencyEstimate, Later
 
 Array = NDArray[np.float64]
 

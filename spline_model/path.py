@@ -10,9 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.compile import System
-from spline_model.continuation.follower import Follower
+from spline_model.continuation.follower import Follower, equilibrium, first_point
 from spline_model.continuation.point import Point, stand
-from spline_model.continuation.start import equilibrium, first_point
 from spline_model.continuation.watch import BRANCHES, Watch
 from spline_model.errors import require_choice
 from spline_model.reduced.elements import Elements, followed
@@ -176,7 +175,7 @@ class _Track:
         if self.given is not None:
             system = self.work.system
             rows["reactions"][0] = self.given[system.drives.row]
-            rows["bodies"][0] = self.given[system.layout.poses]
+            rows["poses"][0] = self.given[system.layout.poses]
         history = [*self.history, *([] if self.follower is None else self.follower.history)]
         return self.watch.path(rows, message, [norms for norms in history if norms])
 

@@ -77,6 +77,13 @@ class Pivot(Mechanism):
         along = np.diff(self.clamp_points, axis=1)
         return np.repeat(along / np.linalg.norm(along, axis=2, keepdims=True), 2, axis=1)
 
+    @property
+    def crossing_reach(self) -> tuple[float, float]:
+        """Crossing ratio r and the length L [m] of a pivot's strips: they cross at r L from the ground."""
+        apart = self.clamp_directions[0, 0] - self.clamp_directions[1, 0]
+        base, length = self.clamp_points[1, 0] - self.clamp_points[0, 0], self.design.strips[0].length
+        return float(base @ apart / (apart @ apart)) / length, length
+
 
 def cross_axis_pivot(
     *,

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from spline_model.basis import AxialModes, SplineBasis, all_modes
 from spline_model.compile import System
-from spline_model.continuation.resolution import areas_of, balance, weight_of
+from spline_model.continuation.resolution import balance
 from spline_model.effects import Clamp, MixedStretching, Shear, Stretching, StripGravity
 from spline_model.effects.base import Constraint
 from spline_model.scene import Strip
@@ -124,7 +124,7 @@ def _balanced_moments(
             areas,
             stations,
             clamp_reactions(system, states, strip.name, "start"),
-            weight_of(system, strip.name),
+            system.scene.weight_of(strip.name),
         )
         for g, strip in enumerate(strips)
     ]
@@ -158,7 +158,7 @@ def _basis_at(basis: SplineBasis, stations: bytes) -> Array:
 @lru_cache(maxsize=64)
 def _areas_at(basis: SplineBasis, stations: bytes) -> Array:
     """Integrals of the basis from the root to stations (P, n); kept."""
-    return areas_of(basis, np.frombuffer(stations))
+    return basis.areas(np.frombuffer(stations))
 
 
 @lru_cache(maxsize=64)

@@ -25,19 +25,33 @@ from functools import partial
 from itertools import pairwise
 
 import numpy as np
+from numpy.typing import NDArray
 
 from spline_model.compile import compile_scene
 from spline_model.content import STEPS_PER_PERIOD
 from spline_model.effects import DrivenDisplacement, DrivenRotation
 from spline_model.errors import InvalidParameter, require_positive
+from spline_model.impulses.forces import fill_drag
 from spline_model.impulses.solver import TOLERANCE, ImpulseSolver, Outcome, Run, State
+from spline_model.impulses.steps import EULER, predict, printed_advance, solve_step
 from spline_model.mechanism import Mechanism
 from spline_model.modes import linear_modes, static_state
-from spline_model.motion.dispatch import count_steps
-from spline_model.motion.trajectory import Trajectory, trajectory_of
+from spline_model.motion.records import Trajectory
+from spline_model.motion.start import Steps
 from spline_model.newton import Laps
 
-__all__ = ["ImpulseSolver", "Outcome", "State", "impulse_solver", "solve_impulses", "stability_limit"]
+__all__ = [
+    "ImpulseSolver",
+    "Outcome",
+    "State",
+    "contraction",
+    "impulse_solver",
+    "solve_impulses",
+    "stability_limit",
+    "sweep_errors",
+]
+
+Array = NDArray[np.float64]
 
 STEP = 0.01
 """The paper's step: a quarter of the time between two pictures at 25 Hz [s]."""
@@ -45,6 +59,11 @@ SWEEPS = 30
 """Default of the most sweeps for one linear system."""
 STABILITY_LIMIT = 2.0
 """omega h up to which symplectic Euler does not amplify an oscillation."""
+_REASONS = {
+    "printed": "the step is above the stability limit",
+    "stable": "no part of the step can be solved, or a strip folds; take a shorter one",
+}
+"""Why a run of a form stops."""
 
 
 def impulse_solver(
@@ -127,22 +146,22 @@ def solve_impulses(
     solver = ImpulseSolver(
         mechanism, system, form=form, impulses=impulses, sweeps=sweeps, tolerance=tolerance
     )
-    steps, every = count_steps(duration, step, records, 2 * system.layout.size)
+    steps = Steps.of(duration, step, records, 2 * system.layout.size)
     laps.lap("compile")
-    run = Run(solver, solver.start(start, body), steps // every)
+    run = Run(solver, solver.start(start, body), steps.records - 1)
     laps.lap("start")
-    done = _follow(run, duration / steps, steps, every)
+    done = _follow(run, *steps)
     laps.lap("solve")
-    message = "" if done == steps else f"stopped at {done * duration / steps:.6g} s: {_reason(form)}"
-    settings = {"integrator": f"sequential impulses, {form}", "step_s": duration / steps}
+    message = "" if done == steps.steps else f"stopped at {done * steps.step:.6g} s: {_REASONS[form]}"
+    settings = {"integrator": f"sequential impulses, {form}", "step_s": steps.step}
     settings |= {"impulses": impulses} | ({} if impulses == "direct" else {"sweeps": sweeps})
-    return trajectory_of(
+    return Trajectory.of(
         system,
-        run.records(duration / steps * every, done // every + 1, message),
+        run.records(steps.spacing, done // steps.every + 1, message),
         effects=mechanism.effects,
         body=body,
         settings=settings,
-        unresolved=partial(_resolution, solver, duration / steps),
+        unresolved=partial(_resolution, solver, steps.step),
         laps=laps,
     )
 
@@ -168,12 +187,6 @@ def _follow(run: Run, h: float, steps: int, every: int) -> int:
     return done
 
 
-def _reason(form: str) -> str:
-    if form == "printed":
-        return "the step is above the stability limit"
-    return "no part of the step can be solved, or a strip folds; take a shorter one"
-
-
 def _resolution(solver: ImpulseSolver, h: float) -> str:
     """How far a step under-resolves the swing at rest, or an empty string."""
     squares = linear_modes(solver.system, solver.system.rest, solver.motion.mass)[0]
@@ -184,3 +197,38 @@ def _resolution(solver: ImpulseSolver, h: float) -> str:
         f"the step of {h:g} s is {h / period:.3g} of the swing's period at rest: "
         f"take {period / STEPS_PER_PERIOD:.2g} s or less for its phase and amplitude"
     )
+
+
+def sweep_errors(direct: ImpulseSolver, swept: ImpulseSolver, state: State, h: float, most: int) -> Array:
+    """Error of the velocity after 1 ... ``most`` sweeps of the first linear system of a step, (most,) [1].
+
+    In the kinetic norm, over the change of velocity in the step. Both solvers are of one scene and form, one
+    of them without and one with sweeps, and the state is one of either.
+    """
+    mass = direct.motion.mass
+    exact = _velocity(direct, state, h, 1)
+    change = exact - state.v
+    scale = np.sqrt(change @ mass @ change)
+    errors = [_velocity(swept, state, h, sweeps) - exact for sweeps in range(1, most + 1)]
+    return np.array([np.sqrt(error @ mass @ error) / scale for error in errors])
+
+
+def contraction(errors: Array, floor: float = 1e-10) -> float:
+    """Factor that a sweep leaves of the error, from the last three above the floor; above 1 it grows."""
+    seen = errors[errors > floor]
+    last = seen[-4:] if len(seen) >= 2 else errors[:2]
+    return float((last[-1] / last[0]) ** (1.0 / (len(last) - 1)))
+
+
+def _velocity(solver: ImpulseSolver, state: State, h: float, sweeps: int) -> Array:
+    """The velocity (Q,) after that many sweeps of the first linear system of a step."""
+    moving, space = Run(solver, state).moving, solver.space
+    tiny = float(np.finfo(float).tiny)
+    problem = solver.problem._replace(sweeps=sweeps, iterations=1, tolerance=tiny)
+    if solver.form == "printed":
+        printed_advance(moving, state.time, h, problem, space)
+        return moving.v.copy()
+    span, lag = predict(moving, h, EULER, problem.turns, space)
+    fill_drag(state.z, problem, space)
+    solve_step(span, lag, state.time + h, problem, space, moving.counters)
+    return space.v.copy()

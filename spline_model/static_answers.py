@@ -1,72 +1,249 @@
-"""From the states of an equilibrium path to what a user asks for: energies, sections, reactions."""
+"""From the states of a static path to what a user asks for: energies, sections, reactions, stiffness."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Self
 
 import numpy as np
 from numpy.typing import NDArray
 
+from spline_model.bordered import evaluate
 from spline_model.compile import System
-from spline_model.effects import DrivenRotation
+from spline_model.effects import DrivenDisplacement, DrivenRotation
+from spline_model.effects.base import Constraint
 from spline_model.effects.registry import MOTION_ONLY
-from spline_model.errors import ConvergenceError
+from spline_model.errors import ConvergenceError, InvalidParameter
 from spline_model.newton import Laps
-from spline_model.sections import centre_lines
-from spline_model.solution import Path, StaticSolution, Status
+from spline_model.reduced.model import Reduced, from_unknowns, reduced
+from spline_model.reduced.whole import whole_tangents
+from spline_model.sections import ENDS, STATIONS, Sections, centre_lines, clamp_reactions, sections
+from spline_model.solution import (  # noqa: F401 - types of fields that are inherited
+    CriticalPoint,
+    ErrorEstimate,
+    Later,
+    Path,
+    Status,
+    Tabulated,
+    body_columns,
+    resolution,
+)
 
 Array = NDArray[np.float64]
 
-
-def static_answer(
-    system: System, path: Path, effects: Sequence[str], laps: Laps, *, balanced: bool = False
-) -> StaticSolution:
-    """The answer of a mechanism with these effects from its path; balanced: see ``Sections``."""
-    scene, turns = system.scene, system.drives.turns.tolist()
-    driven = next((drive.body for drive in scene.of(DrivenRotation)), None)
-    return StaticSolution(
-        status=path.status,
-        message=path.message,
-        load_factor=path.load_factor if driven is None else np.abs(path.load_factor),
-        bodies={body.name: path.bodies[:, 3 * i : 3 * i + 3] for i, body in enumerate(scene.bodies)},
-        driven=driven,
-        torque=path.reactions[:, turns.index(1)] if 1 in turns else np.full(len(path.work), np.nan),
-        stiffness=path.stiffness,
-        bending_energy=path.energies[:, 0],
-        axial_energy=path.energies[:, 1],
-        shear_energy=path.energies[:, 2:].sum(axis=1),
-        gravity_energy=_gravity_energy(system, path),
-        work=path.work,
-        system=system,
-        unknowns=path.unknowns,
-        balanced=balanced,
-        effects=tuple(name for name in effects if name not in MOTION_ONLY),
-        inertia=path.inertia,
-        moment_defect=path.moment_defect,
-        critical_points=path.critical_points,
-        counters=path.counters,
-        history=path.history,
-        control_points=max((strip.basis.control_points for strip in scene.strips), default=0),
-        seconds=laps.lap("recover"),
-    )
+SINGULAR = 1e15
+"""Condition of the rest, dimensionless, above which it does not follow."""
 
 
-def _gravity_energy(system: System, path: Path) -> Array:
-    """Potential of the dead weight against the state at rest, (S,) [J]; zero without gravity."""
-    weight = system.weight
-    if not weight.size:
-        return np.zeros(len(path.work))
-    states = centre_lines(system, path.states)
-    return np.asarray(-(states[:, : weight.size] - system.rest[: weight.size]) @ weight)
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+class StaticSolution(Tabulated, Path):
+    """Answer of a mechanism, a pivot or any other; S states, G strips, P stations.
 
+    A path whose load_factor (S,) is the share of the loads that acts, below zero where they act the other
+    way; stiffness (S,) d(torque)/d(rotation) [N m/rad] (Eq 20) is that at fixed loads and driven
+    displacements, from the tangent. What is known along the strips is made when it is asked for;
+    balanced: see ``Sections``; effects: names of what was assembled;
+    seconds: by part, see ``spline_model.newton.Laps``; control_points: of a strip;
+    estimate: of the error, where the control points were chosen for an accuracy.
+    """
 
-def checked(solution: StaticSolution, raise_on_failure: bool) -> StaticSolution:
-    """The answer itself; raises ConvergenceError with it where it did not converge and that is asked for."""
-    if raise_on_failure and solution.status is not Status.CONVERGED:
-        raise ConvergenceError(
-            solution.message,
-            solution=solution,
-            load_factor=float(solution.load_factor[-1]),
-            history=solution.history,
+    system: System
+    balanced: bool
+    effects: tuple[str, ...]
+    seconds: dict[str, float]
+    control_points: int
+    estimate: ErrorEstimate | None = None
+
+    @classmethod
+    def of(
+        cls, system: System, path: Path, effects: Sequence[str], laps: Laps, *, balanced: bool = False
+    ) -> Self:
+        """The answer of a mechanism with these effects from its path; balanced: see ``Sections``."""
+        scene, known = system.scene, vars(path)
+        if scene.of(DrivenRotation):
+            known = known | {"load_factor": np.abs(path.load_factor)}
+        return cls(
+            **known,
+            system=system,
+            balanced=balanced,
+            effects=tuple(name for name in effects if name not in MOTION_ONLY),
+            control_points=max((strip.basis.control_points for strip in scene.strips), default=0),
+            seconds=laps.lap("recover"),
         )
-    return solution
+
+    def checked(self, raise_on_failure: bool) -> Self:
+        """The answer itself; where it did not converge and that is asked for, ConvergenceError with it."""
+        if raise_on_failure and self.status is not Status.CONVERGED:
+            reached = float(self.load_factor[-1])
+            raise ConvergenceError(self.message, solution=self, load_factor=reached, history=self.history)
+        return self
+
+    @cached_property
+    def driven(self) -> str | None:
+        """The body whose rotation is driven, if there is one."""
+        return next((drive.body for drive in self.system.scene.of(DrivenRotation)), None)
+
+    @cached_property
+    def bodies(self) -> dict[str, Array]:
+        """x, y, theta (S, 3) of the bodies by name [m, m, rad]."""
+        names = [body.name for body in self.system.scene.bodies]
+        return {name: self.poses[:, 3 * i : 3 * i + 3] for i, name in enumerate(names)}
+
+    @cached_property
+    def torque(self) -> Array:
+        """lambda_13 of the driven rotation (S,) [N m], nan without one."""
+        turns = self.system.drives.turns.tolist()
+        return self.reactions[:, turns.index(1)] if 1 in turns else np.full(len(self.work), np.nan)
+
+    @property
+    def bending_energy(self) -> Array:
+        """Of the strips (S,) [J]."""
+        return self.energies[:, 0]
+
+    @property
+    def axial_energy(self) -> Array:
+        """Of the strips (S,) [J]."""
+        return self.energies[:, 1]
+
+    @property
+    def shear_energy(self) -> Array:
+        """Of strips that shear (S,) [J], zero without."""
+        return np.asarray(self.energies[:, 2:].sum(axis=1))
+
+    @cached_property
+    def gravity_energy(self) -> Array:
+        """Potential of the dead weight against the state at rest (S,) [J]; zero without gravity."""
+        system, weight = self.system, self.system.weight
+        if not weight.size:
+            return np.zeros(len(self.work))
+        states = centre_lines(system, self.states)
+        return np.asarray(-(states[:, : weight.size] - system.rest[: weight.size]) @ weight)
+
+    @property
+    def rotation(self) -> Array:
+        """Rotation of the driven body, or of the only one (S,) [rad]."""
+        return self._watched[:, 2]
+
+    @property
+    def centre(self) -> Array:
+        """Centre of the driven body, or of the only one (S, 2) [m]."""
+        return self._watched[:, :2]
+
+    @cached_property
+    def clamp_reactions(self) -> Array:
+        """Force [N] and moment [N m] of the clamps at root and tip of the strips (S, G, 2, 3)."""
+        names = [strip.name for strip in self.system.scene.strips]
+        ends = [[clamp_reactions(self.system, self.states, name, end) for end in ENDS] for name in names]
+        return np.asarray(np.array(ends).transpose(2, 0, 1, 3))
+
+    @property
+    def stations(self) -> Array:
+        """Where sections are recovered (P,), reference arc length over L."""
+        return STATIONS
+
+    @cached_property
+    def sections(self) -> Sections:
+        """Shapes and section forces."""
+        return sections(self.system, self.states, STATIONS, balanced=self.balanced)
+
+    @property
+    def shape(self) -> Array:
+        """Points of the strips (S, G, P, 2) [m]."""
+        return self.sections.shape
+
+    @property
+    def axial_force(self) -> Array:
+        """N (S, G, P) [N]."""
+        return self.sections.axial_force
+
+    @property
+    def bending_moment(self) -> Array:
+        """M (S, G, P) [N m]."""
+        return self.sections.bending_moment
+
+    @property
+    def shear_force(self) -> Array:
+        """V (S, G, P) [N]."""
+        return self.sections.shear_force
+
+    def body_stiffness(self, body: str | None = None) -> Array:
+        """Stiffness (S, 3, 3) of a body's x, y, theta about its centre [N/m, N, N m/rad].
+
+        body: its name; None for the driven one, or the only one. Change of the force [N] and moment [N m] on
+        it by its displacement [m] and turn [rad] in the axes of the ground, all loads fixed and all else in
+        equilibrium: K_bb - K_br K_rr^-1 K_rb with the body's coordinates b and the rest r of the tangent,
+        multipliers included. What drives the body is let go, what drives others holds them. Exact for the
+        discretisation; dead loads act at centres and have no stiffness there. nan where a strip that cannot
+        stretch leaves a direction none.
+        """
+        model, name = reduced(self.system, longest=math.inf), body or self._watched_name
+        if model is None:
+            return _bordered(self.system, self.states, name)
+        return _on_elements(model, self.states, name)
+
+    @property
+    def resolution(self) -> str:
+        """Empty, or how uncertain the control points make the answer: by its estimate, or by its moments."""
+        return resolution(self.moment_defect) if self.estimate is None else self.estimate.remark
+
+    @property
+    def _watched(self) -> Array:
+        return self.bodies[self._watched_name]
+
+    @property
+    def _watched_name(self) -> str:
+        if self.driven is None and len(self.bodies) != 1:
+            raise InvalidParameter("bodies", list(self.bodies), "one body, or the name of one in ``bodies``")
+        return next(iter(self.bodies)) if self.driven is None else self.driven
+
+    def columns(self) -> dict[str, Array]:
+        """What is one number in every state, by names with units."""
+        energies = ("bending_energy", "axial_energy", "gravity_energy", "work")
+        return {
+            "load_factor": self.load_factor,
+            **body_columns(self.bodies),
+            "torque_Nm": self.torque,
+            "stiffness_Nm_per_rad": self.stiffness,
+            **{f"{name}_J": getattr(self, name) for name in energies},
+            "inertia": self.inertia,
+            "moment_defect": self.moment_defect,
+        }
+
+
+def _on_elements(model: Reduced, states: Array, body: str) -> Array:
+    """From the tangent of the strips' elements, in poses, control points and axial forces."""
+    at = 3 * [each.name for each in model.system.scene.bodies].index(body)
+    own, y = np.arange(at, at + 3), from_unknowns(model, states)
+    free = np.setdiff1d(np.arange(model.size), [*own, *model.bodies.held[model.bodies.held < model.size]])
+    hessian = whole_tangents(model, y)[1] * model.energy
+    return _condensed(hessian, own, free, np.array([model.length, model.length, 1.0]))
+
+
+def _bordered(system: System, states: Array, body: str) -> Array:
+    """From the bordered tangent, clamps among the constraints: where the elements do not know a scene."""
+    layout, unit = system.layout, system.scales.unit
+    gradient, hessian = np.empty(layout.size), np.empty((len(states), layout.size, layout.size))
+    for z, tangent in zip(states, hessian, strict=True):
+        evaluate(system, z, 0.0, gradient, tangent)
+    own = np.arange(layout.size)[layout.body(body)]
+    let_go = [
+        np.arange(layout.size)[layout.rows(i)]
+        for i, each in enumerate(system.scene.of(Constraint))
+        if isinstance(each, DrivenRotation | DrivenDisplacement) and each.body == body
+    ]
+    rest = np.setdiff1d(np.arange(layout.size), np.concatenate([own, *let_go]))
+    return _condensed(hessian * (unit[:, None] * unit), own, rest, unit[own])
+
+
+def _condensed(hessian: Array, own: NDArray[np.int64], rest: NDArray[np.int64], unit: Array) -> Array:
+    """The Schur complement (S, 3, 3) of the rest on three coordinates, whose units are taken out."""
+    found = np.full((len(hessian), 3, 3), np.nan)
+    for k, tangent in enumerate(hessian):
+        inner = tangent[np.ix_(rest, rest)]
+        if np.linalg.cond(inner) < SINGULAR:
+            moves = np.linalg.solve(inner, tangent[np.ix_(rest, own)])
+            found[k] = tangent[np.ix_(own, own)] - tangent[np.ix_(own, rest)] @ moves
+    return found / (unit[:, None] * unit)

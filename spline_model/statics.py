@@ -13,24 +13,26 @@ from numpy.typing import NDArray
 
 from spline_model.accuracy import DOUBTFUL, settled, solve_accurately, wanted
 from spline_model.compile import System, compile_scene
-from spline_model.continuation.start import equilibrium
+from spline_model.continuation.follower import equilibrium
 from spline_model.errors import InvalidParameter, finite_numbers, require_choice, require_count
 from spline_model.newton import Laps
 from spline_model.path import Progress, follow
 from spline_model.pivot import Pivot
-from spline_model.proportional import CONTROLS, solve_loads, solve_mechanism
-from spline_model.reduced.elements import followed
-from spline_model.rotations import (
+from spline_model.proportional import (
+    CONTROLS,
     LOADS_FIRST,
     ORDERS,
     TOGETHER,
     follow_loads_first,
     follow_rotations,
     has_loads,
+    solve_loads,
+    solve_mechanism,
 )
+from spline_model.reduced.elements import followed
 from spline_model.sections import STATIONS
-from spline_model.solution import Path, StaticSolution, Status
-from spline_model.static_answers import checked, static_answer
+from spline_model.solution import Path, Status
+from spline_model.static_answers import StaticSolution
 
 __all__ = [
     "CONTROLS",
@@ -100,8 +102,8 @@ def solve_statics(
         if order == TOGETHER or not rotations.any() or not has_loads(given.scene):
             system, path = follow_rotations(given.driven, rotations, told, **how)
         else:
-            system, path, _ = follow_loads_first(given.driven, rotations, increments, told, **how)
-        return static_answer(system, path, given.effects, laps, balanced=chosen is not None)
+            system, path = follow_loads_first(given.driven, rotations, increments, told, **how)
+        return StaticSolution.of(system, path, given.effects, laps, balanced=chosen is not None)
 
     if chosen is None:
         solution = solve(settled(design, start))
@@ -109,7 +111,7 @@ def solve_statics(
         solution = solve_accurately(design, chosen, solve, least=DOUBTFUL if accuracy is None else None)
         if progress is not None:
             progress(len(rotations), len(rotations))
-    return checked(solution, raise_on_failure)
+    return solution.checked(raise_on_failure)
 
 
 def _rotations(rotation: float | Sequence[float], increments: int, origin: float) -> Array:
@@ -138,7 +140,7 @@ def solve_from(
     laps.lap("compile")
     path = _recover(system, 1.0, np.asarray(guess, dtype=float), increments)
     laps.lap("solve")
-    return checked(static_answer(system, path, pivot.effects, laps), raise_on_failure)
+    return StaticSolution.of(system, path, pivot.effects, laps).checked(raise_on_failure)
 
 
 def _recover(system: System, load_factor: float, guess: Array, increments: int) -> Path:

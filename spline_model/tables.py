@@ -19,8 +19,7 @@ from spline_model.effects import (
     StripGravity,
 )
 from spline_model.effects.base import Constraint, Load
-from spline_model.effects.history import STEADY, History
-from spline_model.effects.loads import Sized
+from spline_model.effects.boundary import STEADY, History, Sized
 from spline_model.quadrature import PointTable
 from spline_model.scene import Layout, Scene
 
@@ -31,6 +30,8 @@ END, INNER, BODY, ROW = range(4)
 """Columns of ``ClampTable.place``."""
 SIGN, ACROSS, ALONG, DIRECTION, YIELDING = range(5)
 """Columns of ``ClampTable.numbers``."""
+PLACES = ("coordinate", "row", "turns")
+"""Columns of whole numbers of the other two tables."""
 
 
 class ClampTable(NamedTuple):
@@ -156,8 +157,7 @@ def clamp_table(scene: Scene) -> ClampTable:
 
 def drive_table(scene: Scene) -> DriveTable:
     """The driven rotations and displacements, one row a coordinate."""
-    rows: list[tuple[int, float, float, int, int, float, float]] = []
-    histories: list[History] = []
+    rows, histories = [], []  # type: list[tuple[float, ...]], list[History]
     for i, drive in enumerate(scene.of(Constraint)):
         if isinstance(drive, DrivenRotation):
             parts = [(2, 0.0, drive.angle)]
@@ -176,17 +176,8 @@ def drive_table(scene: Scene) -> DriveTable:
                 (place, origin, target, scene.layout.multipliers[i][0] + k, int(offset == 2), *drive.held)
             )
             histories.append(drive.history or STEADY)
-    coordinate, origin_, target_, row_, turns, begin, until = zip(*rows, strict=True) if rows else ((),) * 7
-    return DriveTable(
-        coordinate=np.array(coordinate, dtype=np.int64),
-        origin=np.array(origin_, dtype=float),
-        target=np.array(target_, dtype=float),
-        row=np.array(row_, dtype=np.int64),
-        turns=np.array(turns, dtype=np.int64),
-        begin=np.array(begin, dtype=float),
-        until=np.array(until, dtype=float),
-        **_histories(histories),
-    )
+    names = ("coordinate", "origin", "target", "row", "turns", "begin", "until")
+    return DriveTable(**_columns(names, rows), **_histories(histories))
 
 
 def load_table(scene: Scene) -> LoadTable:
@@ -197,12 +188,17 @@ def load_table(scene: Scene) -> LoadTable:
 
 def _table_of_loads(scene: Scene, growing: Sequence[Sized]) -> LoadTable:
     parts = [(load.history, part) for load in growing for part in load.components(scene.layout)]
-    return LoadTable(
-        coordinate=np.array([place for _, (place, _, _) in parts], dtype=np.int64),
-        value=np.array([value for _, (_, value, _) in parts], dtype=float),
-        turns=np.array([turns for _, (_, _, turns) in parts], dtype=np.int64),
-        **_histories([history for history, _ in parts]),
-    )
+    columns = _columns(("coordinate", "value", "turns"), [part for _, part in parts])
+    return LoadTable(**columns, **_histories([history for history, _ in parts]))
+
+
+def _columns(names: Sequence[str], rows: Sequence[tuple[float, ...]]) -> dict[str, Any]:
+    """The columns of rows by their names; those of places are whole numbers."""
+    columns = np.array(rows, dtype=float).reshape(-1, len(names)).T.copy()
+    return {
+        name: column.astype(np.int64) if name in PLACES else column
+        for name, column in zip(names, columns, strict=True)
+    }
 
 
 def _histories(histories: Sequence[History]) -> dict[str, Any]:

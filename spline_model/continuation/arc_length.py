@@ -11,9 +11,8 @@ from numpy.typing import NDArray
 
 from spline_model.compile import System
 from spline_model.continuation.followed import Corrected, Followed, correct
-from spline_model.continuation.follower import KNOWN_STATES, hermite_extrapolation
-from spline_model.continuation.point import Point, directed, done_by_load_factor, stand
-from spline_model.continuation.start import first_point
+from spline_model.continuation.follower import KNOWN_STATES, first_point, hermite_extrapolation
+from spline_model.continuation.point import Point, directed, reached
 from spline_model.continuation.watch import BRANCHES, Watch
 from spline_model.errors import require_choice
 from spline_model.reduced.elements import followed
@@ -115,23 +114,21 @@ class _ArcFollower:
         reason = found.reason or self.watch.refuse(here, z, found.z, found.load_factor)
         if reason:
             return found, reason
-        try:
-            point = stand(work, found.z, found.load_factor, found.energies)
-        except np.linalg.LinAlgError as error:
-            return found, str(error)
+        point, reason = reached(work, found, found.load_factor)
+        if point is None:
+            return found, reason
         point = directed(work, point, *self._across())
         if (self.end - here.load_factor) * (self.end - point.load_factor) < 0.0:
             return found, "the step goes beyond the end"
         if self._cosine(point) < SHARPEST_TURN:
             return found, "the path turns sharply"
         step = self._distance(point)
-        reached, reason = self.watch.go(here, point, step)
+        end, done, reason = self.watch.go(here, point, step)
         if not reason:
-            done = done_by_load_factor(here, point, step)
-            if reached is not point:  # across a kink the work is the potential gained
+            if end is not point:
                 self.known.clear()
-                done, step = reached.potential - here.potential, self._distance(reached)
-            self._go_to(reached, step, done)
+                step = self._distance(end)
+            self._go_to(end, step, done)
         return found, reason
 
     def _go_to(self, point: Point, step: float, done: float) -> None:

@@ -11,7 +11,7 @@ from scipy.linalg import eigh, null_space
 
 from spline_model.compile import System
 from spline_model.continuation.followed import Followed, correct
-from spline_model.continuation.point import NOT_TRACKED, Point, directed, stand
+from spline_model.continuation.point import NOT_TRACKED, Point, directed, hermite, reached
 from spline_model.effects import DrivenRotation
 from spline_model.effects.base import Constraint
 from spline_model.solution import CriticalPoint
@@ -59,21 +59,16 @@ class Bracket:
     def at(self, t: float) -> Point | None:
         """The state of the path at t, or None if Newton does not find it."""
         a, b, step = self.before, self.after, self.step
-        z = _hermite(a.z, b.z, step * a.rate, step * b.rate, t)
-        factor = _hermite(a.load_factor, b.load_factor, step * a.slope, step * b.slope, t)
+        z = hermite(a.z, b.z, step * a.rate, step * b.rate, t)
+        factor = hermite(a.load_factor, b.load_factor, step * a.slope, step * b.slope, t)
         return corrected(self.work, z, float(factor), *self.plane())
 
 
 def corrected(work: Followed, z: Array, load_factor: float, normal: Array, along: float) -> Point | None:
     """The point of the path on a plane through (z, load factor); None if Newton does not find it."""
     found = correct(work, z, load_factor, normal, along)
-    if found.reason:
-        return None
-    try:
-        point = stand(work, found.z, found.load_factor, found.energies)
-    except np.linalg.LinAlgError:
-        return None
-    return directed(work, point, normal, along)
+    point, _ = reached(work, found, found.load_factor)
+    return None if point is None else directed(work, point, normal, along)
 
 
 def between(work: Followed, before: Point, after: Point, step: float) -> tuple[Crossing, ...] | None:
@@ -108,7 +103,7 @@ def _of_tangent(bracket: Bracket, number: int) -> Crossing | None:
         point = bracket.at(t)
         if point is None:
             return np.nan
-        tangent = reduced_tangent(work)
+        tangent = ReducedTangent.of(work)
         eigenvalue, modes[t] = tangent.eigenpair(number)
         return eigenvalue
 
@@ -199,14 +194,6 @@ def _zero(value: Callable[[float], float]) -> float | None:
     return t if least <= nothing else None
 
 
-def _hermite(
-    a: Array | float, b: Array | float, slope_a: Array | float, slope_b: Array | float, t: float
-) -> Array:
-    """Hermite's cubic between two values with slopes on the unit interval."""
-    value = a * ((1 + 2 * t) * (1 - t) ** 2) + b * (t**2 * (3 - 2 * t))
-    return np.asarray(value + slope_a * (t * (1 - t) ** 2) - slope_b * (t**2 * (1 - t)))
-
-
 @dataclass(frozen=True, kw_only=True, eq=False)
 class ReducedTangent:
     """stiffness (F, F) on the free directions (Q, F), which are orthonormal, all dimensionless (EI/L).
@@ -219,27 +206,28 @@ class ReducedTangent:
     free: Array
     below: int
 
+    @classmethod
+    def of(cls, work: Followed) -> ReducedTangent:
+        """The reduced tangent at the state that ``work`` was last evaluated at.
+
+        Forces with a compliance are condensed; those of clamps, drives and inextensible strips are
+        constraints.
+        """
+        hessian = work.hessian * (work.unit[:, None] * work.unit / work.energy)
+        count = work.count
+        rows, between = hessian[count:, :count], hessian[count:, count:]
+        soft = np.diag(between) != 0.0
+        stiffness = hessian[:count, :count] + rows[soft].T @ np.linalg.solve(
+            -between[np.ix_(soft, soft)], rows[soft]
+        )
+        constraints = rows[~soft]
+        norms = np.linalg.norm(constraints, axis=1, keepdims=True)
+        free = null_space(constraints / norms) if len(constraints) else np.eye(count)
+        below = int((np.diag(between) > 0.0).sum())
+        return cls(stiffness=free.T @ stiffness @ free, free=free, below=below)
+
     def eigenpair(self, number: int) -> tuple[float, Array]:
         """The eigenvalue of that number from the lowest, 0 on, and its direction (Q,)."""
         number += self.below
         values, vectors = eigh(self.stiffness, subset_by_index=(number, number))
         return float(values[0]), np.asarray(self.free @ vectors[:, 0])
-
-
-def reduced_tangent(work: Followed) -> ReducedTangent:
-    """The reduced tangent at the state that ``work`` was last evaluated at.
-
-    Forces with a compliance are condensed; those of clamps, drives and inextensible strips are constraints.
-    """
-    hessian = work.hessian * (work.unit[:, None] * work.unit / work.energy)
-    count = work.count
-    rows, between = hessian[count:, :count], hessian[count:, count:]
-    soft = np.diag(between) != 0.0
-    stiffness = hessian[:count, :count] + rows[soft].T @ np.linalg.solve(
-        -between[np.ix_(soft, soft)], rows[soft]
-    )
-    constraints = rows[~soft]
-    norms = np.linalg.norm(constraints, axis=1, keepdims=True)
-    free = null_space(constraints / norms) if len(constraints) else np.eye(count)
-    below = int((np.diag(between) > 0.0).sum())
-    return ReducedTangent(stiffness=free.T @ stiffness @ free, free=free, below=below)

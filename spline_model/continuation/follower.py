@@ -1,4 +1,8 @@
-"""Going on along a path in its load factor: predict, correct, check, halve."""
+"""A path in its load factor.
+
+It begins at rest, weight and pre-strain grown from nothing, or at a state that is given, and goes on:
+predict, correct, check, halve.
+"""
 
 from __future__ import annotations
 
@@ -8,8 +12,10 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from spline_model.continuation.point import Point, done_by_load_factor, stand
-from spline_model.continuation.watch import Watch
+from spline_model.continuation.followed import Followed
+from spline_model.continuation.point import Point, reached
+from spline_model.continuation.watch import Place, Watch
+from spline_model.errors import InvalidParameter
 from spline_model.newton import Newton, solve
 
 Array = NDArray[np.float64]
@@ -75,21 +81,17 @@ class Follower:
         reason = newton.reason or self.watch.refuse(self.here, predicted, newton.z, load_factor)
         if reason:
             return newton, reason
-        try:
-            point = stand(self.work, newton.z, load_factor, newton.energies)
-        except np.linalg.LinAlgError as error:
-            return newton, str(error)
-        step = load_factor - self.here.load_factor
-        reached, reason = self.watch.go(self.here, point, step)
+        point, reason = reached(self.work, newton, load_factor)
+        if point is None:
+            return newton, reason
+        end, done, reason = self.watch.go(self.here, point, load_factor - self.here.load_factor)
         if not reason:
-            if reached is point:
-                self.done_here += done_by_load_factor(self.here, point, step)
-            else:  # across a kink the work is the potential gained
+            if end is not point:
                 self.known.clear()
-                self.done_here += reached.potential - self.here.potential
-            self.here = reached
-            self.known.append(reached)
-            self.trail.append(reached)
+            self.done_here += done
+            self.here = end
+            self.known.append(end)
+            self.trail.append(end)
         return newton, reason
 
     def _predict(self, load_factor: float) -> Array:
@@ -120,3 +122,64 @@ def hermite_extrapolation(known: Sequence[tuple[float, Array, Array]], at: float
         ]
         result = result + weight * table[0]
     return np.asarray(result)
+
+
+def equilibrium(work: Followed, load_factor: float, unknowns: Array) -> Newton:
+    """The equilibrium that Newton finds from the scene's unknowns, if an accepted state's checks pass.
+
+    Raises InvalidParameter if these have another size, are not finite, or lead to no such state.
+    """
+    size = work.system.layout.size
+    if np.shape(unknowns) != (size,) or not np.isfinite(unknowns).all():
+        raise InvalidParameter("start", np.shape(unknowns), f"finite unknowns of shape ({size},)")
+    newton = solve(work, work.state(np.asarray(unknowns, dtype=float)), load_factor)
+    reason = newton.reason or work.refuse(newton.z) or work.unresolved(newton.z, load_factor)
+    if reason:
+        raise InvalidParameter("start", reason, "a state from which Newton finds an equilibrium")
+    return newton
+
+
+def first_point(watch: Watch, start: tuple[float, Array] | None) -> tuple[Point, tuple[float, ...]]:
+    """The point where a path begins, and the residual norms: rest, or load factor and unknowns given.
+
+    Raises InvalidParameter where there is none, or where nothing holds the scene.
+    """
+    work = watch.work
+    newton = _settle(watch) if start is None else equilibrium(work, *start)
+    return _held(work, newton, 0.0 if start is None else start[0]), newton.norms
+
+
+def _held(work: Followed, newton: Newton, load_factor: float) -> Point:
+    """The point where Newton ended; refused where nothing holds the scene."""
+    point, reason = reached(work, newton, load_factor)
+    if point is None:
+        raise InvalidParameter("scene", reason, "strips that can move, but not freely")
+    return point
+
+
+def _settle(watch: Watch) -> Newton:
+    """Equilibrium at load factor 0: weight and pre-strain grow from nothing, watched like any path.
+
+    Raises InvalidParameter where they cannot grow to their full size.
+    """
+    work = watch.work
+    z = _grown(watch) if work.system.is_preloaded else work.state(work.system.rest)
+    newton = solve(work, z, 0.0)
+    if newton.reason:
+        raise InvalidParameter("scene", newton.reason, "an equilibrium at load factor 0, near rest")
+    return newton
+
+
+def _grown(watch: Watch) -> Array:
+    """The unknowns (N,) under full weight and pre-strain; what was met on the way is told to ``watch``."""
+    growing = watch.work.growing()
+    own = Watch(growing, leaves=watch.leaves, by_load=True, place=Place(system=None))
+    newton = solve(growing, growing.state(growing.system.rest), 0.0)
+    begin = _held(growing, newton, 0.0)
+    follower = Follower(own, begin, newton.norms)
+    own.first = (0.0, begin.z)
+    message = follower.advance(1.0)
+    if message:
+        raise InvalidParameter("scene", message, "an equilibrium under all of its weight and pre-strain")
+    watch.leaves, watch.before = own.leaves, own.remark()
+    return follower.here.z

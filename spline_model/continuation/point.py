@@ -11,8 +11,8 @@ from scipy.linalg import get_lapack_funcs
 
 from spline_model.compile import System
 from spline_model.continuation.followed import Followed
-from spline_model.effects import Bending, DrivenRotation, Stretching
-from spline_model.effects.base import Constraint
+from spline_model.effects import Bending, Stretching
+from spline_model.newton import Newton
 
 Array = NDArray[np.float64]
 
@@ -62,14 +62,6 @@ class Point:
     conjugate_rate: float
 
 
-def driven_row(system: System) -> int | None:
-    """Index in z of the driven rotation's torque, if there is one."""
-    for i, drive in enumerate(system.scene.of(Constraint)):
-        if isinstance(drive, DrivenRotation):
-            return int(system.layout.rows(i).start)
-    return None
-
-
 def _has_potential(system: System) -> bool:
     """Whether the forces are a gradient: all but the paper's printed ones are."""
     scene = system.scene
@@ -107,6 +99,16 @@ def stand(work: Followed, z: Array, load_factor: float, energies: tuple[float, f
         conjugate=conjugate,
         conjugate_rate=curvature - float(push @ rate),
     )
+
+
+def reached(work: Followed, found: Newton, load_factor: float) -> tuple[Point | None, str]:
+    """The point where Newton ended; None, and why, where it did not converge or the tangent is singular."""
+    if found.reason:
+        return None, found.reason
+    try:
+        return stand(work, found.z, load_factor, found.energies), ""
+    except np.linalg.LinAlgError as error:
+        return None, str(error)
 
 
 def directed(work: Followed, point: Point, direction: Array, along: float) -> Point:
@@ -173,22 +175,18 @@ def done_by_load_factor(before: Point, after: Point, step: float) -> float:
     return float(WEIGHTS @ _parts(before, after, step))
 
 
-def _parts(before: Point, after: Point, step: float) -> np.ndarray:
+def _parts(before: Point, after: Point, step: float) -> Array:
     """The integrand at the nodes of the unit interval."""
-    a, b = before, after
-    conjugate = _cubic(a.conjugate, b.conjugate, step * a.conjugate_rate, step * b.conjugate_rate)
-    return np.asarray(conjugate * _cubic_slope(a.load_factor, b.load_factor, step * a.slope, step * b.slope))
+    a, b, t = before, after, NODES
+    conjugate = hermite(a.conjugate, b.conjugate, step * a.conjugate_rate, step * b.conjugate_rate, t)
+    slope = 6 * t * (1 - t) * (b.load_factor - a.load_factor)
+    slope += step * (a.slope * (1 - t) * (1 - 3 * t) - b.slope * t * (2 - 3 * t))
+    return np.asarray(conjugate * slope)
 
 
-def _cubic(a: float, b: float, slope_a: float, slope_b: float) -> np.ndarray:
-    """Hermite's cubic on the unit interval at the nodes."""
-    t = NODES
-    value = a * (1 + 2 * t) * (1 - t) ** 2 + b * t**2 * (3 - 2 * t)
-    return np.asarray(value + slope_a * t * (1 - t) ** 2 - slope_b * t**2 * (1 - t))
-
-
-def _cubic_slope(a: float, b: float, slope_a: float, slope_b: float) -> np.ndarray:
-    """Its derivative at the nodes."""
-    t = NODES
-    value = 6 * t * (1 - t) * (b - a)
-    return np.asarray(value + slope_a * (1 - t) * (1 - 3 * t) - slope_b * t * (2 - 3 * t))
+def hermite(
+    a: Array | float, b: Array | float, slope_a: Array | float, slope_b: Array | float, t: Array | float
+) -> Array:
+    """Hermite's cubic between two values with slopes on the unit interval."""
+    value = a * ((1 + 2 * t) * (1 - t) ** 2) + b * (t**2 * (3 - 2 * t))
+    return np.asarray(value + slope_a * (t * (1 - t) ** 2) - slope_b * (t**2 * (1 - t)))

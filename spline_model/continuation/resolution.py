@@ -7,11 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import BSpline
 
-from spline_model.basis import SplineBasis
 from spline_model.compile import System
-from spline_model.effects import Bending, Clamp, StripGravity
+from spline_model.effects import Bending, Clamp
 from spline_model.effects.base import Constraint
 from spline_model.quadrature import MEASURE, WEIGHT
 
@@ -112,26 +110,10 @@ def _spans(system: System) -> list[_Span]:
                 rows=rows,
                 points=layout.strip(bending.strip),
                 values=strip.basis.evaluate(u),
-                areas=areas_of(strip.basis, u),
+                areas=strip.basis.areas(u),
                 clamp=roots[bending.strip],
                 u=u,
-                load=weight_of(system, bending.strip),
+                load=scene.weight_of(bending.strip),
             )
         )
     return spans
-
-
-def areas_of(basis: SplineBasis, u: Array) -> Array:
-    """Integrals of the basis functions from 0 to u, (len(u), n)."""
-    spline = BSpline(basis.knots, np.eye(basis.control_points), basis.degree)
-    return np.asarray(spline.antiderivative()(u) - spline.antiderivative()(0.0))
-
-
-def weight_of(system: System, name: str) -> Array:
-    """Weight of a strip (2,) [N], spread evenly over u."""
-    total = np.zeros(2)
-    for effect in system.scene.of(StripGravity):
-        if effect.strip == name:
-            mass = effect.linear_density * float(system.scene.strip(name).share_of_length().sum())
-            total += mass * np.asarray(effect.acceleration)
-    return total

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -11,10 +12,11 @@ from numpy.typing import NDArray
 
 from spline_model.checks import left_the_branch
 from spline_model.compile import System
-from spline_model.continuation.critical import BIFURCATION, Bracket, Crossing, between, corrected
+from spline_model.continuation.critical import BIFURCATION, LIMIT, Bracket, Crossing, between, corrected
 from spline_model.continuation.followed import Followed, correct
-from spline_model.continuation.point import Point, directed, jumped, stand
-from spline_model.continuation.remark import Place, left, remark
+from spline_model.continuation.point import Point, directed, done_by_load_factor, jumped, reached
+from spline_model.effects import AppliedForce, AppliedMoment, DrivenDisplacement, DrivenRotation, TipForce
+from spline_model.effects.base import Constraint, Load
 from spline_model.sections import centre_lines
 from spline_model.solution import CriticalPoint, Path, Status
 
@@ -30,6 +32,10 @@ LARGEST_CHANGE = 0.02
 NO_CROSSING = "the stability changes in a jump, the state lies on another branch"
 STEEP = 5.0
 """Rate of a path over its mean rate so far from which on it ends at a limit point, where it is infinite."""
+PREFIXES = {9: "G", 6: "M", 3: "k", 0: "", -3: "m", -6: "u", -9: "n"}
+"""Prefixes by their powers of ten."""
+PLAIN = 1e-2, 1e4
+"""Sizes of forces and moments that are readable without one."""
 
 
 class Watch:
@@ -54,8 +60,15 @@ class Watch:
         reason = self.work.refuse(z) or left_the_branch(unit, here.z, predicted, z)
         return reason or self.work.unresolved(z, load_factor)
 
-    def go(self, here: Point, point: Point, step: float) -> tuple[Point, str]:
-        """Where a step from here to a sound point ends: there, or on another branch; or why it is no step."""
+    def go(self, here: Point, point: Point, step: float) -> tuple[Point, float, str]:
+        """Where a step from here to a sound point ends, there or on another branch, and the work done over
+        it, int P_lambda d(lambda) [J], across a kink the potential gained; or why it is no step."""
+        end, reason = self._judged(here, point, step)
+        if reason or end is point:
+            return end, 0.0 if reason else done_by_load_factor(here, point, step), reason
+        return end, end.potential - here.potential, ""
+
+    def _judged(self, here: Point, point: Point, step: float) -> tuple[Point, str]:
         reason = jumped(here, point, step, self.work.energy)
         if reason:
             return here, reason
@@ -75,13 +88,17 @@ class Watch:
     def _leave(self, crossing: Crossing, here: Point, step: float) -> tuple[Point, str]:
         """A point on the branch that crosses, going away from there."""
         at = crossing.told.load_factor
-        branched = leave(self.work, crossing)
+        branched = _leave(self.work, crossing)
         if branched is None:
             return here, f"no other branch was found at load factor {at:.6g}"
         onward = branched.load_factor - at
         if self.by_load and onward * step <= 0.0:
             return here, f"the branch that crosses at load factor {at:.6g} goes back there"
-        self.leaves, self.note = False, left(self.place, crossing.told)
+        where = self.place.at(at, crossing.told.rotation)
+        self.leaves = False
+        self.note = (
+            f"{BIFURCATION} at {where}: it buckles, the path goes on along the branch that crosses there"
+        )
         if self.by_load:
             return branched, ""
         away = (branched.z - crossing.z) / self.work.unit
@@ -107,45 +124,35 @@ class Watch:
         return f"stopped between {self.place.between(here.load_factor, aim)}: {reason}"
 
     def remark(self, inertia: int = 0) -> str:
-        """What is said of a path that reached its end, at a state of an inertia."""
-        unstable = remark(self.work.system, self.place, () if self.note else self.critical, inertia)
-        return "; ".join(part for part in (self.before, self.note, unstable) if part)
+        """Where a path that reached its end passed critical points, and whether its last state, with that
+        inertia, is unstable; empty if neither."""
+        said, told = [self.before, self.note], () if self.note else self.critical
+        for kind in dict.fromkeys(c.kind for c in told):
+            places = ", ".join(self.place.at(c.load_factor, c.rotation) for c in told if c.kind == kind)
+            said.append(f"{kind} at {places}: {_meaning(self.work.system, kind)}")
+        if inertia > 0:
+            said.append("the last state is unstable: it buckles unless it is held")
+        return "; ".join(filter(None, said))
 
     def path(self, rows: dict[str, Any], message: str, history: Sequence[tuple[float, ...]]) -> Path:
-        """The result: what was followed, by state; why it ended early, if it did."""
-        told = message or self.remark(int(rows["inertia"][-1]))
-        counters = dict(vars(self.work.counters))
-        path = _path_of(self.work.system, rows, told, counters, tuple(self.critical), tuple(history))
-        return replace(path, status=Status.NOT_CONVERGED) if message else path
+        """The result: what was followed, by state, ``done`` among it, int P_lambda d(lambda) from the first
+        [J]; why it ended early, if it did."""
+        system, work = self.work.system, rows.pop("done")
+        if (loads := system.loads).value.size:
+            moved = (centre_lines(system, rows["unknowns"].array) - system.rest)[:, loads.coordinate]
+            work = rows["load_factor"] * (moved @ loads.value) + work
+        return Path(
+            status=Status.NOT_CONVERGED if message else Status.CONVERGED,
+            message=message or self.remark(int(rows["inertia"][-1])),
+            work=work - work[0],
+            critical_points=tuple(self.critical),
+            counters=dict(vars(self.work.counters)),
+            history=tuple(history),
+            **rows,
+        )
 
 
-def _path_of(
-    system: System,
-    rows: dict[str, Any],
-    message: str,
-    counters: dict[str, int],
-    critical: tuple[CriticalPoint, ...] = (),
-    history: tuple[tuple[float, ...], ...] = (),
-) -> Path:
-    """A converged path of rows by state, ``done`` among them: int P_lambda d(lambda) from the first [J]."""
-    loads, work = system.loads, rows["done"]
-    if loads.value.size:
-        moved = (centre_lines(system, rows["unknowns"].array) - system.rest)[
-            :, loads.coordinate
-        ] @ loads.value
-        work = rows["load_factor"] * moved + work
-    return Path(
-        status=Status.CONVERGED,
-        message=message,
-        work=work - work[0],
-        critical_points=critical,
-        counters=counters,
-        history=history,
-        **{name: values for name, values in rows.items() if name != "done"},
-    )
-
-
-def leave(work: Followed, crossing: Crossing) -> Point | None:
+def _leave(work: Followed, crossing: Crossing) -> Point | None:
     """A state on the other branch, at an amplitude of the critical mode; None if none was found.
 
     Newton with the amplitude held and the load factor free, so that the primary branch, on
@@ -160,10 +167,9 @@ def leave(work: Followed, crossing: Crossing) -> Point | None:
         found = correct(work, z, crossing.told.load_factor, normal, 0.0)
         if found.reason or work.refuse(found.z) or work.unresolved(found.z, found.load_factor):
             continue
-        try:
-            return stand(work, found.z, found.load_factor, found.energies)
-        except np.linalg.LinAlgError:
-            continue
+        point, _ = reached(work, found, found.load_factor)
+        if point is not None:
+            return point
     return None
 
 
@@ -193,3 +199,88 @@ class _Finer:
             return False
         change = abs(other.conjugate_rate * point.slope - point.conjugate_rate)
         return change <= LARGEST_CHANGE * abs(other.conjugate_rate * point.slope)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Place:
+    """What the load factors of a path are called, with rotation [deg], ways [mm], forces [N], moments [N m].
+
+    system: None where they are shares of weight and pre-strain.
+    """
+
+    system: System | None
+
+    def at(self, load_factor: float, rotation: float = math.nan) -> str:
+        """One place; rotation [rad] of the driven body, if it is known better than by the load factor."""
+        if self.system is None:
+            return f"{100 * load_factor:.6g} % of weight and pre-strain"
+        if self._is_steady:
+            return self._acting(load_factor, rotation).strip(" ()")
+        return f"load factor {self._share(load_factor):.6g}{self._acting(load_factor, rotation)}"
+
+    def between(self, last: float, following: float) -> str:
+        """Two neighbouring places."""
+        if self.system is None:
+            return f"{100 * last:.6g} and {self.at(following)}"
+        if self._is_steady:
+            return f"{self.at(last)} and {self.at(following)}"
+        acting = self._acting(following, math.nan)
+        return f"load factor {self._share(last):.6g} and {self._share(following):.6g}{acting}"
+
+    @property
+    def _is_steady(self) -> bool:
+        """Whether loads or driven displacements act in full at any load factor, the rotation's alone."""
+        assert self.system is not None
+        return any(getattr(effect, "steady", False) for effect in self.system.scene.effects)
+
+    def _share(self, load_factor: float) -> float:
+        """The share of the loads: of a driven rotation its size, to whichever side it goes."""
+        assert self.system is not None
+        return load_factor if self.system.scene.driven_row is None else abs(load_factor)
+
+    def _acting(self, load_factor: float, rotation: float) -> str:
+        assert self.system is not None
+        parts = _drives(self.system, load_factor, rotation) + _loads(self.system, load_factor)
+        return f" ({', '.join(parts)})" if parts else ""
+
+
+def _drives(system: System, load_factor: float, rotation: float) -> list[str]:
+    parts = []
+    for drive in system.scene.of(Constraint):
+        if isinstance(drive, DrivenRotation) and drive.angle != 0.0:
+            angle = load_factor * drive.angle if math.isnan(rotation) else rotation
+            parts.append(f"rotation {math.degrees(angle):.5g} deg")
+        elif isinstance(drive, DrivenDisplacement) and any(drive.parts.values()):
+            share = 1.0 if drive.steady else abs(load_factor)
+            parts.append(f"displacement {1e3 * share * math.hypot(*drive.parts.values()):.4g} mm")
+    return parts
+
+
+def _loads(system: System, load_factor: float) -> list[str]:
+    parts = []
+    for load in system.scene.of(Load):
+        share = 1.0 if getattr(load, "steady", False) else load_factor
+        if isinstance(load, AppliedMoment) and load.moment:
+            parts.append(f"moment {_sized(share * load.moment)}N m")
+        elif isinstance(load, AppliedForce | TipForce) and any(load.force):
+            parts.append(f"force {_sized(abs(share) * math.hypot(*load.force))}N")
+    return parts
+
+
+def _sized(value: float) -> str:
+    """A number with four digits and the prefix that spares it a power of ten."""
+    if value == 0.0 or PLAIN[0] <= abs(value) < PLAIN[1]:
+        return f"{value:.4g} "
+    power = max(-9, min(9, 3 * math.floor(math.log10(abs(value)) / 3)))
+    return f"{value / 10.0**power:.4g} {PREFIXES[power]}"
+
+
+def _meaning(system: System, kind: str) -> str:
+    """What a critical point is to the design."""
+    if kind == BIFURCATION:
+        return "it buckles there, the path stays on the primary branch (branch='follow' leaves it)"
+    if kind != LIMIT:
+        return "the drive turns back there"
+    if system.scene.driven_row is None:
+        return "the load is the largest or least around, under a dead load it snaps through"
+    return "the driven body's own stiffness vanishes, let go it tips over"

@@ -1,21 +1,21 @@
 """Effects: the named frozen values a scene is made of."""
 
-from spline_model.effects.constraints import ALWAYS as ALWAYS
-from spline_model.effects.constraints import GROUND as GROUND
-from spline_model.effects.constraints import Clamp as Clamp
-from spline_model.effects.constraints import DrivenDisplacement as DrivenDisplacement
-from spline_model.effects.constraints import DrivenRotation as DrivenRotation
+from spline_model.effects.boundary import ALWAYS as ALWAYS
+from spline_model.effects.boundary import GROUND as GROUND
+from spline_model.effects.boundary import AppliedForce as AppliedForce
+from spline_model.effects.boundary import AppliedMoment as AppliedMoment
+from spline_model.effects.boundary import BodyGravity as BodyGravity
+from spline_model.effects.boundary import Clamp as Clamp
+from spline_model.effects.boundary import DrivenDisplacement as DrivenDisplacement
+from spline_model.effects.boundary import DrivenRotation as DrivenRotation
+from spline_model.effects.boundary import StripGravity as StripGravity
+from spline_model.effects.boundary import TipForce as TipForce
 from spline_model.effects.elastic import MEASURES as MEASURES
 from spline_model.effects.elastic import Bending as Bending
 from spline_model.effects.elastic import MixedStretching as MixedStretching
 from spline_model.effects.elastic import RootCompliance as RootCompliance
 from spline_model.effects.elastic import Shear as Shear
 from spline_model.effects.elastic import Stretching as Stretching
-from spline_model.effects.loads import AppliedForce as AppliedForce
-from spline_model.effects.loads import AppliedMoment as AppliedMoment
-from spline_model.effects.loads import BodyGravity as BodyGravity
-from spline_model.effects.loads import StripGravity as StripGravity
-from spline_model.effects.loads import TipForce as TipForce
 from spline_model.effects.moving import BodyDamper as BodyDamper
 from spline_model.effects.moving import BodyInertia as BodyInertia
 from spline_model.effects.moving import SectionRotaryInertia as SectionRotaryInertia

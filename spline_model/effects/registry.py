@@ -12,19 +12,8 @@ from inspect import signature
 from typing import TYPE_CHECKING, Any
 
 from spline_model.basis import AxialModes, SlideModes
-from spline_model.effects.constraints import DrivenDisplacement
-from spline_model.effects.curl import curl_of
-from spline_model.effects.elastic import Bending, MixedStretching, RootCompliance, Shear, Stretching
-from spline_model.effects.history import STEADY, History
-from spline_model.effects.loads import AppliedForce, AppliedMoment, BodyGravity, StripGravity, TipForce
-from spline_model.effects.moving import (
-    BodyDamper,
-    BodyInertia,
-    SectionRotaryInertia,
-    StripDamping,
-    StripDrag,
-    StripInertia,
-)
+from spline_model.effects import boundary, elastic, moving
+from spline_model.effects.boundary import STEADY, History
 from spline_model.errors import InvalidParameter, is_finite
 
 if TYPE_CHECKING:
@@ -45,11 +34,11 @@ def _bending(design: Design) -> Iterator[Effect]:
     """Bending of every strip, in the discretisation's measure, with the design's pre-strain and curl."""
     grid = design.discretisation
     for strip in design.strips:
-        yield Bending(
+        yield elastic.Bending(
             strip=strip.name,
             flexural_rigidity=strip.flexural_rigidity,
             natural_curvature=design.pre_strain.get("curvature", 0.0),
-            curl=curl_of(design, strip),
+            curl=elastic.Curl.of(design, strip),
             measure=grid.measure,
             gauss_points=grid.points_a_span,
         )
@@ -62,7 +51,7 @@ def _stretching(design: Design) -> Iterator[Effect]:
         if grid.stretch != "consistent":
             yield from _mixed(design, strip, 1.0 / strip.axial_rigidity)
             continue
-        yield Stretching(
+        yield elastic.Stretching(
             strip=strip.name,
             axial_rigidity=strip.axial_rigidity,
             natural_strain=design.pre_strain.get("strain", 0.0),
@@ -84,7 +73,7 @@ def _mixed(design: Design, strip: StripDesign, compliance: float) -> Iterator[Ef
     if slide > 0 and grid.modes.count < grid.points - 1:
         parts.append((1.0 / slide, SlideModes(basis=grid.spline, axial=grid.modes)))
     for part, modes in parts:
-        yield MixedStretching(
+        yield elastic.MixedStretching(
             strip=strip.name,
             axial_compliance=part,
             modes=modes,
@@ -97,13 +86,13 @@ def _mixed(design: Design, strip: StripDesign, compliance: float) -> Iterator[Ef
 def _strip_inertia(design: Design) -> Iterator[Effect]:
     """Translational inertia of every strip; without it strips are massless."""
     for strip in design.strips:
-        yield StripInertia(strip=strip.name, linear_density=strip.linear_density)
+        yield moving.StripInertia(strip=strip.name, linear_density=strip.linear_density)
 
 
 def _section_rotary_inertia(design: Design) -> Iterator[Effect]:
     """Rotary inertia of every strip's sections."""
     for strip in design.strips:
-        yield SectionRotaryInertia(
+        yield moving.SectionRotaryInertia(
             strip=strip.name, rotary_density=strip.density * strip.second_moment_of_area
         )
 
@@ -111,54 +100,56 @@ def _section_rotary_inertia(design: Design) -> Iterator[Effect]:
 def _body_inertia(design: Design) -> Iterator[Effect]:
     """Inertia of every body."""
     for body in design.bodies:
-        yield BodyInertia(body=body.name, mass=body.mass, moment_of_inertia=body.moment_of_inertia)
+        yield moving.BodyInertia(body=body.name, mass=body.mass, moment_of_inertia=body.moment_of_inertia)
 
 
 def _gravity(design: Design, acceleration: Vector = (0.0, -9.81)) -> Iterator[Effect]:
     """Weight of every strip and body; acceleration [m/s^2]."""
     for strip in design.strips:
-        yield StripGravity(strip=strip.name, linear_density=strip.linear_density, acceleration=acceleration)
+        yield boundary.StripGravity(
+            strip=strip.name, linear_density=strip.linear_density, acceleration=acceleration
+        )
     for body in design.bodies:
-        yield BodyGravity(body=body.name, mass=body.mass, acceleration=acceleration)
+        yield boundary.BodyGravity(body=body.name, mass=body.mass, acceleration=acceleration)
 
 
 def _strip_damping(design: Design, relaxation_time: float) -> Iterator[Effect]:
     """Kelvin-Voigt damping of every strip; relaxation_time [s]."""
     for strip in design.strips:
-        yield StripDamping(strip=strip.name, relaxation_time=relaxation_time)
+        yield moving.StripDamping(strip=strip.name, relaxation_time=relaxation_time)
 
 
 def _strip_drag(design: Design, rate: float) -> Iterator[Effect]:
     """Mass-proportional drag on every strip; rate [1/s]."""
     for strip in design.strips:
-        yield StripDrag(strip=strip.name, linear_density=strip.linear_density, rate=rate)
+        yield moving.StripDrag(strip=strip.name, linear_density=strip.linear_density, rate=rate)
 
 
 def _body_damping(design: Design, translation: float = 0.0, rotation: float = 0.0) -> Iterator[Effect]:
     """Damper between every body and the ground; translation [N s/m], rotation [N m s]."""
     for body in design.bodies:
-        yield BodyDamper(body=body.name, translation=translation, rotation=rotation)
+        yield moving.BodyDamper(body=body.name, translation=translation, rotation=rotation)
 
 
 def _applied_force(
     design: Design, force: Vector, body: str | None = None, history: History = STEADY
 ) -> Iterator[Effect]:
     """Dead force [N] on a body, the only one if it is not named."""
-    yield AppliedForce(body=design.body_named(body), force=force, history=history)
+    yield boundary.AppliedForce(body=design.body_named(body), force=force, history=history)
 
 
 def _applied_moment(
     design: Design, moment: float, body: str | None = None, history: History = STEADY
 ) -> Iterator[Effect]:
     """Moment [N m] on a body, the only one if it is not named."""
-    yield AppliedMoment(body=design.body_named(body), moment=moment, history=history)
+    yield boundary.AppliedMoment(body=design.body_named(body), moment=moment, history=history)
 
 
 def _tip_force(design: Design, strip: str, force: Vector, history: History = STEADY) -> Iterator[Effect]:
     """Dead force [N] at the free end of a strip."""
     if strip not in {s.name for s in design.strips if s.tip is None}:
         raise InvalidParameter("strip", strip, "a strip with a free end")
-    yield TipForce(strip=strip, end="end", force=force, history=history)
+    yield boundary.TipForce(strip=strip, end="end", force=force, history=history)
 
 
 def _driven_displacement(
@@ -169,7 +160,9 @@ def _driven_displacement(
 ) -> Iterator[Effect]:
     """Displacement [m] of a body's centre prescribed beside its rotation, None where it is free; in a motion
     only with a history."""
-    yield DrivenDisplacement(body=design.body_named(body), displacement=displacement, history=history)
+    yield boundary.DrivenDisplacement(
+        body=design.body_named(body), displacement=displacement, history=history
+    )
 
 
 def _pre_strain(design: Design, curvature: float = 0.0, strain: float = 0.0) -> Iterator[Effect]:
@@ -196,9 +189,9 @@ def _root_compliance(design: Design, root: float | str) -> Iterator[Effect]:
             raise InvalidParameter(f"thickness of {strip.name}", None, needs)
         compliance = length * strip.thickness / strip.flexural_rigidity
         if compliance > 0.0:
-            yield RootCompliance(strip=strip.name, end="start", compliance=compliance)
+            yield elastic.RootCompliance(strip=strip.name, end="start", compliance=compliance)
             if strip.tip is not None:
-                yield RootCompliance(strip=strip.name, end="end", compliance=compliance)
+                yield elastic.RootCompliance(strip=strip.name, end="end", compliance=compliance)
 
 
 def _shear(design: Design) -> Iterator[Effect]:
@@ -211,7 +204,7 @@ def _shear(design: Design) -> Iterator[Effect]:
     for strip in design.strips:
         area = SHEAR_FACTOR * strip.area
         modulus = strip.youngs_modulus / (2.0 * (1.0 + strip.poisson_ratio))
-        yield Shear(strip=strip.name, compliance=1.0 / (modulus * area))
+        yield elastic.Shear(strip=strip.name, compliance=1.0 / (modulus * area))
 
 
 REGISTRY: dict[str, Builder] = {
@@ -266,8 +259,7 @@ def check_names(names: Sequence[str], parameters: Parameters) -> None:
 
 
 def build(names: Sequence[str], parameters: Parameters, design: Design) -> tuple[Effect, ...]:
-    """The effects of these names for a design, in the order of the names."""
-    check_names(names, parameters)
+    """The effects of these names, which were checked, for a design, in the order of the names."""
     effects: list[Effect] = []
     for name in names:
         try:

@@ -11,7 +11,6 @@ from spline_model.compile import System
 from spline_model.effects import Clamp, DrivenDisplacement, DrivenRotation, MixedStretching
 from spline_model.effects.base import Constraint
 from spline_model.errors import InvalidParameter
-from spline_model.motion.arrays import zeros
 from spline_model.motion.start import Motion
 from spline_model.quadrature import PointTable
 from spline_model.tables import ClampTable
@@ -24,8 +23,6 @@ IMPULSES = ("direct", "strips", "constraints")
 single constraint."""
 ITERATIONS = 12
 """Most Newton iterations of a stable step before it is halved."""
-LEAST_FRACTION = 2.0**-6
-"""Least part of a step before it is refused: bounds the time that a step may take."""
 
 COORDINATE, DRIVE, ACTIVE, BEGIN, PAIRS = range(5)
 """Columns of ``Problem.acting``; DRIVE is a drive's place among the rows, -1 for a load."""
@@ -48,7 +45,7 @@ class Problem(NamedTuple):
     each body's pose; no inertia couples one group with another. rows (R, 3): place in z of each row's
     multiplier, in the order of the sweep, and the two groups that it acts on, -1 for none; first (B + 1,):
     where each block begins in them, blocks being solved as one. grounded: 1 if the ground holds anything.
-    sweeps of a linear system, iterations of a step: the most; tolerance [1]; least_part of a step.
+    sweeps of a linear system, iterations of a step: the most; tolerance [1].
     """
 
     points: PointTable
@@ -71,7 +68,73 @@ class Problem(NamedTuple):
     sweeps: int
     iterations: int
     tolerance: float
-    least_part: float
+
+    @classmethod
+    def of(cls, motion: Motion, *, soft: bool, impulses: str, sweeps: int, tolerance: float) -> Problem:
+        """The problem of a system: rows of the strips' axial forces and clamps, then those of the drives.
+
+        soft: the axial forces of extensible strips are rows as well, with their compliance; else
+        only those of inextensible ones are. impulses: one of IMPULSES.
+        """
+        system = motion.system
+        layout, tables, count = system.layout, system.tables, system.layout.coordinate_count
+        strips = {name: g for g, name in enumerate(layout.strips)}
+        bodies = {name: len(strips) + g for g, name in enumerate(layout.bodies)}
+        start = [at for at, _ in layout.strips.values()] + list(layout.bodies.values())
+        size = [2 * n for _, n in layout.strips.values()] + [3] * len(bodies)
+        _require_mass(motion, start, size, [*strips, *bodies])
+        constraints = _constraints(system, soft, strips, bodies)
+        blocks = list(constraints.values())
+        if impulses == "strips":
+            owners = dict.fromkeys(owner for owner, _ in constraints)
+            blocks = [
+                [row for (owner, _), rows in constraints.items() if owner == one for row in rows]
+                for one in owners
+            ]
+        rows = np.array([row for block in blocks for row in block], dtype=np.int64).reshape(-1, 3)
+        ends = [len(rows)] if impulses == "direct" else np.cumsum([len(block) for block in blocks])
+        problem = cls(
+            points=tables.points,
+            clamps=tables.clamps,
+            acting=np.zeros((0, 5), dtype=np.int64),
+            sizes=np.zeros((0, 2)),
+            history=np.zeros((2, 0)),
+            mass=motion.mass,
+            drag=motion.drag if motion.drag.size else np.zeros((count, count)),
+            weight=tables.weight if tables.weight.size else np.zeros(count),
+            rigidity=motion.rigidity,
+            relaxation=motion.relaxation,
+            unit=system.scales.unit / system.scales.energy,
+            energy=system.scales.energy,
+            turns=motion.turns,
+            groups=np.array((start, size), dtype=np.int64).T.copy(),
+            rows=rows,
+            first=np.array([0, *ends], dtype=np.int64),
+            grounded=int((tables.clamps.body < 0).any()),
+            sweeps=sweeps,
+            iterations=ITERATIONS,
+            tolerance=float(tolerance),
+        )
+        return problem.with_drives(motion, np.zeros(len(tables.drives.row), dtype=np.int64))
+
+    def with_drives(self, motion: Motion, active: Indices) -> Problem:
+        """With the loads and drives of a motion, of which those hold whose ``active`` (D,) is 1."""
+        drives, loads = motion.drives, motion.loads
+        place = {row: r for r, row in enumerate(self.rows[:, 0].tolist())}
+        rows = np.array([place[row] for row in drives.row.tolist()], dtype=np.int64)
+        free, always = np.full_like(loads.first, -1), np.ones_like(loads.first)
+        behind = drives.times.size + loads.first
+        mine = np.column_stack((drives.coordinate, rows, active, drives.first, drives.pairs))
+        others = np.column_stack((loads.coordinate, free, always, behind, loads.pairs))
+        return self._replace(
+            acting=np.concatenate((mine, others)),
+            sizes=np.column_stack(
+                (np.append(drives.origin, 0.0 * loads.value), np.append(drives.target, loads.value))
+            ),
+            history=np.array(
+                (np.append(drives.times, loads.times), np.append(drives.factors, loads.factors))
+            ),
+        )
 
 
 class Space(NamedTuple):
@@ -115,79 +178,6 @@ class Moving(NamedTuple):
     states: Array
     rates: Array
     energies: Array
-
-
-def make_problem(motion: Motion, *, soft: bool, impulses: str, sweeps: int, tolerance: float) -> Problem:
-    """The problem of a system: rows of the strips' axial forces and clamps first, then those of the drives.
-
-    soft: the axial forces of extensible strips are rows as well, with their compliance; else
-    only those of inextensible ones are. impulses: one of IMPULSES.
-    """
-    system = motion.system
-    layout, tables, count = system.layout, system.tables, system.layout.coordinate_count
-    strips = {name: g for g, name in enumerate(layout.strips)}
-    bodies = {name: len(strips) + g for g, name in enumerate(layout.bodies)}
-    start = [at for at, _ in layout.strips.values()] + list(layout.bodies.values())
-    size = [2 * n for _, n in layout.strips.values()] + [3] * len(bodies)
-    _require_mass(motion, start, size, [*strips, *bodies])
-    constraints = _constraints(system, soft, strips, bodies)
-    blocks = list(constraints.values())
-    if impulses == "strips":
-        owners = dict.fromkeys(owner for owner, _ in constraints)
-        blocks = [
-            [row for (owner, _), rows in constraints.items() if owner == one for row in rows]
-            for one in owners
-        ]
-    rows = np.array([row for block in blocks for row in block], dtype=np.int64).reshape(-1, 3)
-    ends = [len(rows)] if impulses == "direct" else np.cumsum([len(block) for block in blocks])
-    problem = Problem(
-        points=tables.points,
-        clamps=tables.clamps,
-        acting=np.zeros((0, 5), dtype=np.int64),
-        sizes=np.zeros((0, 2)),
-        history=np.zeros((2, 0)),
-        mass=motion.mass,
-        drag=motion.drag if motion.drag.size else np.zeros((count, count)),
-        weight=tables.weight if tables.weight.size else np.zeros(count),
-        rigidity=motion.rigidity,
-        relaxation=motion.relaxation,
-        unit=system.scales.unit / system.scales.energy,
-        energy=system.scales.energy,
-        turns=motion.turns,
-        groups=np.array((start, size), dtype=np.int64).T.copy(),
-        rows=rows,
-        first=np.array([0, *ends], dtype=np.int64),
-        grounded=int((tables.clamps.body < 0).any()),
-        sweeps=sweeps,
-        iterations=ITERATIONS,
-        tolerance=float(tolerance),
-        least_part=LEAST_FRACTION,
-    )
-    return with_drives(problem, motion, np.zeros(len(tables.drives.row), dtype=np.int64))
-
-
-def with_drives(problem: Problem, motion: Motion, active: Indices) -> Problem:
-    """The problem with the loads and drives of a motion, of which those hold whose ``active`` (D,) is 1."""
-    drives, loads = motion.drives, motion.loads
-    place = {row: r for r, row in enumerate(problem.rows[:, 0].tolist())}
-    rows = np.array([place[row] for row in drives.row.tolist()], dtype=np.int64)
-    free, always = np.full_like(loads.first, -1), np.ones_like(loads.first)
-    behind = drives.times.size + loads.first
-    mine = np.column_stack((drives.coordinate, rows, active, drives.first, drives.pairs))
-    others = np.column_stack((loads.coordinate, free, always, behind, loads.pairs))
-    return problem._replace(
-        acting=np.concatenate((mine, others)),
-        sizes=np.column_stack(
-            (np.append(drives.origin, 0.0 * loads.value), np.append(drives.target, loads.value))
-        ),
-        history=np.array((np.append(drives.times, loads.times), np.append(drives.factors, loads.factors))),
-    )
-
-
-def make_space(problem: Problem) -> Space:
-    """Arrays of a problem's size."""
-    sizes = {"N": len(problem.unit), "Q": len(problem.mass), "R": len(problem.rows)}
-    return zeros(Space, sizes | {"M": len(problem.rigidity)})
 
 
 def _constraints(

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from spline_model.bordered import assemble, derivatives
-from spline_model.effects.history import factor_at
+from spline_model.effects.boundary import factor_at
 from spline_model.impulses.arrays import ACTIVE, BEGIN, COORDINATE, DRIVE, ORIGIN, PAIRS, SIZE
 from spline_model.quadrature import (
     CURVATURE,
@@ -21,7 +21,7 @@ from spline_model.quadrature import (
     WEIGHT,
     WIDTH,
 )
-from spline_model.strip.compiled import called, kernel, once
+from spline_model.strip.compiled import called, kernel
 from spline_model.strip.laws import MATERIAL, SPATIAL, bending_law, stretching_law
 
 
@@ -61,15 +61,6 @@ def fill(z, problem, time, space):
     return slowest
 
 
-@once()
-def held(problem):
-    """Whether any drive holds."""
-    for a in range(problem.acting.shape[0]):
-        if problem.acting[a, DRIVE] >= 0 and problem.acting[a, ACTIVE] == 1:
-            return True
-    return False
-
-
 @called()
 def axial_strains(z, v, rates, problem, strains):
     """Fill strains (M,) = int eps P_k ds0 of every axial mode at z, or with the rate of eps at velocity v."""
@@ -106,15 +97,6 @@ def strain_energy(z, v, problem, space):
     for k in range(strains.size):
         for j in range(strains.size):
             energy += 0.5 * strains[k] * problem.rigidity[k, j] * strains[j]
-    return energy
-
-
-@once()
-def potential(z, v, problem, space):
-    """Strain energy and potential of the weight [J] at z (N,)."""
-    energy = strain_energy(z, v, problem, space)
-    for i in range(problem.weight.size):
-        energy -= problem.weight[i] * z[i]
     return energy
 
 

@@ -39,7 +39,7 @@ def _factorise(a, first, size):
 
 
 @called()
-def _solve_vector(a, first, size, x, offset):
+def _solve(a, first, size, x, offset):
     """Solve with the factors of a block for x[offset : offset + size], in place."""
     shift = offset - first
     for i in range(first, first + size):
@@ -50,19 +50,6 @@ def _solve_vector(a, first, size, x, offset):
     for i in range(first + size - 1, first - 1, -1):
         for k in range(i + 1, first + size):
             x[i + shift] -= a[k, i] * x[k + shift]
-
-
-@called()
-def _solve_column(a, first, size, column):
-    """Solve with the factors of a block for its part of a column of the same matrix, in place."""
-    for i in range(first, first + size):
-        for k in range(first, i):
-            a[i, column] -= a[i, k] * a[k, column]
-    for i in range(first, first + size):
-        a[i, column] /= a[i, i]
-    for i in range(first + size - 1, first - 1, -1):
-        for k in range(i + 1, first + size):
-            a[i, column] -= a[k, i] * a[k, column]
 
 
 @called()
@@ -79,7 +66,7 @@ def prepare(problem, matrix, schur):
         for k in range(1, 3):
             g = rows[r, k]
             if g >= 0:
-                _solve_column(matrix, groups[g, 0], groups[g, 1], rows[r, 0])
+                _solve(matrix, groups[g, 0], groups[g, 1], matrix[:, rows[r, 0]], groups[g, 0])
     for b in range(problem.first.size - 1):
         begin, end = problem.first[b], problem.first[b + 1]
         for r in range(begin, end):
@@ -99,7 +86,7 @@ def free_update(problem, matrix, x):
     """Overwrite x (Q,) by A^-1 x: every group by itself, as if there were no constraint (Eq 21)."""
     for g in range(problem.groups.shape[0]):
         start, size = problem.groups[g, 0], problem.groups[g, 1]
-        _solve_vector(matrix, start, size, x, start)
+        _solve(matrix, start, size, x, start)
 
 
 @called()
@@ -135,7 +122,7 @@ def apply_impulses(problem, space, x, tolerance):
                     value += matrix[rows[r, 0], rows[s, 0]] * mu[s]
                 change[r] = value
                 largest = max(largest, abs(value) * problem.unit[rows[r, 0]])
-            _solve_vector(space.schur, begin, end - begin, change, begin)
+            _solve(space.schur, begin, end - begin, change, begin)
             for r in range(begin, end):
                 mu[r] += change[r]
                 for k in range(1, 3):

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.compile import System
 from spline_model.effects import RootCompliance
-from spline_model.effects.curl import ANTICLASTIC
+from spline_model.effects.elastic import ANTICLASTIC
 from spline_model.errors import InvalidParameter, require_choice, require_count, require_positive
 from spline_model.impulses.arrays import (
     COUNTS,
@@ -18,18 +19,17 @@ from spline_model.impulses.arrays import (
     IMPULSES,
     RESIDUAL,
     Moving,
-    make_problem,
-    make_space,
-    with_drives,
+    Problem,
+    Space,
 )
 from spline_model.impulses.forces import strain_energy
-from spline_model.impulses.printed import printed_advance
-from spline_model.impulses.stable import stable_advance
+from spline_model.impulses.steps import printed_advance, stable_advance
 from spline_model.mechanism import Mechanism
 from spline_model.modes import static_state
-from spline_model.motion.records import KINETIC, STRAIN, WEIGHT, Records, records_of
+from spline_model.motion.arrays import zeros
+from spline_model.motion.records import KINETIC, STRAIN, WEIGHT, Records, Whole, rows_of
 from spline_model.motion.start import Motion, set_in_motion
-from spline_model.strip.compiled import copy, kernel, once
+from spline_model.strip.compiled import copy, kernel
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
@@ -113,10 +113,11 @@ class ImpulseSolver:
         if system.scene.of(RootCompliance):
             raise InvalidParameter("effects", "root_compliance", held)
         self.mechanism, self.system, self.form = mechanism, system, form
-        self.problem = make_problem(
+        self.problem = Problem.of(
             self.motion, soft=soft, impulses=impulses, sweeps=sweeps, tolerance=tolerance
         )
-        self.space = make_space(self.problem)
+        sizes = {"N": len(self.problem.unit), "Q": len(self.problem.mass), "R": len(self.problem.rows)}
+        self.space = zeros(Space, sizes | {"M": len(self.problem.rigidity)})
 
     def start(self, rotation: float | None = None, body: str | None = None) -> State:
         """The static state at the rotation [rad] of a body, or undriven: where the paper's releases start.
@@ -203,7 +204,7 @@ class Run:
     ) -> int:
         """Take the steps first ... last - 1; returns the number of the first that was not taken."""
         solver = self.solver
-        problem = with_drives(solver.problem, motion, active)
+        problem = solver.problem.with_drives(motion, active)
         stable = solver.form == "stable"
         return int(_advance(self.moving, time, h, first, last, every, stable, problem, solver.space))
 
@@ -228,18 +229,24 @@ class Run:
 
     def records(self, spacing: float, kept: int, message: str) -> Records:
         """The first ``kept`` records, ``spacing`` [s] apart; message: why the run stopped, if it did."""
-        states, rates, energies = (kinds[:kept] for kinds in self.moving[-3:])
-        return records_of(self.solver.motion, spacing, states, rates, energies, message, self._counters())
+        z, v, energies = (kinds[:kept] for kinds in self.moving[-3:])
+        motion = self.solver.motion
+        return Records(
+            spacing=spacing,
+            poses=z[:, motion.system.layout.poses],
+            rows=rows_of(motion, z, v, energies),
+            whole=Whole(motion, partial(tuple, (z, v))),
+            message=message,
+            counters=self._counters(),
+        )
 
     def outcome(self, taken: int, asked: int, time: float, held: bool) -> Outcome:
         """Where the run stands, for who asked for steps."""
         moving, solver = self.moving, self.solver
         strain = strain_energy(moving.z, moving.v, solver.problem, solver.space)
-        energies = np.array([[strain, *moving.totals]])
-        here, counters = (moving.z[None], moving.v[None]), self._counters()
-        seen = records_of(solver.motion, 0.0, *here, energies, "", counters)
-        (row,), (gap,) = seen.rows, seen.whole.gaps
-        known = int(moving.status[COUNTS])
+        here, known = (moving.z[None], moving.v[None]), int(moving.status[COUNTS])
+        (row,) = rows_of(solver.motion, *here, np.array([[strain, *moving.totals]]))
+        (gap,) = Whole(solver.motion, partial(tuple, here)).gaps
         weight, rest = solver.system.weight, solver.system.rest
         return Outcome(
             state=State(z=moving.z, v=moving.v, earlier=moving.earlier, known=known, time=time, held=held),
@@ -251,7 +258,7 @@ class Run:
             constraint_residual=float(gap[0]),
             velocity_residual=float(gap[1]),
             residual=float(moving.status[RESIDUAL]),
-            counters=counters,
+            counters=self._counters(),
         )
 
     def _counters(self) -> dict[str, int]:
@@ -274,17 +281,12 @@ def _advance(moving, time, h, first, last, every, stable, problem, space):
         if not done:
             return k
         if (k + 1) % every == 0:
-            _keep(moving, (k + 1) // every, problem, space)
+            r = (k + 1) // every
+            copy(moving.z, moving.states[r])
+            copy(moving.v, moving.rates[r])
+            moving.energies[r, 0] = strain_energy(moving.z, moving.v, problem, space)
+            copy(moving.totals, moving.energies[r, 1:])
     return last
-
-
-@once()
-def _keep(moving, r, problem, space):
-    """Record where a motion stands as the r-th record."""
-    copy(moving.z, moving.states[r])
-    copy(moving.v, moving.rates[r])
-    moving.energies[r, 0] = strain_energy(moving.z, moving.v, problem, space)
-    copy(moving.totals, moving.energies[r, 1:])
 
 
 def _require_numbers(name: str, values: Array, least: int, most: float, unit: str) -> None:

@@ -16,8 +16,17 @@ from __future__ import annotations
 
 import math
 
-from spline_model.motion.forces import add_forces, add_ties, move, place, turn_roots
-from spline_model.motion.grid import INNER_ROOT, INNER_TIP, ROOT, TIP
+from spline_model.motion.forces import (
+    INNER_ROOT,
+    INNER_TIP,
+    ROOT,
+    TIP,
+    add_forces,
+    add_ties,
+    move,
+    place,
+    turn_roots,
+)
 from spline_model.reduced.assembly import scatter
 from spline_model.strip.compiled import part
 from spline_model.strip.condense import eliminate

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.motion.start import Motion
+from spline_model.tables import DriveTable, LoadTable
 
 Array = NDArray[np.float64]
 Places = NDArray[np.int64]
@@ -62,68 +63,49 @@ class Flexures(NamedTuple):
 class Masses(NamedTuple):
     """B bodies, free strip ends among them, and what acts on them: Q = 3 B coordinates.
 
-    inertia, drag, weight (Q,). Loads (F,): body coordinate or -1, strip and place of its control point
-    (component n + number), value, pieces (first, pairs) of times and factors. Drives (D,): coordinate,
-    origin, target, pieces, times and factors as those of the scene.
+    inertia, drag, weight (Q,); loads (F) and drives (D) of the motion, these at the coordinates drive_at;
+    load_body, load_strip, load_place (F,): body coordinate or -1, strip and place of its control point
+    (component n + number).
     """
 
     inertia: Array
     drag: Array
     weight: Array
+    loads: LoadTable
     load_body: Places
     load_strip: Places
     load_place: Places
-    load_value: Array
-    load_first: Places
-    load_pairs: Places
-    load_times: Array
-    load_factors: Array
+    drives: DriveTable
     drive_at: Places
-    drive_origin: Array
-    drive_target: Array
-    drive_first: Places
-    drive_pairs: Places
-    drive_times: Array
-    drive_factors: Array
 
-
-def masses_of(motion: Motion, poses: int) -> Masses:
-    """The bodies and what acts on them; poses: the number of their coordinates."""
-    system, loads, drives = motion.system, motion.loads, motion.drives
-    scene, layout, length, energy = system.scene, system.layout, system.scales.length, system.scales.energy
-    unit = np.tile([length, length, 1.0], poses // 3)
-    body_at = {k: k - layout.poses.start for k in range(layout.poses.start, layout.poses.stop)}
-    inertia, drag, weight = np.zeros((3, poses))
-    given = np.diag(motion.mass), np.diag(motion.drag), system.weight
-    for mine, acts in zip((inertia, drag, weight), given, strict=True):
-        mine[: len(body_at)] = acts[layout.poses] if acts.size else 0.0
-    strip_at: dict[int, int] = {}
-    place: dict[int, int] = {}
-    for s, strip in enumerate(scene.strips if loads.coordinate.size else ()):
-        start, n = layout.strips[strip.name]
-        strip_at |= {start + k: s for k in range(2 * n)}
-        place |= {start + 2 * i + k: k * n + i for i in range(n) for k in range(2)}
-    turning = np.where(drives.turns == 1, 1.0, length)
-    return Masses(
-        inertia=inertia * unit**2 / energy,
-        drag=drag * unit**2 / energy,
-        weight=weight * unit / energy,
-        load_body=np.array([body_at.get(int(c), -1) for c in loads.coordinate], dtype=np.int64),
-        load_strip=np.array([strip_at.get(int(c), -1) for c in loads.coordinate], dtype=np.int64),
-        load_place=np.array([place.get(int(c), -1) for c in loads.coordinate], dtype=np.int64),
-        load_value=loads.value * np.where(loads.turns == 1, 1.0, length) / energy,
-        load_first=loads.first,
-        load_pairs=loads.pairs,
-        load_times=loads.times,
-        load_factors=loads.factors,
-        drive_at=np.array([body_at[int(c)] for c in drives.coordinate], dtype=np.int64),
-        drive_origin=drives.origin / turning,
-        drive_target=drives.target / turning,
-        drive_first=drives.first,
-        drive_pairs=drives.pairs,
-        drive_times=drives.times,
-        drive_factors=drives.factors,
-    )
+    @classmethod
+    def of(cls, motion: Motion, poses: int) -> Masses:
+        """The bodies and what acts on them; poses: the number of their coordinates."""
+        system, loads, drives = motion.system, motion.loads, motion.drives
+        layout, length, energy = system.layout, system.scales.length, system.scales.energy
+        unit, begin = np.tile([length, length, 1.0], poses // 3), layout.poses.start
+        inertia, drag, weight = np.zeros((3, poses))
+        given = np.diag(motion.mass), np.diag(motion.drag), system.weight
+        for mine, acts in zip((inertia, drag, weight), given, strict=True):
+            if acts.size:
+                mine[: layout.poses.stop - begin] = acts[layout.poses]
+        load_strip, load_place = np.full((2, loads.coordinate.size), -1)
+        for s, (start, n) in enumerate(layout.strips[strip.name] for strip in system.scene.strips):
+            at = loads.coordinate - start
+            here = (at >= 0) & (at < 2 * n)
+            load_strip[here], load_place[here] = s, (at % 2 * n + at // 2)[here]
+        size = np.where(drives.turns == 1, 1.0, length)
+        return cls(
+            inertia=inertia * unit**2 / energy,
+            drag=drag * unit**2 / energy,
+            weight=weight * unit / energy,
+            loads=loads._replace(value=loads.value * np.where(loads.turns == 1, 1.0, length) / energy),
+            load_body=np.where(load_strip < 0, loads.coordinate - begin, -1),
+            load_strip=load_strip,
+            load_place=load_place,
+            drives=drives._replace(origin=drives.origin / size, target=drives.target / size),
+            drive_at=drives.coordinate - begin,
+        )
 
 
 class State(NamedTuple):
@@ -248,11 +230,11 @@ class Poses(NamedTuple):
     free: Annotated[Places, "Q'"]
     still: Annotated[Places, "0"]
 
-
-def poses_of(y: Array, rate: Array, inertia: Array, all_bodies: int) -> Poses:
-    """A state with these coordinates and velocities; inertia (Q,)."""
-    still = [*np.flatnonzero(inertia == 0.0), *range(len(rate), all_bodies)]
-    poses = zeros(Poses, {"Y": len(y), "Q": len(rate), "Q'": all_bodies})
-    return poses._replace(
-        y=y.copy(), trial=y.copy(), rate=rate, last=np.ones(1), still=np.array(still, dtype=np.int64)
-    )
+    @classmethod
+    def of(cls, y: Array, rate: Array, inertia: Array, all_bodies: int) -> Poses:
+        """A state with these coordinates and velocities; inertia (Q,)."""
+        still = [*np.flatnonzero(inertia == 0.0), *range(len(rate), all_bodies)]
+        poses = zeros(cls, {"Y": len(y), "Q": len(rate), "Q'": all_bodies})
+        return poses._replace(
+            y=y.copy(), trial=y.copy(), rate=rate, last=np.ones(1), still=np.array(still, dtype=np.int64)
+        )

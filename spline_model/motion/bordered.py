@@ -18,19 +18,18 @@ from spline_model.checks import refuse
 from spline_model.motion.energy_consistent import Moves
 from spline_model.motion.records import ENERGIES, MOST_GAIN_OF_OTHERS, rows_of
 from spline_model.motion.start import Array, Start
-from spline_model.motion.step import FACTORISATIONS, HALVED, NEWTON, STEPS
+from spline_model.motion.step import FACTORISATIONS, NEWTON, STEPS
 
 (gesv,) = get_lapack_funcs(("gesv",))  # without the checks and warnings of scipy.linalg.solve
 
 TOLERANCE = 1e-10
 MOST_ITERATIONS = 15
-SMALLEST_STEP = 2.0**-8
 
 
 class Stepper(Moves):
     """One system's arrays and the scheme's constants; holds the state while it is advanced.
 
-    A record is the bodies' poses, unknowns (N,), velocities (Q,) and energies (5,) in EI/L.
+    A record is the bodies' poses in L, unknowns (N,), velocities (Q,) and energies (5,) in EI/L.
     """
 
     most_gain = MOST_GAIN_OF_OTHERS
@@ -45,25 +44,14 @@ class Stepper(Moves):
         self.energies = evaluate(self.system, self.z, 1.0, self.gradient, self.hessian)
         self.counters = np.zeros(6, dtype=np.int64)
         self.poses = (self.motion.turns[:, None] + np.arange(-2, 1)).ravel()
-        self.unit, self.width = np.ones(3), len(self.poses) + size + len(self.v) + ENERGIES
+        self.width = len(self.poses) + size + len(self.v) + ENERGIES
 
-    def take(
-        self, time: float, step: float, begin: int, end: int, every: int, smallest: float, records: Array
-    ) -> int:
-        """The next step's number; at any time, as nothing that acts has a history."""
+    def steps(self, time: float, step: float, begin: int, end: int, every: int, records: Array) -> int:
+        """The number of the first step that fails; at any time, as nothing that acts has a history."""
         for number in range(begin, end):
-            done, h = 0.0, step
-            while step - done > 1e-9 * step:
-                h = min(h, step - done)
-                if self._try(h):
-                    self.counters[STEPS] += 1
-                    done += h
-                    h = min(2 * h, step)
-                    continue
-                self.counters[HALVED] += 1
-                h /= 2
-                if h < max(smallest, SMALLEST_STEP * step):
-                    return number
+            if not self._try(step):
+                return number
+            self.counters[STEPS] += 1
             if (number + 1) % every == 0:
                 records[(number + 1) // every - begin // every - 1] = self.record()
         return end
@@ -108,15 +96,14 @@ class Stepper(Moves):
         """The present state's record (W,); the axial forces are those that its strains give."""
         strain = sum(self.energies) + open_energy(self.system, self.z)
         (row,) = rows_of(self.motion, self.z[None], self.v[None], np.array([[strain, 0.0, 0.0]]))
-        return np.concatenate((self.z[self.poses], self.z, self.v, row / self.energy))
+        length = self.system.scales.length
+        poses = self.z[self.poses].reshape(-1, 3) / [length, length, 1.0]
+        return np.concatenate((poses.ravel(), self.z, self.v, row / self.energy))
 
     def unknowns(self, records: Array) -> tuple[Array, Array]:
         """Unknowns (R, N) and velocities (R, Q) of records."""
         first, middle = len(self.poses), len(self.poses) + len(self.z)
         return records[:, first:middle], records[:, middle:-ENERGIES]
-
-    def switch(self, time: float, span: float) -> None:
-        """Nothing begins or ends."""
 
     def reason(self) -> str:
         """Why the last step was given up, and what helps."""

@@ -14,16 +14,16 @@ Source: Gonzalez, Time integration and discrete Hamiltonian systems, J Nonlinear
 from __future__ import annotations
 
 import math
-from abc import ABC, abstractmethod
+from collections.abc import Iterator
 from itertools import pairwise
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from spline_model.motion.mechanism import moving
+from spline_model.motion.mechanism import Moving
 from spline_model.motion.records import ENERGIES, MOST_GAIN, Records, compact, first_gain
-from spline_model.motion.run import MOST_HALVED, MOST_HALVED_A_STEP, run, store
+from spline_model.motion.run import run, store
 from spline_model.motion.start import SAME, Array, Motion, Start, Steps
 from spline_model.motion.step import FACTORISATIONS, FOLDS, HALVED, NEWTON, REFUSED, STEPS, WHOLE
 from spline_model.scene import Scene
@@ -32,6 +32,9 @@ TOLERANCE = 1e-11
 """Residual of a step, in EI/L^2, EI/L, L and rad; the energy of a step is exact to this."""
 SMALLEST_STEP = 2.0**-14
 """Least fraction of a step before the run is given up."""
+MOST_HALVED, MOST_HALVED_A_STEP = 500, 150
+"""A run is given up when it has been halved more often than this, and this for every step done: the
+swing of Table 1 at steps of its own period takes 120 a step; without a bound a step may take minutes."""
 WATCHED = 4096
 """Steps after which the energy is looked at, at the latest."""
 
@@ -48,13 +51,57 @@ def integrate(start: Start, run: Steps) -> Records:
 
 def carry(stepper: Moves, run: Steps, z: Array | None = None) -> Records:
     """The records of a stepper that starts from z (N,), or None where its own first record says as much."""
-    mover, step, duration = _Mover(stepper, run), run.step, run.steps * run.step
+    records = np.empty((run.records, stepper.width))
+    kept, message = _fill(stepper, run, records)
+    places = {"steps": STEPS, "halved_steps": HALVED, "newton_iterations": NEWTON}
+    places["factorisations"] = FACTORISATIONS
+    counters = {name: int(stepper.counters[place]) for name, place in places.items()}
+    return compact(stepper.motion, stepper.unknowns, records[:kept], z, run.spacing, message, counters)
+
+
+def _fill(stepper: Moves, run: Steps, records: Array) -> tuple[int, str]:
+    """Fill the records (R, W) of a run; returns how many are good, and why it stopped, if it did."""
+    step, every, duration, kept = run.step, run.every, run.steps * run.step, 0
     for begin, end in pairwise((0.0, *stepper.motion.event_times(duration, step), duration)):
-        mover.switch(begin, min(end - begin, step))
-        if not mover.go_to(end):
-            break
-    records, counters = mover.records[: mover.kept], _counts(stepper.counters)
-    return compact(stepper.motion, stepper, records, z, run.spacing, mover.message, counters)
+        stepper.switch(begin, min(end - begin, step))
+        if begin == 0.0:  # with the drives that hold from the start on
+            records[0], kept = stepper.record(), 1
+        for time, to, number, last in _pieces(begin, end, run):
+            if last > number:
+                places = slice(number // every + 1, last // every + 1)
+                done = stepper.take(0.0, step, number, last, every, step * SMALLEST_STEP, records[places])
+                solved, reached, kept = done == last, done * step, done // every + 1
+            else:
+                solved, reached = stepper.advance(time, to - time, SMALLEST_STEP) == to - time, time
+                if solved and to == last * step and last % every == 0:
+                    records[last // every], kept = stepper.record(), last // every + 1
+            good = first_gain(records[:kept, -ENERGIES:], 1.0, stepper.most_gain)
+            if good < kept:
+                most = f"more than {stepper.most_gain:g} of itself"
+                return good, f"stopped at {good * every * step:.6g} s: the energy grows by {most}"
+            if not solved:
+                return kept, f"stopped at {reached:.6g} s: {stepper.reason()}"
+    return kept, ""
+
+
+def _pieces(begin: float, end: float, run: Steps) -> Iterator[tuple[float, float, int, int]]:
+    """The way from one instant to another [s]: from, to, and the first and last step's end of whole steps.
+
+    These are as many as are run before the energy is looked at; of a part of a step, which ends in the last
+    one or before it, both are the same.
+    """
+    time, step, watched = begin, run.step, max(1, WATCHED // run.every) * run.every
+    close = SAME * step
+    while end - time > close:
+        number, last = (math.floor((instant + close) / step) for instant in (time, end))
+        if last > number and abs(time - number * step) <= close:
+            last = min(last, number + watched - number % run.every)
+            to = last * step
+        else:
+            number = last = number + 1
+            to = last * step if end > last * step - close else end
+        yield time, to, number, last
+        time = to
 
 
 def turned(scene: Scene, strips: Any, y: Array, s: int) -> str:
@@ -75,49 +122,80 @@ def why(counters: NDArray[np.int64], scene: Scene, strips: Any, y: Array, s: int
     return f"no step, however short, goes on from {where}, where {strip.name} is nearest to fold; {helps}"
 
 
-class Moves(ABC):
-    """A scene in motion, advanced in compiled steps that are halved at need.
+class Moves:
+    """A scene in motion, advanced in steps that are halved at need.
 
-    most_gain: of energy over the run's at which it is stopped; width: numbers of a record, the bodies' poses
-    first and the energies last; unit (3,) of a pose [m, rad].
+    width: numbers of a record.
     """
 
     most_gain = MOST_GAIN
     motion: Motion
     counters: NDArray[np.int64]
     width: int
-    unit: Array
 
     def advance(self, time: float, duration: float, smallest: float) -> float:
         """Advance by a step of ``duration``, halved at need down to ``smallest`` of it; the time done."""
         nothing = np.zeros((0, self.width))
         return duration * self.take(time, duration, 0, 1, 2, duration * smallest, nothing)
 
-    def run(self, step: float, begin: int, end: int, every: int, records: Array) -> int:
-        """Take the steps ``begin`` ... ``end`` - 1, filling records (R, W); the next step's number."""
-        return self.take(0.0, step, begin, end, every, step * SMALLEST_STEP, records)
-
-    @abstractmethod
     def take(
         self, time: float, step: float, begin: int, end: int, every: int, smallest: float, records: Array
     ) -> int:
-        """The same after a time [s], of steps that are halved down to ``smallest`` [s]."""
+        """Take the steps ``begin`` ... ``end`` - 1 after a time [s], filling records (R, W).
 
-    @abstractmethod
+        One that fails is taken in parts. Returns the number of the first that cannot be, or end.
+        """
+        number, first = begin, begin // every
+        while number < end:
+            done = self.steps(time, step, number, end, every, records[number // every - first :])
+            self.counters[WHOLE] += done - number
+            number = done
+            if number < end:
+                last = (number + 1) // every - first
+                mine = records[last - 1 : last] if (number + 1) % every == 0 else records[:0]
+                if not self._take_parts(time + number * step, step, smallest, mine):
+                    break
+                self.counters[WHOLE] += 1
+                number += 1
+        return number
+
+    def _take_parts(self, time: float, step: float, smallest: float, record: Array) -> bool:
+        """Take a step that failed: halved, down to ``smallest`` [s], and doubled again after each success.
+
+        record (1, W), or (0, W) where none is wanted: filled at its end.
+        """
+        done, h, counters = 0.0, 0.5 * step, self.counters
+        counters[HALVED] += 1
+        while step - done > SAME * step:
+            if h < smallest or counters[HALVED] > MOST_HALVED + MOST_HALVED_A_STEP * counters[WHOLE]:
+                return False
+            h = min(h, step - done)
+            wanted = len(record) > 0 and not step - (done + h) > SAME * step
+            if self.steps(time + done, h, 0, 1, 1 if wanted else 2, record) == 1:
+                done, h = done + h, min(2.0 * h, step)
+            else:
+                counters[HALVED] += 1
+                h *= 0.5
+        return True
+
+    def steps(self, time: float, step: float, begin: int, end: int, every: int, records: Array) -> int:
+        """Take whole steps; the number of the first that fails, at whose begin all is left, or end."""
+        raise NotImplementedError
+
     def record(self) -> Array:
         """The present state's record (W,)."""
+        raise NotImplementedError
 
-    @abstractmethod
     def unknowns(self, records: Array) -> tuple[Array, Array]:
         """Unknowns (R, N) and velocities (R, Q) of records."""
+        raise NotImplementedError
 
-    @abstractmethod
     def switch(self, time: float, span: float) -> None:
         """Let drives begin, change or end at ``time``; they then hold for at least ``span`` [s]."""
 
-    @abstractmethod
     def reason(self) -> str:
         """Why the last step was given up, and what helps."""
+        raise NotImplementedError
 
 
 class Stepper(Moves):
@@ -126,22 +204,17 @@ class Stepper(Moves):
     def __init__(self, start: Start) -> None:
         self.motion = start.motion
         self.motion.require_compiled("energy")
-        self._model = moving(self.motion)
-        self.width, self.unit = self._model.width, self._model.unit
+        self._model = Moving.of(self.motion)
+        self.width = self._model.width
         self._state, self._work = self._model.arrays(start.z, start.v, start.acceleration)
         self.counters = np.zeros(6, dtype=np.int64)
         self.active = np.zeros(self.motion.drives.row.size, dtype=np.int64)
 
-    def take(
-        self, time: float, step: float, begin: int, end: int, every: int, smallest: float, records: Array
-    ) -> int:
-        """The next step's number."""
-        return int(
-            run(
-                time, step, begin, end, every, smallest, self.active, self._state, self._model.strips,
-                self._model.masses, TOLERANCE, self._work, self.counters, records,
-            )
-        )  # fmt: skip
+    def steps(self, time: float, step: float, begin: int, end: int, every: int, records: Array) -> int:
+        """The number of the first step that fails."""
+        model, asked = self._model, (time, step, begin, end, every, self.active)
+        given = self._state, model.strips, model.masses, TOLERANCE, self._work, self.counters
+        return int(run(*asked, *given, records))
 
     def record(self) -> Array:
         """The present state's record (W,)."""
@@ -191,75 +264,3 @@ class Stepper(Moves):
         """Return to a state that was kept."""
         for array, value in zip(self._state, kept, strict=True):
             array[:] = value
-
-
-class _Mover:
-    """A run and its records on a uniform grid."""
-
-    def __init__(self, stepper: Moves, run: Steps) -> None:
-        self.stepper, self.step, self.every = stepper, run.step, run.every
-        self.records = np.empty((run.records, stepper.width))
-        self.time, self.kept, self.message = 0.0, 0, ""
-
-    def switch(self, time: float, span: float) -> None:
-        """As of the stepper; the first record has the drives that hold from the start on."""
-        self.stepper.switch(time, span)
-        if time == 0.0:
-            self._keep(0)
-
-    def go_to(self, end: float) -> bool:
-        """Move on to the time ``end`` [s]; False, with the reason, where that fails."""
-        close = SAME * self.step
-        while end - self.time > close:
-            number = math.floor((self.time + close) / self.step)
-            last = math.floor((end + close) / self.step)
-            if abs(self.time - number * self.step) <= close and last > number:
-                watched = max(1, WATCHED // self.every) * self.every
-                done = self._whole_steps(number, min(last, number + watched - number % self.every))
-            else:
-                done = self._part_of_step(min(end, (number + 1) * self.step), number + 1)
-            if not done:
-                return False
-        return True
-
-    def _whole_steps(self, begin: int, end: int) -> bool:
-        places = slice(begin // self.every + 1, end // self.every + 1)
-        done = self.stepper.run(self.step, begin, end, self.every, self.records[places])
-        self.kept, self.time = done // self.every + 1, done * self.step
-        return self._is_good(done == end)
-
-    def _part_of_step(self, target: float, number: int) -> bool:
-        """Advance to ``target``, at most to the end of the step before grid point ``number``."""
-        span = target - self.time
-        done = self.stepper.advance(self.time, span, SMALLEST_STEP)
-        if done == span:
-            at_grid = abs(target - number * self.step) <= SAME * self.step
-            self.time = number * self.step if at_grid else target
-            if at_grid and number % self.every == 0:
-                self._keep(number // self.every)
-        return self._is_good(done == span)
-
-    def _keep(self, place: int) -> None:
-        self.records[place], self.kept = self.stepper.record(), place + 1
-
-    def _is_good(self, solved: bool) -> bool:
-        """Whether the run may go on: its steps were solved, and its energy did not grow."""
-        most = self.stepper.most_gain
-        good = first_gain(self.records[: self.kept, -ENERGIES:], 1.0, most)
-        if good < self.kept:
-            at = good * self.every * self.step
-            self.message = f"stopped at {at:.6g} s: the energy grows by more than {most:g} of itself"
-            self.kept = good
-        elif not solved:
-            self.message = f"stopped at {self.time:.6g} s: {self.stepper.reason()}"
-        return not self.message
-
-
-def _counts(counters: NDArray[np.int64]) -> dict[str, int]:
-    """Counters of a run by name."""
-    return {
-        "steps": int(counters[STEPS]),
-        "halved_steps": int(counters[HALVED]),
-        "newton_iterations": int(counters[NEWTON]),
-        "factorisations": int(counters[FACTORISATIONS]),
-    }

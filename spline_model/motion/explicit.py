@@ -22,21 +22,21 @@ not kept, so that it would be of first order. One evaluation, second order, stab
 
 from __future__ import annotations
 
-from typing import NamedTuple
+import math
 
 import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.errors import InvalidParameter
-from spline_model.motion.acceleration import accelerate, move, place
-from spline_model.motion.arrays import Scratch, State
-from spline_model.motion.grid import Grid, Room, grid_of, room_of
-from spline_model.motion.mechanism import Moving, moving
+from spline_model.modes import linear_modes
+from spline_model.motion.acceleration import accelerate
+from spline_model.motion.arrays import State
+from spline_model.motion.forces import Grid, Room, move, place
+from spline_model.motion.mechanism import Moving
 from spline_model.motion.records import ENERGIES, MOST_GAIN_OF_OTHERS, Records, compact, first_gain
-from spline_model.motion.run import SLOWEST_SPEED, store
+from spline_model.motion.run import forward, set_points, store
 from spline_model.motion.start import Motion, Start, Steps
-from spline_model.motion.strip import curve_at
-from spline_model.strip.compiled import copy, kernel, part
+from spline_model.strip.compiled import kernel, part
 
 Array = NDArray[np.float64]
 
@@ -92,33 +92,24 @@ def _end_stage(scheme, stage, last, h, r, w, push, room):
 
 @part()
 def _show(r, w, grid, strips, masses, room, state):
-    """The state at r with rates w, axial forces of the last evaluation; False if it is no strip's."""
+    """The state at r with rates w, axial forces of the last evaluation."""
     poses, n, modes = masses.inertia.size, strips.mass.shape[1], strips.compliance.shape[1]
-    own, fine = strips.own, True
+    own = strips.own
     for i in range(poses):
         state.y[i], state.rate[i] = r[i], w[i]
     for b in range(poses // 3):
-        room.turns[b, 0], room.turns[b, 1] = np.cos(r[3 * b + 2]), np.sin(r[3 * b + 2])
+        room.turns[b, 0], room.turns[b, 1] = math.cos(r[3 * b + 2]), math.sin(r[3 * b + 2])
     for s in range(strips.roots.size):
         at, to = poses + s * own, poses + s * (own + modes)
-        place(s, at, r, grid, strips, room)
-        move(s, at, w, strips, room)
         for i in range(own):
             state.y[to + i] = r[at + i]
         for k in range(modes):
             state.y[to + own + k] = room.axial[s, k]
+        place(s, at, r, grid, strips, room)
+        move(s, at, w, strips, room)
         for i in range(n):
-            for k in range(2):
-                state.points[s, k, i] = room.points[s, k, i]
-                state.velocity[s, k, i] = room.speed[s, k, i]
-        for e in range(2):
-            copy(room.ends[s, e], state.ends[s, e])
-            body = strips.roots[s] if e == 0 else strips.tips[s]
-            fine = fine and (strips.lead == 1 or body >= strips.free_from or r[at + own - 2 + e] > 0.0)
-        for p in range(strips.weight.size):
-            curve_at(p, state.points[s], strips.first, strips.d1, strips.d2, state.at[s, p])
-            fine = fine and state.at[s, p, 4] > SLOWEST_SPEED * strips.speed[s, p]
-    return fine
+            state.velocity[s, 0, i], state.velocity[s, 1, i] = room.speed[s, 0, i], room.speed[s, 1, i]
+    set_points(state, strips, masses)
 
 
 @kernel()
@@ -138,69 +129,42 @@ def _run(scheme, stages, h, every, r, w, push, grid, strips, masses, room, state
                 largest = max(largest, abs(r[i]) + h * abs(w[i])) if r[i] == r[i] else np.inf
             if not largest < 1e3:  # far outside any pose, or not finite
                 return row
-        if not _show(r, w, grid, strips, masses, room, state):
+        _show(r, w, grid, strips, masses, room, state)
+        if not forward(state, strips, masses, work):
             return row
         store(state, strips, masses, work, records[row])
     return records.shape[0]
 
 
-class Flight(NamedTuple):
-    """A motion about to start: scheme, model, r, its rates and acceleration, working arrays, records."""
+class Flight:
+    """A motion about to start from (z, v), which the first record has, with space for ``rows`` more.
 
-    scheme: int
-    model: Moving
-    grid: Grid
-    room: Room
-    r: Array
-    w: Array
-    push: Array
-    state: State
-    work: Scratch
-    records: Array
+    records (rows + 1, W); stages: evaluations of the accelerations in a step.
+    """
 
-    @property
-    def stages(self) -> int:
-        """Evaluations of the accelerations in a step."""
-        return (1 if self.grid.outer else 2) if self.scheme == LEAPFROG else 4
+    def __init__(self, motion: Motion, z: Array, v: Array, rows: int, integrator: str) -> None:
+        require_explicit(motion, integrator)
+        self.model = Moving.of(motion)
+        strips, masses = self.model.strips, self.model.masses
+        state, work = self.model.arrays(z, v, np.zeros(len(v)))
+        r, w = _reduced(self.model, state)
+        self.records = np.empty((rows + 1, self.model.width))
+        store(state, strips, masses, work, self.records[0])
+        grid, scheme = Grid.of(strips), SCHEMES[integrator]
+        self.stages = 4 if scheme == RUNGE_KUTTA else 1 if grid.outer else 2
+        room = Room.of(strips, masses, grid)
+        work = work._replace(at=state.at)  # a state is looked at as the end of a step that changes nothing
+        self._given = r, w, np.zeros_like(r), grid, strips, masses, room, state, work
+        self._scheme = scheme
 
     def fly(self, step: float, every: int) -> int:
         """Fill the records behind the first, ``every`` steps apart, compiled; returns how many."""
-        model = self.model
-        return int(
-            _run(
-                self.scheme, self.stages, step, every, self.r, self.w, self.push, self.grid, model.strips,
-                model.masses, self.room, self.state, self.work, self.records[1:],
-            )
-        )  # fmt: skip
-
-
-def flight(motion: Motion, z: Array, v: Array, rows: int, integrator: str) -> Flight:
-    """The motion from (z, v), which the first record has, with space for ``rows`` more."""
-    require_explicit(motion, integrator)
-    model = moving(motion)
-    strips, masses = model.strips, model.masses
-    state, work = model.arrays(z, v, np.zeros(len(v)))
-    grid = grid_of(strips)
-    r, w = _reduced(model, state)
-    records = np.empty((rows + 1, model.width))
-    store(state, strips, masses, work, records[0])
-    return Flight(
-        scheme=SCHEMES[integrator],
-        model=model,
-        grid=grid,
-        room=room_of(strips, masses, grid),
-        r=r,
-        w=w,
-        push=np.zeros_like(r),
-        state=state,
-        work=work,
-        records=records,
-    )
+        return int(_run(self._scheme, self.stages, step, every, *self._given, self.records[1:]))
 
 
 def integrate(start: Start, run: Steps, integrator: str) -> Records:
     """The records of a run."""
-    begun = flight(start.motion, start.z, start.v, run.records - 1, integrator)
+    begun = Flight(start.motion, start.z, start.v, run.records - 1, integrator)
     records = begun.records[: begun.fly(run.step, run.every) + 1]
     kept = first_gain(records[:, -ENERGIES:], 1.0, MOST_GAIN_OF_OTHERS)
     message = ""
@@ -211,13 +175,26 @@ def integrate(start: Start, run: Steps, integrator: str) -> Records:
         )
     done = (kept - 1) * run.every
     counters = {"steps": done, "evaluations": begun.stages * done}
-    return compact(start.motion, begun.model, records[:kept], start.z, run.spacing, message, counters)
+    return compact(
+        start.motion, begun.model.unknowns, records[:kept], start.z, run.spacing, message, counters
+    )
 
 
 def stability_limit(integrator: str, motion: Motion) -> float:
     """omega h up to which a step does not amplify an undamped oscillation of a system in motion."""
     tied = bool((np.diag(motion.rigidity) == 0.0).any())
     return PLAIN_LIMIT if tied and integrator == "leapfrog" else STABILITY_LIMITS[integrator]
+
+
+def critical_step(integrator: str, motion: Motion, z: Array) -> float:
+    """The longest stable step [s], by the highest frequency at a state and at rest."""
+    return stability_limit(integrator, motion) / highest_frequency(motion, z)
+
+
+def highest_frequency(motion: Motion, z: Array) -> float:
+    """Highest circular frequency at a state and at rest [rad/s]."""
+    system = motion.system
+    return math.sqrt(max(linear_modes(system, state, motion.mass)[0][-1] for state in (z, system.rest)))
 
 
 def require_explicit(motion: Motion, integrator: str) -> None:

@@ -26,21 +26,19 @@ from numpy.typing import NDArray
 from spline_model.errors import InvalidParameter
 from spline_model.motion import bordered, energy_consistent
 from spline_model.motion.records import MOST_GAIN_OF_OTHERS, Records
-from spline_model.motion.run import MOST_HALVED, MOST_HALVED_A_STEP, clamp_forces, forward, set_points, store
+from spline_model.motion.run import clamp_forces, forward, set_points, store
 from spline_model.motion.start import Start, Steps
 from spline_model.motion.step import (
     FACTORISATIONS,
     FOLDS,
-    HALVED,
     NEWTON,
     REFUSED,
     STEPS,
-    WHOLE,
     assemble,
     guess_step,
     improve,
 )
-from spline_model.strip.compiled import called, copy, kernel, part
+from spline_model.strip.compiled import copy, kernel, part
 
 Array = NDArray[np.float64]
 
@@ -48,8 +46,6 @@ MOST_ITERATIONS = 15
 SPECTRAL_RADIUS = 0.8
 TOLERANCE = 1e-10
 """Residual of a step, in EI/L^2, EI/L and L."""
-SMALLEST_STEP = 2.0**-8
-"""Least fraction of a step before the run is given up."""
 
 
 class _Alpha(NamedTuple):
@@ -57,7 +53,8 @@ class _Alpha(NamedTuple):
 
     q, v, a, p (C,): coordinates of bodies and control points, their velocities, accelerations,
     pseudo-accelerations; moved, target (C,): q1 - q0, and the same without a1: a1 follows from a difference
-    that would drown in the coordinates' own round-off; y (Y,) at the step's start.
+    that would drown in the coordinates' own round-off; y (Y,) at the step's start. places, rates, pushes (C,)
+    are the state's own: of bodies and control points one after the other.
     """
 
     constants: Array
@@ -68,6 +65,9 @@ class _Alpha(NamedTuple):
     moved: Array
     target: Array
     y: Array
+    places: Array
+    rates: Array
+    pushes: Array
 
 
 def constants(spectral_radius: float) -> Array:
@@ -78,32 +78,6 @@ def constants(spectral_radius: float) -> Array:
     return np.array([alpha_m, alpha_f, gamma, (gamma + 0.5) ** 2 / 4])
 
 
-@called()
-def _gather(of_bodies, of_points, out):
-    """Numbers of bodies (Q,) and control points (S, 2, n), one after the other."""
-    n, at = of_points.shape[2], of_bodies.size
-    for i in range(at):
-        out[i] = of_bodies[i]
-    for s in range(of_points.shape[0]):
-        for k in range(2):
-            for i in range(n):
-                out[at] = of_points[s, k, i]
-                at += 1
-
-
-@called()
-def _spread(source, of_bodies, of_points):
-    """The other way round."""
-    n, at = of_points.shape[2], of_bodies.size
-    for i in range(at):
-        of_bodies[i] = source[i]
-    for s in range(of_points.shape[0]):
-        for k in range(2):
-            for i in range(n):
-                of_points[s, k, i] = source[at]
-                at += 1
-
-
 @part()
 def _begin(h, alpha, state, strips, masses, work):
     """The step's target, and a first guess of y."""
@@ -111,11 +85,9 @@ def _begin(h, alpha, state, strips, masses, work):
     for i in range(alpha.q.size):
         pseudo = (alpha_f * alpha.a[i] - alpha_m * alpha.p[i]) / (1.0 - alpha_m)
         mean = (0.5 - beta) * alpha.p[i] + beta * pseudo
-        alpha.target[i] = 2.0 * mean
-    _spread(alpha.v, state.rate, state.velocity)
-    _spread(alpha.target, state.push, state.acceleration)
-    for i in range(alpha.q.size):
-        alpha.target[i] = h * alpha.v[i] + 0.5 * h * h * alpha.target[i]
+        alpha.pushes[i] = 2.0 * mean
+        alpha.target[i] = h * alpha.v[i] + 0.5 * h * h * alpha.pushes[i]
+    copy(alpha.v, alpha.rates)
     guess_step(h, state, strips, masses, work)
     modes, own = strips.compliance.shape[1], strips.own
     for i in range(masses.inertia.size):
@@ -186,13 +158,11 @@ def _solve(stiffness, alpha, state, strips, masses, work, counters):
 @part()
 def _accept(h, stiffness, alpha, state, strips, work):
     """Velocities, accelerations and pseudo-accelerations of a step that was solved, and clamp forces."""
-    alpha_m, alpha_f, gamma, beta = (
-        alpha.constants[0],
-        alpha.constants[1],
-        alpha.constants[2],
-        alpha.constants[3],
-    )
-    _gather(state.y[: state.rate.size], state.points, alpha.q)
+    alpha_m, alpha_f = alpha.constants[0], alpha.constants[1]
+    gamma, beta = alpha.constants[2], alpha.constants[3]
+    for i in range(state.rate.size):
+        alpha.places[i] = state.y[i]
+    copy(alpha.places, alpha.q)
     for i in range(alpha.q.size):
         change = alpha.moved[i] - alpha.target[i]
         pseudo = (alpha_f * alpha.a[i] - alpha_m * alpha.p[i]) / (1.0 - alpha_m)
@@ -204,35 +174,25 @@ def _accept(h, stiffness, alpha, state, strips, work):
 
 
 @kernel()
-def _run(step, first, end, every, smallest, alpha, state, strips, masses, work, counters, records):
-    """Take the steps ``first`` ... ``end`` - 1, halved at need; returns the next step's number.
+def _run(step, first, end, every, alpha, state, strips, masses, work, counters, records):
+    """Take the steps ``first`` ... ``end`` - 1; returns the first that fails, or end.
 
     records: filled at the ends of steps whose number ``every`` divides.
     """
     alpha_m, alpha_f, beta = alpha.constants[0], alpha.constants[1], alpha.constants[3]
+    stiffness = (1.0 - alpha_m) / (beta * step * step * (1.0 - alpha_f))
     for number in range(first, end):
-        done, h = 0.0, step
-        while step - done > 1e-9 * step:
-            h = min(h, step - done)
-            stiffness = (1.0 - alpha_m) / (beta * h * h * (1.0 - alpha_f))
-            _begin(h, alpha, state, strips, masses, work)
-            solved = _solve(stiffness, alpha, state, strips, masses, work, counters)
-            if solved and forward(state, strips, masses, work):
-                _accept(h, stiffness, alpha, state, strips, work)
-                counters[STEPS] += 1
-                done += h
-                h = min(2.0 * h, step)
-                continue
+        _begin(step, alpha, state, strips, masses, work)
+        solved = _solve(stiffness, alpha, state, strips, masses, work, counters)
+        if not solved or not forward(state, strips, masses, work):
             copy(alpha.y, state.y)
             set_points(state, strips, masses)
-            counters[HALVED] += 1
             counters[REFUSED] = FOLDS if solved else 0
-            h *= 0.5
-            if h < smallest or counters[HALVED] > MOST_HALVED + MOST_HALVED_A_STEP * counters[WHOLE]:
-                return number
-        counters[WHOLE] += 1
+            return number
+        _accept(step, stiffness, alpha, state, strips, work)
+        counters[STEPS] += 1
         if (number + 1) % every == 0:
-            _spread(alpha.v, state.rate, state.velocity)
+            copy(alpha.v, alpha.rates)
             store(state, strips, masses, work, records[(number + 1) // every - first // every - 1])
     return end
 
@@ -244,29 +204,42 @@ class _Stepper(energy_consistent.Stepper):
 
     def __init__(self, start: Start, constants: Array) -> None:
         super().__init__(start)
-        state = self._state
-        push = np.concatenate((state.push, state.acceleration.ravel()))
+        state, bodies = self._state, self._state.rate.size
+        given = (
+            (state.y[:bodies], state.points),
+            (state.rate, state.velocity),
+            (state.push, state.acceleration),
+        )
+        places, rates, pushes = (np.concatenate((one, other.ravel())) for one, other in given)
+        points, velocity, acceleration = (
+            each[bodies:].reshape(state.points.shape) for each in (places, rates, pushes)
+        )
+        self._state = state._replace(
+            points=points,
+            rate=rates[:bodies],
+            velocity=velocity,
+            push=pushes[:bodies],
+            acceleration=acceleration,
+        )
         self._alpha = _Alpha(
             constants=constants,
-            q=np.concatenate((state.y[: state.rate.size], state.points.ravel())),
-            v=np.concatenate((state.rate, state.velocity.ravel())),
-            a=push,
-            p=push.copy(),
-            moved=np.zeros_like(push),
-            target=np.zeros_like(push),
+            q=places.copy(),
+            v=rates.copy(),
+            a=pushes.copy(),
+            p=pushes.copy(),
+            moved=np.zeros_like(places),
+            target=np.zeros_like(places),
             y=state.y.copy(),
+            places=places,
+            rates=rates,
+            pushes=pushes,
         )
 
-    def take(
-        self, time: float, step: float, begin: int, end: int, every: int, smallest: float, records: Array
-    ) -> int:
-        """The next step's number; at any time, as nothing that acts has a history."""
-        return int(
-            _run(
-                step, begin, end, every, smallest, self._alpha, self._state, self._model.strips,
-                self._model.masses, self._work, self.counters, records,
-            )
-        )  # fmt: skip
+    def steps(self, time: float, step: float, begin: int, end: int, every: int, records: Array) -> int:
+        """The number of the first step that fails; at any time, as nothing that acts has a history."""
+        model = self._model
+        given = self._alpha, self._state, model.strips, model.masses, self._work, self.counters
+        return int(_run(step, begin, end, every, *given, records))
 
 
 def integrate(start: Start, run: Steps, spectral_radius: float = SPECTRAL_RADIUS) -> Records:

@@ -24,7 +24,7 @@ from spline_model.reduced.assembly import (
     FORCE,
     MOVE,
     RATE,
-    condense_all,
+    assemble,
     move_strips,
 )
 from spline_model.reduced.beside import condense_again, take_residual
@@ -169,7 +169,7 @@ def _bend_on(h, poses):
 def _evaluate(fresh, poses, bodies, strips, shape, local, space):
     """Energy and reactions at ``trial``, with a fresh tangent or an older one; the strips' residual."""
     if fresh:
-        norm = condense_all(poses.trial, 0.0, bodies, strips, shape, local, space)
+        norm = assemble(poses.trial, 0.0, bodies, strips, shape, local, space)
     else:
         norm = take_residual(poses.trial, 0.0, bodies, strips, shape, local, space)
         condense_again(bodies, strips, shape, local, space)

@@ -14,7 +14,7 @@ from spline_model.compile import System
 from spline_model.effects import Bending, Clamp, MixedStretching, RootCompliance, Stretching, StripDamping
 from spline_model.effects.base import Constraint
 from spline_model.errors import InvalidParameter
-from spline_model.motion.arrays import Flexures, Masses, Scratch, State, masses_of, sizes_of, zeros
+from spline_model.motion.arrays import Flexures, Masses, Scratch, State, sizes_of, zeros
 from spline_model.motion.records import ENERGIES
 from spline_model.motion.run import set_points
 from spline_model.motion.start import Motion
@@ -54,8 +54,7 @@ class Moving:
 
     def with_drives(self, motion: Motion) -> Moving:
         """The same with the drives starting where those of a motion do."""
-        origin = motion.drives.origin / self._turning
-        return replace(self, masses=self.masses._replace(drive_origin=origin))
+        return replace(self, masses=Masses.of(motion, len(self.masses.inertia)))
 
     def arrays(self, z: Array, v: Array, acceleration: Array) -> tuple[State, Scratch]:
         """The state of unknowns z (N,) with velocity v and acceleration (Q,), and working arrays."""
@@ -85,10 +84,6 @@ class Moving:
     @cached_property
     def _units(self) -> Array:
         return np.tile(self.unit, len(self.system.scene.bodies))
-
-    @property
-    def _turning(self) -> Array:
-        return np.where(self.system.drives.turns == 1, 1.0, self.length)
 
     def _coordinates(self, z: Array) -> Array:
         system, strips, n = self.system, self.strips, self.strips.mass.shape[1]
@@ -153,19 +148,19 @@ class Moving:
         z[:, drives.row] = records[:, at : at + len(drives.row)] * unit[2 * drives.turns]
         return z, v
 
-
-def moving(motion: Motion) -> Moving:
-    """The reduced coordinates of a system in motion, whose strips have one basis and one quadrature."""
-    system = motion.system
-    ends = ends_of(system)
-    poses = 3 * max(len(system.scene.bodies), 1 + max(end.body for end in ends.values()))
-    return Moving(
-        system=system,
-        masses=masses_of(motion, poses),
-        length=system.scales.length,
-        energy=system.scales.energy,
-        **_strips(motion, ends),
-    )
+    @classmethod
+    def of(cls, motion: Motion) -> Moving:
+        """The reduced coordinates of a system in motion, whose strips have one basis and one quadrature."""
+        system = motion.system
+        ends = ends_of(system)
+        poses = 3 * max(len(system.scene.bodies), 1 + max(end.body for end in ends.values()))
+        return cls(
+            system=system,
+            masses=Masses.of(motion, poses),
+            length=system.scales.length,
+            energy=system.scales.energy,
+            **_strips(motion, ends),
+        )
 
 
 def _strips(motion: Motion, ends: Ends) -> dict[str, Any]:

@@ -66,13 +66,8 @@ def _add_chord(end, inner, n, value, block):
 @part()
 def turn_roots(s, dy, state, strips, work):
     """Add both roots' springs to forces and tangent of the control points; the rest into ``work.roots``."""
-    n, old, new, force, blocks = (
-        strips.mass.shape[1],
-        state.points[s],
-        work.points[s],
-        work.force[s],
-        work.blocks,
-    )
+    n, old, new = strips.mass.shape[1], state.points[s], work.points[s]
+    force, blocks = work.force[s], work.blocks
     for e in range(2):
         end, inner, body = (0, 1, strips.roots[s]) if e == 0 else (n - 1, n - 2, strips.tips[s])
         root, k, c = work.roots[s, e], strips.spring[s, e], dy[3 * body + 2] if body >= 0 else 0.0
@@ -82,12 +77,8 @@ def turn_roots(s, dy, state, strips, work):
         square = x1 * x1 + y1 * y1
         both = math.sqrt((x0 * x0 + y0 * y0) * square)
         tx, ty, mx, my, w = -y1 / square, x1 / square, 0.5 * (x0 + x1), 0.5 * (y0 + y1), share / both
-        wx, wy, gx, gy = (
-            slope / both * tx - w * x1 / square,
-            slope / both * ty - w * y1 / square,
-            -my * w,
-            mx * w,
-        )
+        wx, wy = slope / both * tx - w * x1 / square, slope / both * ty - w * y1 / square
+        gx, gy = -my * w, mx * w
         push = 0.5 * k * (root_turn(state.ends[s, e], x0, y0) + root_turn(work.ends[s, e], x1, y1))
         force[0, inner] += push * gx
         force[1, inner] += push * gy
@@ -101,12 +92,8 @@ def turn_roots(s, dy, state, strips, work):
         turn, change = 2.0 * math.atan(0.5 * c), 1.0 / (1.0 + 0.25 * c * c)
         mean = turn / c if c != 0.0 else 1.0
         bend = (change - mean) / c if abs(c) > 1e-4 else -c / 6.0
-        root[0], root[1], root[2], root[3] = (
-            -half * change * gx,
-            -half * change * gy,
-            -half * mean * tx,
-            -half * mean * ty,
-        )
+        root[0], root[1] = -half * change * gx, -half * change * gy
+        root[2], root[3] = -half * mean * tx, -half * mean * ty
         root[4], root[5], root[PUSH] = half * change * mean - push * bend, -push * mean, push
 
 

@@ -11,13 +11,13 @@ from scipy.linalg import eigh
 
 from spline_model.errors import InvalidParameter
 from spline_model.motion import energy_consistent
-from spline_model.motion.arrays import masses_of, poses_of
+from spline_model.motion.arrays import Masses, Poses
 from spline_model.motion.energy_consistent import turned, why
 from spline_model.motion.massless import solve
 from spline_model.motion.records import ENERGIES, Records
-from spline_model.motion.run import MOST_HALVED, MOST_HALVED_A_STEP, SLOWEST_SPEED
+from spline_model.motion.run import SLOWEST_SPEED
 from spline_model.motion.start import Array, Start, Steps
-from spline_model.motion.step import FOLDS, HALVED, REFUSED, SNAPS, STEPS, WHOLE, load_at
+from spline_model.motion.step import FOLDS, REFUSED, SNAPS, STEPS, load_at
 from spline_model.reduced.assembly import NEGATIVE, SLOWEST, assemble, factorise, working_space
 from spline_model.reduced.model import Reduced, at_rest, from_unknowns, reduced
 from spline_model.reduced.states import unknowns_of
@@ -25,6 +25,8 @@ from spline_model.reduced.whole import whole_tangents
 from spline_model.strip.compiled import copy, kernel, part
 from spline_model.strip.element import ON_POINTS, POINTS, place_points
 
+NAME = "quasi-static strips"
+"""What the energy integrator is called where only the bodies are dynamic."""
 TOLERANCE = 1e-11
 """Residual of a step in EI/L^2, EI/L and L."""
 LEAST = 1e-9
@@ -99,14 +101,12 @@ def _accept(h, poses, masses):
     for i in range(poses.dx.size, poses.y.size):
         poses.bent[i] = poses.trial[i] - poses.y[i] - poses.ahead[i]
     poses.last[0] = h
-    copy(poses.trial, poses.y)
-    copy(poses.next, poses.pull)
-    poses.energy[0] = poses.energy[1]
+    _settle(poses)
 
 
 @part()
 def _settle(poses):
-    """Take the equilibrium found at held bodies."""
+    """Take the equilibrium that was found."""
     copy(poses.trial, poses.y)
     copy(poses.next, poses.pull)
     poses.energy[0] = poses.energy[1]
@@ -141,42 +141,33 @@ def _store(poses, masses, bodies, strips, shape, local, row):
 
 @kernel()
 def _run(
-    time, step, begin, end, every, smallest, scene_bodies, poses, masses, bodies, strips, shape, local, space,
+    time, step, begin, end, every, scene_bodies, poses, masses, bodies, strips, shape, local, space,
     tolerance, counters, records,
 ):  # fmt: skip
-    """Take the steps ``begin`` ... ``end`` - 1 after a time; returns the next step's number.
+    """Take the steps ``begin`` ... ``end`` - 1 after a time; returns the first that fails, or end.
 
     Where there are none, strips and coordinates without mass are brought into equilibrium, which is recorded,
-    or the number is less. A step whose Newton fails is halved, down to ``smallest``, and doubles again after
-    each success. records (R, Y + Q + 5): of ``_store``, at the ends of steps whose number ``every`` divides.
+    or the number is less. records (R, Y + Q + 5): of ``_store``, at the ends of steps whose number ``every``
+    divides.
     """
     for k in range(begin if begin < end else begin - 1, end):
-        done, h, moving = 0.0, step, 1.0 if k >= begin else 0.0
-        while step - done > 1e-9 * step:
-            now, h = time + k * step + done, min(h, step - done)
-            for i in range(poses.load.size * int(moving)):
-                poses.load[i] = 0.0
-            for f in range(masses.load_value.size * int(moving)):
-                poses.load[masses.load_body[f]] += load_at(f, now + 0.5 * h, masses)
-            solved = solve(h, moving, poses, masses, bodies, strips, shape, local, space, tolerance, counters)
-            if moving == 0.0:
-                if not solved:
-                    return k
-                _settle(poses)
-                break
-            counters[REFUSED] = _refused(poses, bodies, strips, shape, space, scene_bodies) if solved else 0
-            if solved and counters[REFUSED] == 0:
-                _accept(h, poses, masses)
-                counters[STEPS] += 1
-                done += h
-                h = min(2.0 * h, step)
-                continue
-            counters[HALVED] += 1
-            h *= 0.5
-            if h < smallest or counters[HALVED] > MOST_HALVED + MOST_HALVED_A_STEP * counters[WHOLE]:
+        moving = 1.0 if k >= begin else 0.0
+        for i in range(poses.load.size * int(moving)):
+            poses.load[i] = 0.0
+        for f in range(masses.load_body.size * int(moving)):
+            poses.load[masses.load_body[f]] += load_at(f, time + k * step + 0.5 * step, masses)
+        solved = solve(step, moving, poses, masses, bodies, strips, shape, local, space, tolerance, counters)
+        if moving == 0.0:
+            if not solved:
                 return k
-            assemble(poses.y, 0.0, bodies, strips, shape, local, space)  # the tangent to begin along
-        counters[WHOLE] += int(moving)
+            _settle(poses)
+        else:
+            counters[REFUSED] = _refused(poses, bodies, strips, shape, space, scene_bodies) if solved else 0
+            if not solved or counters[REFUSED] != 0:
+                assemble(poses.y, 0.0, bodies, strips, shape, local, space)  # the tangent to begin along
+                return k
+            _accept(step, poses, masses)
+            counters[STEPS] += 1
         if (k + 1) % every == 0:
             row = records[(k + 1) // every - begin // every - 1]
             _store(poses, masses, bodies, strips, shape, local, row)
@@ -188,33 +179,28 @@ class _Stepper(energy_consistent.Moves):
 
     def __init__(self, model: Reduced, y: Array, start: Start) -> None:
         self.motion, self._model = start.motion, model
-        self._masses = masses_of(self.motion, len(model.bodies.rest))
+        self._masses = Masses.of(self.motion, len(model.bodies.rest))
         self.unit = np.array([model.length, model.length, 1.0])
         rate, moved = np.zeros((len(model.bodies.rest) // 3, 3)), model.system.layout.poses
         rate[: len(model.system.scene.bodies)] = start.v[moved].reshape(-1, 3) / self.unit
-        self._poses = poses_of(y, rate.ravel(), self._masses.inertia, len(model.bodies.load))
+        self._poses = Poses.of(y, rate.ravel(), self._masses.inertia, len(model.bodies.load))
         self._local, self._space = model.local(), working_space(model.bodies, model.size)
         self.width = model.size + rate.size + ENERGIES
         self.counters = np.zeros(6, dtype=np.int64)
         made = self._masses, model.bodies, model.strips, model.shape, self._local, self._space
         self._given = (self._poses, *made, TOLERANCE, self.counters)
 
-    def take(
-        self, time: float, step: float, begin: int, end: int, every: int, smallest: float, records: Array
-    ) -> int:
-        """The next step's number."""
+    def steps(self, time: float, step: float, begin: int, end: int, every: int, records: Array) -> int:
+        """The number of the first step that fails."""
         bodies = len(self._model.system.scene.bodies)
-        return int(_run(time, step, begin, end, every, smallest, bodies, *self._given, records))
+        return int(_run(time, step, begin, end, every, bodies, *self._given, records))
 
     def record(self) -> Array:
         """The present state's record (W,), in equilibrium."""
         records = np.zeros((1, self.width))
-        if self.take(0.0, 1.0, 0, 0, 1, 1.0, records) < 0:
+        if self.steps(0.0, 1.0, 0, 0, 1, records) < 0:
             raise InvalidParameter("start", "no equilibrium of the strips", "a static state")
         return np.asarray(records[0])
-
-    def switch(self, time: float, span: float) -> None:
-        """Nothing begins or ends but loads."""
 
     def reason(self) -> str:
         """Why the last step was given up: where none folds, a strip that is soft by now snaps through."""

@@ -1,16 +1,20 @@
-"""Records of a run: energies, states and how well the clamps hold, and the watch over gains of energy."""
+"""Records of a run, how far its energies and clamps hold, and the trajectory that they are as an answer."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property, partial
-from typing import Protocol
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from spline_model.compile import System
 from spline_model.motion.start import Motion
+from spline_model.newton import Laps
+from spline_model.solution import MotionEstimate, Status, Tabulated, body_columns
 from spline_model.tables import YIELDING
 
 Array = NDArray[np.float64]
@@ -62,13 +66,12 @@ class Whole:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Records:
-    """R records of a run, the start first.
+    """R records of a run, ``spacing`` [s] apart, the start first.
 
-    time (R,) [s]; poses (R, 3 B) of the bodies [m, rad]; rows (R, 5) as named above; message: empty,
-    or why the run stopped.
+    poses (R, 3 B) of the bodies [m, rad]; rows (R, 5) as named above; message: empty, or why the run stopped.
     """
 
-    time: Array
+    spacing: float
     poses: Array
     rows: Array
     whole: Whole
@@ -76,41 +79,9 @@ class Records:
     counters: dict[str, int]
 
 
-def records_of(
-    motion: Motion,
-    spacing: float,
-    z: Array,
-    v: Array,
-    energies: Array,
-    message: str,
-    counters: dict[str, int],
-) -> Records:
-    """The records ``spacing`` [s] apart of a run that kept its states z (R, N) and v (R, Q); energies as of
-    ``rows_of``."""
-    return Records(
-        time=np.arange(0.0, len(z)) * spacing,
-        poses=z[:, motion.system.layout.poses],
-        rows=rows_of(motion, z, v, energies),
-        whole=Whole(motion, partial(tuple, (z, v))),
-        message=message,
-        counters=counters,
-    )
-
-
-class _Reader(Protocol):
-    """Who knows the numbers of a compiled run's records: the bodies' poses first, the energies last."""
-
-    @property
-    def unit(self) -> Array:
-        """Of a pose (3,) [m, rad]."""
-
-    def unknowns(self, records: Array) -> tuple[Array, Array]:
-        """Unknowns (R, N) and velocities (R, Q) of records (R, W)."""
-
-
 def compact(
     motion: Motion,
-    reader: _Reader,
+    unknowns: Callable[[Array], tuple[Array, Array]],
     records: Array,
     z: Array | None,
     spacing: float,
@@ -119,21 +90,24 @@ def compact(
 ) -> Records:
     """The records (R, W) of a compiled run, ``spacing`` [s] apart, read as far as every answer needs.
 
-    z (N,): all unknowns of the first one; None where the record says as much.
+    The first of their numbers are poses in L, the last energies in EI/L. unknowns: what makes z (R, N) and
+    v (R, Q) of them; z (N,): of the first one, None where the record says as much.
     """
-    bodies = len(motion.turns)
+    scales, bodies = motion.system.scales, len(motion.turns)
     return Records(
-        time=np.arange(0.0, len(records)) * spacing,
-        poses=records[:, : 3 * bodies] * np.tile(reader.unit, bodies),
-        rows=records[:, -ENERGIES:] * motion.system.scales.energy,
-        whole=Whole(motion, partial(_read, reader, records, z)),
+        spacing=spacing,
+        poses=records[:, : 3 * bodies] * np.tile([scales.length, scales.length, 1.0], bodies),
+        rows=records[:, -ENERGIES:] * scales.energy,
+        whole=Whole(motion, partial(_read, unknowns, records, z)),
         message=message,
         counters=counters,
     )
 
 
-def _read(reader: _Reader, records: Array, z: Array | None) -> tuple[Array, Array]:
-    states, rates = reader.unknowns(records)
+def _read(
+    unknowns: Callable[[Array], tuple[Array, Array]], records: Array, z: Array | None
+) -> tuple[Array, Array]:
+    states, rates = unknowns(records)
     if z is not None:
         states[0] = z
     return states, rates
@@ -176,9 +150,8 @@ def _clamp_gaps(motion: Motion, c: int, z: Array, v: Array) -> tuple[Array, Arra
 def energy_gain(rows: Array, unit: float) -> Array:
     """Gain of the balance T + V - work + dissipated at each record over the run's energy, (R,) [1].
 
-    rows (R, 5) as named above; unit: EI/L in them. The energy is the
-    largest of the balance's parts so far, so that the gain of a run that starts at rest, or
-    about which the weight's arbitrary zero says nothing, has a scale.
+    rows (R, 5) as named above; unit: EI/L in them. The energy is the largest of the balance's parts so far,
+    as a run may start at rest, and the weight's zero is arbitrary.
     """
     stored = rows[:, KINETIC] + rows[:, STRAIN]
     fallen = rows[:, WEIGHT] - rows[0, WEIGHT]
@@ -194,3 +167,132 @@ def first_gain(rows: Array, unit: float, most: float) -> int:
     """Number of the first record that has gained more than ``most``, or the number of records."""
     gained = np.flatnonzero(~(energy_gain(rows, unit) <= most))
     return int(gained[0]) if gained.size else len(rows)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+class Trajectory(Tabulated):
+    """A motion; T records, the start first.
+
+    time (T,) [s]; bodies: x, y, theta (T, 3) by name [m, m, rad]; body: the one that rotation
+    (T,) and centre (T, 2) are of; kinetic_energy, strain_energy (T,) [J]; gravity_energy
+    against rest, work of loads and drives so far, dissipated so far (T,) [J];
+    whole: what is made when it is asked for, states, velocities and constraint residuals; unresolved: what
+    the step leaves unresolved, likewise, and checked: what a companion found; effects: names of the scene's
+    effects; counters: steps, halved_steps, newton_iterations, ...; seconds: by part (``newton.Laps``),
+    "start" the static state that is let go; estimate: of the error, where an accuracy was asked for;
+    rotation_error: largest difference of the rotation to a companion's with two control points more
+    [rad], nan without one.
+    """
+
+    status: Status
+    message: str
+    time: Array
+    bodies: dict[str, Array]
+    body: str
+    kinetic_energy: Array
+    strain_energy: Array
+    gravity_energy: Array
+    work: Array
+    dissipated: Array
+    whole: Whole
+    unresolved: Callable[[], str]
+    effects: tuple[str, ...]
+    counters: dict[str, int]
+    settings: dict[str, Any]
+    seconds: dict[str, float]
+    estimate: MotionEstimate | None = None
+    rotation_error: float = math.nan
+    checked: str = ""
+
+    @property
+    def states(self) -> Array:
+        """Unknowns (T, N) of the system in motion."""
+        return self.whole.both[0]
+
+    @property
+    def velocities(self) -> Array:
+        """Velocities (T, Q) of the system in motion."""
+        return self.whole.both[1]
+
+    @property
+    def constraint_residual(self) -> Array:
+        """Largest one (T,) [m]."""
+        return self.whole.gaps[:, 0]
+
+    @property
+    def velocity_residual(self) -> Array:
+        """Largest rate of it (T,) [m/s]."""
+        return self.whole.gaps[:, 1]
+
+    @cached_property
+    def resolution(self) -> str:
+        """Empty, or what step and control points leave unresolved."""
+        return "; ".join(remark for remark in (self.unresolved(), self.checked) if remark)
+
+    @property
+    def control_points(self) -> int:
+        """Control points of a strip."""
+        return int(self.settings["control_points"])
+
+    @property
+    def rotation(self) -> Array:
+        """Rotation of the body, (T,) [rad]."""
+        return self.bodies[self.body][:, 2]
+
+    @property
+    def centre(self) -> Array:
+        """Centre of the body, (T, 2) [m]."""
+        return self.bodies[self.body][:, :2]
+
+    def counted_on(self, before: Trajectory) -> Trajectory:
+        """With time, work and losses counted on from the end of the one before."""
+        return replace(
+            self,
+            time=self.time + before.time[-1],
+            work=self.work + before.work[-1],
+            dissipated=self.dissipated + before.dissipated[-1],
+        )
+
+    def columns(self) -> dict[str, Array]:
+        """What is one number at every instant, by names with units."""
+        energies = ("kinetic_energy", "strain_energy", "gravity_energy", "work", "dissipated")
+        return {
+            "time_s": self.time,
+            **body_columns(self.bodies),
+            **{f"{name}_J": getattr(self, name) for name in energies},
+        }
+
+    @classmethod
+    def of(
+        cls,
+        system: System,
+        run: Records,
+        *,
+        effects: tuple[str, ...],
+        body: str,
+        settings: dict[str, Any],
+        unresolved: Callable[[], str],
+        laps: Laps,
+    ) -> Trajectory:
+        """The trajectory of a run; a run that says why it stopped has not converged."""
+        rows = run.rows
+        points = max((strip.basis.control_points for strip in system.scene.strips), default=0)
+        rest = float(system.weight @ system.rest[: system.weight.size])
+        return cls(
+            status=Status.NOT_CONVERGED if run.message else Status.CONVERGED,
+            message=run.message,
+            time=np.arange(0.0, len(rows)) * run.spacing,
+            bodies={b.name: run.poses[:, 3 * i : 3 * i + 3] for i, b in enumerate(system.scene.bodies)},
+            body=body,
+            kinetic_energy=rows[:, KINETIC],
+            strain_energy=rows[:, STRAIN],
+            gravity_energy=rows[:, WEIGHT] + rest,
+            work=rows[:, WORK],
+            dissipated=rows[:, DISSIPATED],
+            whole=run.whole,
+            unresolved=unresolved,
+            effects=effects,
+            counters=run.counters,
+            settings={"control_points": points} | settings,
+            seconds=laps.lap("recover"),
+        )

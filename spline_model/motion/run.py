@@ -1,17 +1,14 @@
-"""Runs of energy-consistent steps: halving, books of work and losses, records, compiled."""
+"""Runs of energy-consistent steps: books of work and losses, records, compiled."""
 
 from __future__ import annotations
 
 import math
 
 from spline_model.motion.project import PUSH, root_energy
-from spline_model.motion.step import FOLDS, HALVED, REFUSED, STEPS, WHOLE, cayley, load_at, newton
+from spline_model.motion.step import FOLDS, REFUSED, STEPS, cayley, load_at, newton
 from spline_model.motion.strip import curve_at, look_at, place_strip
 from spline_model.strip.compiled import kernel, part
 
-MOST_HALVED, MOST_HALVED_A_STEP = 500, 150
-"""A run is given up when it has been halved more often than this, and this for every step done: the
-swing of Table 1 at steps of its own period takes 120 a step; without a bound a step may take minutes."""
 SLOWEST_SPEED = 0.1
 """|C'| below which, over that at rest, a strip is folded."""
 
@@ -54,7 +51,7 @@ def _accept(time, h, active, state, strips, masses, work):
     """Take the solved step: books of work and losses, velocities, coordinates."""
     poses, n, modes = masses.inertia.size, strips.mass.shape[1], strips.compliance.shape[1]
     own, dy, y, totals = strips.own, work.dy, state.y, state.totals
-    for f in range(masses.load_value.size):
+    for f in range(masses.load_body.size):
         value, i = load_at(f, time + 0.5 * h, masses), masses.load_body[f]
         if i >= 0:
             totals[0] += value * (2.0 * math.atan(0.5 * dy[i]) if i % 3 == 2 else dy[i])
@@ -155,12 +152,9 @@ def store(state, strips, masses, work, row):
 
 
 @kernel()
-def run(
-    time, step, begin, end, every, smallest, active, state, strips, masses, tolerance, work, counters, records
-):
-    """Take the steps ``begin`` ... ``end`` - 1 after a time; returns the next step's number.
+def run(time, step, begin, end, every, active, state, strips, masses, tolerance, work, counters, records):
+    """Take the steps ``begin`` ... ``end`` - 1 after a time; returns the first that fails, or end.
 
-    A step whose Newton fails is halved, down to ``smallest``, and doubles again after each success.
     records: filled at the ends of steps whose number ``every`` divides.
     """
     for i in range(work.held.size):
@@ -169,22 +163,13 @@ def run(
         if active[d] == 1:
             work.held[masses.drive_at[d]] = 1
     for k in range(begin, end):
-        done, h = 0.0, step
-        while step - done > 1e-9 * step:
-            now, h = time + k * step + done, min(h, step - done)
-            solved = newton(now, h, active, state, strips, masses, tolerance, work, counters)
-            if solved and forward(state, strips, masses, work):
-                _accept(now, h, active, state, strips, masses, work)
-                counters[STEPS] += 1
-                done += h
-                h = min(2.0 * h, step)
-                continue
-            counters[HALVED] += 1
+        now = time + k * step
+        solved = newton(now, step, active, state, strips, masses, tolerance, work, counters)
+        if not solved or not forward(state, strips, masses, work):
             counters[REFUSED] = FOLDS if solved else 0
-            h *= 0.5
-            if h < smallest or counters[HALVED] > MOST_HALVED + MOST_HALVED_A_STEP * counters[WHOLE]:
-                return k
-        counters[WHOLE] += 1
+            return k
+        _accept(now, step, active, state, strips, masses, work)
+        counters[STEPS] += 1
         if (k + 1) % every == 0:
             store(state, strips, masses, work, records[(k + 1) // every - begin // every - 1])
     return end

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple
@@ -13,8 +14,8 @@ from spline_model.bordered import assemble, evaluate
 from spline_model.compile import System
 from spline_model.effects import MixedStretching, StripDamping
 from spline_model.effects.base import Inertia
-from spline_model.effects.history import factor_at
-from spline_model.errors import InvalidParameter
+from spline_model.effects.boundary import factor_at
+from spline_model.errors import InvalidParameter, require_count
 from spline_model.solution import Later
 from spline_model.tables import YIELDING, DriveTable, LoadTable
 
@@ -23,6 +24,8 @@ Places = NDArray[np.int64]
 
 SAME = 1e-9
 """Instants nearer than this share of a step are the same."""
+MOST_MEMORY = 2e9
+"""Bytes that the records of one run may take."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -236,6 +239,30 @@ class Steps(NamedTuple):
     step: float
     steps: int
     every: int
+
+    @classmethod
+    def of(cls, duration: float, step: float, records: int | None, width: int) -> Steps:
+        """As many as there are in a duration, for at most so many records of ``width`` numbers each.
+
+        Raises InvalidParameter for a step longer than the duration, and for records that do not fit
+        into MOST_MEMORY.
+        """
+        if step > duration:
+            raise InvalidParameter("step", step, f"at most the duration, {duration:g} s")
+        if records is not None:
+            require_count("records", records, 1)
+        steps = max(1, math.ceil(duration / step * (1 - 1e-12)))  # a whole number but for round-off
+        every = 1 if records is None else max(1, math.ceil(steps / records))
+        memory = 8.0 * width * (steps // every + 1)
+        if memory > MOST_MEMORY:
+            raise InvalidParameter(
+                "duration",
+                duration,
+                f"records within {MOST_MEMORY / 1e9:g} GB; {steps} steps of {step:g} s take "
+                f"{memory / 1e9:.3g} GB: keep fewer of them with records, or take a longer step",
+            )
+        steps = math.ceil(steps / every) * every
+        return cls(duration / steps, steps, every)
 
     @property
     def records(self) -> int:

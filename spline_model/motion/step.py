@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 
-from spline_model.effects.history import factor_at
+from spline_model.effects.boundary import factor_at
 from spline_model.motion.project import condense, to_reduced, turn_bodies, turn_roots
 from spline_model.motion.strip import add_points, move_strip
 from spline_model.strip.compiled import called, part
@@ -30,7 +30,7 @@ def cayley(c):
     return share, (1.0 / (1.0 + 0.25 * square) - share) / c
 
 
-@called(no_cpython_wrapper=False)
+@called(entered=True)
 def prepare(time, h, state, strips, masses, work):
     """What does not change in a step: inertia, drag and loads on the control points, and loads on bodies."""
     n = strips.mass.shape[1]
@@ -45,7 +45,7 @@ def prepare(time, h, state, strips, masses, work):
                 for j in range(n):
                     total += strips.mass[s, i, j] * state.velocity[s, k, j]
                 work.steady[s, k, i] = -strips.dead[s, k, i] - 2.0 / h * total
-    for f in range(masses.load_value.size):
+    for f in range(masses.load_body.size):
         value = load_at(f, time + 0.5 * h, masses)
         if masses.load_body[f] >= 0:
             work.load[masses.load_body[f]] += value
@@ -57,9 +57,8 @@ def prepare(time, h, state, strips, masses, work):
 @called()
 def load_at(f, time, masses):
     """Value of a load."""
-    return masses.load_value[f] * factor_at(
-        time, masses.load_first[f], masses.load_pairs[f], masses.load_times, masses.load_factors
-    )
+    loads = masses.loads
+    return loads.value[f] * factor_at(time, loads.first[f], loads.pairs[f], loads.times, loads.factors)
 
 
 @called()
@@ -76,7 +75,7 @@ def _place_of(i, tip, root, behind):
     return behind + i
 
 
-@called(no_cpython_wrapper=False)
+@called(entered=True)
 def assemble(h, state, strips, masses, work):
     """Residual of the step dy, and its tangent at the bodies with the strips condensed; the largest residual.
 
@@ -165,7 +164,7 @@ def solve_rows(count, matrix, x):
     return True
 
 
-@called(no_cpython_wrapper=False)
+@called(entered=True)
 def improve(strips, masses, work):
     """Newton's correction of dy from the assembled step; False if the bodies' system is singular."""
     poses, modes = masses.inertia.size, strips.compliance.shape[1]
@@ -258,10 +257,9 @@ def newton(time, h, active, state, strips, masses, tolerance, work, counters):
     guess_step(h, state, strips, masses, work)
     for d in range(masses.drive_at.size):
         if active[d] == 1:
-            i = masses.drive_at[d]
-            first, pairs = masses.drive_first[d], masses.drive_pairs[d]
-            factor = factor_at(time + h, first, pairs, masses.drive_times, masses.drive_factors)
-            dy = masses.drive_origin[d] + factor * masses.drive_target[d] - state.y[i]
+            i, drives = masses.drive_at[d], masses.drives
+            factor = factor_at(time + h, drives.first[d], drives.pairs[d], drives.times, drives.factors)
+            dy = drives.origin[d] + factor * drives.target[d] - state.y[i]
             work.dy[i] = 2.0 * math.tan(0.5 * dy) if i % 3 == 2 else dy
     before = math.inf
     for _ in range(MOST_ITERATIONS):

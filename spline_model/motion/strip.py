@@ -146,12 +146,8 @@ def _add_products(begin, n, pairs, h0, h1, h2, h3, block):
 @part()
 def add_points(s, a, h, state, strips, work):
     """Forces on the control points, their tangent in the new ones, gaps and their derivatives."""
-    n, width, count, measure = (
-        strips.mass.shape[1],
-        strips.d1.shape[1],
-        strips.compliance.shape[1],
-        strips.measure,
-    )
+    n, width = strips.mass.shape[1], strips.d1.shape[1]
+    count, measure = strips.compliance.shape[1], strips.measure
     force, blocks, pull, along, gap = work.force[s], work.blocks, work.pull, work.along, work.gap[s]
     rate, strain = strips.relaxation[s] / h, strips.strain[s]
     for q in range(4):

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from spline_model.strip.compiled import called, kernel, part
+from spline_model.strip.compiled import called, part
 from spline_model.strip.condense import SINGULAR, condense, condense_coupled, recover
 from spline_model.strip.element import (
     BEYOND,
@@ -77,16 +77,6 @@ class Space(NamedTuple):
     states: Array
     out: Array
 
-    @property
-    def force(self) -> Array:
-        """The bodies' residual with the strips condensed (Q,)."""
-        return self.vectors[FORCE, : len(self.tangent)]
-
-    @property
-    def rate(self) -> Array:
-        """Rate of a state (Y,)."""
-        return np.asarray(self.states[RATE])
-
 
 def working_space(bodies: Bodies, size: int) -> Space:
     """Arrays for that many unknowns."""
@@ -151,53 +141,59 @@ def condensed(s, own, size, strips, local):
 
 
 @part()
-def condense_all(y, load, bodies, strips, shape, local, space):
+def begin(y, load, bodies, space):
+    """What acts on the bodies, into FORCE and RAW, and sums of energies that have nothing in them yet."""
+    out, force, raw = space.out, space.vectors[FORCE], space.vectors[RAW]
+    out[BENDING] = out[AXIAL] = out[DEAD] = 0.0
+    out[SLOWEST] = np.inf
+    for i in range(bodies.load.size):
+        force[i] = raw[i] = -load * bodies.load[i] - bodies.weight[i]
+    for i in range(bodies.rest.size):
+        out[DEAD] -= bodies.weight[i] * y[i]
+
+
+@part()
+def residual_of(s, own, last, strips, local, space):
+    """Largest residual of strip s; what it does to its bodies is added to RAW."""
+    g, gap, tip, root = local.reduced[s, LAST], local.axial[s, LAST], strips.tips[s], strips.roots[s]
+    norm = 0.0
+    for i in range(own):
+        norm = max(norm, abs(g[i]))
+    for k in range(gap.size):
+        norm = max(norm, abs(gap[k]))
+    for i in range(last, last + 3 * (tip >= 0) + 3 * (root >= 0)):
+        space.vectors[RAW, place_of(i - last, tip, root, 0)] += g[i]
+    return norm
+
+
+@called()
+def assemble(y, load, bodies, strips, shape, local, space):
     """Condense all strips at y; the bodies' tangent (upper) and force in ``space``.
 
     y: the bodies' poses, then w and a of each strip. Returns the largest residual of the strips, in
     EI/L^2 and L, or inf for a singular strip; the bodies' own is RAW of ``space``.
     """
-    out, tangent, force, raw = space.out, space.tangent, space.vectors[FORCE], space.vectors[RAW]
-    poses, count, modes = bodies.rest.size, strips.roots.size, strips.compliance.shape[1]
-    n = shape.order.size
-    own, inner = 2 * n - 6, strips.coupled - strips.outer
-    out[0] = out[1] = out[2] = out[4] = 0.0
-    out[3] = np.inf
+    poses, own = bodies.rest.size, 2 * shape.order.size - 6
+    last = own + strips.coupled - strips.outer
     for i in range(bodies.load.size):
-        force[i] = raw[i] = -load * bodies.load[i] - bodies.weight[i]
         for j in range(i, bodies.load.size):
-            tangent[i, j] = 0.0
-    for i in range(poses):
-        out[DEAD] -= bodies.weight[i] * y[i]
-    norm = 0.0
-    for s in range(count):
-        at = poses + s * (own + modes)
-        tip, root, last = strips.tips[s] >= 0, strips.roots[s] >= 0, own + inner
-        size = element_of(s, at, y, strips, shape, local, out)
-        h, gap = local.reduced[s], local.axial[s, LAST]
-        g = h[LAST]
-        for i in range(own):
-            norm = max(norm, abs(g[i]))
-        for k in range(modes):
-            norm = max(norm, abs(gap[k]))
-        if tip:
-            for i in range(3):
-                raw[3 * strips.tips[s] + i] += g[last + i]
-        if root:
-            for i in range(3):
-                raw[3 * strips.roots[s] + i] += g[last + 3 * tip + i]
+            space.tangent[i, j] = 0.0
+    norm, space.out[NEGATIVE] = 0.0, 0.0
+    begin(y, load, bodies, space)
+    for s in range(strips.roots.size):
+        at = poses + s * (own + strips.compliance.shape[1])
+        size = element_of(s, at, y, strips, shape, local, space.out)
+        norm = max(norm, residual_of(s, own, last, strips, local, space))
         negative = condensed(s, own, size, strips, local)
         if negative == SINGULAR:
             return np.inf
-        out[NEGATIVE] += negative
-        scatter(last, size, strips.tips[s], strips.roots[s], poses + s, g, h, force, tangent)
+        space.out[NEGATIVE] += negative
+        h = local.reduced[s]
+        scatter(
+            last, size, strips.tips[s], strips.roots[s], poses + s, h[LAST], h, space.vectors[FORCE],
+            space.tangent,
+        )  # fmt: skip
     return norm
-
-
-@kernel()
-def assemble(y, load, bodies, strips, shape, local, space):
-    """The same, to be called."""
-    return condense_all(y, load, bodies, strips, shape, local, space)
 
 
 @called()

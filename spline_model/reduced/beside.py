@@ -11,25 +11,21 @@ off by K^-1 H - 1 times what v is, and so is the stiffness.
 
 from __future__ import annotations
 
-import numpy as np
-
 from spline_model.reduced.assembly import (
-    AXIAL,
-    BENDING,
-    DEAD,
     FORCE,
     MOVE,
     RATE,
     RAW,
     REACTION,
     REACTION_RATE,
-    SLOWEST,
     SPARE,
+    begin,
     move_strips,
     place_of,
+    residual_of,
 )
 from spline_model.reduced.equilibrium import CLOSE, CONFIRMED, ITERATIONS, NEARLY, carry, newton, tangent
-from spline_model.strip.compiled import called, kernel, lane, part
+from spline_model.strip.compiled import called, lane, part
 from spline_model.strip.element import (
     FORCE_AT,
     GRADIENT,
@@ -44,7 +40,7 @@ from spline_model.strip.element import (
 )
 from spline_model.strip.ends import by_roots, by_tip, to_ends
 from spline_model.strip.laws import MATERIAL
-from spline_model.strip.points import add_slopes, curve_at, evaluate_residual, four
+from spline_model.strip.points import add_slopes, curve_at, evaluate_residual, four, spring_of, springs_of
 
 COVECTOR, ALONG = 0, 1
 """Rows of ``Local.nodal`` that are free once the Hessian is condensed: H v, and the rates of the points."""
@@ -114,28 +110,15 @@ def respond(bodies, strips, shape, local, space, out):
 @part()
 def take_residual(y, load, bodies, strips, shape, local, space):
     """As ``assemble``, but for the tangent, which is kept. Of the strips the largest."""
-    out, force, raw, poses = space.out, space.vectors[FORCE], space.vectors[RAW], bodies.rest.size
     n, modes = shape.order.size, strips.compliance.shape[1]
-    own, last = 2 * n - 6, 2 * n - 6 + strips.coupled - strips.outer
-    out[BENDING] = out[AXIAL] = out[DEAD] = 0.0
-    out[SLOWEST] = np.inf
-    for i in range(bodies.load.size):
-        force[i] = raw[i] = -load * bodies.load[i] - bodies.weight[i]
-    for i in range(poses):
-        out[DEAD] -= bodies.weight[i] * y[i]
-    norm = 0.0
+    own, last, norm = 2 * n - 6, 2 * n - 6 + strips.coupled - strips.outer, 0.0
+    begin(y, load, bodies, space)
     for s in range(strips.roots.size):
-        at, tip, root = poses + s * (own + modes), strips.tips[s], strips.roots[s]
+        at = bodies.rest.size + s * (own + modes)
         place_points(s, y[at : at + own], y, strips, local)
-        evaluate_residual(s, y[at + own : at + own + modes], n, shape, strips, local, out)
+        evaluate_residual(s, y[at + own : at + own + modes], n, shape, strips, local, space.out)
         to_coordinates(s, local.nodal[s, GRADIENT], last, strips, local)
-        g, gap = local.reduced[s, LAST], local.axial[s, LAST]
-        for i in range(own):
-            norm = max(norm, abs(g[i]))
-        for k in range(modes):
-            norm = max(norm, abs(gap[k]))
-        for i in range(last, last + 3 * (tip >= 0) + 3 * (root >= 0)):
-            raw[place_of(i - last, tip, root, 0)] += g[i]
+        norm = max(norm, residual_of(s, own, last, strips, local, space))
     return norm
 
 
@@ -176,6 +159,8 @@ def _add_product(s, a, points, shape, strips, local, covector):
     _product_at(*(four(lanes, 0) + h + more + (lanes[PULL_AT + 1], force) + slopes + (strain,)))
     for i in range(covector.size):
         covector[i] = 0.0
+    for i in range(springs_of(strips.numbers[s])):
+        covector[i] = spring_of(i, strips.numbers[s]) * points[i]
     add_slopes(d1.shape[0], d1, d2, slopes, covector)
     for k in range(a.size):
         total = -strips.compliance[s, k] * a[k]
@@ -185,46 +170,66 @@ def _add_product(s, a, points, shape, strips, local, covector):
 
 
 @part()
-def _move_end(body, inner, outer, stick, lever, reach, rate, ends, along):
-    """Rates of an end's two control points, by that of the body and of s_A or s_B."""
-    x = y = turn = 0.0
+def _rates_of_end(s, e, at, rate, strips):
+    """Rates of what an end, e: 0 the root, 1 the tip, goes by: shift, turn of its body, turn of its root."""
+    body, yields = strips.tips[s] if e else strips.roots[s], strips.numbers[s, SPRING] > 0.0
+    x = y = turn = bend = 0.0
     if body >= 0:
         x, y, turn = rate[3 * body], rate[3 * body + 1], rate[3 * body + 2]
-    along[inner] = x + ends[lever] * turn + ends[stick] * reach
-    along[inner + 1] = y + ends[lever + 1] * turn + ends[stick + 1] * reach
-    along[outer], along[outer + 1] = x + ends[lever + 2] * turn, y + ends[lever + 3] * turn
+    if yields:
+        bend = rate[at + e]
+    if e and strips.numbers[s, SHEAR] > 0.0:
+        x += rate[at + 2 * yields]
+        y += rate[at + 2 * yields + 1]
+    return x, y, turn, bend
 
 
 @part()
-def _turn_end(body, inner, outer, stick, reach, turn, rate, ends, along, f, g):
-    """Add what an end's points do to the gradient f as their directions in s_A or s_B and the pose turn."""
-    if body >= 0:
-        x, y = rate[3 * body], rate[3 * body + 1]
-        g[reach] += rate[3 * body + 2] * (ends[stick] * f[inner + 1] - ends[stick + 1] * f[inner])
-        g[turn] += (along[inner] - x) * f[inner + 1] - (along[inner + 1] - y) * f[inner]
-        g[turn] += (along[outer] - x) * f[outer + 1] - (along[outer + 1] - y) * f[outer]
+def _move_points(s, at, own, rate, strips, local):
+    """Rates of the control points of strip s, into ALONG, by those of its w, from rate[at] on, and poses."""
+    ends, points, along, first = local.map[s], local.nodal[s, POINTS], local.nodal[s, ALONG], own - 2
+    for i in range(first):
+        along[i] = rate[at + i]
+    for e in range(2):
+        inner, outer, stick, lever, reach = first + 2 * e, first + 6 - 2 * e, 2 * e, 8 - 4 * e, at + first + e
+        x, y, turn, bend = _rates_of_end(s, e, at, rate, strips)
+        across, ahead = points[outer + 1] - points[inner + 1], points[inner] - points[outer]
+        along[inner] = x + ends[lever] * turn + ends[stick] * rate[reach] + across * bend
+        along[inner + 1] = y + ends[lever + 1] * turn + ends[stick + 1] * rate[reach] + ahead * bend
+        along[outer], along[outer + 1] = x + ends[lever + 2] * turn, y + ends[lever + 3] * turn
+
+
+@part()
+def _turn_ends(s, at, own, last, rate, strips, local):
+    """Add to g what the gradient does as the directions turn in which the ends' points move."""
+    ends, along, f, g = local.map[s], local.nodal[s, ALONG], local.nodal[s, GRADIENT], local.reduced[s, LAST]
+    for e in range(2):
+        inner, outer, stick = own - 2 + 2 * e, own + 4 - 2 * e, 2 * e
+        x, y, turn, bend = _rates_of_end(s, e, at, rate, strips)
+        fx, fy, ux, uy = f[inner], f[inner + 1], along[inner], along[inner + 1]
+        g[own - 2 + e] += (turn + bend) * (ends[stick] * fy - ends[stick + 1] * fx)
+        if strips.numbers[s, SPRING] > 0.0:
+            g[e] += (ux - along[outer]) * fy - (uy - along[outer + 1]) * fx
+        if (strips.tips[s] if e else strips.roots[s]) >= 0:
+            pose = last + 2 if e else last + 3 * (strips.tips[s] >= 0) + 2
+            g[pose] += (ux - x) * fy - (uy - y) * fx
+            g[pose] += (along[outer] - x) * f[outer + 1] - (along[outer + 1] - y) * f[outer]
 
 
 @part()
 def _take_product(rate, load_rate, bodies, strips, shape, local, space):
-    """H v of a state just evaluated by ``_take_residual`` along a rate v (Y,): its g, gap and FORCE."""
+    """H v of a state just evaluated by ``take_residual`` along a rate v (Y,): its g, gap and FORCE."""
     force, poses = space.vectors[FORCE], bodies.rest.size
     n, modes = shape.order.size, strips.compliance.shape[1]
-    own, last, first = 2 * n - 6, 2 * n - 6 + strips.coupled - strips.outer, 2 * n - 8
+    own, last = 2 * n - 6, 2 * n - 6 + strips.coupled - strips.outer
     for i in range(bodies.load.size):
         force[i] = -load_rate * bodies.load[i]
     for s in range(strips.roots.size):
-        at, tip, root, ends = poses + s * (own + modes), strips.tips[s], strips.roots[s], local.map[s]
-        along, f, g = local.nodal[s, ALONG], local.nodal[s, GRADIENT], local.reduced[s, LAST]
-        for i in range(first):
-            along[i] = rate[at + i]
-        _move_end(root, first, first + 6, 0, 8, rate[at + own - 2], rate, ends, along)
-        _move_end(tip, first + 2, first + 4, 2, 4, rate[at + own - 1], rate, ends, along)
-        covector = local.nodal[s, COVECTOR]
+        at, along, covector = poses + s * (own + modes), local.nodal[s, ALONG], local.nodal[s, COVECTOR]
+        _move_points(s, at, own, rate, strips, local)
         _add_product(s, rate[at + own : at + own + modes], along, shape, strips, local, covector)
         to_coordinates(s, covector, last, strips, local)
-        _turn_end(root, first, first + 6, 0, own - 2, last + 3 * (tip >= 0) + 2, rate, ends, along, f, g)
-        _turn_end(tip, first + 2, first + 4, 2, own - 1, last + 2, rate, ends, along, f, g)
+        _turn_ends(s, at, own, last, rate, strips, local)
 
 
 @part()
@@ -239,7 +244,7 @@ def _is_firm(least, strips, shape, local, space):
     return firm
 
 
-@kernel()
+@called()
 def _confirm(y, load, norm, held_rate, load_rate, bodies, strips, shape, local, space, tolerance):
     """Whether y, one correction behind a state of residual ``norm``, is solved; with reactions and rates.
 
@@ -268,8 +273,7 @@ def solve(y, load, alone, held_rate, load_rate, bodies, strips, shape, local, sp
 
     alone: whether the stiffness follows from the rates, so that the tangent need not be that of the state.
     """
-    springs = strips.numbers[0, SPRING] > 0.0 or strips.numbers[0, SHEAR] > 0.0
-    early = alone and strips.measure == MATERIAL and not springs
+    early = alone and strips.measure == MATERIAL
     negative, norm = newton(y, load, early, bodies, strips, shape, local, space, tolerance, counters)
     if early and negative >= 0 and norm > NEARLY * tolerance:
         counters[ITERATIONS] += 1

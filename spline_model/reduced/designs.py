@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -14,6 +14,7 @@ from spline_model.design import Design
 from spline_model.errors import InvalidParameter
 from spline_model.mechanism import Mechanism
 from spline_model.pivot import cross_axis_pivot
+from spline_model.reduced.many import Designs
 from spline_model.reduced.model import Reduced, at_rest
 from spline_model.sensitivity.parameters import CENTRES, MATERIAL, POINTS, SECTION, Section
 from spline_model.strip.element import PER_U, REACH, ROOT, SHEAR, SPRING, STRETCHING, TIP
@@ -78,24 +79,6 @@ class Given:
         return Given(ends=self.ends[kept], centres=self.centres[kept], section=self.section[kept])
 
 
-class Designs(NamedTuple):
-    """What tells D designs from one another, over the length (D,) [m] and energy (D,) [J] of each.
-
-    factor (D, S, 6): of J0, stress-free curvature, EI, the numbers of ``curl_law`` and modes; numbers (D, S,
-    15 + 2 n) and compliance (D, S, K) as in ``Strips``; start (D, Y): at rest; force (D, 2, 3 B): load and
-    weight as in ``Bodies``; target (D, H): change of the held coordinates.
-    """
-
-    length: Array
-    energy: Array
-    factor: Array
-    numbers: Array
-    compliance: Array
-    start: Array
-    force: Array
-    target: Array
-
-
 def designs_of(model: Reduced, base: Given, given: Given, rotation: Array) -> Designs:
     """Designs of the mechanism that ``model`` is of, whose own numbers are ``base``, to rotations (D,) [rad].
 
@@ -133,20 +116,12 @@ def designs_of(model: Reduced, base: Given, given: Given, rotation: Array) -> De
     )
     if bodies.driven >= 0:
         target[:, bodies.driven] = rotation
+    curvature, ones = np.broadcast_to(wide / model.length, speed.shape), np.ones_like(speed)
+    curl = (given.width / base.width) ** 2 / thicker * (model.length / wide)
     return Designs(
         length=length,
         energy=energy,
-        factor=np.stack(
-            (
-                speed,
-                np.broadcast_to(wide / model.length, speed.shape),
-                rigid,
-                np.ones_like(speed),
-                (given.width / base.width) ** 2 / thicker * (model.length / wide),
-                speed**-0.5,
-            ),
-            axis=-1,
-        ),
+        factor=np.stack((speed, curvature, rigid, ones, curl, speed**-0.5), axis=-1),
         numbers=numbers,
         compliance=strips.compliance * soft[..., which],
         start=_starts(model, base, given, turn, wide),

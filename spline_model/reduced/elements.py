@@ -12,8 +12,7 @@ from numpy.typing import NDArray
 
 from spline_model import checks
 from spline_model.compile import System
-from spline_model.continuation.bordered import Bordered
-from spline_model.continuation.followed import Energies, Followed
+from spline_model.continuation.followed import Bordered, Energies, Followed
 from spline_model.continuation.point import Point
 from spline_model.continuation.resolution import SMALLEST_MOMENT
 from spline_model.effects import Shear
@@ -164,19 +163,9 @@ class Elements(Followed):
         if share != 1.0:
             act(share, self.preload, bodies, strips)
         origin, target = model.drives
-        _gather(
-            self.y(z),
-            z[size:],
-            origin + load_factor * target,
-            load_factor,
-            bodies,
-            strips,
-            model.shape,
-            self.local,
-            self.out,
-            self.gradient,
-            self.hessian,
-        )
+        given = self.y(z), z[size:], origin + load_factor * target, load_factor
+        parts = bodies, strips, model.shape, self.local
+        _gather(*given, *parts, self.out, self.gradient, self.hessian)
         return float(self.out[BENDING]), float(self.out[AXIAL])
 
     def external(self, z: Array) -> tuple[float, float]:

@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 
+from spline_model.checks import SLOWEST_SPEED
 from spline_model.reduced.assembly import (
     CHANGE,
     FORCE,
@@ -15,13 +16,15 @@ from spline_model.reduced.assembly import (
     RAW,
     REACTION,
     REACTION_RATE,
+    SLOWEST,
     SPARE,
+    Y,
     assemble,
     factorise,
     move_strips,
     solve_free,
 )
-from spline_model.strip.compiled import called, kernel
+from spline_model.strip.compiled import called, copy, kernel
 from spline_model.strip.condense import SINGULAR
 
 ITERATIONS, EVALUATIONS, HALVED, CONFIRMED = range(4)
@@ -58,7 +61,7 @@ def carry(row, bodies, space):
         space.vectors[row, d] = total
 
 
-@kernel()
+@called()
 def newton(y, load, early, bodies, strips, shape, local, space, tolerance, counters):
     """Solve in place at the held coordinates in y; the negative eigenvalues, or -1 where it fails, and the
     last residual, behind which there is one correction more: NEARLY none, or ``early`` one whose square is.
@@ -100,7 +103,7 @@ def entry(matrix, i, j):
     return matrix[i, j] if i <= j else matrix[j, i]
 
 
-@kernel()
+@called()
 def tangent(held_rate, load_rate, bodies, strips, shape, local, space):
     """Rates in the factor at a state that was just solved, reactions and their rates, in ``space``.
 
@@ -155,3 +158,34 @@ def conjugate(held_rate, load_rate, bodies, y, space):
             slope -= load_rate * bodies.load[i] * (y[i] - bodies.rest[i])
             bend -= load_rate * bodies.load[i] * space.states[RATE, i]
     return slope, bend
+
+
+@kernel()
+def turn(rotation, speed, y, bodies, strips, shape, local, space, tolerance, counters):
+    """Turn the body to ``rotation`` [rad], its centre free, in place; False, and y as it was, if it fails.
+
+    speed (1,): of the rotation along the way that the tangent predicts, 1.
+    """
+    own, modes, before = 2 * shape.order.size - 6, strips.compliance.shape[1], space.states[Y]
+    copy(y, before)
+    # with the rotation as it is
+    solved = newton(y, 0.0, False, bodies, strips, shape, local, space, tolerance, counters)[0] >= 0
+    if solved:
+        tangent(speed, 0.0, bodies, strips, shape, local, space)
+        for i in range(y.size):
+            y[i] += (rotation - before[2]) * space.states[RATE, i]
+        y[2] = rotation
+        solved = newton(y, 0.0, False, bodies, strips, shape, local, space, tolerance, counters)[0] >= 0
+        solved = solved and space.out[SLOWEST] > SLOWEST_SPEED
+    for s in range(strips.roots.size):
+        behind = bodies.rest.size + s * (own + modes) + own
+        solved = solved and min(y[behind - 2], y[behind - 1]) > 0.0
+    if not solved:
+        copy(before, y)
+    return solved
+
+
+@kernel()
+def bear(y, bodies, strips, shape, local, space):
+    """What holds the bodies at y, and its tangent, in ``space``."""
+    assemble(y, 0.0, bodies, strips, shape, local, space)

@@ -1,9 +1,9 @@
-"""Many designs of one mechanism, one path each, in one compiled loop; and the largest strain of a state."""
+"""Paths as Python asks for them: that of a mechanism, or of many designs of it in one compiled loop."""
 
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,11 +13,29 @@ from spline_model.effects import MixedStretching
 from spline_model.reduced.equilibrium import ITERATIONS
 from spline_model.reduced.model import Reduced
 from spline_model.reduced.numbers import in_order
-from spline_model.reduced.path import follow
+from spline_model.reduced.path import Route, follow
 from spline_model.strip.compiled import called, copy, kernel
 from spline_model.strip.element import CURVATURE, MODES, ON_POINTS, POINTS, SPEED, place_points
 
 Array = NDArray[np.float64]
+
+
+class Designs(NamedTuple):
+    """What tells D designs from one another, over the length (D,) [m] and energy (D,) [J] of each.
+
+    factor (D, S, 6): of J0, stress-free curvature, EI, the numbers of ``curl_law`` and modes; numbers (D, S,
+    15 + 2 n) and compliance (D, S, K) as in ``Strips``; start (D, Y): at rest; force (D, 2, 3 B): load and
+    weight as in ``Bodies``; target (D, H): change of the held coordinates.
+    """
+
+    length: Array
+    energy: Array
+    factor: Array
+    numbers: Array
+    compliance: Array
+    start: Array
+    force: Array
+    target: Array
 
 
 class Stations(NamedTuple):
@@ -30,6 +48,38 @@ class Stations(NamedTuple):
     d2: Array
     modes: Array
     work: Array
+
+
+class Share(NamedTuple):
+    """What one thread does of many designs: every ``stride``-th from ``begin`` on, into ``rows`` (D,).
+
+    growing: the route along which weight and pre-strain come on first, without factors where there are none;
+    place: of the reported body's pose; depth (D,) of the sections over L, or (0,): no strain is asked for;
+    along, curved: of the mechanism itself; results: the arrays of ``Batch``, states, centre, torque,
+    stiffness, energy, strain, inertia, moment_defect, iterations.
+    """
+
+    rows: NDArray[np.int64]
+    begin: int
+    stride: int
+    designs: Designs
+    depth: Array
+    stations: Stations
+    growing: Route
+    place: int
+    along: Array
+    curved: Array
+    results: tuple[NDArray[Any], ...]
+
+    @classmethod
+    def none(cls) -> Self:
+        """That of a path without any design but the mechanism itself."""
+        line, table, block = (np.zeros((0,) * axes) for axes in (1, 2, 3))
+        places, inertia = np.zeros(0, dtype=np.int64), np.zeros((0, 0), dtype=np.int64)
+        results = places, block, table, table, table, table, inertia, table, places
+        designs = Designs(line, line, block, block, block, table, block, table)
+        stations, growing = Stations(table, table, table, table), Route(line, line, line, 0.0)
+        return cls(places, 0, 1, designs, line, stations, growing, 0, block, block, results)
 
 
 def stations_of(model: Reduced, stations: Array) -> Stations:
@@ -114,34 +164,28 @@ def _largest_strain(y, poses, depth, along, strips, local, stations):
 
 
 @kernel()
-def follow_share(
-    begin, stride, rows, designs, depth, stations, growing, route, judged, place, preload, along, curved,
-    bodies, strips, shape, local, space, tolerance, answer, results,
-):  # fmt: skip
-    """Follow every ``stride``-th of the designs from ``begin`` on, filling ``rows`` (D,) of the results.
-
-    growing: the route along which weight and pre-strain come on first, without factors where there are none;
-    place: of the reported body's pose; depth (D,) of the sections over L, or (0,): no strain is asked for;
-    along, curved: of the mechanism itself, the rest as of ``follow``; results are the arrays of ``Batch``:
-    states, centre, torque, stiffness, energy, strain, inertia, moment_defect, iterations.
-    """
-    states, centre, torque, stiffness, energy, strain, inertia, defect, iterations = results
-    for i in range(begin, rows.size, stride):
+def follow_all(share, start, route, judged, preload, bodies, strips, shape, local, space, tolerance, answer):
+    """Follow a path, as ``follow`` does; or those of all designs of a share, where it has any."""
+    rows, designs, growing, depth, place = share.rows, share.designs, share.growing, share.depth, share.place
+    if rows.size == 0:
+        return follow(start, route, judged, preload, bodies, strips, shape, local, space, tolerance, answer)
+    states, centre, torque, stiffness, energy, strain, inertia, defect, iterations = share.results
+    for i in range(share.begin, rows.size, share.stride):
         row = rows[i]
-        _take_design(i, designs, along, curved, preload, bodies, strips, route, local)
+        _take_design(i, designs, share.along, share.curved, preload, bodies, strips, route, local)
         for k in range(answer.counters.size):
             answer.counters[k] = 0
-        start, stands = designs.start[i], True
+        begin, stands = designs.start[i], True
         if growing.factor.size > 0:
             done = follow(
-                start, growing, judged, preload, bodies, strips, shape, local, space, tolerance, answer
+                begin, growing, judged, preload, bodies, strips, shape, local, space, tolerance, answer
             )
             stands = done == growing.factor.size
-            copy(answer.y[1], start)
+            copy(answer.y[1], begin)
         done = 0
         if stands:
             done = follow(
-                start, route, judged, preload, bodies, strips, shape, local, space, tolerance, answer
+                begin, route, judged, preload, bodies, strips, shape, local, space, tolerance, answer
             )
         states[row] = done
         iterations[row] = answer.counters[ITERATIONS]
@@ -155,4 +199,7 @@ def follow_share(
             energy[row, k] = (answer.energies[k, 0] + answer.energies[k, 1]) * unit
             if depth.size > 0:
                 poses = bodies.rest.size
-                strain[row, k] = _largest_strain(answer.y[k], poses, depth[i], along, strips, local, stations)
+                strain[row, k] = _largest_strain(
+                    answer.y[k], poses, depth[i], share.along, strips, local, share.stations
+                )
+    return 0

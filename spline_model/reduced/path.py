@@ -31,7 +31,7 @@ from spline_model.reduced.assembly import (
 from spline_model.reduced.beside import solve
 from spline_model.reduced.equilibrium import HALVED, conjugate, stiffness_of
 from spline_model.reduced.preload import act, swell
-from spline_model.strip.compiled import called, copy, kernel, part
+from spline_model.strip.compiled import called, copy, part
 
 Array = NDArray[np.float64]
 
@@ -179,7 +179,7 @@ def _is_alone(route, bodies):
     return alone
 
 
-@kernel()
+@called()
 def follow(start, route, judged, preload, bodies, strips, shape, local, space, tolerance, answer):
     """Follow a path from ``start`` (Y,) through the route; returns the number of states that converged.
 

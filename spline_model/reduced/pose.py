@@ -60,21 +60,11 @@ class Room(NamedTuple):
 
 def room_of(size: int, strip: int) -> Room:
     """Working arrays for states of ``size`` unknowns, ``strip`` of them a strip's."""
-    one, whole = (lambda: np.zeros(strip)), (lambda: np.zeros(size))
-    return Room(
-        step=one(),
-        trial=one(),
-        saddle=one(),
-        best=one(),
-        change=np.zeros(7),
-        last=whole(),
-        start=whole(),
-        place=np.zeros(6),
-        out=np.zeros(5),
-    )
+    sizes = (strip, strip, strip, strip, 7, size, size, 6, 5)
+    return Room(*(np.zeros(each) for each in sizes))
 
 
-@kernel()
+@called()
 def _evaluate(s, at, y, strips, shape, local, room):
     """One strip in its element coordinates; returns their number."""
     out = room.out
@@ -83,8 +73,8 @@ def _evaluate(s, at, y, strips, shape, local, room):
     return element_of(s, at, y, strips, shape, local, out)
 
 
-@kernel()
-def move(share, s, at, own, y, strips, local, room):
+@called()
+def _move(share, s, at, own, y, strips, local, room):
     """Add to a condensed strip's w and a what its residual (share 1) and ``room.change`` ask for."""
     modes = strips.compliance.shape[1]
     recovered(s, own, share, strips, local, room.change, room.step[:own], room.step[own:])
@@ -92,7 +82,7 @@ def move(share, s, at, own, y, strips, local, room):
         y[at + i] += room.step[i]
 
 
-@kernel()
+@called()
 def _correct(s, at, own, y, strips, shape, local, room, tolerance, counters):
     """Newton of one strip between its ends, in place; negative pivots of the solution, or -1 if it fails."""
     for i in range(room.change.size):
@@ -115,7 +105,7 @@ def _correct(s, at, own, y, strips, shape, local, room, tolerance, counters):
             forward = min(y[at + own - 2], y[at + own - 1]) > 0.0 and room.out[SLOWEST] > SLOWEST_SPEED
             return negative if forward else -1
         before = norm
-        move(1.0, s, at, own, y, strips, local, room)
+        _move(1.0, s, at, own, y, strips, local, room)
         counters[ITERATIONS] += 1
     return -1
 
@@ -150,7 +140,7 @@ def _descend(s, at, own, y, strips, shape, local, room, tolerance, counters):
             continue
         for i in range(own):
             room.trial[i] = y[at + i]
-        move(1.0, s, at, own, y, strips, local, room)
+        _move(1.0, s, at, own, y, strips, local, room)
         counters[ITERATIONS] += 1
         lower = _energy_at(s, at, own, y, strips, shape, local, room)
         if lower <= energy + 1e-12 * abs(energy):
@@ -166,7 +156,7 @@ def _descend(s, at, own, y, strips, shape, local, room, tolerance, counters):
     return -1
 
 
-@kernel()
+@called()
 def _settle(s, at, own, y, strips, shape, local, room, tolerance, counters):
     """From an unstable equilibrium to a stable one beside it, the lower of both sides; 0 if found."""
     size, least = own + strips.compliance.shape[1], np.inf
@@ -194,7 +184,7 @@ def _settle(s, at, own, y, strips, shape, local, room, tolerance, counters):
     return 0 if least < np.inf else -1
 
 
-@kernel()
+@called()
 def _advance(y, pose, strips, shape, local, room, tolerance, counters):
     """All strips from y, where they are solved, to the bodies' poses (3 B,); False if one fails."""
     own, modes = 2 * shape.order.size - 6, strips.compliance.shape[1]
@@ -212,7 +202,7 @@ def _advance(y, pose, strips, shape, local, room, tolerance, counters):
                 for i in range(3):
                     room.change[place + i] = pose[3 * body + i] - room.last[3 * body + i]
                 place += 3
-        move(0.0, s, at, own, y, strips, local, room)
+        _move(0.0, s, at, own, y, strips, local, room)
         for i in range(pose.size):
             y[i] = pose[i]
         negative = _correct(s, at, own, y, strips, shape, local, room, tolerance, counters)

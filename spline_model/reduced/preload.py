@@ -83,7 +83,7 @@ def act(share, preload, bodies, strips):
         bodies.weight[i] = share * preload.bodies[i]
 
 
-@called(no_cpython_wrapper=False)
+@called()
 def swell(y, share, preload, bodies, strips, shape, local, space):
     """Rate of a state, just solved, in the share, in ``space``; first and second derivative of its potential.
 

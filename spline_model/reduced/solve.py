@@ -9,11 +9,14 @@ from spline_model.newton import TOLERANCE
 from spline_model.reduced.assembly import Bodies, working_space
 from spline_model.reduced.elements import Elements
 from spline_model.reduced.equilibrium import CONFIRMED, EVALUATIONS, HALVED, ITERATIONS
+from spline_model.reduced.many import Share, follow_all
 from spline_model.reduced.model import at_rest
-from spline_model.reduced.path import Answer, Route, empty_answer, follow
+from spline_model.reduced.path import Answer, Route, empty_answer
 from spline_model.strip.element import Strips
 
 Array = NDArray[np.float64]
+
+ALONE = Share.none()
 
 
 def run(work: Elements, load_factors: Array, start: Array) -> Answer:
@@ -41,25 +44,9 @@ def _run(
 ) -> Answer:
     model, count = work.model, work.counters
     answer = empty_answer(len(factors), model.size, len(bodies.held))
-    done = follow(
-        start,
-        Route(
-            factor=factors,
-            origin=model.drives[0],
-            target=target,
-            growth=0.0 if swells else 1.0,
-            swells=swells,
-        ),
-        work.judged,
-        work.preload,
-        bodies,
-        strips,
-        model.shape,
-        work.local,
-        working_space(bodies, model.size),
-        TOLERANCE,
-        answer,
-    )
+    route = Route(factors, model.drives[0], target, 0.0 if swells else 1.0, swells)
+    parts = bodies, strips, model.shape, work.local, working_space(bodies, model.size)
+    done = follow_all(ALONE, start, route, work.judged, work.preload, *parts, TOLERANCE, answer)
     count.halved_increments += int(answer.counters[HALVED])
     count.newton_iterations += int(answer.counters[ITERATIONS])
     evaluations = int(answer.counters[EVALUATIONS])

@@ -55,7 +55,7 @@ def by_state(model: Reduced, factors: Array, answer: Answer) -> dict[str, Any]:
     bodies[:, 1::3] *= model.length
     return {
         "load_factor": factors,
-        "bodies": bodies,
+        "poses": bodies,
         "reactions": answer.reaction * (model.energy / model.drive_length),
         "unknowns": Later(partial(unknowns_of, model, answer.y, answer.reaction)),
         "stiffness": answer.stiffness * model.energy,

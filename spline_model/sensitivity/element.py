@@ -15,12 +15,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from spline_model.basis import all_modes
-from spline_model.effects import Bending, MixedStretching
 from spline_model.reduced.model import Reduced
-from spline_model.reduced.numbers import in_order
 from spline_model.sensitivity.parameters import Varied
-from spline_model.sensitivity.planar import Curve, across, cross, dot, times, times_each, turned
 from spline_model.strip import laws
 from spline_model.strip.element import WHERE
 
@@ -28,6 +24,34 @@ Array = NDArray[Any]
 
 uncompiled: list[Any] = [laws.bending_law, laws.stretching_law, laws.mixed_law]
 bending_law, stretching_law, mixed_law = (getattr(law, "py_func", law) for law in uncompiled)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Curve:
+    """C' and C'' (Q, 2, G, P, S)."""
+
+    first: Array
+    second: Array
+
+    @classmethod
+    def of(cls, d1: Array, d2: Array, points: Array) -> Curve:
+        """From tables (Q, n) and control points (n, 2, G, P, S)."""
+        return cls(first=_times(d1, points), second=_times(d2, points))
+
+    @cached_property
+    def square(self) -> Array:
+        """|C'|^2 (Q, G, P, S)."""
+        return _dot(self.first, self.first)
+
+    @cached_property
+    def speed(self) -> Array:
+        """v = |C'|."""
+        return np.sqrt(self.square)
+
+    @cached_property
+    def turning(self) -> Array:
+        """phi, turning of the tangent per du."""
+        return _cross(self.first, self.second) / self.square
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -163,10 +187,10 @@ class Elements:
         m = (shape.weight[:, None, None, None] * self._bending[1] / curve.square)[:, None]
         f = self._bending[4] + self._stretching[1]
         f = (shape.weight[:, None, None, None] * f / curve.speed)[:, None]
-        first = (f - 2.0 * m * curve.turning[:, None]) * curve.first - m * across(curve.second)
-        g = times(shape.d1.T, first) + times(shape.d2.T, m * across(curve.first)) - self.varied.dead
+        first = (f - 2.0 * m * curve.turning[:, None]) * curve.first - m * _across(curve.second)
+        g = _times(shape.d1.T, first) + _times(shape.d2.T, m * _across(curve.first)) - self.varied.dead
         inner, clamped = g[n - 4 : n - 2], g[: n - 3 : -1]
-        force, moment = inner + clamped, share[:, 0] * cross(stick, inner)
+        force, moment = inner + clamped, share[:, 0] * _cross(stick, inner)
         if self.model.yields:
             g[0] = self.varied.springs * self._turns(self._state[0]) + moment
         if self.model.shears:
@@ -174,9 +198,9 @@ class Elements:
         w, a, poses = self._places
         out = np.zeros((self.model.size + 3, *g.shape[3:]), dtype=complex)
         out[w[:-2]] = g[: n - 4].reshape(len(w) - 2, *g.shape[2:])
-        out[w[-2:]] = dot(stick, inner)
+        out[w[-2:]] = _dot(stick, inner)
         out[a] = self._gap() if len(a) else 0.0
-        push = np.concatenate((force, (cross(arm, force) + moment)[:, None]), axis=1)
+        push = np.concatenate((force, (_cross(arm, force) + moment)[:, None]), axis=1)
         for at in np.ndindex(poses.shape):
             out[poses[at]] += push[at]
         return np.moveaxis(out[:-3], 0, -1), np.concatenate((force, moment[:, None]), axis=1)
@@ -198,19 +222,19 @@ class Elements:
         (arm, stick, share), (free, push, pull, pose) = self._ends, self._own(rate)
         spin = pose[:, 2:]
         swing = spin + (free[0][:, None] if self.model.yields else 0.0)
-        clamped = pose[:, :2] + spin * across(arm) + self._apart(free)
-        turn = swing * across(stick)
+        clamped = pose[:, :2] + spin * _across(arm) + self._apart(free)
+        turn = swing * _across(stick)
         back = -(spin**2) * arm
         bent = back + 2.0 * push * turn - share * swing**2 * stick
         twice = _ordered(0.0 * free, bent, back)
         by = Curve.of(shape.d1, shape.d2, _ordered(free, clamped + push * stick + share * turn, clamped))
         by2 = Curve.of(shape.d1, shape.d2, twice)
-        phi, v, square1 = curve.turning, curve.speed, 2.0 * dot(curve.first, by.first)
-        square2 = 2.0 * (dot(by.first, by.first) + dot(curve.first, by2.first))
-        cross1 = cross(curve.first, by.second) + cross(by.first, curve.second)
-        cross2 = cross(curve.first, by2.second) + cross(by2.first, curve.second)
+        phi, v, square1 = curve.turning, curve.speed, 2.0 * _dot(curve.first, by.first)
+        square2 = 2.0 * (_dot(by.first, by.first) + _dot(curve.first, by2.first))
+        cross1 = _cross(curve.first, by.second) + _cross(by.first, curve.second)
+        cross2 = _cross(curve.first, by2.second) + _cross(by2.first, curve.second)
         phi1, v1 = (cross1 - phi * square1) / curve.square, 0.5 * square1 / v
-        cross2 = cross2 + 2.0 * cross(by.first, by.second) - 2.0 * phi1 * square1
+        cross2 = cross2 + 2.0 * _cross(by.first, by.second) - 2.0 * phi1 * square1
         phi2, v2 = (cross2 - phi * square2) / curve.square, (0.5 * square2 - v1**2) / v
         (_, m, m_phi, m_v, f, f_v), (_, g, g_v, _, by_nv) = self._bending, self._stretching
         density = m * phi2 + m_phi * phi1**2 + 2.0 * m_v * phi1 * v1 + (f + g) * v2 + (f_v + g_v) * v1**2
@@ -223,38 +247,40 @@ class Elements:
         total = np.tensordot(shape.weight, density, 1) - (varied.dead * twice).sum(axis=(0, 1))
         return np.asarray(total.sum(axis=0) + 2.0 * (self._of_roots(free) + self._of_shear(free)))
 
-    def fibre_stress(self, stations: Array) -> Array:
-        """Stress [Pa] at both extreme fibres of G strips at Q stations, (P, S, G, Q, 2).
-
-        N / A -+ M h / (2 I) with h = sqrt(12 I / A) of the rectangular section, left fibre first: signed,
-        so that both are smooth in state and design. Plane sections, without the clamps' notches.
-        """
-        model, varied, strips = self.model, self.varied, self.model.strips
-        scene, basis = model.system.scene, model.system.scene.strips[0].basis
-        d1, d2 = (in_order(basis.evaluate(stations, k)[..., None], model.shape)[..., 0] for k in (1, 2))
-        still = np.stack([in_order(s.control_points, model.shape) for s in scene.strips], axis=-1)
-        at_rest = still[..., None, None] / model.length
-        rest, curve = Curve.of(d1, d2, at_rest), Curve.of(d1, d2, self.points)
-        natural = {e.strip: model.length * e.natural_curvature for e in scene.of(Bending)}
-        curvature = np.array([natural[s.name] for s in scene.strips])[:, None, None]
-        curvature, speed = curvature + rest.turning / rest.speed, rest.speed * varied.longer
-        bend = curve.turning / (curve.speed if strips.measure else speed) - curvature
-        rigidity, drop = varied.along(model, stations)
-        curled = laws.curl_factors(bend, drop, varied.curl)[1] if varied.curl.any() else 1.0
-        moment = rigidity * bend * curled
-        side = moment * model.energy * np.sqrt(3.0 / (varied.area * varied.second_moment))
-        force: Any = 0.0
-        if strips.stretching.any():
-            force = varied.stretching * (curve.speed / speed - 1.0 - strips.strain[:, None, None])
-        if len(self.axial):
-            parts = [e.modes for e in scene.of(MixedStretching) if e.strip == scene.strips[0].name]
-            shown = np.column_stack([all_modes(modes, stations) for modes in parts]) @ model.to_modes
-            force = force + times_each(shown, self.axial)
-        mean = force * (model.energy / model.length / varied.area)
-        return np.stack((mean - side, mean + side)).transpose(3, 4, 2, 1, 0)
-
 
 def _ordered(free: Array, inner: Array, clamped: Array) -> Array:
     """Control points in the order of elimination: P_2 ... P_(n-3), P_1, P_(n-2), P_(n-1), P_0."""
     many = np.broadcast_shapes(free.shape[1:], inner.shape[1:])
     return np.concatenate([np.broadcast_to(p, (len(p), *many)) for p in (free, inner, clamped[::-1])])
+
+
+def turned(angle: Array, x: Array, y: Array | float) -> Array:
+    """The vector (x, y) turned by an angle, x and y along axis 1."""
+    c, s = np.cos(angle), np.sin(angle)
+    return np.stack((c * x - s * y, s * x + c * y), axis=1)
+
+
+def _times(table: Array, values: Array) -> Array:
+    """table @ values along the first axis, one product of real matrices."""
+    flat = np.ascontiguousarray(values).reshape(len(values), -1)
+    return (table @ flat.view(np.float64)).view(flat.dtype).reshape(len(table), *values.shape[1:])
+
+
+def times_each(tables: Array, values: Array) -> Array:
+    """The same with a table for each strip, (G, ...) of values (..., G, P, S)."""
+    return np.stack([_times(table, values[:, s]) for s, table in enumerate(tables)], axis=1)
+
+
+def _across(v: Array) -> Array:
+    """The vectors turned by a right angle."""
+    return np.stack((-v[:, 1], v[:, 0]), axis=1)
+
+
+def _cross(a: Array, b: Array) -> Array:
+    """a x b."""
+    return np.asarray(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0])
+
+
+def _dot(a: Array, b: Array) -> Array:
+    """a . b."""
+    return np.asarray(a[:, 0] * b[:, 0] + a[:, 1] * b[:, 1])

@@ -74,6 +74,38 @@ class Rates:
     centres: Array
     crossing: Array
 
+    @classmethod
+    def of(cls, asked: Mechanism, names: Sequence[str]) -> Rates:
+        """The rates of a design by the names of its parameters; refuses unknown and doubled ones."""
+        if not names or len(set(names)) != len(names):
+            raise InvalidParameter("parameters", list(names), "at least one name, each once")
+        design = asked.design
+        strips, bodies = [s.name for s in design.strips], [b.name for b in design.bodies]
+        rates = cls(
+            section=np.zeros((len(names), len(strips), 3)),
+            ends=np.zeros((len(names), len(strips), 2, 2)),
+            centres=np.zeros((len(names), len(bodies), 2)),
+            crossing=np.zeros((len(names), 2)),
+        )
+        for i, name in enumerate(names):
+            owner, _, field = name.rpartition(".")
+            if isinstance(asked, Pivot) and name in SHAPE:
+                rates.ends[i], rates.crossing[i] = _shape_rates(asked, name)
+                rates.centres[i] = rates.ends[i, :, 1].mean(axis=0)
+            elif field in (*MATERIAL, *SECTION) and owner in ("", *strips):
+                _set_section(rates.section[i], design, owner, field)
+            elif field in POINTS and owner in strips:
+                if design.strips[strips.index(owner)].rise != 0.0:
+                    raise InvalidParameter("parameters", name, "an end of a straight strip")
+                rates.ends[i, strips.index(owner)].flat[POINTS.index(field)] = 1.0
+            elif field in CENTRES and owner in bodies:
+                rates.centres[i, bodies.index(owner), CENTRES.index(field)] = 1.0
+            else:
+                known = (*(SHAPE if isinstance(asked, Pivot) else ()), *MATERIAL, *SECTION)
+                one = f"STRIP.{', STRIP.'.join(POINTS)} or BODY.{', BODY.'.join(CENTRES)}"
+                raise InvalidParameter("parameters", name, f"one of {', '.join(known)}, {one}")
+        return rates
+
     def by_length(self, strips: Sequence[StripDesign]) -> tuple[Array, Array]:
         """Derivatives (P, G) of log length and of direction [rad] of straight strips."""
         chord = np.array([np.subtract(s.end, s.start) for s in strips])
@@ -81,15 +113,24 @@ class Rates:
         turned = chord[:, 0] * moved[..., 1] - chord[:, 1] * moved[..., 0]
         return np.sum(chord * moved, axis=-1), turned
 
+    def points(self, model: Reduced) -> Numbers:
+        """Derivatives (P, G, 2, 2) of the clamped points in their bodies' frames [m], free ends too."""
+        moved = self.ends.copy()
+        for end, bodies in enumerate((model.strips.roots, model.strips.tips)):
+            for s, body in enumerate(bodies):
+                if body >= self.centres.shape[1]:
+                    moved[:, s, end] = 0.0
+                elif body >= 0:
+                    moved[:, s, end] -= self.centres[:, body]
+        return moved
 
-def crossing_reach(pivot: Pivot) -> tuple[float, float]:
-    """Crossing ratio r and the length L [m] of a pivot's strips, which cross at r L from the ground."""
-    apart = pivot.clamp_directions[0, 0] - pivot.clamp_directions[1, 0]
-    base, length = (
-        pivot.clamp_points[1, 0] - pivot.clamp_points[0, 0],
-        pivot.design.strips[0].length,
-    )
-    return float(base @ apart / (apart @ apart)) / length, length
+    def held(self, model: Reduced) -> Numbers:
+        """Derivatives (P, D) of the driven coordinates: displacements begin at the centre at rest."""
+        out = np.zeros((len(self.centres), len(model.bodies.held)))
+        for d, place in enumerate(model.bodies.held):
+            if place % 3 < 2:
+                out[:, d] = self.centres[:, place // 3, place % 3] / model.length
+        return out
 
 
 def _shape_rates(pivot: Pivot, name: str) -> tuple[Array, Array]:
@@ -98,45 +139,13 @@ def _shape_rates(pivot: Pivot, name: str) -> tuple[Array, Array]:
     With the tangents t_i the roots are 0 and r L (t_1 - t_2), the crossing r L t_1.
     """
     by_length, by_angle, by_ratio = (float(name == each) for each in SHAPE)
-    (ratio, length), tangents = crossing_reach(pivot), pivot.clamp_directions[:, 0]
+    (ratio, length), tangents = pivot.crossing_reach, pivot.clamp_directions[:, 0]
     turned = by_angle * np.stack((-tangents[:, 1], tangents[:, 0]), axis=1) * [[1.0], [-1.0]]
     reach = (by_ratio * length + ratio * by_length) * tangents + ratio * length * turned
     ends = np.zeros((2, 2, 2))
     ends[1, 0] = reach[0] - reach[1]
     ends[:, 1] = ends[:, 0] + by_length * tangents + length * turned
     return ends, reach[0]
-
-
-def rates_of(asked: Mechanism, names: Sequence[str]) -> Rates:
-    """The rates of a design by the names of its parameters; refuses unknown and doubled ones."""
-    if not names or len(set(names)) != len(names):
-        raise InvalidParameter("parameters", list(names), "at least one name, each once")
-    design = asked.design
-    strips, bodies = [s.name for s in design.strips], [b.name for b in design.bodies]
-    rates = Rates(
-        section=np.zeros((len(names), len(strips), 3)),
-        ends=np.zeros((len(names), len(strips), 2, 2)),
-        centres=np.zeros((len(names), len(bodies), 2)),
-        crossing=np.zeros((len(names), 2)),
-    )
-    for i, name in enumerate(names):
-        owner, _, field = name.rpartition(".")
-        if isinstance(asked, Pivot) and name in SHAPE:
-            rates.ends[i], rates.crossing[i] = _shape_rates(asked, name)
-            rates.centres[i] = rates.ends[i, :, 1].mean(axis=0)
-        elif field in (*MATERIAL, *SECTION) and owner in ("", *strips):
-            _set_section(rates.section[i], design, owner, field)
-        elif field in POINTS and owner in strips:
-            if design.strips[strips.index(owner)].rise != 0.0:
-                raise InvalidParameter("parameters", name, "an end of a straight strip")
-            rates.ends[i, strips.index(owner)].flat[POINTS.index(field)] = 1.0
-        elif field in CENTRES and owner in bodies:
-            rates.centres[i, bodies.index(owner), CENTRES.index(field)] = 1.0
-        else:
-            known = (*(SHAPE if isinstance(asked, Pivot) else ()), *MATERIAL, *SECTION)
-            one = f"STRIP.{', STRIP.'.join(POINTS)} or BODY.{', BODY.'.join(CENTRES)}"
-            raise InvalidParameter("parameters", name, f"one of {', '.join(known)}, {one}")
-    return rates
 
 
 def _set_section(section: Array, design: Design, owner: str, field: str) -> None:
@@ -174,6 +183,41 @@ class Varied(NamedTuple):
     second_moment: Numbers
     longer: Numbers
 
+    @classmethod
+    def of(cls, model: Reduced, design: Design, rates: Rates) -> Varied:
+        """The strips of a design, which ``model`` is of."""
+        strips, step = model.strips, 1j * STEP
+        given = np.array([(s.area, s.second_moment_of_area, s.youngs_modulus) for s in design.strips])
+        area, second_moment, modulus = 1.0 + step * (rates.section / given).T[..., None]
+        lengthening, turning = (each.T[..., None] for each in rates.by_length(design.strips))
+        longer = 1.0 + step * lengthening
+        thickness = np.sqrt(second_moment / area)
+        width = area / thickness
+        rigidity = np.array([s.flexural_rigidity for s in design.strips]) / (model.energy * model.length)
+        compliance = np.zeros((2, len(given)))
+        for k, part in enumerate((slice(strips.split), slice(strips.split, None))):
+            if strips.compliance[:, part].size:
+                compliance[k] = strips.compliance[:, part][:, 0]
+        frames = np.stack((strips.root.T, strips.tip.T))[..., None, None]
+        points = rates.points(model).transpose(2, 3, 1, 0)[..., None] / model.length
+        moved = np.concatenate((points, np.stack((turning, turning))[:, None]), axis=1)
+        return cls(
+            speed=_spread(strips.speed.T) * longer,
+            bending=_spread(rigidity) * second_moment * modulus,
+            aspect=width / longer,
+            curl=_spread(strips.along[:, 0, CURL]) * width**2 / thickness,
+            springs=_spread(strips.numbers[:, SPRING:SHEAR].T) * second_moment * modulus / thickness,
+            shear=_spread(strips.numbers[:, SHEAR]) * area * modulus / longer,
+            stretching=_spread(strips.stretching) * area * modulus,
+            compliance=_spread(compliance) * np.stack((1.0 / area, longer**2 / second_moment)) / modulus,
+            frames=frames + step * moved,
+            reach=_spread(strips.reach.T * [[1.0], [-1.0]]) * longer,
+            dead=_spread(strips.dead.reshape(len(given), -1, 2).transpose(1, 2, 0)) * area * longer,
+            area=_spread(given[:, 0]) * area,
+            second_moment=_spread(given[:, 1]) * second_moment,
+            longer=longer,
+        )
+
     def along(self, model: Reduced, u: Numbers) -> tuple[Numbers, Numbers]:
         """The rigidity at small curvature and the drop of ``curl_law`` at u (Q,), (Q, G, P, 1)."""
         scene = model.system.scene
@@ -188,62 +232,6 @@ class Varied(NamedTuple):
         return found * self.bending, 1.0 - (1.0 - plate) * found
 
 
-def varied_strips(model: Reduced, design: Design, rates: Rates) -> Varied:
-    """The strips of a design, which ``model`` is of."""
-    strips, step = model.strips, 1j * STEP
-    given = np.array([(s.area, s.second_moment_of_area, s.youngs_modulus) for s in design.strips])
-    area, second_moment, modulus = 1.0 + step * (rates.section / given).T[..., None]
-    lengthening, turning = (each.T[..., None] for each in rates.by_length(design.strips))
-    longer = 1.0 + step * lengthening
-    thickness = np.sqrt(second_moment / area)
-    width = area / thickness
-    rigidity = np.array([s.flexural_rigidity for s in design.strips]) / (model.energy * model.length)
-    compliance = np.zeros((2, len(given)))
-    for k, part in enumerate((slice(strips.split), slice(strips.split, None))):
-        if strips.compliance[:, part].size:
-            compliance[k] = strips.compliance[:, part][:, 0]
-    frames = np.stack((strips.root.T, strips.tip.T))[..., None, None]
-    points = _point_rates(model, rates).transpose(2, 3, 1, 0)[..., None] / model.length
-    moved = np.concatenate((points, np.stack((turning, turning))[:, None]), axis=1)
-    return Varied(
-        speed=_spread(strips.speed.T) * longer,
-        bending=_spread(rigidity) * second_moment * modulus,
-        aspect=width / longer,
-        curl=_spread(strips.along[:, 0, CURL]) * width**2 / thickness,
-        springs=_spread(strips.numbers[:, SPRING:SHEAR].T) * second_moment * modulus / thickness,
-        shear=_spread(strips.numbers[:, SHEAR]) * area * modulus / longer,
-        stretching=_spread(strips.stretching) * area * modulus,
-        compliance=_spread(compliance) * np.stack((1.0 / area, longer**2 / second_moment)) / modulus,
-        frames=frames + step * moved,
-        reach=_spread(strips.reach.T * [[1.0], [-1.0]]) * longer,
-        dead=_spread(strips.dead.reshape(len(given), -1, 2).transpose(1, 2, 0)) * area * longer,
-        area=_spread(given[:, 0]) * area,
-        second_moment=_spread(given[:, 1]) * second_moment,
-        longer=longer,
-    )
-
-
 def _spread(values: Numbers) -> Numbers:
     """Values (..., G) beside parameters and states."""
     return values[..., None, None]
-
-
-def _point_rates(model: Reduced, rates: Rates) -> Numbers:
-    """Derivatives (P, G, 2, 2) of the clamped points in their bodies' frames [m]; a free end is a body."""
-    moved = rates.ends.copy()
-    for end, bodies in enumerate((model.strips.roots, model.strips.tips)):
-        for s, body in enumerate(bodies):
-            if body >= rates.centres.shape[1]:
-                moved[:, s, end] = 0.0
-            elif body >= 0:
-                moved[:, s, end] -= rates.centres[:, body]
-    return moved
-
-
-def held_rates(model: Reduced, rates: Rates) -> Numbers:
-    """Derivatives (P, D) of the driven coordinates: a driven displacement begins at the centre at rest."""
-    out = np.zeros((len(rates.centres), len(model.bodies.held)))
-    for d, place in enumerate(model.bodies.held):
-        if place % 3 < 2:
-            out[:, d] = rates.centres[:, place // 3, place % 3] / model.length
-    return out

@@ -10,27 +10,23 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from spline_model.basis import all_modes
 from spline_model.compile import compile_scene
+from spline_model.effects import Bending, MixedStretching
 from spline_model.effects.plate import STEP
 from spline_model.errors import InvalidParameter
 from spline_model.mechanism import Mechanism
 from spline_model.pivot import Pivot
 from spline_model.reduced.model import from_unknowns, reduced
+from spline_model.reduced.numbers import in_order
 from spline_model.reduced.states import gathered
 from spline_model.reduced.whole import whole_tangents
 from spline_model.scene import Layout
-from spline_model.sensitivity.element import Elements
-from spline_model.sensitivity.parameters import (
-    KEYWORDS,
-    Rates,
-    crossing_reach,
-    held_rates,
-    rates_of,
-    varied_strips,
-)
-from spline_model.sensitivity.planar import turned
-from spline_model.solution import StaticSolution
+from spline_model.sensitivity.element import Curve, Elements, times_each, turned
+from spline_model.sensitivity.parameters import KEYWORDS, Rates, Varied
+from spline_model.static_answers import StaticSolution
 from spline_model.statics import STATIONS
+from spline_model.strip import laws
 
 Array = NDArray[np.float64]
 
@@ -68,7 +64,7 @@ def sensitivities(
     """
     if asked.design.discretisation.control_points is None:
         asked = asked.with_control_points(solution.control_points)
-    rates = rates_of(asked, parameters)
+    rates = Rates.of(asked, parameters)
     mechanism = asked
     driven = not np.isnan(solution.torque).all()
     system = compile_scene(mechanism.driven(1.0, body) if driven else mechanism.scene)
@@ -80,9 +76,9 @@ def sensitivities(
     if z.shape[1:] != (system.layout.size,):
         got = f"{z.shape[1:]} unknowns"
         raise InvalidParameter("solution", got, f"a solution of this pivot with {system.layout.size}")
-    y, varied = from_unknowns(model, z), varied_strips(model, mechanism.design, rates)
+    y, varied = from_unknowns(model, z), Varied.of(model, mechanism.design, rates)
     still = Elements(model=model, varied=varied, y=y[None] + 0j)
-    changes, rate = _differentiate(still, solution, held_rates(model, rates))
+    changes, rate = _differentiate(still, solution, rates.held(model))
     moved = Elements(model=model, varied=varied, y=y + 1j * STEP * changes)
     unknowns = _unknowns(moved)
     states, stiffness = _quantity(unknowns), _quantity(model.energy * moved.second_along(rate))
@@ -98,7 +94,7 @@ def sensitivities(
         **_shifts(asked, rates, unknowns, system.layout, body),
         bending_energy=Quantity(value=solution.bending_energy, derivative=bending),
         axial_energy=Quantity(value=solution.axial_energy, derivative=axial),
-        fibre_stress=_quantity(moved.fibre_stress(stations)),
+        fibre_stress=_quantity(_fibre_stress(moved, stations)),
         stations=np.asarray(stations, dtype=float),
         states=states.derivative,
         counters={"factorisations": len(z), "back_substitutions": len(z) * (len(parameters) + 1)},
@@ -162,7 +158,7 @@ def _shifts(
     rest = np.asarray(design.bodies[place].centre) + step * rates.centres[:, place]
     point = rest
     if isinstance(asked, Pivot):
-        ratio, length = crossing_reach(asked)
+        ratio, length = asked.crossing_reach
         crossing = asked.clamp_points[0, 0] + ratio * length * asked.clamp_directions[0, 0]
         point = crossing + step * rates.crossing
     arm = (point - rest).T[..., None]
@@ -172,6 +168,37 @@ def _shifts(
         "body_shift": _quantity(centre - rest[:, None]),
         "centre_shift": _quantity(centre + swung - point[:, None]),
     }
+
+
+def _fibre_stress(elements: Elements, stations: Array) -> NDArray[Any]:
+    """Stress [Pa] at both extreme fibres of G strips at Q stations, (P, S, G, Q, 2).
+
+    N / A -+ M h / (2 I) with h = sqrt(12 I / A) of the rectangular section, left fibre first: signed,
+    so that both are smooth in state and design. Plane sections, without the clamps' notches.
+    """
+    model, varied, strips = elements.model, elements.varied, elements.model.strips
+    scene, basis = model.system.scene, model.system.scene.strips[0].basis
+    d1, d2 = (in_order(basis.evaluate(stations, k)[..., None], model.shape)[..., 0] for k in (1, 2))
+    still = np.stack([in_order(s.control_points, model.shape) for s in scene.strips], axis=-1)
+    at_rest = still[..., None, None] / model.length
+    rest, curve = Curve.of(d1, d2, at_rest), Curve.of(d1, d2, elements.points)
+    natural = {e.strip: model.length * e.natural_curvature for e in scene.of(Bending)}
+    curvature = np.array([natural[s.name] for s in scene.strips])[:, None, None]
+    curvature, speed = curvature + rest.turning / rest.speed, rest.speed * varied.longer
+    bend = curve.turning / (curve.speed if strips.measure else speed) - curvature
+    rigidity, drop = varied.along(model, stations)
+    curled = laws.curl_factors(bend, drop, varied.curl)[1] if varied.curl.any() else 1.0
+    moment = rigidity * bend * curled
+    side = moment * model.energy * np.sqrt(3.0 / (varied.area * varied.second_moment))
+    force: Any = 0.0
+    if strips.stretching.any():
+        force = varied.stretching * (curve.speed / speed - 1.0 - strips.strain[:, None, None])
+    if len(elements.axial):
+        parts = [e.modes for e in scene.of(MixedStretching) if e.strip == scene.strips[0].name]
+        shown = np.column_stack([all_modes(modes, stations) for modes in parts]) @ model.to_modes
+        force = force + times_each(shown, elements.axial)
+    mean = force * (model.energy / model.length / varied.area)
+    return np.stack((mean - side, mean + side)).transpose(3, 4, 2, 1, 0)
 
 
 def _quantity(found: NDArray[Any]) -> Quantity:

@@ -12,8 +12,8 @@ import math
 from functools import lru_cache, partial
 
 import numpy as np
-from numba import njit
-from numba.core.codegen import ll
+from numba import njit, types
+from numba.core.codegen import ll, llvmir
 from numba.core.compiler import Compiler
 from numba.core.registry import CPUDispatcher
 from numpy.typing import NDArray
@@ -21,6 +21,8 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 
 FAST = {"contract", "reassoc", "nsz"}
+ENVIRONMENT = "_ZN08NumbaEnv"
+"""What the names of the places begin with where Numba keeps the Python objects of a function."""
 
 
 class _Short(Compiler):
@@ -31,15 +33,14 @@ class _Short(Compiler):
     """
 
     def define_pipelines(self):
-        """The usual passes, into a library that optimises its code so."""
+        """The usual passes, into a library that finishes its code so."""
         library = self.state.targetctx.codegen().create_library(self.state.func_id.func_qualname)
         library.enable_object_caching()
-        library._optimize_final_module = partial(self.optimise, library)
+        library._optimize_final_module = partial(self.finish, library)
         self.state.library = library
         return super().define_pipelines()
 
-    @staticmethod
-    def optimise(library):
+    def finish(self, library):
         """Optimise the code of a library in place."""
         options = ll.create_pipeline_tuning_options(speed_level=3)
         options.loop_vectorization, options.loop_interleaving = True, False
@@ -47,25 +48,22 @@ class _Short(Compiler):
         builder.getModulePassManager().run(library._final_module, builder)
 
 
-kernel = partial(
-    njit,
-    cache=True,
-    nogil=True,
-    fastmath=FAST,
-    error_model="numpy",
-    pipeline_class=_Short,
-    _nrt=False,
-    no_cfunc_wrapper=True,
-)
-"""Decorator ``@kernel()`` of a function that works on given arrays only and is called from Python."""
-
-
 class _Parts(_Short):
-    """The same, but for the last pass: a part is optimised where it ends up, and not before."""
+    """The same, but for the last steps: a part is optimised where it ends up, and only there machine code."""
 
-    @staticmethod
-    def optimise(library):
-        """Leave the code as it is."""
+    def finish(self, library):
+        """Keep the code for those that link it; what is made machine code of has no function in it."""
+        if not self.state.flags.no_cpython_wrapper:  # Python enters it as well
+            return
+        library._finalized = True
+        library._get_module_for_linking()
+        library._finalized = False
+        rest = library.codegen._create_empty_module(library.name)
+        for name in (v.name for v in library._final_module.global_variables):
+            if name.startswith(ENVIRONMENT):  # which Numba writes to
+                place = llvmir.GlobalVariable(rest, llvmir.IntType(8).as_pointer(), name)
+                place.linkage, place.initializer = "common", llvmir.Constant(place.value_type, None)
+        library._final_module = ll.parse_assembly(str(rest))
 
 
 class _Lanes(_Parts):
@@ -77,7 +75,15 @@ class _Lanes(_Parts):
         return super().define_pipelines()
 
 
-class _Inside(CPUDispatcher):
+class _Kernel(CPUDispatcher):
+    """A function that is compiled once for all numbers it is called with, those that are written out too."""
+
+    def get_call_template(self, args, kws):
+        """What a call is compiled to."""
+        return super().get_call_template([types.unliteral(each) for each in args], kws)
+
+
+class _Inside(_Kernel):
     """A function that has no entry from Python: a call would end the process."""
 
     def __call__(self, *arguments, **named):
@@ -85,17 +91,30 @@ class _Inside(CPUDispatcher):
         raise TypeError(f"{self.py_func.__qualname__}: got a call from Python, expected one from a kernel")
 
 
-def called(*, no_cpython_wrapper=True, pipeline_class=_Parts, **options):
-    """Decorator of a function that kernels call, and Python does not; ``py_func`` is the plain one."""
+_compiled = partial(
+    njit, cache=True, nogil=True, fastmath=FAST, error_model="numpy", _nrt=False, no_cfunc_wrapper=True
+)
+
+
+def kernel(*, pipeline_class=_Short, entered=False, **options):
+    """Decorator of a function that works on given arrays only and is called from Python.
+
+    entered: a part is called from Python too; with two callers it stays a function of its own.
+    """
+    inside = issubclass(pipeline_class, _Parts) and not entered
+    compiled = _compiled(pipeline_class=pipeline_class, no_cpython_wrapper=inside, **options)
 
     def decorated(function):
-        made = kernel(pipeline_class=pipeline_class, no_cpython_wrapper=no_cpython_wrapper, **options)
-        made = made(function)
-        if no_cpython_wrapper and isinstance(made, CPUDispatcher):
-            made.__class__ = _Inside
+        made = compiled(function)
+        if isinstance(made, CPUDispatcher):
+            made.__class__ = _Inside if inside else _Kernel
         return made
 
     return decorated
+
+
+called = partial(kernel, pipeline_class=_Parts)
+"""The same for a function that kernels call, and Python does not; ``py_func`` is the plain one."""
 
 
 part = partial(called, forceinline=True)

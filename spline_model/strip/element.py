@@ -157,11 +157,6 @@ class Strips(NamedTuple):
         return self.numbers[:, REACH:SPRING]
 
     @property
-    def per_u(self) -> Array:
-        """Dead load per du (S, 2)."""
-        return self.numbers[:, PER_U:ON_POINTS]
-
-    @property
     def dead(self) -> Array:
         """Dead load on the control points (S, 2 n)."""
         return self.numbers[:, ON_POINTS:]

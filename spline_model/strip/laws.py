@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from spline_model.strip.compiled import called, part
+from spline_model.strip.element import SHEAR, SPRING
 
 MATERIAL, SPATIAL = range(2)
 
@@ -124,3 +125,15 @@ def mixed_law(v, speed, strain0, force, loss, measure):
         return (force * eps - 0.5 * loss) * speed, force, 0.0, eps * speed, 1.0
     density = force * eps - 0.5 * loss
     return density * v, density + force * v / speed, 2.0 * force / speed, eps * v, eps + v / speed
+
+
+@part()
+def springs_of(numbers):
+    """Number of a strip's coordinates on no curve, which springs hold: turns of roots, offset of shear."""
+    return 2 * (numbers[SPRING] > 0.0) + 2 * (numbers[SHEAR] > 0.0)
+
+
+@part()
+def spring_of(i, numbers):
+    """Stiffness of the i-th of these springs."""
+    return numbers[SPRING + i] if i < 2 * (numbers[SPRING] > 0.0) else numbers[SHEAR]

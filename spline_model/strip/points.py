@@ -25,7 +25,6 @@ from spline_model.strip.element import (
     POINTS,
     PULL_AT,
     RIGIDITY,
-    SHEAR,
     SPEED,
     SPEED_AT,
     SPRING,
@@ -34,7 +33,15 @@ from spline_model.strip.element import (
     TANGENT_AT,
     WEIGHT,
 )
-from spline_model.strip.laws import MATERIAL, bending_law, curl_law, mixed_law, stretching_law
+from spline_model.strip.laws import (
+    MATERIAL,
+    bending_law,
+    curl_law,
+    mixed_law,
+    spring_of,
+    springs_of,
+    stretching_law,
+)
 
 
 @part()
@@ -255,16 +262,12 @@ def evaluate_residual(s, a, moving, shape, strips, local, out):
     _given_at(s, a, strips, lanes)
     rows = four(lanes, 0) + four(lanes, 4) + four(lanes, 8) + four(lanes, 12)
     more = four(lanes, 16) + four(lanes, 20) + four(lanes, 24) + four(lanes, 28)
+    soft = compliance[0] if a.size > 0 else 0.0
+    slide_soft = compliance[strips.split] if strips.split < a.size else 0.0
     bending, axial = laws_at(
-        strips.measure,
-        a.size,
-        numbers[STRAIN],
-        numbers[STRETCHING],
-        compliance[0] if a.size > 0 else 0.0,
-        compliance[strips.split] if strips.split < a.size else 0.0,
-        shape.rule[WEIGHT],
+        strips.measure, a.size, numbers[STRAIN], numbers[STRETCHING], soft, slide_soft, shape.rule[WEIGHT],
         *(rows + more),
-    )
+    )  # fmt: skip
     slowest = np.inf
     for p in range(lanes.shape[1]):
         slowest = min(slowest, lanes[SPEED_AT, p] / lanes[GIVEN, p])
@@ -272,9 +275,9 @@ def evaluate_residual(s, a, moving, shape, strips, local, out):
         gradient[i] = -numbers[ON_POINTS + i]
         out[2] -= numbers[ON_POINTS + i] * points[i]
     add_slopes(moving, d1, d2, four(lanes, 4), gradient)
-    turns, apart = 2 * (numbers[SPRING] > 0.0), 2 * (numbers[SHEAR] > 0.0)
-    for i in range(turns + apart):  # roots that turn, and the spring of shear
-        push = (numbers[SPRING + i] if i < turns else numbers[SHEAR]) * points[i]
+    turns = 2 * (numbers[SPRING] > 0.0)
+    for i in range(springs_of(numbers)):
+        push = spring_of(i, numbers) * points[i]
         gradient[i] += push
         if i < turns:
             bending += 0.5 * push * points[i]
@@ -291,7 +294,6 @@ def evaluate_points(s, a, moving, shape, strips, local, out):
     evaluate_residual(s, a, moving, shape, strips, local, out)
     numbers, hessian = strips.numbers[s], local.nodal[s]
     _add_hessian(moving, shape.products, local.pairs, local.lanes[s], hessian)
-    turns, apart = 2 * (numbers[SPRING] > 0.0), 2 * (numbers[SHEAR] > 0.0)
-    for i in range(turns + apart):
-        hessian[i, i] = numbers[SPRING + i] if i < turns else numbers[SHEAR]
+    for i in range(springs_of(numbers)):
+        hessian[i, i] = spring_of(i, numbers)
     _add_axial(s, a.size, moving, shape, strips, local)

@@ -6,7 +6,7 @@ from functools import cache
 import numpy as np
 import pytest
 
-import fe_reference.pivot
+import fe_reference.mechanism
 import fe_reference.statics
 import spline_model.pivot
 import spline_model.statics
@@ -66,7 +66,7 @@ def judged(numbers, **settings):
             continue
         fine = [
             fe_reference.statics.solve_statics(
-                fe_reference.pivot.cross_axis_pivot(**design, elements=count), rotation=rotation
+                fe_reference.mechanism.cross_axis_pivot(**design, elements=count), rotation=rotation
             )
             for count in MESHES
         ]
@@ -112,7 +112,7 @@ def stress_apart(numbers, **settings):
         answer = spline_model.statics.solve_statics(pivot, rotation=rotation)
         coarse, fine = (
             fe_reference.statics.solve_statics(
-                fe_reference.pivot.cross_axis_pivot(**design, elements=count), rotation=rotation
+                fe_reference.mechanism.cross_axis_pivot(**design, elements=count), rotation=rotation
             ).largest_stress
             for count in FINER
         )

@@ -7,10 +7,8 @@ from functools import cache
 import numpy as np
 import pytest
 
-import fe_reference.pivot
-import fe_reference.statics
-import spline_model.pivot
-import spline_model.statics
+import fe_reference
+import spline_model
 from tests import gates
 from tests.table_one import TABLE_ONE
 
@@ -31,10 +29,10 @@ def random_loads(seed):
 def path(model, seed, degrees, **discretisation):
     """Solution of a model under random loads, driven to a rotation [deg]."""
     loads = random_loads(seed)
-    pivot = model.pivot.cross_axis_pivot(
+    pivot = model.cross_axis_pivot(
         **TABLE_ONE, effects=("bending", "stretching", *loads), parameters=loads, **discretisation
     )
-    return model.statics.solve_statics(pivot, rotation=math.radians(degrees), increments=3, order="together")
+    return model.solve_statics(pivot, rotation=math.radians(degrees), increments=3, order="together")
 
 
 def differences(quantity, control_points=8):

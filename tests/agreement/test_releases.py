@@ -10,7 +10,6 @@ import pytest
 import fe_reference.dynamics
 import fe_reference.mechanism
 import fe_reference.modes
-import fe_reference.pivot
 import spline_model.dynamics
 import spline_model.mechanism
 import spline_model.modes
@@ -77,7 +76,7 @@ def released(scene, start, elements):
     """The pivot of Table 1 let go with the effects of a scene, by both models."""
     effects = scene_of(scene, STARTS[start])
     curve = spline_model.pivot.cross_axis_pivot(**TABLE_ONE, **effects, control_points=7)
-    beam = fe_reference.pivot.cross_axis_pivot(**TABLE_ONE, **effects, elements=elements)
+    beam = fe_reference.mechanism.cross_axis_pivot(**TABLE_ONE, **effects, elements=elements)
     run = {"start": STARTS[start], "duration": DURATION, "check": False}
     one = spline_model.dynamics.solve_release(curve, **run, step=1e-5, records=RECORDS)
     other = fe_reference.dynamics.solve_release(beam, **run, step=5e-7, samples=RECORDS)
@@ -124,7 +123,7 @@ def led_mode_difference(control_points):
     led = {LED: {"displacement": (0.5e-3, -0.5e-3)}}
     effects = {"effects": (*BASE, *led), "parameters": led}
     curve = spline_model.pivot.cross_axis_pivot(**TABLE_ONE, **effects, control_points=control_points)
-    beam = fe_reference.pivot.cross_axis_pivot(**TABLE_ONE, **effects, elements=40)
+    beam = fe_reference.mechanism.cross_axis_pivot(**TABLE_ONE, **effects, elements=40)
     ours = spline_model.modes.natural_frequencies(curve, rotation=0.0, count=1).frequency[0]
     theirs = fe_reference.modes.natural_frequencies(beam, rotation=0.0, count=1).frequency[0]
     assert theirs < 0.0

@@ -6,7 +6,7 @@ from functools import cache
 import numpy as np
 import pytest
 
-import fe_reference.pivot
+import fe_reference.mechanism
 import fe_reference.statics
 import spline_model.pivot
 import spline_model.statics
@@ -35,7 +35,7 @@ def spline(design="Table 1", rotation=QUARTER, **settings):
 @cache
 def finite_elements(design="Table 1", rotation=QUARTER, **settings):
     """Finite-element solution of a design."""
-    pivot = fe_reference.pivot.cross_axis_pivot(**(TABLE_ONE | DESIGNS[design] | settings))
+    pivot = fe_reference.mechanism.cross_axis_pivot(**(TABLE_ONE | DESIGNS[design] | settings))
     return fe_reference.statics.solve_statics(pivot, rotation=rotation)
 
 
@@ -180,7 +180,7 @@ def test_derived_data_agree():
     for change in DESIGNS.values():
         design = TABLE_ONE | change
         ours = spline_model.pivot.cross_axis_pivot(**design)
-        theirs = derived(fe_reference.pivot.cross_axis_pivot(**design))
+        theirs = derived(fe_reference.mechanism.cross_axis_pivot(**design))
         assert len(theirs) == 9
         for name in theirs:
             value = getattr(ours, name)

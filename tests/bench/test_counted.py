@@ -38,8 +38,9 @@ def of_the_cache(script):
 
 def test_the_first_solve_compiles_nothing():
     """Requirement: once kernels are kept, import and first solve load them all and compile none."""
-    of_the_cache(FIRST_SOLVE)
     said = of_the_cache(FIRST_SOLVE)
+    if "data saved to" in said:  # they were not kept before
+        said = of_the_cache(FIRST_SOLVE)
     assert said.count("data loaded from") > 0
     assert said.count("data saved to") == 0
 

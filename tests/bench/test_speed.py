@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from fe_reference.pivot import cross_axis_pivot as element_pivot
+from fe_reference.mechanism import cross_axis_pivot as element_pivot
 from fe_reference.statics import solve_statics as solve_element_statics
 from spline_model.batch import solve_many
 from spline_model.compile import compile_scene

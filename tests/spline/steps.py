@@ -3,7 +3,7 @@
 import numpy as np
 
 from spline_model.compile import compile_scene
-from spline_model.motion.mechanism import moving
+from spline_model.motion.mechanism import Moving
 from spline_model.motion.run import set_points, store
 from spline_model.motion.start import set_in_motion
 from spline_model.motion.step import assemble, improve, prepare
@@ -15,7 +15,7 @@ class Step:
     def __init__(self, scene, seed=3, size=0.03):
         system = compile_scene(scene)
         motion = set_in_motion(system)
-        self.model = moving(motion)
+        self.model = Moving.of(motion)
         self.generator = np.random.default_rng(seed)
         nothing = np.zeros(len(motion.mass))
         self.state, self.work = self.model.arrays(system.rest, nothing, nothing)

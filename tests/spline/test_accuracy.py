@@ -55,7 +55,7 @@ def true_errors(solution, reference):
 
 def largest_error(solution):
     """Largest true error on Table 1 of all that an accuracy is about."""
-    return max(distances(pivot().design, solution, exact(0)))
+    return max(distances(pivot().design, solution, exact(0)).values())
 
 
 def misjudged(number, accuracy):

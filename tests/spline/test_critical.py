@@ -7,8 +7,8 @@ import pytest
 from mpmath import ellipk, mp
 
 from spline_model.compile import compile_scene
-from spline_model.continuation.bordered import Bordered
-from spline_model.continuation.critical import reduced_tangent
+from spline_model.continuation.critical import ReducedTangent
+from spline_model.continuation.followed import Bordered
 from spline_model.errors import InvalidParameter
 from spline_model.pivot import cross_axis_pivot
 from spline_model.statics import solve_loads, solve_mechanism, solve_statics
@@ -144,7 +144,7 @@ def test_inertia_counts_the_negative_eigenvalues():
     assert path.inertia.max() > 0
     for z, factor, inertia in zip(path.states, path.load_factor, path.inertia, strict=True):
         work.evaluate(z, factor)
-        values = np.linalg.eigvalsh(reduced_tangent(work).stiffness)
+        values = np.linalg.eigvalsh(ReducedTangent.of(work).stiffness)
         assert np.count_nonzero(values < 0) == inertia
 
 
@@ -156,7 +156,7 @@ def test_a_critical_point_is_where_an_eigenvalue_vanishes():
     system = compile_scene(pivot.driven(-0.1))
     work = Bordered.of(system)
     work.evaluate(point.z, point.load_factor)
-    tangent = reduced_tangent(work)
+    tangent = ReducedTangent.of(work)
     values = np.linalg.eigvalsh(tangent.stiffness)
     direction = tangent.free.T @ (point.mode / system.scales.unit[: len(point.mode)])
     assert np.abs(values).min() < 1e-5 * np.sort(np.abs(values))[1]

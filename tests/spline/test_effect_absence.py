@@ -72,7 +72,7 @@ def test_an_unnamed_effect_is_never_asked(monkeypatch):
 
 
 POISONED = """
-import spline_model.effects.history as history, spline_model.strip.points as points
+import spline_model.effects.boundary as history, spline_model.strip.points as points
 def poison(*_):
     raise RuntimeError("not in the scene")
 points.stretching_law = history.factor_at = poison

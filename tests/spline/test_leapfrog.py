@@ -10,7 +10,7 @@ from spline_model.compile import compile_scene
 from spline_model.dynamics import solve_release
 from spline_model.errors import InvalidParameter
 from spline_model.modes import linear_modes
-from spline_model.motion.explicit import flight
+from spline_model.motion.explicit import Flight
 from spline_model.motion.start import set_in_motion
 from spline_model.pivot import cross_axis_pivot, swinging_slide_stiffness
 from spline_model.solution import Status
@@ -68,7 +68,7 @@ def phase_error(omega_h, mode=14, periods=400):
     z = system.rest.copy()
     z[:count] += 1e-7 / np.abs(shape).max() * shape
     steps = math.ceil(2 * math.pi * periods / omega_h)
-    start = flight(motion, z, np.zeros(count), 1, "leapfrog")
+    start = Flight(motion, z, np.zeros(count), 1, "leapfrog")
     assert start.fly(omega_h / omega, steps) == 1
     (z,), (v,) = start.model.unknowns(start.records[1:])
     weighted = motion.mass @ shape

@@ -8,7 +8,7 @@ import pytest
 
 from spline_model.batch import solve_many
 from spline_model.compile import compile_scene
-from spline_model.continuation.bordered import Bordered
+from spline_model.continuation.followed import Bordered
 from spline_model.continuation.point import jumped, stand
 from spline_model.continuation.resolution import LARGEST_DEFECT
 from spline_model.design import Discretisation, StripDesign

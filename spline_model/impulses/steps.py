@@ -1,5 +1,15 @@
-"""The stable step: implicit elastic forces, axial compliance in the constraint, positions stabilised.
+"""The two steps of the solver: as printed, and one that is stable at any length.
 
+As printed (Eqs 21 to 30, misprints corrected), explicit forces and impulses at velocity level:
+
+    M (v~ - v0) / h = f - dV/dq(q0) - D v0              (21, 22)
+    v1 = v~ + M^-1 psi_q(q0)^T P,    psi_q v1 + psi_t = 0   (24 to 30)
+    q1 = q0 + h v1                                      (23)
+
+Symplectic Euler: first order, stable while omega h < 2 for every frequency of the constrained
+system. Nothing corrects positions, so that the constraints drift.
+
+Stable: implicit elastic forces, axial compliance in the constraint, positions stabilised.
 With the rule's start values q~, v~ and spans s (of positions) and r (of velocities),
 
     M (v1 - v~) / r + dV/dq(q1) + D v1 - psi_q(q1)^T lambda + eps_q(q1)^T a - f = 0,
@@ -13,11 +23,37 @@ of soft constraints, so that no stiffness EA stands in the update.
 
 from __future__ import annotations
 
-from spline_model.impulses.arrays import COUNTS, ENERGY, HALVED, LIMITED, RESIDUAL, SOLVES, STEPS, SWEEPS
-from spline_model.impulses.forces import damped, external_work, fill, fill_drag, held, kinetic, potential
+from spline_model.impulses.arrays import (
+    ACTIVE,
+    COUNTS,
+    DRIVE,
+    ENERGY,
+    HALVED,
+    LIMITED,
+    RESIDUAL,
+    SIZE,
+    SOLVES,
+    STEPS,
+    SWEEPS,
+)
+from spline_model.impulses.forces import (
+    axial_strains,
+    damped,
+    external_work,
+    factor,
+    fill,
+    fill_drag,
+    kinetic,
+    strain_energy,
+)
 from spline_model.impulses.linear import apply_impulses, free_update, prepare, row_times
 from spline_model.strip.compiled import copy, once
 
+MOST_ENERGY = 100.0
+"""A run whose kinetic energy exceeds this times the energy at its start is unstable; below the limit
+symplectic Euler lets the energy swing by a factor 1 / (1 - omega h / 2)."""
+FROM_REST = 1e-6
+"""Energy in EI/L that a run may reach from rest."""
 EULER, START, BACKWARD = range(3)
 """Rules of a step: implicit Euler (q1 = q0 + h v1); the start (q1 = q0 + h (v0 + v1) / 2), which
 loses less; backward differences of second order from the two states before."""
@@ -29,14 +65,82 @@ SLACK = 1e-14
 """Gain of energy in EI/L that is round-off."""
 SLOWEST = 0.1
 """Least |C'| over its value at rest: with less the curve is folded."""
+LEAST_PART = 2.0**-6
+"""Least part of a step before it is refused: bounds the time that a step may take."""
+
+
+@once()
+def printed_advance(moving, time, h, problem, space):
+    """Advance by one step; False, with the state as it was, if it is unstable.
+
+    ``moving.z`` is left with the axial forces of q0 and the constraint forces P / h.
+    """
+    z, v, x, status, work = moving.z, moving.v, space.x, moving.status, abs(moving.totals[0])
+    copy(v, moving.earlier[1])
+    for i in range(v.size):
+        moving.earlier[0, i] = z[i]
+    _explicit_axial_forces(z, v, problem, space)
+    fill(z, problem, time, space)
+    fill_drag(z, problem, space)
+    for i in range(v.size):
+        push = space.gradient[i]
+        for j in range(v.size):
+            push += space.drag[i, j] * v[j]
+            space.matrix[i, j] = problem.mass[i, j]
+        x[i] = -h * push
+    prepare(problem, space.matrix, space.schur)
+    free_update(problem, space.matrix, x)
+    for i in range(v.size):
+        x[i] += v[i]
+    for r in range(space.mu.size):
+        space.gap[r] = space.mu[r] = 0.0
+    for a in range(problem.acting.shape[0]):  # psi_t: the mean rate of the active drives over the step
+        acting = problem.acting[a]
+        if acting[DRIVE] >= 0 and acting[ACTIVE] == 1:
+            change = factor(a, time + h, problem) - factor(a, time, problem)
+            space.gap[acting[DRIVE]] = change * problem.sizes[a, SIZE] / h
+    done, gap = apply_impulses(problem, space, x, problem.tolerance / h)
+    copy(z, space.z)
+    moving.totals[1] += damped(z, v, h, problem, space)
+    for i in range(v.size):
+        v[i] = x[i]
+        z[i] += h * v[i]
+    for r in range(space.mu.size):
+        z[problem.rows[r, 0]] = space.mu[r] / h
+    moving.totals[0] += external_work(space.z, z, problem, time)
+    moving.counters[STEPS] += 1
+    moving.counters[SOLVES] += 1
+    moving.counters[SWEEPS] += done
+    if not kinetic(v, problem.mass) <= MOST_ENERGY * (status[ENERGY] + work + FROM_REST * problem.energy):
+        for i in range(z.size):
+            z[i] = moving.earlier[0, i] if i < v.size else 0.0
+        copy(moving.earlier[1], v)
+        return False
+    status[RESIDUAL] = max(status[RESIDUAL], gap * h)
+    return True
+
+
+@once()
+def _explicit_axial_forces(z, v, problem, space):
+    """Set the axial forces of extensible strips in z, a = C^-1 (eps + beta d(eps)/dt), and no others."""
+    strains = space.strains
+    for i in range(v.size, z.size):
+        z[i] = 0.0
+    for rates in (False, True):
+        axial_strains(z, v, rates, problem, strains)
+        for k in range(strains.size):
+            share = problem.relaxation[k] * strains[k] if rates else strains[k]
+            for j in range(strains.size):
+                z[v.size + j] += problem.rigidity[j, k] * share
 
 
 @once()
 def stable_advance(moving, time, duration, problem, space):
     """Advance by one step, or by halves of implicit Euler where that fails; False if none is solved."""
     status = moving.status
-    driven = held(problem)
-    done, step = 0.0, duration
+    driven, done, step = False, 0.0, duration
+    for a in range(problem.acting.shape[0]):
+        driven |= problem.acting[a, DRIVE] >= 0 and problem.acting[a, ACTIVE] == 1
     while duration - done > 1e-9 * duration:
         step = min(step, duration - done)
         rule = EULER
@@ -49,7 +153,7 @@ def stable_advance(moving, time, duration, problem, space):
         moving.counters[HALVED] += 1
         status[COUNTS] = 0.0
         step *= 0.5
-        if step < problem.least_part * duration:
+        if step < LEAST_PART * duration:
             return False
     status[COUNTS] = 1.0 if step == 2.0 * duration else 0.0
     return True
@@ -65,7 +169,9 @@ def _try_step(moving, time, h, rule, driven, problem, space):
     if not residual <= 1e3 * problem.tolerance or not slowest > SLOWEST:
         return False
     work = external_work(z, space.z, problem, time + h)
-    moves, stored = kinetic(space.v, problem.mass), potential(space.z, v, problem, space)
+    moves, stored = kinetic(space.v, problem.mass), strain_energy(space.z, v, problem, space)
+    for i in range(v.size):
+        stored -= problem.weight[i] * space.z[i]
     if problem.grounded == 1 and not driven:
         # velocities scaled by one factor fulfil constraints at rest as they did before
         allowed = status[ENERGY] + work
@@ -133,7 +239,10 @@ def solve_step(span, lag, time, problem, space, counters):
         slowest = fill(z, problem, time, space)
         _relax(v, span, problem, gradient, matrix)
         _add_inertia(v, span, lag, problem.mass, space)
-        norm = _largest_residual(gradient, problem.unit)
+        norm = 0.0
+        for i in range(gradient.size):
+            value = abs(gradient[i]) * problem.unit[i]
+            norm = max(norm, value) if value < 1e300 else 1e300
         if norm <= tolerance or (norm <= 1e3 * tolerance and norm > 0.5 * before) or not norm < 1e12:
             break
         before = norm
@@ -186,15 +295,3 @@ def _add_inertia(v, span, lag, mass, space):
             push += mass[i, j] * (v[j] - space.drift[j]) / lag + space.drag[i, j] * v[j]
             space.matrix[i, j] += mass[i, j] * over + space.drag[i, j] / span
         space.gradient[i] += push
-
-
-@once()
-def _largest_residual(gradient, unit):
-    """Largest entry, dimensionless; infinite if one is not a number."""
-    norm = 0.0
-    for i in range(gradient.size):
-        value = abs(gradient[i]) * unit[i]
-        if not value < 1e300:
-            return 1e300
-        norm = max(norm, value)
-    return norm
