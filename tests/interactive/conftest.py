@@ -8,7 +8,7 @@ def server():
     """A server without pictures."""
     pytest.importorskip("cv2", reason="the extra `interactive` is not installed")
     pytest.importorskip("uvicorn", reason="the extra `interactive` is not installed")
-    from studies.interactive.web.server import Hosted, Settings
+    from studies.interactive.web.server import Server, Settings
 
-    with Hosted(Settings(camera="none")) as hosted:
-        yield hosted.server
+    with Server(Settings(camera="none")) as hosted:
+        yield hosted

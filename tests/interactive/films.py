@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable
-from functools import cache
+from functools import cache, lru_cache
 
 import numpy as np
 
@@ -10,7 +10,7 @@ from spline_model.held import HeldPivot
 from studies.interactive.pivot.design import SIDE, Placing, build, turned
 from studies.interactive.pivot.presets import PRESETS
 from studies.interactive.tracking import tracker as tracking
-from studies.interactive.tracking.painter import Film, Finger, Marker, Optics, Painter
+from studies.interactive.tracking.painter import BLOCK, COUNTER_BITS, Film, Finger, Marker, Optics, Painter
 from studies.interactive.tracking.planar import CORNERS, project
 from studies.interactive.tracking.tracker import Tracker
 
@@ -33,6 +33,26 @@ def both(k: int) -> list[Marker]:
     return [Marker(number=0, pose=(0.0, 0.0, 0.0)), Marker(number=1, pose=truth(k))]
 
 
+class Kept(Film):
+    """A film whose pictures are kept for the next test that asks for the same."""
+
+    def picture(self, k):
+        """A copy of the picture, so that no test spoils another's."""
+        number = k % self.frames
+        markers, fingers = self.scene(number)
+        return drawn(self.painter, tuple(markers), number, fingers).copy()
+
+
+#: One for all films of the same optics.
+painter = cache(Painter)
+
+
+@lru_cache(maxsize=128)
+def drawn(by: Painter, markers: tuple[Marker, ...], number: int, fingers: tuple[Finger, ...]) -> np.ndarray:
+    """The picture that is kept."""
+    return by.draw(list(markers), number, fingers)
+
+
 def film(
     optics: Optics | None = None,
     frames: int = PERIOD,
@@ -41,8 +61,8 @@ def film(
     samples: int = 4,
 ) -> Film:
     """A film of these markers and fingers."""
-    painter = Painter(optics or Optics(), samples=samples)
-    return Film(painter=painter, frames=frames, scene=lambda k: (markers(k), fingers(k)))
+    own = painter(optics or Optics(), samples=samples)
+    return Kept(painter=own, frames=frames, scene=lambda k: (markers(k), fingers(k)))
 
 
 def true_corners(optics: Optics, marker: Marker) -> np.ndarray:
@@ -90,3 +110,9 @@ def errors(events):
 def raw(picture, quads, gamma):
     """Corners as the detector gives them."""
     return tracking.edges.Refined(corners=quads, share=np.ones((2, 4)), step=np.ones((2, 4)))
+
+
+def counter(picture):
+    """Return the number that the painter wrote into a picture."""
+    places = BLOCK // 2 + BLOCK * np.arange(COUNTER_BITS)
+    return int(sum(1 << bit for bit, x in enumerate(places) if picture[BLOCK, x] > 127))

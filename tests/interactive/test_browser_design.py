@@ -7,7 +7,7 @@ pytest.importorskip("cv2", reason="the extra `interactive` is not installed")
 pytest.importorskip("uvicorn", reason="the extra `interactive` is not installed")
 
 from studies.interactive.web.browser import Browser, executable
-from studies.interactive.web.server import Hosted, Settings
+from studies.interactive.web.server import Server, Settings
 from studies.interactive.web.sources import FilmSource
 from tests.interactive.films import film
 from tests.interactive.pages import load
@@ -22,8 +22,8 @@ pytestmark = [
 @pytest.fixture(scope="module")
 def page():
     """A page without a camera."""
-    with Hosted(Settings(camera="none")) as hosted, Browser() as browser:
-        load(browser, hosted.server)
+    with Server(Settings(camera="none")) as hosted, Browser() as browser:
+        load(browser, hosted)
         yield browser
 
 
@@ -104,17 +104,18 @@ def test_video_is_recorded(page):
 
 def test_scrubbing_shows_the_pictures():
     """Requirement: back in the last minute the picture of that moment is shown under the strips, of the same
-    size, for less than 20 kB a picture."""
+    size, for less than 20 kB a picture; a film offers no list of cameras."""
     made = FilmSource(film(frames=12, samples=2))
-    with Hosted(Settings(camera="film", source=lambda: made)) as hosted, Browser() as browser:
-        load(browser, hosted.server)
+    with Server(Settings(camera="film", source=lambda: made)) as hosted, Browser() as browser:
+        load(browser, hosted)
         browser.wait("studio.ring.states.filter((s) => s.small).length > 12")
         browser.key("[")
-        assert browser.ask("document.getElementById('when').textContent").endswith("s ago")
+        browser.wait("document.getElementById('when').textContent.endsWith('s ago')")
         browser.ask("new Promise((done) => setTimeout(done, 300))")
         image = pixels(browser.canvas("stage"))
         assert browser.ask("studio.view.size") == [640, 480]
         assert 0 < browser.ask("studio.ring.small.blob.size") < 20000
+        assert browser.ask("document.getElementById('camera-row').hidden")  # a film has no camera to choose
     assert 120.0 < np.median(image) < 180.0  # the table's grey, not the empty grid
 
 
@@ -135,3 +136,36 @@ def test_centres_of_a_swing_stay_together(page):
     length = page.ask("studio.state.values.length")
     assert len(drawn) > 20
     assert np.ptp(drawn, axis=0).max() < length / 3.0
+
+
+def test_another_design_begins_its_own_plots(page):
+    """Requirement: states and centres of a former design are not drawn as those of the present one."""
+    page.key("0")
+    page.wait("studio.state.mode === 'held' && studio.state.pose[2] === 0")
+    for _ in range(6):
+        page.key("ArrowUp")
+    page.wait("studio.state.pose[2] > 0.5 && studio.ring.centres.length > 3")
+    box = "document.querySelector(\"input[aria-label='strip width in mm']\")"
+    page.ask(f"(e => {{ e.value = '17'; e.dispatchEvent(new Event('change')); }})({box})")
+    page.wait("studio.state.values.width === 0.017")
+    same = "studio.ring.states.filter((s) => s.design === studio.ring.current.design)"
+    assert 0 < page.ask("studio.ring.centres.length") <= page.ask(f"{same}.length")
+    assert page.ask(f"{same}.length") < page.ask("studio.ring.length")
+    page.key("z")
+    page.wait("studio.state.values.width !== 0.017")
+
+
+def test_page_explains_what_is_drawn(page):
+    """Requirement: the help names everything that is drawn, and the page links to the marker sheet it
+    serves."""
+    page.key("?")
+    page.wait("document.getElementById('shortcuts').open")
+    legend = page.ask("document.getElementById('legend').textContent")
+    for word in ("stress", "centre of rotation", "ground marker", "load", "clamps", "standard deviation"):
+        assert word in legend
+    page.key("Escape")
+    fetched = page.ask(
+        "fetch(document.querySelector('a[download]').href).then(async (answer) =>"
+        " [answer.status, (await answer.text()).slice(0, 5)])"
+    )
+    assert fetched == [200, "%PDF-"]

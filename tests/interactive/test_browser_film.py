@@ -15,11 +15,11 @@ from PIL import Image
 
 from studies.interactive.pivot.design import Placing, build
 from studies.interactive.pivot.presets import PRESETS
-from studies.interactive.tracking.detector import encoded
 from studies.interactive.tracking.painter import Optics
 from studies.interactive.tracking.planar import project
+from studies.interactive.tracking.tracker import encoded
 from studies.interactive.web.browser import Browser, executable
-from studies.interactive.web.server import Hosted, Settings
+from studies.interactive.web.server import Server, Settings
 from studies.interactive.web.sources import FilmSource
 from tests.interactive.films import both, film, true_corners, truth
 from tests.interactive.pages import BODY, LATE, WATCH, load
@@ -60,10 +60,10 @@ def test_film_as_camera(camera, late, least):
     """Requirement: the page's camera drives the pivot: first state within 5 s, at least 8 Hz here, every
     pose that is given within 0.12 degrees and 0.20 mm of the truth of the picture it is shown with, on a
     machine that copies a picture late too (then at least 2 Hz)."""
-    with Hosted(Settings(camera="browser")) as hosted, Browser(film=camera) as browser:
+    with Server(Settings(camera="browser")) as hosted, Browser(film=camera) as browser:
         if late:
             browser.call("Page.addScriptToEvaluateOnNewDocument", source=LATE)
-        assert load(browser, hosted.server) <= 5.0
+        assert load(browser, hosted) <= 5.0
         browser.wait("studio.state.sight?.state === 'found'", 20.0)
         browser.ask(WATCH)
         begin = time.monotonic()
@@ -90,8 +90,8 @@ def still():
     optics, picture = Optics(), film().picture(6)
     one = FilmSource(film(frames=1))
     one._kept[0] = encoded(picture, 95)
-    with Hosted(Settings(camera="film", source=lambda: one)) as hosted, Browser() as browser:
-        load(browser, hosted.server)
+    with Server(Settings(camera="film", source=lambda: one)) as hosted, Browser() as browser:
+        load(browser, hosted)
         browser.wait(
             "studio.state.seq > 4 && studio.state.sight.state === 'found' && !studio.state.warnings.length"
         )
@@ -160,8 +160,8 @@ def test_no_camera_is_explained(camera):
     """Requirement: without a camera a sentence says so within 2 s, and the mouse drives; the console stays
     clean."""
     del camera
-    with Hosted(Settings(camera="browser")) as hosted, Browser() as browser:
-        load(browser, hosted.server)
+    with Server(Settings(camera="browser")) as hosted, Browser() as browser:
+        load(browser, hosted)
         text = browser.wait("document.getElementById('note').textContent", 2.0)
         assert text.startswith("No camera was found.")
         x, y = browser.ask(BODY)

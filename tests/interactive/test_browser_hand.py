@@ -10,7 +10,7 @@ pytest.importorskip("cv2", reason="the extra `interactive` is not installed")
 pytest.importorskip("uvicorn", reason="the extra `interactive` is not installed")
 
 from studies.interactive.web.browser import Browser, executable
-from studies.interactive.web.server import Hosted, Settings
+from studies.interactive.web.server import Server, Settings
 from tests.interactive.pages import ANGLE, BODY, CONTRAST, COUNT_SOCKETS, load
 
 pytestmark = [pytest.mark.slow, pytest.mark.skipif(executable() is None, reason="no Chromium on the PATH")]
@@ -19,8 +19,8 @@ pytestmark = [pytest.mark.slow, pytest.mark.skipif(executable() is None, reason=
 @pytest.fixture(scope="module")
 def hand():
     """A page without a camera, and its browser."""
-    with Hosted(Settings(camera="none")) as hosted, Browser() as browser:
-        load(browser, hosted.server)
+    with Server(Settings(camera="none")) as hosted, Browser() as browser:
+        load(browser, hosted)
         yield browser
 
 
@@ -159,6 +159,30 @@ def test_contrast_is_enough(page):
         least, where = page.ask(CONTRAST)
         assert least >= wanted, (value, where)
     page.call("Emulation.setEmulatedMedia", features=[])
+
+
+def test_solvers_are_chosen_by_their_names(page):
+    """Requirement: the solvers are named as what they are, the number of sweeps is asked for where there are
+    any, and a motion that cannot keep up says on the picture how slow it runs."""
+    names = page.ask("[...document.getElementById('solver').options].map((option) => option.text)")
+    assert names[0] == "impulses at once (Eq 30), stable form"
+    assert "impulses by sweeps over constraints, as printed" in names
+    choose = (
+        "((id, value) => { const e = document.getElementById(id); e.value = value;"
+        " e.dispatchEvent(new Event('change')); })"
+    )
+    assert page.ask("document.getElementById('sweeps-row').hidden")
+    page.ask(f"{choose}('solver', 'printed strips')")
+    page.wait("!document.getElementById('sweeps-row').hidden")
+    page.ask(f"{choose}('sweeps', 7)")
+    page.wait("studio.state.sweeps === 7")
+    page.key("ArrowUp")
+    page.key("r")
+    text = page.wait("document.getElementById('pace').textContent")
+    assert re.search(r"runs at 0\.0*\d of real time", text)
+    page.key("0")
+    page.ask(f"{choose}('solver', 'stable direct')")
+    page.wait("studio.state.solver === 'stable direct' && !document.getElementById('pace').textContent")
 
 
 def test_parameters_are_typed_in_their_units(page):

@@ -6,7 +6,7 @@ pytest.importorskip("cv2", reason="the extra `interactive` is not installed")
 pytest.importorskip("uvicorn", reason="the extra `interactive` is not installed")
 
 from studies.interactive.web.browser import Browser, executable
-from studies.interactive.web.server import Hosted, Settings
+from studies.interactive.web.server import Server, Settings
 from tests.interactive.pages import load
 
 pytestmark = [
@@ -23,8 +23,8 @@ def test_pivot_and_sliders_are_seen_together(width, height):
         "(id => { const r = document.querySelector(id).getBoundingClientRect();"
         " return r.top >= 0 && r.bottom <= innerHeight && r.right <= innerWidth; })"
     )
-    with Hosted(Settings(camera="none")) as hosted, Browser(width=width, height=height) as browser:
-        load(browser, hosted.server)
+    with Server(Settings(camera="none")) as hosted, Browser(width=width, height=height) as browser:
+        load(browser, hosted)
         assert browser.ask("document.documentElement.scrollWidth") <= width
         if width > 1200:
             for name in ("#stage", "#status", "#release", "#record", "#moment"):
@@ -48,9 +48,9 @@ all.filter((e) => e.offsetParent).map((e) => {
 def test_fingers_hit_what_they_should():
     """Requirement: on a phone buttons and choices are at least 44 px high, everything else at least 24 px
     (WCAG 2.2), and a slider is as wide as the screen allows."""
-    with Hosted(Settings(camera="none")) as hosted, Browser(width=390, height=844) as browser:
+    with Server(Settings(camera="none")) as hosted, Browser(width=390, height=844) as browser:
         browser.call("Emulation.setTouchEmulationEnabled", enabled=True)
-        load(browser, hosted.server)
+        load(browser, hosted)
         targets = browser.ask(TARGETS)
     assert len(targets) > 40
     for kind, name, side, width in targets:

@@ -15,8 +15,8 @@ from studies.errors import BadInput
 from studies.interactive.pivot.design import PRINTED
 from studies.interactive.pivot.session import Session
 from studies.interactive.tracking import tracker as tracking
-from studies.interactive.tracking.calibration import Camera
 from studies.interactive.tracking.painter import Marker, Optics
+from studies.interactive.tracking.planar import Camera
 from studies.interactive.tracking.tracker import Tracker
 from tests import gates
 from tests.interactive.events import session, turned
@@ -55,7 +55,7 @@ def test_encoded_gate_has_teeth(monkeypatch):
 
 #: Cameras that encode light by the powers 1/1.8 and 1/2.4, blur it, and expose it too little or too much.
 CAMERAS = [
-    Optics(gamma=gamma, blur=blur, exposure=exposure, noise=1.5)
+    Optics(gamma=gamma, blur=blur, exposure=exposure, noise=2.0)
     for gamma, blur, exposure in product((1.8, 2.4), (0.5, 1.0, 1.6), (0.5, 1.3))
 ]
 

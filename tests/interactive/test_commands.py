@@ -1,6 +1,7 @@
 """The commands `interactive` and `markers`, and what happens without the extra."""
 
 import io
+import json
 import re
 import signal
 import subprocess
@@ -14,49 +15,67 @@ from PIL import Image
 from studies.commands import interactive
 from studies.record.source import ROOT
 
-WITHOUT = (
-    "import sys; sys.modules['cv2'] = None; import importlib.util as u; known = u.find_spec; "
-    "u.find_spec = lambda name, *more: None if name == 'cv2' else known(name, *more); "
-    "from studies.__main__ import main; sys.exit(main(sys.argv[1:]))"
-)
+#: Runs the commands, in words of JSON, where cv2 cannot be imported: exit code and both streams of each.
+WITHOUT = """
+import contextlib, io, json, sys, importlib.util as u
+sys.modules["cv2"], known = None, u.find_spec
+u.find_spec = lambda name, *more: None if name == "cv2" else known(name, *more)
+from studies.__main__ import main
+done = []
+for words in json.loads(sys.argv[1]):
+    with contextlib.redirect_stdout(io.StringIO()) as out, contextlib.redirect_stderr(io.StringIO()) as err:
+        done.append((main(words), out, err))
+print(json.dumps([(code, out.getvalue(), err.getvalue()) for code, out, err in done]))
+"""
 
 
-def run(*words, code=None):
-    """Run the command line, in a process without cv2 if `code` says so."""
-    start = [sys.executable, *(["-c", code] if code else ["-m", "studies"])]
-    return subprocess.run([*start, *words], cwd=ROOT, capture_output=True, text=True, check=False, timeout=60)
+@pytest.fixture(scope="module")
+def without(tmp_path_factory):
+    """Exit code, output and errors of commands by their first word, in a process without the extra; a folder
+    for results."""
+    folder = tmp_path_factory.mktemp("results")
+    commands = [
+        ["interactive"],
+        ["markers"],
+        ["status", "--results", str(folder)],
+        ["run", "fig07_interactive", "--results", str(folder)],
+    ]
+    words = [sys.executable, "-c", WITHOUT, json.dumps(commands)]
+    done = subprocess.run(words, cwd=ROOT, capture_output=True, text=True, check=True, timeout=60)
+    outcomes = zip(commands, json.loads(done.stdout), strict=True)
+    return {command[0]: outcome for command, outcome in outcomes} | {"folder": folder}
 
 
 @pytest.mark.parametrize("command", ["interactive", "markers"])
-def test_without_the_extra_it_is_one_line(command):
+def test_without_the_extra_it_is_one_line(command, without):
     """Requirement: a missing package is named in one line with what to do, exit code 2."""
-    done = run(command, code=WITHOUT)
-    assert done.returncode == 2
+    code, _, said = without[command]
+    assert code == 2
     # where the extra is not installed at all, its other packages are named as well
     assert re.fullmatch(
         rf"studies: {command}: got no opencv-python-headless[\w, ]*, expected the extra: "
         r"run `make interactive`, or pip install -e '\.\[interactive\]'\n",
-        done.stderr,
+        said,
     )
 
 
-def test_the_rest_does_not_need_the_extra():
+def test_the_rest_does_not_need_the_extra(without):
     """Requirement: listing the studies and the state of the results works without it."""
-    done = run("status", code=WITHOUT)
-    assert (done.returncode, done.stderr) == (0, "")
-    assert "paper/fig07_interactive" in done.stdout
+    code, out, said = without["status"]
+    assert (code, said) == (0, "")
+    assert "paper/fig07_interactive" in out
 
 
-def test_figure_is_left_as_it_is_without_the_extra(tmp_path):
+def test_figure_is_left_as_it_is_without_the_extra(without):
     """Requirement: `run` says what the figure's study lacks, leaves its result alone and goes on."""
-    done = run("run", "fig07_interactive", "--results", str(tmp_path), code=WITHOUT)
-    assert done.returncode == 0
+    code, _, said = without["run"]
+    assert code == 0
     assert re.fullmatch(
         r"paper/fig07_interactive: left as it is: it needs cv2[\w, ]*: "
         r"python -m pip install '\.\[interactive\]'\n",
-        done.stderr,
+        said,
     )
-    assert list(tmp_path.iterdir()) == []
+    assert list(without["folder"].iterdir()) == []
 
 
 def test_interrupt_ends_the_server():
@@ -118,14 +137,15 @@ def test_packages_of_the_extra_are_those_of_pyproject():
     assert asked == set(interactive.EXTRA.values())
 
 
-def test_sheet_is_a_page(tmp_path):
+def test_sheet_is_a_page(tmp_path, capfd):
     """Requirement: the sheet is a PDF of A4, the same bytes each time."""
     pytest.importorskip("cv2", reason="the extra `interactive` is not installed")
+    from studies.__main__ import main
     from studies.interactive.tracking.sheet import sheet
 
     target = tmp_path / "markers.pdf"
-    done = run("markers", "--out", str(target))
-    assert (done.returncode, done.stderr) == (0, "")
+    assert main(["markers", "--out", str(target)]) == 0
+    assert capfd.readouterr().err == ""
     assert target.read_bytes()[:5] == b"%PDF-"
     assert target.read_bytes() == sheet()
     box = re.search(rb"/MediaBox \[ ?0 0 ([\d.]+) ([\d.]+) ?\]", target.read_bytes())

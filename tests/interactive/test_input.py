@@ -65,6 +65,10 @@ def test_absurd_poses_are_left_out(pose):
         ({"do": "preset", "name": "polymer", "values": 3}, "values: got 3"),
         ({"do": "drive", "by": "will"}, "by: got 'will'"),
         ({"do": "solver", "name": 7}, "name: got 7"),
+        (
+            {"do": "solver", "name": "stable strips", "sweeps": 0},
+            "sweeps: got 0, expected a whole number from 1 to 1000",
+        ),
         ({"do": "setup", "preset": "polymer"}, "drive: got None"),
     ],
     ids=str,

@@ -14,7 +14,7 @@ from websockets.sync.client import connect
 
 from studies.interactive.tracking.painter import Optics
 from studies.interactive.web import protocol
-from studies.interactive.web.server import Hosted, Settings
+from studies.interactive.web.server import Server, Settings
 from studies.interactive.web.sources import FilmSource
 from tests.interactive.films import film
 
@@ -39,8 +39,8 @@ def test_ten_minutes_of_film_do_not_grow(monkeypatch):
     monkeypatch.setattr(protocol, "BURST", 1e9)
     source = FilmSource(film(Optics(width=480, height=360, focal=450.0), frames=40, samples=3))
     source.rate = 1e6
-    with Hosted(Settings(camera="film", source=lambda: source)) as hosted:
-        port, token = hosted.server.port, hosted.server.token
+    with Server(Settings(camera="film", source=lambda: source)) as hosted:
+        port, token = hosted.port, hosted.token
         address, origin = f"ws://127.0.0.1:{port}/ws", f"http://127.0.0.1:{port}"
         with connect(address, origin=origin, max_size=None, compression=None) as socket:
             socket.send(json.dumps({"do": "hello", "version": 1, "token": token}))
@@ -59,8 +59,8 @@ def test_ten_minutes_of_film_do_not_grow(monkeypatch):
                     start = resident()
             grown = resident() - start
         end = time.monotonic() + 5.0
-        while hosted.server.open and time.monotonic() < end:
+        while hosted.open and time.monotonic() < end:
             time.sleep(0.05)
-        assert hosted.server.open == 0
+        assert hosted.open == 0
     assert found == FRAMES
     assert grown < GROWTH

@@ -16,7 +16,7 @@ from websockets.sync.client import connect
 from studies.commands import interactive
 from studies.errors import BadInput
 from studies.interactive.web import protocol
-from studies.interactive.web.server import Hosted, Server, Settings
+from studies.interactive.web.server import Server, Settings
 from tests.interactive.sockets import answer, closing, get, opened, say
 
 
@@ -24,7 +24,7 @@ def test_page_is_served_with_its_headers(server):
     """Requirement: page and modules come with their kinds and the strict headers."""
     response, body = get(server, "/")
     assert (response.status, b"<!doctype html>" in body) == (200, True)
-    for name, value in protocol.headers(server.port).items():
+    for name, value in protocol.Door(server.port).headers().items():
         assert response.getheader(name) == value
     assert get(server, "/page/app.js")[0].getheader("Content-Type").startswith("text/javascript")
     assert server.address.startswith(f"http://127.0.0.1:{server.port}/#token=")
@@ -149,8 +149,8 @@ NETWORK = "127.0.0.2"
 def test_page_is_shared_at_one_more_address():
     """Requirement: shared, the page is there for this machine and at one address of its network, for those
     with the token and pages of its own alone; other hosts and origins are refused; the page says so."""
-    with Hosted(Settings(camera="none", share=NETWORK)) as hosted:
-        server = hosted.server
+    with Server(Settings(camera="none", share=NETWORK)) as hosted:
+        server = hosted
         own, theirs = f"127.0.0.1:{server.port}", f"{NETWORK}:{server.port}"
         assert server.address_at(NETWORK).startswith(f"http://{theirs}/#token=")
         response, _ = get(server, "/", host=theirs)
@@ -186,7 +186,7 @@ def test_page_is_shared_with_a_network_of_ones_own_only(address):
 
 def test_shared_link_is_said_plainly_and_as_a_code(capsys):
     """Requirement: the link is printed with what it opens, and as a code that a phone's camera reads."""
-    link = f"http://{NETWORK}:41234/#token={protocol.new_token()}"
+    link = f"http://{NETWORK}:41234/#token={protocol.Token()}"
     interactive._say_shared(link, "server")
     said = capsys.readouterr().err
     for words in (link, "SEES WHAT THIS MACHINE'S CAMERA SEES", "nothing is encrypted"):
@@ -196,7 +196,7 @@ def test_shared_link_is_said_plainly_and_as_a_code(capsys):
     code = np.kron(np.array(cells, dtype=np.uint8) * 255, np.ones((8, 8), dtype=np.uint8))
     import cv2
 
-    assert cv2.QRCodeDetector().detectAndDecode(code)[0] == link
+    assert cv2.QRCodeDetectorAruco().detectAndDecode(code)[0] == link
 
 
 def test_answers_leave_at_once(server):

@@ -2,8 +2,10 @@
 
 import json
 import math
+import time
 from itertools import pairwise
 
+import numpy as np
 import pytest
 
 pytest.importorskip("cv2", reason="the extra `interactive` is not installed")
@@ -11,14 +13,15 @@ pytest.importorskip("uvicorn", reason="the extra `interactive` is not installed"
 
 from studies.cases.problem import read_case
 from studies.errors import BadInput
+from studies.interactive.pivot.mechanics import Mechanics
 from studies.interactive.pivot.recording import Recorder, mark, replay
 from studies.interactive.pivot.session import Session
-from studies.interactive.tracking.detector import encoded
-from studies.interactive.tracking.painter import counter
+from studies.interactive.tracking.tracker import encoded
 from studies.interactive.web import protocol
-from studies.interactive.web.server import Hosted, Server, Settings
+from studies.interactive.web.server import Server, Settings
 from studies.interactive.web.sources import FilmSource, VideoSource
-from tests.interactive.films import film, truth
+from tests.interactive.films import counter, film, truth
+from tests.interactive.latency import measured
 from tests.interactive.sockets import answer, closing, frame, opened, say
 
 
@@ -64,6 +67,27 @@ def test_released_body_runs_by_itself(server):
         assert answer(socket)["steps"] == first + 1
 
 
+@pytest.mark.slow
+def test_solver_that_is_too_slow_slows_time(server, monkeypatch):
+    """Requirement: where steps take longer than a frame the server asks for fewer of them, time goes slower,
+    which is said, and the recording holds how many there was room for."""
+    advance = Mechanics.advance
+    monkeypatch.setattr(Mechanics, "advance", lambda self, n: time.sleep(0.02 * n) or advance(self, n))
+    with opened(server) as socket:
+        say(socket, do="pose", pose=[0, 0, 0.6])
+        say(socket, do="record", on=True)
+        say(socket, do="release")
+        states = [answer(socket) for _ in range(20)]
+        assert [w["code"] for w in states[-1]["warnings"]] == ["slowed"]
+        assert (states[-1]["mode"], states[-1]["paused"]) == ("released", False)
+        assert {b["steps"] - a["steps"] for a, b in pairwise(states[-5:])} == {1}
+        say(socket, do="record", on=False)
+        while "lines" not in (recording := answer(socket, "recording")):
+            pass
+    assert all(good for _, good in replay(recording["lines"]))
+    assert sum('"room": 1' in line for line in recording["lines"]) > 5
+
+
 def test_recording_is_sent_and_replays(server):
     """Requirement: what the page records replays to the same states."""
     with opened(server) as socket:
@@ -92,7 +116,7 @@ def test_film_is_tracked_and_sent():
     """Requirement: a film's pictures come with the state that belongs to them; released, each is four
     steps."""
     made = FilmSource(film(frames=12, samples=3))
-    with Hosted(Settings(camera="film", source=lambda: made)) as hosted, opened(hosted.server) as socket:
+    with Server(Settings(camera="film", source=lambda: made)) as hosted, opened(hosted) as socket:
         for k in range(12):
             state, jpeg = frame(socket)
             say(socket, do="shown")
@@ -235,8 +259,8 @@ def test_curve_of_every_design_is_sent(server):
 def test_record_file_replays():
     """Requirement: what `--record` stores of the first page replays to the same states."""
     lines = []
-    with Hosted(Settings(camera="none", keep=lines.append)) as hosted, opened(hosted.server) as socket:
-        with opened(hosted.server) as second:
+    with Server(Settings(camera="none", keep=lines.append)) as hosted, opened(hosted) as socket:
+        with opened(hosted) as second:
             say(second, do="pose", pose=[0, 0, 0.3])
             answer(second)
         for k in range(5):
@@ -266,3 +290,13 @@ def test_taken_port_is_one_line(server):
     """Requirement: a port that is taken is refused in one line."""
     with pytest.raises(BadInput, match=rf"--port: got {server.port}, expected a free one"):
         Server(Settings(port=server.port)).bind()
+
+
+@pytest.mark.slow
+def test_way_of_a_picture_is_told_in_parts():
+    """Requirement: the state of a picture says how long decoding, tracking, solving and sending took;
+    together they are no longer than its whole way, most of which is tracking."""
+    rows = measured(20)
+    assert (rows >= 0.0).all()
+    decode, track, solve, send = np.median(rows[:, :4], axis=0)
+    assert track > max(decode, solve, send)

@@ -10,14 +10,24 @@ pytest.importorskip("cv2", reason="the extra `interactive` is not installed")
 from studies.interactive.pivot.design import SIDE
 from studies.interactive.pivot.session import Session
 from studies.interactive.tracking import tracker as tracking
-from studies.interactive.tracking.calibration import Camera
-from studies.interactive.tracking.detector import Detector
 from studies.interactive.tracking.edges import refine
-from studies.interactive.tracking.painter import Marker, Optics, counter
-from studies.interactive.tracking.planar import fit
-from studies.interactive.tracking.tracker import Tracker
+from studies.interactive.tracking.painter import Marker, Optics
+from studies.interactive.tracking.planar import Camera, fit
+from studies.interactive.tracking.tracker import Detector, Tracker
 from tests import gates
-from tests.interactive.films import both, errors, film, names, on_corner, raw, rms, true_corners, truth, watch
+from tests.interactive.films import (
+    both,
+    counter,
+    errors,
+    film,
+    names,
+    on_corner,
+    raw,
+    rms,
+    true_corners,
+    truth,
+    watch,
+)
 
 HARD = Optics(blur=1.6, noise=8.0, light=0.4, gamma=1.0)
 
@@ -33,7 +43,7 @@ LENS = Optics(k1=-0.25, gamma=1.0)
 FILMS = {
     "calibrated": (film(), Optics().camera),
     "uncalibrated": (film(), None),
-    "hard": (film(HARD), None),
+    "hard": (film(HARD, frames=40), None),
     "lens": (film(LENS, frames=4, samples=3), LENS.camera),
     "far": (film(Optics(distance=0.9), frames=8), None),
     "wide": (film(Optics(width=1280, height=720, focal=1000.0), frames=8), None),
@@ -66,7 +76,7 @@ def test_tracking_gates_have_teeth(name, monkeypatch):
     monkeypatch.setattr(tracking.edges, "refine", raw)
     monkeypatch.setattr(tracking, "REFUSE_PX", 10.0)
     made, camera = (fingers(0.010), None) if name == "finger" else FILMS[name]
-    angles, shifts, _ = errors(watch(replace(made, frames=min(made.frames, 20)), camera))
+    angles, shifts, _ = errors(watch(replace(made, frames=min(made.frames, 10)), camera))
     for quantity, values in (("angle", angles), ("shift", shifts)):
         with pytest.raises(AssertionError, match="x the gate"):
             gates.check(f"tracking_{name}_{quantity}", rms(values))

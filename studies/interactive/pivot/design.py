@@ -3,7 +3,8 @@ it, and where its markers sit."""
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -72,39 +73,34 @@ class Reading:
     strain: Array
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Reader:
-    """Shape, stress and strain of strips of one design, by the constitutive laws of both models.
+@cache
+def _tables() -> tuple[list[Array], Array, Array]:
+    """Tables of a strip's shape and its derivatives at the stations, of its slope at Gauss points, and from
+    the stretch there to the axial modes' at the stations."""
+    basis = bezier(CONTROL_POINTS)
+    u, weight = legendre.leggauss(CONTROL_POINTS + 3)
+    modes = legendre.legvander(u, CONTROL_POINTS - 3)
+    project = (modes * (weight / 2.0)[:, None]) * (2 * np.arange(CONTROL_POINTS - 2) + 1)
+    spread = legendre.legvander(2.0 * STATIONS - 1.0, CONTROL_POINTS - 3) @ project.T
+    shapes = [basis.evaluate(STATIONS, order) for order in range(3)]
+    return shapes, basis.evaluate((u + 1.0) / 2.0, 1), spread
+
+
+def read(values: Mapping[str, float], points: Array) -> Reading:
+    """Return the reading of the control points (2, n, 2) [m] of a design's strips, by the constitutive laws
+    of both models.
 
     Exact for the discretised strip: material curvature times E h / 2, and the stretch projected on the axial
     modes times E; leaves out what the clamps' fillets add.
     """
-
-    values: Mapping[str, float]
-    _basis: tuple[Array, Array, Array] = field(init=False)
-    _points: tuple[Array, Array] = field(init=False)
-
-    def __post_init__(self) -> None:
-        basis = bezier(CONTROL_POINTS)
-        tables = tuple(basis.evaluate(STATIONS, order) for order in range(3))
-        u, weight = legendre.leggauss(CONTROL_POINTS + 3)
-        modes = legendre.legvander(u, CONTROL_POINTS - 3)
-        project = (modes * (weight / 2.0)[:, None]) * (2 * np.arange(CONTROL_POINTS - 2) + 1)
-        spread = legendre.legvander(2.0 * STATIONS - 1.0, CONTROL_POINTS - 3) @ project.T
-        object.__setattr__(self, "_basis", tables)
-        object.__setattr__(self, "_points", (basis.evaluate((u + 1.0) / 2.0, 1), spread))
-
-    def read(self, points: Array) -> Reading:
-        """Return the reading of control points (2, n, 2) [m]."""
-        length, half = self.values["length"], self.values["thickness"] / 2.0
-        shape, tangent, bend = (table @ points for table in self._basis)
-        cross = tangent[..., 0] * bend[..., 1] - tangent[..., 1] * bend[..., 0]
-        curvature = cross / np.einsum("spi,spi->sp", tangent, tangent) / length
-        slope, spread = self._points
-        stretch = np.linalg.norm(slope @ points, axis=-1) / length - 1.0
-        axial = stretch @ spread.T
-        stress = self.values["youngs_modulus"] * (np.abs(axial) + np.abs(curvature) * half)
-        return Reading(shape=shape, stress=stress, strain=axial.mean(axis=1))
+    shapes, slope, spread = _tables()
+    shape, tangent, bend = (table @ points for table in shapes)
+    cross = tangent[..., 0] * bend[..., 1] - tangent[..., 1] * bend[..., 0]
+    curvature = cross / np.einsum("spi,spi->sp", tangent, tangent) / values["length"]
+    stretch = np.linalg.norm(slope @ points, axis=-1) / values["length"] - 1.0
+    axial = stretch @ spread.T
+    stress = values["youngs_modulus"] * (np.abs(axial) + np.abs(curvature) * values["thickness"] / 2.0)
+    return Reading(shape=shape, stress=stress, strain=axial.mean(axis=1))
 
 
 #: Rotation up to which it is known [rad], and at how many places.
@@ -169,11 +165,6 @@ def free_stiffness(tangent: Array) -> float:
     return float(tangent[2] @ free_turn(tangent))
 
 
-def wrapped(angle: float) -> float:
-    """Return `angle` in -pi ... pi."""
-    return math.remainder(angle, 2.0 * math.pi)
-
-
 #: Distance of the ground's marker from the clamped plate it is glued to [m], as on the printed sheet.
 STANDOFF = 0.045
 #: Side of the black square [m], as printed.
@@ -231,7 +222,7 @@ class Placing:
     def body(self, marker: Array, near: float = 0.0) -> Array:
         """Return the body's pose (3,) for marker 1 at `marker` in marker 0's frame, its turn counted on
         from `near`."""
-        angle = near + wrapped(marker[2] - self.rest[2] - near)
+        angle = near + math.remainder(marker[2] - self.rest[2] - near, math.tau)
         arm = self.centre - self.ground - self.rest[:2]
         return np.array([*(self.ground + marker[:2] + turned(angle, arm)), angle])
 

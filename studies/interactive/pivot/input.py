@@ -1,60 +1,69 @@
-"""What comes into a session: fields of events, each checked, the time they stand for, and the hand."""
+"""What comes into a session: fields of events, each checked, the time they stand for, the hand, and what
+holds the body as it is read off."""
 
 import math
 from collections import deque
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from studies.errors import BadInput
+from studies.interactive.pivot.mechanics import Mechanics, Snapshot
 from studies.interactive.pivot.presets import STEP, STEPS_A_FRAME
 from studies.kinds import Array
 
 
-def number(event: Mapping[str, Any], key: str) -> float:
-    """Return a finite number."""
-    value = event.get(key)
-    if not isinstance(value, int | float) or isinstance(value, bool) or not math.isfinite(value):
-        raise BadInput(f"{key}: got {value!r}, expected a finite number")
-    return float(value)
+class Event(dict[str, Any]):
+    """An event by the names of its fields, each of which is checked when it is read; BadInput in one line for
+    one that does not fit."""
+
+    def number(self, key: str) -> float:
+        """Return a finite number."""
+        value = self.get(key)
+        if not isinstance(value, int | float) or isinstance(value, bool) or not math.isfinite(value):
+            raise BadInput(f"{key}: got {value!r}, expected a finite number")
+        return float(value)
+
+    def three(self, key: str) -> NDArray[np.float64]:
+        """Return three finite numbers."""
+        values = self.get(key)
+        if not isinstance(values, list | tuple) or len(values) != 3:
+            raise BadInput(f"{key}: got {values!r}, expected three finite numbers")
+        return np.array([Event({key: value}).number(key) for value in values])
+
+    def choice(self, key: str, choices: Collection[str]) -> str:
+        """Return one of the choices."""
+        value = self.get(key)
+        if not isinstance(value, str) or value not in choices:
+            raise BadInput(f"{key}: got {value!r}, expected one of {', '.join(choices)}")
+        return value
+
+    def whole(self, key: str, most: int) -> int:
+        """Return a whole number from 1 to `most`."""
+        value = self.get(key)
+        if not isinstance(value, int) or isinstance(value, bool) or not 1 <= value <= most:
+            raise BadInput(f"{key}: got {value!r}, expected a whole number from 1 to {most}")
+        return value
+
+    def mapping(self, key: str) -> Mapping[str, Any]:
+        """Return names with their values, none where the key is absent."""
+        value = self.get(key, {})
+        if not isinstance(value, Mapping):
+            raise BadInput(f"{key}: got {value!r}, expected values by name")
+        return value
+
+    def words(self, key: str) -> list[str]:
+        """Return a list of texts, empty where the key is absent."""
+        value = self.get(key, [])
+        if not isinstance(value, list) or not all(isinstance(word, str) for word in value):
+            raise BadInput(f"{key}: got {value!r}, expected a list of texts")
+        return value
 
 
-def three(event: Mapping[str, Any], key: str) -> NDArray[np.float64]:
-    """Return three finite numbers."""
-    values = event.get(key)
-    if not isinstance(values, list | tuple) or len(values) != 3:
-        raise BadInput(f"{key}: got {values!r}, expected three finite numbers")
-    return np.array([number({key: value}, key) for value in values])
-
-
-def choice(event: Mapping[str, Any], key: str, choices: tuple[str, ...]) -> str:
-    """Return one of the choices."""
-    value = event.get(key)
-    if value not in choices:
-        raise BadInput(f"{key}: got {value!r}, expected one of {', '.join(choices)}")
-    return str(value)
-
-
-def mapping(event: Mapping[str, Any], key: str) -> Mapping[str, Any]:
-    """Return names with their values, none where the key is absent."""
-    value = event.get(key, {})
-    if not isinstance(value, Mapping):
-        raise BadInput(f"{key}: got {value!r}, expected values by name")
-    return value
-
-
-def words(event: Mapping[str, Any], key: str) -> list[str]:
-    """Return a list of texts, empty where the key is absent."""
-    value = event.get(key, [])
-    if not isinstance(value, list) or not all(isinstance(word, str) for word in value):
-        raise BadInput(f"{key}: got {value!r}, expected a list of texts")
-    return value
-
-
-#: Longest that simulated time is caught up, or waits, in one frame, in steps.
-MOST_STEPS = 20
+#: Longest that simulated time is caught up, or waits, in one frame, in steps; frames whose pace is told.
+MOST_STEPS, FRAMES = 20, 25
 
 
 class Clock:
@@ -65,7 +74,6 @@ class Clock:
 
     Attributes:
         steps, simulated: taken since the release, and their time [s], each at the length it had.
-        lag: steps that are due and not yet taken; below zero where rounding took one early.
     """
 
     def __init__(self, *, lock_step: bool) -> None:
@@ -74,30 +82,47 @@ class Clock:
 
     def begin(self, time: float | None) -> None:
         """Begin anew at `time` [s], or where the next frame is."""
-        self.steps, self.simulated, self.lag = 0, 0.0, 0.0
-        self._last = time
+        self.steps, self.simulated, self._last = 0, 0.0, time
+        self.forget()
+
+    def forget(self) -> None:
+        """The pace so far, and what was owed, count no longer."""
+        self._owed, self._asked = 0.0, 0.0
+        self._paces: deque[tuple[float, float]] = deque(maxlen=FRAMES)
+
+    @property
+    def pace(self) -> float:
+        """Simulated time of the last frames over what they asked for, 1 before there are any."""
+        asked, done = (sum(each) for each in zip(*self._paces, strict=True)) if self._paces else (0.0, 0.0)
+        return done / asked if asked > 0.0 else 1.0
 
     def wait(self, time: float) -> None:
         """Nothing moves up to `time` [s]."""
         self._last = time
 
-    def due(self, time: float) -> int:
-        """Return the steps of the frame at `time` [s].
+    def due(self, time: float, room: int = MOST_STEPS) -> int:
+        """Return the steps of the frame at `time` [s], for as many as there is `room`.
 
-        What rounding leaves, of either sign, is owed to the next frame, so that no time is gained or lost.
+        What rounding leaves, of either sign, is owed to the next frame, so that no time is gained or lost;
+        what there is no room for is not: time goes slower.
         """
         before, self._last = self._last, time
         if self.lock_step or before is None:
+            self._asked = STEPS_A_FRAME * STEP
             return STEPS_A_FRAME
-        due = self.lag + (time - before) / STEP
-        steps = max(0, min(MOST_STEPS, round(due)))
-        self.lag = max(-float(MOST_STEPS), due - steps)
+        self._asked = time - before
+        due = self._owed + self._asked / STEP
+        steps = max(0, min(MOST_STEPS, room, round(due)))
+        most = 0.5 if steps == room < MOST_STEPS else MOST_STEPS
+        self._owed = min(max(due - steps, -MOST_STEPS), most)
         return steps
 
-    def count(self, steps: int, step: float) -> None:
-        """Add steps of `step` seconds that were taken."""
+    def count(self, steps: int, done: float, scale: float) -> None:
+        """Add steps that were taken, which did `done` seconds of a time of that scale."""
         self.steps += steps
-        self.simulated += steps * step
+        self.simulated += done
+        self._paces.append((self._asked, done / scale))
+        self._asked = 0.0
 
 
 #: A camera's pose that lies farther from the last one, for each frame's time since, waits for a second one
@@ -147,3 +172,45 @@ class Hand:
 def _close(pose: Array, other: Array, frames: float) -> bool:
     shift, turn = math.hypot(*(pose[:2] - other[:2])), abs(pose[2] - other[2])
     return shift <= frames * JUMP_SHIFT and turn <= frames * JUMP_TURN
+
+
+#: Readings that are averaged while they agree, within so many standard deviations.
+MOST, AGREE = 10, 3.0
+
+
+class Readings:
+    """Force, moment and stiffness (4,), averaged over the last frames that agree.
+
+    sd (3,): standard deviation of the pose; force_sd (4,): of one reading; None where none is said.
+    """
+
+    def __init__(self) -> None:
+        self.sd: Array | None = None
+        self.force_sd: Array | None = None
+        self._last: deque[Array] = deque(maxlen=MOST)
+
+    def take(self, mechanics: Mechanics, pose: Array | None) -> None:
+        """Take the reading of this instant, and its spread to first order, the sum of the independent columns
+        of `pose` (3, k); None where nothing is said of it."""
+        now = mechanics.snapshot
+        if pose is None or now.tangent is None:
+            self.sd = self.force_sd = None
+            self._last.clear()
+            return
+        self.sd = np.linalg.norm(pose, axis=1)
+        force = np.linalg.norm(now.tangent @ pose, axis=1)
+        self.force_sd = np.append(force, mechanics.stiffness_spread(pose))
+        self._last.append(_reading(now))
+
+    def mean(self, now: Snapshot) -> Array:
+        """Return the reading, the mean of those up to this one that agree with it."""
+        if self.force_sd is None:
+            return _reading(now)
+        last = np.array(self._last)
+        odd = np.flatnonzero((np.abs(last - last[-1]) > AGREE * self.force_sd).any(axis=1))
+        return np.asarray(last[odd[-1] + 1 if len(odd) else 0 :].mean(axis=0))
+
+
+def _reading(now: Snapshot) -> Array:
+    """Return force, moment and stiffness (4,) of an instant."""
+    return np.append(now.force, np.nan if now.stiffness is None else now.stiffness)

@@ -2,27 +2,29 @@
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
 
+from spline_model.compile import compile_scene
 from spline_model.content import STEPS_PER_PERIOD
 from spline_model.held import HeldPivot, HeldState
 from spline_model.modes import natural_frequencies
+from spline_model.pivot import BODY, STRIPS
 from studies.interactive.pivot.design import (
     PLACES,
     REACH,
     Curve,
-    Reader,
     Reading,
     build,
     free_stiffness,
     free_turn,
     pole,
+    read,
     scales,
 )
-from studies.interactive.pivot.motion import MOTIONS, Motion, released
+from studies.interactive.pivot.motion import Motion, motion
 from studies.interactive.pivot.presets import STEP
 from studies.interactive.pivot.pull import Pull
 from studies.kinds import Array
@@ -35,6 +37,8 @@ LEAST_TURN = 2e-4
 
 #: Part of a standard deviation over which a stiffness is taken to be linear.
 PART = 1e-3
+#: A step that the solver cannot take is tried at this part of it, then at the part's part, down to the least.
+SHORTER, SHORTEST = 0.25, 2.0**-10
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -54,16 +58,16 @@ class Snapshot:
     """
 
     pose: Array
-    velocity: Array
+    velocity: Array = field(default_factory=lambda: np.zeros(3))
     reading: Reading
-    force: Array
-    tangent: Array | None
-    stiffness: float | None
+    force: Array = field(default_factory=lambda: np.zeros(3))
+    tangent: Array | None = None
+    stiffness: float | None = None
     strain: float
-    kinetic: float
+    kinetic: float = 0.0
     potential: float
-    dissipated: float
-    lost: float
+    dissipated: float = 0.0
+    lost: float = 0.0
     centre: tuple[float, float] | None
     iterations: int
 
@@ -73,6 +77,9 @@ class Mechanics:
 
     Args:
         values: all parameters in SI units, as `presets.checked` returns them.
+
+    Attributes:
+        begun: energy [J] of strips, body and load at the release, or where the solver was changed.
     """
 
     def __init__(self, values: Mapping[str, float]) -> None:
@@ -81,10 +88,10 @@ class Mechanics:
         self.step = STEP * values["time_scale"]
         self._held = HeldPivot(self.pivot)
         self._acting = build(values, loaded=True)
-        self._system = released(self._acting)
+        self._system = compile_scene(self._acting.released())
         self._load = np.array([0.0, -values["load"], 0.0])
-        self._reader = Reader(values=self.values)
         self._motion: Motion | None = None
+        self._part, self.begun = 1.0, 0.0
         self._unheld: Array | None = None
         self.snapshot = self._static(self._held.reset())
 
@@ -96,7 +103,7 @@ class Mechanics:
 
     def pace(self, time_scale: float) -> None:
         """From now on so many simulated seconds in one."""
-        self.values["time_scale"], self.step = time_scale, STEP * time_scale
+        self.values["time_scale"], self.step, self._part = time_scale, STEP * time_scale, 1.0
 
     @property
     def moving(self) -> bool:
@@ -183,19 +190,39 @@ class Mechanics:
         table = np.array(rows)
         return Curve(rotation=table[:, 0], shift=table[:, 1:3], moment=table[:, 3], stress=table[:, 4])
 
-    def release(self, velocity: Array, solver: str) -> None:
+    def release(self, velocity: Array, solver: str, sweeps: int) -> None:
         """Let go of the held body with a `velocity` (3,) of its pose; the strips follow it."""
-        z = self._held.full_state(self._system)
-        self._motion = MOTIONS[solver](self._acting, z, self._rates(velocity))
-        self._begun = self._potential(self.snapshot.pose)
-        self.snapshot = self._dynamic()
+        self._move(solver, sweeps, self._held.full_state(self._system), self._rates(velocity))
 
-    def advance(self, steps: int) -> bool:
-        """Take steps of the released body; False where the solver gives up, the last state being kept."""
-        if self._motion is None or not self._motion.advance(steps, self.step):
-            return False
-        self.snapshot = self._dynamic()
-        return True
+    def change_solver(self, solver: str, sweeps: int) -> None:
+        """Let a released body move on by another solver, from where it is."""
+        if self._motion is not None:
+            now = self._motion.state()
+            self._move(solver, sweeps, now.z, now.v)
+
+    def _move(self, solver: str, sweeps: int, z: Array, v: Array) -> None:
+        """Move from unknowns z and velocities v (Q,) on; energies are counted from there."""
+        self._motion, self._part = motion(solver, sweeps, self._acting, z, v), 1.0
+        now = self._motion.state()
+        self.begun = now.strain + now.kinetic + self._potential(now.z[self._system.layout.body(BODY)])
+        self.snapshot = self._dynamic(self._motion)
+
+    @property
+    def resolved(self) -> bool:
+        """Whether a moving body's steps resolve its swing."""
+        moving = self._motion
+        return moving is None or min(self._part * self.step, moving.longest) <= self.longest_step
+
+    def advance(self, steps: int) -> float:
+        """Take steps of the released body, shorter ones where the solver cannot take them; returns the time
+        done [s], 0 where it gives up, the last state being kept."""
+        moving = self._motion
+        while moving is not None and self._part >= SHORTEST:
+            if done := moving.advance(steps, self._part * self.step):
+                self.snapshot = self._dynamic(moving)
+                return done
+            self._part *= SHORTER
+        return 0.0
 
     def catch(self) -> bool:
         """Hold the moving body where it is; False, and still moving, where no static state is found there."""
@@ -229,36 +256,30 @@ class Mechanics:
         way = free_turn(state.tangent)
         return Snapshot(
             pose=state.pose,
-            velocity=np.zeros(3),
-            reading=self._reader.read(self._held.control_points),
+            reading=read(self.values, self._held.control_points),
             force=state.force - self._load,
             tangent=state.tangent,
             stiffness=free_stiffness(state.tangent),
             strain=state.bending_energy + state.axial_energy,
-            kinetic=0.0,
             potential=self._potential(state.pose),
-            dissipated=0.0,
-            lost=0.0,
             centre=pole(state.pose, way, 0.0),
             iterations=state.iterations if iterations is None else iterations,
         )
 
-    def _dynamic(self) -> Snapshot:
-        assert self._motion is not None
-        state = self._motion.state()
-        potential = self._potential(state.pose)
+    def _dynamic(self, moving: Motion) -> Snapshot:
+        now, layout = moving.state(), self._system.layout
+        pose, velocity = now.z[layout.body(BODY)].copy(), now.v[layout.body(BODY)].copy()
+        points = np.stack([now.z[layout.strip(name)].reshape(-1, 2) for name in STRIPS])
+        potential = self._potential(pose)
         return Snapshot(
-            pose=state.pose,
-            velocity=state.velocity,
-            reading=self._reader.read(state.points),
-            force=np.zeros(3),
-            tangent=None,
-            stiffness=None,
-            strain=state.strain,
-            kinetic=state.kinetic,
+            pose=pose,
+            velocity=velocity,
+            reading=read(self.values, points),
+            strain=now.strain,
+            kinetic=now.kinetic,
             potential=potential,
-            dissipated=state.dissipated,
-            lost=state.lost - (potential - self._begun),
-            centre=pole(state.pose, state.velocity, LEAST_TURN / self.step),
-            iterations=state.iterations,
+            dissipated=now.dissipated,
+            lost=self.begun - now.strain - now.kinetic - now.dissipated - potential,
+            centre=pole(pose, velocity, LEAST_TURN / self.step),
+            iterations=now.iterations,
         )

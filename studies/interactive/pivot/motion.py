@@ -1,151 +1,134 @@
-"""The released pivot, step after step: one interface for the solvers of section 4.1."""
+"""The released pivot, step after step: sequential impulses (section 4.1) in all their forms, and the
+energy-consistent integrator."""
 
-from collections.abc import Callable
-from dataclasses import dataclass
-from typing import Protocol
+import math
+from typing import NamedTuple, Protocol
 
 import numpy as np
 
-from spline_model.compile import System, compile_scene
+from spline_model.compile import compile_scene
+from spline_model.effects import StripDamping
 from spline_model.impulses.solver import Run
 from spline_model.motion.energy_consistent import Stepper
 from spline_model.motion.records import DISSIPATED, KINETIC, STRAIN
 from spline_model.motion.start import Start, set_in_motion
-from spline_model.motion.step import HALVED, NEWTON
-from spline_model.pivot import BODY, STRIPS, Pivot
-from spline_model.sequential_impulse import impulse_solver
+from spline_model.motion.step import NEWTON
+from spline_model.pivot import Pivot
+from spline_model.sequential_impulse import impulse_solver, stability_limit
 from spline_model.solution import Later
 from studies.kinds import Array
 
-#: Least part of a step before the motion is given up: work stays bounded.
+#: Least part of an energy-consistent step before the motion is given up: work stays bounded.
 SMALLEST_PART = 2.0**-6
+#: Part of its stability limit that a step of the printed form has, and most of them for one of the frame's.
+STABLE_PART, MOST_PARTS = 0.8, 1000
+#: Solvers by the name that the user chooses. The first is what one begins with.
+SOLVERS = {
+    f"{form} {way}": f"{title}, {formed}"
+    for form, formed in (("stable", "stable form"), ("printed", "as printed"))
+    for way, title in (
+        ("direct", "impulses at once (Eq 30)"),
+        ("strips", "impulses by sweeps over strips"),
+        ("constraints", "impulses by sweeps over constraints"),
+    )
+} | {"energy": "energy-consistent"}
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class _Moving:
-    """A state of the released pivot.
+class _Moving(NamedTuple):
+    """Unknowns (N,) and velocities (Q,) of the released scene, its energies [J], the one that the strips'
+    damping took among them, and the iterations, or sweeps, of the last frame."""
 
-    pose, velocity (3,) of the body [m, m, rad and a second]; points (2, n, 2) [m]; energies [J]: kinetic,
-    strain, dissipated by the strips' damping, lost to that of the steps; iterations of the last steps.
-    """
-
-    pose: Array
-    velocity: Array
-    points: Array
+    z: Array
+    v: Array
     kinetic: float
     strain: float
     dissipated: float
-    lost: float
     iterations: int
 
 
 class Motion(Protocol):
-    """A solver that was started from a static state; `advance` takes steps and says whether it could."""
+    """A solver that was started from a state; `longest`: step [s] that it can take."""
 
-    def advance(self, steps: int, step: float) -> bool:
-        """Take `steps` steps of `step` seconds; False where the solver fails, the last good state being
-        kept."""
+    longest: float
+
+    def advance(self, steps: int, step: float) -> float:
+        """Take `steps` steps of `step` seconds; returns the time done [s], 0 where the solver fails, the last
+        good state being kept."""
 
     def state(self) -> _Moving:
         """Return the present state."""
 
 
-class _EnergyMotion:
+def motion(solver: str, sweeps: int, pivot: Pivot, z: Array, v: Array) -> Motion:
+    """Return the motion of the released pivot from unknowns z (N or more,) and velocities v (Q,).
+
+    sweeps: most of them for one linear system, where there are any.
+    """
+    if solver == "energy":
+        return _Energy(pivot, z, v)
+    form, way = solver.split()
+    return _Impulses(pivot, z, v, form, way, sweeps)
+
+
+class _Energy:
     """The energy-consistent integrator, one call a frame."""
 
-    def __init__(self, pivot: Pivot, z: Array, velocity: Array) -> None:
-        self.system = released(pivot)
-        motion = set_in_motion(self.system)
-        self._stepper = Stepper(Start(motion, Later(z[None].copy), velocity))
-        self._iterations = 0
-        row = self._stepper.look()[2][0]
-        self._start = float(row[KINETIC] + row[STRAIN])
+    longest = math.inf
 
-    def advance(self, steps: int, step: float) -> bool:
+    def __init__(self, pivot: Pivot, z: Array, v: Array) -> None:
+        system = compile_scene(pivot.released())
+        known = Later(z[None, : system.layout.size].copy)
+        self._stepper, self._iterations = Stepper(Start(set_in_motion(system), known, v)), 0
+
+    def advance(self, steps: int, step: float) -> float:
         """Take steps, halved at need down to SMALLEST_PART."""
         stepper = self._stepper
         before, kept = int(stepper.counters[NEWTON]), stepper.kept()
         for _ in range(steps):
             if stepper.advance(0.0, step, SMALLEST_PART) < step:
                 stepper.take_back(kept)
-                return False
+                return 0.0
         self._iterations = int(stepper.counters[NEWTON]) - before
-        return True
-
-    @property
-    def halved(self) -> int:
-        """Steps that were halved so far."""
-        return int(self._stepper.counters[HALVED])
+        return steps * step
 
     def state(self) -> _Moving:
         """Return the present state."""
         (z,), (v,), (row,) = self._stepper.look()
-        kinetic, strain, dissipated = (float(row[place]) for place in (KINETIC, STRAIN, DISSIPATED))
-        energies = kinetic, strain, dissipated, self._start - kinetic - strain - dissipated
-        return moving(self.system, z, v, energies, self._iterations)
+        kinetic, strain, dissipated = (float(row[k]) for k in (KINETIC, STRAIN, DISSIPATED))
+        return _Moving(z, v, kinetic, strain, dissipated, self._iterations)
 
 
-class _ImpulseMotion:
-    """Sequential impulses in the form that is stable at any step, all impulses at once (Eq 30)."""
+class _Impulses:
+    """Sequential impulses: at once or by sweeps, stable at any step, or as printed, in steps that are cut to
+    what is stable."""
 
-    def __init__(self, pivot: Pivot, z: Array, velocity: Array) -> None:
-        self._solver = impulse_solver(pivot)
-        self._start = self._out = Run(self._solver, self._solver.start_at(z, velocity)).outcome(
-            0, 0, 0.0, False
-        )
-        self._dissipated = 0.0
+    def __init__(self, pivot: Pivot, z: Array, v: Array, form: str, way: str, sweeps: int) -> None:
+        self._solver = solver = impulse_solver(pivot, form=form, impulses=way, sweeps=sweeps)
+        self._count = "solves" if way == "direct" else "sweeps"
+        self._out = Run(solver, solver.start_at(z, v)).outcome(0, 0, 0.0, False)
+        self._dissipated, self.longest = 0.0, math.inf
+        if form == "printed":
+            limit, damping = stability_limit(pivot), solver.system.scene.of(StripDamping)
+            time = max((each.relaxation_time for each in damping), default=0.0)
+            # damping is explicit too: h^2 + 2 T h < limit^2
+            self.longest = STABLE_PART * limit**2 / (math.hypot(limit, time) + time)
 
-    def advance(self, steps: int, step: float) -> bool:
+    def advance(self, steps: int, step: float) -> float:
         """Take steps; where one must be cut below its least part, none counts."""
         solver, begin = self._solver, self._out.state
-        run = Run(solver, begin)
-        free = np.zeros(len(solver.motion.drives.row), dtype=np.int64)
+        parts = min(MOST_PARTS, max(1, math.ceil(step / self.longest)))
+        step, steps = min(step / parts, self.longest), steps * parts
+        run, free = Run(solver, begin), np.zeros(len(solver.motion.drives.row), dtype=np.int64)
         taken = run.go(0, steps, step, begin.time, steps, free, solver.motion)
         out = run.outcome(taken, steps, begin.time + taken * step, False)
         if not out.complete:
-            return False
+            return 0.0
         self._out = out
         self._dissipated += float(run.moving.totals[1])
-        return True
+        return steps * step
 
     def state(self) -> _Moving:
-        """Return the present state; what the strips' damping did not take is lost to that of the steps."""
-        out, start = self._out, self._start
-        lost = start.kinetic_energy + start.strain_energy - out.kinetic_energy - out.strain_energy
-        lost -= self._dissipated
-        return moving(
-            self._solver.system,
-            out.state.z,
-            out.state.v,
-            (out.kinetic_energy, out.strain_energy, self._dissipated, lost),
-            out.counters["solves"],
-        )
-
-
-def released(pivot: Pivot) -> System:
-    """Return the compiled scene of the released pivot."""
-    return compile_scene(pivot.released())
-
-
-def moving(
-    system: System, z: Array, v: Array, energies: tuple[float, float, float, float], iterations: int
-) -> _Moving:
-    """Return the state from the unknowns, the velocities and the energies [J] as in `_Moving`."""
-    body = system.layout.body(BODY)
-    return _Moving(
-        pose=z[body].copy(),
-        velocity=v[body].copy(),
-        points=np.stack([z[system.layout.strip(name)].reshape(-1, 2) for name in STRIPS]),
-        kinetic=energies[0],
-        strain=energies[1],
-        dissipated=energies[2],
-        lost=energies[3],
-        iterations=iterations,
-    )
-
-
-#: Solvers of the released pivot by the name that the user chooses.
-MOTIONS: dict[str, Callable[[Pivot, Array, Array], Motion]] = {
-    "impulse": _ImpulseMotion,
-    "energy": _EnergyMotion,
-}
+        """Return the present state."""
+        out = self._out
+        energies = out.kinetic_energy, out.strain_energy, self._dissipated
+        return _Moving(out.state.z, out.state.v, *energies, out.counters[self._count])

@@ -9,7 +9,7 @@ from typing import Any
 
 from spline_model.modes import natural_frequencies
 from studies.cases.effects import Effects
-from studies.cases.materials import MATERIALS
+from studies.cases.keys import MATERIALS
 from studies.cases.problem import Problem, named_case, read_case
 from studies.cases.write import as_toml
 from studies.errors import BadInput
@@ -20,7 +20,7 @@ STEP = 0.01
 STEPS_A_FRAME = 4
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True)
 class _Parameter:
     """One number of a design that the user sets, between low and high in SI units.
 
@@ -53,52 +53,30 @@ class _Parameter:
         return float(value)  # type: ignore[arg-type]
 
 
+_DEGREE = math.radians(1.0)
+#: In the order of the fields; whether the slider is logarithmic, and its least, where that is needed.
 PARAMETERS: dict[str, _Parameter] = {
-    parameter.name: parameter
-    for parameter in (
-        _Parameter(name="length", label="strip length", unit="mm", per_si=1e3, low=0.04, high=0.12),
-        _Parameter(
-            name="thickness", label="strip thickness", unit="mm", per_si=1e3, low=1e-4, high=8e-3,
-            logarithmic=True,
-        ),
-        _Parameter(name="width", label="strip width", unit="mm", per_si=1e3, low=2e-3, high=0.05),
-        _Parameter(
-            name="inclination", label="inclination", unit="°", per_si=math.degrees(1),
-            low=math.radians(25), high=math.radians(65),
-        ),
-        _Parameter(name="crossing_ratio", label="crossing", unit="of L", per_si=1.0, low=0.2, high=0.8),
-        _Parameter(
-            name="youngs_modulus", label="Young's modulus", unit="GPa", per_si=1e-9, low=1e7, high=5e11,
-            logarithmic=True,
-        ),
-        _Parameter(
-            name="yield_strength", label="yield strength", unit="MPa", per_si=1e-6, low=1e6, high=5e9,
-            logarithmic=True,
-        ),
-        _Parameter(
-            name="density", label="density", unit="kg/m³", per_si=1.0, low=100.0, high=2e4, logarithmic=True
-        ),
-        _Parameter(
-            name="body_mass", label="body mass", unit="g", per_si=1e3, low=1e-3, high=2.0, logarithmic=True
-        ),
-        _Parameter(
-            name="body_moment_of_inertia", label="body inertia", unit="g·cm²", per_si=1e7, low=1e-7, high=0.1,
-            logarithmic=True,
-        ),
-        _Parameter(
-            name="relaxation_time", label="strip damping", unit="ms", per_si=1e3, low=0.0, high=0.05
-        ),
-        _Parameter(name="load", label="load, downward", unit="N", per_si=1.0, low=-5e4, high=5e4, least=1e-3),
-        _Parameter(
-            name="time_scale", label="time scale", unit="s/s", per_si=1.0, low=1e-4, high=1.0,
-            logarithmic=True,
-        ),
+    row[0]: _Parameter(*row)
+    for row in (
+        ("length", "strip length", "mm", 1e3, 0.04, 0.12),
+        ("thickness", "strip thickness", "mm", 1e3, 1e-4, 8e-3, True),
+        ("width", "strip width", "mm", 1e3, 2e-3, 0.05),
+        ("inclination", "inclination", "°", 1.0 / _DEGREE, 25.0 * _DEGREE, 65.0 * _DEGREE),
+        ("crossing_ratio", "crossing", "of L", 1.0, 0.2, 0.8),
+        ("youngs_modulus", "Young's modulus", "GPa", 1e-9, 1e7, 5e11, True),
+        ("yield_strength", "yield strength", "MPa", 1e-6, 1e6, 5e9, True),
+        ("density", "density", "kg/m³", 1.0, 100.0, 2e4, True),
+        ("body_mass", "body mass", "g", 1e3, 1e-3, 2.0, True),
+        ("body_moment_of_inertia", "body inertia", "g·cm²", 1e7, 1e-7, 0.1, True),
+        ("relaxation_time", "strip damping", "ms", 1e3, 0.0, 0.05),
+        ("load", "load, downward", "N", 1.0, -5e4, 5e4, False, 1e-3),
+        ("time_scale", "time scale", "s/s", 1.0, 1e-4, 1.0, True),
     )
-}  # fmt: skip
+}
 
 
 @dataclass(frozen=True, kw_only=True)
-class Preset:
+class _Preset:
     """A design by the name of its case or its file, what the case leaves open, and how fast its time runs.
 
     Attributes:
@@ -132,8 +110,8 @@ class Preset:
         }
 
 
-PRESETS: dict[str, Preset] = {
-    "polymer": Preset(
+PRESETS: dict[str, _Preset] = {
+    "polymer": _Preset(
         case="polymer_pivot",
         title="soft polymer pivot",
         yield_strength=30e6,
@@ -141,7 +119,7 @@ PRESETS: dict[str, Preset] = {
         time_scale=1.0,
         note="swings about once a second, in real time",
     ),
-    "table-1": Preset(
+    "table-1": _Preset(
         case="cross_axis_pivot",
         title="Table 1 of the paper",
         yield_strength=1.2e9,
@@ -156,7 +134,7 @@ PRESETS: dict[str, Preset] = {
 OWN = "own"
 
 
-def own(case: str) -> Preset:
+def own(case: str) -> _Preset:
     """Return the design of a case file as a preset; its time runs so that it swings once a second.
 
     Of its scene the damping of the strips acts here and the upright part of a force on the body, nothing else
@@ -168,7 +146,7 @@ def own(case: str) -> Preset:
     problem = read_case(case)
     given = problem.effects.parameters()
     strength = problem.yield_strength
-    made = Preset(
+    made = _Preset(
         case=case,
         title=Path(case).stem.replace("_", " "),
         yield_strength=PARAMETERS["yield_strength"].high if strength is None else strength,
@@ -227,7 +205,7 @@ def checked(values: Mapping[str, object]) -> dict[str, float]:
     return {name: PARAMETERS[name].checked(values[name]) for name in PARAMETERS}
 
 
-def preset(name: object) -> Preset:
+def preset(name: object) -> _Preset:
     """Return the preset of that name; BadInput lists the names."""
     if name == OWN and OWN not in PRESETS:
         raise BadInput(f"preset: got {OWN!r}, expected its case file beside the command")

@@ -12,10 +12,9 @@ import numpy as np
 
 from studies.errors import BadInput
 from studies.interactive.pivot import presets
-from studies.interactive.pivot.design import wrapped
-from studies.interactive.pivot.input import choice, mapping, number, three, words
+from studies.interactive.pivot.input import MOST_STEPS, Event
 from studies.interactive.pivot.mechanics import Mechanics
-from studies.interactive.pivot.motion import MOTIONS
+from studies.interactive.pivot.motion import SOLVERS
 from studies.interactive.pivot.presets import STEP
 from studies.interactive.pivot.view import DRIVES, SPRUNG, Instant, shown
 from studies.kinds import Array
@@ -25,8 +24,8 @@ FARTHEST_SHIFT, FARTHEST_TURN = 2.0, 3.5
 #: Distance of the body from where the pivot turns by itself, over the strips' length, that is named: few
 #: hands pull so hard, but 1.5 % of a wrong printed size do it.
 OFF_PATH = 0.02
-#: Steps that are due and not taken which are named.
-BEHIND = 25
+#: Pace of a motion below which it is said to be slowed down, and most sweeps of a solver.
+SLOWED, MOST_SWEEPS = 0.9, 1000
 
 
 class Session(Instant):
@@ -47,19 +46,21 @@ class Session(Instant):
         Raises:
             BadInput: an event that is none; the session is as it was.
         """
+        event = Event(event)
         name = event.get("do")
         action = ACTIONS.get(name) if isinstance(name, str) else None
         if action is None:
             raise BadInput(f"do: got {name!r}, expected one of {', '.join(ACTIONS)}")
-        time = number(event, "t")
+        time = event.number("t")
         self.warnings.begin()
         action(self, event, time)
         self.time = time
         self.readings.take(self.mechanics, None if self.spread is None else self.ways @ self.spread)
-        if self.mechanics.moving and self.mechanics.step > self.mechanics.longest_step:
+        if not self.mechanics.resolved:
             self.warnings.say("under-resolved", f"{self.mechanics.longest_step / STEP:.1g} resolves it")
-        if self.mechanics.moving and self.clock.lag > BEHIND:
-            self.warnings.say("behind", f"{self.clock.lag:.0f} steps")
+        if self.mechanics.moving and not self.paused and self.clock.pace < SLOWED:
+            real = "real time" if self.mechanics.step == STEP else "the time scale"
+            self.warnings.say("slowed", f"runs at {self.clock.pace:.1g} of {real}")
         return shown(self)
 
     def setup(self) -> dict[str, Any]:
@@ -71,38 +72,40 @@ class Session(Instant):
             "values": dict(self.mechanics.values),
             "drive": self.drive,
             "solver": self.solver,
+            "sweeps": self.sweeps,
             "lock_step": self.clock.lock_step,
             "rest": self.placing.rest.tolist(),
         }
 
-    def _setup(self, event: Mapping[str, Any], time: float) -> None:
+    def _setup(self, event: Event, time: float) -> None:
         """Begin anew with these settings; the first event of a session file."""
-        drive, solver = choice(event, "drive", DRIVES), choice(event, "solver", tuple(MOTIONS))
-        rest, values = three(event, "rest"), presets.checked(mapping(event, "values"))
-        preset = choice(event, "preset", (*presets.PRESETS, presets.OWN))
+        drive, solver = event.choice("drive", DRIVES), event.choice("solver", SOLVERS)
+        sweeps = event.whole("sweeps", MOST_SWEEPS)
+        rest, values = event.three("rest"), presets.checked(event.mapping("values"))
+        preset = event.choice("preset", (*presets.PRESETS, presets.OWN))
         self._begin(preset, values, event.get("lock_step") is not False)
-        self.drive, self.solver = drive, solver
+        self.drive, self.solver, self.sweeps = drive, solver, sweeps
         if not np.array_equal(rest, self.placing.rest):
             self.bench.set_rest(rest)
         self._settle()
 
     # -- poses ---------------------------------------------------------------------------------------------
 
-    def _pose(self, event: Mapping[str, Any], time: float) -> None:
+    def _pose(self, event: Event, time: float) -> None:
         """A pose from mouse, touch, keys or sliders: displacement from rest and turn."""
         self.sight, self.spread = {"state": "none"}, None
-        pose = three(event, "pose")
+        pose = event.three("pose")
         self._to(pose, time)
 
-    def _seen(self, event: Mapping[str, Any], time: float) -> None:
+    def _seen(self, event: Event, time: float) -> None:
         """Marker 1 in marker 0's frame, as the camera sees it."""
-        marker = three(event, "marker")
+        marker = event.three("marker")
         self.sight = {key: event[key] for key in ("state", "rms", "plane", "quads") if key in event}
         self.sight.setdefault("state", "found")
         self._marker = marker
-        for code in words(event, "faults"):
+        for code in event.words("faults"):
             self.warnings.say(code)
-        if self._frame(time) or self.paused:
+        if self._frame(event, time) or self.paused:
             return
         body = self.placing.body(marker, near=self.wanted[2])
         pose = np.array([*(body[:2] - self.placing.centre), body[2]])
@@ -111,25 +114,27 @@ class Session(Instant):
         elif not self._hand.believes(time, pose):
             self.warnings.say("jump")
         else:
-            self.spread = self.placing.spread(three(event, "sd"), body[2]) if "sd" in event else None
+            self.spread = self.placing.spread(event.three("sd"), body[2]) if "sd" in event else None
             self._to(pose, time)
 
-    def _unseen(self, event: Mapping[str, Any], time: float) -> None:
+    def _unseen(self, event: Event, time: float) -> None:
         """A frame without a pose: the last one is held, and why is said."""
         self.sight = {"state": "lost", **{key: event[key] for key in ("plane", "quads") if key in event}}
         self.warnings.say(str(event.get("code", "lost")), str(event.get("text", "")))
-        self._frame(time)
+        self._frame(event, time)
 
-    def _tick(self, event: Mapping[str, Any], time: float) -> None:
+    def _tick(self, event: Event, time: float) -> None:
         """A frame's time has passed without a camera."""
-        self._frame(time)
+        self._frame(event, time)
 
-    def _frame(self, time: float) -> bool:
-        """Advance the released body by a frame; False while it is held."""
+    def _frame(self, event: Event, time: float) -> bool:
+        """Advance the released body by a frame, by no more steps than there is room for; False while it is
+        held."""
+        room = event.whole("room", MOST_STEPS) if "room" in event else MOST_STEPS
         if not self.mechanics.moving or self.paused:
             self.clock.wait(time)
         else:
-            self._advance(self.clock.due(time))
+            self._advance(self.clock.due(time, room))
         return self.mechanics.moving
 
     def _to(self, pose: Array, time: float) -> None:
@@ -173,7 +178,7 @@ class Session(Instant):
 
     # -- release and catch ---------------------------------------------------------------------------------
 
-    def _release(self, event: Mapping[str, Any], time: float) -> None:
+    def _release(self, event: Event, time: float) -> None:
         if self.mechanics.moving:
             return
         velocity = self._hand.velocity if event.get("speed") == "hand" else np.zeros(3)
@@ -181,12 +186,10 @@ class Session(Instant):
 
     def _let_go(self, velocity: Array, time: float) -> None:
         """Release the held body with a `velocity` (3,)."""
-        self.mechanics.release(velocity, self.solver)
-        now = self.mechanics.snapshot
-        self.start_energy = now.strain + now.kinetic + now.potential
+        self.mechanics.release(velocity, self.solver, self.sweeps)
         self.clock.begin(time)
 
-    def _catch(self, event: Mapping[str, Any], time: float) -> None:
+    def _catch(self, event: Event, time: float) -> None:
         if not self.mechanics.moving:
             return
         if not self.mechanics.catch():
@@ -195,30 +198,31 @@ class Session(Instant):
         self._hand.forget()
         turn = float(self.mechanics.snapshot.pose[2])
         self._hand_is_here(turn)
-        self.wanted[2] = turn + wrapped(self.wanted[2] - turn)
+        self.wanted[2] = turn + math.remainder(self.wanted[2] - turn, math.tau)
         self._hold()
 
     def _advance(self, steps: int) -> None:
-        if steps and not self.mechanics.advance(steps):
+        done = self.mechanics.advance(steps) if steps else 0.0
+        if steps and not done:
             self.warnings.say("stopped")
             self.paused = True
             return
-        self.clock.count(steps, self.mechanics.step)
+        self.clock.count(steps, done, self.mechanics.values["time_scale"])
 
-    def _pause(self, event: Mapping[str, Any], time: float) -> None:
+    def _pause(self, event: Event, time: float) -> None:
         self.paused = True
 
-    def _resume(self, event: Mapping[str, Any], time: float) -> None:
+    def _resume(self, event: Event, time: float) -> None:
         self.paused = False
         self.clock.wait(time)
 
-    def _step(self, event: Mapping[str, Any], time: float) -> None:
+    def _step(self, event: Event, time: float) -> None:
         """One step of a released body that is paused."""
         self.paused = True
         if self.mechanics.moving:
             self._advance(1)
 
-    def _reset(self, event: Mapping[str, Any], time: float) -> None:
+    def _reset(self, event: Event, time: float) -> None:
         self.mechanics.reset()
         self.wanted, self.paused = np.zeros(3), False
         self.clock.begin(None)
@@ -227,23 +231,23 @@ class Session(Instant):
 
     # -- settings ------------------------------------------------------------------------------------------
 
-    def _parameter(self, event: Mapping[str, Any], time: float) -> None:
+    def _parameter(self, event: Event, time: float) -> None:
         (preset, values), before = self.bench.design, self.mechanics
         changed = {**values, str(event.get("name")): event.get("value")}
         self.bench.change(preset, changed, part=event.get("part") is True)
         self._rebuilt(before, time)
 
-    def _preset(self, event: Mapping[str, Any], time: float) -> None:
-        before, given, name = self.mechanics, dict(mapping(event, "values")), event.get("name")
+    def _preset(self, event: Event, time: float) -> None:
+        before, given, name = self.mechanics, dict(event.mapping("values")), event.get("name")
         known = {} if name == presets.OWN and given else presets.preset(name).values()
         self.bench.change(str(name), known | given, part=event.get("part") is True)
         self._rebuilt(before, time)
 
-    def _undo(self, event: Mapping[str, Any], time: float) -> None:
+    def _undo(self, event: Event, time: float) -> None:
         before = self.mechanics
         self._rebuilt(before, time) if self.bench.undo() else self.warnings.say("empty", "to undo")
 
-    def _redo(self, event: Mapping[str, Any], time: float) -> None:
+    def _redo(self, event: Event, time: float) -> None:
         before = self.mechanics
         self._rebuilt(before, time) if self.bench.redo() else self.warnings.say("empty", "to redo")
 
@@ -259,16 +263,20 @@ class Session(Instant):
         self.clock.begin(None)
         self._hold()
 
-    def _drive(self, event: Mapping[str, Any], time: float) -> None:
-        self.drive = choice(event, "by", DRIVES)
+    def _drive(self, event: Event, time: float) -> None:
+        self.drive = event.choice("by", DRIVES)
         if not self.mechanics.moving:
             self._hand_is_here(float(self.mechanics.snapshot.pose[2]))
             self._hold()
 
-    def _solver(self, event: Mapping[str, Any], time: float) -> None:
-        self.solver = choice(event, "name", tuple(MOTIONS))
+    def _solver(self, event: Event, time: float) -> None:
+        solver = event.choice("name", SOLVERS)
+        self.sweeps = event.whole("sweeps", MOST_SWEEPS) if "sweeps" in event else self.sweeps
+        self.solver = solver
+        self.mechanics.change_solver(self.solver, self.sweeps)
+        self.clock.forget()
 
-    def _rest(self, event: Mapping[str, Any], time: float) -> None:
+    def _rest(self, event: Event, time: float) -> None:
         """The markers, as they are seen now, are those of the pivot at rest."""
         if self._marker is None or self.sight["state"] == "lost":
             self.warnings.say("no-rest")

@@ -6,12 +6,12 @@ from typing import Any
 
 import numpy as np
 
+from spline_model.sequential_impulse import SWEEPS
 from studies.interactive.pivot.bench import Bench
 from studies.interactive.pivot.design import Curve, Placing, scales
-from studies.interactive.pivot.input import Clock, Hand
+from studies.interactive.pivot.input import Clock, Hand, Readings
 from studies.interactive.pivot.mechanics import Mechanics
-from studies.interactive.pivot.motion import MOTIONS
-from studies.interactive.pivot.readings import Readings
+from studies.interactive.pivot.motion import SOLVERS
 from studies.kinds import Array
 
 #: Least spread that is written, over its value.
@@ -82,7 +82,7 @@ def _readout(state: Mapping[str, Any], reading: Array) -> dict[str, str]:
     }
 
 
-def sentence(state: Mapping[str, Any], texts: Mapping[str, str]) -> str:
+def _sentence(state: Mapping[str, Any], texts: Mapping[str, str]) -> str:
     """Return what the picture shows, for the status line and screen readers."""
     angle = fixed(math.degrees(state["pose"][2]), 1)
     stress = fixed(100.0 * state["stress"]["of_yield"], 0)
@@ -117,7 +117,7 @@ SENTENCES = {
     "off-path": "The markers are not where the pivot turns by itself: check their printed size with "
     "the ruler, or take the pose of the unloaded pivot as rest.",
     "swing-ended": "This design cannot take the swing over: it is held.",
-    "behind": "The solver is slower than time: what is shown comes late.",
+    "slowed": "Slowed down: the solver needs longer than the motion takes.",
     "no-catch": "The moving body could not be held here: try again.",
     "stopped": "The solver stopped: the last good state is kept and time is paused.",
     "under-resolved": "The step is too long for this swing, which it damps: take a slower time scale.",
@@ -138,8 +138,8 @@ def curved(curve: Curve, strength: float) -> dict[str, Any]:
     at, end = curve.where(strength), math.degrees(curve.rotation[-1])
     text = f"yields at ±{math.degrees(at[0]):.1f}° by {quantity(at[1], 'N m')}" if at else ""
     return {
-        "rotation": plain(curve.rotation),
-        "moment": plain(curve.moment),
+        "rotation": _plain(curve.rotation),
+        "moment": _plain(curve.moment),
         "yields": at,
         "text": text or f"does not yield up to ±{end:.0f}°",
     }
@@ -168,11 +168,11 @@ class Instant:
         """Everything as at the start, with these settings."""
         self.bench, self.clock = Bench(preset, values), Clock(lock_step=lock_step)
         self.warnings = _Warnings()
-        self.drive, self.solver = DRIVES[0], next(iter(MOTIONS))
-        self.paused, self.time = False, 0.0
+        self.drive, self.solver = DRIVES[0], next(iter(SOLVERS))
+        self.sweeps, self.paused, self.time = SWEEPS, False, 0.0
         self.sight: dict[str, Any] = {"state": "none"}
         self.spread: Array | None = None
-        self.start_energy, self.wanted = 0.0, np.zeros(3)
+        self.wanted = np.zeros(3)
         self._marker: Array | None = None
         self._hand = Hand()
         self.readings = Readings()
@@ -221,55 +221,55 @@ def shown(session: Instant) -> dict[str, Any]:
         "values": values,
         "drive": session.drive,
         "solver": session.solver,
+        "sweeps": session.sweeps,
         "step": mechanics.step,
         "steps": session.clock.steps,
         "simulated": session.clock.simulated,
-        "lag": session.clock.lag,
-        "pose": plain(now.pose),
-        "displacement": [*plain(now.pose[:2] - session.placing.centre), float(now.pose[2])],
-        "wanted": plain(session.wanted),
+        "pose": _plain(now.pose),
+        "displacement": [*_plain(now.pose[:2] - session.placing.centre), float(now.pose[2])],
+        "wanted": _plain(session.wanted),
         "centre_shift": session.placing.crossing_shift(now.pose),
-        "velocity": plain(now.velocity),
-        "shape": plain(reading.shape),
-        "force": plain(now.force),
+        "velocity": _plain(now.velocity),
+        "shape": _plain(reading.shape),
+        "force": _plain(now.force),
         "stiffness": now.stiffness,
         "stress": {
             "max": float(reading.stress[strip, place]),
             "of_yield": float(reading.stress[strip, place]) / values["yield_strength"],
             "strip": int(strip),
             "place": int(place),
-            "along": plain(np.round(reading.stress / values["yield_strength"], 4)),
+            "along": _plain(np.round(reading.stress / values["yield_strength"], 4)),
         },
-        "strain": plain(reading.strain),
+        "strain": _plain(reading.strain),
         "energy": {
             "strain": now.strain,
             "kinetic": now.kinetic,
             "potential": now.potential,
             "dissipated": now.dissipated,
             "lost": now.lost,
-            "start": session.start_energy if mechanics.moving else None,
+            "start": mechanics.begun if mechanics.moving else None,
         },
         "centre": None if now.centre is None else list(now.centre),
         "iterations": now.iterations,
         "sight": session.sight,
-        "sd": None if session.readings.sd is None else plain(session.readings.sd),
+        "sd": None if session.readings.sd is None else _plain(session.readings.sd),
         "force_sd": _force_sd(session),
         "grip": session.grip if session.drive in SPRUNG and not mechanics.moving else None,
         "scale": scales(values),
         "placing": {
-            "ground": plain(session.placing.ground),
-            "marker": plain(session.placing.marker(now.pose)),
-            "clamps": plain(mechanics.pivot.clamp_points),
-            "centre": plain(mechanics.pivot.centre),
+            "ground": _plain(session.placing.ground),
+            "marker": _plain(session.placing.marker(now.pose)),
+            "clamps": _plain(mechanics.pivot.clamp_points),
+            "centre": _plain(mechanics.pivot.centre),
         },
         "warnings": [{"code": code, "text": text} for code, text in session.warnings.said.items()],
     }
     state["texts"] = _readout(state, session.readings.mean(now))
-    state["status"] = sentence(state, state["texts"])
+    state["status"] = _sentence(state, state["texts"])
     return state
 
 
-def plain(array: Array) -> Any:
+def _plain(array: Array) -> Any:
     """Return an array as nested lists of floats."""
     return np.asarray(array, dtype=float).tolist()
 

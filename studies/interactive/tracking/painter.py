@@ -10,10 +10,12 @@ from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.ndimage import map_coordinates  # type: ignore[attr-defined]
 
-from studies.interactive.pivot.design import SIDE
-from studies.interactive.tracking.calibration import Camera
-from studies.interactive.tracking.planar import BITS, cells
+from spline_model.held import HeldPivot
+from studies.interactive.pivot.design import SIDE, Placing, build, turned
+from studies.interactive.pivot.presets import PRESETS
+from studies.interactive.tracking.planar import BITS, Camera, cells
 from studies.kinds import Array
 
 Picture = NDArray[np.uint8]
@@ -106,15 +108,8 @@ class Painter:
         rng = np.random.default_rng(self.seed)
         height, width = self.optics.height, self.optics.width
         coarse = rng.normal(0.0, 10.0, (height // 40 + 2, width // 40 + 2))
-        rows, columns = np.arange(height) / 40.0, np.arange(width) / 40.0
-        i, j = rows.astype(int), columns.astype(int)
-        fi, fj = (rows - i)[:, None], (columns - j)[None, :]
-        texture = (
-            coarse[np.ix_(i, j)] * (1 - fi) * (1 - fj)
-            + coarse[np.ix_(i + 1, j)] * fi * (1 - fj)
-            + coarse[np.ix_(i, j + 1)] * (1 - fi) * fj
-            + coarse[np.ix_(i + 1, j + 1)] * fi * fj
-        )
+        places = np.meshgrid(np.arange(height) / 40.0, np.arange(width) / 40.0, indexing="ij")
+        texture = map_coordinates(coarse, places, order=1)
         self._ground = WHITEST * ((TABLE + texture) / WHITEST) ** self.optics.gamma
 
     def draw(self, markers: list[Marker], number: int = 0, fingers: tuple[Finger, ...] = ()) -> Picture:
@@ -235,12 +230,6 @@ def _burn_in(picture: Picture, number: int) -> None:
         picture[0 : 2 * BLOCK, bit * BLOCK : (bit + 1) * BLOCK] = value
 
 
-def counter(picture: Picture) -> int:
-    """Return the number that `_burn_in` wrote into a picture."""
-    places = BLOCK // 2 + BLOCK * np.arange(COUNTER_BITS)
-    return int(sum(1 << bit for bit, x in enumerate(places) if picture[BLOCK, x] > 127))
-
-
 @dataclass(frozen=True, kw_only=True)
 class Film:
     """Frames at 25 Hz by number: `scene(k)` gives the markers and fingers of frame k."""
@@ -257,3 +246,37 @@ class Film:
 
     def __iter__(self) -> Iterator[Picture]:
         return (self.picture(k) for k in range(self.frames))
+
+
+#: Length of the film, its turns and the frames in which a finger covers a corner and a hand a marker.
+FRAMES = 300
+TURN = math.radians(52)
+FINGER = range(150, 168)
+HIDDEN = range(235, 247)
+
+
+def demo_film() -> Film:
+    """Return the demo film with its truth: the body follows the pivot's own path, the hand pushes nothing
+    else."""
+    pivot = build(PRESETS["polymer"].values())
+    placing, solver = Placing.of(pivot), HeldPivot(pivot)
+    poses = [placing.marker(solver.turn(rotation(k)).pose) for k in range(FRAMES)]
+
+    def scene(k: int) -> tuple[list[Marker], tuple[Finger, ...]]:
+        moving = Marker(number=1, pose=tuple(poses[k]))
+        markers = [Marker(number=0, pose=(0.0, 0.0, 0.0)), moving]
+        return (markers[:1] if k in HIDDEN else markers), (_finger(poses[k]),) if k in FINGER else ()
+
+    return Film(painter=Painter(Optics(), samples=2, numbered=False), frames=FRAMES, scene=scene)
+
+
+def rotation(k: int) -> float:
+    """Return the body's rotation in frame k [rad]: there, back, to the other side, still for the last
+    second."""
+    u = min(1.0, k / (FRAMES - 25))
+    return TURN * math.sin(2.0 * math.pi * u) * math.sin(math.pi * u) ** 2 * 1.3
+
+
+def _finger(pose: NDArray[np.float64]) -> Finger:
+    corner = pose[:2] + turned(pose[2], np.array([0.03, 0.03]))
+    return Finger(centre=(float(corner[0]), float(corner[1])))

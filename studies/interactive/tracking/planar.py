@@ -5,14 +5,17 @@ the second square in the frame of the first; the data are eight corners. No cali
 residual can tell is the printed size.
 """
 
+import json
 import math
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from functools import cache
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial.transform import Rotation
 
-from studies.interactive.tracking.calibration import Camera
+from studies.errors import BadInput
 from studies.interactive.tracking.edges import INSET
 from studies.kinds import Array
 
@@ -29,6 +32,46 @@ EXPECTED_PX, WORTH = 0.006, 1.5
 STILL_PX = 0.003
 #: Most residuals of the pictures before that the variance of one rests on.
 MOST_WORTH = 30.0
+
+
+@dataclass(frozen=True, kw_only=True)
+class Camera:
+    """A pinhole with a radial lens: focal lengths and principal point [px], k1 and k2 of Brown's model."""
+
+    fx: float
+    fy: float
+    cx: float
+    cy: float
+    k1: float = 0.0
+    k2: float = 0.0
+
+    @property
+    def matrix(self) -> Array:
+        """The camera matrix (3, 3)."""
+        return np.array([[self.fx, 0.0, self.cx], [0.0, self.fy, self.cy], [0.0, 0.0, 1.0]])
+
+    def undistorted(self, picture: Array) -> Array:
+        """Return where points (..., 2) [px] would be seen without the lens."""
+        scale, centre = np.array([self.fx, self.fy]), np.array([self.cx, self.cy])
+        seen = (picture - centre) / scale
+        straight = seen.copy()
+        for _ in range(20):
+            square = np.sum(straight**2, axis=-1, keepdims=True)
+            straight = seen / (1.0 + square * (self.k1 + square * self.k2))
+        return np.asarray(straight * scale + centre)
+
+    @classmethod
+    def read(cls, path: Path) -> "Camera":
+        """Return the camera of a file that `write` made; BadInput in one line if it is none."""
+        try:
+            values = json.loads(path.read_text(encoding="utf-8"))
+            return cls(**{name: float(value) for name, value in values.items()})
+        except (OSError, ValueError, TypeError, AttributeError) as error:
+            raise BadInput(f"{path}: got no camera, expected JSON with fx, fy, cx, cy ({error})") from None
+
+    def write(self, path: Path) -> None:
+        """Store the camera."""
+        path.write_text(json.dumps(asdict(self), indent=2) + "\n", encoding="utf-8")
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -71,7 +114,7 @@ def project(plane: Array, points: Array) -> Array:
 def homography(points: Array, picture: Array) -> Array:
     """Return the homography (3, 3), last entry 1, that takes four points or more to their pictures (P, 2)."""
     rows, right = [], []
-    for (x, y), (u, v) in zip(points, picture, strict=True):
+    for (x, y), (u, v) in zip(points.tolist(), picture.tolist(), strict=True):
         rows += [[x, y, 1, 0, 0, 0, -u * x, -u * y], [0, 0, 0, x, y, 1, -v * x, -v * y]]
         right += [u, v]
     solved = np.linalg.lstsq(np.array(rows), np.array(right), rcond=None)[0]
@@ -155,13 +198,7 @@ class _Seen:
 
     def plane(self, known: Array) -> Array:
         """The homography of these unknowns: a small turn on top of the start, and the place."""
-        x, y, z = known[:3]
-        angle = math.sqrt(x * x + y * y + z * z)
-        cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
-        first, second = (
-            (1.0, 0.5) if angle < 1e-8 else (math.sin(angle) / angle, (1 - math.cos(angle)) / angle**2)
-        )
-        turn = (np.eye(3) + first * cross + second * cross @ cross) @ self.turn
+        turn = Rotation.from_rotvec(known[:3]).as_matrix() @ self.turn
         return np.asarray(self.matrix @ np.column_stack((turn[:, 0], turn[:, 1], known[3:6])))
 
     def derivative(self, known: Array) -> Array:

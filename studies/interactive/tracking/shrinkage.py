@@ -8,11 +8,12 @@ whatever made it: light that is encoded or clipped after a lens has blurred it, 
 
 import math
 from collections.abc import Iterator
+from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
 
-from studies.interactive.tracking.edges import GAMMA, LEAST_REACH, REACHES, Picture, edge
+from studies.interactive.tracking.edges import AFTER, BEFORE, GAMMA, LEAST_REACH, REACHES, Picture, edges
 from studies.interactive.tracking.planar import CORNERS, homography, project
 from studies.kinds import Array
 
@@ -21,6 +22,8 @@ Cells = NDArray[np.bool_]
 #: Half length of the profiles across the edges of cells, and what is left out at the ends of such an edge,
 #: over the side of a cell.
 REACH, END = 0.45, 0.25
+#: Profiles an edge of cells, which is a few pixels long.
+STATIONS = 12
 #: Least share of good stations of an edge of cells.
 LEAST_SHARE = 0.5
 #: Offset [px] over the step to another power, damped: one that is too large by one makes 0.55; from which one
@@ -29,8 +32,9 @@ BY_POWER, OTHER, POWERS = 0.7, 0.04, (1.0, 3.0)
 #: Difference of the offsets of cells and of the square around them that no picture tells [px]: what is left
 #: of it on films of powers from 1 to 1/2.4 and blurs from 0.5 to 1.6 px.
 APART = 0.01
-#: Pictures over which the offset is averaged: it is the camera's own, and changes slowly.
-PICTURES = 50
+#: Pictures over which the offset is averaged: it is the camera's own, and changes slowly. After as many only
+#: one in EVERY is looked at, for a fifth of all time went there; the average reaches as far back as before.
+PICTURES, EVERY = 50, 5
 
 
 class Shrinkage:
@@ -44,34 +48,40 @@ class Shrinkage:
         self.gamma = GAMMA
         self.sd = 0.0
         self._pictures = 0
+        self._since = 0
 
     def taken_out(self, picture: Picture, corners: Array, cells: dict[int, Cells]) -> Array:
         """Return corners (Q, 4, 2) of dark squares with the offset taken out; cells by the place in Q."""
-        found = [_offset(picture, corners[place], each, self.gamma) for place, each in cells.items()]
+        self._since += bool(cells)
+        settled = self._pictures == PICTURES
+        looked = {} if settled and self._since < EVERY else cells
+        found = [_offset(picture, corners[place], each, self.gamma) for place, each in looked.items()]
         weight = sum(each for _, each, _ in found)
         if weight > 0.0:
             now = sum(offset * each for offset, each, _ in found) / weight
-            self._pictures = min(self._pictures + 1, PICTURES)
+            self._since, self._pictures = 0, min(self._pictures + 1, PICTURES)
+            count = PICTURES // EVERY if settled else self._pictures
             scatter = max(each for _, _, each in found)
-            self.sd = math.hypot(scatter / math.sqrt(weight * self._pictures), APART)
+            self.sd = math.hypot(scatter / math.sqrt(weight * count), APART)
             before = now if self.offset is None else self.offset
-            self.offset = before + (now - before) / self._pictures
+            self.offset = before + (now - before) / count
         if self.offset is None:
             return corners
-        moved = np.array([grown(each, self.offset) for each in corners])
+        moved = _grown(corners, self.offset)
         gamma = min(max(self.gamma + self.offset / BY_POWER, POWERS[0]), POWERS[1])
         if abs(self.offset) > OTHER and gamma != self.gamma:
             self.offset, self.gamma, self._pictures = None, gamma, 0
         return moved
 
 
-def grown(corners: Array, offset: float) -> Array:
-    """Return a square (4, 2) whose edges lie further out by `offset` [px]."""
-    after, before = np.roll(corners, -1, axis=0) - corners, corners - np.roll(corners, 1, axis=0)
-    after, before = (each / np.hypot(*each.T)[:, None] for each in (after, before))
+def _grown(corners: Array, offset: float) -> Array:
+    """Return squares (Q, 4, 2) whose edges lie further out by `offset` [px]."""
+    after = corners[:, AFTER] - corners
+    after /= np.sqrt(np.sum(after**2, axis=-1, keepdims=True))
+    before = after[:, BEFORE]
     # a corner moves by t before - s after where both edges move by the offset: t = s = offset / sin(angle)
-    sine = before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0]
-    return np.asarray(corners + offset * (before - after) / np.abs(sine)[:, None])
+    sine = before[..., 0] * after[..., 1] - before[..., 1] * after[..., 0]
+    return np.asarray(corners + offset * (before - after) / np.abs(sine)[..., None])
 
 
 def _offset(picture: Picture, corners: Array, cells: Cells, gamma: float) -> tuple[float, float, float]:
@@ -81,26 +91,33 @@ def _offset(picture: Picture, corners: Array, cells: Cells, gamma: float) -> tup
     half = min(REACHES[-1], REACH * side / len(cells))
     if half < LEAST_REACH:
         return 0.0, 0.0, 0.0
-    plane = homography(CORNERS, corners)
-    by, gap = [], []
-    for across, ends, light in _edges(cells):
-        p, q, lit = project(plane, np.array([*ends, light]))
-        along = (q - p) / math.hypot(*(q - p))
-        normal = np.array([along[1], -along[0]])
-        normal *= np.sign(normal @ (lit - p))
-        at_p, at_q, share, _ = edge(picture, p, q, normal, half, False, True, gamma)
-        if share >= LEAST_SHARE:
-            by.append(2.0 * across - 1.0)
-            gap.append(0.5 * (at_p + at_q))
-    if len(by) < 2:
+    across, places = _edges(cells.tobytes())
+    p, q, lit = project(homography(CORNERS, corners), places)
+    along = (q - p) / np.hypot(*(q - p).T)[:, None]
+    normal = np.column_stack((along[:, 1], -along[:, 0]))
+    normal *= np.sign(np.sum(normal * (lit - p), axis=1))[:, None]
+    found = edges(picture, p, q, normal, np.full(len(p), half), gamma, stations=STATIONS)
+    kept = found[:, 2] >= LEAST_SHARE
+    if kept.sum() < 2:
         return 0.0, 0.0, 0.0
-    slope, gaps = np.array(by), np.array(gap)
+    slope, gaps = 2.0 * across[kept] - 1.0, found[kept, :2].mean(axis=1)
     weight = float(slope @ slope)
     offset = float(slope @ gaps) / weight
     return offset, weight, float(np.sqrt(np.mean((gaps - offset * slope) ** 2)))
 
 
-def _edges(cells: Cells) -> Iterator[tuple[float, tuple[Array, Array], Array]]:
+@cache
+def _edges(cells: bytes) -> tuple[Array, Array]:
+    """Return u (E,) towards the light of the edges of cells, and both their ends and a place in the light
+    (3, E, 2), in sides."""
+    count = math.isqrt(len(cells))
+    found = list(_each(np.frombuffer(cells, dtype=bool).reshape(count, count)))
+    return np.array([across for across, _, _ in found]), np.stack(
+        [np.array([*ends, light]) for _, ends, light in found], axis=1
+    )
+
+
+def _each(cells: Cells) -> Iterator[tuple[float, tuple[Array, Array], Array]]:
     """Yield the edges of cells: u towards the light, both ends, and a place in the light, in sides."""
     count = len(cells)
     for turned in (False, True):  # lines along y, then along x

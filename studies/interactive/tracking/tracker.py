@@ -1,6 +1,8 @@
 """From pictures to the events of a session: find, follow where a corner is covered, fit, and say what is
 wrong."""
 
+import os
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -8,10 +10,15 @@ import numpy as np
 
 from studies.interactive.pivot.design import SIDE
 from studies.interactive.tracking import edges, planar
-from studies.interactive.tracking.calibration import Camera
-from studies.interactive.tracking.detector import Detector, Picture, Squares
+from studies.interactive.tracking.edges import Picture
+from studies.interactive.tracking.planar import Camera
 from studies.interactive.tracking.shrinkage import Shrinkage
 from studies.kinds import Array
+
+# a picture of more pixels than this is refused before it is decoded; read when cv2 is first imported
+os.environ.setdefault("OPENCV_IO_MAX_IMAGE_PIXELS", str(1 << 22))
+
+import cv2
 
 #: Residuals of the fit [px] from which it is doubted, and refused.
 DOUBT_PX, REFUSE_PX = 0.12, 0.25
@@ -34,6 +41,66 @@ MARGIN = np.array(
 WHITEST, CLIPPED = 254, 0.5
 #: Difference of the sides that is named, and how many standard deviations it must be.
 ODD_SIZE, ODD_SIGMA = 0.01, 6.0
+
+
+#: Pictures wider than this are found on a quarter of their size, others on half of it.
+WIDE = 1000
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _Squares:
+    """Corners (4, 2) [px] by id, in the markers' order; ids that were seen twice; other ids."""
+
+    corners: Mapping[int, Array]
+    doubles: frozenset[int]
+    others: frozenset[int]
+
+
+class Detector:
+    """Squares of the family 36h11 with ids 0 and 1."""
+
+    def __init__(self) -> None:
+        cv2.setNumThreads(1)
+        family = cv2.aruco.getPredefinedDictionary(cv2.aruco.DICT_APRILTAG_36h11)
+        self._detector = cv2.aruco.ArucoDetector(family)
+
+    def find(self, picture: Picture, *, whole: bool = False) -> _Squares:
+        """Return the squares in a grey picture; `whole` looks at all its pixels, for small markers."""
+        scale = 1 if whole else (4 if picture.shape[1] > WIDE else 2)
+        small = picture
+        if scale > 1:
+            size = picture.shape[1] // scale, picture.shape[0] // scale
+            small = np.asarray(cv2.resize(picture, size, interpolation=cv2.INTER_AREA), dtype=np.uint8)
+        found, ids, _ = self._detector.detectMarkers(small)
+        numbers = [] if ids is None else [int(i) for i in np.ravel(ids)]
+        corners = {}
+        for number, quad in zip(numbers, found, strict=True):
+            if number in (0, 1):
+                # the centre of the first small pixel lies between those of the first large ones
+                corners[number] = np.asarray(quad[0], dtype=float) * scale + (scale - 1) / 2
+        return _Squares(
+            corners=corners,
+            doubles=frozenset(n for n in (0, 1) if numbers.count(n) > 1),
+            others=frozenset(numbers) - {0, 1},
+        )
+
+
+def decoded(data: bytes) -> Picture | None:
+    """Return the grey picture in the bytes of a JPEG or PNG, or None if there is none."""
+    try:
+        picture = cv2.imdecode(np.frombuffer(data, dtype=np.uint8), cv2.IMREAD_GRAYSCALE)
+    except cv2.error:
+        return None
+    if picture is None or picture.shape[0] < 32 or picture.shape[1] < 32:
+        return None
+    return np.asarray(picture, dtype=np.uint8)
+
+
+def encoded(picture: Picture, quality: int = 90) -> bytes:
+    """Return a grey picture as a JPEG."""
+    done, data = cv2.imencode(".jpg", picture, [cv2.IMWRITE_JPEG_QUALITY, quality])
+    assert done
+    return bytes(data.tobytes())
 
 
 @dataclass(eq=False)
@@ -86,7 +153,7 @@ class Tracker:
         sides = [np.hypot(*(known.corners[1] - known.corners[0])) for known in self._known.values()]
         return bool(min(sides) < FAR_PX)
 
-    def _quads(self, squares: Squares, time: float) -> tuple[dict[int, Array], set[int]]:
+    def _quads(self, squares: _Squares, time: float) -> tuple[dict[int, Array], set[int]]:
         """Corners of both squares, found or predicted, and which were predicted."""
         quads, followed = dict(squares.corners), set()
         for number in {0, 1} - set(quads):
@@ -175,7 +242,7 @@ class Tracker:
         }
 
     def _missing(
-        self, picture: Picture, squares: Squares, quads: dict[int, Array], time: float
+        self, picture: Picture, squares: _Squares, quads: dict[int, Array], time: float
     ) -> dict[str, Any]:
         """Why there is no pose."""
         seen = set(quads)

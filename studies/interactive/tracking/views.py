@@ -7,10 +7,8 @@ import numpy as np
 
 from studies.errors import BadInput
 from studies.interactive.pivot.design import PRINTED, SIDE
-from studies.interactive.tracking.calibration import Camera
-from studies.interactive.tracking.detector import Picture, cv2
-from studies.interactive.tracking.planar import CORNERS
-from studies.interactive.tracking.tracker import Tracker
+from studies.interactive.tracking.planar import CORNERS, Camera
+from studies.interactive.tracking.tracker import Picture, Tracker, cv2
 from studies.kinds import Array
 
 #: Corners (8, 2) of both markers of the printed sheet [m], as long as it is not cut.

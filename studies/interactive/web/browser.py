@@ -8,7 +8,8 @@ import subprocess
 import tempfile
 import time
 from collections.abc import Sequence
-from contextlib import ExitStack
+from contextlib import ExitStack, closing
+from http.client import HTTPConnection
 from pathlib import Path
 from typing import Any, Self
 
@@ -82,21 +83,12 @@ class Browser:
                 raise RuntimeError(f"browser: ended at once with code {self._process.returncode}")
             text = note.read_text(encoding="utf-8").split() if note.is_file() else []
             if len(text) >= 2:
-                return self._first_page(f"ws://127.0.0.1:{text[0]}{text[1]}", text[0])
+                with closing(HTTPConnection("127.0.0.1", int(text[0]), timeout=PATIENCE)) as known:
+                    known.request("GET", "/json/list")
+                    pages = [page for page in json.load(known.getresponse()) if page["type"] == "page"]
+                return str(pages[0]["webSocketDebuggerUrl"])
             time.sleep(0.05)
         raise TimeoutError("browser: did not start")
-
-    @staticmethod
-    def _first_page(browser: str, port: str) -> str:
-        """The socket of the first page, asked for through the browser's own."""
-        with connect(browser, compression=None) as socket:
-            socket.send(json.dumps({"id": 1, "method": "Target.getTargets"}))
-            while True:
-                answer = json.loads(socket.recv(PATIENCE))
-                if answer.get("id") == 1:
-                    break
-        pages = [t for t in answer["result"]["targetInfos"] if t["type"] == "page"]
-        return f"ws://127.0.0.1:{port}/devtools/page/{pages[0]['targetId']}"
 
     def call(self, method: str, **parameters: Any) -> dict[str, Any]:
         """Call a method of the debugging protocol and return its result; RuntimeError for an error."""

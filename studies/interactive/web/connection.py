@@ -3,6 +3,8 @@
 import asyncio
 import logging
 import time
+from collections import deque
+from statistics import median
 from typing import Any
 
 from numpy.linalg import LinAlgError
@@ -10,15 +12,14 @@ from starlette.websockets import WebSocket
 
 from studies.errors import BadInput
 from studies.interactive.pivot import presets
+from studies.interactive.pivot.input import MOST_STEPS
 from studies.interactive.pivot.mechanics import Mechanics
-from studies.interactive.pivot.motion import MOTIONS
-from studies.interactive.pivot.recording import Recorder, line
+from studies.interactive.pivot.motion import SOLVERS
+from studies.interactive.pivot.recording import Player, Recorder, line
 from studies.interactive.pivot.session import Session
 from studies.interactive.pivot.view import DRIVES, curved
-from studies.interactive.tracking.detector import Picture
-from studies.interactive.tracking.tracker import Tracker
+from studies.interactive.tracking.tracker import Picture, Tracker
 from studies.interactive.web import protocol
-from studies.interactive.web.player import Player
 from studies.interactive.web.sources import Settings, Shot, Source, grey_of
 
 LOG = logging.getLogger(__name__)
@@ -26,6 +27,8 @@ LOG = logging.getLogger(__name__)
 #: Time of a frame without pictures [s], how long pictures may stay away before it counts, and how many are
 #: sent before the page has shown one.
 TICK, STILL, IN_FLIGHT = 0.04, 0.2, 2
+#: Part of a frame's time that the steps of a released body may take.
+SHARE = 0.6
 #: Printed sides that are taken [m].
 SIDES = (0.01, 0.3)
 
@@ -49,6 +52,7 @@ class Connection:
         self._shown, self._sent, self._seen_shown = 0, 0, asyncio.Event()
         self._player = Player()
         self._curved: Mechanics | None = None
+        self._costs, self._send_ms = deque[float](maxlen=3), 0.0
 
     async def serve(self) -> None:
         """Answer until the socket closes; raises BadInput for a message that is none."""
@@ -80,7 +84,7 @@ class Connection:
             "camera": self._settings.camera,
             "shared": self._settings.share is not None,
             "drives": list(DRIVES),
-            "solvers": list(MOTIONS),
+            "solvers": SOLVERS,
             "side": self._tracker.side,
             **presets.catalogue(),
         }
@@ -147,7 +151,9 @@ class Connection:
             await self._show_curve(self.session)
 
     async def _say(self, content: dict[str, Any]) -> None:
+        begin = time.perf_counter()
         await self._socket.send_text(protocol.text(content))
+        self._send_ms = 1e3 * (time.perf_counter() - begin)
 
     async def _part(self, kind: int, last: bool, data: bytes) -> None:
         """Take a part of a file; the whole of it is replayed, or opened as a design."""
@@ -190,8 +196,8 @@ class Connection:
             await self._say({"kind": "recording", "on": False, "lines": lines})
 
     async def _feed(self, event: dict[str, Any], seq: object, **more: Any) -> None:
-        """Give one event to the session and send its state."""
-        await self._say({**await self._state_after(event), **more, "seq": seq})
+        """Give one event to the session and send its state, with how long sending the one before took."""
+        await self._say({**await self._state_after(event), **more, "seq": seq, "send_ms": self._send_ms})
 
     async def _state_after(self, event: dict[str, Any]) -> dict[str, Any]:
         async with self._lock:
@@ -201,7 +207,10 @@ class Connection:
 
     def _fed(self, event: dict[str, Any]) -> dict[str, Any]:
         """Feed the session, in a thread; bad numbers come back as an error and change nothing."""
-        begin = time.perf_counter()
+        begin, steps = time.perf_counter(), self.session.clock.steps
+        cost = median(self._costs) if len(self._costs) > 2 else 0.0  # one hiccup is no rule
+        if event["do"] in ("tick", "seen", "unseen") and cost * MOST_STEPS > SHARE * TICK:
+            event = {**event, "room": max(1, int(SHARE * TICK / cost))}
         try:
             state = self.session.feed(event)
             protocol.text(state)  # a number that is not finite must not be sent
@@ -210,7 +219,11 @@ class Connection:
         except (ArithmeticError, ValueError, LinAlgError) as error:
             LOG.exception("the session failed at %s", event)
             return {"kind": "error", "text": f"The solver failed, the last good state is kept ({error})."}
-        took = time.perf_counter() - begin
+        took, steps = time.perf_counter() - begin, self.session.clock.steps - steps
+        if steps > 0:
+            self._costs.append(took / steps)
+        elif not self.session.mechanics.moving:
+            self._costs.clear()
         if self._recorder is not None:
             self._recorder.write(event, state)
         if self._keep is not None:
@@ -251,12 +264,13 @@ class Connection:
                 await self._say({"kind": "skipped", "seq": sent.seq})
                 continue
             self._last_picture = time.monotonic()
-            grey = sent.coding == protocol.GREY
+            begin, grey = time.perf_counter(), sent.coding == protocol.GREY
             picture = await asyncio.to_thread(grey_of, grey, sent.data, sent.width, sent.height)
             if picture is None:
                 raise BadInput("picture: got bytes that are none, expected a JPEG of the stated size")
+            decode_ms = 1e3 * (time.perf_counter() - begin)
             event, more = await self._tracked(picture, sent.time)
-            await self._feed(event, sent.seq, **more)
+            await self._feed(event, sent.seq, **more, decode_ms=decode_ms)
 
     async def _play(self, source: Source) -> None:
         """Track the pictures of a source and send each with its state, no faster than they are shown."""

@@ -2,13 +2,12 @@
 here."""
 
 import hmac
-import ipaddress
 import json
 import secrets
 import struct
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Self
 
 from studies.errors import BadInput
 
@@ -33,7 +32,7 @@ RATE, BURST, KEPT = 120.0, 120.0, 20.0
 #: Event -> the fields it may have besides "do", "t" and "seq".
 FIELDS: dict[str, frozenset[str]] = {
     "hello": frozenset({"version", "token"}),
-    "setup": frozenset({"preset", "values", "drive", "solver", "lock_step", "rest"}),
+    "setup": frozenset({"preset", "values", "drive", "solver", "sweeps", "lock_step", "rest"}),
     "pose": frozenset({"pose"}),
     "seen": frozenset({"marker", "sd", "rms", "state", "plane", "quads", "faults"}),
     "unseen": frozenset({"code", "text"}),
@@ -49,7 +48,7 @@ FIELDS: dict[str, frozenset[str]] = {
     "undo": frozenset(),
     "redo": frozenset(),
     "drive": frozenset({"by"}),
-    "solver": frozenset({"name"}),
+    "solver": frozenset({"name", "sweeps"}),
     "rest": frozenset(),
     "record": frozenset({"on"}),
     "size": frozenset({"side_mm"}),
@@ -184,49 +183,47 @@ MOST_SOCKETS = 4
 HOSTS = ("127.0.0.1", "localhost")
 
 
-def new_token() -> str:
-    """Return a token that cannot be guessed."""
-    return secrets.token_urlsafe(TOKEN_BYTES)
+class Token(str):
+    """What a page must know to be answered; one that cannot be guessed."""
+
+    def __new__(cls) -> Self:
+        """Make another one."""
+        return super().__new__(cls, secrets.token_urlsafe(TOKEN_BYTES))
+
+    def fits(self, given: object) -> bool:
+        """Return whether `given` is the token, in a time that does not depend on where they differ."""
+        return isinstance(given, str) and hmac.compare_digest(self.encode(), given.encode())
 
 
-def same(token: str, given: object) -> bool:
-    """Return whether `given` is the token, in a time that does not depend on where they differ."""
-    return isinstance(given, str) and hmac.compare_digest(token.encode(), given.encode())
+@dataclass(frozen=True)
+class Door:
+    """Where a server is entered: its port, and the names of its machine that no foreign page can take."""
 
+    port: int
+    names: Sequence[str] = HOSTS
 
-def good_host(host: str | None, port: int, names: Sequence[str] = HOSTS) -> bool:
-    """Return whether a request's Host is this machine by a name that no foreign page can take."""
-    return host in {f"{name}:{port}" for name in names}
+    def good_host(self, host: str | None) -> bool:
+        """Return whether a request's Host is this machine."""
+        return host in {f"{name}:{self.port}" for name in self.names}
 
+    def good_origin(self, origin: str | None) -> bool:
+        """Return whether a socket was opened by a page of this server."""
+        return origin in {f"http://{name}:{self.port}" for name in self.names}
 
-def is_private(name: str) -> bool:
-    """Return whether a name is the address of one machine in a network of one's own."""
-    try:
-        address = ipaddress.IPv4Address(name)
-    except ValueError:
-        return False
-    return address.is_private and not address.is_unspecified
-
-
-def good_origin(origin: str | None, port: int, names: Sequence[str] = HOSTS) -> bool:
-    """Return whether a socket was opened by a page of this server."""
-    return origin in {f"http://{name}:{port}" for name in names}
-
-
-def headers(port: int, names: Sequence[str] = HOSTS) -> Mapping[str, str]:
-    """Return the headers of every answer: nothing from elsewhere is loaded, framed, sniffed or kept."""
-    sockets = " ".join(f"ws://{name}:{port}" for name in names)
-    policy = (
-        "default-src 'none'; script-src 'self'; style-src 'self'; "
-        "img-src 'self' blob: data:; media-src blob:; "
-        f"connect-src 'self' {sockets}; frame-ancestors 'none'; base-uri 'none'; form-action 'none'"
-    )
-    return {
-        "Content-Security-Policy": policy,
-        "X-Content-Type-Options": "nosniff",
-        "Cross-Origin-Opener-Policy": "same-origin",
-        "Cross-Origin-Resource-Policy": "same-origin",
-        "Permissions-Policy": "camera=(self), microphone=(), geolocation=()",
-        "Referrer-Policy": "no-referrer",
-        "Cache-Control": "no-store",
-    }
+    def headers(self) -> dict[str, str]:
+        """Return the headers of every answer: nothing from elsewhere is loaded, framed, sniffed or kept."""
+        sockets = " ".join(f"ws://{name}:{self.port}" for name in self.names)
+        policy = (
+            "default-src 'none'; script-src 'self'; style-src 'self'; "
+            "img-src 'self' blob: data:; media-src blob:; "
+            f"connect-src 'self' {sockets}; frame-ancestors 'none'; base-uri 'none'; form-action 'none'"
+        )
+        return {
+            "Content-Security-Policy": policy,
+            "X-Content-Type-Options": "nosniff",
+            "Cross-Origin-Opener-Policy": "same-origin",
+            "Cross-Origin-Resource-Policy": "same-origin",
+            "Permissions-Policy": "camera=(self), microphone=(), geolocation=()",
+            "Referrer-Policy": "no-referrer",
+            "Cache-Control": "no-store",
+        }

@@ -3,11 +3,11 @@ shares it, at one address of the own network."""
 
 import asyncio
 import importlib.util
+import ipaddress
 import logging
 import socket as sockets
 import threading
 import time
-from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor
 from importlib.resources import files
 from multiprocessing import get_context
@@ -19,12 +19,12 @@ from starlette.applications import Starlette
 from starlette.requests import Request
 from starlette.responses import PlainTextResponse, Response
 from starlette.routing import Route, WebSocketRoute
-from starlette.types import ASGIApp, Message, Receive, Scope, Send
+from starlette.types import Receive, Scope, Send
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
 from spline_model.reduced import pose
 from studies.errors import BadInput
-from studies.interactive.pivot.motion import MOTIONS
+from studies.interactive.pivot.motion import SOLVERS
 from studies.interactive.pivot.session import Session
 from studies.interactive.web import protocol
 from studies.interactive.web.connection import Connection
@@ -41,58 +41,17 @@ LAST_PORT = 65535
 PATIENCE = 5.0
 
 
-class _Guard:
-    """Refuses foreign hosts and adds the headers of `security` to every answer."""
-
-    def __init__(self, app: ASGIApp, port: Callable[[], int], names: tuple[str, ...]) -> None:
-        self._app, self._port, self._names = app, port, names
-
-    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Answer one request."""
-        if scope["type"] not in ("http", "websocket"):
-            await self._app(scope, receive, send)
-            return
-        given = {name.decode("latin-1"): value.decode("latin-1") for name, value in scope["headers"]}
-        port = self._port()
-        if not protocol.good_host(given.get("host"), port, self._names):
-            await self._refuse(scope, receive, send, 400, "host: expected this machine")
-            return
-        if scope["type"] == "websocket":
-            if not protocol.good_origin(given.get("origin"), port, self._names):
-                await self._refuse(scope, receive, send, 403, "origin: expected this page")
-                return
-            await self._app(scope, receive, send)
-            return
-
-        async def with_headers(message: Message) -> None:
-            if message["type"] == "http.response.start":
-                extra = [(k.encode(), v.encode()) for k, v in protocol.headers(port, self._names).items()]
-                message["headers"] = [*message.get("headers", []), *extra]
-            await send(message)
-
-        await self._app(scope, receive, with_headers)
-
-    @staticmethod
-    async def _refuse(scope: Scope, receive: Receive, send: Send, code: int, text: str) -> None:
-        if scope["type"] == "http":
-            await PlainTextResponse(text, status_code=code)(scope, receive, send)
-        else:
-            await WebSocket(scope, receive, send).send_denial_response(
-                PlainTextResponse(text, status_code=code)
-            )
-
-
 class Server:
-    """A server with a token; `run` blocks, `start` and `stop` are for tests."""
+    """A server with a token; `run` blocks, and within a context it serves in a thread of its own."""
 
     def __init__(self, settings: Settings) -> None:
         self.settings = settings
-        self.token = protocol.new_token()
+        self.token = protocol.Token()
         self.port = settings.port
         self.open = 0
         self._listeners: list[sockets.socket] = []
         self._uvicorn: uvicorn.Server | None = None
-        app = Starlette(
+        self._app = Starlette(
             routes=[
                 Route("/", self._file),
                 Route("/page/{name}", self._file),
@@ -100,8 +59,26 @@ class Server:
                 WebSocketRoute("/ws", self._socket),
             ]
         )
-        names = protocol.HOSTS if settings.share is None else (*protocol.HOSTS, settings.share)
-        self.app: ASGIApp = _Guard(app, lambda: self.port, names)
+
+    @property
+    def _door(self) -> protocol.Door:
+        share = self.settings.share
+        return protocol.Door(self.port, (*protocol.HOSTS, *(() if share is None else (share,))))
+
+    async def _guarded(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Answer a request, or refuse that of a foreign host or page."""
+        given = {name.decode("latin-1"): value.decode("latin-1") for name, value in scope["headers"]}
+        refusal = None
+        if not self._door.good_host(given.get("host")):
+            refusal = PlainTextResponse("host: expected this machine", status_code=400)
+        elif scope["type"] == "websocket" and not self._door.good_origin(given.get("origin")):
+            refusal = PlainTextResponse("origin: expected this page", status_code=403)
+        if refusal is None:
+            await self._app(scope, receive, send)
+        elif scope["type"] == "http":
+            await refusal(scope, receive, send)
+        else:
+            await WebSocket(scope, receive, send).send_denial_response(refusal)
 
     @property
     def address(self) -> str:
@@ -117,7 +94,7 @@ class Server:
         if not 0 <= self.settings.port <= LAST_PORT:
             raise BadInput(f"--port: got {self.settings.port}, expected 0 (any) to {LAST_PORT}")
         refusal = f"--share: got {self.settings.share}, expected this machine's address in its own network"
-        if (share := self.settings.share) is not None and not protocol.is_private(share):
+        if (share := self.settings.share) is not None and not _is_private(share):
             raise BadInput(refusal)
         self._listen("127.0.0.1", f"--port: got {self.settings.port}, expected a free one")
         if share is not None:
@@ -148,7 +125,8 @@ class Server:
             self.bind()
         self._uvicorn = uvicorn.Server(
             uvicorn.Config(
-                self.app,
+                self._guarded,
+                interface="asgi3",
                 log_level="warning",
                 access_log=False,
                 lifespan="off",
@@ -157,14 +135,21 @@ class Server:
                 ws_per_message_deflate=False,
                 timeout_graceful_shutdown=1,
                 server_header=False,
+                headers=list(self._door.headers().items()),
             )
         )
         await self._uvicorn.serve(sockets=self._listeners)
 
-    def stop(self) -> None:
-        """End `serve` soon."""
+    def __enter__(self) -> Self:
+        self.bind()
+        self._thread = threading.Thread(target=self.run, daemon=True)
+        self._thread.start()
+        return self
+
+    def __exit__(self, *raised: object) -> None:
         if self._uvicorn is not None:
             self._uvicorn.should_exit = True
+        self._thread.join(10.0)
 
     async def _file(self, request: Request) -> Response:
         name = request.path_params.get("name", "index.html")
@@ -214,10 +199,19 @@ class Server:
         event = protocol.event(message.get("text") or "")
         if event["do"] != "hello" or event.get("version") != protocol.VERSION:
             raise BadInput("do: got no hello of this version, expected one first")
-        if not protocol.same(self.token, event.get("token")):
+        if not self.token.fits(event.get("token")):
             await _close(socket, FORBIDDEN, "token: expected the one of the address that was printed")
             return False
         return True
+
+
+def _is_private(name: str) -> bool:
+    """Return whether a name is the address of one machine in a network of one's own."""
+    try:
+        address = ipaddress.IPv4Address(name)
+    except ValueError:
+        return False
+    return address.is_private and not address.is_unspecified
 
 
 async def _close(socket: WebSocket, code: int, reason: str) -> None:
@@ -226,23 +220,6 @@ async def _close(socket: WebSocket, code: int, reason: str) -> None:
         await socket.close(code, reason.encode()[:120].decode(errors="ignore"))
     except RuntimeError:
         LOG.debug("socket was closed already")
-
-
-class Hosted:
-    """Serves within a context; `server` has the address and the token."""
-
-    def __init__(self, settings: Settings) -> None:
-        self.server = Server(settings)
-        self.server.bind()
-        self._thread = threading.Thread(target=lambda: asyncio.run(self.server.serve()), daemon=True)
-
-    def __enter__(self) -> Self:
-        self._thread.start()
-        return self
-
-    def __exit__(self, *raised: object) -> None:
-        self.server.stop()
-        self._thread.join(10.0)
 
 
 def warm_up() -> None:
@@ -264,22 +241,23 @@ def _enter_kernels() -> None:
     is there.
     """
     session = Session()
-    for name in MOTIONS:
+    for name in SOLVERS:
         events = (
             {"do": "solver", "name": name},
             {"do": "drive", "by": "rotation"},
             {"do": "pose", "pose": [0.0, 0.0, 0.1]},
             {"do": "drive", "by": "pose"},
             {"do": "pose", "pose": [0.0, -0.002, 0.0]},
+            {"do": "pause"},
             {"do": "release"},
-            {"do": "tick"},
-            {"do": "catch"},
+            {"do": "step"},
+            {"do": "reset"},
         )
         for event in events:
             session.feed({**event, "t": 0.0})
     if importlib.util.find_spec("cv2") is None:
         return
-    from studies.interactive.tracking.demo import demo_film
+    from studies.interactive.tracking.painter import demo_film
     from studies.interactive.tracking.tracker import Tracker
 
     Tracker().see(demo_film().picture(0), 0.0)

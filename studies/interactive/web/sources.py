@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from studies.errors import BadInput
-from studies.interactive.tracking.calibration import Camera
-from studies.interactive.tracking.detector import Picture, cv2, decoded, encoded
 from studies.interactive.tracking.painter import Film
+from studies.interactive.tracking.planar import Camera
+from studies.interactive.tracking.tracker import Picture, cv2, decoded, encoded
 
 #: Pictures a second of films that do not say.
 RATE = 25.0

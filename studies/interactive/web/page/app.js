@@ -24,6 +24,7 @@ const pointer = new Pointer(at("stage"), view, studio, send, controls);
 
 function send(event) {
   if (event.do !== "pose") pointer.forget();
+  if (["preset", "undo", "redo"].includes(event.do)) controls.settle();
   if (["preset", "parameter", "undo", "redo"].includes(event.do) && !event.part) studio.fresh = true;
   socket.send(event);
 }
@@ -56,6 +57,7 @@ function show(state, picture) {
   numbers.show(state, ring);
   controls.follow(state);
   at("mode").textContent = state.mode + (state.paused ? ", paused" : "");
+  at("pace").textContent = state.warnings.find((w) => w.code === "slowed")?.text ?? "";
   at("mode").classList.toggle("released", state.mode === "released");
   at("release").firstChild.textContent = state.mode === "released" ? "Catch " : "Release ";
   at("pause").firstChild.textContent = state.paused ? "Resume " : "Pause ";

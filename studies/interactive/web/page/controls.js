@@ -12,10 +12,11 @@ export class Controls {
   build(welcome) {
     this.welcome = welcome;
     at("preset").replaceChildren(...Object.entries(welcome.presets).map(([name, p]) => new Option(p.title, name)));
-    at("solver").replaceChildren(...welcome.solvers.map((name) => new Option({ energy: "energy-consistent", impulse: "impulses, stable form" }[name] ?? name, name)));
+    at("solver").replaceChildren(...Object.entries(welcome.solvers).map(([name, title]) => new Option(title, name)));
     at("preset").onchange = () => this.send({ do: "preset", name: at("preset").value });
     at("drive").onchange = () => this.send({ do: "drive", by: at("drive").value });
     at("solver").onchange = () => this.send({ do: "solver", name: at("solver").value });
+    at("sweeps").onchange = () => at("sweeps").checkValidity() && at("sweeps").value && this.send({ do: "solver", name: at("solver").value, sweeps: Number(at("sweeps").value) });
     this.flying = this.next = this.drag = null;
     at("material").replaceChildren(new Option("of one's own", ""), ...Object.keys(welcome.materials).map((name) => new Option(name, name)));
     at("material").onchange = () => at("material").value && this.send({ do: "preset", name: this.state.preset, values: { ...this.state.values, ...welcome.materials[at("material").value] } });
@@ -70,6 +71,9 @@ export class Controls {
     this.send({ ...event, part, seq: (this.flying = -++this.count) });
   }
 
+  // What waits goes up at once: what comes behind it, an undo say, is of after it.
+  settle() { this.flying = null; this.flush(); }
+
   answered(seq) {
     if (seq !== this.flying) return;
     this.flying = null;
@@ -105,6 +109,8 @@ export class Controls {
     }
     at("drive").value = state.drive;
     at("solver").value = state.solver;
+    at("sweeps-row").hidden = !/strips|constraints/.test(state.solver);
+    if (document.activeElement !== at("sweeps")) at("sweeps").value = state.sweeps;
     if (this.flying !== null || this.next) return;
     const seen = JSON.stringify([state.preset, state.values]);
     if (seen === this.seen) return;

@@ -36,7 +36,6 @@ export class Numbers {
       ["solver", `${short(state.solve_ms, 2)} ms, ${state.iterations} iterations`],
     ];
     if (state.track_ms !== undefined) rows.push(["tracking", `${short(state.track_ms, 2)} ms, ${state.sight.state}${state.sight.rms !== undefined ? `, ${state.sight.rms.toFixed(3)} px` : ""}`]);
-    if (state.lag >= 1) rows.push(["behind", `${short(state.lag)} steps`]);
     at("numbers").replaceChildren(...rows.flatMap(([name, value]) => {
       const term = document.createElement("dt"), data = document.createElement("dd");
       term.textContent = name; data.textContent = value;

@@ -1,15 +1,15 @@
 """Pictures of the page for its description: what is on the screen, by number.
 
-python -m studies.interactive.web.pictures docs/pictures
+python -m tests.interactive.pictures docs/pictures
 """
 
 import sys
 import time
 from pathlib import Path
 
-from studies.interactive.tracking.demo import demo_film
+from studies.interactive.tracking.painter import demo_film
 from studies.interactive.web.browser import Browser
-from studies.interactive.web.server import Hosted, Settings, warm_up
+from studies.interactive.web.server import Server, Settings, warm_up
 from studies.interactive.web.sources import FilmSource
 
 #: What the numbers stand at, from 1 on.
@@ -42,21 +42,21 @@ def main(folder: Path) -> None:
     """Write the pictures, as a laptop and a phone show the page."""
     warm_up()
     source = FilmSource(demo_film())
-    with Hosted(Settings(camera="none")) as hosted:
+    with Server(Settings(camera="none")) as hosted:
         with Browser(width=1366, height=768) as browser:
-            _open(browser, hosted.server.address)
+            _open(browser, hosted.address)
             for name, value in TYPED:
                 browser.ask(f"{TYPE}({name!r}, {value})")
             browser.ask(NUMBERED % list(PARTS))
             _take(browser, folder / "interactive_hand.png")
         with Browser(width=390, height=844) as browser:
             browser.call("Emulation.setTouchEmulationEnabled", enabled=True)
-            _open(browser, hosted.server.address)
+            _open(browser, hosted.address)
             browser.ask(f"{TYPE}('rotation in °', 30)")
             _take(browser, folder / "interactive_phone.png")
-    film = Hosted(Settings(camera="film", source=lambda: source))
+    film = Server(Settings(camera="film", source=lambda: source))
     with film as hosted, Browser(width=1366, height=768) as browser:
-        _open(browser, hosted.server.address)
+        _open(browser, hosted.address)
         browser.wait(f"studio.drawn.seq >= {FRAME}", 120.0)
         _take(browser, folder / "interactive_camera.jpg")
 
