@@ -16,12 +16,13 @@ import warnings
 from collections.abc import Mapping, Sequence
 from importlib import import_module
 from pathlib import Path
+from pkgutil import iter_modules
 from typing import Any
 
 import typst
 
-from report.facts import FACTS, HOLDS, LISTINGS, held, listed, written
-from report.results import ReportError, Results
+import report.content
+from report.facts import FACTS, HOLDS, LISTINGS, Register, ReportError, Results
 from studies.errors import BadInput
 from studies.record.files import require_writable_file, write_whole
 from studies.record.source import ROOT
@@ -55,15 +56,11 @@ def typeset(content: Mapping[str, Any]) -> bytes:
                 format="pdf",
             )
     except (typst.TypstError, typst.TypstWarning) as error:
-        raise ReportError(f"text: {_one_line(error)}") from None
+        # without typst's drawing of the source
+        raise ReportError(f"text: {' '.join(error.message.split())}") from None
     if not isinstance(pdf, bytes):
         raise ReportError("text: got no pages from typst, expected one document")
     return pdf
-
-
-def _one_line(error: typst.TypstError | typst.TypstWarning) -> str:
-    """Return what typst says, without its drawing of the source."""
-    return " ".join(error.message.split())
 
 
 def main(words: Sequence[str] | None = None) -> int:
@@ -92,27 +89,14 @@ def main(words: Sequence[str] | None = None) -> int:
     return 0
 
 
-#: Modules of `report.content`, in the order of the sections.
-CONTENT = (
-    "problem",
-    "paper",
-    "convergence",
-    "cost",
-    "hard_cases",
-    "effects",
-    "designs",
-    "charts",
-    "supplement",
-)
-
 #: What typst compiles: the text, beside the numbers, that a fingerprint must cover.
 SOURCES = ("report.typ", "lib.typ", "drawing.typ", "references.yml", "sections/*.typ")
 
 
-def quotable() -> dict[str, dict[str, Any]]:
+def quotable() -> dict[str, Register]:
     """Return what `report.content` gives by kind and name."""
-    for module in CONTENT:
-        import_module(f"report.content.{module}")
+    for module in iter_modules(report.content.__path__):
+        import_module(f"report.content.{module.name}")
     return {"facts": FACTS, "holds": HOLDS, "listings": LISTINGS}
 
 
@@ -122,12 +106,11 @@ def gathered(results: Results) -> dict[str, Any]:
     Raises:
         ReportError: a result is stale or missing, or does not have what is quoted.
     """
-    made: dict[str, Any] = {"facts": written, "holds": held, "listings": listed}
     content: dict[str, Any] = {
-        kind: {name: made[kind](name, entry, results) for name, entry in entries.items()}
+        kind: {name: entry.given(f"{kind} {name}", results) for name, entry in entries.items()}
         for kind, entries in quotable().items()
     }
-    content["figures"] = _figures(results)
+    content["figures"] = {name: digest for name, (_, digest) in results.figures().items()}
     content["date"] = max(results.record(study)["date"] for study in STUDIES)
     content["stale"] = sorted(results.stale)
     content["fingerprint"] = fingerprint(content)
@@ -141,16 +124,6 @@ def fingerprint(content: dict[str, Any]) -> str:
         for path in sorted((ROOT / "report").glob(pattern)):
             digest.update(path.read_bytes())
     return digest.hexdigest()
-
-
-def _figures(results: Results) -> dict[str, str]:
-    """Return the hash of every vector figure by its name; none is stale, or the build ends here."""
-    return {
-        file.removesuffix(".svg"): digest
-        for study in STUDIES
-        for file, digest in results.record(study)["figures"].items()
-        if file.endswith(".svg")
-    }
 
 
 if __name__ == "__main__":

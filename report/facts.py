@@ -1,91 +1,177 @@
-"""Facts, sentences that hold, and tables: what the text may quote, and where each of them comes from.
+"""Facts, sentences that hold, and tables: what the text may quote, and the stored results it comes from.
 
-The modules of `report.content` enter them here by name: numbers with `facts`, conditions and tables as
-functions of the results under `holds` and `listing`.
+The modules of `report.content` enter what is quoted here by name: numbers in `FACTS`, conditions and
+tables as functions of the results under `holds` and `listing`.
 """
 
 import math
+import tomllib
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, TypeVar
+from functools import cache
+from typing import Any, Self
 
 import pandas as pd
 
-from report.forms import Form, text
-from report.results import ReportError, Results, column, where
+from report.forms import Form
+from studies.errors import BadInput
+from studies.record.source import ROOT
+from studies.record.store import Store
+from studies.registry import STUDIES
 
-Entry = TypeVar("Entry")
+#: One cell of a table: text, or text with a colour beside it.
+Cell = str | dict[str, str]
+#: A table of the report: its heading, then rows of cells, one for each part of the heading.
+Table = Iterable[Sequence[Cell]]
+#: Heading -> the column below it and how its values are written, or the cell made of a whole row.
+Shown = Mapping[str, tuple[str, Callable[[Any], Cell]] | Callable[[Any], Cell]]
+
+
+class ReportError(BadInput):
+    """A number, figure or sentence that the stored results do not give."""
+
+
+class Results:
+    """The tables of all studies. A stale or missing one ends the build where it is first asked for.
+
+    Attributes:
+        store: where the results are.
+        stale: study -> why, of those that are not fresh; filled only where `allow_stale` let them pass.
+    """
+
+    def __init__(self, store: Store, *, allow_stale: bool = False) -> None:
+        self.store = store
+        self.stale: dict[str, str] = {}
+        self._allow_stale = allow_stale
+        self._tables: dict[str, dict[str, pd.DataFrame]] = {}
+
+    def table(self, study: str, name: str) -> pd.DataFrame:
+        """Return a stored table of `study`.
+
+        Raises:
+            ReportError: no such study or table, or the stored result is not that of today's source.
+        """
+        tables = self._of(study)
+        if name not in tables:
+            raise ReportError(f"{study}: got no table {name}, expected one of {', '.join(tables)}")
+        return tables[name]
+
+    def record(self, study: str) -> Mapping[str, Any]:
+        """Return the provenance of `study`, which must be fresh as its tables."""
+        self._of(study)
+        return self.store.record(study)
+
+    def figures(self) -> dict[str, tuple[str, str]]:
+        """Return study and hash of every vector figure by its name; none is stale."""
+        return {
+            file.removesuffix(".svg"): (study, digest)
+            for study in STUDIES
+            for file, digest in self.record(study)["figures"].items()
+            if file.endswith(".svg")
+        }
+
+    def _of(self, study: str) -> dict[str, pd.DataFrame]:
+        if study not in self._tables:
+            self._require_fresh(study)
+            self._tables[study] = self.store.load_tables(study)
+        return self._tables[study]
+
+    def _require_fresh(self, study: str) -> None:
+        if study not in STUDIES:
+            raise ReportError(f"{study}: got no such study, expected one of {', '.join(STUDIES)}")
+        remedy = f"expected a fresh result: `python -m studies run {study}`"
+        try:
+            cases = self.store.record(study)["inputs"]["cases"]
+        except FileNotFoundError:
+            raise ReportError(f"{study}: got no stored result, {remedy}") from None
+        # the names of the cases are part of the source that is compared, so those noted suffice here and the
+        # study, with the models behind it, need not be imported
+        state = self.store.state(study, module=STUDIES[study], cases=cases)
+        if state.kind == "fresh":
+            return
+        if state.kind == "missing" or not self._allow_stale:
+            raise ReportError(f"{study}: got a {state.kind} result ({state.reason}), {remedy}")
+        self.stale[study] = state.reason
 
 
 @dataclass(frozen=True, kw_only=True)
 class Fact:
-    """A number of the text.
+    """A number of the text, a condition that a sentence rests on, or a table.
 
     Attributes:
         made: the value from all results; LookupError when a table does not have what it is made of.
-        form: how it is written. source: where the value comes from, for messages.
+        form: how the text gets it; ValueError when it cannot be written.
+        said: where it comes from, or what must be true, for messages.
     """
 
     made: Callable[[Results], Any]
-    form: Form
-    source: str = "several tables"
+    form: Callable[[Any], Any]
+    said: str = "several tables"
+
+    def given(self, name: str, results: Results) -> Any:
+        """Return what the text gets.
+
+        Raises:
+            ReportError: the value is not there, or not a finite number.
+        """
+        try:
+            value = self.made(results)
+            if isinstance(value, float) and not math.isfinite(value):
+                raise ValueError(f"{value} is no number to write")
+            return self.form(value)
+        except ReportError:
+            raise
+        except (LookupError, TypeError, ValueError) as error:
+            raise ReportError(f"{name}: {error} ({self.said})") from None
 
 
-@dataclass(frozen=True, kw_only=True)
-class Holds:
-    """A condition that a sentence of the report rests on.
+class Register(dict[str, Fact]):
+    """Facts by name, each entered once."""
 
-    Attributes:
-        words: what must be true, for the message when it is not.
-        test: whether it is true.
-        timed: whether it rests on measured seconds. Its sentence is then replaced by what was not so in the
-            run that the tables are of, where others are no longer printed at all: a machine may be busy.
-    """
+    def __setitem__(self, name: str, fact: Fact) -> None:
+        if name in self:
+            raise ReportError(f"report.content: got {name} twice, expected one of a name")
+        super().__setitem__(name, fact)
 
-    words: str
-    test: Callable[[Results], Any]
-    timed: bool = False
+    def __ior__(self, given: Any) -> Self:  # type: ignore[misc, override]
+        for name, fact in given.items():
+            self[name] = fact
+        return self
 
 
-#: One cell of a table: text, or text with a colour beside it.
-Cell = str | dict[str, str]
-Rows = list[Sequence[Cell]]
-#: A table of the report: its heading and rows of cells, one for each part of the heading.
-Table = tuple[list[str], Rows]
-#: Heading -> the column below it and how its values are written, or the cell made of a whole row.
-Shown = dict[str, tuple[str, Callable[[Any], Cell]] | Callable[[Any], Cell]]
-Listing = Callable[[Results], Table]
-
-#: What the text may quote, by name.
-FACTS: dict[str, Fact] = {}
-HOLDS: dict[str, Holds] = {}
-LISTINGS: dict[str, Listing] = {}
-
-
-def _enter(entries: dict[str, Entry], name: str, entry: Entry) -> None:
-    if name in entries:
-        raise ReportError(f"report.content: got {name} twice, expected one of a name")
-    entries[name] = entry
-
-
-def facts(given: Mapping[str, Fact]) -> None:
-    """Enter facts by name."""
-    for name, fact in given.items():
-        _enter(FACTS, name, fact)
+#: What the text may quote, by name: numbers, conditions, tables.
+FACTS, HOLDS, LISTINGS = Register(), Register(), Register()
 
 
 def holds(name: str, *, timed: bool = False) -> Callable[[Callable[[Results], Any]], None]:
-    """Enter a condition: a function of the results whose docstring says what must be true."""
+    """Enter a condition: a function of the results whose docstring says what must be true.
+
+    `timed`: whether it rests on measured seconds. Its sentence is then replaced by what was not so in the run
+    that the tables are of, where others are no longer printed at all: a machine may be busy.
+    """
 
     def enter(test: Callable[[Results], Any]) -> None:
-        _enter(HOLDS, name, Holds(words=" ".join((test.__doc__ or name).split()), test=test, timed=timed))
+        words = " ".join((test.__doc__ or name).split())
+
+        def form(value: Any) -> dict[str, Any]:
+            return {"holds": bool(value), "words": words, "timed": timed}
+
+        HOLDS[name] = Fact(made=test, form=form, said=words)
 
     return enter
 
 
-def listing(name: str) -> Callable[[Listing], None]:
+def table(given: Table) -> dict[str, Any]:
+    """Return heading and rows; ValueError without rows, or with one of another length than the heading."""
+    head, *rows = given
+    if not rows or any(len(row) != len(head) for row in rows):
+        raise ValueError(f"got no rows, or rows of another length than {len(head)}")
+    return {"head": head, "rows": rows}
+
+
+def listing(name: str) -> Callable[[Callable[[Results], Table]], None]:
     """Enter a table: a function of the results."""
-    return lambda made: _enter(LISTINGS, name, made)
+    return lambda made: LISTINGS.__setitem__(name, Fact(made=made, form=table, said="a table"))
 
 
 class Stored:
@@ -108,8 +194,8 @@ class Stored:
 
     def fact(self, pick: Callable[[pd.DataFrame], Any], form: Form, /, **equal: Any) -> Fact:
         """Return a fact that `pick` makes of the rows."""
-        source = f"{self._study}/{self._table}"
-        return Fact(made=lambda results: pick(self.rows(results, **equal)), form=form, source=source)
+        said = f"{self._study}/{self._table}"
+        return Fact(made=lambda results: pick(self.rows(results, **equal)), form=form, said=said)
 
     def at(self, name: str, form: Form, /, **equal: Any) -> Fact:
         """Return the fact that is the value of a column in the one row that there is."""
@@ -135,61 +221,32 @@ def _only(name: str, equal: Mapping[str, Any]) -> Callable[[pd.DataFrame], Any]:
 
 def columns(rows: pd.DataFrame, shown: Shown) -> Table:
     """Return a table with a row for each of `rows`."""
-    cells: Rows = [
-        [made(row) if callable(made) else made[1](row[made[0]]) for made in shown.values()]
-        for row in rows.to_dict("records")
-    ]
-    return list(shown), cells
+    yield list(shown)
+    for row in rows.to_dict("records"):
+        yield [made(row) if callable(made) else made[1](row[made[0]]) for made in shown.values()]
 
 
-def unmet(results: Results, tables: Iterable[tuple[str, str]], form: Form, measured: str) -> Table:
-    """Return the findings that do not hold, of (study, table) each, or that there are none."""
-    found = pd.concat([results.table(*each).query("holds == 'no'") for each in tables])
-    words: Shown = {"claim that does not hold": ("claim", text), "for": ("formulation", text)}
-    head, rows = columns(found, {**words, measured: ("value", form)})
-    return head, rows or [["none", "–", "–"]]
-
-
-def written(name: str, given: Fact, results: Results) -> str:
-    """Return the text of a fact.
+def where(table: pd.DataFrame, /, **equal: Any) -> pd.DataFrame:
+    """Return the rows of `table` whose columns have the values `equal`.
 
     Raises:
-        ReportError: the value is not there, or not a finite number.
+        LookupError: no such column, or no such row.
     """
-    try:
-        value = given.made(results)
-        if not isinstance(value, str) and not math.isfinite(float(value)):
-            raise ValueError(f"{value} is no number to write")
-        return given.form(value)
-    except (LookupError, TypeError, ValueError) as error:
-        if isinstance(error, ReportError):
-            raise
-        raise ReportError(f"fact {name}: {error} ({given.source})") from None
+    for name, value in equal.items():
+        table = table[column(table, name) == value]
+        if table.empty:
+            raise LookupError(f"no row with {name} = {value}")
+    return table
 
 
-def held(name: str, condition: Holds, results: Results) -> dict[str, Any]:
-    """Return whether a condition holds, with its words.
-
-    Raises:
-        ReportError: the results do not have what it asks for.
-    """
-    try:
-        answer = bool(condition.test(results))
-    except (LookupError, TypeError) as error:
-        raise ReportError(f"condition {name}: {error} ({condition.words})") from None
-    return {"holds": answer, "words": condition.words, "timed": condition.timed}
+def column(table: pd.DataFrame, name: str) -> Any:
+    """Return a column of `table`; LookupError when it has none of that name."""
+    if name not in table:
+        raise LookupError(f"no column {name}, there are {', '.join(table.columns)}")
+    return table[name]
 
 
-def listed(name: str, made: Listing, results: Results) -> dict[str, Any]:
-    """Return a table as heading and rows.
-
-    Raises:
-        ReportError: a row of another length than the heading, no row, or something that is not there.
-    """
-    try:
-        head, rows = made(results)
-    except (LookupError, TypeError) as error:
-        raise ReportError(f"table {name}: {error}") from None
-    if not rows or any(len(row) != len(head) for row in rows):
-        raise ReportError(f"table {name}: got no rows, or rows of another length than {len(head)}")
-    return {"head": head, "rows": rows}
+@cache
+def gates() -> dict[str, dict[str, Any]]:
+    """Return every gate by name: limit, unit, measured, against."""
+    return tomllib.loads((ROOT / "tests" / "gates.toml").read_text(encoding="utf-8"))

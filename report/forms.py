@@ -107,13 +107,3 @@ def dash(form: Form) -> Form:
 def degrees(value: Any) -> str:
     """Return an angle given in radians in degrees."""
     return f"{math.degrees(float(value)):.3g}°"
-
-
-def text(value: Any) -> str:
-    """Return a word as it stands."""
-    return str(value)
-
-
-def short_hash(value: str) -> str:
-    """Return the first characters of a hash, enough to tell it from others."""
-    return value[:10]

@@ -4,9 +4,8 @@ from typing import Any
 
 import pandas as pd
 
-from report.facts import Fact, Rows, Shown, Stored, Table, columns, facts, holds, listing
+from report.facts import FACTS, Fact, Results, Shown, Stored, Table, columns, holds, listing
 from report.forms import angle, count, dash, digits, percent, significant
-from report.results import Results
 
 RANGES, POINTS, VALIDITY, COLLAPSE, LOADS, LIMITS = (
     Stored("charts/pivot", name) for name in ("ranges", "points", "validity", "collapse", "loads", "limits")
@@ -22,26 +21,24 @@ ENDS = {"width": "width_ratio", "thick": "thickness_ratio", "bent": "curvature_r
 @listing("ranges")
 def _ranges(results: Results) -> Table:
     found = RANGES.rows(results).pivot(index="crossing_ratio", columns="strength", values="rotation_deg")
-    rows: Rows = [
-        [f"λ = {significant(ratio, 3)}", *map(dash(angle()), own)]
-        for ratio, own in zip(found.index, found.to_numpy(), strict=True)
-    ]
-    return ["crossing ratio", *(f"strength {significant(each, 1)}" for each in found.columns)], rows
+    yield ["crossing ratio", *(f"strength {significant(each, 1)}" for each in found.columns)]
+    for ratio, own in found.iterrows():
+        yield [f"λ = {significant(ratio, 3)}", *map(dash(angle()), own)]
 
 
 @listing("points")
 def _points(results: Results) -> Table:
-    rows: Rows = []
-    for quantity in ("torque", "stiffness"):
-        own = POINTS.rows(results, quantity=quantity)
-        found = own.pivot(index="error", columns="rotation_deg", values="control_points")
-        for level, points in sorted(found.iterrows(), reverse=True):
-            rows.append([f"{quantity} to {percent(level)}", *map(dash(count), points)])
-    return ["error", *(f"{turn:.0f}°" for turn in found.columns)], rows
+    found = POINTS.rows(results).pivot(
+        index=["quantity", "error"], columns="rotation_deg", values="control_points"
+    )
+    yield ["error", *(f"{turn:.0f}°" for turn in found.columns)]
+    for row in found.sort_index(ascending=False).reset_index().to_dict("split")["data"]:
+        yield [f"{row[0]} to {percent(row[1])}", *map(dash(count), row[2:])]
 
 
 @listing("validity")
 def _validity(results: Results) -> Table:
+    pivots = VALIDITY.rows(results).sort_values("thickness_ratio")
     shown: Shown = {
         "pivot": (
             "pivot",
@@ -58,7 +55,7 @@ def _validity(results: Results) -> Table:
         "roots": ("roots", percent),
         "shear": ("shear", percent),
     }
-    return columns(VALIDITY.rows(results).sort_values("thickness_ratio"), shown)
+    return columns(pivots, shown)
 
 
 def _collapse(results: Results, pick: str, *quantities: str) -> float:
@@ -111,29 +108,27 @@ def _first(name: str) -> Fact:
     return LIMITS.at("value", form, ratio=ENDS[name], share=0.01)
 
 
-facts({f"charts.{name}-one": _first(name) for name in ENDS})
-facts(
-    {
-        "charts.from": Fact(made=lambda _: FROM, form=significant),
-        "charts.collapse.most": Fact(made=_others, form=percent),
-        "charts.collapse.shift": Fact(made=lambda r: _collapse(r, "largest", "shift"), form=percent),
-        "charts.collapse.shift.median": Fact(made=lambda r: _collapse(r, "median", "shift"), form=percent),
-        "charts.example.strain": Fact(made=lambda _: EXAMPLE_STRAIN, form=digits(1)),
-        "charts.example.slenderness": Fact(made=lambda _: EXAMPLE_SLENDERNESS, form=significant),
-        "charts.example.strength": Fact(made=lambda _: EXAMPLE_STRAIN * EXAMPLE_SLENDERNESS, form=digits(1)),
-        "charts.example.range": _range(MIDDLE),
-        "charts.example.range.shiftless": _range(SHIFTLESS),
-        "charts.example.ratio": Fact(made=lambda _: SHIFTLESS, form=digits(4)),
-        "charts.farthest": Stored("charts/pivot", "map").largest("rotation_deg", angle()),
-        "charts.tips": Fact(made=_tips, form=significant),
-        "charts.buckles": Stored("charts/pivot", "buckling").at(
-            "load", significant, crossing_ratio=MIDDLE, inclination_deg=45
-        ),
-        "charts.insensitive": Fact(made=_insensitive, form=percent),
-        "charts.load": LOADS.largest("load", significant),
-        "charts.four": Fact(made=_kept, form=angle()),
-    }
-)
+FACTS |= {f"charts.{name}-one": _first(name) for name in ENDS}
+FACTS |= {
+    "charts.from": Fact(made=lambda _: FROM, form=significant),
+    "charts.collapse.most": Fact(made=_others, form=percent),
+    "charts.collapse.shift": Fact(made=lambda r: _collapse(r, "largest", "shift"), form=percent),
+    "charts.collapse.shift.median": Fact(made=lambda r: _collapse(r, "median", "shift"), form=percent),
+    "charts.example.strain": Fact(made=lambda _: EXAMPLE_STRAIN, form=digits(1)),
+    "charts.example.slenderness": Fact(made=lambda _: EXAMPLE_SLENDERNESS, form=significant),
+    "charts.example.strength": Fact(made=lambda _: EXAMPLE_STRAIN * EXAMPLE_SLENDERNESS, form=digits(1)),
+    "charts.example.range": _range(MIDDLE),
+    "charts.example.range.shiftless": _range(SHIFTLESS),
+    "charts.example.ratio": Fact(made=lambda _: SHIFTLESS, form=digits(4)),
+    "charts.farthest": Stored("charts/pivot", "map").largest("rotation_deg", angle()),
+    "charts.tips": Fact(made=_tips, form=significant),
+    "charts.buckles": Stored("charts/pivot", "buckling").at(
+        "load", significant, crossing_ratio=MIDDLE, inclination_deg=45
+    ),
+    "charts.insensitive": Fact(made=_insensitive, form=percent),
+    "charts.load": LOADS.largest("load", significant),
+    "charts.four": Fact(made=_kept, form=angle()),
+}
 
 
 @holds("charts.collapse")

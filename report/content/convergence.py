@@ -5,9 +5,8 @@ from typing import Any
 
 import pandas as pd
 
-from report.facts import Fact, Rows, Stored, Table, facts, holds, listing
+from report.facts import FACTS, Fact, Results, Stored, Table, holds, listing, where
 from report.forms import count, digits, percent, power, signed_percent, significant, times, unit
-from report.results import Results, where
 from studies.record.style import COUNT_COLOURS, GREY, RED
 
 SLIDE = "convergence/slide_stiffness"
@@ -104,16 +103,12 @@ def _agreement(results: Results) -> Table:
         *((f"spline n = {n}, locking-free", COUNT_COLOURS[n], free(n)) for n in COUNTS),
         ("FE, 20 elements", GREY, MESHES.where(elements=20)),
     ]
-    rows: Rows = [
-        [
-            {"text": label, "colour": colour},
-            *(power(errors.value(results, f"error_{name}")) for name in QUANTITIES),
-        ]
-        for label, colour, errors in shown
-    ]
+    yield ["largest error from rest to 90°", *QUANTITIES]
+    for label, colour, errors in shown:
+        own = (power(errors.value(results, f"error_{name}")) for name in QUANTITIES)
+        yield [{"text": label, "colour": colour}, *own]
     unsure = (power(UNSURE.value(results, "uncertainty", quantity=name)) for name in QUANTITIES)
-    rows.append(["uncertainty of the reference", *unsure])
-    return ["largest error from rest to 90°", *QUANTITIES], rows
+    yield ["uncertainty of the reference", *unsure]
 
 
 LOCKS, UNLOCKED = "n = 4, consistent stretch", "n = 4, mixed stretch"
@@ -123,45 +118,46 @@ AT_REST = "The first mode at rest shows the shift of the swing"
 ALIKE = "Both models swing alike at every amplitude from 2 to 90 degrees"
 TWELVE = MAP.where(**DEFAULT | {"basis": "bspline"}, control_points=12, axial_modes=10)
 
-facts(
-    {
-        "map.free.torque": free(4).at("error_torque", percent),
-        **{
-            f"map.{name}.torque": free(n).at("error_torque", power)
-            for name, n in (("six", 6), ("seven", 7), ("eight", 8), ("twelve", 12))
-        },
-        "map.needed": Fact(made=lambda r: _needed(_fewer(r, 2)), form=count),
-        "map.needed.consistent": Fact(made=lambda r: _needed(_consistent(r)), form=count),
-        "map.one-more": Fact(made=_gain, form=times),
-        "map.spatial.trajectory": _floor("error_trajectory", measure="spatial", stretch="mixed"),
-        "map.spatial.torque": _floor("error_torque", measure="spatial", stretch="mixed"),
-        "map.inextensible.torque": _floor("error_torque", measure="material", stretch="inextensible"),
-        "map.bspline.torque": TWELVE.at("error_torque", power),
-        "elements.order": MESHES.at("order_torque", digits(4), elements=160),
-        "elements.twenty.torque": MESHES.at("error_torque", power, elements=20),
-        "elements.as-six": Fact(made=_as_good_as_six, form=count),
-        "elements.largest.torque": MESHES.at("error_torque", power, elements=320),
-        "swing.explained": SWING.at("value", lambda v: percent(1.0 - v), claim=STIFFER, formulation=LOCKS),
-        "swing.locking": SWING.at("value", percent, claim=MEMBRANE, formulation=LOCKS),
-        "swing.consistent": SHIFTS.at("shift", signed_percent, stretch="consistent", control_points=4),
-        "swing.mixed": SHIFTS.at("shift", signed_percent, stretch="mixed", control_points=4),
-        "swing.ten": Fact(made=_ten, form=percent),
-        "swing.at-rest": SWING.at("value", power, claim=AT_REST, formulation=UNLOCKED),
-        "backbone.rest": BACKBONE.least("frequency_Hz", unit("Hz", 4)),
-        "backbone.end": BACKBONE.largest("frequency_Hz", unit("Hz", 4)),
-        "backbone.difference": SWING.at("value", percent, claim=ALIKE, formulation="n = 6"),
-        "slide.worst": SLID.largest("value", times),
-        "slide.worst.error": Fact(made=_worst_slide, form=power),
-        "slide.failed": SLID.fact(lambda rows: (rows["holds"] == "no").sum(), count),
-        "slide.tried": SLID.fact(len, count),
-        "estimate.statics": ESTIMATES.fact(len, count, problem="statics"),
-        "estimate.statics.designs": ESTIMATES.fact(_designs, count, problem="statics"),
-        "estimate.motion.designs": ESTIMATES.fact(_designs, count, problem="motion"),
-        "estimate.least": ESTIMATES.least("effectivity", significant),
-        "estimate.largest": ESTIMATES.largest("effectivity", significant),
-        "estimate.cost": Stored("convergence/error_estimate", "timings").largest("time_ratio", significant),
-    }
-)
+FACTS |= {
+    "map.free.torque": free(4).at("error_torque", percent),
+    **{
+        f"map.{name}.torque": free(n).at("error_torque", power)
+        for name, n in (("six", 6), ("seven", 7), ("eight", 8), ("twelve", 12))
+    },
+    "map.needed": Fact(made=lambda r: _needed(_fewer(r, 2)), form=count),
+    "map.needed.consistent": Fact(made=lambda r: _needed(_consistent(r)), form=count),
+    "map.one-more": Fact(made=_gain, form=times),
+    "map.spatial.trajectory": _floor("error_trajectory", measure="spatial", stretch="mixed"),
+    "map.spatial.torque": _floor("error_torque", measure="spatial", stretch="mixed"),
+    "map.inextensible.torque": _floor("error_torque", measure="material", stretch="inextensible"),
+    "map.bspline.torque": TWELVE.at("error_torque", power),
+    "elements.order": MESHES.at("order_torque", digits(4), elements=160),
+    "elements.twenty.torque": MESHES.at("error_torque", power, elements=20),
+    "elements.as-six": Fact(made=_as_good_as_six, form=count),
+    "elements.largest.torque": MESHES.at("error_torque", power, elements=320),
+    "swing.explained": SWING.at("value", lambda v: percent(1.0 - v), claim=STIFFER, formulation=LOCKS),
+    "swing.locking": SWING.at("value", percent, claim=MEMBRANE, formulation=LOCKS),
+    "swing.consistent": SHIFTS.at("shift", signed_percent, stretch="consistent", control_points=4),
+    "swing.mixed": SHIFTS.at("shift", signed_percent, stretch="mixed", control_points=4),
+    "swing.ten": Fact(made=_ten, form=percent),
+    "swing.at-rest": SWING.at("value", power, claim=AT_REST, formulation=UNLOCKED),
+    "backbone.rest": BACKBONE.least("frequency_Hz", unit("Hz", 4)),
+    "backbone.end": BACKBONE.largest("frequency_Hz", unit("Hz", 4)),
+    "backbone.difference": SWING.at("value", percent, claim=ALIKE, formulation="n = 6"),
+    "slide.worst": SLID.largest("value", times),
+    "slide.worst.error": Fact(made=_worst_slide, form=power),
+    "slide.failed": SLID.fact(lambda rows: (rows["holds"] == "no").sum(), count),
+    "slide.tried": SLID.fact(len, count),
+    "estimate.statics": ESTIMATES.fact(len, count, problem="statics"),
+    "estimate.statics.designs": ESTIMATES.fact(_designs, count, problem="statics"),
+    "estimate.motion.designs": ESTIMATES.fact(_designs, count, problem="motion"),
+    "estimate.motion.all": Stored("convergence/error_estimate", "estimates").fact(
+        _designs, count, problem="motion"
+    ),
+    "estimate.least": ESTIMATES.least("effectivity", significant),
+    "estimate.largest": ESTIMATES.largest("effectivity", significant),
+    "estimate.cost": Stored("convergence/error_estimate", "timings").largest("time_ratio", significant),
+}
 
 
 @holds("map.two-more")

@@ -8,9 +8,8 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from report.facts import Fact, Rows, Stored, Table, facts, holds, listing, unmet
-from report.forms import angle, count, decade, digits, percent, power, seconds, significant, times, unit
-from report.results import Results
+from report.facts import FACTS, Fact, Results, Stored, Table, holds, listing
+from report.forms import angle, count, decade, percent, power, seconds, significant, times, unit
 
 CODES, STATIC, MOVING = "baselines/peers", "work_precision/statics", "work_precision/dynamics"
 #: Groups of the comparison beside the spline, in the order of the table.
@@ -18,6 +17,7 @@ GROUPS = ("finite elements", "Exudyn", "Exudyn as delivered", "OpenSees", "surro
 TASKS = {"path": Stored(CODES, "statics_ratios"), "swing": Stored(CODES, "swings_ratios")}
 WAITS = Stored("work_precision/waits", "waits_of_time")
 SPLINE, ELEMENTS = "spline, n = 6", "80 elements"
+WHOLE, ALONE = "whole call", "increments alone"
 LANGUAGE = Stored(STATIC, "language", series="finite elements", setting="20 elements")
 SURROGATES = "baselines/surrogates"
 ERRORS, REACHED = Stored(SURROGATES, "errors"), Stored(SURROGATES, "thresholds", level=0.01)
@@ -62,15 +62,14 @@ def _timed(row: Any, kind: str) -> str:
 
 def _compared(results: Results, spline: Callable[[Any], str], peer: Callable[[Any], str]) -> Table:
     """Return all models at equal error, each cell made by `spline` or `peer` of a row of the ratios."""
-    rows: Rows = []
+    yield ["task, error", "spline", *GROUPS]
     for task, table in TASKS.items():
         for level, found in sorted(table.rows(results).groupby("level"), reverse=True):
             groups = {str(row["group"]): row for row in found.to_dict("records")}
             error = decade(level) if task == "path" else unit("rad", 1)(level)
             held = [groups.get(group, {"ratio": np.nan}) for group in GROUPS]
             cells = ["–" if pd.isna(row["ratio"]) else peer(row) for row in held]
-            rows.append([f"{task}, {error}", spline(found.iloc[0]), *cells])
-    return ["task, error", "spline", *GROUPS], rows
+            yield [f"{task}, {error}", spline(found.iloc[0]), *cells]
 
 
 @listing("cost")
@@ -92,39 +91,30 @@ def _settings(results: Results) -> Table:
 @listing("waits")
 def _waits(results: Results) -> Table:
     models = list(dict.fromkeys(WAITS.rows(results)["model"]))
-    rows: Rows = []
-    for what in ("command line", "import of the suite", "first call", "whole call", "increments alone"):
+    yield ["what is waited for", *models]
+    for what in ("command line", "import of the suite", "first call", WHOLE, ALONE):
         found = (WAITS.rows(results, what=what, model=model).iloc[0] for model in models)
         times_of = ([seconds(row[name]) for name in ("solve_s", "low_s", "high_s")] for row in found)
-        rows.append([what, *(f"{median} ({low} to {high})" for median, low, high in times_of)])
-    return ["what is waited for", *models], rows
+        yield [what, *(f"{median} ({low} to {high})" for median, low, high in times_of)]
 
 
 def _waited(results: Results, what: str, model: str = SPLINE) -> float:
     return float(WAITS.value(results, "solve_s", what=what, model=model))
 
 
-def _slower(what: str) -> Fact:
-    """Return how many times the spline's wait the elements' is."""
-    return Fact(made=lambda r: _waited(r, what, ELEMENTS) / _waited(r, what), form=times)
-
-
-def _around(model: str) -> Fact:
-    """Return how many times its increments a whole call takes."""
-    return Fact(
-        made=lambda r: _waited(r, "whole call", model) / _waited(r, "increments alone", model), form=times
-    )
+def _slower(one: tuple[str, str], other: tuple[str, str]) -> Fact:
+    """Return how many times the wait `other` the wait `one` is, each what is waited for of which model."""
+    return Fact(made=lambda r: _waited(r, *one) / _waited(r, *other), form=times)
 
 
 @listing("surrogates")
 def _models(results: Results) -> Table:
-    rows: Rows = []
+    yield ["model", *QUANTITIES, "path within 1 % to", "torque to", "stiffness to"]
     for model in (*SIMPLE, *FOUR_POINTS.values(), "n = 6"):
         errors = ERRORS.rows(results, model=model)[list(QUANTITIES)].abs().max()
         ends = (REACHED.value(results, "rotation_deg", model=model, quantity=name) for name in QUANTITIES)
         reached = ("the end" if pd.isna(end) else angle()(end) for end in ends)
-        rows.append([SIMPLE.get(model, f"spline {model}"), *map(percent, errors), *reached])
-    return ["model", *QUANTITIES, "path within 1 % to", "torque to", "stiffness to"], rows
+        yield [SIMPLE.get(model, f"spline {model}"), *map(percent, errors), *reached]
 
 
 def _path_errors(results: Results) -> pd.DataFrame:
@@ -134,11 +124,10 @@ def _path_errors(results: Results) -> pd.DataFrame:
     return errors[errors.index > 0.0]
 
 
-def _nearer(results: Results, model: str) -> "pd.Series[Any]":
+def _nearer(results: Results, model: str) -> Any:
     """Return whether the four-bar's path is nearer to the truth than that of `model`, by rotation [deg]."""
     errors = _path_errors(results)
-    nearer: pd.Series[Any] = errors[model] > errors["four-bar"]
-    return nearer
+    return errors[model] > errors["four-bar"]
 
 
 def _turns(model: str, pick: Callable[[Any], Any], results: Results) -> Any:
@@ -146,74 +135,57 @@ def _turns(model: str, pick: Callable[[Any], Any], results: Results) -> Any:
     return pick(nearer.index[nearer])
 
 
-def _ratios(results: Results, task: str, group: str, *, fine: bool = True) -> "pd.Series[Any]":
+def _ratios(results: Results, task: str, group: str, *, fine: bool = True) -> Any:
     """Return how many times the spline's time a group takes, by error; `fine`: but for the coarsest."""
-    rows = TASKS[task].rows(results)
-    rows = rows[rows["group"] == group]
-    if fine:
-        rows = rows[rows["level"] < rows["level"].max()]
-    found: pd.Series[Any] = rows["ratio"].dropna()
-    return found
+    rows = TASKS[task].rows(results).query("group == @group")
+    kept = rows["level"] < rows["level"].max() if fine else rows["level"] > 0.0
+    return rows.loc[kept, "ratio"].dropna()
 
 
 def _extreme(task: str, group: str, pick: Callable[[Any], Any]) -> Fact:
-    return Fact(made=lambda r: float(pick(_ratios(r, task, group))), form=times)
-
-
-@listing("cost-unmet")
-def _unmet(results: Results) -> Table:
-    tables = ((study, name) for study in (STATIC, MOVING) for name in ("findings", "findings_of_time"))
-    return unmet(results, tables, digits(3), "measured ratio")
+    return Fact(made=lambda r: pick(_ratios(r, task, group)), form=times)
 
 
 LESS_WORK = "At an error of 0.001 in path and torque the spline takes less counted work"
 OVER = "the largest error of the torque over the best such model's"
-facts(
-    {
-        f"cost.{task}.{short}.{name}": _extreme(task, group, pick)
-        for task in TASKS
-        for short, group in (("exudyn", "Exudyn"), ("fe", "finite elements"))
-        for name, pick in (("least", min), ("most", max))
-    }
-)
-facts(
-    {
-        f"surrogates.path.{name}.{what}": Fact(made=partial(_turns, model, pick), form=form)
-        for name, model in FOUR_POINTS.items()
-        for what, pick, form in (("nearer", len, count), ("from", min, angle()), ("to", max, angle()))
-    }
-)
-facts(
-    {
-        "cost.path.spline": TASKS["path"].at("spline_s", seconds, group="Exudyn", level=2e-4),
-        "cost.swing.duration": Stored("paper/fig06_release", "motions").largest("time_s", unit("s", 1)),
-        "cost.kept": TASKS["swing"].fact(
-            lambda rows: rows.dropna(subset="ratio")["level"].min(), unit("rad", 1), group="Exudyn"
-        ),
-        "cost.independent": Stored(CODES, "theories").at("torque", power, what="exudyn ancf, 64 elements"),
-        "cost.exudyn.version": Stored(CODES, "codes").at("version", str, code="exudyn"),
-        "cost.opensees.version": Stored(CODES, "codes").at("version", str, code="openseespy"),
-        "cost.work.fe": Stored(STATIC, "findings", claim=LESS_WORK).at(
-            "value", times, formulation="finite elements, 20 elements"
-        ),
-        "cost.python": LANGUAGE.at("python_share", percent),
-        "cost.fe20": LANGUAGE.at("solve_s", seconds),
-        "cost.fe20.compiled": LANGUAGE.at("compiled_s", seconds),
-        "waits.whole.spline": WAITS.at("solve_s", seconds, what="whole call", model=SPLINE),
-        "waits.command.spline": WAITS.at("solve_s", seconds, what="command line", model=SPLINE),
-        "waits.slower.whole": _slower("whole call"),
-        "waits.slower.increments": _slower("increments alone"),
-        "waits.around.spline": _around(SPLINE),
-        "waits.around.fe": _around(ELEMENTS),
-        "surrogates.states": Fact(made=lambda r: len(_path_errors(r)), form=count),
-        "surrogates.over": Stored(SURROGATES, "findings", quantity=OVER).at(
-            "value", times, formulation=FOUR_POINTS["paper"]
-        ),
-        "surrogates.swing": Stored(SURROGATES, "motion").largest(
-            "difference_rad", unit("rad"), model="four-bar"
-        ),
-    }
-)
+FACTS |= {
+    f"cost.{task}.{short}.{name}": _extreme(task, group, pick)
+    for task in TASKS
+    for short, group in (("exudyn", "Exudyn"), ("fe", "finite elements"))
+    for name, pick in (("least", min), ("most", max))
+}
+FACTS |= {
+    f"surrogates.path.{name}.{what}": Fact(made=partial(_turns, model, pick), form=form)
+    for name, model in FOUR_POINTS.items()
+    for what, pick, form in (("nearer", len, count), ("from", min, angle()), ("to", max, angle()))
+}
+FACTS |= {
+    "cost.path.spline": TASKS["path"].at("spline_s", seconds, group="Exudyn", level=2e-4),
+    "cost.swing.duration": Stored("paper/fig06_release", "motions").largest("time_s", unit("s", 1)),
+    "cost.kept": TASKS["swing"].fact(
+        lambda rows: rows.dropna(subset="ratio")["level"].min(), unit("rad", 1), group="Exudyn"
+    ),
+    "cost.independent": Stored(CODES, "theories").at("torque", power, what="exudyn ancf, 64 elements"),
+    "cost.exudyn.version": Stored(CODES, "codes").at("version", str, code="exudyn"),
+    "cost.opensees.version": Stored(CODES, "codes").at("version", str, code="openseespy"),
+    "cost.work.fe": Stored(STATIC, "findings", claim=LESS_WORK).at(
+        "value", times, formulation="finite elements, 20 elements"
+    ),
+    "cost.python": LANGUAGE.at("python_share", percent),
+    "cost.fe20": LANGUAGE.at("solve_s", seconds),
+    "cost.fe20.compiled": LANGUAGE.at("compiled_s", seconds),
+    "waits.whole.spline": WAITS.at("solve_s", seconds, what=WHOLE, model=SPLINE),
+    "waits.command.spline": WAITS.at("solve_s", seconds, what="command line", model=SPLINE),
+    "waits.slower.whole": _slower((WHOLE, ELEMENTS), (WHOLE, SPLINE)),
+    "waits.slower.increments": _slower((ALONE, ELEMENTS), (ALONE, SPLINE)),
+    "waits.around.spline": _slower((WHOLE, SPLINE), (ALONE, SPLINE)),
+    "waits.around.fe": _slower((WHOLE, ELEMENTS), (ALONE, ELEMENTS)),
+    "surrogates.states": Fact(made=lambda r: len(_path_errors(r)), form=count),
+    "surrogates.over": Stored(SURROGATES, "findings", quantity=OVER).at(
+        "value", times, formulation=FOUR_POINTS["paper"]
+    ),
+    "surrogates.swing": Stored(SURROGATES, "motion").largest("difference_rad", unit("rad"), model="four-bar"),
+}
 
 
 @holds("cost.surrogates-win", timed=True)

@@ -2,10 +2,9 @@
 
 from typing import Any
 
-from report.content.problem import pivot
-from report.facts import Fact, Rows, Shown, Stored, Table, columns, facts, holds, listing, unmet
+from report.content.basis import pivot
+from report.facts import FACTS, Fact, Results, Shown, Stored, Table, columns, holds, listing
 from report.forms import angle, count, degrees, digits, percent, power, significant, times, unit
-from report.results import Results
 
 SPACE, THROUGHPUT, SIZING = "sweep/design_space", "sweep/throughput", "design/sizing"
 SAMPLE, CHECKS, COMPARED = (Stored(SPACE, name) for name in ("designs", "checks", "comparison"))
@@ -33,6 +32,12 @@ def _checked(results: Results, *, variation: bool = False) -> float:
     return float(rows["error"].abs().max())
 
 
+def _dominating(results: Results) -> float:
+    """Return how many designs are better than the reference pivot in all four quantities at once."""
+    share = Stored(SPACE, "findings", quantity="the share of designs that better it").value(results, "value")
+    return round(float(share) * len(SAMPLE.rows(results)), 6)
+
+
 @listing("chosen")
 def _chosen(results: Results) -> Table:
     shown: Shown = {
@@ -48,11 +53,6 @@ def _chosen(results: Results) -> Table:
     return columns(CHECKS.rows(results), shown)
 
 
-@listing("space-unmet")
-def _unmet(results: Results) -> Table:
-    return unmet(results, ((SPACE, "findings"), (THROUGHPUT, "findings_of_time")), significant, "measured")
-
-
 @listing("sizing")
 def _designs(results: Results) -> Table:
     bounds = ACTIVE.rows(results).groupby("question")["constraint"].agg(", ".join)
@@ -61,7 +61,7 @@ def _designs(results: Results) -> Table:
         "length": ("length_m", unit("mm", 3, 1e3)),
         "inclination": ("inclination_rad", degrees),
         "crossing": ("crossing_ratio", digits(3)),
-        "depth": ("thickness_m", unit("mm", 3, 1e3)),
+        "thickness": ("thickness_m", unit("mm", 3, 1e3)),
         "width": ("width_m", unit("mm", 3, 1e3)),
         "shift": ("centre_shift_m", unit("mm", 2, 1e3)),
         "variation": ("variation", percent),
@@ -79,8 +79,8 @@ def _tolerances(results: Results) -> Table:
     cells = both["solved"].map(percent) + " (" + both["squares"].map(percent) + ")"
     wide = cells.unstack("quantity").reset_index()
     wide[DIMENSION] = wide[DIMENSION].str.removeprefix(ALL)
-    table: Rows = list(wide.to_numpy().tolist())
-    return [str(name).replace("-", " ") for name in wide.columns], table
+    yield [str(name).replace("-", " ") for name in wide.columns]
+    yield from wide.to_numpy().tolist()
 
 
 def _farthest(results: Results, against: str) -> float:
@@ -103,36 +103,35 @@ def _factor(question: str) -> Fact:
     return DESIGNS.at(FACTORS[question], times, design=question)
 
 
-facts(
-    {
-        "space.designs": SAMPLE.fact(len, count),
-        "space.front": SAMPLE.fact(len, count, front="yes"),
-        "space.below": SAMPLE.fact(lambda rows: (rows["stress_max_Pa"] < STRENGTH).sum(), count),
-        "space.strength": Fact(made=lambda _: STRENGTH, form=unit("MPa", 1, 1e-6)),
-        "space.checked": Fact(made=_checked, form=percent),
-        "space.checked.variation": Fact(made=lambda r: 100.0 * _checked(r, variation=True), form=digits(1)),
-        "throughput.rate": Stored(THROUGHPUT, "timings").fact(
-            lambda rows: (rows["designs"] / rows["wall_s"]).max(), significant
-        ),
-        "sizing.shift": _factor(SHIFT),
-        "sizing.shift.narrow": _factor(SHIFT + NARROW),
-        "sizing.variation": _factor(VARIATION),
-        "sizing.variation.narrow": _factor(VARIATION + NARROW),
-        "sizing.steel.shift": _factor(SHIFT + STEEL),
-        "sizing.steel.variation": _factor(VARIATION + STEEL),
-        "sizing.steel.stress": DESIGNS.largest(
-            "largest_stress_Pa", unit("MPa", 3, 1e-6), baseline="spring steel"
-        ),
-        "sizing.elements": Fact(made=lambda r: _farthest(r, "finite elements"), form=power),
-        "sizing.questions": STARTS.fact(lambda rows: rows["question"].nunique(), count),
-        "sizing.starts": STARTS.fact(len, count),
-        "sizing.reached": STARTS.fact(len, count, optimum=1),
-        "sizing.plate": Fact(made=_plate, form=percent),
-        "tolerances.stiffness": TOLERANCES.largest("solved", percent, quantity="stiffness"),
-        "tolerances.shift": TOLERANCES.largest("solved", percent, quantity="centre-shift"),
-        "sizing.range": Stored(SIZING, "curves").largest("rotation_rad", degrees, design="Table 1"),
-    }
-)
+FACTS |= {
+    "space.designs": SAMPLE.fact(len, count),
+    "space.front": SAMPLE.fact(len, count, front="yes"),
+    "space.dominating": Fact(made=_dominating, form=count),
+    "space.below": SAMPLE.fact(lambda rows: (rows["stress_max_Pa"] < STRENGTH).sum(), count),
+    "space.strength": Fact(made=lambda _: STRENGTH, form=unit("MPa", 1, 1e-6)),
+    "space.checked": Fact(made=_checked, form=percent),
+    "space.checked.variation": Fact(made=lambda r: 100.0 * _checked(r, variation=True), form=digits(1)),
+    "throughput.rate": Stored(THROUGHPUT, "timings").fact(
+        lambda rows: (rows["designs"] / rows["wall_s"]).max(), significant
+    ),
+    "sizing.shift": _factor(SHIFT),
+    "sizing.shift.narrow": _factor(SHIFT + NARROW),
+    "sizing.variation": _factor(VARIATION),
+    "sizing.variation.narrow": _factor(VARIATION + NARROW),
+    "sizing.steel.shift": _factor(SHIFT + STEEL),
+    "sizing.steel.variation": _factor(VARIATION + STEEL),
+    "sizing.steel.stress": DESIGNS.largest(
+        "largest_stress_Pa", unit("MPa", 3, 1e-6), baseline="spring steel"
+    ),
+    "sizing.elements": Fact(made=lambda r: _farthest(r, "finite elements"), form=power),
+    "sizing.questions": STARTS.fact(lambda rows: rows["question"].nunique(), count),
+    "sizing.starts": STARTS.fact(len, count),
+    "sizing.reached": STARTS.fact(len, count, optimum=1),
+    "sizing.plate": Fact(made=_plate, form=percent),
+    "tolerances.stiffness": TOLERANCES.largest("solved", percent, quantity="stiffness"),
+    "tolerances.shift": TOLERANCES.largest("solved", percent, quantity="centre-shift"),
+    "sizing.range": Stored(SIZING, "curves").largest("rotation_rad", degrees, design="Table 1"),
+}
 
 
 @holds("space.checked")

@@ -3,10 +3,9 @@
 from collections.abc import Callable
 from typing import Any
 
-from report.content.problem import TORQUE
-from report.facts import Cell, Fact, Rows, Shown, Stored, Table, columns, facts, holds, listing
+from report.content.basis import TORQUE
+from report.facts import FACTS, Cell, Fact, Results, Shown, Stored, Table, columns, holds, listing
 from report.forms import Form, count, dash, percent, power, seconds, signed_percent, times, unit
-from report.results import Results
 
 WORTH, CHEAPEST = (Stored("effects/worth", name) for name in ("worth", "cheapest"))
 REFERENCE = WORTH.where(design="Table 1")
@@ -21,12 +20,10 @@ GROUPS = ("axial", "bending", "swing")
 @listing("effects")
 def _worth(results: Results) -> Table:
     rows = WORTH.rows(results).query("status != 'refused'")
-    largest = rows.pivot(index="scene", columns="design", values="largest")[
-        list(dict.fromkeys(rows["design"]))
-    ]
-    order = largest.max(axis=1).sort_values(ascending=False, kind="stable").index
-    cells = ([str(scene), *map(dash(power), largest.loc[scene])] for scene in order)
-    return ["left out", *largest.columns], list(cells)
+    largest = rows.pivot(index="scene", columns="design", values="largest")[list(rows["design"].unique())]
+    yield ["left out", *largest.columns]
+    for scene in largest.max(axis=1).sort_values(ascending=False, kind="stable").index:
+        yield [str(scene), *map(dash(power), largest.loc[scene])]
 
 
 @listing("cheapest")
@@ -44,15 +41,14 @@ def _cheapest(results: Results) -> Table:
 @listing("impulse-limits")
 def _limits(results: Results) -> Table:
     table = LIMITS.rows(results, sweeps=0)
-    rows: Rows = []
+    yield ["fastest modes that are kept", "2/ω", "measured limit", "the paper's step over it"]
     for design in dict.fromkeys(table["design"]):
         for group in GROUPS:
             name = f"{design}, {group} modes"
             row = LIMITS.where(sweeps=0, design=design, group=group)
             limits = (seconds(row.value(results, each)) for each in ("predicted_s", "measured_s"))
             over = OVER.value(results, "value", formulation=f"{name}, as printed")
-            rows.append([name, *limits, times(over)])
-    return ["fastest modes that are kept", "2/ω", "measured limit", "the paper's step over it"], rows
+            yield [name, *limits, times(over)]
 
 
 @listing("assumptions")
@@ -88,38 +84,34 @@ def _lost(design: str) -> Fact:
     return step.at("energy_change", lambda value: percent(abs(value)))
 
 
-facts(
-    {
-        f"impulses.limit.{group}": LIMITS.at("measured_s", seconds, design="Table 1", group=group, sweeps=0)
-        for group in GROUPS
-    }
-)
-facts(
-    {
-        "effects.designs": WORTH.fact(lambda rows: rows["design"].nunique(), count),
-        "effects.tolerance": CHEAPEST.largest("tolerance", percent),
-        "effects.inextensible": REFERENCE.at("largest", percent, scene="inextensible strips"),
-        "effects.massless": REFERENCE.at("largest", percent, scene="massless strips"),
-        "effects.massless.light": WORTH.at(
-            "largest", percent, design="body ten times lighter", scene="massless strips"
-        ),
-        "effects.gravity.slender": WORTH.at(
-            "largest", percent, design="ten times more slender", scene="no gravity"
-        ),
-        "effects.gravity": REFERENCE.at("largest", percent, scene="no gravity"),
-        "impulses.over": OVER.at("value", times, formulation="Table 1, axial modes, as printed"),
-        "impulses.one-sweep": LIMITS.at("ratio", percent, design="Table 1", group="axial", sweeps=1),
-        "impulses.agreement": LIMITS.fact(lambda rows: (rows["ratio"] - 1.0).abs().max(), power, sweeps=0),
-        "impulses.drift": STEPS.largest("drift", power, form="printed", status="converged"),
-        "impulses.drift.stable": STEPS.largest("drift", power, form="stable", status="converged"),
-        "impulses.lost": _lost("Table 1"),
-        "impulses.lost.polymer": _lost("polymer"),
-        "impulses.polymer.time": STEPS.at(
-            "steps", lambda steps: seconds(0.01 * steps), design="polymer", form="stable", step_s=0.01
-        ),
-        "impulses.picture": Stored(IMPULSES, "timings_of_pictures").largest("cpu_95_ms", unit("ms")),
-    }
-)
+FACTS |= {
+    f"impulses.limit.{group}": LIMITS.at("measured_s", seconds, design="Table 1", group=group, sweeps=0)
+    for group in GROUPS
+}
+FACTS |= {
+    "effects.designs": WORTH.fact(lambda rows: rows["design"].nunique(), count),
+    "effects.tolerance": CHEAPEST.largest("tolerance", percent),
+    "effects.inextensible": REFERENCE.at("largest", percent, scene="inextensible strips"),
+    "effects.massless": REFERENCE.at("largest", percent, scene="massless strips"),
+    "effects.massless.light": WORTH.at(
+        "largest", percent, design="body ten times lighter", scene="massless strips"
+    ),
+    "effects.gravity.slender": WORTH.at(
+        "largest", percent, design="ten times more slender", scene="no gravity"
+    ),
+    "effects.gravity": REFERENCE.at("largest", percent, scene="no gravity"),
+    "impulses.over": OVER.at("value", times, formulation="Table 1, axial modes, as printed"),
+    "impulses.one-sweep": LIMITS.at("ratio", percent, design="Table 1", group="axial", sweeps=1),
+    "impulses.agreement": LIMITS.fact(lambda rows: (rows["ratio"] - 1.0).abs().max(), power, sweeps=0),
+    "impulses.drift": STEPS.largest("drift", power, form="printed", status="converged"),
+    "impulses.drift.stable": STEPS.largest("drift", power, form="stable", status="converged"),
+    "impulses.lost": _lost("Table 1"),
+    "impulses.lost.polymer": _lost("polymer"),
+    "impulses.polymer.time": STEPS.at(
+        "steps", lambda steps: seconds(0.01 * steps), design="polymer", form="stable", step_s=0.01
+    ),
+    "impulses.picture": Stored(IMPULSES, "timings_of_pictures").largest("cpu_95_ms", unit("ms")),
+}
 
 
 @holds("effects.stretching-small")

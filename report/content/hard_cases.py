@@ -5,9 +5,8 @@ from typing import Any
 
 import pandas as pd
 
-from report.facts import Fact, Rows, Stored, Table, facts, holds, listing
+from report.facts import FACTS, Fact, Results, Stored, Table, holds, listing
 from report.forms import angle, count, digits, power, unit
-from report.results import Results
 from studies.registry import STUDIES
 
 GROUP = "stability/"
@@ -52,28 +51,29 @@ def _outcomes(family: str, model: str = DEFAULT) -> Stored:
     return Stored(GROUP + family, "outcomes", model=model)
 
 
-def _of(results: Results, family: str, model: str) -> "pd.Series[Any]":
-    """Return how the cases end that a model was asked, if any."""
-    table = results.table(GROUP + family, "outcomes")
-    return kinds(table[table["model"] == model])
+def _all(results: Results) -> pd.DataFrame:
+    """Return model, family and kind of end of every case that a model was asked."""
+    tables = (results.table(GROUP + family, "outcomes").assign(family=family) for family in FAMILIES)
+    every = pd.concat(tables)
+    return every.assign(kind=kinds(every))
 
 
 def _number(model: str, *some: str, families: tuple[str, ...] = FAMILIES, results: Results) -> int:
     """Return how many cases of a model end in some of the kinds; all of them without any."""
-    found = pd.concat([_of(results, family, model) for family in families])
-    return int(found.isin(some or KINDS).sum())
+    own = _all(results).query("model == @model and family in @families")
+    return int(own["kind"].isin(some or KINDS).sum())
 
 
 @listing("families")
 def _families(results: Results) -> Table:
-    rows: Rows = []
-    for family in FAMILIES:
-        asked = [_of(results, family, model) for model in COLUMNS]
-        cells = (" / ".join(count((found == kind).sum()) for kind in KINDS) for found in asked)
-        cases = results.table(GROUP + family, "outcomes").groupby("model").size().max()
-        ended = (cell if len(found) else "–" for cell, found in zip(cells, asked, strict=True))
-        rows.append([family.replace("_", " "), CRITERIA[family], count(cases), *ended])
-    return ["family", "right if", "cases", *COLUMNS.values()], rows
+    every = _all(results)
+    ends = every.groupby(["family", "model"])["kind"].value_counts().unstack().reindex(columns=list(KINDS))
+    yield ["family", "right if", "cases", *COLUMNS.values()]
+    for family, own in every.groupby("family", sort=False):
+        asked = (ends.fillna(0).loc[family].reindex([model]).iloc[0] for model in COLUMNS)
+        cells = ("–" if each.isna().all() else " / ".join(map(count, each)) for each in asked)
+        most = count(own["model"].value_counts().max())
+        yield [str(family).replace("_", " "), CRITERIA[str(family)], most, *cells]
 
 
 def _last_right(rows: pd.DataFrame) -> float:
@@ -89,46 +89,45 @@ def _total(model: str, *some: str, families: tuple[str, ...] = FAMILIES) -> Fact
     return Fact(made=lambda r: _number(model, *some, families=families, results=r), form=count)
 
 
-facts(
-    {
-        "hard.families": Fact(made=lambda _: len(FAMILIES), form=count),
-        "hard.both.tried": _total(FE, families=SHARED),
-        "hard.both.fe.right": _total(FE, RIGHT, families=SHARED),
-        "hard.both.default.right": _total(DEFAULT, RIGHT, families=SHARED),
-        "hard.total.default.tried": _total(DEFAULT),
-        "hard.total.default.silent": _total(DEFAULT, WRONG),
-        "hard.total.default.wrong": _total(DEFAULT, WRONG, WARNED),
-        "hard.total.paper.tried": _total(PAPER),
-        "hard.total.paper.wrong": _total(PAPER, WRONG, WARNED),
-        "hard.total.paper.silent": _total(PAPER, WRONG),
-        "hard.total.varied.tried": _total(VARIED),
-        "hard.total.varied.right": _total(VARIED, RIGHT),
-        "hard.total.varied.wrong": _total(VARIED, WRONG),
-        "hard.fuzz.paths": _outcomes("fuzz").fact(len, count, kind="path", outcome=RIGHT),
-        "hard.fuzz.motions": _outcomes("fuzz").fact(len, count, kind="motion", outcome=RIGHT),
-        "hard.against.asked": AGAINST.fact(len, count),
-        "hard.against.compared": AGAINST.fact(lambda rows: rows["error"].notna().sum(), count),
-        "hard.against.largest": AGAINST.largest("error", power),
-        "hard.step_size.right": _outcomes("step_size").fact(len, count, outcome=RIGHT),
-        "hard.step_size.short": _outcomes("step_size").fact(_short, count, outcome=RIGHT),
-        "hard.rotation.to": _outcomes("rotation").fact(_last_right, angle(3)),
-        "hard.rotation.right-to": _outcomes("rotation", SIX).fact(_last_right, angle(3)),
-        "hard.slenderness.most": SLENDER.largest("slenderness", power),
-        "hard.slenderness.constant": SLENDER.largest("constant", digits(3)),
-        "hard.slenderness.iterations": SLENDER.largest("iterations", count),
-        "hard.slenderness.iterations-least": SLENDER.least("iterations", count),
-        "hard.buckling.load": COLUMN.at("load", digits(6), model=DEFAULT),
-        "hard.buckling.load.paper": COLUMN.at("load", digits(6), model=PAPER),
-        "hard.buckling.pivot": BRANCHES.least("first_bifurcation_mm", unit("mm", 3)),
-        "hard.buckling.turn": BRANCHES.largest("turn_deg", angle(3)),
-        "hard.buckling.down": BRANCHES.largest("reached_mm", unit("mm")),
-        "hard.long_run.steps": LONG.largest("steps", count, model=DEFAULT),
-        "hard.long_run.energy": LONG.largest("energy_change", power, model=DEFAULT),
-        "hard.long_run.residual": LONG.largest(
-            "constraint_residual_m", lambda v: f"{power(v)}\u00a0m", model=DEFAULT
-        ),
-    }
-)
+FACTS |= {
+    "hard.families": Fact(made=lambda _: len(FAMILIES), form=count),
+    "hard.both.tried": _total(FE, families=SHARED),
+    "hard.both.fe.right": _total(FE, RIGHT, families=SHARED),
+    "hard.both.default.right": _total(DEFAULT, RIGHT, families=SHARED),
+    "hard.total.default.tried": _total(DEFAULT),
+    "hard.total.default.silent": _total(DEFAULT, WRONG),
+    "hard.total.default.wrong": _total(DEFAULT, WRONG, WARNED),
+    "hard.total.paper.tried": _total(PAPER),
+    "hard.total.paper.wrong": _total(PAPER, WRONG, WARNED),
+    "hard.total.paper.silent": _total(PAPER, WRONG),
+    "hard.total.varied.tried": _total(VARIED),
+    "hard.total.varied.right": _total(VARIED, RIGHT),
+    "hard.total.varied.wrong": _total(VARIED, WRONG),
+    "hard.fuzz.paths": _outcomes("fuzz").fact(len, count, kind="path", outcome=RIGHT),
+    "hard.fuzz.motions": _outcomes("fuzz").fact(len, count, kind="motion", outcome=RIGHT),
+    "hard.against.asked": AGAINST.fact(len, count),
+    "hard.against.compared": AGAINST.fact(lambda rows: rows["error"].notna().sum(), count),
+    "hard.against.largest": AGAINST.largest("error", power),
+    "hard.step_size.right": _outcomes("step_size").fact(len, count, outcome=RIGHT),
+    "hard.step_size.short": _outcomes("step_size").fact(_short, count, outcome=RIGHT),
+    "hard.rotation.to": _outcomes("rotation").fact(_last_right, angle(3)),
+    "hard.rotation.right-to": _outcomes("rotation", SIX).fact(_last_right, angle(3)),
+    "hard.slenderness.most": SLENDER.largest("slenderness", power),
+    "hard.slenderness.constant": SLENDER.largest("constant", digits(3)),
+    "hard.slenderness.iterations": SLENDER.fact(
+        lambda rows: " to ".join(map(count, dict.fromkeys(rows["iterations"].agg(["min", "max"])))), str
+    ),
+    "hard.buckling.load": COLUMN.at("load", digits(6), model=DEFAULT),
+    "hard.buckling.load.paper": COLUMN.at("load", digits(6), model=PAPER),
+    "hard.buckling.pivot": BRANCHES.least("first_bifurcation_mm", unit("mm", 3)),
+    "hard.buckling.turn": BRANCHES.largest("turn_deg", angle(3)),
+    "hard.buckling.down": BRANCHES.largest("reached_mm", unit("mm")),
+    "hard.long_run.steps": LONG.largest("steps", count, model=DEFAULT),
+    "hard.long_run.energy": LONG.largest("energy_change", power, model=DEFAULT),
+    "hard.long_run.residual": LONG.largest(
+        "constraint_residual_m", lambda v: f"{power(v)}\u00a0m", model=DEFAULT
+    ),
+}
 
 
 @holds("hard.spline-loses")

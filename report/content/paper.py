@@ -7,9 +7,8 @@ import numpy as np
 import pandas as pd
 
 from report.content.convergence import free
-from report.facts import Cell, Fact, Rows, Shown, Stored, Table, columns, facts, holds, listing
+from report.facts import FACTS, Cell, Fact, Results, Shown, Stored, Table, columns, holds, listing
 from report.forms import Form, angle, count, percent, power, signed_percent, unit
-from report.results import Results, column
 from studies.record.style import LOOKS
 
 PAPER, LOCKING_FREE, SIX, FE = "n = 4, as the paper", "n = 4, locking-free", "n = 6", "FE, 20 elements"
@@ -45,28 +44,25 @@ def _is_sign(claim: str) -> bool:
 
 @listing("claims")
 def _claims(results: Results) -> Table:
-    rows: Rows = []
+    yield ["claim of the paper, as it is read", *(LOOKS[name].label for name in CLAIMED)]
     for claim, some in _findings(results).groupby("claim"):
         verdicts = {row["formulation"]: row for row in some.to_dict("records")}
         sign = "sign " if _is_sign(str(claim)) else ""
         held = [verdicts.get(name) for name in CLAIMED]
         cells = [row and f"{sign}{VERDICTS[row['holds']]} ({percent(row['value'])})" for row in held]
-        rows.append([str(claim), *(cell or "–" for cell in cells)])
-    return ["claim of the paper, as it is read", *(LOOKS[name].label for name in CLAIMED)], rows
+        yield [str(claim), *(cell or "–" for cell in cells)]
 
 
 @listing("thresholds")
 def _thresholds(results: Results) -> Table:
     """Return which formulations would be within other thresholds than those that are taken."""
-    rows: Rows = []
+    yield ["claim of a size", *(f"within {100.0 * level:.0f} %" for level in THRESHOLDS)]
     for claim, some in _findings(results).groupby("claim"):
-        if _is_sign(str(claim)):
-            continue
         off = some.set_index("formulation")["value"].abs()
         within = ([name for name in CLAIMED if off[name] <= level] for level in THRESHOLDS)
         cells = ("all" if len(names) == len(CLAIMED) else "; ".join(names) or "none" for names in within)
-        rows.append([str(claim), *cells])
-    return ["claim of a size", *(f"within {100.0 * level:.0f} %" for level in THRESHOLDS)], rows
+        if not _is_sign(str(claim)):
+            yield [str(claim), *cells]
 
 
 def _coloured(name: str) -> Cell:
@@ -138,7 +134,7 @@ def _axial_share(summary: pd.DataFrame) -> float:
 def _passes(name: str, share: float, curves: pd.DataFrame) -> float:
     """Return the rotation [deg] at which an error passes a share, between increments."""
     rows = curves.sort_values("rotation_rad").dropna(subset=name)
-    return float(np.interp(share, column(rows, name).abs(), np.degrees(rows["rotation_rad"])))
+    return float(np.interp(share, rows[name].abs(), np.degrees(rows["rotation_rad"])))
 
 
 def _of(figure: str, stored: Stored, name: str, form: Form, *formulations: str) -> dict[str, Fact]:
@@ -147,54 +143,44 @@ def _of(figure: str, stored: Stored, name: str, form: Form, *formulations: str) 
     }
 
 
-facts(
-    {
-        f"fig03.{name}": SHAPES.largest("distance", percent, formulation=SHORT[name])
-        for name in ("paper", "free", "six", "fe")
-    }
-)
-facts(_of("fig04", PATH, "difference_to_fe20_end", percent, "paper", "free", "six", "three"))
-facts(_of("fig05", FORCE, "error_torque_largest", percent, "paper", "free", "printed"))
-facts(_of("fig05", FORCE, "error_torque_half", percent, "paper"))
-facts(_of("fig05", FORCE, "error_stiffness_largest", percent, "paper", "free"))
-facts(_of("fig05", FORCE, "error_torque_largest", power, "six"))
-facts(_of("fig05", FORCE, "error_stiffness_largest", power, "six"))
-facts(_of("fig06", SWING, "frequency_Hz", unit("Hz", 4), "paper", "fe"))
-facts(_of("fig06", SWING, "frequency_shift", signed_percent, "paper", "free"))
-facts(_of("fig06", SWING, "error_rotation_rad", unit("rad"), "free", "six", "fe"))
-facts(
-    {
-        f"fig05.paper.{name}": CURVES.fact(partial(_passes, error, share), angle(), formulation=PAPER)
-        for name, error, share in (
-            ("within", "error_torque", 0.01),
-            ("within.stiffness", "error_stiffness", 0.01),
-            ("lost", "error_torque", 0.03),
-        )
-    }
-)
-facts(
-    {
-        f"fig07.{part}.{name}": FRAMES.fact(partial(_within, part, share), unit("ms"))
-        for part in PARTS
-        for name, share in (("median", 0.5), ("most", 0.95))
-    }
-)
-facts(
-    {
-        "fig05.paper.axial-share": FORCE.fact(_axial_share, percent, formulation=PAPER),
-        "fig05.free.axial-share": FORCE.fact(_axial_share, percent, formulation=LOCKING_FREE),
-        "fig05.torque": CURVES.largest("torque_Nm", unit("N m", 4), formulation=REFINED),
-        "fig05.paper.torque": CURVES.largest("torque_Nm", unit("N m", 4), formulation=PAPER),
-        "fig06.energy": Stored(RELEASE, "motions", formulation=REFINED, time_s=0.0).at(
-            "strain_J", unit("J", 3)
-        ),
-        "fig07.rate": FRAMES.fact(_rate, unit("Hz", 3)),
-        "fig07.both.longest": FRAMES.fact(partial(_within, "both", 1.0), unit("ms")),
-        "fig07.first": FRAMES.at("solve_ms", unit("s", 2, 1e-3), frame=0),
-        "fig07.alone": ALONE.fact(_slowest, unit("ms")),
-        "fig07.frames": FRAMES.fact(len, count),
-    }
-)
+FACTS |= {
+    f"fig03.{name}": SHAPES.largest("distance", percent, formulation=SHORT[name])
+    for name in ("paper", "free", "six", "fe")
+}
+FACTS |= _of("fig04", PATH, "difference_to_fe20_end", percent, "paper", "free", "six", "three")
+FACTS |= _of("fig05", FORCE, "error_torque_largest", percent, "paper", "free", "printed")
+FACTS |= _of("fig05", FORCE, "error_torque_half", percent, "paper")
+FACTS |= _of("fig05", FORCE, "error_stiffness_largest", percent, "paper", "free")
+FACTS |= _of("fig05", FORCE, "error_torque_largest", power, "six")
+FACTS |= _of("fig05", FORCE, "error_stiffness_largest", power, "six")
+FACTS |= _of("fig06", SWING, "frequency_Hz", unit("Hz", 4), "paper", "fe")
+FACTS |= _of("fig06", SWING, "frequency_shift", signed_percent, "paper", "free")
+FACTS |= _of("fig06", SWING, "error_rotation_rad", unit("rad"), "free", "six", "fe")
+FACTS |= {
+    f"fig05.paper.{name}": CURVES.fact(partial(_passes, error, share), angle(), formulation=PAPER)
+    for name, error, share in (
+        ("within", "error_torque", 0.01),
+        ("within.stiffness", "error_stiffness", 0.01),
+        ("lost", "error_torque", 0.03),
+    )
+}
+FACTS |= {
+    f"fig07.{part}.{name}": FRAMES.fact(partial(_within, part, share), unit("ms"))
+    for part in PARTS
+    for name, share in (("median", 0.5), ("most", 0.95))
+}
+FACTS |= {
+    "fig05.paper.axial-share": FORCE.fact(_axial_share, percent, formulation=PAPER),
+    "fig05.free.axial-share": FORCE.fact(_axial_share, percent, formulation=LOCKING_FREE),
+    "fig05.torque": CURVES.largest("torque_Nm", unit("N m", 4), formulation=REFINED),
+    "fig05.paper.torque": CURVES.largest("torque_Nm", unit("N m", 4), formulation=PAPER),
+    "fig06.energy": Stored(RELEASE, "motions", formulation=REFINED, time_s=0.0).at("strain_J", unit("J", 3)),
+    "fig07.rate": FRAMES.fact(_rate, unit("Hz", 3)),
+    "fig07.both.longest": FRAMES.fact(partial(_within, "both", 1.0), unit("ms")),
+    "fig07.first": FRAMES.at("solve_ms", unit("s", 2, 1e-3), frame=0),
+    "fig07.alone": ALONE.fact(_slowest, unit("ms")),
+    "fig07.frames": FRAMES.fact(len, count),
+}
 
 
 @holds("claims.threshold")

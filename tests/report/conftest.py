@@ -3,7 +3,7 @@
 import pytest
 
 from report.build import gathered, typeset
-from report.results import Results
+from report.facts import Results
 from studies.record.store import Store
 
 

@@ -10,9 +10,8 @@ import pytest
 
 import report.build
 from report.build import FAILED, main, typeset
-from report.facts import Holds, Stored, held, listed, written
+from report.facts import Fact, ReportError, Results, Stored, table
 from report.forms import percent
-from report.results import ReportError, Results
 from studies.record.source import ROOT
 from studies.record.store import RESULTS, Store
 
@@ -100,19 +99,20 @@ def test_number_that_is_not_there_is_refused(columns, reason):
     """A fact that is no number, or not one number, is named with its table."""
     given = Stored("study", "table").at("value", percent, formulation="a")
     if columns.get("value") == ["word"]:
-        assert written("name", given, _Given(**columns | {"value": [0.5]})) == "50\u00a0%"
+        assert given.given("name", _Given(**columns | {"value": [0.5]})) == "50\u00a0%"
         return
-    with pytest.raises(ReportError, match=rf"^fact name: .*{reason}.*\(study/table\)$"):
-        written("name", given, _Given(**columns))
+    with pytest.raises(ReportError, match=rf"^name: .*{reason}.*\(study/table\)$"):
+        given.given("name", _Given(**columns))
 
 
 def test_condition_and_table_without_their_data_are_refused():
     """A condition or table that asks for what is not there is named."""
     missing = _Given(a=[1])
-    with pytest.raises(ReportError, match=r"^condition name: no column b.* \(some words\)$"):
-        held("name", Holds(words="some words", test=lambda r: Stored("", "").value(r, "b")), missing)
-    with pytest.raises(ReportError, match=r"^table name: got no rows"):
-        listed("name", lambda r: (["a"], []), missing)
+    lost = Fact(made=lambda r: Stored("", "").value(r, "b"), form=bool, said="some words")
+    with pytest.raises(ReportError, match=r"^name: no column b.* \(some words\)$"):
+        lost.given("name", missing)
+    with pytest.raises(ReportError, match=r"^name: got no rows"):
+        Fact(made=lambda r: iter([["a"]]), form=table).given("name", missing)
 
 
 def test_unsupported_sentence_ends_the_build(content):

@@ -79,9 +79,9 @@ def test_surrogate_that_is_nearer_to_the_end_takes_the_sentence_with_it():
         errors = np.concatenate([np.full(5, 0.5), spline, spline])
         return _One(model=np.repeat(models, 5), rotation_rad=np.tile(np.arange(5.0), 3), trajectory=errors)
 
-    assert condition.test(given(0.0, 0.1, 0.9, 0.9, 0.1))
-    assert not condition.test(given(0.0, 0.1, 0.9, 0.9, 0.9))
-    assert not condition.test(given(0.0, 0.9, 0.1, 0.9, 0.1))
+    assert condition.made(given(0.0, 0.1, 0.9, 0.9, 0.1))
+    assert not condition.made(given(0.0, 0.1, 0.9, 0.9, 0.9))
+    assert not condition.made(given(0.0, 0.9, 0.1, 0.9, 0.1))
 
 
 def test_what_was_fitted_is_not_called_published():
