@@ -7,7 +7,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from studies.pictures.plot import overlay, plot
+    from studies.pictures.page import overlay, plot
 
 __all__ = ["overlay", "plot"]
 
@@ -15,4 +15,4 @@ __all__ = ["overlay", "plot"]
 def __getattr__(name: str) -> Any:
     if name not in __all__:
         raise AttributeError(f"module studies has no attribute {name!r}; public are {', '.join(__all__)}")
-    return getattr(import_module("studies.pictures.plot"), name)
+    return getattr(import_module("studies.pictures.page"), name)

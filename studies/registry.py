@@ -1,11 +1,14 @@
 """Names of commands and studies and their modules, which are imported when they are called."""
 
+import argparse
 import difflib
+import re
 from collections.abc import Iterable
 from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from studies.commands.parser import command
 from studies.errors import BadInput
 
 if TYPE_CHECKING:  # a command that runs no study does not wait for tables and figures
@@ -37,7 +40,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
         "studies.commands.interactive:calibrate",
         "find a camera's constants from the marker sheet",
     ),
-    "list": ("studies.commands.list_studies", "list the studies"),
+    "list": ("studies.registry:listed", "list the studies"),
     "run": ("studies.commands.results:run", "compute and draw studies"),
     "draw": ("studies.commands.results:draw", "redraw studies from their stored tables"),
     "verify": (
@@ -52,16 +55,17 @@ COMMANDS: dict[str, tuple[str, str]] = {
     ),
 }
 
-#: Study -> module with its declaration, `STUDY`. What it shows is the first line of that module.
+#: Study -> module with its declaration, `STUDY`, whose first line says what it shows; or module:constant, and
+#: the line below that constant says it.
 STUDIES: dict[str, str] = {
     "paper/fig03_snapshots": "studies.paper.fig03_snapshots",
-    "paper/fig04_trajectory": "studies.paper.fig04_trajectory",
-    "paper/fig05_stiffness": "studies.paper.fig05_stiffness",
+    "paper/fig04_trajectory": "studies.paper.static_curves:FIG04",
+    "paper/fig05_stiffness": "studies.paper.static_curves:FIG05",
     "paper/fig06_release": "studies.paper.fig06_release",
     "paper/fig07_interactive": "studies.paper.fig07_interactive",
     "paper/readings": "studies.paper.readings",
     "convergence/control_points": "studies.convergence.control_points",
-    "convergence/elements": "studies.convergence.elements",
+    "convergence/elements": "studies.convergence.sweep:ELEMENT_STUDY",
     "convergence/frequency": "studies.convergence.frequency",
     "convergence/error_estimate": "studies.convergence.error_estimate",
     "convergence/slide_stiffness": "studies.convergence.slide_stiffness",
@@ -69,18 +73,18 @@ STUDIES: dict[str, str] = {
     "model_form/account": "studies.model_form.account",
     "model_form/headline": "studies.model_form.headline",
     "published/problems": "studies.published.problems",
-    "stability/rotation": "studies.stability.rotation",
-    "stability/slenderness": "studies.stability.slenderness",
+    "stability/rotation": "studies.stability.paths:ROTATION",
+    "stability/slenderness": "studies.stability.paths:SLENDERNESS",
     "stability/geometry": "studies.stability.geometry",
     "stability/buckling": "studies.stability.buckling",
-    "stability/step_size": "studies.stability.step_size",
-    "stability/long_run": "studies.stability.long_run",
-    "stability/ratios": "studies.stability.ratios",
-    "stability/axial_modes": "studies.stability.axial_modes",
-    "stability/bad_starts": "studies.stability.bad_starts",
+    "stability/step_size": "studies.stability.swings:STEP_SIZE",
+    "stability/long_run": "studies.stability.machine:LONG_RUN",
+    "stability/ratios": "studies.stability.swings:RATIOS",
+    "stability/axial_modes": "studies.stability.misuse:AXIAL_MODES",
+    "stability/bad_starts": "studies.stability.misuse:BAD_STARTS",
     "stability/fuzz": "studies.stability.fuzz",
     "stability/events": "studies.stability.events",
-    "stability/environment": "studies.stability.environment",
+    "stability/environment": "studies.stability.machine:ENVIRONMENT",
     "effects/worth": "studies.effects.worth",
     "design/sizing": "studies.design.sizing",
     "charts/pivot": "studies.charts.pivot",
@@ -95,17 +99,26 @@ STUDIES: dict[str, str] = {
 }
 
 
+def study_at(place: str) -> "Study":
+    """Import and return the declaration at a place: a module's `STUDY`, or the constant that it names."""
+    module, _, constant = place.partition(":")
+    study: Study = getattr(import_module(module), constant or "STUDY")
+    return study
+
+
 def study_of(name: str) -> "Study":
     """Import and return the declaration of a study."""
-    study: Study = import_module(STUDIES[name]).STUDY
-    return study
+    return study_at(STUDIES[name])
 
 
 def question_of(name: str) -> str:
     """Return what a study shows, without importing it."""
-    path = Path(__file__).parents[1].joinpath(*STUDIES[name].split(".")).with_suffix(".py")
-    with path.open(encoding="utf-8") as text:
-        return text.readline().strip().strip('"').removesuffix(".")
+    module, _, constant = STUDIES[name].partition(":")
+    path = Path(__file__).parents[1].joinpath(*module.split(".")).with_suffix(".py")
+    text = path.read_text(encoding="utf-8")
+    said = re.search(rf'^{constant} = .*?^\)\n"""(.*)', text, re.DOTALL | re.MULTILINE) if constant else None
+    first = said[1] if said else text.removeprefix('"""')
+    return first.partition("\n")[0].removesuffix('"""').removesuffix(".")
 
 
 def selected(names: Iterable[str]) -> list[str]:
@@ -127,3 +140,17 @@ def selected(names: Iterable[str]) -> list[str]:
             raise BadInput(f"study: got {name}, expected {hint}")
         chosen |= found
     return [study for study in STUDIES if study in chosen]
+
+
+@command()
+def listed(arguments: argparse.Namespace) -> int:
+    """List the studies: the names that `run` and `draw` take.
+
+        python -m studies list
+
+    A study may also be called by its last part, its group, or as one of "all". Exit code 0.
+    """
+    width = max(map(len, STUDIES))
+    for name in STUDIES:
+        print(f"{name:{width}}  {question_of(name)}")
+    return 0

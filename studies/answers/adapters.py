@@ -18,7 +18,7 @@ from studies.answers.models import (
     static_path,
 )
 from studies.answers.motion import Motion, Spectrum, motion, no_motion
-from studies.answers.response import Response, chosen_by, estimate_of, response
+from studies.answers.response import Response, response, taken
 from studies.answers.settings import Settings, SplineSettings
 from studies.cases.design import Design, flexural_scale
 from studies.cases.problem import Problem
@@ -180,6 +180,7 @@ def answer_modes(
     nothing = np.zeros(0)
     about: dict[str, Any] = {
         "model": settings.model,
+        "settings": keywords,
         "effects": effects_of(asked),
         "rotation": rotation or 0.0,
         "body": design.body,
@@ -188,31 +189,31 @@ def answer_modes(
         with refusals(model, settings):
             timing = measure(solve, repeat=1, warm_up=0)
     except model.errors.ConvergenceError as error:
-        lost: dict[str, Any] = {
-            "status": "not_converged",
-            "message": f"statics does not reach the state: {error}",
-        }
-        lost |= {"settings": keywords, "wall_s": 0.0, "held": held}
-        lost |= {"frequency": nothing, "body_shapes": np.zeros((0, 3)), "slide_frequency": nothing}
-        return Spectrum(**lost, **about)
-    return _spectrum(timing.result, design, settings=keywords, wall_s=timing.median, **about)
+        return Spectrum(
+            status="not_converged",
+            message=f"statics does not reach the state: {error}",
+            held=held,
+            frequency=nothing,
+            body_shapes=np.zeros((0, 3)),
+            slide_frequency=nothing,
+            wall_s=0.0,
+            **about,
+        )
+    return _spectrum(timing.result, design, wall_s=timing.median, **about)
 
 
 def _spectrum(modes: Any, design: Design, **about: Any) -> Spectrum:
     """Return the neutral form of a model's modes; only a spline has slide modes."""
     names = [body.name for body in design.bodies]
     shapes = mode_bodies(modes, names)
-    about["settings"] = about["settings"] | chosen_by(modes)
     return Spectrum(
         status="converged",
         message="",
-        solution=modes,
         held=modes.held,
         frequency=np.asarray(modes.frequency, dtype=float),
         body_shapes=shapes[:, names.index(design.body)] if design.body else np.zeros((len(shapes), 3)),
         slide_frequency=np.asarray(getattr(modes, "slide_frequency", ()), dtype=float),
-        estimate=estimate_of(modes),
-        **about,
+        **taken(modes, about),
     )
 
 

@@ -1,7 +1,6 @@
 """Fields along the strips of any design, and its bodies, of what a model has solved: its static solution,
 its trajectory or its modes. The arrays do not tell which model they are of."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass, field, fields, replace
 from typing import Any
 
@@ -32,7 +31,7 @@ OF_MOTION = {f"{name}_energy": name for name in ("kinetic", "strain", "gravity")
 
 
 @dataclass(frozen=True, kw_only=True)
-class Part:
+class _Part:
     """A strip as its fields need it: what its root and its tip are on, and its section.
 
     Attributes:
@@ -50,21 +49,13 @@ class Part:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Block:
-    """A rigid body as its fields need it: name, mass [kg], moment of inertia about the centre [kg m^2]."""
-
-    name: str
-    mass: float
-    moment_of_inertia: float
-
-
-@dataclass(frozen=True, kw_only=True)
 class Fields(Answered):
     """Fields of a static path, a motion or natural modes: S states, G strips, P stations, B bodies.
 
     Attributes:
         analysis: "static", "release" or "modes".
-        parts, blocks: the strips and bodies.
+        parts: the strips. blocks: the bodies, as the model has them: `name`, `mass` [kg] and
+            `moment_of_inertia` about the centre [kg m^2].
         driven: place of the body that is driven or let go among them; 0 where there is none.
         series: name of what runs over the states, "load_factor" [1], "time_s" [s] or "mode" [1].
         values: (S,) of it.
@@ -82,8 +73,8 @@ class Fields(Answered):
     """
 
     analysis: str
-    parts: tuple[Part, ...]
-    blocks: tuple[Block, ...]
+    parts: tuple[_Part, ...]
+    blocks: tuple[Any, ...]
     driven: int
     series: str
     values: Array
@@ -264,7 +255,7 @@ def _arrays(found: Any) -> dict[str, Any]:
     return {each.name: np.asarray(getattr(found, each.name), dtype=float) for each in fields(found)}
 
 
-def _strips_of(asked: Any) -> tuple[Part, ...]:
+def _strips_of(asked: Any) -> tuple[_Part, ...]:
     """Return the strips of a pivot or mechanism of a model, their sections taken as rectangles."""
     if hasattr(asked, "design"):
         return tuple(_part(strip.name, strip.root, strip.tip, strip) for strip in asked.design.strips)
@@ -275,8 +266,8 @@ def _strips_of(asked: Any) -> tuple[Part, ...]:
     )
 
 
-def _part(name: str, root: str | None, tip: str | None, section: Any) -> Part:
-    return Part(
+def _part(name: str, root: str | None, tip: str | None, section: Any) -> _Part:
+    return _Part(
         name=name,
         root=root,
         tip=tip,
@@ -287,8 +278,5 @@ def _part(name: str, root: str | None, tip: str | None, section: Any) -> Part:
     )
 
 
-def _bodies_of(asked: Any) -> tuple[Block, ...]:
-    bodies: Sequence[Any] = asked.design.bodies if hasattr(asked, "design") else asked.bodies
-    return tuple(
-        Block(name=body.name, mass=body.mass, moment_of_inertia=body.moment_of_inertia) for body in bodies
-    )
+def _bodies_of(asked: Any) -> tuple[Any, ...]:
+    return tuple(asked.design.bodies if hasattr(asked, "design") else asked.bodies)

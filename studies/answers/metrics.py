@@ -64,7 +64,7 @@ def observed_order(coarse: float, fine: float, ratio: float = 2.0) -> float:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Extrapolated:
+class _Extrapolated:
     """A limit of refinement and its uncertainty, of the same shape and unit."""
 
     value: Array
@@ -84,7 +84,7 @@ def richardson(coarse: Array, fine: Array, *, order: float, ratio: float = 2.0) 
     return np.asarray(fine + (fine - coarse) / (ratio**order - 1.0))
 
 
-def extrapolate(levels: Sequence[Array], *, order: float = 2.0, ratio: float = 2.0) -> Extrapolated:
+def extrapolate(levels: Sequence[Array], *, order: float = 2.0, ratio: float = 2.0) -> _Extrapolated:
     """Return the limit of successively refined answers, with h^order and then h^(2 order) eliminated.
 
     The uncertainty is the distance to the limit that the same elimination gives without the finest level: an
@@ -101,7 +101,7 @@ def extrapolate(levels: Sequence[Array], *, order: float = 2.0, ratio: float = 2
     if len(levels) < 3:
         raise ValueError(f"levels: got {len(levels)}, expected at least 3")
     limit = _limit(levels, order, ratio)
-    return Extrapolated(value=limit, uncertainty=np.abs(limit - _limit(levels[:-1], order, ratio)))
+    return _Extrapolated(value=limit, uncertainty=np.abs(limit - _limit(levels[:-1], order, ratio)))
 
 
 def _limit(levels: Sequence[Array], order: float, ratio: float) -> Array:

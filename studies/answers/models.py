@@ -15,7 +15,7 @@ from studies.errors import BadInput
 from studies.kinds import Array
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True)
 class Model:
     """The modules of one model, the same names in both, and what differs in how they are asked.
 
@@ -42,18 +42,13 @@ class Model:
 def model_of(settings: Settings) -> Model:
     """Return the settings' model; the other one is not even imported."""
     if isinstance(settings, FeSettings):
-        from fe_reference import drives, dynamics, errors, mechanism, modes, pivot, section_forces, statics
+        from fe_reference import dynamics, errors, loads, mechanism, modes, section_forces, statics
 
         return Model(
-            pivot=pivot,
-            mechanism=mechanism,
-            statics=statics,
-            dynamics=dynamics,
-            modes=modes,
-            errors=errors,
+            *(mechanism, mechanism, statics, dynamics, modes, errors),
             records="samples",
             release_options={"raise_on_failure": False},
-            drive=drives.DrivenRotation,
+            drive=loads.DrivenRotation,
             static_fields=section_forces.strip_fields,
             moving_fields=section_forces.strip_fields,
         )
@@ -64,12 +59,7 @@ def _spline() -> Model:
     from spline_model import dynamics, effects, errors, mechanism, modes, pivot, section_forces, statics
 
     return Model(
-        pivot=pivot,
-        mechanism=mechanism,
-        statics=statics,
-        dynamics=dynamics,
-        modes=modes,
-        errors=errors,
+        *(pivot, mechanism, statics, dynamics, modes, errors),
         records="records",
         release_options={},
         drive=effects.DrivenRotation,

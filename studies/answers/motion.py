@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from studies.answers.frequency import Frequency, swing_frequency
-from studies.answers.response import Answered, Solved, chosen_by, estimate_of
+from studies.answers.response import Answered, Solved, ended, taken
 from studies.cases.design import Design
 from studies.kinds import Array
 
@@ -102,21 +102,18 @@ def motion(result: Any, *, energy: float = 0.0, **about: Any) -> Motion:
             none that is not asked.
         about: model, settings, effects, body that swings and times.
     """
-    exact, still = np.zeros(len(result.time)), _still(result, energy)
+    exact, kinetic = np.zeros(len(result.time)), np.asarray(result.kinetic_energy)
     arrays: dict[str, Any] = {name: getattr(result, name) for name in SHARED_ARRAYS}
     arrays |= {name: getattr(result, name, exact) for name in RESIDUALS}
     arrays = {name: np.asarray(array, dtype=float) for name, array in arrays.items()}
-    about["settings"] = about["settings"] | dict(result.settings) | chosen_by(result)
+    found = ended(result)
+    if len(kinetic) and energy > 0.0 and float(kinetic.max()) <= STILL * energy:
+        found |= {"message": result.message or NOTHING_MOVES, "resolution": ""}
     return Motion(
-        status=str(result.status.value),
-        message=result.message or (NOTHING_MOVES if still else ""),
-        resolution="" if still else getattr(result, "resolution", ""),
         bodies={name: np.asarray(place, dtype=float) for name, place in result.bodies.items()},
-        solution=result,
-        counters=dict(result.counters),
-        estimate=estimate_of(result),
         rotation_error=getattr(result, "rotation_error", math.nan),
-        **about,
+        **taken(result, about | {"settings": about["settings"] | dict(result.settings)}),
+        **found,
         **arrays,
     )
 
@@ -135,12 +132,6 @@ def no_motion(message: str, design: Design, **about: Any) -> Motion:
         **about,
         **nothing,
     )
-
-
-def _still(result: Any, energy: float) -> bool:
-    """Whether nothing moves: the start is in equilibrium, and what acts does not change."""
-    kinetic = np.asarray(result.kinetic_energy)
-    return len(kinetic) > 0 and energy > 0.0 and float(kinetic.max()) <= STILL * energy
 
 
 @dataclass(frozen=True, kw_only=True)

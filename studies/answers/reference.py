@@ -37,6 +37,8 @@ class NoReference(RuntimeError):
 #: What a path is judged by, and the array of an answer that tells it.
 ARRAYS = {"trajectory": "centre", "torque": "torque", "stiffness": "stiffness", "stress": "max_stress"}
 QUANTITIES = tuple(ARRAYS)
+#: What a reference calls its limit, where not as the quantity.
+LIMITS = {"trajectory": "centre"}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -94,18 +96,13 @@ def limit_of(answers: Sequence[Response]) -> Reference:
     limits = {
         name: extrapolate([getattr(answer, array) for answer in answers]) for name, array in ARRAYS.items()
     }
-    return Reference(
-        finest=answers[-1],
-        rotation=answers[-1].rotation,
-        centre=limits["trajectory"].value,
-        torque=limits["torque"].value,
-        stiffness=limits["stiffness"].value,
-        stress=limits["stress"].value,
-        uncertainty={
-            name: float(_error_of(name)(limit.value + limit.uncertainty, limit.value).max())
-            for name, limit in limits.items()
-        },
-    )
+    values = {LIMITS.get(name, name): limit.value for name, limit in limits.items()}
+    uncertainty = {
+        name: float(_error_of(name)(limit.value + limit.uncertainty, limit.value).max())
+        for name, limit in limits.items()
+    }
+    finest = answers[-1]
+    return Reference(finest=finest, rotation=finest.rotation, uncertainty=uncertainty, **values)
 
 
 def _error_of(name: str) -> Callable[[Array, Array], Array]:
@@ -115,12 +112,12 @@ def _error_of(name: str) -> Callable[[Array, Array], Array]:
 
 def errors(answer: Response, against: Reference) -> Errors:
     """Return the errors of `answer`, of which only the states it reached count."""
-    return Errors(
-        trajectory=trajectory_error(answer.centre, against.centre),
-        torque=relative_error(answer.torque, against.torque),
-        stiffness=relative_error(answer.stiffness, against.stiffness),
-        stress=relative_error(answer.max_stress, against.stress),
-    )
+    limits = {name: getattr(against, LIMITS.get(name, name)) for name in ARRAYS}
+    return Errors(**{n: _error_of(n)(getattr(answer, ARRAYS[n]), limit) for n, limit in limits.items()})
+
+
+#: Arrays of a swing beside its instants.
+SWUNG = ("rotation", "centre", "kinetic_energy", "strain_energy")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -160,17 +157,8 @@ class SwingReference:
 
 def sampled(motion: Motion, instants: Array) -> Swing:
     """Return `motion` at `instants` [s] by cubic interpolation between its records."""
-
-    def at(values: Array) -> Array:
-        return np.asarray(CubicSpline(motion.time, values)(instants))
-
-    return Swing(
-        time=instants,
-        rotation=at(motion.rotation),
-        centre=at(motion.centre),
-        kinetic_energy=at(motion.kinetic_energy),
-        strain_energy=at(motion.strain_energy),
-    )
+    found = {name: CubicSpline(motion.time, getattr(motion, name))(instants) for name in SWUNG}
+    return Swing(time=instants, **found)
 
 
 def swing_reference(problem: Problem, *, duration: float, instants: Array) -> SwingReference:
@@ -192,10 +180,7 @@ def swing_reference(problem: Problem, *, duration: float, instants: Array) -> Sw
 def limit_of_swings(levels: Sequence[Motion], instants: Array) -> SwingReference:
     """Return the limit of motions on meshes that are each finer by `RATIO` than the one before."""
     swings = [sampled(level, instants) for level in levels]
-    limits = {
-        name: extrapolate([getattr(swing, name) for swing in swings], ratio=RATIO)
-        for name in ("rotation", "centre", "kinetic_energy", "strain_energy")
-    }
+    limits = {name: extrapolate([getattr(swing, name) for swing in swings], ratio=RATIO) for name in SWUNG}
     rotation = limits["rotation"]
     before = extrapolate([swing.rotation for swing in swings[:-1]], ratio=RATIO).value
     frequency = swing_frequency(instants, rotation.value).value

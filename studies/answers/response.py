@@ -75,21 +75,12 @@ class Solved(Answered):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Critical:
-    """Where a path loses or regains stability: "limit point", "turning point" or "bifurcation", at a load
-    factor [1] and a rotation of the driven body [rad], NaN without one."""
-
-    kind: str
-    load_factor: float
-    rotation: float
-
-
-@dataclass(frozen=True, kw_only=True)
 class Response(Solved):
     """A static path of S converged states, that of load factor 0 first; G strips, P stations a strip.
 
     Attributes:
-        critical_points: in the order of the path.
+        critical_points: where it loses or regains stability, in its order, each with `kind` ("limit point",
+            "turning point" or "bifurcation"), `load_factor` [1] and `rotation` [rad], NaN where none turns.
         bodies: (S, 3) by name: centre of mass x, y [m], rotation, counter-clockwise [rad]; a pivot's origin
             is A1.
         driven: name of the one that may be driven; None without one.
@@ -103,7 +94,7 @@ class Response(Solved):
         crossing: where a pivot's strips cross at rest [m]; None of a mechanism.
     """
 
-    critical_points: tuple[Critical, ...] = ()
+    critical_points: tuple[Any, ...] = ()
     bodies: dict[str, Array]
     driven: str | None
     load_factor: Array
@@ -168,49 +159,42 @@ def response(design: Design, result: Any, **about: Any) -> Response:
     about: model, settings, effects and times.
     """
     arrays: dict[str, Any] = {name: np.asarray(getattr(result, name), dtype=float) for name in ARRAYS}
-    about["settings"] = about["settings"] | chosen_by(result)
-    about["effects"] = assembled(about["effects"])
     strain = strains_of(design, arrays["axial_force"], arrays["bending_moment"])
     return Response(
-        status=str(result.status.value),
-        message=result.message,
-        solution=result,
         bodies={name: np.asarray(place, dtype=float) for name, place in result.bodies.items()},
         driven=design.body,
-        resolution=getattr(result, "resolution", ""),
-        critical_points=_critical_of(result),
-        counters=dict(result.counters),
-        estimate=estimate_of(result),
+        critical_points=tuple(result.critical_points),
         extreme_fibre_stress=moduli_of(design)[:, None] * strain,
         crossing=getattr(design, "crossing_point", None),
-        **about,
+        **taken(result, about | {"effects": assembled(about["effects"])}),
+        **ended(result),
         **arrays,
     )
 
 
-def _critical_of(result: Any) -> tuple[Critical, ...]:
-    """Return the critical points of a model's path; none of a model that does not look for them."""
-    return tuple(
-        Critical(kind=point.kind, load_factor=float(point.load_factor), rotation=float(point.rotation))
-        for point in getattr(result, "critical_points", ())
-    )
+def taken(result: Any, about: dict[str, Any]) -> dict[str, Any]:
+    """Return what is known about an answer with the model's own: the settings that it has chosen for its
+    accuracy among them, and its estimate of its error, None where it was not asked for an accuracy."""
+    estimate: Any = getattr(result, "estimate", None)
+    chosen, parts = {}, None
+    if getattr(estimate, "meshes", None) is not None:
+        chosen = {"elements": estimate.meshes[-1]}
+    elif hasattr(result, "control_points"):
+        chosen = {"control_points": result.control_points}
+    if estimate is not None:
+        parts = asdict(estimate)
+        parts |= dict(parts.pop("errors", {}))
+    return about | {"settings": about["settings"] | chosen, "estimate": parts, "solution": result}
 
 
-def estimate_of(result: Any) -> dict[str, Any] | None:
-    """Return a model's estimate of its own error by name; None where it was not asked for an accuracy."""
-    estimate = getattr(result, "estimate", None)
-    if estimate is None:
-        return None
-    parts = asdict(estimate)
-    return parts | dict(parts.pop("errors", {}))
-
-
-def chosen_by(result: Any) -> dict[str, Any]:
-    """Return the settings that a model has chosen for the accuracy of its answer."""
-    meshes = getattr(getattr(result, "estimate", None), "meshes", None)
-    if meshes is not None:
-        return {"elements": meshes[-1]}
-    return {"control_points": result.control_points} if hasattr(result, "control_points") else {}
+def ended(result: Any) -> dict[str, Any]:
+    """Return how a path or a motion ended; only some models say how well they resolve it."""
+    return {
+        "status": str(result.status.value),
+        "message": result.message,
+        "resolution": getattr(result, "resolution", ""),
+        "counters": dict(result.counters),
+    }
 
 
 def assembled(names: Iterable[str]) -> tuple[str, ...]:

@@ -41,11 +41,8 @@ class SplineSettings:
     def keywords(self) -> dict[str, Any]:
         """Return the discretisation keywords of `spline_model.pivot.cross_axis_pivot`; control points and a
         slide stiffness only if they are set."""
-        keywords = asdict(self)
-        for name in ("control_points", "slide_stiffness"):
-            if keywords[name] is None:
-                del keywords[name]
-        return keywords
+        said = ("control_points", "slide_stiffness")
+        return {name: v for name, v in asdict(self).items() if v is not None or name not in said}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -66,7 +63,7 @@ class FeSettings:
         return "fe-shear" if self.element == "reissner" else "fe"
 
     def keywords(self) -> dict[str, Any]:
-        """Return the discretisation keywords of `fe_reference.pivot.cross_axis_pivot`."""
+        """Return the discretisation keywords of `fe_reference.mechanism.cross_axis_pivot`."""
         return asdict(self)
 
 

@@ -9,10 +9,11 @@ import math
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
 from functools import cache
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
+from studies.answers.strength import extreme_fibre_strain
 from studies.cases.design import Design
 
 #: Effects that take in what a plain beam leaves out.
@@ -22,6 +23,8 @@ WORTH_SAYING = 0.01
 #: Largest strain of a linear material, smallest length over thickness of a beam [1].
 STRAIN, SLENDERNESS = 0.02, 10.0
 ROUND_OFF = 1e-9
+#: What the strip of a design calls alike.
+SAME_NAME = ("length", "youngs_modulus", "poisson_ratio", "density")
 #: Lengths [m], moduli [Pa] and densities [kg/m^3] that are not a slip of units.
 LENGTHS, MODULI, DENSITIES = (1e-5, 5.0), (1e6, 1.3e12), (10.0, 23e3)
 
@@ -106,24 +109,19 @@ def anticlastic_factor(ratio: Any, poisson_ratio: Any) -> Any:
 
 @cache
 def _plate(ratio: float, poisson_ratio: float) -> tuple[float, float]:
-    from spline_model.effects.curl import WIDTHS
+    from spline_model.effects.elastic import WIDTHS
     from spline_model.effects.plate import plate_factors
 
     constant, linear = plate_factors(min(max(ratio, WIDTHS[0]), WIDTHS[1]), poisson_ratio)
     return constant - 1.0, linear - 1.0
 
 
-@dataclass(frozen=True, kw_only=True)
-class Rule:
-    """A limit of the model, and the sentence that says that a strip lies beyond it.
+class _Rule(NamedTuple):
+    """A limit of the model: the sentence that says that a strip lies beyond it, with numbers of `_told_of` in
+    braces; how many times the limit the strip has; and the effect that lifts the limit where it is named."""
 
-    Attributes:
-        excess: of the strip, how many times the limit it has. says: with numbers of `_told_of` in braces.
-        effect: that lifts the limit where it is named.
-    """
-
-    excess: Callable[[Strip], Any]
     says: str
+    excess: Callable[[Strip], Any]
     effect: str = ""
 
 
@@ -145,57 +143,57 @@ def _beyond(value: Any, limits: tuple[float, float]) -> Any:
 
 #: What data alone give away: a slip of units, or dimensions that are exchanged.
 DATA = (
-    Rule(
-        excess=lambda s: _beyond(s.length, LENGTHS),
-        says="length {length:.3g} m: expected 10 um to 5 m; are millimetres given as metres?",
+    _Rule(
+        "length {length:.3g} m: expected 10 um to 5 m; are millimetres given as metres?",
+        lambda s: _beyond(s.length, LENGTHS),
     ),
-    Rule(
-        excess=lambda s: _beyond(s.youngs_modulus, MODULI),
-        says="Young's modulus {modulus:.3g} Pa: expected 1 MPa to 1300 GPa; is it given in GPa?",
+    _Rule(
+        "Young's modulus {modulus:.3g} Pa: expected 1 MPa to 1300 GPa; is it given in GPa?",
+        lambda s: _beyond(s.youngs_modulus, MODULI),
     ),
-    Rule(
-        excess=lambda s: _beyond(s.density, DENSITIES),
-        says="density {density:.3g} kg/m^3: expected 10 to 23000; is it given in g/cm^3?",
+    _Rule(
+        "density {density:.3g} kg/m^3: expected 10 to 23000; is it given in g/cm^3?",
+        lambda s: _beyond(s.density, DENSITIES),
     ),
-    Rule(
-        excess=lambda s: s.thickness / (s.width * (1.0 + ROUND_OFF)),
-        says="thickness {thickness_mm:.3g} mm, width {width_mm:.3g} mm: expected the thickness, in the plane "
+    _Rule(
+        "thickness {thickness_mm:.3g} mm, width {width_mm:.3g} mm: expected the thickness, in the plane "
         "of bending, to be the smaller; are they exchanged?",
+        lambda s: s.thickness / (s.width * (1.0 + ROUND_OFF)),
     ),
-    Rule(
-        excess=lambda s: SLENDERNESS * s.thickness_ratio,
-        says=f"length over thickness {{slenderness:.3g}}: expected at least {SLENDERNESS:g}, below which it "
+    _Rule(
+        f"length over thickness {{slenderness:.3g}}: expected at least {SLENDERNESS:g}, below which it "
         "is no beam",
+        lambda s: SLENDERNESS * s.thickness_ratio,
     ),
 )
 #: What a beam leaves out, and where its material ends.
 MODEL = (
-    Rule(
-        excess=lambda s: s.clamped[1] / WORTH_SAYING,
-        says="b/L {b_L:.3g}: clamps over the whole width make it stiffer by about {low:.2g} to {high:.2g} %, "
+    _Rule(
+        "b/L {b_L:.3g}: clamps over the whole width make it stiffer by about {low:.2g} to {high:.2g} %, "
         "which is left out",
-        effect=CLAMPED_WIDTH,
+        lambda s: s.clamped[1] / WORTH_SAYING,
+        CLAMPED_WIDTH,
     ),
-    Rule(
-        excess=lambda s: s.flattened / WORTH_SAYING,
-        says="b^2/(R t) {b2_Rt:.3g}: bent so far, a strip flattens and is stiffer by up to "
+    _Rule(
+        "b^2/(R t) {b2_Rt:.3g}: bent so far, a strip flattens and is stiffer by up to "
         "{flattened:.2g} %, which is left out",
-        effect=ANTICLASTIC,
+        lambda s: s.flattened / WORTH_SAYING,
+        ANTICLASTIC,
     ),
-    Rule(
-        excess=lambda s: s.turned_roots / WORTH_SAYING,
-        says="t/L {t_L:.3g}: strips cut from one block with their bodies are softer by about {roots:.2g} %, "
+    _Rule(
+        "t/L {t_L:.3g}: strips cut from one block with their bodies are softer by about {roots:.2g} %, "
         "which is left out; clamped ones are not",
-        effect=ROOTS,
+        lambda s: s.turned_roots / WORTH_SAYING,
+        ROOTS,
     ),
-    Rule(
-        excess=lambda s: s.strain / STRAIN,
-        says=f"strain {{strain:.3g}} %: expected at most {100 * STRAIN:g} %, up to which the material is "
+    _Rule(
+        f"strain {{strain:.3g}} %: expected at most {100 * STRAIN:g} %, up to which the material is "
         "taken as linear",
+        lambda s: s.strain / STRAIN,
     ),
-    Rule(
-        excess=lambda s: s.stress / s.yield_strength,
-        says="stress {stress:.4g} MPa: over the yield strength, {strength:.4g} MPa",
+    _Rule(
+        "stress {stress:.4g} MPa: over the yield strength, {strength:.4g} MPa",
+        lambda s: s.stress / s.yield_strength,
     ),
 )
 
@@ -214,29 +212,21 @@ class Validity:
     outside: tuple[str, ...]
 
 
-def validity(
-    design: Design, forces: Any, *, effects: Iterable[str], yield_strength: float | None = None
-) -> Validity:
+def validity(design: Design, forces: Any, *, effects: Iterable[str]) -> Validity:
     """Return what the answer to a design is worth.
 
     Args:
         design: that was asked.
         forces: the answer, or anything with `axial_force` and `bending_moment` (S, G, P) of all states.
         effects: names of what was assembled.
-        yield_strength: of the material [Pa]; None for that of the design, where it has one.
     """
-    strips = strips_of(design, forces, yield_strength)
+    strips = strips_of(design, forces)
     ratios = ("width_ratio", "curvature_ratio", "thickness_ratio", "strain")
     most = {name: max(float(getattr(strip, name)) for strip in strips) for name in ratios}
     return Validity(**most, outside=tuple(told(RULES, strips, effects)))
 
 
-def doubts(design: Design) -> tuple[str, ...]:
-    """Return what the data of a design give away before anything is solved, a sentence each."""
-    return tuple(told(DATA, strips_of(design), ()))
-
-
-def told(rules: Iterable[Rule], strips: list[Strip], effects: Iterable[str]) -> Iterator[str]:
+def told(rules: Iterable[_Rule], strips: list[Strip], effects: Iterable[str]) -> Iterator[str]:
     """Yield the sentence of every rule that a strip breaks, of the strip that breaks it most."""
     named = set(effects)
     for rule in rules:
@@ -252,25 +242,17 @@ def passed(strips: Iterable[Strip], effects: Iterable[str]) -> Any:
     return sum(np.any([rule.excess(strip) > 1.0 for strip in strips], axis=0).astype(int) for rule in rules)
 
 
-def strips_of(design: Design, forces: Any = None, yield_strength: float | None = None) -> list[Strip]:
+def strips_of(design: Design, forces: Any = None) -> list[Strip]:
     """Return the strips of a design, with the most that an answer says of them."""
     found = []
     for i, part in enumerate(design.strips):
-        strip = Strip(
-            length=part.length,
-            thickness=part.depth,
-            width=part.area / part.depth,
-            youngs_modulus=part.youngs_modulus,
-            poisson_ratio=part.poisson_ratio,
-            density=part.density,
-            yield_strength=yield_strength or part.yield_strength or math.inf,
-        )
+        given = {name: getattr(part, name) for name in SAME_NAME}
+        strength, width = part.yield_strength or math.inf, part.area / part.depth
+        strip = Strip(thickness=part.depth, width=width, yield_strength=strength, **given)
         if forces is not None:
-            curvature = np.abs(forces.bending_moment[:, i]) / (
-                part.youngs_modulus * part.second_moment_of_area
-            )
-            axial = np.abs(forces.axial_force[:, i]) / (part.youngs_modulus * part.area)
-            strain = float((axial + 0.5 * part.depth * curvature).max(initial=0.0))
-            strip = replace(strip, strain=strain, curvature=float(curvature.max(initial=0.0)))
+            axial, moment = forces.axial_force[:, i], forces.bending_moment[:, i]
+            most = np.abs(moment).max(initial=0.0) / (part.youngs_modulus * part.second_moment_of_area)
+            strain = extreme_fibre_strain(part, axial, moment).max(initial=0.0)
+            strip = replace(strip, strain=float(strain), curvature=float(most))
         found.append(strip)
     return found

@@ -3,11 +3,13 @@
 import math
 import time
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from typing import Any, Self
 
 import numpy as np
 
+from studies.answers.motion import Motion
+from studies.answers.response import Response
 from studies.cases.problem import Problem
 from studies.errors import BadInput
 from studies.kinds import Array
@@ -35,6 +37,12 @@ class Followed:
     solve_s: float = math.nan
     status: str = "converged"
     message: str = ""
+
+    @classmethod
+    def of(cls, answer: Response | Motion, **more: Any) -> Self:
+        """Return what one of the suite's own models answered, with `more` beside it or in place of it."""
+        own = {each.name for each in fields(cls) if hasattr(answer, each.name)} - more.keys()
+        return cls(**{name: getattr(answer, name) for name in own}, **more)
 
     @property
     def converged(self) -> bool:

@@ -56,7 +56,7 @@ def _element(u: Array, v: Array, compliance: float) -> tuple[Array, Array, Array
     return energy, gradient, hessian
 
 
-def placed(
+def _placed(
     start: Array, end: Array, angle: float, length: float, compliance: float
 ) -> tuple[Array, Array, Array]:
     """Return energy [EI/L], gradient (S, 6) and Hessian (S, 6, 6) by both ends' places and turns.
@@ -147,7 +147,7 @@ class Strips:
             (start, by_start, _), (end, by_end, curved) = (
                 self.ends(y, strip, each) for each in (node, node + 1)
             )
-            v, g, h = placed(start, end, self.angle(strip), length, self.compliance / length**2)
+            v, g, h = _placed(start, end, self.angle(strip), length, self.compliance / length**2)
             by = np.concatenate((by_start, by_end), axis=1)
             energy += v
             gradient += np.einsum("sk,ski->si", g, by)

@@ -106,7 +106,7 @@ class Surrogate:
             BadInput: a pivot outside the model's range.
         """
         law, steps = self.law_of(problem), checked_release(start, duration, step)
-        series = series_of(law, abs(start) or 1.0)
+        series = _series_of(law, abs(start) or 1.0)
         states = np.empty((steps + 1, 2))
         tables = (series.reach, series.inertia, series.inertia_rate, series.torque)
 
@@ -122,7 +122,7 @@ class Surrogate:
         )
 
 
-def series_of(law: Law, amplitude: float) -> _Series:
+def _series_of(law: Law, amplitude: float) -> _Series:
     """Return the series of a law for swings up to an amplitude [rad]."""
     reach = (1.0 + MARGIN) * amplitude
     u = np.asarray(chebyshev.chebpts1(DEGREE + 1), dtype=float)

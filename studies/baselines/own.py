@@ -37,7 +37,7 @@ FINE = ("leapfrog", "central-difference")
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Own:
+class _Own:
     """A model as a baseline: its name; keywords in `settings` are those of its discretisation."""
 
     model: str
@@ -58,14 +58,7 @@ class Own:
         answer = answer_static(asked, chosen)
         if not answer.converged:
             raise BaselineFailed(f"{self.model}: {answer.message}")
-        return SolvedPath(
-            rotation=turns,
-            centre=answer.centre,
-            torque=answer.torque,
-            stiffness=answer.stiffness,
-            again=lambda: answer_static(asked, chosen).solve_s,
-            work=answer.counters,
-        )
+        return SolvedPath.of(answer, again=lambda: answer_static(asked, chosen).solve_s, work=answer.counters)
 
     def release(
         self,
@@ -95,15 +88,10 @@ class Own:
         motion = asked()
         if not motion.converged:
             raise BaselineFailed(f"{self.model}: {motion.message}")
-        return SolvedMotion(
-            time=motion.time,
-            rotation=motion.rotation,
-            again=lambda: asked().solve_s,
-            work=motion.counters,
-        )
+        return SolvedMotion.of(motion, again=lambda: asked().solve_s, work=motion.counters)
 
 
-class _Spline(Own):
+class _Spline(_Own):
     """The spline, whose static path is timed in compiled code, and whose motion less that of one step."""
 
     def static_path(self, problem: Problem, rotations: Any, **settings: Any) -> SolvedPath:
@@ -147,7 +135,7 @@ class _Spline(Own):
     def release(
         self, problem: Problem, *, start: float, duration: float, step: float, **settings: Any
     ) -> SolvedMotion:
-        """Let go of the body as `Own.release`; what comes before and after the steps is not timed."""
+        """Let go of the body as `_Own.release`; what comes before and after the steps is not timed."""
         motion, once = (
             super(_Spline, self).release(problem, start=start, duration=span, step=step, **settings)
             for span in (duration, step)
@@ -156,4 +144,4 @@ class _Spline(Own):
 
 
 spline = _Spline(model="spline", discretised=partial(SplineSettings, control_points=6))
-elements = Own(model="finite elements", discretised=FeSettings)
+elements = _Own(model="finite elements", discretised=FeSettings)

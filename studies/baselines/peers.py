@@ -16,8 +16,9 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from studies.baselines import openseespy_frame, tasks
+from studies.baselines import tasks
 from studies.baselines.exudyn_strips import exudyn_ancf
+from studies.baselines.openseespy import openseespy_frame
 from studies.baselines.variants import (
     AS_DELIVERED,
     ELEMENTS,
@@ -42,7 +43,7 @@ TIMES = {"s": "solve_s", "low_s": "low_s", "high_s": "high_s"}
 CERTAINTY = 2.0
 
 
-def ratios(
+def _ratios(
     rows: pd.DataFrame,
     times: pd.DataFrame,
     error: str,
@@ -156,8 +157,6 @@ def _panel(panel: Axes, rows: pd.DataFrame, times: pd.DataFrame, error: str) -> 
         panel.loglog(1e3 * best["solve_s"], best[error], marker + "-", color=colour, label=label)
 
 
-CASE = "cross_axis_pivot"
-
 #: Errors at which times are compared: of the path [1], and of the swing [rad].
 LEVELS = (1e-1, 1e-2, 1e-3, 2e-4, 1e-5, 1e-6)
 SWING_LEVELS = (1e-1, 2e-2, 1e-2, 5e-3, 2e-3)
@@ -168,26 +167,26 @@ SWING_AIMS = {1e-2: 20.0}
 
 def _paths() -> Answer:
     """Return theories, errors and times of the static path."""
-    limits, theories = tasks.path_limits(named_case(CASE))
-    rows, times = tasks.compared_paths(named_case(CASE), limits)
+    limits, theories = tasks.path_limits(named_case())
+    rows, times = tasks.compared_paths(named_case(), limits)
     return {"theories": theories, "statics": rows, "statics_timings": times}
 
 
 def _motions() -> Answer:
     """Return theories, errors and times of the swing."""
-    limits, theories = tasks.swing_limits(named_case(CASE))
+    limits, theories = tasks.swing_limits(named_case())
     uncertainty = {row["theory"]: row["rotation_rad"] for row in theories if row["theory"]}
-    rows, times = tasks.compared_swings(named_case(CASE), limits, uncertainty)
+    rows, times = tasks.compared_swings(named_case(), limits, uncertainty)
     return {"swing_theories": theories, "swings": rows, "swings_timings": times}
 
 
 def _path_ratios(tables: Tables) -> pd.DataFrame:
-    return ratios(kept(tables["statics"], "worst"), tables["statics_timings"], "worst", LEVELS)
+    return _ratios(kept(tables["statics"], "worst"), tables["statics_timings"], "worst", LEVELS)
 
 
 def _swing_ratios(tables: Tables) -> pd.DataFrame:
     rows = kept(tables["swings"], "rotation_rad")
-    return ratios(rows, tables["swings_timings"], "rotation_rad", SWING_LEVELS, unsure="uncertainty_rad")
+    return _ratios(rows, tables["swings_timings"], "rotation_rad", SWING_LEVELS, unsure="uncertainty_rad")
 
 
 def _codes() -> list[dict[str, str]]:
@@ -213,7 +212,6 @@ def _wanted(task: str, rows: pd.DataFrame, aims: Mapping[float, float]) -> list[
 
 
 STUDY = Study(
-    cases=(CASE,),
     parts=(
         Part(ask=lambda: {"codes": _codes()}),
         Part(ask=_paths, alone=True),

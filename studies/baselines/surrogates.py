@@ -6,37 +6,36 @@ not found.
 
 import math
 from dataclasses import replace
+from itertools import product
 from typing import Any
 
 import numpy as np
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
 from studies.answers.adapters import answer_release, answer_static
 from studies.answers.frequency import swing_frequency
 from studies.answers.metrics import relative_error, trajectory_error
+from studies.answers.reference import Swing
 from studies.answers.response import Response
 from studies.answers.settings import SplineSettings
-from studies.baselines import surrogate_figures
+from studies.baselines import pseudo_rigid
 from studies.baselines.answer import SolvedPath
 from studies.baselines.constraint_model import CHAINED, chained_constraint_model, constraint_model
 from studies.baselines.constraint_strips import guide
-from studies.baselines.four_bar import four_bar, link_length, spring
-from studies.baselines.linear_pivot import (
-    linear_pivot,
-    pin_joint,
-    shift_coefficient,
-    small_angle_stiffness,
-)
 from studies.baselines.own import spline
+from studies.baselines.pseudo_rigid import four_bar, linear_pivot, pin_joint
 from studies.baselines.variants import PSEUDO_RIGID, SURROGATES
-from studies.cases.problem import Problem, named_case
+from studies.cases.problem import TABLE_1, Problem, named_case
 from studies.engine.study import Answer, Claim, Part, Study, Tables
 from studies.kinds import Array
 from studies.model_form.account import CASE as GUIDE
 from studies.model_form.account import LOADS, guide_design, guide_shape
 from studies.paper import formulations
-from studies.published.solve import moved
+from studies.published.problems import moved
+from studies.record.style import BLACK, GREEN, LOOKS, ORANGE, PURPLE, SKY, YELLOW, page
 
-CASE = "cross_axis_pivot"
 #: Splines beside them: what the paper wrote, the same count without locking, and the default.
 SPLINES = (formulations.PAPER, formulations.LOCKING_FREE, "n = 6")
 #: Control points of the reference, and those whose difference to it is its uncertainty.
@@ -59,62 +58,51 @@ SWING_STEP = 2e-5
 
 def _paths() -> Answer:
     """Return errors over the path (a row a model and degree), the reference's uncertainty and the times."""
-    problem = named_case(CASE)
+    problem = named_case()
     turns = np.linspace(0.0, problem.rotation, STATES)
-    limit = spline.static_path(problem, turns, control_points=REFINED)
-    _paths = {name: each.static_path(problem, turns).timed(9) for name, each in SURROGATES.items()}
-    rows = [row for name, path in _paths.items() for row in _rows(name, path, limit)]
+    limit, near = (spline.static_path(problem, turns, control_points=n) for n in (REFINED, CHECK))
+    paths = {name: each.static_path(problem, turns).timed(9) for name, each in SURROGATES.items()}
     fine = replace(problem, increments=STATES - 1)
-    for name in SPLINES:
-        rows += _rows(name, answer_static(fine, formulations.SETTINGS[name]), limit)
-    _paths[spline.model] = spline.static_path(problem, turns).timed(9)
-    near = _rows("check", spline.static_path(problem, turns, control_points=CHECK), limit)
-    uncertainty = [
-        {"quantity": name, "unit": "1", "uncertainty": max(abs(row[name]) for row in near)}
-        for name in QUANTITIES
-    ]
-    timings = [
-        {"model": name, "task": f"path of {STATES - 1} increments", "solve_s": path.solve_s}
-        for name, path in _paths.items()
-    ]
-    return {"errors": rows, "reference": uncertainty, "timings": timings}
+    beside = {name: answer_static(fine, formulations.SETTINGS[name]) for name in SPLINES}
+    errors = [_errors(name, path, limit) for name, path in (paths | beside).items()]
+    uncertainty = _errors("check", near, limit)[list(QUANTITIES)].abs().max()
+    paths[spline.model] = spline.static_path(problem, turns).timed(9)
+    task = f"path of {STATES - 1} increments"
+    return {
+        "errors": pd.concat(errors),
+        "reference": [
+            {"quantity": name, "unit": "1", "uncertainty": value} for name, value in uncertainty.items()
+        ],
+        "timings": [{"model": name, "task": task, "solve_s": path.solve_s} for name, path in paths.items()],
+    }
 
 
-def _rows(name: str, path: SolvedPath | Response, limit: SolvedPath) -> list[dict[str, Any]]:
+def _errors(name: str, path: SolvedPath | Response, limit: SolvedPath) -> pd.DataFrame:
     """Return the errors at each rotation: trajectory >= 0, the others signed [1]."""
     torque = np.zeros(len(limit.torque))  # at rest there is none, but for round-off
     torque[1:] = relative_error(path.torque[1:], limit.torque[1:])
     columns = {
+        "model": name,
         "rotation_rad": path.rotation,
         "trajectory": trajectory_error(path.centre, limit.centre),
         "torque": torque,
         "stiffness": relative_error(path.stiffness, limit.stiffness),
     }
-    return [
-        {"model": name, **dict(zip(columns, row, strict=True))} for row in zip(*columns.values(), strict=True)
-    ]
+    return pd.DataFrame(columns)
 
 
 def _thresholds(tables: Tables) -> list[dict[str, Any]]:
     """Return the smallest rotation from which each error is above each level, by linear interpolation."""
     found = []
     for name, rows in tables["errors"].groupby("model", sort=False):
-        for quantity in QUANTITIES:
-            for level in LEVELS:
-                angle = first_above(rows["rotation_rad"].to_numpy(), rows[quantity].abs().to_numpy(), level)
-                found.append(
-                    {
-                        "model": name,
-                        "quantity": quantity,
-                        "level": level,
-                        "rotation_deg": np.degrees(angle),
-                        "status": "never" if np.isnan(angle) else "passed",
-                    }
-                )
+        for quantity, level in product(QUANTITIES, LEVELS):
+            angle = _first_above(rows["rotation_rad"].to_numpy(), rows[quantity].abs().to_numpy(), level)
+            row = {"model": name, "quantity": quantity, "level": level, "rotation_deg": np.degrees(angle)}
+            found.append({**row, "status": "never" if np.isnan(angle) else "passed"})
     return found
 
 
-def first_above(rotation: Array, error: Array, level: float) -> float:
+def _first_above(rotation: Array, error: Array, level: float) -> float:
     """Return the rotation at which an error first passes a level [rad]; NaN if it never does.
 
     An error that is above the level at rest, or at the first state that has one, passes it there. Torque has
@@ -133,35 +121,32 @@ def first_above(rotation: Array, error: Array, level: float) -> float:
 
 def _released() -> Answer:
     """Return the motions from the end of the path, the reference's uncertainty and the times."""
-    problem = named_case(CASE)
-    limit = formulations.sampled(
-        formulations.resolved(SplineSettings(control_points=10)), formulations.INSTANTS
+    problem = named_case()
+    limit, check = (
+        formulations.sampled(formulations.resolved(each), formulations.INSTANTS)
+        for each in (SplineSettings(control_points=10), SWING)
     )
-    check = formulations.sampled(formulations.resolved(SWING), formulations.INSTANTS)
-    rows = [
-        {"model": "reference", "time_s": t, "rotation_rad": p, "difference_rad": 0.0}
-        for t, p in zip(limit.time, limit.rotation, strict=True)
-    ]
-    times = []
+    motions, times = [_motion("reference", limit.rotation, limit)], []
     for name, each in SURROGATES.items():
         motion = each.release(problem, start=problem.rotation, duration=DURATION, step=STEP).timed(9)
-        rotation = np.interp(limit.time, motion.time, motion.rotation)
-        rows += [
-            {"model": name, "time_s": t, "rotation_rad": p, "difference_rad": p - q}
-            for t, p, q in zip(limit.time, rotation, limit.rotation, strict=True)
-        ]
+        motions.append(_motion(name, np.interp(limit.time, motion.time, motion.rotation), limit))
         task = f"swing of {DURATION:g} s in {motion.work['steps']} steps"
         times.append({"model": name, "task": task, "solve_s": motion.solve_s})
     apart = float(np.abs(check.rotation - limit.rotation).max())
     uncertainty = {"quantity": "rotation", "unit": "rad", "uncertainty": apart}
-    return {"motion": rows, "reference": uncertainty, "timings": times}
+    return {"motion": pd.concat(motions), "reference": uncertainty, "timings": times}
+
+
+def _motion(name: str, rotation: Array, limit: Swing) -> pd.DataFrame:
+    """Return a rotation at the instants of the limit beside its difference to that."""
+    columns = {"time_s": limit.time, "rotation_rad": rotation, "difference_rad": rotation - limit.rotation}
+    return pd.DataFrame({"model": name, **columns})
 
 
 def _swung(part: float) -> Answer:
     """Return the frequencies of the swing of one amplitude, over the end of the path."""
-    problem = named_case(CASE)
-    amplitude = float(part) * problem.rotation
-    options: dict[str, Any] = {"start": amplitude, "duration": DURATION}
+    problem = named_case()
+    options: dict[str, Any] = {"start": float(part) * problem.rotation, "duration": DURATION}
     limit = answer_release(
         problem, SWING, **options, integrator="generalised-alpha", step=SWING_STEP
     ).frequency
@@ -169,15 +154,8 @@ def _swung(part: float) -> Answer:
     for name, each in SURROGATES.items():
         motion = each.release(problem, **options, step=STEP)
         frequency = swing_frequency(motion.time, motion.rotation).value
-        rows.append(
-            {
-                "model": name,
-                "amplitude_rad": amplitude,
-                "frequency_Hz": frequency,
-                "reference_Hz": limit,
-                "shift": frequency / limit - 1.0,
-            }
-        )
+        row = {"model": name, "amplitude_rad": options["start"], "frequency_Hz": frequency}
+        rows.append({**row, "reference_Hz": limit, "shift": frequency / limit - 1.0})
     return {"swings": rows}
 
 
@@ -200,24 +178,18 @@ def _parameters(problem: Problem) -> list[dict[str, Any]]:
     rigidity = problem.youngs_modulus * problem.second_moment_of_area / problem.length
     pin = float(pin_joint.static_path(problem, [0.0, problem.rotation]).stiffness[0])
     linear, fitted = "closed form", "fitted to small rotations"
+    shift = pseudo_rigid.shift_coefficient(problem) / problem.length
     found = [
-        (linear_pivot, "stiffness over EI/L", small_angle_stiffness(problem) / rigidity, linear),
-        (
-            linear_pivot,
-            "centre shift over L and square of the rotation",
-            shift_coefficient(problem) / problem.length,
-            linear,
-        ),
+        (linear_pivot, "stiffness over EI/L", pseudo_rigid.small_angle_stiffness(problem) / rigidity, linear),
+        (linear_pivot, "centre shift over L and square of the rotation", shift, linear),
         (pin_joint, "stiffness over EI/L", pin / rigidity, "published"),
-        (four_bar, "link length over L", link_length(problem), fitted),
-        (four_bar, "spring over EI/L", spring(problem) / rigidity, fitted),
+        (four_bar, "link length over L", pseudo_rigid.link_length(problem), fitted),
+        (four_bar, "spring over EI/L", pseudo_rigid.spring(problem) / rigidity, fitted),
         (constraint_model, "beams a strip", 1, "published"),
         (chained_constraint_model, "beams a strip", CHAINED, "chosen"),
     ]
-    return [
-        {"model": each.model, "parameter": name, "value": value, "origin": origin}
-        for each, name, value, origin in found
-    ]
+    columns = ("parameter", "value", "origin")
+    return [{"model": each.model, **dict(zip(columns, row, strict=True))} for each, *row in found]
 
 
 def _over_the_best(tables: Tables) -> list[dict[str, Any]]:
@@ -231,14 +203,84 @@ def _over_the_best(tables: Tables) -> list[dict[str, Any]]:
     ]
 
 
+#: Model -> label, colour and line.
+MODELS = {
+    "linear pivot": ("linear pivot", ORANGE, "-"),
+    "pin joint": ("pin joint", PURPLE, "-"),
+    "four-bar": ("four-bar (fitted)", GREEN, "-"),
+    "beam constraint model": ("beam constraint model", YELLOW, "-"),
+    "chained constraint model": ("the same, chained", SKY, "-"),
+}
+DRAWN = {name: (LOOKS[name].label, LOOKS[name].colour, "--") for name in SPLINES}
+#: Errors below this are not drawn.
+LEAST = 1e-6
+
+
+def _figure(tables: Tables) -> Figure:
+    """Draw the static errors over the rotation (above), frequencies and motion (below)."""
+    figure = page(9.5, 6.4)
+    above, below = figure.subplots(2, 3)
+    for panel, quantity in zip(above, QUANTITIES, strict=True):
+        _static(panel, tables["errors"], quantity)
+    above[0].set_title("Static path to 90°")
+    _frequencies(below[0], tables["swings"])
+    _motions(below[1], below[2], tables["motion"])
+    handles, labels = above[0].get_legend_handles_labels()
+    reference, name = below[1].get_legend_handles_labels()
+    figure.legend([*handles, *reference[:1]], [*labels, *name[:1]], loc="outside lower center", ncols=4)
+    return figure
+
+
+def _static(panel: Axes, rows: pd.DataFrame, quantity: str) -> None:
+    for model, (label, colour, line) in (MODELS | DRAWN).items():
+        mine = rows[rows["model"] == model]
+        error = mine[quantity].abs()
+        shown, look = error.where(error > LEAST), {"color": colour, "linestyle": line, "label": label}
+        panel.semilogy(np.degrees(mine["rotation_rad"]), shown, **look)
+    for level in LEVELS:
+        panel.axhline(level, color="#999999", linewidth=0.8)
+        panel.annotate(
+            f"{level:.0%}", (1.0, level), (2, 0), ("axes fraction", "data"), "offset points",
+            ha="left", va="center", fontsize=7, color="#666666",
+        )  # fmt: skip
+    panel.set(
+        xlabel="rotation [°]", ylabel=f"|error of the {quantity}| [1]", ylim=(LEAST, 30.0), xlim=(0, 90)
+    )
+    panel.set_xticks(range(0, 91, 15))
+
+
+def _frequencies(panel: Axes, rows: pd.DataFrame) -> None:
+    for model, (_, colour, _) in MODELS.items():
+        mine = rows[rows["model"] == model].sort_values("amplitude_rad")
+        panel.plot(np.degrees(mine["amplitude_rad"]), 100.0 * mine["shift"], "o-", color=colour)
+    panel.axhline(0.0, color=BLACK, linewidth=0.8)
+    panel.set(xlabel="amplitude of the swing [°]", ylabel="shift of the frequency [%]", title="Free swing")
+    panel.set_xticks(range(0, 91, 15))
+
+
+def _motions(whole: Axes, apart: Axes, rows: pd.DataFrame) -> None:
+    reference = rows[rows["model"] == "reference"].sort_values("time_s")
+    whole.plot(
+        1e3 * reference["time_s"], np.degrees(reference["rotation_rad"]), color=BLACK, label="refined spline"
+    )
+    for model, (_, colour, _) in MODELS.items():
+        mine = rows[rows["model"] == model].sort_values("time_s")
+        whole.plot(1e3 * mine["time_s"], np.degrees(mine["rotation_rad"]), color=colour, linewidth=1.0)
+        apart.plot(1e3 * mine["time_s"], np.degrees(mine["difference_rad"]), color=colour)
+    whole.set(xlabel="time [ms]", ylabel="rotation [°]", title="Released at 90°")
+    apart.set(xlabel="time [ms]", ylabel="difference to the refined spline [°]")
+    whole.set_yticks(range(-90, 91, 45))
+    apart.set_yticks(range(-180, 181, 60))
+
+
 STUDY = Study(
-    cases=(CASE, f"published/cases/{GUIDE}"),
+    cases=(TABLE_1, f"published/cases/{GUIDE}"),
     parts=(
         Part(ask=_paths, alone=True),
         Part(ask=_released, alone=True),
         Part(at=lambda: AMPLITUDES, ask=_swung),
         Part(at=lambda: LOADS, ask=_guided),
-        Part(ask=lambda: {"parameters": _parameters(named_case(CASE))}),
+        Part(ask=lambda: {"parameters": _parameters(named_case())}),
     ),
     made={"thresholds": _thresholds},
     claims=(
@@ -251,5 +293,5 @@ STUDY = Study(
             holds=lambda row: row["ratio"] < 1.0,
         ),
     ),
-    figures={"surrogates": lambda tables: surrogate_figures.errors(tables, LEVELS)},
+    figures={"surrogates": _figure},
 )

@@ -11,9 +11,9 @@ from studies.answers.adapters import answer_release, answer_static
 from studies.answers.metrics import relative_error, trajectory_error
 from studies.answers.reference import MESHES, RECORDS, limit_of, limit_of_swings, sampled
 from studies.answers.settings import FeSettings, SplineSettings
-from studies.baselines import openseespy_frame
 from studies.baselines.answer import Followed
 from studies.baselines.exudyn_strips import exudyn_ancf, exudyn_exact
+from studies.baselines.openseespy import openseespy_frame
 from studies.baselines.own import spline
 from studies.baselines.variants import (
     WITH_SHEAR,
@@ -81,12 +81,10 @@ def path_limits(problem: Problem) -> tuple[dict[str, Limit], Rows]:
         WITHOUT_SHEAR: Limit(centre=refined.centre, torque=refined.torque),
         WITH_SHEAR: Limit(centre=reissner.centre, torque=reissner.torque),
     }
-    unsure = {name: reissner.uncertainty[name] for name in ("trajectory", "torque")}
-    apart = found[WITH_SHEAR].errors(refined.centre, refined.torque)
-    rows = [
-        _row("uncertainty", WITHOUT_SHEAR, found[WITHOUT_SHEAR].errors(check.centre, check.torque)),
-        _row("uncertainty", WITH_SHEAR, unsure),
-        _row("difference of the theories", "", apart),
+    told = [
+        ("uncertainty", WITHOUT_SHEAR, found[WITHOUT_SHEAR].errors(check.centre, check.torque)),
+        ("uncertainty", WITH_SHEAR, reissner.uncertainty),
+        ("difference of the theories", "", found[WITH_SHEAR].errors(refined.centre, refined.torque)),
     ]
     for module, settings in FINEST.items():
         if not module.installed():
@@ -94,8 +92,11 @@ def path_limits(problem: Problem) -> tuple[dict[str, Limit], Rows]:
         theory = WITH_SHEAR if module is exudyn_exact else WITHOUT_SHEAR
         path = module.static_path(problem, turns, **settings)
         away = found[theory].errors(path.centre, path.torque)
-        rows.append(_row(f"{module.model}, {settings['elements']} elements", theory, away))
-    return found, rows
+        told.append((f"{module.model}, {settings['elements']} elements", theory, away))
+    return found, [
+        {"what": what, "theory": theory, "trajectory": errors["trajectory"], "torque": errors["torque"]}
+        for what, theory, errors in told
+    ]
 
 
 def compared_paths(problem: Problem, against: dict[str, Limit]) -> tuple[Rows, Rows]:
@@ -111,10 +112,6 @@ def compared_paths(problem: Problem, against: dict[str, Limit]) -> tuple[Rows, R
         return found | {"fineness": fineness} | work, path
 
     return tried(static_variants(), solve, PATH_ERRORS, judged="worst", repeat=REPEAT)
-
-
-def _row(what: str, theory: str, errors: dict[str, float]) -> dict[str, Any]:
-    return {"what": what, "theory": theory} | {name: errors[name] for name in ("trajectory", "torque")}
 
 
 #: The same of the swing.
@@ -145,10 +142,13 @@ def swing_limits(problem: Problem) -> tuple[dict[str, Array], Rows]:
         ],
         formulations.INSTANTS,
     )
+    told = (
+        ("uncertainty", WITHOUT_SHEAR, np.abs(check - refined)),
+        ("uncertainty", WITH_SHEAR, reissner.uncertainty),
+        ("difference of the theories", "", np.abs(reissner.swing.rotation - refined)),
+    )
     rows = [
-        _swing_row("uncertainty", WITHOUT_SHEAR, float(np.abs(check - refined).max())),
-        _swing_row("uncertainty", WITH_SHEAR, float(reissner.uncertainty.max())),
-        _swing_row("difference of the theories", "", float(np.abs(reissner.swing.rotation - refined).max())),
+        {"what": what, "theory": theory, "rotation_rad": float(error.max())} for what, theory, error in told
     ]
     return {WITHOUT_SHEAR: refined, WITH_SHEAR: reissner.swing.rotation}, rows
 
@@ -174,7 +174,3 @@ def compared_swings(
         return errors | work, motion
 
     return tried(release_variants(), solve, SWING_ERRORS, judged="rotation_rad", repeat=1)
-
-
-def _swing_row(what: str, theory: str, error: float) -> dict[str, Any]:
-    return {"what": what, "theory": theory, "rotation_rad": error}

@@ -11,14 +11,13 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from studies.baselines import openseespy_frame
 from studies.baselines.answer import BaselineFailed, Followed
 from studies.baselines.constraint_model import chained_constraint_model, constraint_model
 from studies.baselines.exudyn_strips import exudyn_ancf, exudyn_exact
-from studies.baselines.four_bar import four_bar
-from studies.baselines.linear_pivot import linear_pivot, pin_joint
+from studies.baselines.openseespy import openseespy_frame
 from studies.baselines.own import elements as own_elements
 from studies.baselines.own import spline
+from studies.baselines.pseudo_rigid import four_bar, linear_pivot, pin_joint
 from studies.engine.study import lacking
 from studies.work_precision import equal_error
 

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from studies.cases.rules import Key, Rule
+from studies.cases.rules import Key, Rule, shown
 from studies.errors import BadInput
 
 
@@ -98,3 +98,10 @@ def nearest(name: str, known: Sequence[str]) -> str:
     """Return the known name nearest to `name`, or all of them, as what was expected."""
     near = difflib.get_close_matches(name, known, n=1)
     return f"{near[0]} (the nearest name)" if near else "one of " + ", ".join(known)
+
+
+def one_of(where: str, label: str, value: Any, names: Sequence[str]) -> str:
+    """Return a value that is one of these names; CaseError otherwise."""
+    if not isinstance(value, str) or value not in names:
+        raise CaseError(f"{where}: {label}: got {shown(value)}, expected {nearest(str(value), names)}")
+    return value

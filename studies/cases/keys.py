@@ -1,10 +1,12 @@
-"""The keys of case files, of a pivot, of a mechanism and of effects, and the attribute that each fills."""
+"""The keys of case files, of a pivot, of a mechanism and of effects, and the attribute that each fills; and
+the materials that they may name, each value with its source."""
 
 import math
-from dataclasses import replace
+import tomllib
+from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import Any
 
-from studies.cases.materials import MATERIALS
 from studies.cases.rules import (
     FREE,
     HISTORY,
@@ -24,12 +26,43 @@ from studies.cases.rules import (
     whole,
 )
 
+
+@dataclass(frozen=True, kw_only=True)
+class _Material:
+    """A linear elastic material at room temperature.
+
+    Attributes:
+        youngs_modulus: E [Pa]. poisson_ratio: nu [1]. density: [kg/m^3].
+        yield_strength: [Pa]; None of a material that breaks before it yields.
+        title: what it is, in words. source: of the values.
+        checked: which of them were found again, and where.
+    """
+
+    youngs_modulus: float
+    poisson_ratio: float
+    density: float
+    yield_strength: float | None = None
+    title: str
+    source: str
+    checked: str
+
+    def values(self) -> dict[str, float]:
+        """Return what it fills of a strip, by attribute."""
+        names = ("youngs_modulus", "poisson_ratio", "density", "yield_strength")
+        return {name: getattr(self, name) for name in names if getattr(self, name) is not None}
+
+
+_FILE = Path(__file__).parent / "tables" / "materials.toml"
+MATERIALS = {
+    name: _Material(**given) for name, given in tomllib.loads(_FILE.read_text(encoding="utf-8")).items()
+}
+
 GROUND = "ground"
 #: How loads and a driven rotation meet: loads come on before it and stay, or both grow together.
 LOADS_FIRST, TOGETHER = "loads first", "together"
 
 
-def degrees(expected: str, low: float, high: float, *, closed: bool = True) -> Number:
+def _degrees(expected: str, low: float, high: float, *, closed: bool = True) -> Number:
     """Return the rule for an angle that a file gives in degrees."""
     ends: Any = {"closed_low": closed, "closed_high": closed}
     return Number(
@@ -37,8 +70,8 @@ def degrees(expected: str, low: float, high: float, *, closed: bool = True) -> N
     )
 
 
-ROTATION = degrees("a number from -360 to 360", -360.0, 360.0)
-INCLINATION = degrees("a number between 0 and 90, both excluded", 0.0, 90.0, closed=False)
+ROTATION = _degrees("a number from -360 to 360", -360.0, 360.0)
+INCLINATION = _degrees("a number between 0 and 90, both excluded", 0.0, 90.0, closed=False)
 INCREMENTS = whole(1, 100_000)
 POISSON = Number(expected="a number above -1 and at most 0.5 [1]", low=-1.0, high=0.5, closed_high=True)
 RATIO = Number(expected="a number between 0 and 1, both excluded [1]", low=0.0, high=1.0)

@@ -10,8 +10,7 @@ from typing import Any
 from studies.cases import document, keys
 from studies.cases.document import CaseError
 from studies.cases.effects import Effects, read_effects
-from studies.cases.keys import GROUND, LOADS_FIRST, MOMENTS, NAMED, SECTION, SIDES
-from studies.cases.materials import MATERIALS
+from studies.cases.keys import GROUND, LOADS_FIRST, MATERIALS, MOMENTS, NAMED, SECTION, SIDES
 from studies.cases.rules import FREE, shown
 
 Values = Mapping[str, Any]
@@ -138,22 +137,15 @@ def read_mechanism(path: str, content: Mapping[str, Any], changes: str | None = 
     if "drive" not in content:
         raise CaseError(f"{path}: [drive]: got no such section, expected one with increments")
     drive = document.values(path, keys.DRIVE, document.table(path, content, "drive"), "drive")
-    return Mechanism(
-        strips=strips,
-        bodies=bodies,
-        body=_driven(path, drive.get("body"), names),
-        rotation=drive.get("rotation"),
-        increments=drive["increments"],
-        effects=read_effects(path, content, changes),
-        **{key: drive[key] for key in ("order", "history", "held") if key in drive},
-    )
+    drive = {"rotation": None} | drive | {"body": _driven(path, drive.get("body"), names)}
+    return Mechanism(strips=strips, bodies=bodies, effects=read_effects(path, content, changes), **drive)
 
 
 def _keywords(part: Strip | Body) -> dict[str, Any]:
     """Return what the models take of a part; the sides of a section only where they are given."""
     given = {each.name: getattr(part, each.name) for each in fields(part)}
     unsaid = [name for name in ("width", "thickness") if given.get(name) is None]
-    return without(given, ["yield_strength", "section_depth", *unsaid])
+    return _without(given, ["yield_strength", "section_depth", *unsaid])
 
 
 def _each(path: str, content: Mapping[str, Any], section: str) -> list[tuple[str, Mapping[str, Any]]]:
@@ -258,12 +250,12 @@ def _inherited(shared: Values, own: Values) -> dict[str, Any]:
     left = dict(shared)
     for pair, other in ((SIDES, MOMENTS), (MOMENTS, SIDES)):
         if any(key.attribute in own for key in pair):
-            left = without(left, [key.attribute for key in other])
+            left = _without(left, [key.attribute for key in other])
     if NAMED.attribute in own:
-        left = without(left, [key.attribute for key in keys.ELASTIC] + ["yield_strength"])
+        left = _without(left, [key.attribute for key in keys.ELASTIC] + ["yield_strength"])
     return left | dict(own)
 
 
-def without(values: Values, names: list[str]) -> dict[str, Any]:
+def _without(values: Values, names: list[str]) -> dict[str, Any]:
     """Return the values but for those of these names."""
     return {name: value for name, value in values.items() if name not in names}

@@ -14,8 +14,10 @@ from studies.cases.effects import Effects, read_effects
 from studies.cases.keys import KEYS, LOADS_FIRST
 from studies.cases.mechanism import Body, Sectioned, Strip, completed, of_sides
 
-__all__ = ["FOLDER", "CaseError", "Problem", "named_case", "read_case", "read_problem"]
+__all__ = ["FOLDER", "TABLE_1", "CaseError", "Problem", "named_case", "read_case", "read_problem"]
 
+#: Name of the paper's pivot.
+TABLE_1 = "cross_axis_pivot"
 FOLDER = Path(__file__).parent
 
 #: Parameters that both models take by keyword, under the same names as the attributes of `Problem`.
@@ -160,8 +162,8 @@ class Problem(Sectioned):
         return hashlib.sha256(json.dumps(asdict(self), sort_keys=True).encode()).hexdigest()
 
 
-def named_case(name: str) -> Problem:
-    """Return the case of that name that comes with the suite."""
+def named_case(name: str = TABLE_1) -> Problem:
+    """Return the case of that name that comes with the suite; the paper's without one."""
     return read_case(FOLDER / f"{name}.toml")
 
 

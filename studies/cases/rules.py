@@ -185,25 +185,25 @@ HISTORY = Rule(expected="pairs [time, factor] with increasing times [s]", read=_
 INTERVAL = Rule(expected="two instants [begin, end], the first before the second [s]", read=_interval)
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True)
 class Key:
     """One key of a case file: what is read, refused, shown in a template and told on the page of case files.
 
     Args:
         section: table that it stands in; name: in the file; attribute: or parameter that it fills.
-        rule: for its value. optional: whether it may be left out.
-        meaning: what it is, in a few words. default: what holds where it is left out.
+        rule: for its value. default: what holds where it is left out.
         example: a value that a template may show, as it stands in the file.
+        meaning: what it is, in a few words. optional: whether it may be left out.
     """
 
     section: str
     name: str
     attribute: str
     rule: Rule
-    optional: bool = False
-    meaning: str
     default: str = ""
-    example: str
+    example: str = ""
+    meaning: str = ""
+    optional: bool = False
 
     @property
     def unit(self) -> str:
@@ -225,19 +225,7 @@ def keys_of(section: str, *rows: tuple[str, str, Rule, str, str, str]) -> tuple[
         rows: of each key its name in the file, attribute, rule, default ("" of one that is needed), example
             and meaning.
     """
-    return tuple(
-        Key(
-            section=section,
-            name=name,
-            attribute=attribute,
-            rule=rule,
-            optional=bool(default),
-            meaning=meaning,
-            default=default,
-            example=example,
-        )
-        for name, attribute, rule, default, example, meaning in rows
-    )
+    return tuple(Key(section, *row, optional=bool(row[3])) for row in rows)
 
 
 def _as_float(value: float) -> float:

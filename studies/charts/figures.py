@@ -22,13 +22,15 @@ NAMES = {
 #: Crossing ratio of least shift for small rotations (Haringx, Wittrick), which the charts mark.
 LEAST_SHIFT = 0.5 - 5.0**0.5 / 6.0
 WIDTH = 6.3
+#: Where the names of pivots stand whose neighbours are near: how far [pt], and on which side.
+BESIDE = {"large steel": ((4, -10), "right"), "titanium": ((4, -10), "left")}
 
 
 def _charts(rows: tuple[str, ...], tables: Tables) -> Figure:
     """Draw a row of charts a quantity, a column a rotation."""
     table = tables["map"]
     turns = sorted(set(table["rotation_deg"]))
-    drawn = page(WIDTH, 1.75 * len(rows) + 0.35)
+    drawn = page(WIDTH, 1.5 * len(rows) + 0.35)
     panels = drawn.subplots(len(rows), len(turns), sharex=True, sharey=True, squeeze=False)
     for line, name in zip(panels, rows, strict=True):
         for panel, turn in zip(line, turns, strict=True):
@@ -46,7 +48,8 @@ def _chart(panel: Axes, rows: pd.DataFrame, name: str) -> None:
         grid.to_numpy().min(), grid.to_numpy().max()
     )
     lines = panel.contour(grid.columns, grid.index, grid, levels=levels, colors=BLUE, linewidths=0.8)
-    panel.clabel(lines, fontsize=7, inline_spacing=1, fmt=lambda value: f"{value:.3g}")
+    for said in panel.clabel(lines, fontsize=7, inline_spacing=1, fmt=lambda value: f"{value:.3g}"):
+        said.set_clip_on(False)
     panel.axvline(LEAST_SHIFT, color=ORANGE, linewidth=0.7, linestyle=":")
     panel.axvline(1.0 - LEAST_SHIFT, color=ORANGE, linewidth=0.7, linestyle=":")
     panel.grid(visible=False)
@@ -55,7 +58,7 @@ def _chart(panel: Axes, rows: pd.DataFrame, name: str) -> None:
 
 def _loads(tables: Tables) -> Figure:
     """Draw the stiffness at rest over the load by crossing ratio, and the load at which it buckles."""
-    drawn = page(WIDTH, 2.7)
+    drawn = page(WIDTH, 2.5)
     along, across, most = drawn.subplots(1, 3)
     rows = tables["loads"].query("inclination_deg == 45")
     colours = dict(zip(sorted(set(rows["crossing_ratio"])), (BLUE, SKY, GREEN, ORANGE, BLACK), strict=True))
@@ -90,8 +93,9 @@ def _validity(tables: Tables) -> Figure:
         line, share = "-" if row["share"] < 0.02 else "--", f"{row['share']:.0%}"
         if row["ratio"] == "width_ratio":
             panel.axvline(row["value"], color=GREEN, linestyle=line)
-            at, text = (row["value"], 2.6e-3), f"clamped width {share}"
-            panel.annotate(text, at, (2, 0), textcoords="offset points", rotation=90, fontsize=8, color=GREEN)
+            at, text = (row["value"], 0.18), f"clamped width {share}"
+            panel.annotate(text, at, (2, 0), textcoords="offset points", rotation=90, va="top",
+                           fontsize=8, color=GREEN)  # fmt: skip
         elif row["ratio"] == "thickness_ratio":
             panel.axhline(row["value"], color=PURPLE, linestyle=line)
             panel.annotate(f"roots of one block {share}", (0.7, row["value"]), (0, 2),
@@ -99,9 +103,9 @@ def _validity(tables: Tables) -> Figure:
     for row in rows.to_dict("records"):
         place = (row["width_ratio"], row["thickness_ratio"])
         panel.plot(*place, "o", color=BLACK)
-        below = row["pivot"].startswith("large")
         text = row["pivot"].removesuffix("_pivot").replace("_", " ")
-        panel.annotate(text, place, (4, -10 if below else 4), textcoords="offset points", fontsize=8)
+        by, side = BESIDE.get(text, ((4, 4), "left"))
+        panel.annotate(text, place, by, textcoords="offset points", fontsize=8, ha=side)
     panel.set(xscale="log", yscale="log", xlim=(0.02, 2.0), ylim=(2.5e-3, 0.2))
     panel.set(xlabel="width over length $b/L$", ylabel="thickness over length $t/L$")
     return drawn

@@ -96,10 +96,10 @@ def _grid(ratios: Any, inclinations: Any) -> tuple[Array, Array]:
     return pairs[:, 0], pairs[:, 1]
 
 
-def _charts(ratios: Any, inclinations: Any, slenderness: float, points: int = POINTS) -> pd.DataFrame:
+def _charts(ratios: Any, inclinations: Any, slenderness: float) -> pd.DataFrame:
     """Return a row a design and rotation of the charts."""
     designs = _grid(ratios, inclinations)
-    found = turned(*designs, max(ROTATIONS), slenderness, points)
+    found = turned(*designs, max(ROTATIONS), slenderness, POINTS)
     if not found.converged.all():
         raise ValueError(f"charts: {np.sum(~found.converged)} designs of L/t {slenderness:g} are not reached")
     values = dimensionless(found, *designs, slenderness)

@@ -25,6 +25,7 @@ from studies.answers.reference import NoReference
 from studies.cases.design import Design
 from studies.commands import arguments as take
 from studies.commands.answer import deliver, not_converged, require_target
+from studies.commands.columns import cell
 from studies.commands.parser import Argument, command
 from studies.record.progress import Bar
 from studies.work_precision.advice import MOTION_ERRORS, PATH_ERRORS, advise_motion, advise_path
@@ -32,8 +33,8 @@ from studies.work_precision.advice import MOTION_ERRORS, PATH_ERRORS, advise_mot
 
 @command(
     take.CASE,
-    take.ACCURACY.but(default=1e-3, help="wanted relative error, default 1e-3"),
-    Argument("--dynamic", action="store_true", help="advise on the motion after the release"),
+    take.ACCURACY.but("wanted relative error, default 1e-3", default=1e-3),
+    Argument("--dynamic", "advise on the motion after the release"),
     take.JSON,
 )
 def main(arguments: argparse.Namespace) -> int:
@@ -88,9 +89,7 @@ def _readable(problem: Design, found: pd.DataFrame, judged: Sequence[str], error
     ordered = found.sort_values(["meets", "solve_s"], ascending=[False, True])
     fastest = ordered["solve_s"].iloc[0]
     for row in ordered.to_dict("records"):
-        errors = "".join(
-            f"{row[name]:12.1e}" if math.isfinite(row[name]) else f"{'-':>12}" for name in columns
-        )
+        errors = "".join(cell(row[name], 12) for name in columns)
         line = f"{row['series']:<27}{row['setting']:<20}{errors}"
         if row["message"]:
             yield f"{line}  {row['message']}"

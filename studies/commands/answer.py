@@ -10,19 +10,16 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from studies.answers.response import Response
-from studies.kinds import Array
-from studies.record.files import require_writable_file, write_whole
-
-if TYPE_CHECKING:
-    import pandas as pd
-from studies.answers.response import Answered
+from studies.answers.response import Answered, Response
 from studies.cases.design import Design
 from studies.commands.parser import Argument
 from studies.errors import BadInput
-from studies.record.files import PICTURES
+from studies.kinds import Array
+from studies.record.files import PICTURES, require_writable_file, write_whole
 
 if TYPE_CHECKING:
+    import pandas as pd
+
     from studies.pictures.shown import Shown
 
 NOT_CONVERGED = 3
@@ -90,11 +87,8 @@ def not_converged(why: object) -> int:
 
 def headed(answer: Any) -> dict[str, Any]:
     """Return how an answer ended and what it is of, as its JSON begins; modes pass nothing on their way."""
-    found = {"status": answer.status, "message": answer.message}
-    if hasattr(answer, "resolution"):
-        found["resolution"] = answer.resolution
-    about = {"model": answer.model, "settings": answer.settings, "effects": answer.effects}
-    return found | about
+    names = ("status", "message", "resolution", "model", "settings", "effects")
+    return {name: getattr(answer, name) for name in names if hasattr(answer, name)}
 
 
 def described(model: str, settings: Mapping[str, Any], effects: Iterable[str]) -> str:
@@ -180,10 +174,9 @@ def _picture_file(text: str) -> Path:
 
 
 PLOT = Argument(
-    "--plot",
-    type=_picture_file,
-    metavar="FILE",
-    help="draw the answer at the width of a page, as .svg, .png or .pdf (default: no picture)",
+    "--plot FILE",
+    "draw the answer at the width of a page, as .svg, .png or .pdf (default: no picture)",
+    _picture_file,
 )
 
 
@@ -191,19 +184,21 @@ def pictured(arguments: argparse.Namespace, design: Design, *answers: Answered) 
     """Draw what there is of the answers to a design where --plot says, and say where it is."""
     if arguments.plot is None:
         return
+    draw(
+        arguments,
+        [shown_of(arguments.case, design, each) for each in answers if each.solution is not None],
+        arguments.plot,
+    )
+
+
+def shown_of(case: str, design: Design, answer: Answered) -> "Shown":
+    """Return an answer as pictures show it, with the least known yield strength of its strips."""
     from studies.answers.fields import fields_of
     from studies.pictures.shown import Shown
 
-    strength = weakest(design)
-    draw(
-        arguments,
-        [
-            Shown(name=called(arguments.case, each), fields=fields_of(each, design), yield_strength=strength)
-            for each in answers
-            if each.solution is not None
-        ],
-        arguments.plot,
-    )
+    known = [strip.yield_strength for strip in design.strips if strip.yield_strength is not None]
+    name, fields = called(case, answer), fields_of(answer, design)
+    return Shown(name=name, fields=fields, yield_strength=min(known, default=None))
 
 
 def draw(arguments: argparse.Namespace, shown: "list[Shown]", target: Path) -> None:
@@ -227,9 +222,3 @@ def called(case: str, answer: Any) -> str:
     fine = {"control_points": "control points", "elements": "elements"}
     counts = (f", {settings[key]} {word}" for key, word in fine.items() if key in settings)
     return f"{Path(case).stem}: {answer.model}{''.join(counts)}"
-
-
-def weakest(design: Design) -> float | None:
-    """Return the least yield strength of a design's strips [Pa]; None where none is given."""
-    known = (strip.yield_strength for strip in design.strips)
-    return min((each for each in known if each is not None), default=None)

@@ -18,14 +18,13 @@ block, all three, and with shear, which the elements have (--model fe-shear). Ex
 """
 
 import argparse
-import math
 from collections.abc import Iterator
-from dataclasses import asdict
 from typing import Any
 
 from studies.answers.settings import SplineSettings
 from studies.commands import arguments as take
 from studies.commands.answer import deliver, not_converged, require_target
+from studies.commands.columns import cell
 from studies.commands.parser import Argument, command, positive, whole_number
 from studies.effects.audit import Audit, audit
 from studies.effects.scenes import Outcome, Unanswered
@@ -35,10 +34,8 @@ from studies.record.progress import Bar
 @command(
     take.CASE,
     take.EFFECTS,
-    take.CONTROL_POINTS.but(type=whole_number(4), default=6, help="control points a strip, default 6"),
-    Argument(
-        "--tolerance", type=positive, default=1e-3, metavar="T", help="allowed relative change, default 1e-3"
-    ),
+    take.CONTROL_POINTS.but("control points a strip, default 6", read=whole_number(4), default=6),
+    Argument("--tolerance T", "allowed relative change, default 1e-3", positive, default=1e-3),
     take.JSON,
 )
 def main(arguments: argparse.Namespace) -> int:
@@ -62,34 +59,12 @@ def _document(found: Audit) -> dict[str, Any]:
         "settings": found.run.settings.keywords(),
         "duration_s": found.run.duration,
         "step_s": found.run.step,
-        "full": _row(found, found.full),
-        "rows": [_row(found, row) for row in found.rows],
-        "tried": [_row(found, row) for row in found.tried],
-        "beyond": [asdict(row) for row in found.beyond],
-        "cheapest": _row(found, found.cheapest) | {"time_ratio": found.ratio, "wall_s": found.seconds[1]},
+        "full": found.row(found.full),
+        "rows": [found.row(row) for row in found.rows],
+        "tried": [found.row(row) for row in found.tried],
+        "beyond": found.beyond,
+        "cheapest": found.row(found.cheapest) | {"time_ratio": found.ratio, "wall_s": found.seconds[1]},
         "full_wall_s": found.seconds[0],
-    }
-
-
-def _row(found: Audit, row: Outcome) -> dict[str, Any]:
-    size = row.size
-    return {
-        "scene": row.variant.label,
-        "dropped": row.variant.dropped,
-        "effects": row.variant.effects.names,
-        "status": row.status,
-        "reason": row.reason,
-        "trajectory": row.trajectory,
-        "torque": row.torque,
-        "swing_frequency": row.swing,
-        "first_mode": row.mode,
-        "loss": row.loss,
-        "time_ratio": found.time_ratio(row),
-        "wall_s": row.wall_s,
-        "unknowns": size.unknowns if size else None,
-        "degrees_of_freedom": size.degrees_of_freedom if size else None,
-        "highest_frequency_Hz": size.highest_frequency if size else None,
-        "explicit_step_s": size.explicit_step if size else None,
     }
 
 
@@ -107,10 +82,10 @@ def _readable(found: Audit) -> Iterator[str]:
     head = f"{'path':>9}{'stiffness':>11}{'torque':>10}{'stress':>10}{'1st mode':>10}"
     yield f"{'what planar beams leave out':<28}{head}"
     for price in found.beyond:
-        cells = f"{_cell(price.trajectory, 9)}{_cell(price.stiffness, 11, '+')}"
-        cells += "".join(_cell(value, 10, "+") for value in (price.torque, price.stress, price.mode))
-        answer = f"{price.status.replace('_', ' ')}: {price.reason}" if price.reason else cells
-        yield f"{'with ' + price.effect.replace('_', ' '):<28}{answer}"
+        cells = f"{cell(price['trajectory'], 9)}{cell(price['stiffness'], 11, sign='+')}"
+        cells += "".join(cell(price[name], 10, sign="+") for name in ("torque", "stress", "first_mode"))
+        answer = f"{price['status'].replace('_', ' ')}: {price['reason']}" if price["reason"] else cells
+        yield f"{'with ' + price['effect'].replace('_', ' '):<28}{answer}"
     yield ""
     if not best.variant.dropped:
         yield f"no cheaper scene is within {found.tolerance:g}"
@@ -123,17 +98,11 @@ def _readable(found: Audit) -> Iterator[str]:
 
 def _line(found: Audit, row: Outcome) -> str:
     label = f"{row.variant.label if len(row.variant.dropped) < 2 else 'all of these':<28}"
-    if row.size is None:
+    if not row.size:
         return f"{label} {row.status.replace('_', ' ')}: {row.reason}"
-    cells = f"{_cell(row.trajectory, 9)}{_cell(row.torque, 9)}"
-    cells += "".join(_cell(value, 10, "+") for value in (row.swing, row.mode, row.loss))
-    size = row.size
-    extent = f"{size.unknowns:9d}{size.degrees_of_freedom:5d}"
-    speed = f"{size.highest_frequency:12.4g}{size.explicit_step:9.1e}"
-    ratio = found.time_ratio(row)
-    time = f"{ratio:8.2g}" if math.isfinite(ratio) else f"{'-':>8}"
-    return f"{label}{cells}{time}{extent}{speed}  {row.reason}".rstrip()
-
-
-def _cell(value: float, width: int, sign: str = "") -> str:
-    return f"{value:{sign}{width}.1e}" if math.isfinite(value) else f"{'-':>{width}}"
+    shown = found.row(row)
+    cells = f"{cell(shown['trajectory'], 9)}{cell(shown['torque'], 9)}"
+    cells += "".join(cell(shown[name], 10, sign="+") for name in ("swing_frequency", "first_mode", "loss"))
+    extent = f"{shown['unknowns']:9d}{shown['degrees_of_freedom']:5d}"
+    speed = f"{shown['highest_frequency_Hz']:12.4g}{shown['explicit_step_s']:9.1e}"
+    return f"{label}{cells}{cell(shown['time_ratio'], 8, '.2g')}{extent}{speed}  {row.reason}".rstrip()

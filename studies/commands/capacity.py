@@ -31,20 +31,19 @@ DIGITS, NO_TURN = 6, 1e-6
 @command(
     *take.SEVERAL_MODELS,
     Argument(
-        "--force-direction-deg",
+        "--force-direction-deg X",
+        "of the force, in deg from x to y, default -90: down",
+        degrees,
         dest="direction",
-        type=degrees,
         default=-90.0,
-        metavar="X",
-        help="of the force, in deg from x to y, default -90: down",
     ),
-    take.HELD.but(help="hold the rotation of the body (default: it is free)"),
-    Argument("--body", metavar="NAME", help="that the force acts on (default: the case's)"),
+    take.HELD.but("hold the rotation of the body (default: it is free)"),
+    Argument("--body NAME", "that the force acts on (default: the case's)"),
     take.JSON,
 )
 def main(arguments: argparse.Namespace) -> int:
     """Raise the force and report; return the exit code."""
-    design, every = take.chosen_design(arguments), take.all_settings(arguments)
+    design, every = take.chosen_design(arguments), take.chosen_settings(arguments)
     require_target(arguments)
     how = {"direction": math.radians(arguments.direction), "held": arguments.held, "body": arguments.body}
     found = []

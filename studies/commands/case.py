@@ -8,9 +8,8 @@ docs/cases.md tells the same with the rules. Exit code 0: done; 2: bad input.
 """
 
 import argparse
-from pathlib import Path
 
-from studies.cases.page import template
+from studies.cases.write import template
 from studies.commands.arguments import OUT
 from studies.commands.parser import Argument, command
 from studies.errors import BadInput
@@ -18,9 +17,9 @@ from studies.record.files import require_writable_file, write_whole
 
 
 @command(
-    Argument("--pivot", action="store_true", help="of a cross-axis pivot (default)"),
-    Argument("--mechanism", action="store_true", help="of any mechanism of strips and bodies"),
-    OUT.but(metavar="FILE", help="write it there (default: the output stream)"),
+    Argument("--pivot", "of a cross-axis pivot (default)"),
+    Argument("--mechanism", "of any mechanism of strips and bodies"),
+    OUT.but("write it there (default: the output stream)", metavar="FILE"),
 )
 def main(arguments: argparse.Namespace) -> int:
     """Print or write the template; return the exit code."""
@@ -30,12 +29,7 @@ def main(arguments: argparse.Namespace) -> int:
     if arguments.out is None:
         print(text)
         return 0
-    written(arguments.out, text)
+    require_writable_file(arguments.out)
+    write_whole(arguments.out, f"{text}\n".encode())
+    print(f"{arguments.out}: written; `python -m studies solve {arguments.out}`")
     return 0
-
-
-def written(path: Path, text: str) -> None:
-    """Write a case file and say so."""
-    require_writable_file(path)
-    write_whole(path, f"{text}\n".encode())
-    print(f"{path}: written; `python -m studies solve {path}`")

@@ -104,9 +104,14 @@ def fixed(value: float, decimals: int) -> str:
     return f"{round(value, decimals) + 0.0:.{decimals}f}" if math.isfinite(value) else NOTHING
 
 
-def significant(value: float) -> str:
+def significant(value: float, digits: int = DIGITS) -> str:
     """Return a number with its significant digits, for columns over many powers of ten; a dash for NaN."""
-    return f"{value + 0.0:.{DIGITS}g}" if math.isfinite(value) else NOTHING
+    return f"{value + 0.0:.{digits}g}" if math.isfinite(value) else NOTHING
+
+
+def cell(value: float, width: int, form: str = ".1e", sign: str = "") -> str:
+    """Return a number in so many characters, flush right; a dash for NaN."""
+    return f"{value:{sign}{width}{form}}" if math.isfinite(value) else f"{NOTHING:>{width}}"
 
 
 def one(value: float, digits: int) -> str:

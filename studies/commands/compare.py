@@ -15,25 +15,22 @@ input; 3: one did not, and is told up to where it came.
 
 import argparse
 import math
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from studies.answers.adapters import answer_modes, answer_static
-from studies.answers.fields import fields_of
 from studies.answers.response import Response
 from studies.answers.settings import Settings
 from studies.answers.strength import strength
 from studies.cases.design import Design, read_design
 from studies.commands import arguments as take
-from studies.commands.answer import PLOT, called, deliver, draw, require_target, weakest
-from studies.commands.columns import NOTHING, PREFIXES, plain, quantity, table
+from studies.commands.answer import PLOT, called, deliver, draw, require_target, shown_of
+from studies.commands.columns import NOTHING, PREFIXES, plain, quantity, significant, table
 from studies.commands.parser import Argument, command
 from studies.errors import BadInput
-from studies.kinds import Array
 from studies.pictures.shown import LETTERS, Shown
 from studies.record.progress import Bar
 
@@ -42,100 +39,84 @@ DIGITS, ROUND_OFF = 5, 1e-8
 #: Modes that are drawn.
 MODES = 6
 PLOT_MODES = Argument(
-    "--plot-modes",
-    **PLOT.keywords
-    | {"help": "draw the first six natural modes at rest over one another (default: no picture)"},
+    "--plot-modes FILE",
+    "draw the first six natural modes at rest over one another (default: no picture)",
+    PLOT.read,
 )
 
 
-@dataclass(frozen=True, kw_only=True)
-class Compared:
-    """One design by one model.
+#: Lines of the table: name there, key in JSON, unit, and power of ten of the largest prefix.
+ROWS = (
+    ("rotation, end", "rotation_rad", "deg", 0),
+    ("torque, end", "torque_Nm", "N m", 0),
+    ("stiffness, begin", "stiffness_begin_Nm_per_rad", "N m/rad", 0),
+    ("stiffness, end", "stiffness_end_Nm_per_rad", "N m/rad", 0),
+    ("stiffness, variation", "stiffness_variation", "", 0),
+    ("centre shift, largest", "largest_centre_shift_m", "m", -3),
+    ("stress, largest", "max_stress_Pa", "Pa", 6),
+    ("strain energy, end", "strain_energy_J", "J", 0),
+    ("safety to yield", "safety", "", 0),
+    ("yields from", "yield_rotation_rad", "deg", 0),
+    ("first frequency", "first_frequency_Hz", "Hz", 0),
+)
 
-    Attributes:
-        name: in the key of table and picture; case, design: it is of; answer: its path.
-        shown: what follows from it; None of a path without a state.
-        modes: the natural modes at rest; None where statics does not hold the rest.
-        beside: values of the lines that are not of what is shown, by their keys.
-    """
 
-    name: str
+class _Compared(NamedTuple):
+    """One design by one model: its case, the answer, its path and its modes as pictures show them, None of
+    what has no state, and its numbers by the keys of `ROWS`, those that it has."""
+
     case: str
-    design: Design
     answer: Response
     shown: Shown | None
     modes: Shown | None
-    beside: dict[str, float]
+    values: dict[str, float]
+
+    def value(self, key: str) -> float:
+        """Return a number, NaN where it has none."""
+        return self.values.get(key, math.nan)
 
 
-class Row(NamedTuple):
-    """A line of the table: what it is called there and in JSON, its unit, and what it is of what is shown."""
-
-    name: str
-    key: str
-    unit: str = ""
-    of: Callable[[Shown], float] = lambda each: math.nan
-    highest: int = 0
-
-
-def _end(values: Array | None, state: int = -1) -> float:
-    return math.nan if values is None else float(values[state])
-
-
-def _largest(values: Array | None) -> float:
-    return math.nan if values is None else float(values.max())
-
-
-def _variation(shown: Shown) -> float:
-    stiffness = shown.fields.stiffness
-    if stiffness is None:
-        return math.nan
-    variation = float(np.ptp(stiffness) / abs(stiffness[0]))
-    return variation if variation > ROUND_OFF else 0.0
-
-
-ROWS = (
-    Row("rotation, end", "rotation_rad", "deg", lambda each: _end(each.rotation)),
-    Row("torque, end", "torque_Nm", "N m", lambda each: _end(each.fields.torque)),
-    Row(
-        "stiffness, begin",
-        "stiffness_begin_Nm_per_rad",
-        "N m/rad",
-        lambda each: _end(each.fields.stiffness, 0),
-    ),
-    Row("stiffness, end", "stiffness_end_Nm_per_rad", "N m/rad", lambda each: _end(each.fields.stiffness)),
-    Row("stiffness, variation", "stiffness_variation", "", _variation),
-    Row("centre shift, largest", "largest_centre_shift_m", "m", lambda each: _largest(each.shift), -3),
-    Row("stress, largest", "max_stress_Pa", "Pa", lambda each: _largest(each.fields.max_stress), 6),
-    Row("strain energy, end", "strain_energy_J", "J", lambda each: _end(each.fields.strain_energy)),
-)
-#: Lines that are not of what a picture shows.
-SAFETY, YIELDS, FREQUENCY = BESIDE = (
-    Row("safety to yield", "safety"),
-    Row("yields from", "yield_rotation_rad", "deg"),
-    Row("first frequency", "first_frequency_Hz", "Hz"),
-)
+def _values(design: Design, answer: Response, shown: Shown) -> dict[str, float]:
+    """Return the numbers of a path by their keys."""
+    fields, limits = shown.fields, strength(design, answer)
+    found: dict[str, Any] = {
+        "max_stress_Pa": fields.max_stress.max(),
+        "strain_energy_J": fields.strain_energy[-1],
+        "safety": limits.safety,
+        "yield_rotation_rad": limits.yields and limits.yields[1],
+    }
+    if shown.rotation is not None:
+        found["rotation_rad"] = shown.rotation[-1]
+    if fields.torque is not None:
+        found["torque_Nm"] = fields.torque[-1]
+    if fields.stiffness is not None:
+        found["stiffness_begin_Nm_per_rad"] = begin = fields.stiffness[0]
+        found["stiffness_end_Nm_per_rad"] = fields.stiffness[-1]
+        variation = np.ptp(fields.stiffness) / abs(begin)
+        found["stiffness_variation"] = variation if variation > ROUND_OFF else 0.0
+    if shown.shift is not None:
+        found["largest_centre_shift_m"] = shown.shift.max()
+    return {key: float(value) for key, value in found.items() if value is not None}
 
 
 @command(
     Argument(
-        "cases",
-        metavar="CASE",
+        "cases CASE",
+        "the designs: files, or names of those that come with the suite",
+        take.CASE.read,
         nargs="+",
-        type=take.CASE.keywords["type"],
-        help="the designs: files, or names of those that come with the suite",
     ),
     *(each for each in take.SEVERAL_MODELS if each is not take.CASE),
-    take.ROTATION.but(help="end of the paths, in deg (default: the cases')"),
+    take.ROTATION.but("end of the paths, in deg (default: the cases')"),
     take.INCREMENTS,
-    take.ACCURACY.but(help="wanted relative error of the paths, as of `solve` (default: that of `solve`)"),
+    take.ACCURACY.but("wanted relative error of the paths, as of `solve` (default: that of `solve`)"),
     take.JSON,
     PLOT,
     PLOT_MODES,
 )
 def main(arguments: argparse.Namespace) -> int:
     """Solve all, report and draw; return the exit code."""
-    asked = [(case, settings) for case in arguments.cases for settings in take.all_settings(arguments)]
+    asked = [(case, settings) for case in arguments.cases for settings in take.chosen_settings(arguments)]
     if not 2 <= len(asked) <= len(LETTERS):
         got = f"{len(asked)} (designs: {len(arguments.cases)}, models: {len(arguments.model)})"
         raise BadInput(f"compare: got {got}, expected 2 to {len(LETTERS)} designs, or a design by two models")
@@ -146,94 +127,71 @@ def main(arguments: argparse.Namespace) -> int:
             found.append(_solved(case, settings, arguments))
             bar(done, len(asked))
     for target, parts in (
-        (arguments.plot, [each.shown for each in found]),
-        (arguments.plot_modes, [each.modes for each in found]),
+        (arguments.plot, [each.shown for each in found if each.shown]),
+        (arguments.plot_modes, [each.modes for each in found if each.modes]),
     ):
-        if target is not None and None not in parts:
-            draw(arguments, [each for each in parts if each is not None], target)
+        if target is not None and len(parts) == len(found):
+            draw(arguments, parts, target)
     failed = (
         f"{LETTERS[k]}: {each.answer.message}" for k, each in enumerate(found) if not each.answer.converged
     )
     return deliver(arguments, _document(found), _readable(found), failure="; ".join(failed) or None)
 
 
-def _document(found: Sequence[Compared]) -> dict[str, Any]:
+def _document(found: Sequence[_Compared]) -> dict[str, Any]:
     """Return the answer as the JSON object of the command."""
     return {
         "designs": [
             {
-                "name": each.name,
+                "name": called(each.case, each.answer),
                 "case": Path(each.case).name,
-                "model": each.answer.model,
-                "settings": each.answer.settings,
-                "status": each.answer.status,
-                "message": each.answer.message,
-                **{row.key: _value(row, each) for row in (*ROWS, *BESIDE)},
+                **{name: getattr(each.answer, name) for name in ("model", "settings", "status", "message")},
+                **{key: each.value(key) for _, key, _, _ in ROWS},
             }
             for each in found
         ]
     }
 
 
-def _solved(case: str, settings: Settings, arguments: argparse.Namespace) -> Compared:
+def _solved(case: str, settings: Settings, arguments: argparse.Namespace) -> _Compared:
     design = take.driven(read_design(case, changes=arguments.effects), arguments)
-    accuracy = arguments.accuracy
-    answer = answer_static(design, settings, accuracy=accuracy)
+    answer = answer_static(design, settings, accuracy=arguments.accuracy)
     spectrum = answer_modes(design, settings, count=1 if arguments.plot_modes is None else MODES)
-    name, shown, modes, beside = called(case, answer), None, None, {}
+    shown, modes, values = None, None, {}
     if len(answer.load_factor):
-        shown = Shown(name=name, fields=fields_of(answer, design), yield_strength=weakest(design))
-        found = strength(design, answer)
-        beside[SAFETY.key] = math.nan if found.safety is None else found.safety
-        beside[YIELDS.key] = math.nan if found.yields is None else found.yields[1]
+        shown = shown_of(case, design, answer)
+        values = _values(design, answer, shown)
     if len(spectrum.frequency):
-        beside[FREQUENCY.key] = float(spectrum.frequency[0])
-        modes = Shown(name=called(case, spectrum), fields=fields_of(spectrum, design))
-    return Compared(
-        name=name, case=case, design=design, answer=answer, shown=shown, modes=modes, beside=beside
-    )
+        modes = shown_of(case, design, spectrum)
+        values["first_frequency_Hz"] = float(spectrum.frequency[0])
+    return _Compared(case, answer, shown, modes, values)
 
 
-def _value(row: Row, each: Compared) -> float:
-    if row in BESIDE:
-        return each.beside.get(row.key, math.nan)
-    return math.nan if each.shown is None else row.of(each.shown)
-
-
-def _readable(found: Sequence[Compared]) -> Iterator[str]:
+def _readable(found: Sequence[_Compared]) -> Iterator[str]:
     """Yield the lines of the table: the key, then a row a quantity, and what the others are over A."""
     letters = LETTERS[: len(found)]
     for letter, each in zip(letters, found, strict=True):
-        yield f"{letter}: {each.name}, {each.answer.status.replace('_', ' ')}"
-    rows = [(row, [_value(row, each) for each in found]) for row in (*ROWS, *BESIDE)]
-    rows = [(row, values) for row, values in rows if np.isfinite(values).any()]
-    cells = [_cells(row, values) for row, values in rows]
-    columns = [
-        plain("", (f"{row.name:<22}" for row, _ in rows)),
-        plain("unit", (unit for unit, _ in cells)),
-        *(plain(letter, (texts[k] for _, texts in cells)) for k, letter in enumerate(letters)),
-        *(
-            plain(f"{letter}/A", (_ratio(values[k], values[0]) for _, values in rows))
-            for k, letter in enumerate(letters)
-            if k
-        ),
-    ]
+        yield f"{letter}: {called(each.case, each.answer)}, {each.answer.status.replace('_', ' ')}"
+    rows = []
+    for name, key, unit, highest in ROWS:
+        values = [each.value(key) for each in found]
+        if np.isfinite(values).any():
+            shown, texts = _cells(unit, highest, values)
+            rows.append([f"{name:<22}", shown, *texts, *(_ratio(each, values[0]) for each in values[1:])])
+    heads = ["", "unit", *letters, *(f"{letter}/A" for letter in letters[1:])]
+    columns = [plain(head, cells) for head, cells in zip(heads, zip(*rows, strict=True), strict=True)]
     yield from (line for line in table(columns) if line.strip())
 
 
-def _cells(row: Row, values: list[float]) -> tuple[str, list[str]]:
+def _cells(unit: str, highest: int, values: list[float]) -> tuple[str, list[str]]:
     """Return the unit of a row, with its prefix, and its numbers."""
-    if row.unit == "deg":
-        return row.unit, [_short(math.degrees(value)) for value in values]
-    if not row.unit:
-        return "", [_short(value) for value in values]
-    (column,) = quantity(row.unit, highest=row.highest, values=values)
-    power = {prefix: power for power, prefix in PREFIXES.items()}[column.unit.removesuffix(row.unit)]
-    return column.unit, [_short(value / 10.0**power) for value in values]
-
-
-def _short(value: float) -> str:
-    return f"{value:.{DIGITS}g}" if math.isfinite(value) else NOTHING
+    if unit == "deg":
+        return unit, [significant(math.degrees(value), DIGITS) for value in values]
+    if not unit:
+        return "", [significant(value, DIGITS) for value in values]
+    (column,) = quantity(unit, highest=highest, values=values)
+    power = {prefix: power for power, prefix in PREFIXES.items()}[column.unit.removesuffix(unit)]
+    return column.unit, [significant(value / 10.0**power, DIGITS) for value in values]
 
 
 def _ratio(value: float, first: float) -> str:

@@ -24,6 +24,7 @@ from studies.answers.response import Response
 from studies.answers.settings import SplineSettings
 from studies.commands import arguments as take
 from studies.commands.answer import not_converged
+from studies.commands.columns import cell
 from studies.commands.parser import command, counts
 from studies.convergence.sweep import (
     FINEST,
@@ -47,15 +48,15 @@ ACCURACIES = (1e-3, 1e-4, 1e-6)
 @command(
     take.CASE,
     take.CONTROL_POINTS.but(
-        type=counts(4), default=(4, 12), metavar="A:B", help="of the splines, in steps of 1, default 4:12"
+        "of the splines, in steps of 1, default 4:12", read=counts(4), default=(4, 12), metavar="A:B"
     ),
     take.ELEMENTS.but(
-        type=counts(1), default=(5, 160), metavar="A:B", help="of the meshes, by doubling, default 5:160"
+        "of the meshes, by doubling, default 5:160", read=counts(1), default=(5, 160), metavar="A:B"
     ),
     take.BASIS.but(default="bezier"),
     take.MEASURE.but(choices=("material", "spatial"), default="material"),
     take.STRETCH.but(default="mixed"),
-    take.OUT.but(help="of tables and figure (default: results/designs/<name of the case>)"),
+    take.OUT.but("of tables and figure (default: results/designs/<name of the case>)"),
 )
 def main(arguments: argparse.Namespace) -> int:
     """Refine, print, store and draw; return the exit code."""
@@ -141,13 +142,11 @@ def _reached(splines: pd.DataFrame, elements: pd.DataFrame, quantities: tuple[st
 def _rows(table: pd.DataFrame, count: str) -> Iterator[str]:
     """Yield one line a row, the status with where a failed path stopped."""
     for row in table.to_dict("records"):
-        cells = "".join(_cell(row[f"error_{name}"], row[f"order_{name}"]) for name in QUANTITIES)
+        cells = "".join(
+            cell(row[f"error_{name}"], 13, ".3e") + cell(row[f"order_{name}"], 8, ".2f")
+            for name in QUANTITIES
+        )
         ended = f"{row['status'].replace('_', ' ')}"
         if row["status"] != "converged":
             ended += f" beyond {math.degrees(row['reached_rad']):.4g} deg"
         yield f"{row[count]:>6}{cells}  {ended}"
-
-
-def _cell(error: float, order: float) -> str:
-    shown = f"{error:13.3e}" if math.isfinite(error) else f"{'-':>13}"
-    return shown + (f"{order:8.2f}" if math.isfinite(order) else f"{'-':>8}")

@@ -28,7 +28,7 @@ from studies.commands import arguments as take
 from studies.commands.answer import described, not_converged
 from studies.commands.parser import Argument, command, degrees_list, names_of, whole_number
 from studies.errors import BadInput
-from studies.exchange.formats import FORMATS, contents, require_own, summary, write
+from studies.exchange.formats import FORMATS, contents, require_own, write
 from studies.record.progress import Bar
 
 #: Options that belong to one analysis, with their defaults; given for another they are refused.
@@ -37,50 +37,49 @@ OPTIONS: dict[str, dict[str, Any]] = {
     "release": {"duration": 0.05, "step": None, "integrator": None, "records": 200},
     "modes": {"count": 6, "held": False},
 }
-RECORDS = Argument(
-    "--records", type=whole_number(1), metavar="R", help="release: largest number of states, default 200"
-)
+RECORDS = Argument("--records R", "release: largest number of states, default 200", whole_number(1))
 #: States that a drawing shows, parts of the series.
 DRAWN = (0.5, 1.0)
 
 
 @command(
     *take.MODEL,
-    take.OUT.but(required=True, help="new, empty, or of a former export"),
+    take.OUT.but("new, empty, or of a former export", required=True),
     Argument(
-        "--formats",
-        type=names_of(FORMATS),
+        "--formats LIST",
+        f"of {', '.join(FORMATS)}, separated by commas, default vtk,svg",
+        names_of(FORMATS),
         default=("vtk", "svg"),
-        metavar="LIST",
-        help=f"of {', '.join(FORMATS)}, separated by commas, default vtk,svg",
     ),
-    Argument("--analysis", choices=list(OPTIONS), default="static", help="what is solved, default static"),
+    Argument("--analysis", "what is solved, default static", choices=list(OPTIONS), default="static"),
     take.ROTATION.but(
-        help="end of the path, start of the motion, or state of the modes, in deg "
+        "end of the path, start of the motion, or state of the modes, in deg "
         "(default: the case's; of modes 0)"
     ),
     Argument(
-        "--draw-deg",
-        type=degrees_list,
-        metavar="LIST",
-        help="draw the states nearest to these rotations, in deg (svg; default: middle and end)",
+        "--draw-deg LIST",
+        "draw the states nearest to these rotations, in deg (svg; default: middle and end)",
+        degrees_list,
     ),
     *(
-        each.of("of one analysis")
+        each.but(group="of one analysis")
         for each in (
-            take.INCREMENTS.but(help="static: of the path (default: the case's)"),
-            take.DURATION.but(help="release: in s, default 0.05"),
-            take.STEP.but(help="release: in s (default: the integrator's)"),
-            take.INTEGRATOR.but(help="release: as of `release` (default: the model's)"),
+            take.INCREMENTS.but("static: of the path (default: the case's)"),
+            take.DURATION.but("release: in s, default 0.05"),
+            take.STEP.but("release: in s (default: the integrator's)"),
+            take.INTEGRATOR.but("release: as of `release` (default: the model's)"),
             RECORDS,
-            take.COUNT.but(default=None, help="modes: number of modes, default 6"),
-            take.HELD.but(default=None, help="modes: hold the rotation of the body"),
+            take.COUNT.but("modes: number of modes, default 6", default=None),
+            take.HELD.but("modes: hold the rotation of the body", default=None),
         )
     ),
 )
 def main(arguments: argparse.Namespace) -> int:
     """Solve and write; return the exit code."""
-    design, settings = _asked(arguments), take.chosen_settings(arguments)
+    design = take.driven(take.chosen_design(arguments), arguments)
+    if arguments.analysis == "modes" and arguments.rotation is None:
+        design = dataclasses.replace(design, rotation=0.0)  # modes are at rest unless they say more
+    (settings,) = take.chosen_settings(arguments)
     own = _own_options(arguments)
     require_own(arguments.out)
     answer = _solved(arguments.analysis, design, settings, own)
@@ -88,17 +87,10 @@ def main(arguments: argparse.Namespace) -> int:
         return not_converged(answer.message)
     fields = fields_of(answer, design)
     files = contents(fields, arguments.formats, _drawn(fields, arguments.draw_deg))
-    write(arguments.out, files, {"case": Path(arguments.case).name, **summary(fields)})
+    write(arguments.out, files, fields, Path(arguments.case).name)
     print(described(fields.model, fields.settings, fields.effects))
     print(f"{arguments.out}: {len(fields.values)} states of {fields.analysis} in {len(files)} files")
     return 0 if fields.converged else not_converged(fields.message)
-
-
-def _asked(arguments: argparse.Namespace) -> Design:
-    """Return the design with the path that the options ask for; modes are at rest unless they say more."""
-    design = take.driven(take.chosen_design(arguments), arguments)
-    rest = arguments.analysis == "modes" and arguments.rotation is None
-    return dataclasses.replace(design, rotation=0.0) if rest else design
 
 
 def _own_options(arguments: argparse.Namespace) -> dict[str, Any]:

@@ -39,39 +39,25 @@ EXTRA = {
 
 
 @command(
-    CASE.but(
-        nargs="?", help="a design of one's own to start with, a file or the name of one that comes along"
-    ),
+    CASE.but("a design of one's own to start with, a file or the name of one that comes along", nargs="?"),
+    Argument("--port P", "of the server, default any free one", whole_number(0), default=0),
     Argument(
-        "--port", type=whole_number(0), default=0, metavar="P", help="of the server, default any free one"
-    ),
-    Argument(
-        "--share",
+        "--share ADDRESS",
+        "open the page to the own network too, at this machine's address there (default: closed)",
         nargs="?",
         const="",
-        metavar="ADDRESS",
-        help="open the page to the own network too, at this machine's address there (default: closed)",
     ),
-    Argument("--no-browser", action="store_true", help="print the address, open nothing"),
-    Argument("--film", metavar="FILE|demo", help="pictures from a film, not a camera (default: none)"),
+    Argument("--no-browser", "print the address, open nothing"),
+    Argument("--film FILE|demo", "pictures from a film, not a camera (default: none)"),
     Argument(
-        "--camera",
+        "--camera browser|none|N",
+        "the browser's, none, or number N of this machine, default browser",
         default="browser",
-        metavar="browser|none|N",
-        help="the browser's, none, or number N of this machine, default browser",
     ),
-    Argument(
-        "--calibration", type=Path, metavar="FILE", help="the camera's constants as JSON (default: none)"
-    ),
-    Argument(
-        "--preset",
-        metavar="NAME",
-        help="design to start with: polymer (default) or table-1",
-    ),
-    Argument("--record", type=Path, metavar="FILE", help="store the session's events (default: none)"),
-    Argument(
-        "--replay", type=Path, metavar="FILE", help="replay a stored session and compare (default: none)"
-    ),
+    Argument("--calibration FILE", "the camera's constants as JSON (default: none)", Path),
+    Argument("--preset NAME", "design to start with: polymer (default) or table-1"),
+    Argument("--record FILE", "store the session's events (default: none)", Path),
+    Argument("--replay FILE", "replay a stored session and compare (default: none)", Path),
 )
 def main(arguments: argparse.Namespace) -> int:
     """Serve until interrupted, or replay; return the exit code."""
@@ -84,7 +70,7 @@ def main(arguments: argparse.Namespace) -> int:
     if arguments.replay is not None:
         return _replay(arguments.replay)
     _require_extra("interactive")
-    from studies.interactive.tracking.calibration import Camera
+    from studies.interactive.tracking.planar import Camera
     from studies.interactive.web.server import Server, Settings, warm_up
 
     preset = arguments.preset or ("polymer" if arguments.case is None else presets.OWN)
@@ -114,7 +100,7 @@ def main(arguments: argparse.Namespace) -> int:
     return 0
 
 
-@command(OUT.but(default=Path("markers.pdf"), metavar="FILE", help="default markers.pdf"))
+@command(OUT.but("default markers.pdf", default=Path("markers.pdf"), metavar="FILE"))
 def markers(arguments: argparse.Namespace) -> int:
     """Print the sheet with both markers, the pivot's outline and a ruler, as PDF for A4.
 
@@ -134,13 +120,9 @@ def markers(arguments: argparse.Namespace) -> int:
 
 
 @command(
-    Argument(
-        "source",
-        metavar="FILM|N",
-        help="a film file of the whole sheet, or number N of this machine's cameras",
-    ),
-    Argument("--views", type=whole_number(3), default=12, metavar="N", help="from other sides, default 12"),
-    OUT.but(default=Path("camera.json"), metavar="FILE", help="default camera.json"),
+    Argument("source FILM|N", "a film file of the whole sheet, or number N of this machine's cameras"),
+    Argument("--views N", "from other sides, default 12", whole_number(3), default=12),
+    OUT.but("default camera.json", default=Path("camera.json"), metavar="FILE"),
 )
 def calibrate(arguments: argparse.Namespace) -> int:
     """Find a camera's constants from views of the uncut marker sheet, for `interactive --calibration`.
@@ -199,7 +181,7 @@ def _say_shared(address: str, camera: str) -> None:
         "encrypted; no file of this machine is read or written; a phone's own camera stays closed",
         file=sys.stderr,
     )
-    code = np.pad(cv2.QRCodeEncoder.create().encode(address) > 0, ((1, 2), (1, 1)), constant_values=True)
+    code = np.pad(cv2.QRCodeEncoder.create().encode(address) > 0, ((3, 4), (3, 3)), constant_values=True)
     if (sys.stderr.encoding or "").lower().startswith("utf"):
         for upper, lower in zip(code[0:-1:2], code[1::2], strict=False):
             print("".join(" ▄▀█"[2 * a + b] for a, b in zip(upper, lower, strict=True)), file=sys.stderr)
@@ -218,7 +200,7 @@ def _require_extra(name: str) -> None:
 
 def _source(arguments: argparse.Namespace):  # type: ignore[no-untyped-def]
     """Return what makes the pictures, and how the page shall call it."""
-    from studies.interactive.tracking.demo import demo_film
+    from studies.interactive.tracking.painter import demo_film
     from studies.interactive.web.sources import FilmSource, VideoSource
 
     if arguments.film is not None:

@@ -22,17 +22,8 @@ import numpy as np
 
 from studies.answers.adapters import answer_modes
 from studies.answers.motion import Spectrum
+from studies.commands import answer as tell
 from studies.commands import arguments as take
-from studies.commands.answer import (
-    PLOT,
-    deliver,
-    described,
-    ending,
-    estimated,
-    headed,
-    pictured,
-    require_target,
-)
 from studies.commands.columns import plain, significant, table
 from studies.commands.parser import command
 from studies.kinds import Array
@@ -43,34 +34,34 @@ SHAPE_UNITS, NOISE = ("kg^-0.5", "kg^-0.5", "kg^-0.5/m"), 1e-7
 
 @command(
     *take.MODEL,
-    take.ROTATION.but(help="of the static state, in deg (default: 0 of a pivot; a mechanism is not turned)"),
+    take.ROTATION.but("of the static state, in deg (default: 0 of a pivot; a mechanism is not turned)"),
     take.HELD,
     take.COUNT,
     take.ACCURACY.but(
-        help="wanted relative error of the frequencies: raises the control points (default 1e-4, or none "
+        "wanted relative error of the frequencies: raises the control points (default 1e-4, or none "
         "with --control-points) or doubles the elements (default: none is asked for)"
     ),
     take.JSON,
-    PLOT,
+    tell.PLOT,
 )
 def main(arguments: argparse.Namespace) -> int:
     """Solve and report; return the exit code."""
     design = take.chosen_design(arguments)
-    settings = take.chosen_settings(arguments)
-    require_target(arguments)
+    settings = take.chosen_settings(arguments)[0]
+    tell.require_target(arguments)
     how = {"count": arguments.count, "held": arguments.held, "accuracy": arguments.accuracy}
     answer = answer_modes(design, settings, rotation=arguments.rotation, **how)
     failure = (
         None if answer.converged else f"at {math.degrees(arguments.rotation or 0.0):g} deg: {answer.message}"
     )
-    pictured(arguments, design, answer)
-    return deliver(arguments, _document(answer), _readable(answer, arguments.count), failure=failure)
+    tell.pictured(arguments, design, answer)
+    return tell.deliver(arguments, _document(answer), _readable(answer, arguments.count), failure=failure)
 
 
 def _document(answer: Spectrum) -> dict[str, Any]:
     """Return the answer as the JSON object of the command."""
     return {
-        **headed(answer),
+        **tell.headed(answer),
         "rotation_rad": answer.rotation,
         "held": answer.held,
         "frequency_Hz": answer.frequency,
@@ -83,7 +74,7 @@ def _document(answer: Spectrum) -> dict[str, Any]:
 
 def _readable(answer: Spectrum, count: int) -> Iterator[str]:
     """Yield the lines of a short table."""
-    yield described(answer.model, answer.settings, answer.effects)
+    yield tell.described(answer.model, answer.settings, answer.effects)
     yield "displacement of the body at unit modal mass"
     yield from table(
         [
@@ -97,13 +88,13 @@ def _readable(answer: Spectrum, count: int) -> Iterator[str]:
             ),
         ]
     )
-    yield from estimated(answer.estimate)
+    yield from tell.estimated(answer.estimate)
     least = answer.estimate or {}
     if least.get("frequency", 0.0) > least.get("accuracy", math.inf):
         yield f"the accuracy of {least['accuracy']:g} is not reached by all frequencies"
     if answer.converged and len(answer.frequency) < count:
         yield f"{len(answer.frequency)} of {count} modes: the discretisation has no more"
-    yield ending(answer.status, {}, answer.wall_s)
+    yield tell.ending(answer.status, {}, answer.wall_s)
 
 
 def _above_noise(shape: Array) -> Array:

@@ -31,23 +31,39 @@ class Parser(argparse.ArgumentParser):
 
 
 class Argument:
-    """One argument of a command: its names, and what `argparse` is to know of it.
+    """One argument of a command.
 
     Args:
-        names: of the argument. group: heading that it stands under in the help.
-        keywords: of `ArgumentParser.add_argument`.
+        usage: its name and that of its value, as "--step S"; an option without a value, or choices, is a
+            switch.
+        said: of it in the help. read: what makes a value of its text.
+        group: heading that it stands under in the help.
+        keywords: of `ArgumentParser.add_argument` beside these.
     """
 
-    def __init__(self, *names: str, group: str = "", **keywords: Any) -> None:
-        self.names, self.group, self.keywords = names, group, keywords
+    def __init__(self, usage: str, said: str = "", read: Any = None, *, group: str = "", **keywords: Any):
+        self.usage, self.said, self.read, self.group, self.keywords = usage, said, read, group, keywords
 
-    def but(self, **keywords: Any) -> "Argument":
+    @property
+    def name(self) -> str:
+        """The attribute that it fills unless `dest` says another."""
+        return self.usage.partition(" ")[0].removeprefix("--").replace("-", "_")
+
+    def but(self, said: str = "", **changed: Any) -> "Argument":
         """Return the same argument, with what else is to be known of it here."""
-        return Argument(*self.names, group=self.group, **self.keywords | keywords)
+        given = {"said": said or self.said, "read": self.read, "group": self.group} | self.keywords
+        return Argument(self.usage, **given | changed)
 
-    def of(self, group: str) -> "Argument":
-        """Return the same argument, to stand under a heading of its own."""
-        return Argument(*self.names, group=group, **self.keywords)
+    def add_to(self, parser: Any) -> None:
+        """Add it to a parser, or to a group of one."""
+        name, _, value = self.usage.partition(" ")
+        known: dict[str, Any] = {"help": self.said}
+        known |= {"type": self.read} if self.read else {}
+        if value:
+            known["metavar"] = value
+        elif name.startswith("--") and "choices" not in self.keywords:
+            known["action"] = "store_true"
+        parser.add_argument(name, **known | self.keywords)
 
 
 @dataclass(frozen=True)
@@ -64,7 +80,7 @@ class Command:
         for each in self.takes:
             if each.group not in groups:
                 groups[each.group] = parser.add_argument_group(each.group)
-            groups[each.group].add_argument(*each.names, **each.keywords)
+            each.add_to(groups[each.group])
         return parser
 
 
@@ -73,51 +89,54 @@ def command(*takes: Argument) -> Callable[[Callable[[argparse.Namespace], int]],
     return lambda run: Command(run, takes)
 
 
-def whole_number(low: int) -> Callable[[str], int]:
-    """Return a parser of whole numbers from `low` upwards."""
+def reads(expected: str, value_of: Callable[[str], Any]) -> Callable[[str], Any]:
+    """Return a parser by what makes a value of a text, None or a ValueError where it is not as expected."""
 
-    def parse(text: str) -> int:
+    def parse(text: str) -> Any:
         try:
-            value = int(text)
+            value = value_of(text)
         except ValueError:
-            value = low - 1
-        if value < low:
-            raise argparse.ArgumentTypeError(f"got {text}, expected a whole number of at least {low}")
+            value = None
+        if value is None:
+            raise argparse.ArgumentTypeError(f"got {text}, expected {expected}")
         return value
 
     return parse
+
+
+def whole_number(low: int) -> Callable[[str], int]:
+    """Return a parser of whole numbers from `low` upwards."""
+
+    def value_of(text: str) -> int | None:
+        return found if (found := int(text)) >= low else None
+
+    return reads(f"a whole number of at least {low}", value_of)
 
 
 def counts(low: int) -> Callable[[str], tuple[int, int]]:
     """Return a parser of ranges "first:last" of whole numbers from `low` upwards, both ends included."""
 
-    def parse(text: str) -> tuple[int, int]:
-        first, separator, last = text.partition(":")
-        if separator and first.isdecimal() and last.isdecimal() and low <= int(first) < int(last):
-            return int(first), int(last)
-        raise argparse.ArgumentTypeError(f"got {text}, expected FIRST:LAST with {low} <= FIRST < LAST")
+    def value_of(text: str) -> tuple[int, int] | None:
+        first, _, last = text.partition(":")
+        written = first.isdecimal() and last.isdecimal()
+        return (int(first), int(last)) if written and low <= int(first) < int(last) else None
 
-    return parse
+    return reads(f"FIRST:LAST with {low} <= FIRST < LAST", value_of)
 
 
-def number(low: float, expected: str, *, least: bool = False) -> Callable[[str], float]:
+def _number(low: float, expected: str, *, least: bool = False) -> Callable[[str], float]:
     """Return a parser of finite numbers above `low`, or with `least` from there upwards."""
 
-    def parse(text: str) -> float:
-        try:
-            value = float(text)
-        except ValueError:
-            value = math.nan
-        if not (low <= value if least else low < value) or not math.isfinite(value):
-            raise argparse.ArgumentTypeError(f"got {text}, expected a finite number {expected}")
-        return value
+    def value_of(text: str) -> float | None:
+        value = float(text)
+        return value if math.isfinite(value) and (low <= value if least else low < value) else None
 
-    return parse
+    return reads(f"a finite number {expected}", value_of)
 
 
-degrees = number(-math.inf, "of degrees")
-positive = number(0.0, "above 0")
-not_negative = number(0.0, "of at least 0", least=True)
+degrees = _number(-math.inf, "of degrees")
+positive = _number(0.0, "above 0")
+not_negative = _number(0.0, "of at least 0", least=True)
 
 
 def ruled(rule: Rule, read: Callable[[str], Any]) -> Callable[[str], Any]:

@@ -9,22 +9,11 @@ import numpy as np
 
 from studies.answers.response import Response
 from studies.answers.strength import Strength, strength
-from studies.answers.validity import Validity, validity
+from studies.answers.validity import validity
 from studies.cases.design import Design, flexural_scale
+from studies.commands import columns
 from studies.commands.answer import described, ending, estimated, headed, places, remarks
-from studies.commands.columns import (
-    ANGLE_FLOOR,
-    ENERGY_FLOOR,
-    FORCE_FLOOR,
-    STRAIN_FLOOR,
-    Column,
-    angle,
-    one,
-    plain,
-    quantity,
-    table,
-    wide,
-)
+from studies.commands.columns import Column, one, quantity
 from studies.kinds import Array
 
 if TYPE_CHECKING:
@@ -49,30 +38,22 @@ DIGITS, ROUND_OFF = 4, 1e-9
 SHIFT_FLOOR = 1e-12
 
 
-def arrays(design: Design, answer: Response) -> dict[str, Array]:
+def _arrays(design: Design, answer: Response) -> dict[str, Array]:
     """Return what is one number in every state, by names with units."""
-    found = {"load_factor": answer.load_factor}
-    if answer.crossing is not None:
-        found |= {
-            "rotation_rad": answer.rotation,
-            "com_x_m": answer.centre[:, 0],
-            "com_y_m": answer.centre[:, 1],
-            "centre_shift_x_m": answer.centre_shift[:, 0],
-            "centre_shift_y_m": answer.centre_shift[:, 1],
-        }
-    found |= {
-        "torque_Nm": answer.torque,
-        "stiffness_Nm_per_rad": answer.stiffness,
-        "strain_energy_J": answer.strain_energy,
-    }
-    if answer.crossing is None:
+    found, pivot = {"load_factor": answer.load_factor}, answer.crossing is not None
+    if pivot:
+        found |= {"rotation_rad": answer.rotation}
+        found |= dict(zip(("com_x_m", "com_y_m"), answer.centre.T, strict=True))
+        found |= dict(zip(("centre_shift_x_m", "centre_shift_y_m"), answer.centre_shift.T, strict=True))
+    found |= {"torque_Nm": answer.torque, "stiffness_Nm_per_rad": answer.stiffness}
+    found["strain_energy_J"] = answer.strain_energy
+    if not pivot:
         found |= {"gravity_energy_J": answer.gravity_energy, "work_J": answer.work}
     found["max_stress_Pa"] = answer.max_stress
     if answer.driven is not None:
         matrix = answer.body_stiffness
         found |= {f"body_stiffness_{name}": matrix[:, i, j] for name, (i, j) in ENTRIES.items()}
-        along_x, along_y = _off_axis(design, answer)
-        found |= {"off_axis_ratio_x": along_x, "off_axis_ratio_y": along_y}
+        found |= dict(zip(("off_axis_ratio_x", "off_axis_ratio_y"), _off_axis(design, answer), strict=True))
     return found
 
 
@@ -99,9 +80,9 @@ def as_document(design: Design, answer: Response) -> dict[str, Any]:
         **headed(answer),
         "critical_points": critical(design, answer),
         **({} if answer.crossing is not None else {"bodies": places(answer.bodies)}),
-        **arrays(design, answer),
+        **_arrays(design, answer),
         "strength": _strength(strength(design, answer)),
-        "validity": asdict(worth(design, answer)),
+        "validity": asdict(validity(design, answer, effects=answer.effects)),
         **({} if answer.estimate is None else {"estimate": answer.estimate}),
         "counters": answer.counters,
         "wall_s": answer.wall_s,
@@ -125,11 +106,9 @@ def critical(design: Design, answer: Response) -> list[dict[str, Any]]:
 
 def as_frame(design: Design, answer: Response) -> "pd.DataFrame":
     """Return a row a state: the model, its arrays, and of a mechanism the places of all bodies."""
-    found: dict[str, Any] = {"model": answer.model} | arrays(design, answer)
-    if answer.crossing is None:
-        for name, place in answer.bodies.items():
-            keys = ("x_m", "y_m", "rotation_rad")
-            found |= {f"{name}_{key}": column for key, column in zip(keys, place.T, strict=True)}
+    found: dict[str, Any] = {"model": answer.model} | _arrays(design, answer)
+    for name, place in places(answer.bodies if answer.crossing is None else {}).items():
+        found |= {f"{name}_{key}": column for key, column in place.items()}
     import pandas as pd  # only who asks for a table waits for it
 
     return pd.DataFrame(found)
@@ -138,33 +117,26 @@ def as_frame(design: Design, answer: Response) -> "pd.DataFrame":
 def readable(design: Design, answer: Response) -> Iterator[str]:
     """Yield the lines of the tables, and what is to be said of the answer."""
     yield described(answer.model, answer.settings, answer.effects)
-    yield from table([*_states(design, answer), *_columns(design, answer)])
+    yield from columns.table([*_states(design, answer), *_columns(design, answer)])
     if answer.driven is not None:
-        yield f"stiffness of {_the(answer)} about its centre at fixed loads, and over that of the rotation"
-        yield from table(list(_body_columns(design, answer)))
+        body = answer.driven if answer.crossing is None else "the body"
+        yield f"stiffness of {body} about its centre at fixed loads, and over that of the rotation"
+        yield from columns.table(list(_body_columns(design, answer)))
     yield from _told(strength(design, answer))
-    yield from (f"beyond the model: {each}" for each in worth(design, answer).outside)
+    worth = validity(design, answer, effects=answer.effects)  # of yield the strength has told
+    yield from (f"beyond the model: {each}" for each in worth.outside)
     yield from estimated(answer.estimate)
     yield from remarks(answer, critical(design, answer))
     yield ending(answer.status, answer.counters, answer.wall_s)
-
-
-def worth(design: Design, answer: Response) -> Validity:
-    """Return what a beam's answer to the design is worth; of yield `strength` tells."""
-    return validity(design, answer, effects=answer.effects)
-
-
-def _the(answer: Response) -> str:
-    return "the body" if answer.crossing is not None else str(answer.driven)
 
 
 def _states(design: Design, answer: Response) -> Iterator[Column]:
     """Yield the columns that say which state it is."""
     pivot = answer.crossing is not None
     if not pivot or LOADS & set(answer.effects):
-        yield plain("load", (f"{factor:.3f}" for factor in answer.load_factor))
+        yield columns.plain("load", (f"{factor:.3f}" for factor in answer.load_factor))
     if answer.crossing is not None:
-        yield angle(answer.rotation)
+        yield columns.angle(answer.rotation)
 
 
 def _columns(design: Design, answer: Response) -> Iterator[Column]:
@@ -175,15 +147,15 @@ def _columns(design: Design, answer: Response) -> Iterator[Column]:
         floor = SHIFT_FLOOR * _length(design)
         yield from quantity("m", highest=-3, floor=floor, digits=6, shift=np.hypot(*answer.centre_shift.T))
     if pivot or np.isfinite(answer.torque).any():
-        yield from quantity("N m", floor=FORCE_FLOOR * scale, torque=answer.torque)
-        yield from quantity("N m/rad", floor=FORCE_FLOOR * scale, stiffness=answer.stiffness)
-    yield from quantity("J", floor=ENERGY_FLOOR * scale, energy=answer.strain_energy)
-    floor = STRAIN_FLOOR * max(strip.youngs_modulus for strip in design.strips)
+        yield from quantity("N m", floor=columns.FORCE_FLOOR * scale, torque=answer.torque)
+        yield from quantity("N m/rad", floor=columns.FORCE_FLOOR * scale, stiffness=answer.stiffness)
+    yield from quantity("J", floor=columns.ENERGY_FLOOR * scale, energy=answer.strain_energy)
+    floor = columns.STRAIN_FLOOR * max(strip.youngs_modulus for strip in design.strips)
     yield from quantity("Pa", floor=floor, highest=6, digits=6, stress=answer.max_stress)
     if not pivot:
         for name, place in answer.bodies.items():
             yield from quantity("m", highest=-3, group=name, x=place[:, 0], y=place[:, 1])
-            yield angle(place[:, 2], group=name)
+            yield columns.angle(place[:, 2], group=name)
 
 
 def _body_columns(design: Design, answer: Response) -> Iterator[Column]:
@@ -193,16 +165,16 @@ def _body_columns(design: Design, answer: Response) -> Iterator[Column]:
     for column in _states(design, answer):
         yield Column(name=column.name, unit=column.unit, cells=tuple(column.cells[row] for row in rows))
     if answer.crossing is None and np.isfinite(answer.torque).any():
-        yield angle(answer.bodies[str(answer.driven)][rows, 2])
+        yield columns.angle(answer.bodies[str(answer.driven)][rows, 2])
     matrix = answer.body_stiffness[rows]
     xx, yy, xy = matrix[:, 0, 0], matrix[:, 1, 1], matrix[:, 0, 1]
     floor = ROUND_OFF * float(np.nanmax(np.abs(xx) + np.abs(yy), initial=0.0))
-    yield from wide("N/m", DIGITS, floor=floor, **{"x": xx, "y": yy, "x y": xy})
+    yield from columns.wide("N/m", DIGITS, floor=floor, **{"x": xx, "y": yy, "x y": xy})
     coupled = {"x turn": matrix[:, 0, 2], "y turn": matrix[:, 1, 2]}
-    yield from wide("N", DIGITS, floor=floor * _length(design), **coupled)
-    yield from wide("N m/rad", DIGITS, turn=matrix[:, 2, 2])
+    yield from columns.wide("N", DIGITS, floor=floor * _length(design), **coupled)
+    yield from columns.wide("N m/rad", DIGITS, turn=matrix[:, 2, 2])
     for name, ratio in zip(("x over", "y over"), _off_axis(design, answer), strict=True):
-        yield plain(name, (one(each, DIGITS) for each in ratio[rows]))
+        yield columns.plain(name, (one(each, DIGITS) for each in ratio[rows]))
 
 
 def _told(found: Strength) -> Iterator[str]:
@@ -221,7 +193,7 @@ def _told(found: Strength) -> Iterator[str]:
 
 def _state(load_factor: float, rotation: float) -> str:
     """Return which state it is, in degrees, or by its load."""
-    if math.isfinite(rotation) and abs(rotation) > ANGLE_FLOOR:
+    if math.isfinite(rotation) and abs(rotation) > columns.ANGLE_FLOOR:
         return f"at {math.degrees(rotation):.4g} deg"
     return f"at load factor {load_factor:.4g}"
 

@@ -15,7 +15,7 @@ from typing import Any
 
 import pandas as pd
 
-from studies.cases import page
+from studies.cases.write import PAGE
 from studies.commands.parser import command
 from studies.errors import BadInput
 from studies.record.files import write_whole
@@ -48,13 +48,13 @@ def _head(*names: str) -> str:
     return f"| {' | '.join(names)} |\n|{'---|' * len(names)}"
 
 
-def short(store: Store) -> Iterator[str]:
+def _short(store: Store) -> Iterator[str]:
     """Yield the one table of the first screen: a row a formulation, errors in percent."""
-    paths = _paths(store)
-    swings = _rows(stored(store, "paper/fig06_release", "summary"), "formulation")
+    paths = _path_rows(store)
+    swings = _rows(_stored(store, "paper/fig06_release", "summary"), "formulation")
     names = ("path", "torque", "stiffness", "swing frequency")
-    static = stored(store, "convergence/control_points", "reference").set_index("quantity")["uncertainty"]
-    moving = stored(store, "paper/fig06_release", "reference").set_index("quantity")["uncertainty"]
+    static = _stored(store, "convergence/control_points", "reference").set_index("quantity")["uncertainty"]
+    moving = _stored(store, "paper/fig06_release", "reference").set_index("quantity")["uncertainty"]
     limits = [*(static[each] for each in QUANTITIES), moving["frequency"]]
     yield _head("largest error, against refined finite elements", *names)
     for name in SHORT:
@@ -67,11 +67,11 @@ def short(store: Store) -> Iterator[str]:
     yield "| *uncertainty of the reference* | " + " | ".join(map(_percent, limits)) + " |"
 
 
-def sized(store: Store) -> Iterator[str]:
+def _sized(store: Store) -> Iterator[str]:
     """Yield the table of the designs that gradients found, a row a design, beside what each began from."""
     size = "length, depth, width [mm]"
     yield _head("design", size, "inclination", "crossing", "shift [mm]", "stiffness varies by")
-    table = stored(store, "design/sizing", "designs")
+    table = _stored(store, "design/sizing", "designs")
     for row in table.sort_values(["baseline", "factor_centre_shift"]).to_dict("records"):
         size = ", ".join(f"{1e3 * row[f'{key}_m']:.3g}" for key in ("length", "thickness", "width"))
         place = f"{math.degrees(row['inclination_rad']):.3g}° | {row['crossing_ratio']:.3g}"
@@ -84,19 +84,19 @@ def _less(factor: float) -> str:
     return "" if factor == 1.0 else f" (× 1/{factor:.3g})"
 
 
-def paths(store: Store) -> Iterator[str]:
+def _paths(store: Store) -> Iterator[str]:
     """Yield the table of the static path: a row a formulation, and the uncertainty of the reference."""
-    limits = stored(store, "convergence/control_points", "reference").set_index("quantity")["uncertainty"]
+    limits = _stored(store, "convergence/control_points", "reference").set_index("quantity")["uncertainty"]
     yield _head("largest error over 0 to 90°", *QUANTITIES)
-    for label, row in _paths(store).items():
+    for label, row in _path_rows(store).items():
         yield f"| {label} | " + " | ".join(f"{row[f'error_{name}']:.1e}" for name in QUANTITIES) + " |"
     yield "| *uncertainty of the reference* | " + " | ".join(f"{limits[n]:.0e}" for n in QUANTITIES) + " |"
 
 
-def swings(store: Store) -> Iterator[str]:
+def _swings(store: Store) -> Iterator[str]:
     """Yield the table of the swing after the release: shift of the frequency and error of the rotation."""
-    rows = _rows(stored(store, "paper/fig06_release", "summary"), "formulation")
-    limits = stored(store, "paper/fig06_release", "reference").set_index("quantity")["uncertainty"]
+    rows = _rows(_stored(store, "paper/fig06_release", "summary"), "formulation")
+    limits = _stored(store, "paper/fig06_release", "reference").set_index("quantity")["uncertainty"]
     yield _head("swing of 0.05 s from 90°", "frequency", "rotation")
     for name, label in SWINGS.items():
         row = rows[name]
@@ -105,10 +105,10 @@ def swings(store: Store) -> Iterator[str]:
     yield f"| *uncertainty of the reference* | {uncertain} |"
 
 
-def claims(store: Store) -> Iterator[str]:
+def _claims(store: Store) -> Iterator[str]:
     """Yield the table of the paper's claims: one row a claim, one column a formulation."""
     studies = ("paper/fig04_trajectory", "paper/fig05_stiffness", "paper/fig06_release")
-    found = pd.concat([stored(store, study, "findings") for study in studies])
+    found = pd.concat([_stored(store, study, "findings") for study in studies])
     yield _head("claim of the paper", *CLAIMED)
     for claim, rows in found.groupby("claim", sort=True):
         verdicts = _rows(rows, "formulation")
@@ -119,7 +119,7 @@ def claims(store: Store) -> Iterator[str]:
 def published(store: Store) -> Iterator[str]:
     """Yield the table of published problems: of each and each kind of answer the value that is met worst, by
     the splines where they answer."""
-    values = stored(store, "published/problems", "values")
+    values = _stored(store, "published/problems", "values")
     yield _head("published problem", "asked", "in print", "ours", "difference", "limit")
     for _, every in values.groupby(["problem", "answer"], sort=False):
         rows = every[every["model"] == "spline"] if (every["model"] == "spline").any() else every
@@ -134,7 +134,7 @@ def published(store: Store) -> Iterator[str]:
         yield f"| {name} | {asked} | {printed} | {row['found']:.6g}{unit} | {difference} | {limit} |"
 
 
-def stored(store: Store, study: str, name: str) -> pd.DataFrame:
+def _stored(store: Store, study: str, name: str) -> pd.DataFrame:
     """Return one stored table of a study.
 
     Raises:
@@ -146,10 +146,10 @@ def stored(store: Store, study: str, name: str) -> pd.DataFrame:
         raise BadInput(f"{study}: got no stored tables, expected those of `make figures`") from None
 
 
-def _paths(store: Store) -> dict[str, Any]:
+def _path_rows(store: Store) -> dict[str, Any]:
     """Return the rows of the errors along the static path, by the label of their formulation."""
-    splines = stored(store, "convergence/control_points", "map")
-    meshes = stored(store, "convergence/elements", "meshes")
+    splines = _stored(store, "convergence/control_points", "map")
+    meshes = _stored(store, "convergence/elements", "meshes")
     bezier = splines[splines["basis"] == "bezier"]
     paper = bezier[(bezier["measure"] == "spatial") & (bezier["stretch"] == "consistent")]
     found = {PAPER.format(4): paper[paper["control_points"] == 4]}
@@ -171,75 +171,57 @@ def _percent(value: float) -> str:
     return f"{100.0 * value:.2g} %" if abs(value) < 1.0 else f"{100.0 * value:.0f} %"
 
 
-#: Series in the order of the columns, with their labels.
-STATICS = {
-    "spline": "spline",
-    "exudyn exact": "Exudyn, exact beam",
-    "exudyn ancf": "Exudyn, ANCF cable",
-    "openseespy frame": "OpenSees",
-    "finite elements": "finite elements",
-    "four-bar": "pseudo-rigid",
-}
-DYNAMICS = {
-    "spline": "spline",
-    "spline, energy-consistent": "spline, large implicit steps",
-    "exudyn ancf": "Exudyn, ANCF cable",
-    "openseespy frame": "OpenSees",
-    "finite elements": "finite elements",
+#: Models beside the spline, in the order of the columns.
+GROUPS = ("finite elements", "Exudyn", "Exudyn as delivered", "OpenSees", "surrogates")
+#: Tables of the comparison: their first column, and how an error is written in it.
+TASKS = {
+    "statics_ratios": ("error of path and torque, 0 to 90°", "{:.0e}"),
+    "swings_ratios": ("error of the rotation, 0.05 s of swing", "{:g} rad"),
 }
 
 
-def digits(store: Store) -> Iterator[str]:
-    """Yield both tables of what an error costs: rows of errors, columns of models."""
-    statics, dynamics = (
-        stored(store, f"work_precision/{name}", "digits_of_time") for name in ("statics", "dynamics")
-    )
-    yield from _digits(statics, STATICS, "error of path and torque, 0 to 90°", "{:.0e}")
-    yield ""
-    yield from _digits(dynamics, DYNAMICS, "error of the rotation, 0.05 s of swing", "{:g} rad")
+def _costs(store: Store) -> Iterator[str]:
+    """Yield both tables of what an error costs: rows of errors, columns of models, all of one run."""
+    for k, (name, (title, shown)) in enumerate(TASKS.items()):
+        found = _stored(store, "baselines/peers", name)
+        groups = [group for group in GROUPS if group in set(found.dropna(subset="ratio")["group"])]
+        if k:
+            yield ""
+        yield _head(title, "spline", *groups)
+        for level, rows in sorted(found.groupby("level"), reverse=True):
+            peers = _rows(rows, "group")
+            cells = (_cost(peers[group]) if group in peers else "–" for group in groups)
+            yield f"| {shown.format(level)} | {_time(rows['spline_s'].iloc[0])} | {' | '.join(cells)} |"
 
 
-def _digits(found: pd.DataFrame, labels: Mapping[str, str], title: str, shown: str) -> Iterator[str]:
-    """Yield a table; a code that is not installed has no column."""
-    names = [name for name in labels if name in set(found["series"])]
-    yield _head(title, *(labels[name] for name in names))
-    for target in sorted(set(found["target"]), reverse=True):
-        rows = found[found["target"] == target].set_index("series").to_dict("index")
-        cells = [_cell(rows[name], name == next(iter(labels))) for name in names]
-        yield f"| {shown.format(target)} | " + " | ".join(cells) + " |"
-
-
-def _cell(row: Mapping[str, Any], first: bool) -> str:
-    """Return setting and time, and of the others how many times that of the first."""
-    if pd.isna(row["solve_s"]):
+def _cost(row: Mapping[str, Any]) -> str:
+    """Return the time of a model, and how many times that of the spline it is; a dash: not kept."""
+    if pd.isna(row["ratio"]):
         return "–"
-    seconds = float(row["solve_s"])
-    time = f"{1e3 * seconds:.2g} ms" if seconds < 0.1 else f"{seconds:.2g} s"
-    ratio = "" if first or pd.isna(row["ratio"]) else f" (× {_rounded(float(row['ratio']))})"
-    return f"{row['setting']}: {time}{ratio}"
+    ratio = float(f"{row['ratio']:.2g}")
+    return f"{_time(row['peer_s'])} (× {ratio:g})"
 
 
-def _rounded(ratio: float) -> str:
-    return f"{ratio:.2g}" if ratio < 100.0 else f"{float(f'{ratio:.2g}'):.0f}"
+def _time(seconds: float) -> str:
+    return f"{1e3 * seconds:.2g} ms" if seconds < 0.1 else f"{seconds:.2g} s"
+
+
+def _of_page(name: str) -> Callable[[Store], Iterable[str]]:
+    return lambda store: PAGE[name]()
 
 
 #: File -> block -> the lines that stand between its marks.
 BLOCKS: dict[Path, Mapping[str, Callable[[Store], Iterable[str]]]] = {
-    ROOT / "README.md": {"agreement": short, "published": published},
+    ROOT / "README.md": {"agreement": _short, "published": published},
     ROOT / "docs" / "findings.md": {
-        "paths": paths,
-        "swings": swings,
-        "claims": claims,
-        "digits": digits,
+        "paths": _paths,
+        "swings": _swings,
+        "claims": _claims,
+        "costs": _costs,
         "hard cases": lines,
-        "sized": sized,
+        "sized": _sized,
     },
-    ROOT / "docs" / "cases.md": {
-        "keys of a pivot": lambda store: page.pivot(),
-        "keys of a mechanism": lambda store: page.mechanism(),
-        "effects": lambda store: page.effects(),
-        "materials": lambda store: page.materials(),
-    },
+    ROOT / "docs" / "cases.md": {name: _of_page(name) for name in PAGE},
 }
 
 

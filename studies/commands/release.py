@@ -37,17 +37,8 @@ from studies.answers.settings import Settings
 from studies.cases.design import Design, flexural_scale
 from studies.cases.effects import DEFAULT
 from studies.cases.problem import Problem
+from studies.commands import answer as tell
 from studies.commands import arguments as take
-from studies.commands.answer import (
-    PLOT,
-    deliver,
-    described,
-    ending,
-    headed,
-    pictured,
-    places,
-    require_target,
-)
 from studies.commands.columns import ENERGY_FLOOR, angle, plain, quantity, table
 from studies.commands.parser import Argument, command, whole_number
 
@@ -74,36 +65,31 @@ LINES = 20
 
 @command(
     *take.MODEL,
-    take.ROTATION.but(help="at the release, in deg (default: the case's)"),
+    take.ROTATION.but("at the release, in deg (default: the case's)"),
     take.DURATION,
     take.STEP,
     take.INTEGRATOR,
     take.ACCURACY.but(
-        help="wanted error of the rotation, in rad: chooses steps and raises the control points, or doubles "
+        "wanted error of the rotation, in rad: chooses steps and raises the control points, or doubles "
         "the elements (default: none is asked for)"
     ),
-    take.REPEAT.but(help="wall_s is the median of R releases, default 1"),
+    take.REPEAT.but("wall_s is the median of R releases, default 1"),
+    Argument("--no-check", "leave out the companion motion that says how far the rotation is resolved"),
     Argument(
-        "--no-check",
-        action="store_true",
-        help="leave out the companion motion that says how far the rotation is resolved",
-    ),
-    Argument(
-        "--most-steps",
-        type=whole_number(1),
-        metavar="N",
-        help="explicit steps that are not too many to begin with (finite elements; default 20000000)",
+        "--most-steps N",
+        "explicit steps that are not too many to begin with (finite elements; default 20000000)",
+        whole_number(1),
     ),
     take.JSON,
-    PLOT,
+    tell.PLOT,
 )
 def main(arguments: argparse.Namespace) -> int:
     """Release and report; return the exit code."""
     design = take.chosen_design(arguments)
-    settings = take.chosen_settings(arguments)
+    settings = take.chosen_settings(arguments)[0]
     if settings.model == "spline":
         take.refuse(arguments, FE_OPTIONS, OPTIONS)
-    require_target(arguments)
+    tell.require_target(arguments)
     options = {name: getattr(arguments, name) for name in (*OPTIONS, *FE_OPTIONS)}
     duration, options["step"] = _pace(arguments, design, settings)
     answer = answer_release(
@@ -116,8 +102,8 @@ def main(arguments: argparse.Namespace) -> int:
         **options,
     )
     failure = None if answer.converged else answer.message
-    pictured(arguments, design, answer)
-    return deliver(arguments, _document(design, answer), _readable(design, answer), failure=failure)
+    tell.pictured(arguments, design, answer)
+    return tell.deliver(arguments, _document(design, answer), _readable(design, answer), failure=failure)
 
 
 def _pace(arguments: argparse.Namespace, design: Design, settings: Settings) -> tuple[float, float | None]:
@@ -163,7 +149,9 @@ def _document(design: Design, answer: Motion) -> dict[str, Any]:
 
     The energies of gravity, loads and damping are there where more than the usual effects act.
     """
-    pivot = isinstance(design, Problem)
+    pivot, estimate = isinstance(design, Problem), answer.estimate
+    if estimate is not None:
+        estimate = {f"{name}_rad" if name in ANGLES else name: value for name, value in estimate.items()}
     place = {
         "rotation_rad": answer.rotation,
         "com_x_m": answer.centre[:, 0],
@@ -175,33 +163,25 @@ def _document(design: Design, answer: Motion) -> dict[str, Any]:
         "dissipated_J": answer.dissipated,
     }
     return {
-        **headed(answer),
+        **tell.headed(answer),
         "rotation_error_rad": answer.rotation_error,
         "frequency_Hz": answer.swing.value,
         "frequency_reason": answer.swing.reason,
         "time_s": answer.time,
-        **(place if pivot else {"bodies": places(answer.bodies)}),
+        **(place if pivot else {"bodies": tell.places(answer.bodies)}),
         "kinetic_J": answer.kinetic_energy,
         "strain_J": answer.strain_energy,
         **({} if pivot and set(answer.effects) <= {*DEFAULT, "inextensible"} else energies),
         "constraint_residual": answer.constraint_residual,
-        **_estimate(answer),
+        **({} if estimate is None else {"estimate": estimate}),
         "counters": answer.counters,
         "wall_s": answer.wall_s,
     }
 
 
-def _estimate(answer: Motion) -> dict[str, Any]:
-    """Return the estimate of the error as a part of the JSON object; none where no accuracy was asked for."""
-    if answer.estimate is None:
-        return {}
-    named = {f"{name}_rad" if name in ANGLES else name: value for name, value in answer.estimate.items()}
-    return {"estimate": named}
-
-
 def _readable(design: Design, answer: Motion) -> Iterator[str]:
     """Yield the lines of a short table: a few of the instants, of the body that was let go."""
-    yield described(answer.model, answer.settings, answer.effects)
+    yield tell.described(answer.model, answer.settings, answer.effects)
     last = len(answer.time) - 1
     shown = sorted({round(last * part / LINES) for part in range(LINES + 1)} if last >= 0 else ())
     kinetic, strain = answer.kinetic_energy[shown], answer.strain_energy[shown]
@@ -230,4 +210,4 @@ def _readable(design: Design, answer: Motion) -> Iterator[str]:
         yield answer.resolution
     if answer.converged and answer.message:
         yield answer.message
-    yield ending(answer.status, answer.counters, answer.wall_s)
+    yield tell.ending(answer.status, answer.counters, answer.wall_s)

@@ -19,15 +19,14 @@ from studies.record.source import ROOT, source_hash
 from studies.record.store import Store, same
 from studies.registry import STUDIES, selected, study_of
 
-#: Where the answers of interrupted studies are kept; not a result.
+#: Where the answers of interrupted studies by the present source are kept; not a result.
 KEPT = ROOT / ".cache" / "studies"
 DIFFERS = 1
 PROCESSES = Argument(
-    "--processes",
-    type=whole_number(1),
+    "--processes N",
+    "answer points beside each other where time is not measured, default the number of cores",
+    whole_number(1),
     default=cores(),
-    metavar="N",
-    help="answer points beside each other where time is not measured, default the number of cores",
 )
 
 
@@ -100,7 +99,7 @@ def verify(arguments: argparse.Namespace) -> int:
             known: dict[str, Any] = {"module": STUDIES[name], "cases": study.cases}
             said = study.missing() or store.state(name, **known).kind
             if said == "stale":
-                differing = _differing(store.load_tables(name), computed(name, pool), study)
+                differing = _differing(store.load_tables(name), _computed(name, pool), study)
                 if differing:
                     said, code = f"differs: {', '.join(differing)}", DIFFERS
                 else:
@@ -130,10 +129,11 @@ def status(arguments: argparse.Namespace) -> int:
 def _run(name: str, store: Store, pool: Executor | None) -> float:
     """Compute, store and draw one study; return the seconds it took."""
     start = time.perf_counter()
-    study, kept = study_of(name), _kept(name)
+    study = study_of(name)
+    kept = Kept(KEPT / f"{name.replace('/', '_')}_{source_hash(STUDIES[name])[:16]}.pickle")
     store.save_tables(
         name,
-        computed(name, pool, kept),
+        _computed(name, pool, kept),
         module=STUDIES[name],
         cases=study.cases,
         command=f"python -m studies run {name}",
@@ -145,15 +145,10 @@ def _run(name: str, store: Store, pool: Executor | None) -> float:
     return time.perf_counter() - start
 
 
-def computed(name: str, pool: Executor | None, kept: Kept | None = None) -> dict[str, pd.DataFrame]:
+def _computed(name: str, pool: Executor | None, kept: Kept | None = None) -> dict[str, pd.DataFrame]:
     """Return the tables of one study while a bar shows how far it is."""
     with Bar(name) as bar:
         return answered(study_of(name), bar, kept=kept, pool=pool, module=STUDIES[name])
-
-
-def _kept(name: str) -> Kept:
-    """Return where the answers of a study by the present source are kept."""
-    return Kept(KEPT / f"{name.replace('/', '_')}_{source_hash(STUDIES[name])[:16]}.pickle")
 
 
 def _differing(stored: Tables, found: Tables, study: Study) -> list[str]:

@@ -37,13 +37,13 @@ from studies.cases.problem import Problem
 from studies.cases.write import as_toml, document_toml
 from studies.commands import arguments as take
 from studies.commands.answer import deliver, not_converged, require_target
-from studies.commands.parser import Argument, command, positive, whole_number
-from studies.commands.sized import as_document, of_elements, question, readable, values_of
-from studies.design.evaluate import Answers, PathEnds, answers
+from studies.commands.parser import Argument, command, positive, reads, whole_number
+from studies.commands.sized import as_document, question, readable
+from studies.design.evaluate import STRESS, Answers, PathEnds, answers, sides_of
 from studies.design.numbers import NumbersTask, by_sides, number_of
 from studies.design.optimise import Outcome, best, search, starts
-from studies.design.programme import Sizing, own
-from studies.design.task import OBJECTIVES, STRESS, Task, sides_of, usual_bounds, variables_of
+from studies.design.programme import Sizing
+from studies.design.task import OBJECTIVES, Task, usual_task
 from studies.errors import BadInput
 from studies.record.files import require_writable_file, write_whole
 from studies.record.progress import Bar
@@ -63,77 +63,52 @@ UNSIZED = {"driven_displacement"}
 def _interval(most: float) -> Callable[[str], tuple[float, float]]:
     """Return a parser of a value, or of intervals LOW:HIGH, within 0 and `most`."""
 
-    def parse(text: str) -> tuple[float, float]:
+    def value_of(text: str) -> tuple[float, float] | None:
         low, _, high = text.partition(":")
-        try:
-            found = float(low), float(high or low)
-        except ValueError:
-            found = math.nan, math.nan
-        if 0.0 < found[0] <= found[1] < most:
-            return found
-        limit = "" if math.isinf(most) else f" < {most:g}"
-        expected = f"a value, or LOW:HIGH with 0 < LOW <= HIGH{limit}"
-        raise argparse.ArgumentTypeError(f"got {text}, expected {expected}")
+        found = float(low), float(high or low)
+        return found if 0.0 < found[0] <= found[1] < most else None
 
-    return parse
+    limit = "" if math.isinf(most) else f" < {most:g}"
+    return reads(f"a value, or LOW:HIGH with 0 < LOW <= HIGH{limit}", value_of)
 
 
 @command(
     take.CASE,
     Argument(
         "--objective",
+        "what is to be least: of a mechanism stress or stiffness-variation",
         choices=[*OBJECTIVES, STRESS],
         required=True,
-        help="what is to be least: of a mechanism stress or stiffness-variation",
     ),
     Argument(
-        "--free",
+        "--free KEY[=LOW:HIGH]",
+        "a number of a mechanism's file to be found, repeatable (default bounds: half to twice its own)",
         action="append",
-        metavar="KEY[=LOW:HIGH]",
-        help="a number of a mechanism's file to be found, repeatable (default bounds: half to twice its own)",
     ),
-    take.ROTATION.but(help="range to either side, in deg (default: the case's)"),
+    take.ROTATION.but("range to either side, in deg (default: the case's)"),
+    Argument("--stiffness K", "at rotation 0, in N m/rad (default: the case's own)", positive),
     Argument(
-        "--stiffness", type=positive, metavar="K", help="at rotation 0, in N m/rad (default: the case's own)"
-    ),
-    Argument(
-        "--travel-mm",
-        type=positive,
-        metavar="U",
-        help="of the body of a mechanism that follows its loads, in mm (default: the case's own)",
+        "--travel-mm U",
+        "of the body of a mechanism that follows its loads, in mm (default: the case's own)",
+        positive,
     ),
     Argument(
-        "--max-stress-MPa",
-        type=positive,
-        metavar="S",
-        help="allowable, in MPa (default: the yield strength over the safety factor, or the case's own)",
+        "--max-stress-MPa S",
+        "allowable, in MPa (default: the yield strength over the safety factor, or the case's own)",
+        positive,
     ),
-    Argument(
-        "--safety-factor",
-        type=positive,
-        metavar="F",
-        help="yield strength relative to the allowable stress (default 1)",
-    ),
+    Argument("--safety-factor F", "yield strength relative to the allowable stress (default 1)", positive),
     *(
         Argument(
-            take.option(attribute),
-            type=_interval(most),
-            metavar="LOW:HIGH",
-            help=f"bounds of the {name.replace('_', ' ')}, or the value to hold, {said}",
+            f"{take.option(attribute)} LOW:HIGH",
+            f"bounds of the {name.replace('_', ' ')}, or the value to hold, {said}",
+            _interval(most),
         )
         for name, (attribute, _, most, said) in BOUNDS.items()
     ),
-    Argument(
-        "--aspect",
-        type=positive,
-        default=1.0,
-        metavar="R",
-        help="largest width, relative to the length, default 1",
-    ),
-    Argument(
-        "--starts", type=whole_number(1), default=8, metavar="N", help="starts of the search, default 8"
-    ),
-    take.OUT.but(metavar="FILE", help="write the optimum there as a case file (default: nowhere)"),
+    Argument("--aspect R", "largest width, relative to the length, default 1", positive, default=1.0),
+    Argument("--starts N", "starts of the search, default 8", whole_number(1), default=8),
+    take.OUT.but("write the optimum there as a case file (default: nowhere)", metavar="FILE"),
     take.JSON,
 )
 def main(arguments: argparse.Namespace) -> int:
@@ -150,7 +125,7 @@ def main(arguments: argparse.Namespace) -> int:
         with Bar("size") as bar:
             outcomes = search(task, starts(task, arguments.starts), bar)
         found = best(outcomes)
-        checked = None if found is None else of_elements(task, found)
+        checked = None if found is None else task.by_elements(found.problem)
     except (PathEnds, NoReference) as error:
         return not_converged(error)
     failure = _failure(outcomes) if found is None else None
@@ -163,7 +138,8 @@ def main(arguments: argparse.Namespace) -> int:
 
 def _start(arguments: argparse.Namespace) -> Problem:
     """Return the case over the range that is asked for; BadInput where it cannot be sized."""
-    start = take.turned_pivot(arguments, "range to size for")
+    start = take.turned_design(arguments, "range to size for")
+    assert isinstance(start, Problem)
     if start.section_depth is not None:
         expected = "none: both sides of a rectangular section are sized"
         raise BadInput(
@@ -218,7 +194,7 @@ def _numbers(content: dict[str, Any], arguments: argparse.Namespace) -> NumbersT
 
 def _asked(task: NumbersTask, arguments: argparse.Namespace) -> NumbersTask:
     """Return the question with what is held and allowed: as given, or the case's own."""
-    case: Answers = own(task)
+    case: Answers = task.case()
     travel = arguments.travel_mm
     wanted = arguments.stiffness if travel is None else 1e-3 * travel
     strengths = [strip.yield_strength for strip in task.start.strips]
@@ -231,7 +207,7 @@ def _asked(task: NumbersTask, arguments: argparse.Namespace) -> NumbersTask:
 def _file(task: Sizing, found: Outcome, remarks: list[str]) -> str:
     """Return the optimum as a case file."""
     if isinstance(task, NumbersTask):
-        return document_toml(task.content(values_of(task, found)), remarks)
+        return document_toml(task.content(task.values(found.at)), remarks)
     return as_toml(found.problem, remarks)
 
 
@@ -255,22 +231,18 @@ def _allowable(strength: float | None, arguments: argparse.Namespace, own: float
 
 
 def _task(start: Problem, arguments: argparse.Namespace) -> Task:
-    case = answers(start)
-    bounds = usual_bounds(start)
+    case, bounds = answers(start), {}
     for name, (attribute, unit, _, _) in BOUNDS.items():
         given = getattr(arguments, attribute)
         if given is not None:
             bounds[name] = given[0] * unit, given[1] * unit
-    length, _, _, thickness, _ = map(float, variables_of(start))
-    return Task(
-        start=start,
+    return usual_task(
+        start,
+        bounds,
         objective=arguments.objective,
         stiffness=case.stiffness if arguments.stiffness is None else arguments.stiffness,
         allowable_stress=_allowable(start.yield_strength, arguments, case.largest(STRESS)),
-        bounds=bounds,
-        least_slenderness=length / thickness,
         largest_aspect=arguments.aspect,
-        limits={},
     )
 
 

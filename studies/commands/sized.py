@@ -5,45 +5,25 @@ from collections.abc import Iterator
 from typing import Any
 
 from studies.cases.problem import Problem
-from studies.design.evaluate import Answers, by_elements, of_spline
-from studies.design.numbers import NumbersTask, quantities, quantities_by_elements
+from studies.design.evaluate import PLAIN
+from studies.design.numbers import NumbersTask
 from studies.design.optimise import Outcome, numbered
-from studies.design.programme import Sizing, own
-from studies.design.task import PLAIN, Task, variables_of
+from studies.design.programme import Sizing
+from studies.design.task import Task, variables_of
 from studies.effects.beyond import SECTIONS
 
-#: What the table calls the quantities, with the factor to the unit it shows them in.
+#: Quantity -> what the JSON calls it, what the table does, and the factor to the unit that this shows.
 SHOWN = {
-    "centre-shift": ("centre shift [mm]", 1e3),
-    "stiffness-variation": ("variation of stiffness [%]", 1e2),
-    "stiffness": ("stiffness [N m / rad]", 1.0),
-    "travel": ("travel [mm]", 1e3),
-    "stress": ("stress [MPa]", 1e-6),
-}
-#: What the JSON calls them.
-KEYS = {
-    "centre-shift": "largest_centre_shift_m",
-    "stiffness-variation": "stiffness_variation",
-    "stiffness": "stiffness_Nm_per_rad",
-    "travel": "travel_m",
-    "stress": "max_stress_Pa",
+    "centre-shift": ("largest_centre_shift_m", "centre shift [mm]", 1e3),
+    "stiffness-variation": ("stiffness_variation", "variation of stiffness [%]", 1e2),
+    "stiffness": ("stiffness_Nm_per_rad", "stiffness [N m / rad]", 1.0),
+    "travel": ("travel_m", "travel [mm]", 1e3),
+    "stress": ("max_stress_Pa", "stress [MPa]", 1e-6),
 }
 DIMENSIONS = ("length_m", "inclination_deg", "crossing_ratio", "thickness_m", "width_m")
 
 
 Quantities = dict[str, float]
-
-
-def _of_splines(task: Sizing, found: Answers) -> Quantities:
-    """Return what the splines say of a design, by name."""
-    return of_spline(found).quantities() if isinstance(task, Task) else quantities(task, found)
-
-
-def of_elements(task: Sizing, found: Outcome) -> Quantities:
-    """Return what the finite elements say of it; NoReference where they do not reach the end of its path."""
-    if isinstance(task, Task):
-        return by_elements(found.problem)[0].quantities()
-    return quantities_by_elements(task, found.problem)
 
 
 def as_document(
@@ -55,16 +35,16 @@ def as_document(
         optimum = {
             **_dimensions(task, found),
             **_section(found.problem),
-            "spline": _named(_of_splines(task, found.answers)),
+            "spline": _named(task.quantities(found.answers)),
             "finite_elements": _named(checked),
             "active": [{"constraint": each.name, "price": each.price} for each in found.active],
         }
     return {
         "objective": task.objective,
-        KEYS[task.held]: task.stiffness,
+        SHOWN[task.held][0]: task.stiffness,
         "allowable_stress_Pa": task.allowable_stress,
         "bounds": {name: list(task.bounds[name]) for name in task.variables},
-        "case": _named(_of_splines(task, own(task))),
+        "case": _named(task.quantities(task.case())),
         "optimum": optimum,
         "starts": [
             {
@@ -101,13 +81,13 @@ def question(task: Sizing) -> tuple[str, str]:
 
 
 def _named(measured: Quantities) -> dict[str, float]:
-    return {KEYS[name]: value for name, value in measured.items()}
+    return {SHOWN[name][0]: value for name, value in measured.items()}
 
 
 def _dimensions(task: Sizing, found: Outcome) -> dict[str, Any]:
     """Return the dimensions of a pivot, or the numbers of a mechanism in the file's units."""
     if isinstance(task, NumbersTask):
-        return {"numbers": dict(zip(task.variables, map(float, values_of(task, found)), strict=True))}
+        return {"numbers": dict(zip(task.variables, map(float, task.values(found.at)), strict=True))}
     values = dict(zip(DIMENSIONS, map(float, variables_of(found.problem)), strict=True))
     return values | {"inclination_deg": math.degrees(found.problem.inclination)}
 
@@ -119,16 +99,11 @@ def _section(design: Any) -> dict[str, float]:
     return {"area_m2": design.area, "second_moment_m4": design.second_moment_of_area}
 
 
-def values_of(task: Sizing, found: Outcome) -> Any:
-    """Return the variables (N,) of an outcome."""
-    return task.low + task.span * found.at[:-1]
-
-
 def readable(
     task: Sizing, outcomes: list[Outcome], found: Outcome | None, checked: Quantities | None
 ) -> Iterator[str]:
     """Yield the lines of a table: case, optimum and finite elements, what holds it back, and the starts."""
-    case = _of_splines(task, own(task))
+    case = task.quantities(task.case())
     yield from question(task)
     if found is not None and checked is not None:
         yield from _comparison(task, case, found, checked)
@@ -137,16 +112,16 @@ def readable(
     for i, (number, each) in enumerate(zip(numbered(outcomes), outcomes, strict=True)):
         share = each.objective / case[task.objective]
         line = (
-            f"{i:>5} {number or '-':>8} {share:10.4f} {each.solved:>6}  {_line(task, values_of(task, each))}"
+            f"{i:>5} {number or '-':>8} {share:10.4f} {each.solved:>6}  {_line(task, task.values(each.at))}"
         )
         yield f"{line}  {each.message}".rstrip()
 
 
 def _comparison(task: Sizing, case: Quantities, found: Outcome, fe: Quantities) -> Iterator[str]:
-    spline = _of_splines(task, found.answers)
+    spline = task.quantities(found.answers)
     yield ""
     yield f"{'':<28}{'case':>12}{'sized':>12}{'in FE':>12}"
-    for key, (label, factor) in SHOWN.items():
+    for key, (_, label, factor) in SHOWN.items():
         if key in case:
             yield f"{label:<28}{factor * case[key]:12.5g}{factor * spline[key]:12.5g}{factor * fe[key]:12.5g}"
     yield f"{case[task.objective] / spline[task.objective]:.4g} times less than the case's"
@@ -155,7 +130,7 @@ def _comparison(task: Sizing, case: Quantities, found: Outcome, fe: Quantities) 
         yield from (f"{place:>5}: {name}" for place, name in enumerate(task.variables, start=1))
     yield f"{'':<10}{_heading(task)}"
     yield f"{'case':<10}{_line(task, task.own)}"
-    yield f"{'sized':<10}{_line(task, values_of(task, found))}"
+    yield f"{'sized':<10}{_line(task, task.values(found.at))}"
     yield ""
     active = (f"{_said(task, each.name)} ({each.price:+.2g})" for each in found.active)
     yield f"held back by, with prices: {', '.join(active)}"
@@ -171,14 +146,9 @@ def _said(task: Sizing, name: str) -> str:
 
 
 def _heading(task: Sizing) -> str:
-    if isinstance(task, NumbersTask):
-        return "".join(f"{place:>12}" for place in range(1, len(task.numbers) + 1))
-    return f"{'L mm':>9}{'incl. deg':>11}{'crossing':>10}{'h mm':>9}{'b mm':>9}"
+    return "".join(f"{head:>{form.partition('.')[0]}}" for head, _, form in task.columns)
 
 
 def _line(task: Sizing, values: Any) -> str:
-    if isinstance(task, NumbersTask):
-        return "".join(f"{value:12.6g}" for value in values)
-    length, inclination, ratio, thickness, width = values
-    form = f"{1e3 * length:9.3f}{math.degrees(inclination):11.3f}{ratio:10.4f}"
-    return f"{form}{1e3 * thickness:9.4f}{1e3 * width:9.3f}"
+    columns = zip(task.columns, values, strict=True)
+    return "".join(f"{factor * value:{form}}" for (_, factor, form), value in columns)

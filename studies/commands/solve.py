@@ -33,7 +33,6 @@ from typing import Any
 from studies.answers.adapters import answer_static
 from studies.answers.metrics import differences
 from studies.answers.response import Response
-from studies.answers.settings import Settings
 from studies.cases.design import Design
 from studies.commands import arguments as take
 from studies.commands.answer import PLOT, deliver, passed, pictured, require_target
@@ -45,11 +44,11 @@ from studies.record.progress import Bar
 
 @command(
     *take.SEVERAL_MODELS,
-    take.ROTATION.but(help="end of the path, in deg (default: the case's)"),
+    take.ROTATION.but("end of the path, in deg (default: the case's)"),
     take.INCREMENTS,
     take.REPEAT,
     take.ACCURACY.but(
-        help="wanted relative error of path, torque, stiffness and stress, and of section forces (spline) or "
+        "wanted relative error of path, torque, stiffness and stress, and of section forces (spline) or "
         "energy (fe): raises the control points (default 1e-4, or none with --control-points) or doubles "
         "the elements (default: none is asked for)"
     ),
@@ -60,9 +59,12 @@ from studies.record.progress import Bar
 def main(arguments: argparse.Namespace) -> int:
     """Solve and report; return the exit code."""
     design = take.driven(take.chosen_design(arguments), arguments)
-    every = take.all_settings(arguments)
+    every = take.chosen_settings(arguments)
     require_target(arguments)
-    answers = [_answer(arguments, design, settings) for settings in every]
+    how, answers = {"repeat": arguments.repeat, "accuracy": arguments.accuracy}, []
+    for settings in every:
+        with Bar(f"solve {settings.model}") as bar:
+            answers.append(answer_static(design, settings, progress=bar, **how))
     stopped = [_stopped(design, answer) for answer in answers if not answer.converged]
     pictured(arguments, design, *answers)
     return deliver(
@@ -72,13 +74,6 @@ def main(arguments: argparse.Namespace) -> int:
         failure="; ".join(stopped) or None,
         frame=lambda: _frame(design, answers),
     )
-
-
-def _answer(arguments: argparse.Namespace, design: Design, settings: Settings) -> Response:
-    """Return the path by one model."""
-    with Bar(f"solve {settings.model}") as bar:
-        how = {"repeat": arguments.repeat, "accuracy": arguments.accuracy}
-        return answer_static(design, settings, progress=bar, **how)
 
 
 def _stopped(design: Design, answer: Response) -> str:

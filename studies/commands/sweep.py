@@ -59,17 +59,11 @@ INTERRUPTED = 130
 
 
 @command(
-    Argument("designs", metavar="DESIGNS.toml", help="which designs, and what is asked of them"),
-    OUT.but(required=True, metavar="DIR", help="folder of the table"),
-    Argument("--csv", action="store_true", help="write the table as CSV as well"),
-    Argument(
-        "--workers", type=whole_number(1), metavar="N", help="threads or processes (default: all cores)"
-    ),
-    Argument(
-        "--scheduler",
-        metavar="ADDRESS",
-        help="of a Dask cluster, tcp://HOST:PORT (default: none, this machine alone)",
-    ),
+    Argument("designs DESIGNS.toml", "which designs, and what is asked of them"),
+    OUT.but("folder of the table", required=True, metavar="DIR"),
+    Argument("--csv", "write the table as CSV as well"),
+    Argument("--workers N", "threads or processes (default: all cores)", whole_number(1)),
+    Argument("--scheduler ADDRESS", "of a Dask cluster, tcp://HOST:PORT (default: none, this machine alone)"),
 )
 def main(arguments: argparse.Namespace) -> int:
     """Run the sweep, or what is missing of it; return the exit code."""

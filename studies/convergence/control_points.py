@@ -11,7 +11,7 @@ from studies.answers.settings import SplineSettings
 from studies.cases.problem import named_case
 from studies.convergence.sweep import reaching, spline_row
 from studies.engine.study import Finding, Part, Study, Tables, percent
-from studies.paper.formulations import CASE, refined
+from studies.paper.formulations import refined
 from studies.record.style import BASES, STRETCH, page, uncertain
 
 COUNTS = range(4, 13)
@@ -132,9 +132,8 @@ def _findings(tables: Tables) -> list[Finding]:
 
 
 STUDY = Study(
-    cases=(CASE,),
     parts=(
-        Part(at=_settings, ask=lambda each: {"map": spline_row(named_case(CASE), each, refined())}),
+        Part(at=_settings, ask=lambda each: {"map": spline_row(named_case(), each, refined())}),
         Part(
             at=lambda: QUANTITIES,
             ask=lambda name: {"reference": {"quantity": name, "uncertainty": refined().uncertainty[name]}},

@@ -1,17 +1,12 @@
 """Frequency of the swing and of small motion against control points, elements, step and amplitude."""
 
-from itertools import product
-
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from studies.convergence import swing_sweep
-from studies.convergence.swing_sweep import INTEGRATORS, MODES
-from studies.engine.study import Finding, Part, Study, Tables
-from studies.paper import formulations
-from studies.paper.formulations import CASE
+from studies.convergence.swing_sweep import INTEGRATORS, MODES, PARTS
+from studies.engine.study import Finding, Study, Tables
 from studies.record.style import BLACK, BLUE, LOOKS, ORANGE, page, uncertain
 
 SPLINE, TWENTY = "n = 6", "FE, 20 elements"
@@ -181,34 +176,8 @@ def _findings_of_small_motion(tables: Tables) -> list[Finding]:
     ]
 
 
-def _reference() -> dict[str, float | str]:
-    limit = formulations.refined_swing()
-    return {
-        "quantity": "frequency",
-        "frequency_Hz": limit.frequency,
-        "uncertainty": limit.frequency_uncertainty,
-    }
-
-
 STUDY = Study(
-    cases=(CASE,),
-    parts=(
-        Part(
-            at=lambda: swing_sweep.FORMS,
-            ask=lambda *form: {"control_points": swing_sweep.of_control_points(*form)},
-        ),
-        Part(at=lambda: swing_sweep.ELEMENTS, ask=lambda count: {"elements": swing_sweep.of_elements(count)}),
-        Part(
-            at=lambda: product(INTEGRATORS, swing_sweep.STEPS),
-            ask=lambda *step: {"steps": swing_sweep.of_step(*step)},
-        ),
-        Part(ask=lambda: {"modes": swing_sweep.modes()}),
-        Part(
-            at=lambda: product(swing_sweep.BACKBONE, np.radians(swing_sweep.AMPLITUDES)),
-            ask=lambda *swing: {"backbone": swing_sweep.of_amplitude(*swing)},
-        ),
-        Part(ask=lambda: {"reference": _reference()}),
-    ),
+    parts=PARTS,
     claims=(_findings, _findings_of_small_motion),
     figures={"frequency": _shifts, "backbone": _backbone},
 )

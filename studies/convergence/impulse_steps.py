@@ -1,15 +1,14 @@
 """Error, drift, energy and time of the sequential impulses against the step, and where their limits lie."""
 
-from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from studies.convergence import impulse_tables
-from studies.convergence.impulse_tables import CASE, PAPER_STEP
-from studies.engine.study import Claim, Part, Study
+from studies.convergence.impulse_tables import PAPER_STEP, PARTS
+from studies.engine.study import Claim, Study, Tables
 from studies.record.style import BLUE, GREEN, GREY, ORANGE, RED, page
 
 #: What "stable up to 2 / omega" is read as: the measured limit within this part of it.
@@ -21,6 +20,8 @@ FORMS = {
     "printed": ("as printed", RED, "o"),
     "stable": ("stable form", BLUE, "D"),
 }
+#: Where a legend stands: below its panel, whose curves need all of it.
+BENEATH: Any = {"fontsize": 7, "loc": "upper center", "bbox_to_anchor": (0.45, -0.22)}
 #: Group of modes -> colour of its limit.
 GROUPS = {"axial": ORANGE, "bending": GREEN, "swing": GREY}
 #: Column -> label, factor, and the value below which a point is drawn on the edge.
@@ -32,7 +33,7 @@ QUANTITIES = {
 }
 
 
-def _step_size(tables: Mapping[str, pd.DataFrame]) -> Figure:
+def _step_size(tables: Tables) -> Figure:
     """Draw error, drift, energy and time against the step, one column a design."""
     rows = tables["steps"].merge(tables["timings"], on=["design", "form", "step_s"])
     names = list(dict.fromkeys(rows["design"]))
@@ -80,9 +81,9 @@ def _unstable(panel: Axes, rows: pd.DataFrame) -> None:
     )  # fmt: skip
 
 
-def _limits_and_sweeps(tables: Mapping[str, pd.DataFrame]) -> Figure:
+def _limits_and_sweeps(tables: Tables) -> Figure:
     """Draw measured over predicted limits, the error sweep by sweep, and what a sweep leaves."""
-    figure = page(9.5, 3.9)
+    figure = page(9.5, 5.2)
     limit, error, factor = figure.subplots(1, 3)
     _limits(limit, tables["limits"])
     _errors(error, tables["sweeps"])
@@ -111,7 +112,7 @@ def _limits(panel: Axes, rows: pd.DataFrame) -> None:
         xlim=(low, high), ylim=(low, high), xlabel="2/ω of the spectrum [s]", ylabel="measured limit [s]"
     )
     panel.set_title("Limit as printed")
-    panel.legend(fontsize=7.5, loc="lower right")
+    panel.legend(**BENEATH)
 
 
 def _errors(panel: Axes, rows: pd.DataFrame) -> None:
@@ -130,7 +131,7 @@ def _errors(panel: Axes, rows: pd.DataFrame) -> None:
     step = 1e6 * rows["step_s"].min()
     panel.set(xlabel="sweeps", ylabel="error of the velocity change [1]", ylim=(1e-16, 1e3))
     panel.set_title(f"Sweeps, h = {step:.2g} µs")
-    panel.legend(fontsize=7)
+    panel.legend(**BENEATH)
 
 
 def _factors(panel: Axes, rows: pd.DataFrame) -> None:
@@ -145,17 +146,11 @@ def _factors(panel: Axes, rows: pd.DataFrame) -> None:
     panel.axvline(PAPER_STEP, color="#444444", linestyle=":", linewidth=1.2)
     panel.set(xlabel="step h [s]", ylabel="error after a sweep over that before [1]")
     panel.set_title("Left by a sweep")
-    panel.legend(fontsize=7, loc="lower right", frameon=True, facecolor="white", edgecolor="none")
+    panel.legend(**BENEATH)
 
 
 STUDY = Study(
-    cases=(CASE,),
-    parts=(
-        Part(at=impulse_tables.steps, ask=impulse_tables.released, alone=True),
-        Part(at=impulse_tables.limits, ask=impulse_tables.limit),
-        Part(at=impulse_tables.sweeps, ask=impulse_tables.swept),
-        Part(at=impulse_tables.pictures, ask=impulse_tables.watched, alone=True),
-    ),
+    parts=PARTS,
     claims=(
         Claim(
             claim=f"The form as printed is stable up to 2/ω (within {100 * NEAR:g} %)",

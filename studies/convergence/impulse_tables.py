@@ -12,17 +12,20 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 
 from spline_model.dynamics import Trajectory, solve_release
-from spline_model.impulses.convergence import contraction, sweep_errors
 from spline_model.pivot import Pivot
-from spline_model.sequential_impulse import impulse_solver, solve_impulses, stability_limit
+from spline_model.sequential_impulse import (
+    contraction,
+    impulse_solver,
+    solve_impulses,
+    stability_limit,
+    sweep_errors,
+)
 from studies.answers.models import built, model_of
 from studies.answers.settings import SplineSettings
 from studies.cases.problem import Problem, named_case
-from studies.engine.study import Answer
+from studies.engine.study import Answer, Part
 from studies.kinds import Array
 from studies.record.timing import measure
-
-CASE = "cross_axis_pivot"
 
 SETTINGS = SplineSettings(control_points=6)
 
@@ -38,9 +41,9 @@ GROUPS: dict[str, SplineSettings] = {
 START = math.pi / 2
 
 
-def designs() -> dict[str, Problem]:
+def _designs() -> dict[str, Problem]:
     """Return Table 1, and the same pivot with strips of a polymer, 10 mm x 0.8 mm, and a small body."""
-    given = named_case(CASE)
+    given = named_case()
     polymer = replace(
         given,
         area=8e-6,
@@ -54,9 +57,9 @@ def designs() -> dict[str, Problem]:
 
 
 @cache
-def pivot(design: str, settings: SplineSettings = SETTINGS) -> Pivot:
+def _pivot(design: str, settings: SplineSettings = SETTINGS) -> Pivot:
     """Return a design as a spline in motion."""
-    found: Pivot = built(model_of(settings), designs()[design], settings, moving=True)[0]
+    found: Pivot = built(model_of(settings), _designs()[design], settings, moving=True)[0]
     return found
 
 
@@ -86,15 +89,15 @@ PICTURES = 100
 STEPS_A_PICTURE = 4
 
 
-def steps() -> Iterator[tuple[str, str, float]]:
+def _steps() -> Iterator[tuple[str, str, float]]:
     """Yield designs, forms and steps."""
-    for design in designs():
-        own = stability_limit(pivot(design))
+    for design in _designs():
+        own = stability_limit(_pivot(design))
         yield from ((design, "printed", part * own) for part in FRACTIONS)
         yield from ((design, "stable", step) for step in STEPS if step >= SHORTEST[design])
 
 
-def released(design: str, form: str, step: float) -> Answer:
+def _released(design: str, form: str, step: float) -> Answer:
     """Return the motion after the release from 90 degrees, and its times apart.
 
     Columns: status, error_rotation_rad (largest, against the explicit integrator on the same spline), drift
@@ -103,10 +106,10 @@ def released(design: str, form: str, step: float) -> Answer:
     stopped_s; times: step_us (of one step), motion_s.
     """
     run = solve_impulses(
-        pivot(design), start=START, duration=DURATION[design], step=step, form=form, records=RECORDS
+        _pivot(design), start=START, duration=DURATION[design], step=step, form=form, records=RECORDS
     )
     key = {"design": design, "form": form, "step_s": step}
-    quality = _quality(run, _exact(design), designs()[design].length)
+    quality = _quality(run, _exact(design), _designs()[design].length)
     return {"steps": key | quality, "timings": key | _time(design, form, step, run)}
 
 
@@ -114,7 +117,7 @@ def released(design: str, form: str, step: float) -> Answer:
 def _exact(design: str) -> Trajectory:
     # half the step that its stability allows: of order four
     return solve_release(
-        pivot(design),
+        _pivot(design),
         start=START,
         duration=DURATION[design],
         integrator="explicit",
@@ -123,40 +126,40 @@ def _exact(design: str) -> Trajectory:
     )
 
 
-def limits() -> Iterator[tuple[str, str, int | None]]:
+def _limits() -> Iterator[tuple[str, str, int | None]]:
     """Yield designs, groups of modes and ways of the impulses."""
-    for design, group in product(designs(), GROUPS):
+    for design, group in product(_designs(), GROUPS):
         for count in LIMITED_SWEEPS if group == "axial" else LIMITED_SWEEPS[:1]:
             yield design, group, count
 
 
-def limit(design: str, group: str, count: int | None) -> Answer:
+def _limit(design: str, group: str, count: int | None) -> Answer:
     """Return the printed form's measured limit.
 
     Columns: sweeps (0 for the direct solution), predicted_s = 2 / omega of the highest frequency at rest,
     measured_s, ratio.
     """
-    predicted = stability_limit(pivot(design, GROUPS[group]))
+    predicted = stability_limit(_pivot(design, GROUPS[group]))
     ratio = _measured_limit(design, GROUPS[group], predicted, count)
     row = {"design": design, "group": group, "sweeps": count or 0, "predicted_s": predicted}
     return {"limits": row | {"measured_s": ratio * predicted, "ratio": ratio}}
 
 
-def sweeps() -> Iterator[tuple[str, str, float]]:
+def _sweeps() -> Iterator[tuple[str, str, float]]:
     """Yield forms, impulses that are swept, and steps."""
-    own = stability_limit(pivot("Table 1"))
+    own = stability_limit(_pivot("Table 1"))
     for form, impulses in product(FORMS, ("constraints", "strips")):
         for step in [0.5 * own] if form == "printed" else [0.5 * own, *STEPS[2:]]:
             yield form, impulses, step
 
 
-def swept(form: str, impulses: str, step: float) -> Answer:
+def _swept(form: str, impulses: str, step: float) -> Answer:
     """Return the error of the velocity after each sweep, and the factor a sweep leaves.
 
     Both for the first linear system of a step from the released state of Table 1, n = 6, against its direct
     solution. Columns: form, impulses, step_s, sweep, error; contraction.
     """
-    chosen = pivot("Table 1")
+    chosen = _pivot("Table 1")
     direct = impulse_solver(chosen, form=form)
     found = sweep_errors(
         direct, impulse_solver(chosen, form=form, impulses=impulses), direct.start(START), step, SWEEPS
@@ -168,14 +171,14 @@ def swept(form: str, impulses: str, step: float) -> Answer:
     }
 
 
-def pictures() -> Iterator[tuple[str, int, float]]:
+def _pictures() -> Iterator[tuple[str, int, float]]:
     """Yield designs, control points and steps."""
-    for design, n in product(designs(), COUNTS):
+    for design, n in product(_designs(), COUNTS):
         for step in (PAPER_STEP, 1e-3, 2e-4) if design == "Table 1" else (PAPER_STEP,):
             yield design, n, step
 
 
-def watched(design: str, n: int, step: float) -> Answer:
+def _timed_pictures(design: str, n: int, step: float) -> Answer:
     """Return the work of the four stable steps of a picture after a release, and their times apart.
 
     Columns: solves_median, solves_95, solves_most; times: cpu_median_ms, cpu_95_ms, of the
@@ -223,7 +226,7 @@ def _time(design: str, form: str, step: float, run: Trajectory) -> dict[str, Any
         return {"step_us": math.nan, "motion_s": math.nan}
     count = round(DURATION[design] / step)
     timed = min(count, 200)
-    solver = impulse_solver(pivot(design), form=form)
+    solver = impulse_solver(_pivot(design), form=form)
     state = solver.start(START)
     seconds = min(measure(lambda: solver.step(state, step, count=timed), repeat=5).seconds)
     return {"step_us": 1e6 * seconds / timed, "motion_s": seconds / timed * count}
@@ -235,7 +238,7 @@ def _measured_limit(design: str, settings: SplineSettings, predicted: float, swe
 
     def stable(part: float) -> bool:
         run = solve_impulses(
-            pivot(design, settings),
+            _pivot(design, settings),
             start=SMALL,
             duration=TRIAL * part * predicted,
             step=part * predicted,
@@ -254,7 +257,7 @@ def _measured_limit(design: str, settings: SplineSettings, predicted: float, swe
 
 def _watched(design: str, n: int, step: float) -> tuple[list[int], list[float]]:
     """Return linear systems and seconds of each picture."""
-    solver = impulse_solver(pivot(design, SplineSettings(control_points=n)))
+    solver = impulse_solver(_pivot(design, SplineSettings(control_points=n)))
     state = solver.start(START)
     solver.step(state, step, count=STEPS_A_PICTURE)
     solves, seconds = [], []
@@ -267,3 +270,13 @@ def _watched(design: str, n: int, step: float) -> tuple[list[int], list[float]]:
             break
         state = outcome.state
     return solves, seconds
+
+
+#: What is asked of them, for the tables steps, timings, limits, sweeps, contraction, pictures and
+#: timings_of_pictures.
+PARTS = (
+    Part(at=_steps, ask=_released, alone=True),
+    Part(at=_limits, ask=_limit),
+    Part(at=_sweeps, ask=_swept),
+    Part(at=_pictures, ask=_timed_pictures, alone=True),
+)

@@ -20,7 +20,6 @@ from studies.answers.settings import SplineSettings
 from studies.cases.problem import named_case
 from studies.engine.study import Answer, Finding, Part, Study, Tables
 from studies.paper import formulations
-from studies.paper.formulations import CASE
 from studies.record.style import COUNT_COLOURS, page
 
 #: Values in units of EI/L^2; EA is 3.5e3 of them for Table 1.
@@ -67,7 +66,6 @@ def _figure(tables: Tables) -> Figure:
     torque.set_title("Static path to 90°")
     stiffness.set_title("Static path to 90°")
     motion.set_title(f"{1e3 * DURATION:g} ms after the release")
-    torque.annotate("rings: the defaults", (0.03, 0.97), xycoords="axes fraction", va="top", fontsize=8)
     drawn.legend(*torque.get_legend_handles_labels(), loc="outside lower center", ncols=len(COUNTS))
     return drawn
 
@@ -75,7 +73,7 @@ def _figure(tables: Tables) -> Figure:
 def _static(n: int, value: float) -> Answer:
     """Return the row of one static path: status and largest errors against the limit of the elements."""
     settings = SplineSettings(control_points=n, slide_stiffness=value)
-    answer = answer_static(named_case(CASE), settings)
+    answer = answer_static(named_case(), settings)
     row: dict[str, Any] = {"control_points": n, "slide_stiffness": value, "status": answer.status}
     found = errors(answer, formulations.refined()).largest() if answer.converged else {}
     return {"statics": row | {f"error_{name}": found.get(name, np.nan) for name in QUANTITIES}}
@@ -118,7 +116,6 @@ def _findings(tables: Tables, problem: str, column: str, what: str) -> list[Find
 
 
 STUDY = Study(
-    cases=(CASE,),
     parts=(
         Part(at=lambda: product(COUNTS, VALUES), ask=_static),
         Part(at=_moving, ask=_motion),

@@ -1,10 +1,11 @@
 """Sweeps over refinement: one row a discretisation with its largest errors, failed ones included."""
 
-from collections.abc import Iterable, Sequence
-from typing import Any
+from collections.abc import Iterable, Iterator, Sequence
+from typing import Any, TypeVar
 
 import numpy as np
 import pandas as pd
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from studies.answers.adapters import answer_static
@@ -13,9 +14,13 @@ from studies.answers.reference import QUANTITIES, Reference, errors, limit_of
 from studies.answers.response import Response
 from studies.answers.settings import FeSettings, SplineSettings
 from studies.cases.design import Design
+from studies.cases.problem import named_case
+from studies.engine.study import Answer, Claim, Part, Study, Tables
 from studies.kinds import Progress
 from studies.record.progress import silent
-from studies.record.style import LOOKS, page, uncertain
+from studies.record.style import ELEMENTS, LOOKS, page, uncertain
+
+Item = TypeVar("Item")
 
 ERROR_COLUMNS = tuple(f"error_{name}" for name in QUANTITIES)
 
@@ -27,12 +32,7 @@ def spline_sweep(
     problem: Design, settings: Sequence[SplineSettings], against: Reference, progress: Progress = silent
 ) -> pd.DataFrame:
     """Return the rows of `spline_row` for each of `settings`."""
-    rows = []
-    for count, setting in enumerate(settings):
-        progress(count, len(settings))
-        rows.append(spline_row(problem, setting, against))
-    progress(len(settings), len(settings))
-    return pd.DataFrame(rows)
+    return pd.DataFrame([spline_row(problem, each, against) for each in _watched(settings, progress)])
 
 
 def spline_row(problem: Design, setting: SplineSettings, against: Reference) -> dict[str, Any]:
@@ -58,17 +58,24 @@ def element_sweep(
         NoReference: a mesh does not reach the end of the path.
     """
     counts = list(elements)
-    answers = []
-    for done, count in enumerate(counts):
-        progress(done, len(counts))
-        answers.append(answer_static(problem, FeSettings(elements=count, element=element)))
-    progress(len(counts), len(counts))
+    answers = [
+        answer_static(problem, FeSettings(elements=count, element=element))
+        for count in _watched(counts, progress)
+    ]
     limit = limit_of([answer for answer in answers if answer.settings["elements"] <= FINEST])
     rows = [
         {"element": element, "elements": count} | _outcome(answer, limit)
         for count, answer in zip(counts, answers, strict=True)
     ]
     return with_orders(pd.DataFrame(rows), "elements"), limit
+
+
+def _watched(items: Sequence[Item], progress: Progress) -> Iterator[Item]:
+    """Yield each of `items`, and tell how many of them are done."""
+    for done, item in enumerate(items):
+        progress(done, len(items))
+        yield item
+    progress(len(items), len(items))
 
 
 def with_orders(table: pd.DataFrame, count: str) -> pd.DataFrame:
@@ -141,3 +148,100 @@ def drawn(splines: pd.DataFrame, elements: pd.DataFrame, limit: Reference) -> Fi
     panels[0, 0].set_title("spline")
     panels[1, 0].set_title("finite elements")
     return figure
+
+
+MESHES = (5, 10, 20, 40, 80, 160, 320)
+
+#: Order of both elements, and how far the observed one may be from it to be called so.
+ORDER, ALLOWANCE = 2.0, 0.1
+
+
+def _refined(element: str) -> Answer:
+    """Return the errors of every mesh of an element, and the limits."""
+    rows, limit = element_sweep(named_case(), MESHES, element)
+    return {"meshes": rows, "limits": _limits(element, limit)}
+
+
+def _elements_figure(tables: Tables) -> Figure:
+    """Draw the errors over the number of elements, one panel a quantity."""
+    drawn = page(11.5, 3.9)
+    panels = drawn.subplots(1, len(QUANTITIES))
+    for panel, quantity in zip(panels, QUANTITIES, strict=True):
+        for element, look in ELEMENTS.items():
+            rows = tables["meshes"][tables["meshes"]["element"] == element]
+            panel.loglog(rows["elements"], rows[f"error_{quantity}"], **look.keywords())
+        _second_order(panel, tables["meshes"], f"error_{quantity}")
+        panel.set(xlabel="elements a strip", ylabel=f"largest error of the {quantity} [1]")
+        panel.set_xticks(MESHES, labels=[str(mesh) for mesh in MESHES], minor=False)
+        panel.minorticks_off()
+    handles, labels = panels[0].get_legend_handles_labels()
+    drawn.legend(handles, labels, loc="outside lower center", ncols=3)
+    return drawn
+
+
+def _second_order(panel: Axes, meshes: pd.DataFrame, column: str) -> None:
+    """Draw the slope of second order, a little below the errors so that it can be seen."""
+    first = meshes.sort_values("elements").iloc[0]
+    counts = np.array([MESHES[0], MESHES[-1]])
+    slope = 0.5 * first[column] * (MESHES[0] / counts) ** ORDER
+    panel.loglog(counts, slope, ":", color="#444444", label="order 2")
+
+
+def _limits(element: str, limit: Reference) -> list[dict[str, Any]]:
+    """Return the end values in the limit of refinement with their relative uncertainty."""
+    values = {
+        "com_x_m": (limit.centre[-1, 0], "trajectory"),
+        "com_y_m": (limit.centre[-1, 1], "trajectory"),
+        "torque_Nm": (limit.torque[-1], "torque"),
+        "stiffness_Nm_per_rad": (limit.stiffness[-1], "stiffness"),
+        "max_stress_Pa": (limit.stress[-1], "stress"),
+    }
+    return [
+        {
+            "element": element,
+            "quantity": quantity,
+            "limit": value,
+            "relative_uncertainty": limit.uncertainty[kind],
+        }
+        for quantity, (value, kind) in values.items()
+    ]
+
+
+def _at(tables: Tables, count: int) -> list[dict[str, Any]]:
+    """Return error and observed order of each quantity and element on one mesh."""
+    rows = tables["meshes"].query("elements == @count").to_dict("records")
+    return [
+        {
+            "name": ELEMENTS[row["element"]].label,
+            "of": name,
+            "error": row[f"error_{name}"],
+            "order": row[f"order_{name}"],
+        }
+        for row in rows
+        for name in QUANTITIES
+    ]
+
+
+ELEMENT_STUDY = Study(
+    parts=(Part(at=lambda: ELEMENTS, ask=_refined),),
+    claims=(
+        Claim(
+            claim="The {of} of the finite elements converges with order 2",
+            formulation="{name}",
+            quantity="the distance of the observed order (80 to 160 elements) from 2, over 2,",
+            rows=lambda tables: _at(tables, 160),  # the last mesh above round-off
+            value=lambda row: abs(row["order"] - ORDER) / ORDER,
+            holds=lambda row: abs(row["order"] - ORDER) <= ALLOWANCE,
+        ),
+        Claim(
+            claim="Twenty elements a strip give the {of} to 1 %",
+            formulation="{name}",
+            quantity="the largest error of 20 elements over the path",
+            rows=lambda tables: _at(tables, 20),
+            value="error",
+            most=0.01,
+        ),
+    ),
+    figures={"elements": _elements_figure},
+)
+"""Convergence of the finite elements with their number: errors, observed orders, limit and uncertainty."""

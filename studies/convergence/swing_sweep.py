@@ -3,7 +3,10 @@
 import dataclasses
 import math
 from functools import cache
+from itertools import product
 from typing import Any
+
+import numpy as np
 
 from studies.answers.adapters import answer_modes, answer_static
 from studies.answers.metrics import extrapolate, quasi_static_frequency
@@ -12,8 +15,9 @@ from studies.answers.reference import SWING_MESHES, sampled
 from studies.answers.response import Response
 from studies.answers.settings import FeSettings, SplineSettings
 from studies.cases.problem import named_case
+from studies.engine.study import Answer, Part
 from studies.paper import formulations
-from studies.paper.formulations import CASE, FE, SETTINGS
+from studies.paper.formulations import FE, SETTINGS
 
 COUNTS = tuple(formulations.STEPS)
 #: Beyond this count the consistent form, whose axial waves are faster, needs shorter steps; nor does it lock.
@@ -33,7 +37,7 @@ MODE_MESHES = (5, 10, 20, 40, 80)
 BACKBONE: dict[str, dict[str, Any]] = {FE: {}, "n = 6": {"integrator": "explicit", "step": 3e-6}}
 
 
-def of_control_points(stretch: str, n: int) -> dict[str, Any]:
+def _of_control_points(stretch: str, n: int) -> Answer:
     """Return the row of a stretch form and count: the swing's frequency, its shift, what statics implies.
 
     Columns: stretch, control_points, status, frequency_Hz, shift (of the frequency, against the limit of the
@@ -42,19 +46,19 @@ def of_control_points(stretch: str, n: int) -> dict[str, Any]:
     """
     settings = SplineSettings(control_points=n, stretch=stretch)
     motion = formulations.resolved(settings)
-    implied = _static_frequency(answer_static(named_case(CASE), _as_in(motion, settings)))
+    implied = _static_frequency(answer_static(named_case(), _as_in(motion, settings)))
     row = {"stretch": stretch, "control_points": n} | _outcome(motion)
-    return row | {"shift_from_statics": implied / _finest_static_frequency() - 1.0}
+    return {"control_points": row | {"shift_from_statics": implied / _finest_static_frequency() - 1.0}}
 
 
-def of_elements(count: int) -> dict[str, Any]:
-    """Return the row of a mesh of the explicit finite elements; columns as of `of_control_points`."""
+def _of_elements(count: int) -> Answer:
+    """Return the row of a mesh of the explicit finite elements; columns as of `_of_control_points`."""
     levels = {int(level.settings["elements"]): level for level in formulations.refined_swing().levels}
     motion = levels[count] if count in levels else formulations.released(FeSettings(elements=count))
-    return {"elements": count} | _outcome(motion)
+    return {"elements": {"elements": count} | _outcome(motion)}
 
 
-def of_step(integrator: str, step: float) -> dict[str, Any]:
+def _of_step(integrator: str, step: float) -> Answer:
     """Return the row of an implicit integrator and step, against the resolved motion of the same spline.
 
     Columns: integrator, step_s, status, frequency_Hz, shift, error_rotation_rad, energy_error.
@@ -62,64 +66,73 @@ def of_step(integrator: str, step: float) -> dict[str, Any]:
     settings = SplineSettings(control_points=6)
     motion = formulations.released(settings, integrator=integrator, step=step)
     row = {"integrator": integrator, "step_s": step} | _outcome(motion, formulations.resolved(settings))
-    return row | {"energy_error": motion.energy_error}
+    return {"steps": row | {"energy_error": motion.energy_error}}
 
 
-def modes() -> list[dict[str, Any]]:
+def _modes() -> Answer:
     """Return one row a model, count and linear mode at rest, against the limit of the finite elements.
 
     Columns: model, count, mode, frequency_Hz, limit_Hz, error (relative), uncertainty (of the limit).
     """
-    problem = named_case(CASE)
+    problem = named_case()
     meshes = {n: answer_modes(problem, FeSettings(elements=n), count=MODES).frequency for n in MODE_MESHES}
     splines = {
         n: answer_modes(problem, SplineSettings(control_points=n), count=MODES).frequency for n in COUNTS
     }
     # consistent masses and cubic elements: the frequencies are of order four
     limit = extrapolate([meshes[n] for n in MODE_MESHES[-3:]], order=4.0)
-    rows = []
-    for model, answers in (("fe", meshes), ("spline", splines)):
-        for count, frequency in answers.items():
-            for mode in range(min(MODES, len(frequency))):
-                rows.append(
-                    {
-                        "model": model,
-                        "count": count,
-                        "mode": mode + 1,
-                        "frequency_Hz": frequency[mode],
-                        "limit_Hz": limit.value[mode],
-                        "error": frequency[mode] / limit.value[mode] - 1.0,
-                        "uncertainty": limit.uncertainty[mode] / limit.value[mode],
-                    }
-                )
-    return rows
+    rows = [
+        {
+            "model": model,
+            "count": count,
+            "mode": mode + 1,
+            "frequency_Hz": value,
+            "limit_Hz": exact,
+            "error": value / exact - 1.0,
+            "uncertainty": unsure / exact,
+        }
+        for model, answers in (("fe", meshes), ("spline", splines))
+        for count, frequency in answers.items()
+        for mode, (value, exact, unsure) in enumerate(
+            zip(frequency[:MODES], limit.value, limit.uncertainty, strict=False)
+        )
+    ]
+    return {"modes": rows}
 
 
-def of_amplitude(name: str, amplitude: float) -> dict[str, Any]:
+def _of_amplitude(name: str, amplitude: float) -> Answer:
     """Return the row of a model and amplitude: the frequency of the swing, and that of its static path.
 
     Columns: formulation, amplitude_rad, status, frequency_Hz, frequency_from_statics_Hz, first_mode_Hz.
     """
-    problem = dataclasses.replace(named_case(CASE), rotation=float(amplitude))
+    problem = dataclasses.replace(named_case(), rotation=float(amplitude))
     motion = formulations.released(SETTINGS[name], start=float(amplitude), **BACKBONE[name])
-    return {
+    row = {
         "formulation": name,
         "amplitude_rad": amplitude,
         "status": motion.status,
         "frequency_Hz": motion.frequency if motion.converged else math.nan,
         "frequency_from_statics_Hz": _static_frequency(answer_static(problem, SETTINGS[name])),
-        "first_mode_Hz": answer_modes(named_case(CASE), SETTINGS[name], count=1).frequency[0],
+        "first_mode_Hz": answer_modes(named_case(), SETTINGS[name], count=1).frequency[0],
     }
+    return {"backbone": row}
+
+
+def _reference() -> Answer:
+    """Return the frequency in the limit of the finite elements and its uncertainty."""
+    limit = formulations.refined_swing()
+    known = {"frequency_Hz": limit.frequency, "uncertainty": limit.frequency_uncertainty}
+    return {"reference": {"quantity": "frequency", **known}}
 
 
 @cache
 def _finest_static_frequency() -> float:
-    return _static_frequency(answer_static(named_case(CASE), FeSettings(elements=160)))
+    return _static_frequency(answer_static(named_case(), FeSettings(elements=160)))
 
 
 def _static_frequency(answer: Response) -> float:
     """Return the frequency of the swing that a static path implies, with the case's body [Hz]."""
-    problem = named_case(CASE)
+    problem = named_case()
     return quasi_static_frequency(
         answer.rotation,
         answer.centre,
@@ -146,3 +159,14 @@ def _outcome(motion: Motion, exact: Motion | None = None) -> dict[str, Any]:
         "shift": found / frequency - 1.0,
         "error_rotation_rad": formulations.rotation_error(motion, rotation),
     }
+
+
+#: What is asked, for the tables control_points, elements, steps, modes, backbone and reference.
+PARTS = (
+    Part(at=lambda: FORMS, ask=_of_control_points),
+    Part(at=lambda: ELEMENTS, ask=_of_elements),
+    Part(at=lambda: product(INTEGRATORS, STEPS), ask=_of_step),
+    Part(ask=_modes),
+    Part(at=lambda: product(BACKBONE, np.radians(AMPLITUDES)), ask=_of_amplitude),
+    Part(ask=_reference),
+)

@@ -9,19 +9,26 @@ from studies.answers.models import built, model_of, refusals, static_path
 from studies.answers.reference import reference
 from studies.answers.response import Response, centre_shift
 from studies.answers.settings import SplineSettings
+from studies.cases.effects import MOTION_ONLY
 from studies.cases.problem import Problem
-from studies.design.task import (
-    CENTRE_SHIFT,
-    STATIONS,
-    STRESS,
-    VARIABLES,
-    VARIATION,
-    sides_of,
-)
 from studies.kinds import Array
 
+#: Variables of a sizing, as keywords of the sensitivities; both strips are alike.
+VARIABLES = ("length", "inclination", "crossing_ratio", "thickness", "width")
+CENTRE_SHIFT, VARIATION, STRESS = "centre-shift", "stiffness-variation", "stress"
+#: Where fibre stresses are constrained, reference arc length over L.
+STATIONS = np.linspace(0.0, 1.0, 21)
 #: Control points of the strips: an optimum's answers nearly cancel, and 8 miss the least variation by 8 %.
 CONTROL_POINTS = 10
+
+
+#: Effects under which both sides of a range are mirror images, as both strips are alike.
+PLAIN = {"bending", "stretching", "clamped_width", "anticlastic", "root_compliance", *MOTION_ONLY}
+
+
+def sides_of(problem: Problem) -> tuple[float, ...]:
+    """Return the signs of the rotations that a range needs solved: both under loads, one without."""
+    return (1.0,) if set(problem.effects.names) <= PLAIN else (1.0, -1.0)
 
 
 class PathEnds(RuntimeError):

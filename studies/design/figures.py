@@ -50,6 +50,7 @@ def designs(tables: Mapping[str, pd.DataFrame], baseline: str) -> Figure:
         [], [], "o", color=GREY, markersize=3.0, label="the same design in the FE model (lines: spline)"
     )
     below.legend(*panels[0].get_legend_handles_labels(), loc="outside upper center", ncols=3)
+    figure.draw_without_rendering()  # panels of one scale have their place after a first layout only
     return figure
 
 
@@ -73,6 +74,7 @@ def search(tables: Mapping[str, pd.DataFrame], baseline: str) -> Figure:
     trade, bars = below.subplots(1, 2, width_ratios=(1.0, 1.15))
     _trade(trade, tables)
     _prices(bars, tables, names)
+    below.legend(*trade.get_legend_handles_labels(), loc="outside lower center", ncols=3)
     return figure
 
 
@@ -106,7 +108,7 @@ def _geometry(figure: SubFigure, tables: Mapping[str, pd.DataFrame], names: Sequ
             f"b {1e3 * design['width_m']:.1f} mm, {np.degrees(design['inclination_rad']):.0f}°\n"
             f"λ = {design['crossing_ratio']:.3f}"
         )
-        panel.set(title=_broken(name), xlabel="x [mm]", aspect="equal")
+        panel.set(title=_broken(name), xlabel="x [mm]", aspect="equal", anchor="S")
         text = panel.annotate(sizes, (0.5, 0.99), xycoords="axes fraction", ha="center", va="top", fontsize=7)
         text.set_in_layout(False)
         panel.set_ylim(-8.0, 1.9 * highest)
@@ -116,7 +118,7 @@ def _geometry(figure: SubFigure, tables: Mapping[str, pd.DataFrame], names: Sequ
 
 def _broken(name: str) -> str:
     """Return a name in short lines."""
-    return textwrap.fill(name, 14)
+    return textwrap.fill(name, 18)
 
 
 def _thick(line: np.ndarray, thickness: float) -> np.ndarray:
@@ -155,7 +157,6 @@ def _trade(panel: Axes, tables: Mapping[str, pd.DataFrame]) -> None:
         design = tables["designs"].query("design == @name").iloc[0]
         panel.plot(design["variation"], 1e3 * design["centre_shift_m"], "o", color=COLOURS[name], label=name)
     panel.set(xlabel="largest variation of stiffness over ±45° [1]", ylabel="largest centre shift [mm]")
-    panel.legend(fontsize=7)
 
 
 def _prices(panel: Axes, tables: Mapping[str, pd.DataFrame], names: Sequence[str]) -> None:
@@ -170,4 +171,4 @@ def _prices(panel: Axes, tables: Mapping[str, pd.DataFrame], names: Sequence[str
     panel.axvline(0.0, color=BLACK, linewidth=0.8)
     panel.set_xscale("symlog", linthresh=1.0)
     panel.set_axisbelow(True)
-    panel.set(xlabel="change of the objective over that of the limit [% / %]")
+    panel.set(xlabel="change of objective / of limit [%/%]")

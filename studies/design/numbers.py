@@ -5,7 +5,7 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -17,8 +17,8 @@ from studies.answers.reference import MESHES, limit_of
 from studies.answers.settings import FeSettings, SplineSettings
 from studies.cases.keys import MOMENTS, SIDES
 from studies.cases.mechanism import Mechanism, read_mechanism
-from studies.design.evaluate import CONTROL_POINTS, Answers, PathEnds
-from studies.design.task import STATIONS, STRESS, VARIATION, Bounded
+from studies.design.evaluate import CONTROL_POINTS, STATIONS, STRESS, VARIATION, Answers, PathEnds
+from studies.design.task import Bounded
 from studies.errors import BadInput
 from studies.kinds import Array
 from studies.sweep import plan
@@ -31,7 +31,7 @@ STEP = 0.05
 
 
 @dataclass(frozen=True, kw_only=True)
-class Number:
+class _Number:
     """Keys of a case file that hold one value, in the file's unit, and its bounds."""
 
     keys: tuple[str, ...]
@@ -45,7 +45,7 @@ class Number:
         return ",".join(self.keys)
 
 
-def number_of(where: str, document: Mapping[str, Any], text: str) -> Number:
+def number_of(where: str, document: Mapping[str, Any], text: str) -> _Number:
     """Return the number that `KEY[,KEY...][=LOW:HIGH]` stands for; BadInput where it is none of the case."""
     names, _, bounds = text.partition("=")
     given = tuple(name.strip() for name in names.split(","))
@@ -65,7 +65,7 @@ def number_of(where: str, document: Mapping[str, Any], text: str) -> Number:
         low = high = math.nan
     if not -math.inf < low < high < math.inf:
         raise BadInput(f"--free: got {text}, expected KEY=LOW:HIGH with LOW < HIGH, in the file's unit")
-    return Number(keys=given, own=own, low=low, high=high)
+    return _Number(keys=given, own=own, low=low, high=high)
 
 
 def by_sides(document: Mapping[str, Any], texts: Sequence[str]) -> dict[str, Any]:
@@ -113,10 +113,13 @@ class NumbersTask(Bounded):
 
     where: str
     document: Mapping[str, Any]
-    numbers: tuple[Number, ...]
+    numbers: tuple[_Number, ...]
     objective: str = STRESS
     stiffness: float = math.nan
     allowable_stress: float = math.inf
+
+    #: Of objectives that are not the one to be least: none.
+    limits: ClassVar[Mapping[str, float]] = {}
 
     @cached_property
     def start(self) -> Mechanism:
@@ -133,15 +136,15 @@ class NumbersTask(Bounded):
         """What the wanted stiffness is called."""
         return "travel" if self.start.rotation is None else "stiffness"
 
-    @property
-    def limits(self) -> dict[str, float]:
-        """Of objectives that are not the one to be least: none."""
-        return {}
-
     @cached_property
     def bounds(self) -> dict[str, tuple[float, float]]:  # type: ignore[override]
         """Lowest and highest value of every number, in the file's unit."""
         return {number.name: (number.low, number.high) for number in self.numbers}
+
+    @property
+    def columns(self) -> list[tuple[str, float, str]]:
+        """The numbers in a table, by their places."""
+        return [(str(place), 1.0, "12.6g") for place in range(1, len(self.numbers) + 1)]
 
     @property
     def own(self) -> Array:
@@ -216,6 +219,29 @@ class NumbersTask(Bounded):
             counters=found.counters,
         )
 
+    def case(self) -> Answers:
+        """Return what the case answers."""
+        return self.answers(self.own)
+
+    def quantities(self, found: Answers) -> dict[str, float]:
+        """Return what the splines say of a design, by name: what is held, and the objectives."""
+        return {self.held: found.stiffness, **{name: found.largest(name) for name in self.objectives}}
+
+    def by_elements(self, design: Mechanism) -> dict[str, float]:
+        """Return what the finite elements say in the limit of refinement, stress on the finest mesh.
+
+        Raises:
+            NoReference: they do not reach the end of the path.
+        """
+        limit = limit_of([answer_static(design, FeSettings(elements=count)) for count in MESHES])
+        begin = len(limit.rotation) - 1 - design.increments
+        stress = {STRESS: float(limit.finest.max_stress[[begin, -1]].max())}
+        if design.rotation is None:
+            return {self.held: float(np.linalg.norm(limit.centre[-1] - limit.finest.centre[0])), **stress}
+        stiffness = limit.stiffness[begin:]
+        variation = float(np.abs(stiffness / stiffness[0] - 1.0).max())
+        return {self.held: float(stiffness[0]), **stress, VARIATION: variation}
+
     def _chain(self, values: Array) -> tuple[list[str], Array]:
         """Return names of the strips' and bodies' numbers that change, and derivatives (R, N) of these by the
         case's."""
@@ -261,24 +287,3 @@ def _rest(design: Mechanism) -> Mechanism:
     strips = (replace(each, **none, **({} if each.rise else straight)) for each in design.strips)
     bodies = (replace(each, centre=(0.0, 0.0)) for each in design.bodies)
     return replace(design, strips=tuple(strips), bodies=tuple(bodies))
-
-
-def quantities(task: NumbersTask, found: Answers) -> dict[str, float]:
-    """Return what the splines say of a design, by name: what is held, and the objectives."""
-    return {task.held: found.stiffness, **{name: found.largest(name) for name in task.objectives}}
-
-
-def quantities_by_elements(task: NumbersTask, design: Mechanism) -> dict[str, float]:
-    """Return what the finite elements say in the limit of refinement, stress on the finest mesh.
-
-    Raises:
-        NoReference: they do not reach the end of the path.
-    """
-    limit = limit_of([answer_static(design, FeSettings(elements=count)) for count in MESHES])
-    begin = len(limit.rotation) - 1 - design.increments
-    stress = {STRESS: float(limit.finest.max_stress[[begin, -1]].max())}
-    if design.rotation is None:
-        return {task.held: float(np.linalg.norm(limit.centre[-1] - limit.finest.centre[0])), **stress}
-    stiffness = limit.stiffness[begin:]
-    variation = float(np.abs(stiffness / stiffness[0] - 1.0).max())
-    return {task.held: float(stiffness[0]), **stress, VARIATION: variation}

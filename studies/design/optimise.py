@@ -8,9 +8,8 @@ from scipy.optimize import minimize
 from scipy.stats import qmc
 
 from studies.cases.problem import Problem
-from studies.design.evaluate import Answers
-from studies.design.programme import Active, Programme, Sizing, conditions, own
-from studies.design.task import CENTRE_SHIFT
+from studies.design.evaluate import CENTRE_SHIFT, Answers
+from studies.design.programme import Active, Programme, Sizing, conditions
 from studies.kinds import Array, Progress
 
 MOST_ITERATIONS = 100
@@ -68,8 +67,7 @@ def optimise(task: Sizing, start: Array) -> Outcome | None:
 
     An end that is feasible but not stationary is gone on from, with a fresh approximation of the curvature.
     """
-    given = own(task)
-    programme = Programme(task=task, scale={name: given.largest(name) for name in task.objectives})
+    programme = Programme.of(task)
     if programme.answers(start) is None:
         return None
     history = [_progress(programme, start)]
@@ -189,7 +187,7 @@ def _outcome(programme: Programme, start: Array, at: Array, message: str, histor
         at=at,
         converged=converged,
         message="" if converged else _reason(message, violation, residual),
-        problem=task.problem(programme.variables(at)),
+        problem=task.problem(task.values(at)),
         answers=found,
         objective=found.largest(task.objective),
         violation=violation,

@@ -14,25 +14,15 @@ from dataclasses import dataclass, field
 import numpy as np
 from scipy.optimize import nnls
 
-from studies.design.evaluate import Answers, PathEnds, answers
+from studies.design.evaluate import CENTRE_SHIFT, STRESS, VARIATION, Answers, PathEnds
 from studies.design.numbers import NumbersTask
-from studies.design.task import CENTRE_SHIFT, STRESS, VARIATION, Task
+from studies.design.task import Task
 from studies.kinds import Array
 
 Sizing = Task | NumbersTask
 
 #: Stands for every row of a design without an answer: far outside, so that a line search comes back.
 OUTSIDE = -1e3
-
-
-def asked(task: Sizing, values: Array) -> Answers:
-    """Return what a task's design answers with these variables (N,); errors as of `answers`."""
-    return answers(task.problem(values)) if isinstance(task, Task) else task.answers(values)
-
-
-def own(task: Sizing) -> Answers:
-    """Return what the start of a task answers."""
-    return answers(task.start) if isinstance(task, Task) else task.answers(task.own)
 
 
 @dataclass(kw_only=True)
@@ -48,9 +38,11 @@ class Programme:
     failed: int = 0
     _last: tuple[bytes, Answers | None] = field(default=(b"", None), repr=False)
 
-    def variables(self, y: Array) -> Array:
-        """Return the design's variables (N,) in their units, of y (N + 1,), or (N,)."""
-        return self.task.low + self.task.span * y[: len(self.task.span)]
+    @classmethod
+    def of(cls, task: Sizing) -> "Programme":
+        """Return the programme of a task, in whose scale the task's own design is one."""
+        given = task.case()
+        return cls(task=task, scale={name: given.largest(name) for name in task.objectives})
 
     def answers(self, y: Array) -> Answers | None:
         """Return the design's answers; None where its path ends early."""
@@ -58,7 +50,7 @@ class Programme:
         if key != self._last[0]:
             self.solved += 1
             try:
-                found = asked(self.task, self.variables(y))
+                found = self.task.answers(self.task.values(y))
             except PathEnds:
                 self.failed += 1
                 found = None
@@ -113,7 +105,7 @@ class Programme:
         stress, by_stress = found.stress / allowed, found.by_stress * span / allowed
         values += [1.0 - stress, 1.0 + stress]
         jacobians += [_widened(-by_stress), _widened(by_stress)]
-        value, jacobian, _ = self.task.shape(self.variables(y))
+        value, jacobian, _ = self.task.shape(self.task.values(y))
         return np.concatenate([*values, value]), np.concatenate([*jacobians, _widened(jacobian)])
 
     def _objective(self, name: str, found: Answers, t: float) -> tuple[Array, Array]:
@@ -153,8 +145,7 @@ def gradient_error(task: Sizing, values: Array, levels: int = LEVELS) -> float:
     Central differences of halved steps, extrapolated; relative to the largest derivative of the same rows by
     any variable, over the bounds.
     """
-    given = own(task)
-    programme = Programme(task=task, scale={name: given.largest(name) for name in task.objectives})
+    programme = Programme.of(task)
     at = (values - task.low) / np.where(task.span == 0.0, 1.0, task.span)
     y = np.append(at, 1.0)
     exact = np.vstack((programme.inequality_jacobian(y), programme.equality_jacobian(y)))
@@ -248,4 +239,4 @@ def _per_limit(programme: Programme, y: Array, name: str) -> float:
         bound = task.limits[name] / programme.scale[name]
         return -2.0 * bound**2 if name == CENTRE_SHIFT else -bound
     fixed = {"stiffness": 1.0, "stress": -1.0, "allowable stress": -1.0}
-    return (fixed | task.shape(programme.variables(y))[2])[name]
+    return (fixed | task.shape(programme.task.values(y))[2])[name]

@@ -13,9 +13,9 @@ from spline_model.sensitivity.solve import sensitivities
 from spline_model.statics import solve_statics
 from studies.answers.response import Response
 from studies.cases.problem import Problem, named_case
-from studies.design import figures, sections, tolerances
+from studies.design import evaluate, figures, margins
 from studies.design import task as questions
-from studies.design.evaluate import Answers, Measured, answers, by_elements, of_spline
+from studies.design.evaluate import CENTRE_SHIFT, VARIATION, Answers, Measured, answers, by_elements
 from studies.design.optimise import Outcome, best, numbered, search, starts
 from studies.design.programme import gradient_error
 from studies.engine.study import Answer, Part, Study
@@ -58,22 +58,24 @@ def _searched(name: str) -> Answer:
     """Return a question's optimum and how it was found.
 
     Tables: starts (a row a start: where it led); history (a row an iteration); active (constraints that hold
-    the optimum, and what they cost); resized (sized anew as plates with roots); the others as of `described`.
+    the optimum, and what they cost); resized (sized anew as plates with roots); others as of `_described`.
     """
     task, outcomes = _found(name)
     optimum = _optimum(name)
-    given = described(name, optimum.problem, optimum.answers)
+    given = _described(name, optimum.problem, optimum.answers)
+    error = gradient_error(task, questions.variables_of(optimum.problem))
+    differences = "differences, extrapolated"
     return {
         **given,
-        "checks": [*given["checks"], _gradient(name, task, optimum)],
+        "checks": [*given["checks"], _check(name, "gradients", differences, math.nan, math.nan, error)],
         "starts": _starts(name, task, outcomes),
         "history": _history(name, outcomes),
         "active": _active(name, optimum),
-        "resized": sections.resized(name, task, optimum),
+        "resized": margins.resized(name, task, optimum),
     }
 
 
-def described(name: str, problem: Problem, found: Answers) -> dict[str, Any]:
+def _described(name: str, problem: Problem, found: Answers) -> dict[str, Any]:
     """Return a design and what the finite elements say of it.
 
     Tables: designs (variables, objectives, factor); curves (a row a model and rotation); shapes
@@ -82,14 +84,14 @@ def described(name: str, problem: Problem, found: Answers) -> dict[str, Any]:
     manufacture does).
     """
     measured, response = by_elements(problem)
-    curves = [_curve(name, "spline", of_spline(found)), _curve(name, "FE", measured)]
+    curves = [_curve(name, "spline", evaluate.of_spline(found)), _curve(name, "FE", measured)]
     return {
         "designs": _design(name, problem, found),
         "curves": pd.concat(curves),
         "shapes": _shapes(name, response),
         "checks": _checks(name, found, measured),
-        "sections": sections.off(name, problem, found),
-        "tolerances": tolerances.toleranced(name, problem, found),
+        "sections": margins.off(name, problem, found),
+        "tolerances": margins.toleranced(name, problem, found),
     }
 
 
@@ -115,15 +117,15 @@ def _trade_row(limit: float, found: Outcome | None) -> dict[str, Any]:
         "variation_limit": limit,
         "status": "optimum",
         **_dimensions(questions.variables_of(found.problem)),
-        "centre_shift_m": found.answers.largest(questions.CENTRE_SHIFT),
-        "variation": found.answers.largest(questions.VARIATION),
+        "centre_shift_m": found.answers.largest(CENTRE_SHIFT),
+        "variation": found.answers.largest(VARIATION),
     }
 
 
 def _design(name: str, problem: Problem, found: Answers) -> dict[str, Any]:
     """Return a design's variables and objectives; factors are the baseline's objective over the design's."""
     other = name if name in questions.BASELINES else questions.QUESTIONS[name].baseline
-    own, measured = _baseline(other)[1], of_spline(found)
+    own, measured = _baseline(other)[1], evaluate.of_spline(found)
     reach = float(np.interp(questions.ALLOWABLE, measured.stress, measured.rotation))
     return {
         "design": name,
@@ -131,8 +133,8 @@ def _design(name: str, problem: Problem, found: Answers) -> dict[str, Any]:
         **_dimensions(questions.variables_of(problem)),
         "stiffness_Nm_per_rad": found.stiffness,
         "largest_stress_Pa": float(measured.stress.max()),
-        "centre_shift_m": found.largest(questions.CENTRE_SHIFT),
-        "variation": found.largest(questions.VARIATION),
+        "centre_shift_m": found.largest(CENTRE_SHIFT),
+        "variation": found.largest(VARIATION),
         **{
             f"factor_{key.replace('-', '_')}": own.largest(key) / found.largest(key)
             for key in questions.OBJECTIVES
@@ -183,7 +185,7 @@ def _starts(name: str, task: questions.Task, outcomes: list[Outcome]) -> list[di
         {
             "question": name,
             "start": number,
-            **_dimensions(task.low + task.span * each.start, "start_"),
+            **_dimensions(task.values(each.start), "start_"),
             **_dimensions(questions.variables_of(each.problem)),
             "optimum": optimum,
             "objective": each.objective,
@@ -221,32 +223,20 @@ def _active(name: str, outcome: Outcome) -> list[dict[str, Any]]:
 
 def _checks(name: str, found: Answers, elements: Measured) -> list[dict[str, Any]]:
     """Return a row a quantity: splines, finite elements, and their difference over the latter."""
-    spline, fe = of_spline(found).quantities(), elements.quantities()
-    return [
-        {
-            "design": name,
-            "quantity": key,
-            "against": "finite elements",
-            "value": spline[key],
-            "reference": fe[key],
-            "error": abs(spline[key] / fe[key] - 1.0),
-        }
-        for key in spline
-    ]
+    spline, fe = evaluate.of_spline(found).quantities(), elements.quantities()
+    rows = {key: (spline[key], fe[key], abs(spline[key] / fe[key] - 1.0)) for key in spline}
+    return [_check(name, key, "finite elements", *row) for key, row in rows.items()]
 
 
-def _gradient(name: str, task: questions.Task, outcome: Outcome) -> dict[str, Any]:
-    return {
-        "design": name,
-        "quantity": "gradients",
-        "against": "differences, extrapolated",
-        "value": math.nan,
-        "reference": math.nan,
-        "error": gradient_error(task, questions.variables_of(outcome.problem)),
-    }
+def _check(
+    name: str, quantity: str, against: str, value: float, reference: float, error: float
+) -> dict[str, Any]:
+    """Return a row of the table of checks."""
+    row = {"design": name, "quantity": quantity, "against": against}
+    return row | {"value": value, "reference": reference, "error": error}
 
 
-def timed(count: int) -> Answer:
+def _timed(count: int) -> Answer:
     """Return the shortest times of a path and of all its sensitivities with so many control points [s].
 
     `ratio` is the latter over the former; by central differences it would be two paths a parameter,
@@ -271,12 +261,12 @@ def timed(count: int) -> Answer:
 STUDY = Study(
     cases=tuple(questions.BASELINES.values()),
     parts=(
-        Part(at=lambda: questions.BASELINES, ask=lambda name: described(name, *_baseline(name))),
+        Part(at=lambda: questions.BASELINES, ask=lambda name: _described(name, *_baseline(name))),
         Part(at=lambda: questions.QUESTIONS, ask=_searched),
         Part(ask=lambda: {"trade": _trade()}),
-        Part(at=lambda: TIMED, ask=timed, alone=True),
+        Part(at=lambda: TIMED, ask=_timed, alone=True),
     ),
-    claims=(*sections.CLAIMS, *tolerances.CLAIMS),
+    claims=margins.CLAIMS,
     figures={
         "sizing": lambda tables: figures.designs(tables, questions.TABLE_ONE),
         "sizing_spring_steel": lambda tables: figures.designs(tables, questions.SPRING_STEEL),

@@ -2,42 +2,34 @@
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
+from typing import Any, ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 
-from studies.cases.effects import MOTION_ONLY
 from studies.cases.mechanism import of_sides
 from studies.cases.problem import Problem, named_case
+from studies.design import evaluate
+from studies.design.evaluate import CENTRE_SHIFT, STATIONS, VARIABLES, VARIATION, Answers, sides_of
+from studies.kinds import Array
 
-#: Variables of a sizing, as keywords of the sensitivities; both strips are alike.
-VARIABLES = ("length", "inclination", "crossing_ratio", "thickness", "width")
 #: What tables call them.
 UNITS = ("length_m", "inclination_rad", "crossing_ratio", "thickness_m", "width_m")
 
-CENTRE_SHIFT, VARIATION, STRESS = "centre-shift", "stiffness-variation", "stress"
 #: What may be made least: its meaning, over the whole range to both sides.
 OBJECTIVES: Mapping[str, str] = {
     CENTRE_SHIFT: "largest displacement of the body's point in the strips' crossing at rest [m]",
     VARIATION: "largest change of the rotational stiffness, relative to that at rest [1]",
 }
-#: Where fibre stresses are constrained, reference arc length over L.
-STATIONS = np.linspace(0.0, 1.0, 21)
 #: Fibre stresses of a pivot's state: two strips, both fibres.
 FIBRES = 4 * len(STATIONS)
 
-#: Effects under which both sides of a range are mirror images, as both strips are alike.
-PLAIN = {"bending", "stretching", "clamped_width", "anticlastic", "root_compliance", *MOTION_ONLY}
-
-
-def sides_of(problem: Problem) -> tuple[float, ...]:
-    """Return the signs of the rotations that a range needs solved: both under loads, one without."""
-    return (1.0,) if set(problem.effects.names) <= PLAIN else (1.0, -1.0)
-
 
 class Bounded:
-    """A question whose N variables have `bounds`: lowest and highest value of each by its name."""
+    """A question whose N variables have `bounds`: lowest and highest value of each by its name.
+
+    columns: of the variables in a table: heading, factor to the unit it shows them in, and format.
+    """
 
     bounds: Mapping[str, tuple[float, float]]
 
@@ -47,14 +39,18 @@ class Bounded:
         return tuple(self.bounds)
 
     @property
-    def low(self) -> NDArray[np.float64]:
+    def low(self) -> Array:
         """Lowest values of the variables (N,)."""
         return np.array([low for low, _ in self.bounds.values()])
 
     @property
-    def span(self) -> NDArray[np.float64]:
+    def span(self) -> Array:
         """Widths of the bounds (N,), 0 of a variable that is held."""
         return np.array([high - low for low, high in self.bounds.values()])
+
+    def values(self, y: Array) -> Array:
+        """Return the variables (N,) in their units, of y in [0, 1]^N, or (N + 1,)."""
+        return self.low + self.span * y[: len(self.span)]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -67,7 +63,7 @@ class Task(Bounded):
         stiffness: wanted rotational stiffness at rotation 0, under the loads [N m / rad].
         allowable_stress: of the extreme fibres at the ends of the range, and before it under loads [Pa].
         bounds: lowest and highest value of every variable in the order of `VARIABLES`, SI and radians.
-        least_slenderness: of the strips, L / h [1]: below, shear counts, which the strips do not have.
+        least_slenderness: of the strips, L / t [1]: below, shear counts, which the strips do not have.
         largest_aspect: of the strips, b / L [1]: above, a strip is a plate.
         limits: largest value of an objective that is not the one to be least, by its name.
     """
@@ -79,7 +75,18 @@ class Task(Bounded):
     bounds: Mapping[str, tuple[float, float]]
     least_slenderness: float
     largest_aspect: float
-    limits: Mapping[str, float]
+    limits: Mapping[str, float] = field(default_factory=dict)
+
+    #: What may be made least of a pivot, what the wanted stiffness is called, and what tables show.
+    objectives: ClassVar = tuple(OBJECTIVES)
+    held: ClassVar = "stiffness"
+    columns: ClassVar = (
+        ("L mm", 1e3, "9.3f"),
+        ("incl. deg", math.degrees(1.0), "11.3f"),
+        ("crossing", 1.0, "10.4f"),
+        ("h mm", 1e3, "9.4f"),
+        ("b mm", 1e3, "9.3f"),
+    )
 
     @property
     def sides(self) -> tuple[float, ...]:
@@ -87,19 +94,9 @@ class Task(Bounded):
         return sides_of(self.start)
 
     @property
-    def own(self) -> NDArray[np.float64]:
+    def own(self) -> Array:
         """Variables of the start (5,)."""
         return variables_of(self.start)
-
-    @property
-    def objectives(self) -> tuple[str, ...]:
-        """What may be made least of a pivot."""
-        return tuple(OBJECTIVES)
-
-    @property
-    def held(self) -> str:
-        """What the wanted stiffness is called."""
-        return "stiffness"
 
     @property
     def fibres(self) -> int:
@@ -111,10 +108,8 @@ class Task(Bounded):
         """States behind the first, of all sides."""
         return self.start.increments * len(self.sides)
 
-    def shape(
-        self, values: NDArray[np.float64]
-    ) -> tuple[NDArray[np.float64], NDArray[np.float64], dict[str, float]]:
-        """Return the rows of slenderness, L / h, and of aspect, b / L, linear in the variables (5,), over the
+    def shape(self, values: Array) -> tuple[Array, Array, dict[str, float]]:
+        """Return the rows of slenderness, L / t, and of aspect, b / L, linear in the variables (5,), over the
         longest length; their Jacobian by the scaled variables (2, 5); and their changes over relative ones of
         the limits."""
         length, _, _, thickness, width = values
@@ -133,12 +128,28 @@ class Task(Bounded):
         """Return the same question about another design."""
         return replace(self, start=start)
 
-    def problem(self, variables: NDArray[np.float64]) -> Problem:
+    def problem(self, variables: Array) -> Problem:
         """Return the design with these variables (5,) [m, rad, 1, m, m]."""
         return varied(self.start, variables)
 
+    def case(self) -> Answers:
+        """Return what the start answers."""
+        return evaluate.answers(self.start)
 
-def usual_bounds(start: Problem) -> dict[str, tuple[float, float]]:
+    def answers(self, values: Array) -> Answers:
+        """Return what the design with these variables (5,) answers; errors as of `answers`."""
+        return evaluate.answers(self.problem(values))
+
+    def quantities(self, found: Answers) -> dict[str, float]:
+        """Return what the splines say of a design, by name."""
+        return evaluate.of_spline(found).quantities()
+
+    def by_elements(self, design: Problem) -> dict[str, float]:
+        """Return what the finite elements say of it; NoReference where they do not reach its range's end."""
+        return evaluate.by_elements(design)[0].quantities()
+
+
+def _usual_bounds(start: Problem) -> dict[str, tuple[float, float]]:
     """Return how far a designer may leave a design where no bounds are given [m, rad, 1, m, m].
 
     The slenderness may not fall below the start's own, nor the width exceed the start's length.
@@ -153,7 +164,15 @@ def usual_bounds(start: Problem) -> dict[str, tuple[float, float]]:
     }
 
 
-def variables_of(problem: Problem) -> NDArray[np.float64]:
+def usual_task(start: Problem, bounds: Mapping[str, tuple[float, float]] | None = None, **asked: Any) -> Task:
+    """Return the question about a design within the usual bounds, or those that are given, with strips that
+    are no stubbier than its own; `asked` are the other arguments of `Task`."""
+    length, _, _, thickness, _ = map(float, variables_of(start))
+    within = _usual_bounds(start) | dict(bounds or {})
+    return Task(start=start, bounds=within, least_slenderness=length / thickness, **asked)
+
+
+def variables_of(problem: Problem) -> Array:
     """Return the variables (5,) of a design, its section taken as the rectangle that A and I imply."""
     thickness = math.sqrt(12.0 * problem.second_moment_of_area / problem.area)
     return np.array(
@@ -161,18 +180,10 @@ def variables_of(problem: Problem) -> NDArray[np.float64]:
     )
 
 
-def varied(problem: Problem, variables: NDArray[np.float64]) -> Problem:
+def varied(problem: Problem, variables: Array) -> Problem:
     """Return a design with other variables (5,) [m, rad, 1, m, m]."""
-    length, inclination, ratio, thickness, width = map(float, variables)
-    return replace(
-        problem,
-        length=length,
-        inclination=inclination,
-        crossing_ratio=ratio,
-        width=width,
-        thickness=thickness,
-        **of_sides(width, thickness),
-    )
+    values: dict[str, Any] = dict(zip(VARIABLES, map(float, variables), strict=True))
+    return replace(problem, **values, **of_sides(values["width"], values["thickness"]))
 
 
 #: Designs to compare with: their case.
@@ -242,14 +253,11 @@ def task_of(start: Problem, question: Question, *, stiffness: float, stress: flo
         question: of what is to be least.
         limits: largest variation of stiffness, as `variation` [1].
     """
-    length, _, _, thickness, _ = variables_of(start)
-    return Task(
-        start=start,
+    return usual_task(
+        start,
         objective=question.objective,
         stiffness=stiffness,
         allowable_stress=stress if question.stress is None else question.stress,
-        bounds=usual_bounds(start),
-        least_slenderness=float(length / thickness),
         largest_aspect=question.aspect,
         limits={VARIATION: limits["variation"]} if limits else {},
     )

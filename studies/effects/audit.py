@@ -3,14 +3,16 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations
+from typing import Any
 
 import numpy as np
 
 from studies.answers.adapters import answer_release, answer_static
 from studies.answers.settings import SplineSettings
 from studies.cases.design import Design
-from studies.effects.beyond import Price, prices
+from studies.effects.beyond import prices
 from studies.effects.scenes import (
+    SIZES,
     Answer,
     Outcome,
     Run,
@@ -18,10 +20,7 @@ from studies.effects.scenes import (
     Variant,
     answered,
     beside,
-    full_scene,
     outcome,
-    run_of,
-    without,
 )
 from studies.kinds import Progress
 from studies.record.progress import silent
@@ -54,7 +53,7 @@ class Audit:
     full: Outcome
     rows: tuple[Outcome, ...]
     tried: tuple[Outcome, ...]
-    beyond: tuple[Price, ...]
+    beyond: list[dict[str, Any]]
     cheapest: Outcome
     seconds: tuple[float, float]
 
@@ -63,9 +62,21 @@ class Audit:
         """Time of the full over that of the cheapest scene [1]."""
         return self.seconds[0] / self.seconds[1]
 
-    def time_ratio(self, row: Outcome) -> float:
-        """Time of the full scene over that of a row [1]: above 1 the row is faster."""
-        return self.full.wall_s / row.wall_s
+    def row(self, of: Outcome) -> dict[str, Any]:
+        """Return a scene as columns of a table: what it is, how it ended, changes and the largest of them,
+        time, time_ratio (of the full scene over its own: above 1 it is faster) and size; NaN for none."""
+        return {
+            "scene": of.variant.label,
+            "dropped": of.variant.dropped,
+            "effects": of.variant.effects.names,
+            "status": of.status,
+            "reason": of.reason,
+            **of.changes,
+            "largest": of.largest if np.isfinite(of.largest) else np.nan,
+            "time_ratio": self.full.wall_s / of.wall_s,
+            "wall_s": of.wall_s,
+            **(of.size or dict.fromkeys(SIZES, np.nan)),
+        }
 
 
 def audit(design: Design, settings: SplineSettings, tolerance: float, progress: Progress = silent) -> Audit:
@@ -79,16 +90,16 @@ def audit(design: Design, settings: SplineSettings, tolerance: float, progress: 
         BadInput: the model refuses the full scene. Unanswered: the full scene has no answer.
     """
     upset = _upsetting(design, settings)
-    scene = full_scene(design.effects, [row.variant.added[0] for row in upset])
+    scene = Variant.full(design.effects, [row.variant.added[0] for row in upset])
     whole = replace(design, effects=scene.effects)
-    run = run_of(whole, settings)
+    run = Run.of(whole, settings)
     base = answered(whole, run)
     full = outcome(scene, whole, run, base)
     names = scene.effects.names
     rows = []
     for done, name in enumerate(names):
         progress(done, len(names) + 2)
-        rows.append(_outcome(without(scene, [name]), design, run, base))
+        rows.append(_outcome(scene.without([name]), design, run, base))
     tried = _combined(rows, scene, design, run, base, tolerance)
     progress(len(names), len(names) + 2)
     full, *others = _timed([full, *rows, *tried], design, run)
@@ -101,7 +112,7 @@ def audit(design: Design, settings: SplineSettings, tolerance: float, progress: 
         full=full,
         rows=(*others[: len(rows)], *upset),
         tried=tuple(others[len(rows) :]),
-        beyond=tuple(prices(whole)),
+        beyond=prices(whole),
         cheapest=replace(_outcome(cheapest.variant, design, run, base), wall_s=duel[1]),
         seconds=duel,
     )
@@ -115,9 +126,9 @@ def _upsetting(design: Design, settings: SplineSettings) -> list[Outcome]:
             dropped=(), added=(name,), effects=design.effects.renamed([*design.effects.names, name])
         )
         try:
-            run_of(replace(design, effects=variant.effects), settings)
+            Run.of(replace(design, effects=variant.effects), settings)
         except Unanswered as error:
-            run_of(design, settings)  # refused for its own sake, if it is
+            Run.of(design, settings)  # refused for its own sake, if it is
             rows.append(Outcome(variant=variant, status="unstable", reason=str(error)))
     return rows
 
@@ -137,7 +148,7 @@ def _combined(
     for count in range(len(free) + 1):
         for chosen in combinations(free, count):
             if len(always) + count >= 2:
-                found.append(_outcome(without(scene, [*always, *chosen]), design, run, base))
+                found.append(_outcome(scene.without([*always, *chosen]), design, run, base))
     return found
 
 
@@ -169,9 +180,8 @@ def _cheapest(outcomes: Sequence[Outcome], tolerance: float) -> Outcome:
     return min(near, key=_extent)
 
 
-def _extent(each: Outcome) -> tuple[int, int, float]:
-    size = each.size
-    return len(each.variant.effects.names), size.degrees_of_freedom if size else 0, each.wall_s
+def _extent(each: Outcome) -> tuple[int, float, float]:
+    return len(each.variant.effects.names), each.size.get("degrees_of_freedom", 0), each.wall_s
 
 
 def _duel(design: Design, run: Run, full: Outcome, cheapest: Outcome) -> tuple[float, float]:

@@ -22,36 +22,9 @@ Either = TypeVar("Either", bound=Problem | Mechanism)
 SECTIONS = ("clamped_width", "anticlastic", "root_compliance")
 #: What stands for all of them at once, and for shear.
 ALL, SHEAR = "all three", "shear"
+CHANGED = ("trajectory", "stiffness", "torque", "stress", "first_mode")
 #: Control points by which sections are priced, and elements by which shear is.
 CONTROL_POINTS, ELEMENTS = 10, 160
-
-
-@dataclass(frozen=True, kw_only=True)
-class Price:
-    """How far an effect moves the answers of a design that does without it.
-
-    Attributes:
-        effect: its name. status: "converged", "refused" or "not_converged"; reason: in a line.
-        trajectory: largest distance of a body's centre along the path over the largest travel [1].
-        stiffness, torque, stress, mode: relative change of the stiffness at the begin of the rotation, of the
-            torque at its end, of the largest stress there and of the first natural frequency at rest [1]; NaN
-            where there is none.
-    """
-
-    effect: str
-    status: str = "converged"
-    reason: str = ""
-    trajectory: float = np.nan
-    stiffness: float = np.nan
-    torque: float = np.nan
-    stress: float = np.nan
-    mode: float = np.nan
-
-    @property
-    def largest(self) -> float:
-        """The largest change of all [1]; NaN without an answer."""
-        changes = np.abs((self.trajectory, self.stiffness, self.torque, self.stress, self.mode))
-        return float(np.nan if np.isnan(changes).all() else np.nanmax(changes))
 
 
 def with_sections(design: Either, names: tuple[str, ...] = SECTIONS) -> Either:
@@ -76,9 +49,14 @@ def _sides(strip: Problem | Strip) -> dict[str, Any]:
     return {"width": strip.area / thickness, "thickness": thickness}
 
 
-def prices(design: Design) -> list[Price]:
-    """Return what each effect beside the design's own is worth: sections by the splines, shear by elements,
-    whose modes have it too.
+def prices(design: Design) -> list[dict[str, Any]]:
+    """Return how far each effect beside the design's own moves its answers, a row an effect: sections by the
+    splines, shear by elements, whose modes have it too.
+
+    Keys: effect; status: "converged", "refused" or "not_converged"; reason in a line; changes, NaN where
+    there are none: trajectory (largest distance of a body's centre along the path over the largest travel),
+    stiffness (at the begin of the rotation), torque and stress (at its end), first_mode (frequency at rest),
+    and the largest.
 
     Raises:
         BadInput: the splines refuse the design. Unanswered: it has no answer without these effects.
@@ -94,7 +72,7 @@ def prices(design: Design) -> list[Price]:
     try:
         stiff = _Answers.of(design, FeSettings(elements=ELEMENTS))
     except (BadInput, Unanswered) as error:
-        return [*found, _unpriced(SHEAR, error)]
+        return [*found, _priced(SHEAR, {}, error)]
     return [*found, _price(SHEAR, design, FeSettings(elements=ELEMENTS, element="reissner"), stiff)]
 
 
@@ -120,26 +98,29 @@ class _Answers:
         )
 
 
-def _price(effect: str, design: Design, settings: Settings, own: _Answers) -> Price:
+def _price(effect: str, design: Design, settings: Settings, own: _Answers) -> dict[str, Any]:
     try:
         other = _Answers.of(design, settings)
     except (BadInput, Unanswered) as error:
-        return _unpriced(effect, error)
+        return _priced(effect, {}, error)
     begins = {name: path[:1] for name, path in own.centres.items()}
     begin = -design.increments - 1
-    return Price(
-        effect=effect,
-        trajectory=_rounded(strayed(other.centres, own.centres, begins)),
-        stiffness=relative_change(other.path.stiffness[begin], own.path.stiffness[begin]),
-        torque=relative_change(other.path.torque[-1], own.path.torque[-1]),
-        stress=relative_change(other.path.max_stress[-1], own.path.max_stress[-1]),
-        mode=relative_change(other.mode, own.mode),
-    )
+    changes = {
+        "trajectory": _rounded(strayed(other.centres, own.centres, begins)),
+        "stiffness": relative_change(other.path.stiffness[begin], own.path.stiffness[begin]),
+        "torque": relative_change(other.path.torque[-1], own.path.torque[-1]),
+        "stress": relative_change(other.path.max_stress[-1], own.path.max_stress[-1]),
+        "first_mode": relative_change(other.mode, own.mode),
+    }
+    return _priced(effect, changes)
 
 
-def _unpriced(effect: str, error: Exception) -> Price:
-    status = "refused" if isinstance(error, BadInput) else "not_converged"
-    return Price(effect=effect, status=status, reason=str(error))
+def _priced(effect: str, changes: dict[str, float], error: Exception | None = None) -> dict[str, Any]:
+    """Return a row of `prices`; without changes where there was an error."""
+    ended = "refused" if isinstance(error, BadInput) else "not_converged" if error else "converged"
+    known = changes or dict.fromkeys(CHANGED, np.nan)
+    largest = np.fmax.reduce(np.abs([*known.values()]))
+    return {"effect": effect, "status": ended, **known, "largest": largest, "reason": str(error or "")}
 
 
 def relative_change(value: float, own: float) -> float:

@@ -1,21 +1,22 @@
 """What each effect is worth for four designs, and what inextensible and massless strips save."""
 
+import textwrap
+from collections.abc import Iterable
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
+from matplotlib.figure import Figure
 
 from studies.answers.adapters import answer_modes
 from studies.answers.settings import SplineSettings
 from studies.cases.design import named_design
-from studies.cases.problem import Problem, named_case
-from studies.effects import figures
-from studies.effects.audit import Audit, audit
+from studies.cases.problem import TABLE_1, Problem, named_case
+from studies.effects.audit import audit
 from studies.effects.beyond import ALL, SHEAR, prices
-from studies.effects.scenes import Outcome, Variant, size_of, without
+from studies.effects.scenes import CHANGES, SIZES, Variant, size_of
 from studies.engine.study import Answer, Claim, Finding, Part, Study, Tables
-
-CASE = "cross_axis_pivot"
+from studies.record.style import BLACK, BLUE, GREEN, ORANGE, RED, page
 
 SETTINGS = SplineSettings(control_points=6)
 TOLERANCE = 1e-3
@@ -27,7 +28,7 @@ MASSES = np.geomspace(0.03, 30.0, 13)
 
 #: Designs for which what planar beams leave out is priced, by their cases; sized ones are in `design/sizing`.
 PRICED = {
-    "Table 1": CASE,
+    "Table 1": TABLE_1,
     "spring steel": "spring_steel_pivot",
     "titanium": "titanium_pivot",
     "large steel": "large_steel_pivot",
@@ -39,10 +40,21 @@ PRICED = {
 
 STRETCHING, INERTIA = "stretching", "strip_inertia"
 
+WORTH = ("design", "scene", "dropped", "status", *CHANGES, "largest", *SIZES, "reason")
+#: Column -> label, colour and marker of a change.
+SHOWN = {
+    "trajectory": ("path", BLACK, "o"),
+    "torque": ("torque", ORANGE, "s"),
+    "swing_frequency": ("frequency of the swing", BLUE, "D"),
+    "first_mode": ("first mode at rest", GREEN, "x"),
+}
+#: Changes below this are drawn on the edge.
+LEAST = 1e-7
+
 
 def _designs() -> dict[str, Problem]:
     """Return the four designs: Table 1, ten times more slender, with a heavy and with a light body."""
-    given = named_case(CASE)
+    given = named_case()
     return {
         "Table 1": given,
         "ten times more slender": replace(
@@ -57,30 +69,22 @@ def _audited(name: str) -> Answer:
     """Return the worth of a design's effects (a row a scene: changes, size, or why there is no answer), the
     times (of the full scene over the scene's) and the cheapest scene."""
     found = audit(_designs()[name], SETTINGS, TOLERANCE)
+    full, *rows = ({"design": name, **found.row(each)} for each in (found.full, *found.rows))
+    best = found.row(found.cheapest) | {"design": name, "tolerance": found.tolerance}
+    timed = best | {"scene": "cheapest", "time_ratio": found.ratio, "wall_s": found.seconds[1]}
     return {
-        "worth": [_row(name, row) for row in found.rows],
-        "timings": _times(name, found),
-        "cheapest": _cheapest(name, found),
+        "worth": _columns(WORTH, [row | {"dropped": row["dropped"][0]} for row in rows]),
+        "timings": _columns(("design", "scene", "time_ratio", "wall_s"), [full, *rows, timed]),
+        "cheapest": _columns(
+            ("design", "tolerance", "scene", "effects", "largest"),
+            [best | {"effects": " ".join(best["effects"])}],
+        ),
     }
 
 
-def _priced(name: str) -> list[dict[str, Any]]:
-    """Return what each effect that planar beams leave out is worth for a design, a row an effect."""
-    return [
-        {
-            "design": name,
-            "effect": row.effect,
-            "status": row.status,
-            "trajectory": row.trajectory,
-            "stiffness": row.stiffness,
-            "torque": row.torque,
-            "stress": row.stress,
-            "first_mode": row.mode,
-            "largest": row.largest,
-            "reason": row.reason,
-        }
-        for row in prices(named_design(PRICED[name]))
-    ]
+def _columns(names: Iterable[str], rows: Iterable[dict[str, Any]]) -> list[dict[str, Any]]:
+    """Return these columns of rows."""
+    return [{name: row[name] for name in names} for row in rows]
 
 
 def _with_body(problem: Problem, factor: float) -> Problem:
@@ -91,67 +95,19 @@ def _with_body(problem: Problem, factor: float) -> Problem:
     )
 
 
-def _row(design: str, row: Outcome) -> dict[str, Any]:
-    size = row.size
-    return {
-        "design": design,
-        "scene": row.variant.label,
-        "dropped": row.variant.dropped[0],
-        "status": row.status,
-        "trajectory": row.trajectory,
-        "torque": row.torque,
-        "swing_frequency": row.swing,
-        "first_mode": row.mode,
-        "loss": row.loss,
-        "largest": row.largest if np.isfinite(row.largest) else np.nan,
-        "unknowns": size.unknowns if size else np.nan,
-        "degrees_of_freedom": size.degrees_of_freedom if size else np.nan,
-        "highest_frequency_Hz": size.highest_frequency if size else np.nan,
-        "explicit_step_s": size.explicit_step if size else np.nan,
-        "reason": row.reason,
-    }
-
-
-def _times(design: str, found: Audit) -> list[dict[str, Any]]:
-    rows = [
-        {
-            "design": design,
-            "scene": row.variant.label,
-            "time_ratio": found.time_ratio(row),
-            "wall_s": row.wall_s,
-        }
-        for row in (found.full, *found.rows)
-    ]
-    best = {"design": design, "scene": "cheapest", "time_ratio": found.ratio, "wall_s": found.seconds[1]}
-    return [*rows, best]
-
-
-def _cheapest(design: str, found: Audit) -> dict[str, Any]:
-    best = found.cheapest
-    return {
-        "design": design,
-        "tolerance": found.tolerance,
-        "scene": best.variant.label,
-        "effects": " ".join(best.variant.effects.names),
-        "largest": best.largest,
-    }
-
-
 def _steps(control_points: int) -> list[dict[str, Any]]:
     """Return highest frequency and explicit step with and without stretching, at rest and at the release."""
-    problem = named_case(CASE)
+    problem = named_case()
     full = Variant(dropped=(), effects=problem.effects)
     rows = []
-    for variant in (full, without(full, [STRETCHING])):
+    for variant in (full, full.without([STRETCHING])):
         scene = replace(problem, effects=variant.effects)
         size = size_of(scene, SplineSettings(control_points=control_points))
         rows.append(
             {
                 "control_points": control_points,
                 "stretching": "yes" if STRETCHING in variant.effects.names else "no",
-                "degrees_of_freedom": size.degrees_of_freedom,
-                "highest_frequency_Hz": size.highest_frequency,
-                "explicit_step_s": size.explicit_step,
+                **{name: size[name] for name in SIZES[1:]},
             }
         )
     return rows
@@ -159,11 +115,11 @@ def _steps(control_points: int) -> list[dict[str, Any]]:
 
 def _massless(factor: float) -> dict[str, Any]:
     """Return the shift of the first mode by massless strips under a body of `factor` times the given mass."""
-    problem = _with_body(named_case(CASE), factor)
+    problem = _with_body(named_case(), factor)
     full = Variant(dropped=(), effects=problem.effects)
     massive, massless = (
         answer_modes(replace(problem, effects=variant.effects), SETTINGS, count=1).frequency[0]
-        for variant in (full, without(full, [INERTIA]))
+        for variant in (full, full.without([INERTIA]))
     )
     strips = 2.0 * problem.density * problem.area * problem.length
     return {
@@ -215,11 +171,86 @@ def _exponent(tables: Tables) -> list[dict[str, Any]]:
     return [{"distance": abs(float(order) - 1.0)}]
 
 
+def _worth(tables: Tables) -> Figure:
+    """Draw the changes by every effect, one panel a design."""
+    figure, designs = page(9.5, 3.9), list(_designs())
+    panels = figure.subplots(1, len(designs), sharex=True, sharey=True)
+    rows = tables["worth"].query("status != 'refused'")
+    order = rows.set_index("scene")[list(SHOWN)].abs().groupby("scene").max().max(axis=1).sort_values().index
+    times = tables["timings"].set_index(["design", "scene"])["time_ratio"]
+    for panel, design in zip(panels, designs, strict=True):
+        mine = rows[rows["design"] == design].set_index("scene")
+        for place, scene in enumerate(order):
+            row = mine.loc[scene]
+            for column, (label, colour, marker) in SHOWN.items():
+                value = max(abs(float(row[column])), LEAST)  # of a NaN: NaN, which is not drawn
+                panel.plot(
+                    value, place, marker, color=colour, linestyle="", label=label if place == 0 else None,
+                    markerfacecolor="none", markersize=5.5, clip_on=False,
+                )  # fmt: skip
+            ratio = float(times[design, scene])
+            alone = "motion stops" if row["status"] == "not_converged" else "no motion"
+            panel.annotate(
+                f"time x {1.0 / ratio:.2g}" if np.isfinite(ratio) else alone,
+                (1.0, place), (-2, 10), ("axes fraction", "data"), "offset points",
+                ha="right", va="center", fontsize=7, color="#666666",
+            )  # fmt: skip
+        panel.axvline(TOLERANCE, color=RED, linewidth=0.9)
+        panel.set(xscale="log", xlim=(LEAST, 30.0), title=textwrap.fill(design, 16), xlabel="|change| [1]")
+        panel.set_xticks([1e-6, 1e-4, 1e-2, 1.0])
+        panel.set_ylim(-0.6, len(order) - 0.4)
+    panels[0].set_yticks(range(len(order)), labels=list(order))
+    handles, labels = _once(panels[0].get_legend_handles_labels())
+    figure.legend(handles, labels, loc="outside lower center", ncols=len(SHOWN))
+    figure.suptitle(
+        f"Change by leaving out one effect of the full scene; line: {TOLERANCE:g}; left edge: no more"
+    )
+    return figure
+
+
+def _savings(tables: Tables) -> Figure:
+    """Draw highest frequency and explicit step without stretching, and the shift by massless strips."""
+    figure = page(9.5, 3.6)
+    frequency, step, shift = figure.subplots(1, 3)
+    for stretching, colour, label in (("yes", BLUE, "stretching"), ("no", ORANGE, "inextensible")):
+        rows = tables["steps"][tables["steps"]["stretching"] == stretching]
+        counts = rows["control_points"]
+        frequency.semilogy(counts, 1e-3 * rows["highest_frequency_Hz"], "o-", color=colour, label=label)
+        step.semilogy(counts, 1e6 * rows["explicit_step_s"], "o-", color=colour, label=label)
+    frequency.set(xlabel="control points a strip, n", ylabel="highest frequency [kHz]")
+    step.set(xlabel="control points a strip, n", ylabel="largest stable explicit step [µs]")
+    for panel in (frequency, step):
+        panel.set_xticks(sorted(set(tables["steps"]["control_points"])))
+    frequency.set_title("Table 1, at rest and at 90°")
+    frequency.legend()
+    rows = tables["mass_ratio"].sort_values("mass_ratio")
+    shift.loglog(rows["mass_ratio"], rows["shift"].abs(), "o-", color=BLUE, label="massless strips")
+    ratio = rows["mass_ratio"].to_numpy(float)
+    line = float(rows["shift"].iloc[0]) * ratio / ratio[0]
+    shift.loglog(ratio, line, ":", color="#444444", label="in proportion")
+    shift.set(xlabel="mass of strips / of body", ylabel="shift of the first mode [1]")
+    shift.set_title("Strips without inertia")
+    shift.legend()
+    return figure
+
+
+def _once(drawn: tuple[list, list[str]]) -> tuple[list, list[str]]:
+    """Return handles and labels without repeats."""
+    chosen = np.unique(drawn[1], return_index=True)[1]
+    return [drawn[0][place] for place in sorted(chosen)], [drawn[1][place] for place in sorted(chosen)]
+
+
 STUDY = Study(
     cases=tuple(PRICED.values()),
     parts=(
         Part(at=_designs, ask=_audited, alone=True),
-        Part(at=lambda: PRICED, ask=lambda name: {"beyond": _priced(name)}),
+        # what each effect that planar beams leave out is worth
+        Part(
+            at=lambda: PRICED,
+            ask=lambda name: {
+                "beyond": [{"design": name, **row} for row in prices(named_design(PRICED[name]))]
+            },
+        ),
         # highest frequency and explicit step with and without stretching
         Part(at=lambda: COUNTS, ask=lambda n: {"steps": _steps(n)}),
         # shift of the first mode by massless strips
@@ -262,7 +293,7 @@ STUDY = Study(
     claims_of_time=(_findings_of_time,),
     varying=("cheapest",),
     figures={
-        "effects_worth": lambda tables: figures.worth(tables, list(_designs()), TOLERANCE),
-        "effects_savings": figures.savings,
+        "effects_worth": _worth,
+        "effects_savings": _savings,
     },
 )

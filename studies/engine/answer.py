@@ -6,7 +6,6 @@ from collections.abc import Iterator
 from concurrent.futures import Executor, ProcessPoolExecutor, as_completed
 from contextlib import contextmanager
 from functools import cache
-from importlib import import_module
 from multiprocessing import get_context
 from pathlib import Path
 from typing import Any
@@ -16,6 +15,7 @@ import pandas as pd
 from studies.engine.study import Answer, Part, Study
 from studies.kinds import Progress
 from studies.record.progress import silent
+from studies.registry import study_at
 
 #: Part and place of a point in a study.
 Key = tuple[int, int]
@@ -83,7 +83,7 @@ def answered(
         progress: is told how many points of how many are done.
         kept: where answers are kept until the study is whole, and taken from if it was begun.
         pool: runs the points beside each other, but those of parts that must be alone; with it `module` is
-            where the other processes find the study.
+            the place, of `study_at`, where the other processes find the study.
     """
     points = [list(part.at()) for part in study.parts]
     keys = [(i, k) for i, some in enumerate(points) for k in range(len(some))]
@@ -110,13 +110,13 @@ def answered(
 
 def _elsewhere(module: str, part: int, place: int) -> Answer:
     """Answer one point in another process, which has the study from its module."""
-    chosen: Part = import_module(module).STUDY.parts[part]
+    chosen: Part = study_at(module).parts[part]
     return {name: _held(rows) for name, rows in chosen.answer(_points(module, part)[place]).items()}
 
 
 @cache
 def _points(module: str, part: int) -> list[Any]:
-    return list(import_module(module).STUDY.parts[part].at())
+    return list(study_at(module).parts[part].at())
 
 
 def _held(rows: Any) -> Any:

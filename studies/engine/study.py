@@ -9,6 +9,7 @@ from typing import Any
 import pandas as pd
 from matplotlib.figure import Figure
 
+from studies.cases.problem import TABLE_1
 from studies.record.store import Digits
 
 #: Tables of a study, by name.
@@ -136,7 +137,7 @@ class Study:
     """What a module of a study holds as `STUDY`.
 
     Attributes:
-        cases: names of the designs it reads, which its results depend on.
+        cases: names of the designs it reads, which its results depend on; the paper's pivot by default.
         parts: what is asked, in this order.
         made: tables that follow from those before them, by name.
         claims, claims_of_time: of all tables, the findings; those that differ from run to run apart.
@@ -146,7 +147,7 @@ class Study:
         missing: says in a line what this machine lacks for it, and nothing where it can be run.
     """
 
-    cases: tuple[str, ...]
+    cases: tuple[str, ...] = (TABLE_1,)
     parts: tuple[Part, ...]
     made: Mapping[str, Callable[[Tables], pd.DataFrame | Iterable[Row]]] = field(default_factory=dict)
     claims: tuple[Callable[[Tables], Iterable[Finding]], ...] = ()

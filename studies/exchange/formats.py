@@ -1,16 +1,167 @@
-"""The formats that fields are written in, by name: each a function from fields to files by name."""
+"""Fields as tidy tables, one observation a row, units in the names of the columns; and the formats that they
+are written in, by name: each a function from fields to files by name."""
 
-import io
 import json
-import math
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+import pandas as pd
+
 from studies.answers.fields import Fields
 from studies.errors import BadInput
-from studies.exchange.tables import COLUMNS, tables
 from studies.record.files import replace_folder, require_writable_folder
+
+#: What each column holds; the first of a table is what runs over the states.
+COLUMNS = {
+    "load_factor": "part of the static path, 0 to 1 [1]",
+    "time_s": "time since the release [s]",
+    "mode": "number of the mode, the lowest 1",
+    "state": "number of the state, the first 0; the same in all tables, and the row of `solve --csv`",
+    "com_x_m": "of the only body, as by `solve --csv` [m]",
+    "com_y_m": "of the only body, as by `solve --csv` [m]",
+    "stiffness_Nm_per_rad": "of the rotation at fixed loads [N m/rad]",
+    "strain_energy_J": "of all strips, on a static path [J]",
+    "gravity_energy_J": "of a static path against rest [J]",
+    "max_stress_Pa": "largest extreme-fibre stress of all strips [Pa]",
+    "kinetic_J": "of a motion [J]",
+    "strain_J": "of a motion, of all strips [J]",
+    "gravity_J": "of a motion against rest [J]",
+    "dissipated_J": "of a motion since its start [J]",
+    "frequency_Hz": "of the mode; negative where the state is unstable [Hz]",
+    "torque_Nm": "of the drive of a static path [N m]",
+    "strip": "name of the strip",
+    "body": "name of the body",
+    "end": "root or tip of the strip",
+    "on": "what that end is on: ground, a body, or free",
+    "arc_length_m": "along the strip at rest, from its root [m]",
+    "x_m": "place; of a body that of its centre of mass [m]",
+    "y_m": "place; of a body that of its centre of mass [m]",
+    "displacement_x_m": "from rest [m]",
+    "displacement_y_m": "from rest [m]",
+    "rotation_rad": "of the section or of the body from rest, counter-clockwise [rad]",
+    "curvature_per_m": "of the deformed strip, by its length at rest [1/m]",
+    "stretch": "length over length at rest [1]",
+    "axial_force_N": "tension positive [N]",
+    "shear_force_N": "of the part beyond on the part before, along the normal to the left [N]",
+    "bending_moment_Nm": "positive for counter-clockwise curvature from root to tip [N m]",
+    "extreme_fibre_stress_Pa": "larger magnitude of axial and bending stress at the two outer fibres [Pa]",
+    "mass_kg": "of the body [kg]",
+    "moment_of_inertia_kg_m2": "of the body about its centre of mass [kg m^2]",
+    "force_x_N": "of what the end is on, on the strip [N]",
+    "force_y_N": "of what the end is on, on the strip [N]",
+    "moment_Nm": "of what the end is on, on the strip [N m]",
+    "mode_x_per_sqrt_kg": "displacement of the mode at unit modal mass [m / sqrt(kg m^2)]",
+    "mode_y_per_sqrt_kg": "displacement of the mode at unit modal mass [m / sqrt(kg m^2)]",
+    "mode_rotation_per_m_sqrt_kg": "rotation of the mode at unit modal mass [rad / sqrt(kg m^2)]",
+}
+
+
+def tables(fields: Fields) -> dict[str, pd.DataFrame]:
+    """Return `states`, `strips`, `bodies` and `reactions`; a design without bodies has no table of them."""
+    found = {"states": _states(fields), "strips": _strips(fields), "reactions": _reactions(fields)}
+    return found | ({"bodies": _bodies(fields)} if fields.blocks else {})
+
+
+def _states(fields: Fields) -> pd.DataFrame:
+    """One row a state: what runs, and what the state has as a whole, by the names of `solve --csv`."""
+    columns = _running(fields, 1)
+    if fields.frequency is not None:
+        return pd.DataFrame(columns | {"frequency_Hz": fields.frequency})
+    if len(fields.blocks) == 1:
+        com_x, com_y, turn = fields.bodies[:, 0].T
+        columns |= {"rotation_rad": turn, "com_x_m": com_x, "com_y_m": com_y}
+    for name, array in (("torque_Nm", fields.torque), ("stiffness_Nm_per_rad", fields.stiffness)):
+        columns |= {} if array is None else {name: array}
+    if fields.analysis == "static":
+        columns["strain_energy_J"] = fields.strain_energy
+        kept = {f"{name}_energy_J": fields.energies[name] for name in ("gravity",) if name in fields.energies}
+    else:
+        kept = {f"{name}_J": energy for name, energy in fields.energies.items()}
+    return pd.DataFrame(columns | kept | {"max_stress_Pa": fields.max_stress})
+
+
+def _strips(fields: Fields) -> pd.DataFrame:
+    """One row a state, strip and station."""
+    states, strips, stations = fields.rotation.shape
+    columns = {
+        **_running(fields, strips * stations),
+        "strip": np.tile(np.repeat([part.name for part in fields.parts], stations), states),
+        "arc_length_m": np.tile(fields.arc_length.ravel(), states),
+    }
+    per_point = {
+        "x_m": fields.shape[..., 0],
+        "y_m": fields.shape[..., 1],
+        "displacement_x_m": fields.displacement[..., 0],
+        "displacement_y_m": fields.displacement[..., 1],
+        "rotation_rad": fields.rotation,
+        "curvature_per_m": fields.curvature,
+        "stretch": fields.stretch,
+        "axial_force_N": fields.axial_force,
+        "shear_force_N": fields.shear_force,
+        "bending_moment_Nm": fields.bending_moment,
+        "extreme_fibre_stress_Pa": fields.stress,
+    }
+    if fields.mode_shape is not None:
+        per_point["mode_x_per_sqrt_kg"] = fields.mode_shape[..., 0]
+        per_point["mode_y_per_sqrt_kg"] = fields.mode_shape[..., 1]
+    return pd.DataFrame(columns | {name: array.ravel() for name, array in per_point.items()})
+
+
+def _bodies(fields: Fields) -> pd.DataFrame:
+    """One row a state and body."""
+    states, bodies = fields.bodies.shape[:2]
+    x, y, turn = np.moveaxis(fields.bodies, 2, 0)
+    per_body = {
+        "x_m": x,
+        "y_m": y,
+        "displacement_x_m": x - fields.rest_bodies[:, 0],
+        "displacement_y_m": y - fields.rest_bodies[:, 1],
+        "rotation_rad": turn,
+    }
+    if fields.mode_bodies is not None:
+        names = ("mode_x_per_sqrt_kg", "mode_y_per_sqrt_kg", "mode_rotation_per_m_sqrt_kg")
+        per_body |= dict(zip(names, np.moveaxis(fields.mode_bodies, 2, 0), strict=True))
+    return pd.DataFrame(
+        {
+            **_running(fields, bodies),
+            "body": np.tile([block.name for block in fields.blocks], states),
+            **{name: array.ravel() for name, array in per_body.items()},
+            "mass_kg": np.tile([block.mass for block in fields.blocks], states),
+            "moment_of_inertia_kg_m2": np.tile([block.moment_of_inertia for block in fields.blocks], states),
+        }
+    )
+
+
+def _reactions(fields: Fields) -> pd.DataFrame:
+    """One row a state, strip and end."""
+    states, strips = fields.reactions.shape[:2]
+    on = [place or "free" for part in fields.parts for place in (part.root, part.tip)]
+    return pd.DataFrame(
+        {
+            **_running(fields, 2 * strips),
+            "strip": np.tile(np.repeat([part.name for part in fields.parts], 2), states),
+            "end": np.tile(["root", "tip"], states * strips),
+            "on": np.tile(on, states),
+            **{
+                name: fields.reactions[..., k].ravel()
+                for k, name in enumerate(("force_x_N", "force_y_N", "moment_Nm"))
+            },
+        }
+    )
+
+
+def _running(fields: Fields, rows: int) -> dict[str, np.ndarray]:
+    """Return what runs over the states, each of so many rows, and their numbers, which modes have as it is.
+
+    The load factor alone does not tell states apart: it stays 1 while a loaded pivot is turned.
+    """
+    if fields.series == "mode":
+        return {"mode": np.repeat(fields.values.astype(np.int64), rows)}
+    states = np.arange(len(fields.values))
+    return {fields.series: np.repeat(fields.values, rows), "state": np.repeat(states, rows)}
+
 
 Contents = dict[str, bytes]
 #: Size of the drawing of a path or a motion [inch].
@@ -68,43 +219,24 @@ def _csv(fields: Fields, drawn: list[int]) -> Contents:
 
 
 def _parquet(fields: Fields, drawn: list[int]) -> Contents:
-    found = {}
-    for name, table in tables(fields).items():
-        stream = io.BytesIO()
-        table.to_parquet(stream, index=False)
-        found[f"{fields.analysis}_{name}.parquet"] = stream.getvalue()
-    return found
+    made = {name: table.to_parquet(None, index=False) for name, table in tables(fields).items()}
+    return {f"{fields.analysis}_{name}.parquet": bytes(content) for name, content in made.items()}
 
 
 def _json(fields: Fields, drawn: list[int]) -> Contents:
-    document = summary(fields) | {
-        "columns": {},
-        "tables": {
-            name: {column: [_plain(value) for value in table[column].tolist()] for column in table.columns}
-            for name, table in tables(fields).items()
-        },
-    }
-    document["columns"] = {
-        column: COLUMNS[column] for table in document["tables"].values() for column in table
+    made = tables(fields)
+    plain = {name: table.astype(object).where(table.notna(), None) for name, table in made.items()}
+    document = _summary(fields) | {
+        "columns": {name: COLUMNS[name] for table in made.values() for name in map(str, table)},
+        "tables": {name: table.to_dict("list") for name, table in plain.items()},
     }
     return {f"{fields.analysis}.json": (json.dumps(document, allow_nan=False) + "\n").encode()}
 
 
-def summary(fields: Fields) -> dict[str, Any]:
+def _summary(fields: Fields) -> dict[str, Any]:
     """Return what was asked and how it ended, as JSON has it."""
-    return {
-        "analysis": fields.analysis,
-        "model": fields.model,
-        "settings": fields.settings,
-        "effects": list(fields.effects),
-        "status": fields.status,
-        "message": fields.message,
-    }
-
-
-def _plain(value: Any) -> Any:
-    """Return a value as JSON has it: null for NaN."""
-    return None if isinstance(value, float) and not math.isfinite(value) else value
+    names = ("analysis", "model", "settings", "effects", "status", "message")
+    return {name: getattr(fields, name) for name in names}
 
 
 #: Format -> what writes it.
@@ -138,15 +270,16 @@ def require_own(folder: Path) -> None:
         )
 
 
-def write(folder: Path, contents: Mapping[str, bytes], about: Mapping[str, Any]) -> None:
+def write(folder: Path, contents: Mapping[str, bytes], fields: Fields, case: str) -> None:
     """Write the files of an export and the manifest that says what they are, all of them or none.
 
     Args:
         folder: as `require_own` lets pass.
         contents: the files by name.
-        about: what the manifest says beside their names.
+        fields: that they hold. case: name of the file that these are of.
     """
-    manifest = json.dumps({**about, "files": sorted(contents)}, indent=1, allow_nan=False) + "\n"
+    about = {"case": case, **_summary(fields), "files": sorted(contents)}
+    manifest = json.dumps(about, indent=1, allow_nan=False) + "\n"
     replace_folder(folder.resolve(), {**contents, MANIFEST: manifest.encode()})
 
 

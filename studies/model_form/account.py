@@ -25,8 +25,7 @@ from studies.answers.adapters import answer_static
 from studies.answers.settings import SplineSettings
 from studies.cases.mechanism import Mechanism
 from studies.engine.study import Answer, Claim, Part, Ratio, Study, Tables
-from studies.model_form.flattening import linear_factor
-from studies.model_form.solids import guide_compliance, solid_factor
+from studies.model_form.solids import guide_compliance, linear_factor, solid_factor
 from studies.published.case import loaded, published
 from studies.record.style import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, page
 
@@ -71,7 +70,7 @@ def guide_shape() -> dict[str, float]:
 
 
 @cache
-def factors() -> dict[str, float]:
+def _factors() -> dict[str, float]:
     """Return stiffness over that of clamped beams [1] under a linear moment, and what the stage lets go."""
     nu, shape = guide_design().strips[0].poisson_ratio, guide_shape()
     width, thickness = shape["width"], shape["thickness"]
@@ -92,7 +91,7 @@ def factors() -> dict[str, float]:
 
 def accounted(load: float) -> Answer:
     """Return a row a kind of answer and mesh at a load: its displacement and the difference to the solids."""
-    strip, shape, known = guide_design().strips[0], guide_shape(), factors()
+    strip, shape, known = guide_design().strips[0], guide_shape(), _factors()
     plate = answer_static(loaded(guide_design(), CLAMPED, load), FINE)
     unit = strip.youngs_modulus * strip.second_moment_of_area / math.dist(strip.start, strip.end)
     square = np.trapezoid(plate.bending_moment[-1] ** 2, plate.stations).mean()
@@ -121,7 +120,7 @@ def _solids(load: float) -> Iterable[tuple[float, float]]:
     yield 3.0 if load == LOAD else 10.0, value.published * value.scale
 
 
-def figure(tables: Tables) -> Figure:
+def _figure(tables: Tables) -> Figure:
     """Draw the differences to the solids of 10 mm over the load, by what is taken in."""
     drawn = page(6.3, 3.2)
     panel = drawn.subplots()
@@ -173,5 +172,5 @@ STUDY = Study(
             kind=Ratio,
         ),
     ),
-    figures={"model_form_account": figure},
+    figures={"model_form_account": _figure},
 )

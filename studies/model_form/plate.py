@@ -9,7 +9,7 @@ from itertools import product
 
 from matplotlib.figure import Figure
 
-from fe_reference import plate_factors
+from fe_reference import PlateFactors, plate_factors
 from studies.cases.problem import named_case
 from studies.engine.study import Answer, Claim, Part, Study, Tables
 from studies.record.style import BLACK, BLUE, GREEN, GREY, ORANGE, RED, page
@@ -43,52 +43,36 @@ RITZ = (
 AGREES, RESOLVED, BEAM = 2e-4, 1e-5, 0.01
 
 
-def factors(width: float, nu: float) -> Answer:
+def _row(width: float, nu: float, found: PlateFactors) -> dict[str, float]:
+    shape = {"width_ratio": width, "poisson_ratio": nu}
+    return shape | {"factor_constant": found.constant, "factor_linear": found.linear}
+
+
+def _factors(width: float, nu: float) -> Answer:
     """Return the row of a strip, and what halved elements change."""
     given, finer = (plate_factors(width, nu, halvings=each) for each in (0, 1))
-    row = {
-        "width_ratio": width,
-        "poisson_ratio": nu,
-        "factor_constant": given.constant,
-        "factor_linear": given.linear,
-    }
     change = max(abs(given.constant - finer.constant), abs(given.linear - finer.linear))
-    return {"factors": row | {"unknowns": given.unknowns, "change_halved": change}}
+    return {"factors": _row(width, nu, given) | {"unknowns": given.unknowns, "change_halved": change}}
 
 
-def known(width: float, nu: float, constant: float, linear: float) -> Answer:
+def _known(width: float, nu: float, constant: float, linear: float) -> Answer:
     """Return both factors of a strip beside those of the Ritz solution."""
     found = plate_factors(width, nu)
-    row = {
-        "width_ratio": width,
-        "poisson_ratio": nu,
-        "factor_constant": found.constant,
-        "factor_linear": found.linear,
-    }
-    difference = max(abs(found.constant - constant), abs(found.linear - linear))
+    row, difference = _row(width, nu, found), max(abs(found.constant - constant), abs(found.linear - linear))
     return {"ritz": row | {"ritz_constant": constant, "ritz_linear": linear, "difference": difference}}
 
 
-def paper() -> Answer:
+def _paper() -> Answer:
     """Return the rows of the paper's strip: width over length, and what a beam lacks by kind of moment."""
     given = named_case(CASE)
     width = given.area / math.sqrt(12.0 * given.second_moment_of_area / given.area) / given.length
     found = plate_factors(width, given.poisson_ratio)
+    shape = {"width_ratio": width, "poisson_ratio": given.poisson_ratio}
     kinds = {"constant": found.constant, "linear": found.linear}
-    return {
-        "paper": [
-            {
-                "kind": kind,
-                "width_ratio": width,
-                "poisson_ratio": given.poisson_ratio,
-                "excess": factor - 1.0,
-            }
-            for kind, factor in kinds.items()
-        ]
-    }
+    return {"paper": [{"kind": kind, **shape, "excess": factor - 1.0} for kind, factor in kinds.items()]}
 
 
-def figure(tables: Tables) -> Figure:
+def _figure(tables: Tables) -> Figure:
     """Draw what a beam lacks of the strip's stiffness over its width."""
     drawn = page(9.0, 3.8)
     panels = drawn.subplots(1, 2, sharey=True)
@@ -121,9 +105,9 @@ def figure(tables: Tables) -> Figure:
 STUDY = Study(
     cases=(CASE,),
     parts=(
-        Part(at=lambda: product(WIDTHS, POISSON_RATIOS), ask=factors),
-        Part(at=lambda: RITZ, ask=known),
-        Part(ask=paper),
+        Part(at=lambda: product(WIDTHS, POISSON_RATIOS), ask=_factors),
+        Part(at=lambda: RITZ, ask=_known),
+        Part(ask=_paper),
     ),
     claims=(
         Claim(
@@ -151,5 +135,5 @@ STUDY = Study(
             most=BEAM,
         ),
     ),
-    figures={"plate_factors": figure},
+    figures={"plate_factors": _figure},
 )

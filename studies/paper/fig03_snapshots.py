@@ -14,7 +14,7 @@ from studies.cases.problem import named_case
 from studies.engine.study import Answer, Finding, Part, Study, Tables
 from studies.kinds import Array
 from studies.paper import formulations
-from studies.paper.formulations import CASE, FE, LOCKING_FREE, PAPER, REFINED, SETTINGS
+from studies.paper.formulations import FE, LOCKING_FREE, PAPER, REFINED, SETTINGS
 from studies.record.style import BLACK, LOOKS, page
 
 #: Parts of the path at which the pivot is drawn.
@@ -30,7 +30,7 @@ BOUND = 0.01
 def _compared(name: str) -> Answer:
     """Return a formulation's shapes at the snapshots, and their distance to the finest elements."""
     answer = formulations.answer(name)
-    distance = _distance(answer, formulations.refined().finest) / named_case(CASE).length
+    distance = _distance(answer, formulations.refined().finest) / named_case().length
     found = Finding(
         claim="Conclusion: four control points approximate negligibly (shape within 1 % of the length)",
         formulation=name,
@@ -89,7 +89,7 @@ def _draw_pivot(panel: Axes, shapes: pd.DataFrame) -> None:
 
 def _snapshots(name: str, answer: Response) -> pd.DataFrame:
     """Return the strips' shapes at the snapshots that the path reached."""
-    states = [round(part * named_case(CASE).increments) for part in SNAPSHOTS]
+    states = [round(part * named_case().increments) for part in SNAPSHOTS]
     rows = [
         {
             "formulation": name,
@@ -118,7 +118,6 @@ def _distance(answer: Response, finest: Response) -> Array:
 
 
 STUDY = Study(
-    cases=(CASE,),
     parts=(
         Part(ask=lambda: {"shapes": _snapshots(REFINED, formulations.refined().finest)}),
         Part(at=lambda: SETTINGS, ask=_compared),

@@ -20,7 +20,7 @@ from PIL import Image
 from studies.engine.study import Answer, Part, Study, Tables, absent, lacking
 from studies.interactive.pivot.presets import PRESETS, STEPS_A_FRAME
 from studies.interactive.pivot.session import Session
-from studies.interactive.tracking.demo import rotation
+from studies.interactive.tracking.painter import rotation
 from studies.record import style
 
 #: The paper's pictures a second.
@@ -50,9 +50,9 @@ def _missing() -> str:
 
 def _browsed() -> Answer:
     """Return snapshots, and the frames as they were shown."""
-    from studies.interactive.tracking.demo import demo_film
+    from studies.interactive.tracking.painter import demo_film
     from studies.interactive.web.browser import Browser
-    from studies.interactive.web.server import Hosted, Settings, warm_up
+    from studies.interactive.web.server import Server, Settings, warm_up
     from studies.interactive.web.sources import FilmSource
 
     warm_up()  # no picture waits for a compiler
@@ -60,8 +60,8 @@ def _browsed() -> Answer:
     shots = source.shots()
     for _ in range(WATCHED):  # draw the film before it is timed
         next(shots)
-    with Hosted(Settings(camera="film", source=lambda: source)) as hosted, Browser() as browser:
-        browser.open(hosted.server.address)
+    with Server(Settings(camera="film", source=lambda: source)) as hosted, Browser() as browser:
+        browser.open(hosted.address)
         browser.wait("window.studio?.drawn ? true : false", 60.0)
         snapshots = list(_snapshots(browser))
         browser.wait(f"studio.state.seq >= {WATCHED}", 120.0)
@@ -144,19 +144,24 @@ def _alone(preset: str) -> Iterator[dict[str, Any]]:
             pose = mechanics.snapshot.pose + rng.normal(0.0, (3e-5, 3e-5, 4e-4))
             yield timed("pose", repeat, k, partial(mechanics.hold, pose))
         mechanics.turn(1.0)
-        mechanics.release(np.zeros(3), session.solver)
+        mechanics.release(np.zeros(3), session.solver, session.sweeps)
         for k in range(WATCHED):
             yield timed("four steps", repeat, k, partial(mechanics.advance, STEPS_A_FRAME))
 
 
 def _figure(tables: Tables) -> Figure:
     """Draw the snapshots above the times."""
-    page = style.page(7.2, 5.0)
+    page = style.page(7.2, 4.6)
     grid = page.add_gridspec(2, 6, height_ratios=(1.15, 1.0))
     for k, row in enumerate(tables["snapshots"].sort_values("frame").to_dict("records")):
         _snapshot(page.add_subplot(grid[0, 2 * k : 2 * k + 2]), row, "abc"[k])
     _rate(page.add_subplot(grid[1, :3]), tables["frames_times"])
-    _times(page.add_subplot(grid[1, 3:]), tables["frames_times"], tables["alone_times"])
+    times = page.add_subplot(grid[1, 3:])
+    _times(times, tables["frames_times"], tables["alone_times"])
+    # below the axes: the curves need all of them
+    page.legend(
+        *times.get_legend_handles_labels(), loc="outside lower center", ncols=3, title="95 % of the frames in"
+    )
     return page
 
 
@@ -195,13 +200,6 @@ def _times(panel: Axes, frames: pd.DataFrame, alone: pd.DataFrame) -> None:
     panel.axvline(1e3 / PAPER_RATE, color=style.BLACK, linewidth=0.8, linestyle="--")
     panel.set(xscale="log", xlabel="time a frame [ms]", ylabel="share of frames [1]", xlim=(0.03, 300.0))
     panel.set_title("(e) time a frame; lines at 1 ms and 40 ms")
-    panel.legend(
-        loc="upper center",
-        bbox_to_anchor=(0.45, -0.28),  # below the axes: the curves need all of them
-        fontsize=7.5,
-        title="95 % of the frames in",
-        title_fontsize=7.5,
-    )
 
 
 def _share(panel: Axes, times: pd.Series, label: str, colour: str, line: str) -> None:

@@ -21,8 +21,6 @@ from studies.answers.settings import FeSettings, Settings, SplineSettings
 from studies.cases.problem import named_case
 from studies.kinds import Array
 
-CASE = "cross_axis_pivot"
-
 PAPER = "n = 4, as the paper"
 REFINED = "FE refined"
 FE = "FE, 20 elements"
@@ -55,13 +53,13 @@ MEANING: dict[str, str] = {
 @cache
 def answer(name: str) -> Response:
     """Return the static path of a formulation, computed once however many figures ask."""
-    return answer_static(named_case(CASE), SETTINGS[name])
+    return answer_static(named_case(), SETTINGS[name])
 
 
 @cache
 def refined() -> Reference:
     """Return the limit of refinement of the case's static path."""
-    return reference(named_case(CASE))
+    return reference(named_case())
 
 
 #: Duration of the motion [s], and the instants at which swings are compared [s].
@@ -77,7 +75,7 @@ STEPS = {4: 4e-6, 5: 2e-6, 6: 1.5e-6, 7: 2e-6, 8: 2e-6, 9: 1.6e-6, 10: 1.25e-6}
 @cache
 def released(settings: Settings, *, duration: float = DURATION, **options: Any) -> Motion:
     """Return the motion after the release from the end of the case's path, or from `start` [rad]."""
-    return answer_release(named_case(CASE), settings, duration=duration, records=RECORDS, **options)
+    return answer_release(named_case(), settings, duration=duration, records=RECORDS, **options)
 
 
 def resolved(settings: SplineSettings, *, duration: float = DURATION) -> Motion:
@@ -89,7 +87,7 @@ def resolved(settings: SplineSettings, *, duration: float = DURATION) -> Motion:
 @cache
 def refined_swing() -> SwingReference:
     """Return the swing in the limit of refinement of the finite elements."""
-    return swing_reference(named_case(CASE), duration=DURATION, instants=INSTANTS)
+    return swing_reference(named_case(), duration=DURATION, instants=INSTANTS)
 
 
 def rotation_error(motion: Motion, against: Array, instants: Array = INSTANTS) -> float:

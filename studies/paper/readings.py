@@ -7,7 +7,6 @@ rotation itself.
 
 from collections.abc import Iterator
 from dataclasses import replace
-from functools import cache
 from math import pi, sin
 
 import numpy as np
@@ -16,15 +15,13 @@ from matplotlib.figure import Figure
 from studies.answers.adapters import answer_release, answer_static
 from studies.answers.frequency import swing_frequency
 from studies.answers.motion import Motion
-from studies.answers.reference import MESHES, Reference, limit_of
-from studies.answers.settings import FeSettings, SplineSettings
+from studies.answers.settings import SplineSettings
 from studies.cases.effects import Effects
 from studies.cases.problem import Problem, named_case
 from studies.engine.study import Answer, Part, Study, Tables
-from studies.paper.formulations import DURATION, INSTANTS
+from studies.paper.formulations import DURATION, INSTANTS, refined
 from studies.record.style import ORANGE, RED, page
 
-CASE = "cross_axis_pivot"
 #: Gauss points of the paper's four control points: two do not see every stretch, the last are all but exact.
 GAUSS = (3, 4, 5, 6, 8, 12)
 #: Control points of what the assumptions are weighed with.
@@ -37,7 +34,7 @@ AS_READ = "midway between the upper clamps"
 def _integrated(points: int) -> Answer:
     """Return the errors of the paper's formulation with so many Gauss points."""
     settings = SplineSettings(control_points=4, measure="spatial", stretch="consistent", gauss_points=points)
-    path, limit = answer_static(named_case(CASE), settings), _limit()
+    path, limit = answer_static(named_case(), settings), refined()
     torque, stiffness = path.torque[1:] / limit.torque[1:] - 1.0, path.stiffness / limit.stiffness - 1.0
     row = {
         "gauss_points": points,
@@ -49,14 +46,9 @@ def _integrated(points: int) -> Answer:
     return {"quadrature": row}
 
 
-@cache
-def _limit() -> Reference:
-    return limit_of([answer_static(named_case(CASE), FeSettings(elements=count)) for count in MESHES])
-
-
 def _readings() -> Iterator[tuple[str, Problem]]:
     """Yield other readings of the case, that of the suite first."""
-    case = named_case(CASE)
+    case = named_case()
     yield AS_READ, case
     rise = (1.0 - case.crossing_ratio) * case.length * sin(case.inclination)
     for name, offset in (("at the crossing", -rise), ("as far above the upper clamps", rise)):
@@ -112,7 +104,6 @@ def _figure(tables: Tables) -> Figure:
 
 
 STUDY = Study(
-    cases=(CASE,),
     parts=(Part(at=lambda: GAUSS, ask=_integrated), Part(ask=_read)),
     figures={"readings": _figure},
 )

@@ -30,7 +30,7 @@ def states_over_rest(
     panel: Axes, fields: Fields, states: Sequence[int], *, colour: str = "", line: Any = "-"
 ) -> list[Line2D]:
     """Draw states over the shape at rest, later ones stronger; return what a legend says of them."""
-    at_rest(panel, fields, fields.rest_shape, fields.rest_bodies)
+    _at_rest(panel, fields, fields.rest_shape, fields.rest_bodies)
     handles = [Line2D([], [], color=REST, linestyle="--", label="at rest")]
     for state, strength in zip(states, _strengths(len(states)), strict=True):
         look: dict[str, Any] = {
@@ -39,7 +39,7 @@ def states_over_rest(
             "linestyle": line,
             "linewidth": 1.8,
         }
-        deformed(panel, fields, fields.shape[state], fields.bodies[state, :, :2], **look)
+        _deformed(panel, fields, fields.shape[state], fields.bodies[state, :, :2], **look)
         handles.append(Line2D([], [], label=_named(fields, state), **look))
     return handles
 
@@ -75,9 +75,9 @@ def _mode(panel: Axes, fields: Fields, state: int, sign: float, colour: str, lin
     scale = sign * mode_scale(fields, state)
     shape = fields.shape[state] + scale * np.asarray(fields.mode_shape)[state]
     moved = fields.bodies[state, :, :2] + scale * np.asarray(fields.mode_bodies)[state, :, :2]
-    at_rest(panel, fields, fields.shape[state], fields.bodies[state, :, :2])
+    _at_rest(panel, fields, fields.shape[state], fields.bodies[state, :, :2])
     look: dict[str, Any] = {"color": colour or COLOURS[fields.model], "linestyle": line, "linewidth": 1.8}
-    deformed(panel, fields, shape, moved, **look)
+    _deformed(panel, fields, shape, moved, **look)
 
 
 def _turned_as(fields: Fields, first: Fields, state: int) -> float:
@@ -95,7 +95,7 @@ def to_scale(panel: Axes, x: str = "x [mm]", y: str = "y [mm]") -> None:
     panel.set_adjustable("datalim")
 
 
-def at_rest(panel: Axes, fields: Fields, shape: Array, bodies: Array) -> None:
+def _at_rest(panel: Axes, fields: Fields, shape: Array, bodies: Array) -> None:
     """Draw ground and the shape that the others are held against: strips (G, P, 2), bodies (B, 2) [m]."""
     _bodies(panel, fields, shape, bodies, color=REST, linewidth=2.0, linestyle="--")
     for strip in shape:
@@ -106,7 +106,7 @@ def at_rest(panel: Axes, fields: Fields, shape: Array, bodies: Array) -> None:
             _clamp(panel, strip[0], strip[0] - strip[1], size)
 
 
-def deformed(panel: Axes, fields: Fields, shape: Array, bodies: Array, **look: Any) -> None:
+def _deformed(panel: Axes, fields: Fields, shape: Array, bodies: Array, **look: Any) -> None:
     """Draw strips (G, P, 2) and bodies (B, 2) of a state [m], the strips in the look of `Axes.plot`."""
     _bodies(panel, fields, shape, bodies, color=BODY, linewidth=6.0, linestyle="-")
     for strip in shape:

@@ -14,7 +14,7 @@ from studies.cases.design import Design
 from studies.cases.document import CaseError
 from studies.cases.mechanism import Mechanism, read_mechanism
 from studies.cases.problem import read_problem
-from studies.cases.rules import Key, Text, choice, finite, not_negative, positive, shown
+from studies.cases.rules import Key, Rule, Text, choice, finite, not_negative, positive, shown
 
 FOLDER = Path(__file__).parent / "cases"
 
@@ -38,45 +38,36 @@ def _key(section: str, name: str, rule: Any, *, attribute: str = "", optional: b
     )  # fmt: skip
 
 
-@dataclass(frozen=True, kw_only=True)
-class Names:
-    """A list of different names out of some."""
+def _names(*known: str) -> Rule:
+    """Return the rule for a list of different names, out of those that are known if there are such."""
+    expected = f"a list of {', '.join(known) or 'names'}"
 
-    known: tuple[str, ...] = ()
-
-    @property
-    def expected(self) -> str:
-        """What is in the list."""
-        return f"a list of {', '.join(self.known) or 'names'}"
-
-    def parse(self, value: Any) -> tuple[str, ...]:
-        """Return the names; ValueError says what was got and expected."""
+    def read(value: Any) -> tuple[str, ...]:
         good = isinstance(value, list) and all(isinstance(name, str) for name in value)
-        if not good or len(set(value)) < len(value) or (self.known and set(value) - set(self.known)):
-            raise ValueError(f"got {shown(value)}, expected {self.expected}")
+        if not good or len(set(value)) < len(value) or (known and set(value) - set(known)):
+            raise ValueError(f"got {shown(value)}, expected {expected}")
         return tuple(value)
 
+    return Rule(expected=expected, read=read)
 
-@dataclass(frozen=True, kw_only=True)
-class Limits:
-    """The largest relative difference of each kind of answer."""
 
-    expected: str = f"a table of the largest relative difference by answer: {', '.join(ANSWERS)}"
+LIMITS = f"a table of the largest relative difference by answer: {', '.join(ANSWERS)}"
 
-    def parse(self, value: Any) -> dict[str, float]:
-        """Return the limits; ValueError says what was got and expected."""
-        if not isinstance(value, dict) or not value or set(value) - set(ANSWERS):
-            raise ValueError(f"got {shown(value)}, expected {self.expected}")
-        return {name: not_negative("1").parse(limit) for name, limit in value.items()}
+
+def _limits(value: Any) -> dict[str, float]:
+    """Return the largest relative difference of each kind of answer; ValueError says what was got."""
+    if not isinstance(value, dict) or not value or set(value) - set(ANSWERS):
+        raise ValueError(f"got {shown(value)}, expected {LIMITS}")
+    return {name: not_negative("1").parse(limit) for name, limit in value.items()}
 
 
 PROBLEM = (
     _key("problem", "title", Text(expected="a title")),
     _key("problem", "source", Text(expected="where the values are in print")),
     _key("problem", "body", Text(expected="the name of the body whose place is asked"), optional=True),
-    _key("problem", "pins", Names(), optional=True),
-    _key("problem", "models", Names(known=MODELS)),
-    _key("problem", "answers", Names(known=ANSWERS)),
+    _key("problem", "pins", _names(), optional=True),
+    _key("problem", "models", _names(*MODELS)),
+    _key("problem", "answers", _names(*ANSWERS)),
 )
 VALUE = (
     _key("values", "quantity", choice(*QUANTITIES)),
@@ -87,7 +78,7 @@ VALUE = (
     _key("values", "unit_SI", positive("SI"), attribute="scale"),
     _key("values", "uncertainty", not_negative("unit")),
     _key("values", "bound", choice(EQUAL, AT_MOST, AT_LEAST), optional=True),
-    _key("values", "limit", Limits(), attribute="limits"),
+    _key("values", "limit", Rule(expected=LIMITS, read=_limits), attribute="limits"),
 )
 #: Parameters of loads, which grow with the load.
 LOADS = ("force", "moment", "acceleration")
@@ -118,7 +109,7 @@ class Value:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Published:
+class _Published:
     """A published problem: what is asked, of whom, and of which design.
 
     Attributes:
@@ -144,12 +135,12 @@ def names() -> tuple[str, ...]:
 
 
 @cache
-def published(name: str) -> Published:
+def published(name: str) -> _Published:
     """Return the published problem of that name."""
     return read_published(FOLDER / f"{name}.toml")
 
 
-def read_published(path: Path) -> Published:
+def read_published(path: Path) -> _Published:
     """Read the case file of a published problem.
 
     Raises:
@@ -177,7 +168,7 @@ def read_published(path: Path) -> Published:
         _require_bodies(where, design, about, values)
     else:
         design = read_problem(where, rest)
-    return Published(name=path.stem, values=values, design=design, **about)
+    return _Published(name=path.stem, values=values, design=design, **about)
 
 
 def _require_bodies(

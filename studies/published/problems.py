@@ -7,14 +7,24 @@ beam of Ma and Chen (its thickness is not in print, and who repeats it chose one
 the four-bar coefficients of Jensen and Howell for cross-axis pivots; rates of catalogue pivots (diameters and
 rates to 10 % without the strips' thickness) and the shift of the Free-Flex pivot (a chart); and the turn of
 the parallelogram's stage (of the size of its mesh's error).
+
+Answers are static paths, and paths in arc length where loads are asked.
 """
 
-from collections.abc import Iterator
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from functools import cache
 from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
+from scipy.interpolate import CubicSpline
 
+from studies.answers.adapters import answer_static
+from studies.answers.settings import FeSettings, Settings, SplineSettings
+from studies.cases.mechanism import Mechanism
+from studies.cases.problem import Problem
 from studies.engine.study import Answer, Claim, Part, Study, Tables
 from studies.errors import BadInput
 from studies.published.case import (
@@ -22,14 +32,106 @@ from studies.published.case import (
     AT_MOST,
     BEAM,
     CLAMPED_WIDTH,
+    DISPLACEMENT_X,
+    DISPLACEMENT_Y,
     EQUAL,
+    LIMIT_LOAD,
+    LIMIT_POINTS,
+    LOAD_AT_ROTATION,
+    ROTATION,
     SHEAR,
     SHEARED,
     Value,
+    loaded,
     published,
 )
-from studies.published.solve import ours
 from studies.record.style import BLACK, BLUE, GREY, ORANGE, page
+from studies.stability.frames import SIDE, Arc, frame_of, spline_arc
+from studies.stability.questions import LIMIT, element_arc
+
+#: Fine enough that what is left is the model's, not its discretisation's.
+SETTINGS: dict[str, Settings] = {
+    "spline": SplineSettings(control_points=12),
+    "fe": FeSettings(elements=40),
+    "fe-shear": FeSettings(elements=80, element="reissner"),
+}
+
+
+def ours(name: str, model: str, answer: str, value: Value) -> float:
+    """Return our answer to a value of a published problem in its printed unit; NaN if the path has none.
+
+    Args:
+        name: of the problem. model: of `case.MODELS`. answer: of `case.ANSWERS`.
+        value: of the problem.
+
+    Raises:
+        BadInput: what the model refuses to be asked.
+    """
+    problem = published(name)
+    if isinstance(problem.design, Problem):
+        found = _of_pivot(problem.design, SETTINGS[model], value)
+    elif value.quantity in AXES:
+        found = moved(name, model, answer, value.load)[AXES[value.quantity]]
+    else:
+        arc = _arc(name, model, answer, value.load, value.quantity == LOAD_AT_ROTATION)
+        found = OF_ARCS[value.quantity](arc, value)
+    return found / value.scale
+
+
+def _of_pivot(pivot: Problem, settings: Settings, value: Value) -> float:
+    """Return the shift of the crossing point over the length at a rotation."""
+    response = answer_static(replace(pivot, rotation=math.radians(value.at)), settings)
+    return float(np.hypot(*response.centre_shift[-1]) / pivot.length)
+
+
+@cache
+def moved(name: str, model: str, answer: str, load: float) -> tuple[float, ...]:
+    """Return how far the body moves under a load, x, y [m] and its turn [rad]; NaN where the path stops."""
+    problem = published(name)
+    assert isinstance(problem.design, Mechanism)
+    response = answer_static(loaded(problem.design, answer, load), SETTINGS[model])
+    rest = next(body.centre for body in problem.design.bodies if body.name == problem.body)
+    way = response.bodies[problem.body][-1] - (*rest, 0.0) if response.converged else np.full(3, np.nan)
+    return tuple(float(part) for part in way)
+
+
+@cache
+def _arc(name: str, model: str, answer: str, load: float, bends: bool) -> Arc:
+    """Return the path of a problem to a load; one that `bends` leaves the straight branch."""
+    settings, bent = SETTINGS[model], {"side": SIDE} if bends else {}
+    if isinstance(settings, SplineSettings):
+        return spline_arc(frame_of(name, answer, load), settings, branch="follow" if bends else "primary")
+    return element_arc(frame_of(name, answer, load, **bent), settings)
+
+
+def _limit_load(arc: Arc, value: Value) -> float:
+    found = [point.load for point in arc.critical if point.kind == LIMIT]
+    return found[int(value.at) - 1] if value.at <= len(found) else math.nan
+
+
+def _limit_points(arc: Arc, value: Value) -> float:
+    return float(sum(point.kind == LIMIT for point in arc.critical))
+
+
+def _load_at_rotation(arc: Arc, value: Value) -> float:
+    """Return the load at which the body has turned so far, between the states of the path."""
+    turned = np.abs(arc.place[:, 2])
+    bent = turned > TURNED
+    if not arc.reached or turned[-1] < math.radians(value.at):
+        return math.nan
+    return float(CubicSpline(turned[bent], arc.load[bent])(math.radians(value.at)))
+
+
+#: Turn from which a column counts as buckled [rad].
+TURNED = 0.05
+#: Quantity -> its place among those of a body.
+AXES = {DISPLACEMENT_X: 0, DISPLACEMENT_Y: 1, ROTATION: 2}
+OF_ARCS: dict[str, Callable[[Arc, Value], float]] = {
+    LIMIT_LOAD: _limit_load,
+    LIMIT_POINTS: _limit_points,
+    LOAD_AT_ROTATION: _load_at_rotation,
+}
+
 
 PROBLEMS = (
     "parallelogram",
@@ -45,13 +147,15 @@ PROBLEMS = (
     "clamped_hinged_arch",
     "catalogue_pivot",
 )
+#: How a model is called.
+LABELS = {"spline": "spline", "fe": "elements", "fe-shear": "elements with shear"}
 COLOURS = {"spline": BLUE, "fe": BLACK, "fe-shear": ORANGE}
 MARKERS = {BEAM: "o", CLAMPED_WIDTH: "s", SHEAR: "^", SHEARED: "D"}
 #: Differences below it are drawn at it [1].
 FLOOR = 1e-6
 
 
-def asked() -> Iterator[tuple[str, str, str]]:
+def _asked() -> Iterator[tuple[str, str, str]]:
     """Yield every problem with the models and the kinds of answer that are asked for.
 
     Of the elements, one kind has shear and the other none.
@@ -64,7 +168,7 @@ def asked() -> Iterator[tuple[str, str, str]]:
                     yield name, model, answer
 
 
-def compared(name: str, model: str, answer: str) -> Answer:
+def _compared(name: str, model: str, answer: str) -> Answer:
     """Return a row a value: as it is in print, as it was found, and whether it is met."""
     problem = published(name)
     return {"values": [_row(name, model, answer, value) for value in problem.values]}
@@ -107,7 +211,7 @@ def met(value: Value, found: float, limit: float) -> bool:
     return bool(over[value.bound] <= slack * (1.0 + 1e-12))
 
 
-def figure(tables: Tables) -> Figure:
+def _figure(tables: Tables) -> Figure:
     """Draw the differences to the values in print, a line a problem, beside the limits."""
     drawn = page(7.5, 4.6)
     panel = drawn.subplots()
@@ -117,9 +221,10 @@ def figure(tables: Tables) -> Figure:
     titles = [title for title in titles if title in set(rows["problem"])]
     for (model, answer), mine in rows.groupby(["model", "answer"], sort=False):
         place = [titles.index(title) for title in mine["problem"]]
+        label = f"{LABELS[str(model)]}, {answer}".replace("_", " ")
         panel.plot(
             np.maximum(np.abs(mine["error"]), FLOOR), place, linestyle="", marker=MARKERS[str(answer)],
-            markersize=5.0, fillstyle="none", color=COLOURS[str(model)], label=f"{model}, {answer}",
+            markersize=5.0, fillstyle="none", color=COLOURS[str(model)], label=label,
         )  # fmt: skip
     for title, mine in rows.groupby("problem"):
         slack = (mine["limit"] + mine["uncertainty"] / np.maximum(np.abs(mine["published"]), 1e-300)).max()
@@ -134,7 +239,7 @@ def figure(tables: Tables) -> Figure:
 
 STUDY = Study(
     cases=tuple(f"published/cases/{name}" for name in PROBLEMS),
-    parts=(Part(at=asked, ask=compared),),
+    parts=(Part(at=_asked, ask=_compared),),
     claims=(
         Claim(
             claim="Values in print are met within their uncertainty and the limit of their case file",
@@ -145,5 +250,5 @@ STUDY = Study(
             holds=lambda row: row["within"] == "yes",
         ),
     ),
-    figures={"published_problems": figure},
+    figures={"published_problems": _figure},
 )

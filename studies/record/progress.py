@@ -1,6 +1,5 @@
 """Progress bars on the error stream, for whatever takes longer than two seconds."""
 
-from types import TracebackType
 from typing import Any, Self
 
 from tqdm import tqdm
@@ -30,11 +29,6 @@ class Bar:
     def __enter__(self) -> Self:
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         if self._bar is not None:
             self._bar.close()

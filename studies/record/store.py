@@ -1,7 +1,15 @@
-"""The store: tables of a study as tidy CSV with their provenance, its figures beside those of all others."""
+"""The store: tables of a study as tidy CSV with their provenance, its figures beside those of all others.
 
+Provenance says what a stored result was made from, and whether it still stands.
+"""
+
+import datetime
+import hashlib
+import importlib.metadata
 import io
 import json
+import os
+import platform
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,11 +19,98 @@ import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
-from studies.record import provenance
+from studies.cases.design import FOLDER, named_design
+from studies.cases.document import parsed
 from studies.record.files import replace_folder, require_writable_folder, write_whole
-from studies.record.provenance import State
-from studies.record.source import ROOT
+from studies.record.source import ROOT, source_hash
 from studies.record.style import rendered
+
+#: Packages whose version can change a number or a figure.
+DEPENDENCIES = ("numpy", "scipy", "numba", "scikit-fem", "pandas", "matplotlib")
+
+
+@dataclass(frozen=True, kw_only=True)
+class State:
+    """Whether a stored study is "fresh", "stale" or "missing", and why."""
+
+    kind: str
+    reason: str = ""
+
+
+def sha256(content: bytes) -> str:
+    """Return the SHA-256 of `content` in hexadecimal."""
+    return hashlib.sha256(content).hexdigest()
+
+
+def inputs(module: str, cases: Iterable[str]) -> dict[str, Any]:
+    """Return the hashes of what a study is made from: its source and its cases."""
+    cases = tuple(cases)
+    said = "\n".join(_file(name).read_text(encoding="utf-8") for name in cases)
+    return {
+        "source_sha256": source_hash(module, said=said),
+        "cases": {name: _fingerprint(name) for name in cases},
+    }
+
+
+def _fingerprint(name: str) -> str:
+    """Return the hash of a design by its name, of the values of another file by its path below studies/."""
+    if "/" not in name:
+        return named_design(name).fingerprint()
+    return sha256(json.dumps(parsed(_file(name)), sort_keys=True).encode())
+
+
+def _file(name: str) -> Path:
+    return (ROOT / "studies" if "/" in name else FOLDER) / f"{name}.toml"
+
+
+def _surroundings() -> dict[str, Any]:
+    """Return the versions, facts of the machine (without its name, user or paths) and the date."""
+    versions = {"python": platform.python_version()}
+    versions |= {name: importlib.metadata.version(name) for name in DEPENDENCIES}
+    machine = {
+        "system": platform.system(),
+        "architecture": platform.machine(),
+        "processor": _processor(),
+        "logical_cores": os.cpu_count(),
+        "threads": os.environ.get("OMP_NUM_THREADS", "not set"),
+    }
+    return {"versions": versions, "machine": machine, "date": datetime.date.today().isoformat()}
+
+
+def _judge(record: Mapping[str, Any], now: Mapping[str, Any], *, data: Path, figures: Path) -> State:
+    """Return whether the result described by `record` still stands.
+
+    Args:
+        record: its provenance.
+        now: `inputs` of the study as it is today.
+        data: folder of its tables.
+        figures: folder of all figures.
+    """
+    for folder, kind in ((data, "tables"), (figures, "figures")):
+        for name, digest in record[kind].items():
+            path = folder / name
+            if not path.is_file():
+                return State(kind="missing", reason=f"{name} does not exist")
+            if sha256(path.read_bytes()) != digest:
+                return State(kind="stale", reason=f"{name} was changed after it was made")
+    if not record["figures"]:
+        return State(kind="missing", reason="no figure was drawn")
+    if record["inputs"]["cases"] != now["cases"]:
+        return State(kind="stale", reason="a case was changed")
+    if record["inputs"]["source_sha256"] != now["source_sha256"]:
+        return State(kind="stale", reason="the source was changed")
+    return State(kind="fresh")
+
+
+def _processor() -> str:
+    """Return the processor's model name where the system tells it, else its family."""
+    facts = Path("/proc/cpuinfo")
+    if facts.is_file():
+        for line in facts.read_text(encoding="utf-8", errors="replace").splitlines():
+            if line.startswith("model name"):
+                return line.partition(":")[2].strip()
+    return platform.processor() or "unknown"
+
 
 PROVENANCE = "provenance.json"
 
@@ -53,11 +148,11 @@ class Store:
         record = {
             "study": study,
             "command": command,
-            "inputs": provenance.inputs(module, cases),
+            "inputs": inputs(module, cases),
             "tables": _hashes(contents),
             "figures": {},
             "elapsed_s": round(elapsed, 2),
-            **provenance.surroundings(),
+            **_surroundings(),
         }
         replace_folder(self.data(study), {**contents, PROVENANCE: as_json(record)})
 
@@ -87,7 +182,7 @@ class Store:
 
     def renew(self, study: str, *, module: str, cases: Iterable[str]) -> None:
         """Note that the stored tables are those of the present source and cases."""
-        record = self.record(study) | {"inputs": provenance.inputs(module, cases)}
+        record = self.record(study) | {"inputs": inputs(module, cases)}
         write_whole(self.data(study) / PROVENANCE, as_json(record))
 
     def record(self, study: str) -> dict[str, Any]:
@@ -101,8 +196,8 @@ class Store:
             record = self.record(study)
         except FileNotFoundError:
             return State(kind="missing", reason="never run")
-        now = provenance.inputs(module, cases)
-        return provenance.judge(record, now, data=self.data(study), figures=self.figures)
+        now = inputs(module, cases)
+        return _judge(record, now, data=self.data(study), figures=self.figures)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -145,4 +240,4 @@ def as_json(record: Mapping[str, Any]) -> bytes:
 
 
 def _hashes(contents: Mapping[str, bytes]) -> dict[str, str]:
-    return {name: provenance.sha256(content) for name, content in sorted(contents.items())}
+    return {name: sha256(content) for name, content in sorted(contents.items())}

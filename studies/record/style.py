@@ -11,6 +11,7 @@ import matplotlib as mpl
 from matplotlib.axes import Axes
 from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
+from matplotlib.text import Text
 from PIL import Image
 
 #: Colours that remain apart for colour-blind readers (Okabe and Ito, Color Universal Design, 2008).
@@ -87,8 +88,9 @@ ELEMENTS: dict[str, Look] = {
     "reissner": Look(label="Reissner, with shear", colour=GREEN, marker="o"),
 }
 
-#: How the unit of an axis is written, whatever a figure calls it: a sign for degrees, none for a pure number.
-UNITS = {" [1]": "", "[deg]": "[°]", "[1e-4]": "[10⁻⁴]"}
+#: How words of a figure are written, whatever it calls them: a sign for degrees, no unit for a pure number,
+#: and a name for the pivot of the paper's Table 1, since reports have tables of their own.
+WRITTEN = {" [1]": "", "[deg]": "[°]", "[1e-4]": "[10⁻⁴]", "Table 1": "reference pivot"}
 
 BASES: dict[str, str] = {"bezier": "Bézier curve of degree n - 1", "bspline": "cubic B-spline"}
 
@@ -160,11 +162,9 @@ def printed(figure: Figure, kind: str) -> bytes:
 def _saved(figure: Figure, kind: str, unsaid: str, **settings: Any) -> bytes:
     """Return `figure` in a format, without what differs from one day or machine to the next."""
     stream = io.BytesIO()
-    for axis in (each for panel in figure.axes for each in (panel.xaxis, panel.yaxis)):
-        label = axis.label.get_text()
-        for given, written in UNITS.items():
-            label = label.replace(given, written)
-        axis.set_label_text(label)
+    for said in figure.findobj(Text):
+        for given, written in WRITTEN.items():
+            said.set_text(said.get_text().replace(given, written))
     with applied(**settings):
         figure.savefig(stream, format=kind, metadata={unsaid: None})
     return stream.getvalue()

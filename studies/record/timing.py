@@ -12,7 +12,7 @@ Result = TypeVar("Result")
 
 
 @dataclass(frozen=True, kw_only=True)
-class Timing(Generic[Result]):
+class _Timing(Generic[Result]):
     """Seconds of repeated runs and the result of the last one.
 
     Attributes:
@@ -48,7 +48,7 @@ def measure(
     repeat: int,
     warm_up: int = 1,
     part: Callable[[Result], float] | None = None,
-) -> Timing[Result]:
+) -> _Timing[Result]:
     """Run `work` `warm_up` times untimed, then `repeat` times timed, with garbage collection off.
 
     Threads are the caller's affair: they must be set before numpy is imported (the command line and the
@@ -79,4 +79,4 @@ def measure(
     finally:
         if collecting:
             gc.enable()
-    return Timing(result=result, seconds=tuple(seconds), parts=tuple(parts))
+    return _Timing(result=result, seconds=tuple(seconds), parts=tuple(parts))

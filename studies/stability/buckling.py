@@ -202,7 +202,7 @@ def _pivot(panel: Axes, branches: pd.DataFrame) -> None:
 
 
 STUDY = family.study(
-    Part(at=questions.cases, ask=questions.outcomes_of),
+    questions.ASKED,
     Part(ask=_tables),
     figures={"stability_buckling": _figure},
 )

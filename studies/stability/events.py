@@ -18,7 +18,6 @@ from studies.cases.problem import Problem, named_case
 from studies.engine.study import Answer, Part
 from studies.stability import family, maps
 from studies.stability.geometry import as_mechanism
-from studies.stability.paths import TOLERANCE, attempted
 
 #: Reversals, and releases with as many catches: of the default, and of the other columns.
 EVENTS = {family.DEFAULT: 1000, family.LOCKING_FREE: 100, family.PAPER: 100}
@@ -66,12 +65,12 @@ def _jumps() -> list[family.Task]:
         checked = model not in family.UNCHECKED
         for degrees in JUMPS:
             name = f"target jumps from rest to {degrees:g}°"
-            found.append((name, model, partial(_jump, settings, degrees, checked), TOLERANCE))
+            found.append((name, model, partial(_jump, settings, degrees, checked), family.TOLERANCE))
         name = f"target jumps between 60° and -60°, {ROUNDS} times"
-        found.append((name, model, partial(_jumping, settings), TOLERANCE))
+        found.append((name, model, partial(_jumping, settings), family.TOLERANCE))
         for millimetres in ((0.0, 20.0), (20.0, 0.0), (-20.0, 0.0)):
             name = "target jumps by {:g}, {:g} mm".format(*millimetres)
-            found.append((name, model, partial(_displaced, settings, millimetres, checked), TOLERANCE))
+            found.append((name, model, partial(_displaced, settings, millimetres, checked), family.TOLERANCE))
     return found
 
 
@@ -79,7 +78,7 @@ def _mechanism_of(model: str) -> Any:
     """Return Table 1 in motion in a column of splines."""
     settings = family.COLUMNS[model]
     assert isinstance(settings, SplineSettings)
-    return spline_mechanism(named_case(family.CASE), settings)
+    return spline_mechanism(named_case(), settings)
 
 
 def _reversals(model: str, count: int) -> family.Found:
@@ -144,16 +143,16 @@ def _booked(run: Trajectory, *, extra: float) -> family.Found:
 
 def _jump(settings: Settings, degrees: float, checked: bool) -> family.Found:
     """Follow a target that jumps from rest in one increment; against the refined path of many."""
-    design = replace(named_case(family.CASE), rotation=math.radians(degrees), increments=1)
+    design = replace(named_case(), rotation=math.radians(degrees), increments=1)
     many = answer_static(replace(design, increments=36), family.CHECK)
     ends = {name: getattr(many, name)[[0, -1]] for name in ("load_factor", "torque")}
     reference = replace(many, **ends, bodies={name: poses[[0, -1]] for name, poses in many.bodies.items()})
-    return _bounded(attempted(design, settings, reference, checked=checked), 1)
+    return _bounded(family.attempted(design, settings, reference, checked=checked), 1)
 
 
 def _jumping(settings: Settings) -> family.Found:
     """Follow a target that jumps to and fro; the torque is the same every time."""
-    design: Problem = replace(named_case(family.CASE), rotation=math.radians(60.0), increments=1)
+    design: Problem = replace(named_case(), rotation=math.radians(60.0), increments=1)
     once = answer_static(design, settings)
     model = model_of(settings)
     pivot, _ = built(model, design, settings, moving=False)
@@ -174,7 +173,7 @@ def _jumping(settings: Settings) -> family.Found:
 
 def _displaced(settings: Settings, millimetres: tuple[float, float], checked: bool) -> family.Found:
     """Follow a body whose centre's target jumps in one increment, free to rotate: its energy and rotation."""
-    given = as_mechanism(named_case(family.CASE), 0.0)
+    given = as_mechanism(named_case(), 0.0)
     target = {"displacement": tuple(1e-3 * part for part in millimetres)}
     effects = replace(
         given.effects,

@@ -1,4 +1,4 @@
-"""Frames that buckle and snap through, the pivot pushed along its strips, and the spline's paths."""
+"""Frames that buckle and snap through, the pivot pushed along its strips, and the spline's paths of them."""
 
 import math
 from collections.abc import Mapping
@@ -16,7 +16,6 @@ from studies.cases.mechanism import Mechanism
 from studies.cases.problem import named_case
 from studies.kinds import Array
 from studies.published.case import BEAM, loaded, published
-from studies.stability.family import CASE
 from studies.stability.geometry import as_mechanism
 
 STATIC = ("bending", "stretching")
@@ -63,7 +62,7 @@ def pushed_pivot(*, depth: float) -> Frame:
         names=(*STATIC, "driven_displacement"),
         tables={"driven_displacement": {"displacement": (0.0, -depth)}},
     )
-    design = replace(as_mechanism(named_case(CASE), 0.0), rotation=None, effects=effects)
+    design = replace(as_mechanism(named_case(), 0.0), rotation=None, effects=effects)
     return Frame(design=design, load=depth, body="body")
 
 

@@ -33,7 +33,7 @@ MODELS = (family.VARIED, family.DEFAULT)
 
 
 @dataclass(frozen=True, kw_only=True)
-class Example:
+class _Example:
     """A pivot and what is asked of it.
 
     Attributes:
@@ -61,7 +61,7 @@ class Example:
 
     def problem(self) -> Problem:
         """Return the design; CaseError for a value outside its range."""
-        given = named_case(family.CASE)
+        given = named_case()
         depth = self.length / self.slenderness
         return replace(
             given,
@@ -78,13 +78,13 @@ class Example:
         )
 
 
-def _examples() -> list[tuple[int, Example]]:
+def _examples() -> list[tuple[int, _Example]]:
     """Return the random examples with their numbers, the same every time."""
     generator = np.random.default_rng(SEED)
     return [(number, _drawn(generator)) for number in range(EXAMPLES)]
 
 
-def _outcomes(number: int, example: Example) -> Answer:
+def _outcomes(number: int, example: _Example) -> Answer:
     """Return how one example ends with its own control points, and with the default settings."""
     place = {
         "case": f"example {number:03d}",
@@ -95,17 +95,17 @@ def _outcomes(number: int, example: Example) -> Answer:
     models = (SplineSettings(control_points=example.control_points), SplineSettings())
     rows = [
         {**place, "model": model, "panel": f"{model}: {example.kind}"}
-        | family.judged(partial(asked, example, settings), TOLERANCE)
+        | family.judged(partial(_asked, example, settings), TOLERANCE)
         for model, settings in zip(MODELS, models, strict=True)
     ]
     return {"outcomes": rows}
 
 
-def _drawn(generator: np.random.Generator) -> Example:
+def _drawn(generator: np.random.Generator) -> _Example:
     """Return a random example, one in twenty with a value that no design can have."""
     uniform = generator.uniform
     legs = int(generator.integers(1, 4))
-    example = Example(
+    example = _Example(
         length=10.0 ** uniform(-3.0, 0.5),
         inclination=math.radians(uniform(8.0, 82.0)),
         crossing_ratio=uniform(0.03, 0.97),
@@ -124,12 +124,12 @@ def _drawn(generator: np.random.Generator) -> Example:
     return example
 
 
-def asked(example: Example, settings: SplineSettings) -> family.Found:
+def _asked(example: _Example, settings: SplineSettings) -> family.Found:
     """Ask the spline for what the example says and compare it with what is known to be right."""
     return _path(example, settings) if example.step is None else _motion(example, settings)
 
 
-def _path(example: Example, settings: SplineSettings) -> family.Found:
+def _path(example: _Example, settings: SplineSettings) -> family.Found:
     """Compare the torque at the ends of the legs with a refined path; the books of energy as well."""
     unit = _unit(example)
     path = _legs(example, settings, example.increments)
@@ -144,7 +144,7 @@ def _path(example: Example, settings: SplineSettings) -> family.Found:
     return family.said(path, error if both else 0.0, fault="" if closed else "work and energy differ")
 
 
-def _legs(example: Example, settings: Settings, increments: int) -> Any:
+def _legs(example: _Example, settings: Settings, increments: int) -> Any:
     model = model_of(settings)
     pivot, _ = built(model, example.problem(), settings, moving=False)
     with refusals(model, settings):
@@ -153,18 +153,18 @@ def _legs(example: Example, settings: Settings, increments: int) -> Any:
         )
 
 
-def _unit(example: Example) -> float:
+def _unit(example: _Example) -> float:
     """Return EI/L [N m]."""
     problem = example.problem()
     return problem.youngs_modulus * problem.second_moment_of_area / problem.length
 
 
-def _finer(example: Example) -> int:
+def _finer(example: _Example) -> int:
     """Return the increments of a leg of what an example is held against."""
     return max(REFINED_INCREMENTS, example.increments)
 
 
-def _apart(path: Any, reference: Any, example: Example) -> tuple[float, int]:
+def _apart(path: Any, reference: Any, example: _Example) -> tuple[float, int]:
     """Return the largest difference of torque at the ends of legs that both reach, over the reference's
     largest [1], and how many these are; NaN for none."""
     ends, known = (_ends(each.rotation, example) for each in (path, reference))
@@ -174,7 +174,7 @@ def _apart(path: Any, reference: Any, example: Example) -> tuple[float, int]:
     return float(apart / scale) if both else math.nan, both
 
 
-def sample() -> Iterator[tuple[int, Example]]:
+def _sample() -> Iterator[tuple[int, _Example]]:
     """Yield the first paths of designs that can be."""
     left = SAMPLE
     for number, example in _examples():
@@ -187,7 +187,7 @@ def sample() -> Iterator[tuple[int, Example]]:
             yield number, example
 
 
-def independent(number: int, example: Example, count: int = ELEMENTS) -> Answer:
+def _independent(number: int, example: _Example, count: int = ELEMENTS) -> Answer:
     """Return how far the default's path is from that of so many elements a strip."""
     path = _legs(example, SplineSettings(), example.increments)
     elements = _legs(example, FeSettings(elements=count), _finer(example))
@@ -202,7 +202,7 @@ def _compared(tables: Tables) -> list[dict[str, Any]]:
     return [{"asked": len(errors), "compared": int(errors.notna().sum()), "error": errors.max()}]
 
 
-def _ends(rotation: Any, example: Example) -> list[int]:
+def _ends(rotation: Any, example: _Example) -> list[int]:
     """Return the states at which legs end, as far as the path goes, in order."""
     found, state = [], 0
     for target in example.targets:
@@ -214,7 +214,7 @@ def _ends(rotation: Any, example: Example) -> list[int]:
     return found
 
 
-def _motion(example: Example, settings: SplineSettings) -> family.Found:
+def _motion(example: _Example, settings: SplineSettings) -> family.Found:
     """Let the pivot go: whatever the step, the books of energy close and the clamps hold."""
     problem = example.problem()
     inertia = problem.body_moment_of_inertia + problem.body_mass * problem.length**2
@@ -240,7 +240,7 @@ def _motion(example: Example, settings: SplineSettings) -> family.Found:
 
 STUDY = family.study(
     Part(at=_examples, ask=_outcomes),
-    Part(at=sample, ask=independent),
+    Part(at=_sample, ask=_independent),
     claims=(
         Claim(
             claim=f"Random paths are those of elements within {100 * TOLERANCE:g} % of the largest torque",
@@ -258,7 +258,7 @@ STUDY = family.study(
             order=[f"{model}: {kind}" for kind in (STATIC, MOTION) for model in reversed(MODELS)],
             title="Random designs and commands, spline",
             xlabel="largest rotation [deg]",
-            ylabel="slenderness L/h [1]",
+            ylabel="slenderness L/t [1]",
             yscale="log",
             xlim=(-210.0, 210.0),
             ylim=(3.0, 2e4),

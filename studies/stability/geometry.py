@@ -8,7 +8,6 @@ from studies.cases.mechanism import Body, Mechanism, Strip
 from studies.cases.problem import Problem, named_case
 from studies.engine.study import Part
 from studies.stability import family, maps
-from studies.stability.paths import StaticCase, outcomes_of
 
 #: Distance of the crossing from the ground end over L, and angle of the strips to the ground [deg].
 RATIOS = (0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95)
@@ -18,18 +17,20 @@ INCLINATIONS = (10, 20, 30, 45, 60, 70, 80)
 OTHER_ROTATION = 45.0
 
 
-def _grid() -> Iterator[StaticCase]:
+def _grid() -> Iterator[family.StaticCase]:
     """Yield the pivots of all crossing ratios and inclinations, driven as the paper's."""
-    given = named_case(family.CASE)
+    given = named_case()
     for ratio in RATIOS:
         for degrees in INCLINATIONS:
             design = replace(given, crossing_ratio=ratio, inclination=math.radians(degrees))
-            yield StaticCase(name=f"cross {ratio:g}, {degrees:g} deg", x=ratio, y=degrees, design=design)
+            yield family.StaticCase(
+                name=f"cross {ratio:g}, {degrees:g} deg", x=ratio, y=degrees, design=design
+            )
 
 
-def _others() -> Iterator[StaticCase]:
+def _others() -> Iterator[family.StaticCase]:
     """Yield parallel strips, unequal strips in length, stiffness and angle, strips curved at rest."""
-    given = named_case(family.CASE)
+    given = named_case()
     cross = as_mechanism(given, OTHER_ROTATION)
     first, second = cross.strips
     length = given.length
@@ -55,7 +56,7 @@ def _others() -> Iterator[StaticCase]:
         },
     }
     for place, (name, design) in enumerate(designs.items()):
-        yield StaticCase(name=name, x=place, y=0.0, design=design)
+        yield family.StaticCase(name=name, x=place, y=0.0, design=design)
 
 
 def as_mechanism(given: Problem, degrees: float) -> Mechanism:
@@ -120,7 +121,7 @@ def _thicker(strip: Strip, factor: float) -> Strip:
 
 
 STUDY = family.study(
-    Part(at=lambda: [*_grid(), *_others()], ask=outcomes_of),
+    Part(at=lambda: [*_grid(), *_others()], ask=family.outcomes_of),
     figures={
         "stability_geometry": lambda tables: maps.outcome_map(
             tables["outcomes"][tables["outcomes"]["case"].str.startswith("cross")],

@@ -1,5 +1,6 @@
 """What families show: maps of where each model is right, refuses, is wrong or cannot be asked, and counts."""
 
+import textwrap
 from collections.abc import Sequence
 from typing import Any
 
@@ -62,7 +63,7 @@ def outcome_map(
         panel.set(**axes)
         panel.minorticks_off()
         panel.tick_params(labelbottom=True)
-        panel.set_title(f"{_broken(model)}\n{counts}", fontsize=8.0)
+        panel.set_title(f"{_broken(model)}\n{textwrap.fill(counts, 96 // across)}", fontsize=8.0)
         if place % across == 0:
             panel.set_ylabel(ylabel)
     handles = [
@@ -116,29 +117,18 @@ def _broken(model: str) -> str:
     return model.replace(", ", ",\n")
 
 
-def _summary(store: Store) -> pd.DataFrame:
-    """Return the stored counts of all families that were run: a row a family and model."""
-    tables = []
-    for study in STUDIES:
-        if study.startswith(GROUP):
-            try:
-                counts = store.load_tables(study)["counts"]
-            except FileNotFoundError:
-                continue
-            tables.append(counts.assign(family=study.removeprefix(GROUP)))
-    if not tables:
-        return pd.DataFrame(columns=["family", "model", "tried", *OUTCOMES])
-    return pd.concat(tables)[["family", "model", "tried", *OUTCOMES]]
-
-
 def lines(store: Store) -> list[str]:
-    """Return the summary as the lines of a Markdown table: "right / refused / wrong / bad input" a cell."""
-    rows = _summary(store)
-    models = list(dict.fromkeys((DEFAULT, *rows["model"])))
+    """Return the stored counts of all families that were run as lines of a Markdown table: a row a family, a
+    column a model, "right / refused / wrong / bad input" a cell."""
+    cells: dict[str, dict[Any, str]] = {}
+    for study in (each for each in STUDIES if each.startswith(GROUP)):
+        try:
+            counts = store.load_tables(study)["counts"].set_index("model")[list(OUTCOMES)]
+        except FileNotFoundError:
+            continue
+        cells[study.removeprefix(GROUP)] = counts.astype(str).agg(" / ".join, axis=1).to_dict()
+    models = list(dict.fromkeys((DEFAULT, *(model for row in cells.values() for model in row))))
     found = ["| family | " + " | ".join(models) + " |", "|---" * (len(models) + 1) + "|"]
-    for family, some in rows.groupby("family", sort=False):
-        cells = {
-            row["model"]: " / ".join(str(row[name]) for name in OUTCOMES) for row in some.to_dict("records")
-        }
-        found.append(f"| {family} | " + " | ".join(cells.get(model, "") for model in models) + " |")
+    for family, row in cells.items():
+        found.append(f"| {family} | " + " | ".join(row.get(model, "") for model in models) + " |")
     return found

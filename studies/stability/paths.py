@@ -1,87 +1,236 @@
-"""Static paths of hard designs: the answer of each model against a refined and an independent one."""
+"""Static paths of Table 1 at the ends of its range: far rotations, and slender and inextensible strips."""
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
-from functools import partial
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from itertools import product
 from typing import Any
 
 import numpy as np
+import pandas as pd
+from matplotlib.figure import Figure
 
 from studies.answers.adapters import answer_static
+from studies.answers.models import built, model_of
 from studies.answers.response import Response
-from studies.answers.settings import FeSettings, Settings
-from studies.cases.design import Design
-from studies.engine.study import Answer
-from studies.stability.family import CHECK, FE, PATHS, REFINED, UNCHECKED, Found, judged, said
+from studies.answers.settings import Settings, SplineSettings
+from studies.cases.problem import Problem, named_case
+from studies.engine.study import Part, Tables
+from studies.record.style import BLACK, BLUE, GREY, ORANGE, page
+from studies.stability import family, maps
 
-#: Largest distance of a path that counts as right [1], over the largest torque and displacement. The error of
-#: six control points grows to 0.03 at a half turn; another branch is off by more than 0.1.
-TOLERANCE = 0.05
+ROTATIONS = (-180, -90, 90, 135, 150, 165, 180, 200, 220, 240, 260)
+INCREMENTS = (1, 2, 5, 20, 200)
+#: A reference at these rotations needs more points than at a quarter turn.
+FAR, FAR_CHECK = SplineSettings(control_points=16), SplineSettings(control_points=14)
+#: Columns whose answers to other increments are compared with one another, and their colours.
+COMPARED = {family.SIX: BLUE, family.FE: BLACK}
 
-#: Finer elements, asked where those of the column do not confirm the refined spline.
-ARBITER = FeSettings(elements=80)
+
+def _rotated() -> Iterator[family.StaticCase]:
+    """Yield every rotation in every number of increments."""
+    for degrees, count in product(ROTATIONS, INCREMENTS):
+        design = replace(named_case(), rotation=math.radians(degrees), increments=count)
+        yield family.StaticCase(
+            name=f"{degrees} deg in {count}", x=degrees, y=count, design=design, refined=FAR, check=FAR_CHECK
+        )
 
 
-@dataclass(frozen=True, kw_only=True)
-class StaticCase:
-    """One design and its path: a name, its place on the family's map, and which columns have other settings.
+def _increments(model: str) -> list[dict[str, Any]]:
+    """Return, for every number of increments, how far the torque at 90 degrees is from that of 20, and how
+    far a path there and back ends from where it was: of the torque at each rotation, and at rest."""
+    settings, given = family.PATHS[model], named_case()
+    torque = answer_static(given, settings).torque[-1]
+    rows = []
+    for count in INCREMENTS:
+        path = _there_and_back(given, settings, count)
+        there, back = path[: count + 1], path[count:][::-1]
+        rows.append(
+            {
+                "model": model,
+                "increments": count,
+                "torque_change": abs(there[-1] / torque - 1.0),
+                "hysteresis": float(np.abs(there - back).max() / abs(torque)),
+            }
+        )
+    return rows
 
-    Attributes:
-        x, y: place on the map, in the units of the family's axes.
-        settings: settings of columns for this case, in place of those in `PATHS`.
-        refined, check: of the reference.
+
+def _there_and_back(given: Problem, settings: Settings, count: int) -> Any:
+    """Return the torque at all states of a path to the end of the case's and back to rest."""
+    model = model_of(settings)
+    pivot, _ = built(model, given, settings, moving=False)
+    legs = [given.rotation, 0.0]
+    return np.asarray(model.statics.solve_statics(pivot, rotation=legs, increments=count).torque)
+
+
+def _critical() -> list[dict[str, Any]]:
+    """Return the critical points on the refined spline's path to the last rotation, or one row that says
+    that there are none."""
+    given = replace(named_case(), rotation=math.radians(ROTATIONS[-1]), increments=52)
+    model = model_of(family.REFINED)
+    pivot, _ = built(model, given, FAR, moving=False)
+    path = model.statics.solve_statics(
+        pivot, rotation=given.rotation, increments=given.increments, method="multipliers",
+        raise_on_failure=False,
+    )  # fmt: skip
+    rows = [
+        {"kind": point.kind, "rotation_deg": math.degrees(point.rotation), "inertia": point.inertia}
+        for point in path.critical_points
+    ]
+    reached = math.degrees(path.rotation[-1])
+    end = {"kind": f"end: {path.message or 'reached'}", "rotation_deg": reached, "inertia": path.inertia[-1]}
+    return [*rows, end]
+
+
+def _increments_figure(tables: Tables) -> Figure:
+    figure = page(4.6, 3.2)
+    panel = figure.subplots()
+    looks = {"torque_change": ("o-", "torque at 90°"), "hysteresis": ("s--", "there and back")}
+    for (model, colour), (column, (line, label)) in product(COMPARED.items(), looks.items()):
+        mine = tables["increments"].query("model == @model").sort_values("increments")
+        panel.loglog(
+            mine["increments"], mine[column].clip(1e-17), line, color=colour, label=f"{model}: {label}"
+        )
+    panel.axhline(1e-8, color=ORANGE, linewidth=0.9)
+    panel.axhline(1e-9, color=GREY, linewidth=0.9, linestyle=":")
+    panel.set(xlabel="increments [1]", ylabel="difference of torque [1]", ylim=(1e-17, 1e-6))
+    panel.legend(loc="center left", fontsize=7)
+    return figure
+
+
+ROTATION = family.study(
+    Part(at=_rotated, ask=family.outcomes_of),
+    # the same path in any number of increments, and back again
+    Part(at=lambda: COMPARED, ask=lambda model: {"increments": _increments(model)}),
+    # the critical points that the refined spline finds on its way
+    Part(ask=lambda: {"critical": _critical()}),
+    figures={
+        "stability_rotation": lambda tables: maps.outcome_map(
+            tables["outcomes"].assign(y=np.log10(tables["outcomes"]["y"])),
+            title="Table 1 driven through a rotation: torque and path within 5 % of the refined answer",
+            xlabel="rotation [deg]",
+            ylabel="increments [1]",
+            xlim=(-200.0, 280.0),
+            ylim=(-0.3, 2.6),
+            xticks=[-180, -90, 0, 90, 180],
+            yticks=np.log10(INCREMENTS),
+            yticklabels=INCREMENTS,
+        ),
+        "stability_increments": _increments_figure,
+    },
+)
+"""Rotation to a half turn and beyond, in any number of increments, there and back."""
+
+#: L/t of a rectangular section of Table 1's flexural rigidity, and rotations at which all are asked.
+SLENDER, SLENDER_ROTATIONS = (10.0, 17.0, 30.0, 100.0, 300.0, 1e3, 3e3, 1e4, 3e4, 1e5), (10, 45, 90, 135)
+#: Where inextensible strips stand on the map.
+INEXTENSIBLE = 1e6
+#: Factor between neighbouring designs, between which no digits may be lost.
+NEIGHBOUR = 1.001
+
+
+def _slender_cases() -> Iterator[family.StaticCase]:
+    """Yield every slenderness at every rotation."""
+    for degrees in SLENDER_ROTATIONS:
+        for slenderness in SLENDER:
+            design = replace(_slender(slenderness), rotation=math.radians(degrees))
+            name = f"L/t = {slenderness:g}, {degrees} deg"
+            yield family.StaticCase(name=name, x=slenderness, y=degrees, design=design)
+        yield family.StaticCase(
+            name=f"inextensible, {degrees} deg",
+            x=INEXTENSIBLE,
+            y=degrees,
+            design=replace(_slender(SLENDER[-1]), rotation=math.radians(degrees)),
+            settings={
+                name: _inextensible(family.PATHS[name])
+                for name in (family.DEFAULT, family.LOCKING_FREE, family.SIX)
+            },
+            refined=_inextensible(family.REFINED),
+            check=_inextensible(family.CHECK),
+        )
+
+
+def _slender(slenderness: float) -> Problem:
+    """Return Table 1 with strips of that L/t and the same flexural rigidity: the more slender, the wider."""
+    given = named_case()
+    area = 12.0 * given.second_moment_of_area * (slenderness / given.length) ** 2
+    return replace(given, area=area)
+
+
+def _inextensible(settings: Any) -> SplineSettings:
+    """Return the settings of a spline with strips that cannot stretch."""
+    chosen: SplineSettings = replace(settings, stretch="inextensible")
+    return chosen
+
+
+def _limit_table(settings: Any, chosen: Sequence[float] = SLENDER) -> pd.DataFrame:
+    """Return, slenderness by slenderness, the distance to the inextensible strip, the iterations and digits.
+
+    With 1/EA the axial energy and all it changes go with (L/t)^-2. `constant` is the distance times (L/t)^2;
+    `lost_digits` is what the torques of neighbouring designs differ by beyond that law.
     """
-
-    name: str
-    x: float
-    y: float
-    design: Design
-    settings: Mapping[str, Settings] = field(default_factory=dict)
-    refined: Settings = REFINED
-    check: Settings = CHECK
-
-
-def distance(path: Response, reference: Response) -> float:
-    """Return the largest distance of two paths over the states that both have: of torque or place [1].
-
-    Each over its largest value on the reference's path; infinite where the path is not of finite numbers. A
-    path that stopped may end between two of the reference's states.
-    """
-    near = np.abs(path.load_factor[:, None] - reference.load_factor).min(axis=1) < 1e-9
-    same = np.abs(path.load_factor[near][:, None] - reference.load_factor).argmin(axis=1)
-    if not (np.isfinite(path.torque).all() and np.isfinite(path.centre).all()):
-        return float("inf")
-    torque = np.abs(path.torque[near] - reference.torque[same]).max()
-    place = np.linalg.norm(path.centre[near] - reference.centre[same], axis=1).max()
-    travel = np.linalg.norm(reference.centre - reference.centre[0], axis=1).max()
-    return float(max(torque / np.abs(reference.torque).max(), place / travel if travel > 0.0 else place))
+    rigid = answer_static(_slender(SLENDER[-1]), _inextensible(settings))
+    rows = []
+    for slenderness in chosen:
+        here = answer_static(_slender(slenderness), settings)
+        beside = answer_static(_slender(slenderness * NEIGHBOUR), settings)
+        gap = _gap(here, rigid)
+        expected = gap * (1.0 - NEIGHBOUR**-2)
+        rows.append(
+            {
+                "slenderness": slenderness,
+                "error": gap,
+                "constant": gap * slenderness**2,
+                "iterations": here.counters["newton_iterations"],
+                "iterations_inextensible": rigid.counters["newton_iterations"],
+                "lost_digits": abs(_gap(here, beside) - expected),
+            }
+        )
+    return pd.DataFrame(rows)
 
 
-def outcomes_of(case: StaticCase) -> Answer:
-    """Return the outcomes of a case, a row a model, and the row of its reference.
-
-    A reference is settled where refinement moves it by less than a fifth of the tolerance and elements agree
-    with it within the tolerance.
-    """
-    reference = answer_static(case.design, case.refined)
-    spread = distance(answer_static(case.design, case.check), reference)
-    place = {"case": case.name, "x": case.x, "y": case.y}
-    rows: list[dict[str, Any]] = []
-    gap = float("inf")
-    for model, settings in PATHS.items():
-        chosen = case.settings.get(model, settings)
-        attempt = partial(attempted, case.design, chosen, reference, checked=model not in UNCHECKED)
-        rows.append({**place, "model": model, **judged(attempt, TOLERANCE)})
-        if model == FE:
-            gap = rows[-1]["error"]
-    if not gap <= TOLERANCE:
-        gap = distance(answer_static(case.design, ARBITER), reference)
-    settled = reference.converged and spread <= TOLERANCE / 5.0 and gap <= TOLERANCE
-    known = {**place, "refinement": spread, "independent": gap, "settled": "yes" if settled else "no"}
-    return {"outcomes": rows, "references": known}
+def _gap(one: Response, other: Response) -> float:
+    """Return the largest difference of two torques over the largest of the second."""
+    return float(np.abs(one.torque - other.torque).max() / np.abs(other.torque).max())
 
 
-def attempted(design: Design, settings: Settings, reference: Response, *, checked: bool) -> Found:
-    """Solve `design` and compare the path; without `checked`, as if it said nothing of its resolution."""
-    path = answer_static(design, settings)
-    return said(path, distance(path, reference), checked=checked)
+def _limit_figure(tables: Tables) -> Figure:
+    limit = tables["limit"]
+    figure = page(7.4, 3.1)
+    left, right = figure.subplots(1, 2)
+    left.loglog(limit["slenderness"], limit["error"], "o-", color=BLUE, label="to the inextensible strip")
+    left.loglog(
+        limit["slenderness"], limit["lost_digits"], "s--", color=ORANGE, label="beyond the law, neighbours"
+    )
+    left.axhline(1e-9, color=GREY, linewidth=0.9, linestyle=":")
+    left.set(xlabel="slenderness L/t [1]", ylabel="difference of torque [1]", title="Spline n = 6, 90°")
+    left.legend(loc="upper right")
+    right.semilogx(limit["slenderness"], limit["iterations"], "o-", color=BLUE, label="extensible")
+    right.axhline(limit["iterations_inextensible"].iloc[0], color=BLACK, linestyle="--", label="inextensible")
+    right.set(xlabel="slenderness L/t [1]", ylabel="Newton iterations of the path [1]", ylim=(0.0, 30.0))
+    right.legend(loc="lower right")
+    return figure
+
+
+SLENDERNESS = family.study(
+    Part(at=_slender_cases, ask=family.outcomes_of),
+    # the approach of six control points to the inextensible strip
+    Part(ask=lambda: {"limit": _limit_table(family.PATHS[family.SIX])}),
+    figures={
+        "stability_slenderness": lambda tables: maps.outcome_map(
+            tables["outcomes"],
+            title="Driven in 20 increments: torque and path within 5 % of the refined answer",
+            xlabel="slenderness L/t [1]",
+            ylabel="rotation [deg]",
+            xscale="log",
+            xlim=(5.0, 2.0 * INEXTENSIBLE),
+            ylim=(0.0, 145.0),
+            xticks=(10.0, 1e3, 1e5, INEXTENSIBLE),
+            xticklabels=("10", "1e3", "1e5", "∞"),
+            yticks=list(SLENDER_ROTATIONS),
+        ),
+        "stability_slenderness_limit": _limit_figure,
+    },
+)
+"""Slenderness L/t from 10 to 1e5 and strips that cannot stretch: errors, iterations and digits."""

@@ -1,18 +1,40 @@
 """What is asked of columns, frames and the pushed pivot, how either model is led there, and judged."""
 
 import math
+from collections import Counter
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 
+import numpy as np
+
+from fe_reference.arc_length import ArcPath, follow_arc
+from fe_reference.control import Control, equilibrate
+from fe_reference.effects import DrivenDisplacement
+from fe_reference.errors import ConvergenceError
+from fe_reference.loads import full_load
+from fe_reference.model import Model
+from fe_reference.path import follow
+from fe_reference.response import respond
+from fe_reference.structure import structure_of
+from studies.answers.models import built, model_of
 from studies.answers.settings import FeSettings, Settings, SplineSettings
-from studies.engine.study import Answer
+from studies.engine.study import Answer, Part
 from studies.errors import BadInput
-from studies.published.case import Value, published
+from studies.published.case import published
 from studies.stability import frames
-from studies.stability.element_arcs import element_arc, tilted_state
-from studies.stability.family import CHECK, COLUMNS, FE, FINER, INDEPENDENT, REFINED, UNCHECKED, Found, judged
-from studies.stability.paths import TOLERANCE
+from studies.stability.family import (
+    CHECK,
+    COLUMNS,
+    FE,
+    FINER,
+    INDEPENDENT,
+    REFINED,
+    TOLERANCE,
+    UNCHECKED,
+    Found,
+    judged,
+)
 
 COLUMN, TOGGLE, LEE, PIVOT = "column", "Williams' toggle", "Lee's frame", "pivot pushed down"
 LIMIT, BIFURCATION = "limit point", "bifurcation"
@@ -50,7 +72,7 @@ def answer(case: BucklingCase, settings: Settings) -> frames.Arc:
     """Return the path of a case; BadInput for what the model refuses to be asked."""
     if isinstance(settings, FeSettings):
         if case.tilt:
-            return tilted_state(case.frame, settings, case.tilt)
+            return _tilted_state(case.frame, settings, case.tilt)
         return element_arc(case.bent or case.frame, settings)
     assert isinstance(settings, SplineSettings)
     arc = frames.spline_arc(case.frame, settings, branch=case.branch)
@@ -61,7 +83,7 @@ def answer(case: BucklingCase, settings: Settings) -> frames.Arc:
     return arc
 
 
-def cases() -> Iterator[BucklingCase]:
+def _cases() -> Iterator[BucklingCase]:
     """Yield all questions."""
     yield BucklingCase(
         name="column: critical load",
@@ -73,8 +95,16 @@ def cases() -> Iterator[BucklingCase]:
     )
     for degrees in frames.PUBLISHED:
         yield post_buckling(degrees)
-    for place, value in enumerate(published("williams_toggle").values):
-        yield _limit(TOGGLE, frames.frame_of("williams_toggle"), place, value)
+    for part, name in {TOGGLE: "williams_toggle", LEE: "lees_frame"}.items():
+        for place, value in enumerate(published(name).values):
+            yield BucklingCase(
+                name=f"{part}: {('upper', 'lower')[place]} limit load",
+                part=part,
+                frame=frames.frame_of(name),
+                quantity=f"limit load [{value.unit}]",
+                value=_critical(LIMIT, place),
+                published=value.published,
+            )
     yield BucklingCase(
         name="toggle of rise 0.32 in: limit points",
         part=TOGGLE,
@@ -83,9 +113,21 @@ def cases() -> Iterator[BucklingCase]:
         value=lambda arc: float(len(arc.critical)),
         published=published("williams_shallow_toggle").values[0].published,
     )
-    for place, value in enumerate(published("lees_frame").values):
-        yield _limit(LEE, frames.frame_of("lees_frame"), place, value)
-    yield from _pushed()
+    yield BucklingCase(
+        name=f"pivot pushed down {1e3 * SHALLOW:g} mm: stable",
+        part=PIVOT,
+        frame=frames.pushed_pivot(depth=SHALLOW),
+        quantity="unstable directions [1]",
+        value=lambda arc: float(arc.inertia[-1]),
+    )
+    yield BucklingCase(
+        name="pivot pushed down: where its strips buckle",
+        part=PIVOT,
+        frame=frames.pushed_pivot(depth=DEPTHS[0]),
+        quantity="bifurcation [m]",
+        value=_critical(BIFURCATION, 0),
+    )
+    yield from map(pushed, DEPTHS)
 
 
 def post_buckling(degrees: int) -> BucklingCase:
@@ -124,36 +166,6 @@ def turned(arc: frames.Arc) -> float:
     return abs(math.degrees(arc.place[-1, 2]))
 
 
-def _pushed() -> Iterator[BucklingCase]:
-    yield BucklingCase(
-        name=f"pivot pushed down {1e3 * SHALLOW:g} mm: stable",
-        part=PIVOT,
-        frame=frames.pushed_pivot(depth=SHALLOW),
-        quantity="unstable directions [1]",
-        value=lambda arc: float(arc.inertia[-1]),
-    )
-    yield BucklingCase(
-        name="pivot pushed down: where its strips buckle",
-        part=PIVOT,
-        frame=frames.pushed_pivot(depth=DEPTHS[0]),
-        quantity="bifurcation [m]",
-        value=_critical(BIFURCATION, 0),
-    )
-    for depth in DEPTHS:
-        yield pushed(depth)
-
-
-def _limit(part: str, frame: frames.Frame, place: int, value: Value) -> BucklingCase:
-    return BucklingCase(
-        name=f"{part}: {('upper', 'lower')[place]} limit load",
-        part=part,
-        frame=frame,
-        quantity=f"limit load [{value.unit}]",
-        value=_critical(LIMIT, place),
-        published=value.published,
-    )
-
-
 def _critical(kind: str, place: int) -> Callable[[frames.Arc], float]:
     """Return what gives the load of a critical point of a path, nan if there is none."""
 
@@ -164,7 +176,7 @@ def _critical(kind: str, place: int) -> Callable[[frames.Arc], float]:
     return load
 
 
-def outcomes_of(case: BucklingCase) -> Answer:
+def _outcomes_of(case: BucklingCase) -> Answer:
     """Return the outcomes of all models, and the reference: in closed form, or the refined spline."""
     refined = case.value(answer(case, REFINED))
     reference = refined if math.isnan(case.exact) else case.exact
@@ -206,3 +218,77 @@ def _attempt(
         warned=bool(arc.warning),
         counters=arc.counters,
     )
+
+
+def element_arc(frame: frames.Frame, settings: FeSettings) -> frames.Arc:
+    """Return the path to load factor 1; BadInput for what the model refuses to be asked."""
+    model, _ = built(model_of(settings), frame.design, settings, moving=False)
+    message = ""
+    try:
+        path = follow_arc(_led(model, frame), increments=frame.design.increments)
+    except ConvergenceError as stop:
+        path, message = stop.solution, str(stop)
+    return _arc(model, frame, path, message)
+
+
+def _led(model: Model, frame: frames.Frame) -> Control:
+    """Return the control of a frame: its pins held, its load or the displacement of its body growing."""
+    structure = structure_of(model)
+    ways: dict[str, tuple[float | None, float | None]] = {name: (0.0, 0.0) for name in frame.pins}
+    named = model.effects.find(DrivenDisplacement)
+    if named is not None:
+        ways[frame.body] = named.displacement
+    ends = {
+        structure.body_slice(model.body_index(name)).start + k: part
+        for name, way in ways.items()
+        for k, part in enumerate(way)
+        if part is not None
+    }
+    held = np.array(sorted(ends), dtype=np.int64)
+    values = np.array([[0.0] * len(held), [ends[int(at)] for at in held]])
+    return Control(structure=structure, held=held, values=values, load=full_load(structure))
+
+
+def _tilted_state(frame: frames.Frame, settings: FeSettings, tilt: float) -> frames.Arc:
+    """Return the state at load factor 1 that is found from a body turned by `tilt` [rad] first.
+
+    The body is turned, then led to its displacement while it is turned, then let turn. So a branch is reached
+    that the path from rest crosses; the path has this one state.
+    """
+    model, _ = built(model_of(settings), frame.design, settings, moving=False)
+    control = _led(model, frame)
+    turn = structure_of(model).body_slice(model.body_index(frame.body)).stop - 1
+    held = np.append(control.held, turn)
+    values = np.zeros((3, len(held)))
+    values[1:, -1], values[2, :-1] = tilt, control.values[1]
+    legs = [
+        replace(control, held=held, values=values[leg : leg + 2], span=(leg / 2, (leg + 1) / 2))
+        for leg in range(2)
+    ]
+    before = follow(legs, frame.design.increments)
+    message = before.message
+    outcome = equilibrate(control, before.states[-1].y, control.span[1], Counter())
+    found = before.states[-1] if outcome.failure else respond(control, outcome)
+    return _arc(model, frame, ArcPath(states=(found,)), message or outcome.failure)
+
+
+def _arc(model: Model, frame: frames.Frame, path: ArcPath, message: str) -> frames.Arc:
+    at = structure_of(model).body_slice(model.body_index(frame.body))
+    rest = np.array([*next(body.centre for body in frame.design.bodies if body.name == frame.body), 0.0])
+    critical = tuple(
+        frames.Critical(kind=point.kind, load=frame.load * point.parameter, place=rest + point.y[at])
+        for point in path.critical
+    )
+    return frames.Arc(
+        load=frame.load * np.array([state.parameter for state in path.states]),
+        place=rest + np.array([state.y[at] for state in path.states]),
+        energy=np.array([sum(structure_of(model).evaluate(state.y).strain) for state in path.states]),
+        inertia=np.array([state.inertia for state in path.states]),
+        critical=critical,
+        reached=not message,
+        message=message or "; ".join(f"{point.kind} at {point.load:.6g}" for point in critical),
+    )
+
+
+#: All questions and what comes of each.
+ASKED = Part(at=_cases, ask=_outcomes_of)

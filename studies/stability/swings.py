@@ -1,17 +1,31 @@
-"""Motions of hard cases: the swing of each model against a refined and an independent one."""
+"""Motions of hard cases: the swing of each model against a refined and an independent one.
+
+Steps from 1e-7 to 1e-2 s, and ratios: bodies a million times lighter and heavier, massless and heavy strips,
+one strip far stiffer.
+"""
 
 import math
-from dataclasses import dataclass
+from collections.abc import Iterator
+from dataclasses import replace
+from functools import cache
+from itertools import pairwise, product
 from typing import Any
 
 import numpy as np
+import pandas as pd
+from matplotlib.figure import Figure
 from scipy.interpolate import CubicSpline
 
-from studies.answers.adapters import answer_release
+from studies.answers.adapters import answer_modes, answer_release
+from studies.answers.metrics import observed_order
 from studies.answers.motion import Motion
 from studies.answers.settings import FeSettings, Settings, SplineSettings
 from studies.cases.design import Design
-from studies.stability import family
+from studies.cases.problem import named_case
+from studies.engine.study import Answer, Part, Tables
+from studies.record.style import BLACK, BLUE, ORANGE, RED, page
+from studies.stability import family, maps
+from studies.stability.geometry import as_mechanism
 
 #: Largest error of the rotation that counts as right, over the rotation at the start [1]. A step of a
 #: twentieth of the swing's period errs by 0.03 after one swing; an answer off by more shows another motion.
@@ -25,39 +39,22 @@ REFINED, REFINED_STEP = SplineSettings(control_points=9), 2.5e-6
 INDEPENDENT = FeSettings(elements=30)
 RECORDS = 400
 
-
-@dataclass(frozen=True, kw_only=True)
-class _Swinging:
-    """A column of a family of motions: settings, integrator; none for the one that keeps energy exactly."""
-
-    settings: Settings
-    integrator: str | None = None
-
-    @property
-    def most_gain(self) -> float:
-        """Largest gain of energy that is none [1]."""
-        return MOST_GAIN_OF_OTHERS if self.integrator else MOST_GAIN
-
-
-def _swinging(column: str, integrator: str | None = None) -> _Swinging:
-    return _Swinging(settings=family.COLUMNS[column], integrator=integrator)
-
-
-#: Column -> how it is let go. The paper's printed forces have no energy that a motion could keep.
-SWINGING: dict[str, _Swinging] = {
-    **{name: _swinging(name) for name in (family.DEFAULT, family.LOCKING_FREE, family.PAPER)},
-    family.GENERALISED_ALPHA: _swinging(family.DEFAULT, "generalised-alpha"),
-    family.EXPLICIT: _swinging(family.DEFAULT, "explicit"),
-    family.FE: _swinging(family.FE, "generalised-alpha"),
+#: Column -> settings and integrator, none for the one that keeps energy exactly. The paper's printed forces
+#: have no energy that a motion could keep.
+SWINGING: dict[str, tuple[Settings, str | None]] = {
+    **{name: (family.COLUMNS[name], None) for name in (family.DEFAULT, family.LOCKING_FREE, family.PAPER)},
+    family.GENERALISED_ALPHA: (family.COLUMNS[family.DEFAULT], "generalised-alpha"),
+    family.EXPLICIT: (family.COLUMNS[family.DEFAULT], "explicit"),
+    family.FE: (family.COLUMNS[family.FE], "generalised-alpha"),
 }
 
 
-def refined_swing(design: Design, *, start: float, duration: float, step: float = REFINED_STEP) -> Motion:
+def _refined(design: Design, *, start: float, duration: float, step: float = REFINED_STEP) -> Motion:
     """Return the swing that others are held against."""
     return answer_release(design, REFINED, start=start, duration=duration, step=step, records=RECORDS)
 
 
-def rotation_error(motion: Motion, reference: Motion) -> float:
+def _rotation_error(motion: Motion, reference: Motion) -> float:
     """Return the largest difference of rotation at the motion's records, as far as the reference goes [1].
 
     Over the rotation at the start. Infinite for a motion without a record or with one that is no number.
@@ -77,27 +74,191 @@ def _energy_gain(motion: Motion) -> float:
     return float((balance / balance[0] - 1.0).max()) if len(balance) else math.nan
 
 
-def _compared(motion: Motion, reference: Motion, *, most_gain: float, checked: bool) -> family.Found:
-    """Return a motion against the reference; without `checked`, as if it said nothing of itself."""
-    if not len(motion.time):  # statics does not reach the start
-        return family.Found(error=0.0, reached=False, reason=motion.message, counters=motion.counters)
-    gain = _energy_gain(motion)
-    fault = f"the energy grows by {gain:.2g} of itself" if gain > most_gain else ""
-    return family.said(motion, rotation_error(motion, reference), checked=checked, fault=fault)
-
-
-def judged_swing(
+def _judged(
     name: str, design: Design, reference: Motion, *, start: float, duration: float, step: float
 ) -> dict[str, Any]:
     """Return the verdict on the column `name` for one design and step, with its energy_gain [1]."""
-    column, gains = SWINGING[name], [math.nan]
+    settings, integrator = SWINGING[name]
+    most, gains = MOST_GAIN_OF_OTHERS if integrator else MOST_GAIN, [math.nan]
 
     def attempt() -> family.Found:
         motion = answer_release(
-            design, column.settings, start=start, duration=duration, step=step, records=RECORDS,
-            integrator=column.integrator,
+            design, settings, start=start, duration=duration, step=step, records=RECORDS,
+            integrator=integrator,
         )  # fmt: skip
         gains.append(_energy_gain(motion))
-        return _compared(motion, reference, most_gain=column.most_gain, checked=name not in family.UNCHECKED)
+        if not len(motion.time):  # statics does not reach the start
+            return family.Found(error=0.0, reached=False, reason=motion.message, counters=motion.counters)
+        fault = f"the energy grows by {gains[-1]:.2g} of itself" if gains[-1] > most else ""
+        error = _rotation_error(motion, reference)
+        return family.said(motion, error, checked=name not in family.UNCHECKED, fault=fault)
 
-    return {**family.judged(attempt, TOLERANCE), "energy_gain": gains[-1]}
+    return {"model": name, **family.judged(attempt, TOLERANCE), "energy_gain": gains[-1]}
+
+
+STEPS = (1e-7, 1e-6, 1e-5, 5e-5, 1e-4, 2e-4, 5e-4, 1e-3, 2e-3, 5e-3, 1e-2)
+STARTS = (10, 45, 90, 135)
+#: One swing of Table 1 from 90 degrees [s], over which the rotation is compared.
+SWING = 0.012
+#: Steps of a motion: at least, so that energy could drift; at most, so that the finest end in seconds.
+FEWEST, MOST = 15, 1200
+
+#: Steps of the table of orders and of its limit [s], and the duration of its motions [s].
+ORDER_STEPS = (8e-4, 4e-4, 2e-4, 1e-4, 5e-5, 2.5e-5, 1.25e-5, 6.25e-6, 3.125e-6)
+LIMIT_STEP, ORDER_DURATION = 5e-7, 0.004
+
+
+@cache
+def _reference(degrees: float) -> Motion:
+    """Return the refined swing from a rotation."""
+    return _refined(named_case(), start=math.radians(degrees), duration=SWING)
+
+
+def _settled(degrees: float) -> Answer:
+    """Return how far a coarser and an independent swing are from the reference."""
+    given, reference = named_case(), _reference(degrees)
+    known: dict[str, Any] = {"start": math.radians(degrees), "duration": SWING}
+    coarser = _refined(given, **known, step=5e-6)
+    gap = _rotation_error(answer_release(given, INDEPENDENT, records=RECORDS, **known), reference)
+    return {
+        "references": {
+            "case": f"from {degrees} deg",
+            "refinement": _rotation_error(coarser, reference),
+            "independent": gap,
+            "settled": "yes" if gap < TOLERANCE / 5.0 else "no",
+        }
+    }
+
+
+def _outcomes_of_step(degrees: float, step: float) -> Answer:
+    """Return the outcomes of all models at a step, with the gain of energy."""
+    duration = min(max(round(SWING / step), FEWEST), MOST) * step
+    known = {"start": math.radians(degrees), "duration": duration, "step": step}
+    place = {"case": f"from {degrees} deg, {step:g} s", "x": step, "y": degrees}
+    given, reference = named_case(), _reference(degrees)
+    return {"outcomes": [{**place, **_judged(name, given, reference, **known)} for name in SWINGING]}
+
+
+def _order_table() -> pd.DataFrame:
+    """Return error and observed order of the default against the step, from 90 degrees, for one spline."""
+    problem, default = named_case(), family.COLUMNS[family.DEFAULT]
+
+    def swing(step: float) -> Motion:
+        return answer_release(problem, default, duration=ORDER_DURATION, step=step, records=5)
+
+    limit = swing(LIMIT_STEP).rotation
+    answers = [swing(step) for step in ORDER_STEPS]
+    errors = [float(np.abs(answer.rotation - limit).max()) for answer in answers]
+    orders = [math.nan, *(observed_order(a, b) for a, b in pairwise(errors))]
+    resolved = ["no" if answer.resolution else "yes" for answer in answers]
+    return pd.DataFrame({"step_s": ORDER_STEPS, "error_rad": errors, "order": orders, "resolved": resolved})
+
+
+def _order_figure(tables: Tables) -> Figure:
+    figure = page(7.6, 3.2)
+    left, right = figure.subplots(1, 2)
+    order = tables["order"].sort_values("step_s")
+    for resolved, colour, label in (("yes", BLUE, "resolved"), ("no", ORANGE, "said to be unresolved")):
+        some = order[order["resolved"] == resolved]
+        left.loglog(some["step_s"], some["error_rad"], "o", color=colour, label=label)
+    slope = order["error_rad"].iloc[2] * (order["step_s"] / order["step_s"].iloc[2]) ** 2
+    left.loglog(order["step_s"], slope, "--", color=BLACK, linewidth=0.9, label="order 2")
+    left.set(xlabel="step [s]", ylabel="error of the rotation [rad]", title=f"{family.DEFAULT}, from 90°")
+    left.legend(loc="upper left")
+    mine = tables["outcomes"].query("model == @family.DEFAULT")
+    for degrees, marker in zip(STARTS, "ovsD", strict=True):
+        some = mine[mine["y"] == degrees].sort_values("x")
+        right.loglog(some["x"], some["energy_gain"].clip(1e-17), marker + "-", label=f"from {degrees}°")
+    right.axhline(1e-8, color=RED, linewidth=0.9)
+    right.set(xlabel="step [s]", ylabel="gain of energy over that of the start [1]", ylim=(1e-17, 1e-6))
+    right.legend(loc="upper left", ncols=2)
+    return figure
+
+
+STEP_SIZE = family.study(
+    Part(at=lambda: STARTS, ask=_settled),
+    Part(at=lambda: product(STARTS, STEPS), ask=_outcomes_of_step),
+    Part(ask=lambda: {"order": _order_table()}),
+    figures={
+        "stability_step_size": lambda tables: maps.outcome_map(
+            tables["outcomes"],
+            title="Release of Table 1: rotation of the first swing within 5 %, no gain of energy",
+            xlabel="step [s]",
+            ylabel="rotation at the release [deg]",
+            xscale="log",
+            xlim=(5e-8, 2e-2),
+            ylim=(0.0, 145.0),
+            xticks=(1e-7, 1e-5, 1e-3),
+            xticklabels=("1e-7", "1e-5", "1e-3"),
+            yticks=list(STARTS),
+        ),
+        "stability_step_order": _order_figure,
+    },
+)
+"""Steps from 1e-7 to 1e-2 s: no gain of energy, second order, and a warning where a step is too long."""
+
+#: Factors on mass and moment of inertia of Table 1's body, and on the flexural rigidity of one strip.
+FACTORS = (1e-6, 1e-4, 1e-2, 1.0, 1e2, 1e4, 1e6)
+STIFFER = (1e2, 1e4)
+START_DEG = 30.0
+#: Steps in a period of the first mode at rest: of the columns, of the reference and of its coarser twin.
+STEPS_A_PERIOD, REFINED_STEPS, COARSER_STEPS = 200, 1600, 800
+#: Columns that are asked: the explicit scheme's steps follow the strips, whatever the body.
+ASKED = tuple(name for name in SWINGING if name != family.EXPLICIT)
+STRIP_INERTIA = "strip_inertia"
+KINDS = ("mass and inertia", "mass alone", "inertia alone")
+
+
+def _ratios() -> Iterator[tuple[str, str, float, Design]]:
+    """Yield all designs with a ratio at its end: name, kind (a line of the map), factor (its place there)."""
+    given = named_case()
+    for kind, factor in product(KINDS, FACTORS):
+        design = replace(
+            given,
+            body_mass=given.body_mass * (1.0 if kind == KINDS[2] else factor),
+            body_moment_of_inertia=given.body_moment_of_inertia * (1.0 if kind == KINDS[1] else factor),
+        )
+        yield f"body: {kind} x {factor:g}", kind, factor, design
+    yield "strips 100 times as dense", "strips", 100.0, replace(given, density=100.0 * given.density)
+    without = [name for name in given.effects.names if name != STRIP_INERTIA]
+    yield "massless strips", "strips", 0.0, replace(given, effects=given.effects.renamed(without))
+    cross = as_mechanism(given, START_DEG)
+    for factor in STIFFER:  # of another material
+        second = replace(cross.strips[1], youngs_modulus=factor * given.youngs_modulus)
+        stiffer = replace(cross, strips=(cross.strips[0], second))
+        yield f"second strip {factor:g} times as stiff", "stiffness", factor, stiffer
+
+
+def _outcomes_of_ratio(case: str, kind: str, factor: float, design: Design) -> Answer:
+    """Return the outcomes of a design, with the gain of energy, and its reference."""
+    period = 1.0 / float(answer_modes(design, REFINED, count=1).frequency[0])
+    asked: dict[str, Any] = {"start": math.radians(START_DEG), "duration": period}
+    reference = _refined(design, step=period / REFINED_STEPS, **asked)
+    coarser = _refined(design, step=period / COARSER_STEPS, **asked)
+    rows, gap = [], math.inf
+    for name in ASKED:
+        verdict = _judged(name, design, reference, step=period / STEPS_A_PERIOD, **asked)
+        rows.append({"case": case, "kind": kind, "x": factor, **verdict})
+        if name == family.FE and verdict["outcome"] == family.RIGHT:
+            gap = verdict["error"]
+    if not gap <= TOLERANCE:
+        finer: dict[str, Any] = {"integrator": "generalised-alpha", "step": period / REFINED_STEPS}
+        gap = _rotation_error(answer_release(design, INDEPENDENT, **finer, **asked), reference)
+    refinement = _rotation_error(coarser, reference)
+    settled = reference.converged and refinement < TOLERANCE / 2.0 and gap <= TOLERANCE
+    known = {"case": case, "period_s": period, "refinement": refinement, "independent": gap}
+    return {"outcomes": rows, "references": {**known, "settled": "yes" if settled else "no"}}
+
+
+RATIOS = family.study(
+    Part(at=_ratios, ask=_outcomes_of_ratio),
+    figures={
+        "stability_ratios": lambda tables: maps.listed(
+            tables["outcomes"],
+            [case for case, *_ in _ratios()],
+            title=f"Release from {START_DEG:g}°, one period in {STEPS_A_PERIOD} steps: rotation within 5 %, "
+            "no gain of energy",
+        )
+    },
+)
+"""Ratios: bodies a million times lighter and heavier, massless and heavy strips, one strip far stiffer."""

@@ -10,17 +10,16 @@ from numpy.typing import NDArray
 from studies.answers.models import model_of
 from studies.answers.response import centre_shift
 from studies.answers.settings import SplineSettings
-from studies.answers.validity import Strip
+from studies.answers.validity import SAME_NAME, Strip
 from studies.cases import keys as case_keys
 from studies.cases.effects import DEFAULT, MOTION_ONLY
 from studies.cases.mechanism import of_sides
 from studies.cases.problem import PIVOT_PARAMETERS, SIDES, Problem
 from studies.cases.rules import Pair
 from studies.kinds import Array
-from studies.sweep import plan, points, quantities
+from studies.sweep import plan, points
 from studies.sweep.plan import Task
-from studies.sweep.points import CONVERGED
-from studies.sweep.quantities import Paths
+from studies.sweep.points import CONVERGED, Paths
 
 #: I / (A L^2) below which a strip is for the multiplier path, a hundredth above the kernel's own limit.
 LEAST_COMPLIANCE = 1.01e-9
@@ -89,7 +88,7 @@ def _solve_batch(
     which branch is right. Both sides of a plain pivot are mirror images (its strips are alike and only the
     couple acts, wherever the body's centre lies), so that one is enough.
     """
-    design = points.design_of(task, {})
+    design = plan.design_of(task, {})
     assert isinstance(design, Problem)
     count = len(next(iter(columns.values())))
     given = _attributes(task, design, columns, count)
@@ -155,7 +154,7 @@ def _groups(
     for row in rows:
         alike.setdefault((increments[row], *(columns[key][row] for key in varied)), []).append(row)
     for (count, *settings), members in alike.items():
-        own = points.varied_settings(task, dict(zip(varied, settings, strict=True)))
+        own = plan.varied_settings(task, dict(zip(varied, settings, strict=True)))
         yield own, count, np.array(members)
 
 
@@ -182,24 +181,21 @@ def _paths(
         return np.zeros(len(turns), dtype=bool), {}
     unstable = np.count_nonzero(batch.inertia, axis=1)
     turning = (batch.stiffness[:, 1:] * batch.stiffness[:, :-1] < 0.0).any(axis=1)
-    sides = 1 + task.analysis.both_sides
+    own = {name: getattr(batch, name) for name in ("rotation", "torque", "stiffness", "energy")}
     paths = Paths(
         rest=0,
-        rotation=batch.rotation,
-        torque=batch.torque,
-        stiffness=batch.stiffness,
         stress=batch.strain * given["youngs_modulus"][:, None],
-        energy=batch.energy,
         defect=batch.moment_defect,
         unstable=unstable,
-        iterations=sides * batch.iterations,
+        iterations=(1 + task.analysis.both_sides) * batch.iterations,
         shift=centre_shift(_crossing(given), batch.rotation, batch.centre),
         places={},
         strips=(_strip(given).bent(batch.strain.max(axis=1)),),
         effects=tuple(PLAIN),
+        **own,
     )
     sure = batch.converged & (unstable == 0) & ~turning
-    return sure, quantities.values(points.stored(task), task.quantities, paths)
+    return sure, points.values(points.stored(task), paths)
 
 
 def _crossing(given: Columns) -> Array:
@@ -212,11 +208,7 @@ def _crossing(given: Columns) -> Array:
 def _strip(given: Columns) -> Strip:
     """Return the strips of all designs as one of arrays."""
     return Strip(
-        length=given["length"],
         thickness=given["depth"],
         width=given["area"] / given["depth"],
-        youngs_modulus=given["youngs_modulus"],
-        poisson_ratio=given["poisson_ratio"],
-        density=given["density"],
-        yield_strength=given["yield_strength"],
+        **{name: given[name] for name in (*SAME_NAME, "yield_strength")},
     )

@@ -62,7 +62,7 @@ QUANTITIES = {
 """What is wanted: large (-1) or small (1)."""
 
 
-def swept() -> Answer:
+def _swept() -> Answer:
     """Return the sample with the front, maps, ratios around Wittrick's, and chosen designs by elements.
 
     Tables: designs (a row a point; front: "yes" for one that is not bettered); map (a grid at one
@@ -72,10 +72,14 @@ def swept() -> Answer:
     designs = _rows(SPACE)
     costs = _costs(designs)
     designs["front"] = np.where(not_dominated(costs), "yes", "no")
-    ratios = pd.concat([_rows(_line(angle)) for angle in INCLINATIONS], ignore_index=True)
+    near = [*RATIOS.tolist(), WITTRICK, 0.5]
+    ratios = pd.concat(
+        [_rows(_over(crossing_ratio=near, inclination_deg=[angle])) for angle in INCLINATIONS],
+        ignore_index=True,
+    )
     checks, comparison = _checks(designs, costs)
     tables = {"designs": designs, "ratios": ratios, "checks": checks, "comparison": comparison}
-    tables["map"] = _rows(_grid(MAP_RATIOS, MAP_INCLINATIONS))
+    tables["map"] = _rows(_map())
     return {name: rounded(rows) for name, rows in tables.items()} | {"findings": _findings(tables)}
 
 
@@ -97,25 +101,16 @@ def _rows(content: Mapping[str, Any]) -> pd.DataFrame:
     return named[[key for key in KEYS if key in named] + list(QUANTITIES)]
 
 
-def _grid(ratios: int, inclinations: int) -> dict[str, Any]:
-    """Return the sweep of a grid over the range of the space at one slenderness."""
-    strip = SPACE["vary"]["strip"]
-    axes = {
-        "crossing_ratio": {**strip["crossing_ratio"], "points": ratios},
-        "inclination_deg": {**strip["inclination_deg"], "points": inclinations},
-        "slenderness": [MAP_SLENDERNESS],
-    }
-    return SPACE | {"sample": {"method": "grid"}, "vary": {"strip": axes}}
+def _over(**axes: Any) -> dict[str, Any]:
+    """Return the sweep of a grid over crossing ratio and inclination at one slenderness."""
+    strip = {**axes, "slenderness": [MAP_SLENDERNESS]}
+    return SPACE | {"sample": {"method": "grid"}, "vary": {"strip": strip}}
 
 
-def _line(inclination: float) -> dict[str, Any]:
-    """Return the sweep of crossing ratios around Wittrick's, with his and one half."""
-    axes = {
-        "crossing_ratio": [*RATIOS.tolist(), WITTRICK, 0.5],
-        "inclination_deg": [inclination],
-        "slenderness": [MAP_SLENDERNESS],
-    }
-    return SPACE | {"sample": {"method": "grid"}, "vary": {"strip": axes}}
+def _map() -> dict[str, Any]:
+    """Return the sweep of a grid over the range of the space."""
+    points = {"crossing_ratio": MAP_RATIOS, "inclination_deg": MAP_INCLINATIONS}
+    return _over(**{key: SPACE["vary"]["strip"][key] | {"points": n} for key, n in points.items()})
 
 
 def _costs(designs: pd.DataFrame) -> Array:
@@ -227,6 +222,6 @@ def _of_wittrick(ratios: pd.DataFrame, inclination: float) -> list[Finding]:
 
 STUDY = Study(
     cases=(CASE,),
-    parts=(Part(ask=swept, alone=True),),
+    parts=(Part(ask=_swept, alone=True),),
     figures={"design_space": space_figure.space},
 )

@@ -12,7 +12,6 @@ import fcntl
 import hashlib
 import json
 import os
-import re
 from collections.abc import Iterator
 from contextlib import contextmanager
 from importlib.metadata import version
@@ -149,7 +148,9 @@ def _require_usable(root: Path, manifest: dict[str, Any]) -> bool:
     """Return whether the folder is new; OutputError unless it is that, empty, or of the same sweep."""
     if root.exists() and not root.is_dir():
         raise OutputError(f"{root}: got a file, expected a folder")
-    if not root.exists() or all(_is_temporary(path) for path in root.iterdir()):
+    if not root.exists() or all(
+        path.name.startswith(temporary_prefix(Path(MANIFEST))) for path in root.iterdir()
+    ):
         return True
     path = root / MANIFEST
     if not path.is_file():
@@ -166,10 +167,6 @@ def _require_usable(root: Path, manifest: dict[str, Any]) -> bool:
                 f"{root}: got a sweep with {what}, expected the same as before, or another folder"
             )
     return False
-
-
-def _is_temporary(path: Path) -> bool:
-    return re.match(re.escape(temporary_prefix(Path(MANIFEST))), path.name) is not None
 
 
 def _difference(former: dict[str, Any], now: dict[str, Any]) -> str:

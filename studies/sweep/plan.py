@@ -1,6 +1,7 @@
 """What a sweep is, once DESIGNS.toml has been read: frozen values that go to workers as they are; and what it
 may vary: the keys of a case, the settings of a model, and the slenderness of a pivot."""
 
+import copy
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
@@ -8,6 +9,9 @@ from typing import Any
 
 from studies.answers.settings import settings_of_model
 from studies.cases import effects, keys
+from studies.cases.design import Design
+from studies.cases.mechanism import read_mechanism
+from studies.cases.problem import read_problem
 from studies.cases.rules import Number, Pair, Rule, Text, not_negative, positive, whole
 
 METHODS = ("grid", "list", "latin-hypercube", "sobol")
@@ -223,3 +227,22 @@ def of_slenderness(slenderness: Any, length: Any, area: float, second: float) ->
     width = area / math.sqrt(12.0 * second / area)
     depth = length / slenderness
     return width * depth, width * depth**3 / 12.0
+
+
+#: Control points of a spline unless said otherwise.
+CONTROL_POINTS = 6
+
+
+def design_of(task: Task, values: Mapping[str, Any]) -> Design:
+    """Return one design of the sweep; CaseError where a value is out of its range."""
+    document = copy.deepcopy(task.case)
+    put_all(document, values)
+    read = read_mechanism if isinstance(document.get("strips"), list) else read_problem
+    return read(task.where, document)
+
+
+def varied_settings(task: Task, values: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the keywords of the settings of one design: those of the sweep, and those that it varies."""
+    own = {key.partition(".")[2]: value for key, value in values.items() if key.startswith(f"{SETTINGS}.")}
+    usual = {"control_points": CONTROL_POINTS} if task.model == "spline" else {}
+    return usual | task.settings | own

@@ -1,30 +1,195 @@
-"""Designs of a sweep solved one by one, a row each, whatever becomes of them."""
+"""What a sweep stores of each design, and designs solved one by one, a row each, whatever becomes of them.
 
-import copy
-from collections.abc import Mapping
-from dataclasses import replace
-from typing import Any
+Quantities have names with units, say what they mean, and how they follow from an answer. Answers come for D
+designs side by side; arrays over the path have shape (D, S).
+"""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
+from studies.answers import validity
 from studies.answers.adapters import answer_modes, answer_release
 from studies.answers.models import built, model_of, refusals, static_path
-from studies.answers.response import centre_shift
+from studies.answers.motion import Motion, Spectrum
+from studies.answers.response import response
 from studies.answers.settings import Settings, settings_of_model
-from studies.answers.strength import moduli_of, strains_of
-from studies.answers.validity import strips_of
+from studies.answers.strength import moduli_of
+from studies.answers.validity import Strip, strips_of
 from studies.cases.design import Design
-from studies.cases.mechanism import read_mechanism
-from studies.cases.problem import Problem, read_problem
 from studies.errors import BadInput
 from studies.kinds import Array
-from studies.sweep import plan, quantities
-from studies.sweep.plan import Task
-from studies.sweep.quantities import Answer, Paths, Quantity
+from studies.sweep.plan import Task, design_of, varied_settings
 
-#: Control points of a spline unless said otherwise.
-CONTROL_POINTS = 6
+#: How a design ended.
 CONVERGED, NOT_CONVERGED = "converged", "not_converged"
+REFUSED, FAILED = "refused", "failed"
+#: Columns beside keys and quantities.
+POINT, STATUS, REASON = "point", "status", "reason"
+
+
+class _Quantity(NamedTuple):
+    """A column of the table: what it means, and its value for each design from their answer, (D,).
+
+    `usual`: stored where the file does not say what is. `whole`: of whole numbers.
+    """
+
+    meaning: str
+    of: Callable[[Any], Any]
+    usual: bool = True
+    whole: bool = False
+
+
+@dataclass(frozen=True, kw_only=True)
+class Paths:
+    """Static paths of D designs over S states in the order of the rotation; `rest` is the unloaded one.
+
+    torque [N m]; stiffness [N m/rad]; shift (D, S, 2) of the crossing point [m]; stress the largest of the
+    strips [Pa]; energy of strain [J]; defect of the moments [1]; unstable (D,) states, -1 where the model
+    cannot tell; iterations (D,) of Newton; places (D, S, 3) of the bodies by name [m, m, rad];
+    strips with the most that happens to them, arrays (D,); effects that were assembled.
+    """
+
+    rest: int
+    rotation: Array
+    torque: Array
+    stiffness: Array
+    stress: Array
+    energy: Array
+    defect: Array
+    unstable: NDArray[np.int64]
+    iterations: NDArray[np.int64]
+    shift: Array
+    places: Mapping[str, Array]
+    strips: tuple[Strip, ...]
+    effects: tuple[str, ...]
+
+
+def _shift(paths: Paths) -> Array:
+    return np.hypot(paths.shift[..., 0], paths.shift[..., 1])
+
+
+def _most(ratio: str) -> Callable[[Paths], Array]:
+    """Return what takes the largest of a ratio over the strips."""
+    return lambda paths: np.max([np.asarray(getattr(s, ratio), dtype=float) for s in paths.strips], axis=0)
+
+
+PATH = {
+    "rotation_rad": _Quantity("rotation at the end", lambda p: p.rotation[:, -1]),
+    "torque_Nm": _Quantity("driving torque at the end", lambda p: p.torque[:, -1]),
+    "stiffness_rest_Nm_per_rad": _Quantity("rotational stiffness at rest", lambda p: p.stiffness[:, p.rest]),
+    "stiffness_end_Nm_per_rad": _Quantity("rotational stiffness at the end", lambda p: p.stiffness[:, -1]),
+    "stiffness_variation": _Quantity(
+        "largest less smallest stiffness of the path, over that at rest",
+        lambda p: np.ptp(p.stiffness, axis=1) / np.abs(p.stiffness[:, p.rest]),
+    ),
+    "stress_max_Pa": _Quantity(
+        "largest |N|/A + |M| d/(2 I) of all strips and states", lambda p: p.stress.max(axis=1)
+    ),
+    "energy_J": _Quantity("strain energy at the end", lambda p: p.energy[:, -1]),
+    "moment_defect": _Quantity(
+        "largest relative imbalance of the strips' moments, of a spline", lambda p: p.defect.max(axis=1)
+    ),
+    "iterations": _Quantity("Newton iterations", lambda p: p.iterations, whole=True),
+    "unstable_states": _Quantity(
+        "states of the path that are not stable, -1 where the model does not say",
+        lambda p: p.unstable,
+        usual=False,
+        whole=True,
+    ),
+    "torque_max_Nm": _Quantity(
+        "largest magnitude of the driving torque", lambda p: np.abs(p.torque).max(axis=1), usual=False
+    ),
+    "stress_end_Pa": _Quantity(
+        "largest stress of the strips at the end", lambda p: p.stress[:, -1], usual=False
+    ),
+    # what an answer is worth; the curvature is taken as high as the strain allows
+    "width_ratio": _Quantity("b/L, largest of the strips", _most("width_ratio")),
+    "curvature_ratio": _Quantity(
+        "b^2/(R t), largest of strips and states, at most", _most("curvature_ratio")
+    ),
+    "thickness_ratio": _Quantity("t/L, largest of the strips", _most("thickness_ratio")),
+    "strain_max": _Quantity("largest strain of strips and states", _most("strain")),
+    "outside": _Quantity(
+        "limits of the model that the answer lies beyond",
+        lambda p: validity.passed(p.strips, p.effects),
+        whole=True,
+    ),
+}
+SHIFT = {
+    "centre_shift_end_m": _Quantity(
+        "displacement of the body's point at the strips' crossing, at the end", lambda p: _shift(p)[:, -1]
+    ),
+    "centre_shift_max_m": _Quantity("largest displacement of that point", lambda p: _shift(p).max(axis=1)),
+    "centre_shift_end_x_m": _Quantity(
+        "x of the displacement at the end", lambda p: p.shift[:, -1, 0], usual=False
+    ),
+    "centre_shift_end_y_m": _Quantity(
+        "y of the displacement at the end", lambda p: p.shift[:, -1, 1], usual=False
+    ),
+}
+
+
+def _place(body: str, axis: int) -> Callable[[Paths], Array]:
+    return lambda paths: paths.places[body][:, -1, axis]
+
+
+def _of_bodies(names: list[str]) -> dict[str, _Quantity]:
+    """Return the places of bodies at the end of a path."""
+    return {
+        f"{body}_{part}": _Quantity(f"{part} of {body} at the end", _place(body, axis))
+        for body in names
+        for axis, part in enumerate(("x_m", "y_m", "rotation_rad"))
+    }
+
+
+def _frequency(mode: int) -> Callable[[Spectrum], float]:
+    return lambda found: found.frequency[mode] if mode < len(found.frequency) else np.nan
+
+
+def _of_modes(count: int) -> dict[str, _Quantity]:
+    """Return the frequencies of the lowest modes; negative where the state is unstable."""
+    return {
+        f"frequency_{mode}_Hz": _Quantity(f"frequency of mode {mode}", _frequency(mode - 1))
+        for mode in range(1, count + 1)
+    }
+
+
+RELEASE = {
+    "frequency_Hz": _Quantity("frequency of the swing", lambda m: m.frequency),
+    "rotation_min_rad": _Quantity("smallest rotation", lambda m: m.rotation.min()),
+    "rotation_max_rad": _Quantity("largest rotation", lambda m: m.rotation.max()),
+    "kinetic_max_J": _Quantity("largest kinetic energy", lambda m: m.kinetic_energy.max()),
+    "energy_error": _Quantity("largest relative error of the energy", lambda m: m.energy_error),
+    "records": _Quantity("records of the motion", lambda m: len(m.time), usual=False, whole=True),
+}
+"""Of a release: functions of a `Motion`."""
+
+Answer = Paths | Spectrum | Motion
+
+
+def known(case: Mapping[str, Any], kind: str, count: int) -> dict[str, _Quantity]:
+    """Return all quantities of an analysis of the case's document, `count` of modes."""
+    if kind == "modes":
+        return _of_modes(count)
+    if kind == "release":
+        return RELEASE
+    mechanism = isinstance(case.get("strips"), list)
+    return PATH | (_of_bodies([body["name"] for body in case.get("bodies", [])]) if mechanism else SHIFT)
+
+
+def stored(task: Task) -> dict[str, _Quantity]:
+    """Return the quantities that the task stores, by name, in their order."""
+    found = known(task.case, task.analysis.kind, task.analysis.options.get("count", 0))
+    return {name: found[name] for name in task.quantities}
+
+
+def values(found: Mapping[str, _Quantity], answer: Answer) -> dict[str, Array]:
+    """Return the quantities of an answer, (D,) each."""
+    return {name: np.atleast_1d(np.asarray(each.of(answer))) for name, each in found.items()}
 
 
 def static_answer(design: Design, settings: Settings, *, both_sides: bool) -> tuple[str, str, Paths | None]:
@@ -41,7 +206,7 @@ def static_answer(design: Design, settings: Settings, *, both_sides: bool) -> tu
         found.append(result)
     remark = "; ".join(dict.fromkeys(result.message for result in found if result.message))
     paths = [_paths_of(side, result) for side, result in zip(sides, found, strict=True)]
-    return CONVERGED, remark, paths[0] if len(paths) == 1 else joined(*paths)
+    return CONVERGED, remark, paths[0] if len(paths) == 1 else _joined(*paths)
 
 
 def _static_result(design: Design, settings: Settings) -> Any:
@@ -53,119 +218,66 @@ def _static_result(design: Design, settings: Settings) -> Any:
 
 def _paths_of(design: Design, result: Any) -> Paths:
     """Return the path of one design from a model's solution."""
-    states = len(result.torque)
-    inertia = getattr(result, "inertia", None)
-    energy = result.bending_energy + result.axial_energy + getattr(result, "shear_energy", 0.0)
-    places = {name: np.asarray(place)[None] for name, place in result.bodies.items()}
-    nowhere = np.full((1, states, 3), np.nan)
-    place = places[design.body] if design.body else nowhere
-    strain = strains_of(design, result.axial_force, result.bending_moment).max(axis=2)
-    shift = nowhere[..., :2]
-    if isinstance(design, Problem):
-        shift = centre_shift(design.crossing_point, place[..., 2], place[..., :2])
+    answer = response(design, result, model="", settings={}, effects=(), wall_s=np.nan, solve_s=np.nan)
+    inertia, states = getattr(result, "inertia", None), len(answer.load_factor)
+    places = {name: place[None] for name, place in answer.bodies.items()}
+    strains = (answer.extreme_fibre_stress.max(axis=2) / moduli_of(design)).max(axis=0)
+    strips = zip(strips_of(design), strains[:, None], strict=True)
+    nowhere = np.full((states, 2), np.nan)
     return Paths(
         rest=0,
-        rotation=place[..., 2],
-        torque=result.torque[None],
-        stiffness=result.stiffness[None],
-        stress=(strain * moduli_of(design)).max(axis=1)[None],
-        energy=np.asarray(energy)[None],
-        defect=np.asarray(getattr(result, "moment_defect", np.full(states, np.nan)))[None],
+        rotation=places[design.body][..., 2] if design.body else nowhere[None, :, 0],
+        torque=answer.torque[None],
+        stiffness=answer.stiffness[None],
+        stress=answer.max_stress[None],
+        energy=answer.strain_energy[None],
+        defect=np.asarray(getattr(result, "moment_defect", nowhere[:, 0]))[None],
         unstable=np.array([-1 if inertia is None else np.count_nonzero(inertia)]),
         iterations=np.array([result.counters["newton_iterations"]]),
-        shift=shift,
+        shift=(nowhere if answer.crossing is None else answer.centre_shift)[None],
         places=places,
-        strips=tuple(
-            strip.bent(strain[:, k].max(keepdims=True)) for k, strip in enumerate(strips_of(design))
-        ),
+        strips=tuple(strip.bent(strain) for strip, strain in strips),
         effects=tuple(design.effects.names),
     )
 
 
-def joined(one: Paths, other: Paths) -> Paths:
+def _joined(one: Paths, other: Paths) -> Paths:
     """Return the paths to both sides as one, from the end of `other` through rest to that of `one`."""
-
-    def both(name: str) -> Array:
-        return np.concatenate((getattr(other, name)[:, :0:-1], getattr(one, name)), axis=1)
-
     arrays = ("rotation", "torque", "stiffness", "stress", "energy", "defect", "shift")
-    unstable = np.where(one.unstable < 0, -1, one.unstable + other.unstable)
-    return Paths(
+    both: dict[str, Any] = {
+        name: np.concatenate((getattr(other, name)[:, :0:-1], getattr(one, name)), axis=1) for name in arrays
+    }
+    strips = zip(one.strips, other.strips, strict=True)
+    return replace(
+        one,
         rest=one.rotation.shape[1] - 1,
-        unstable=unstable,
+        unstable=np.where(one.unstable < 0, -1, one.unstable + other.unstable),
         iterations=one.iterations + other.iterations,
-        places=one.places,
-        strips=tuple(
-            strip.bent(np.maximum(strip.strain, twin.strain))
-            for strip, twin in zip(one.strips, other.strips, strict=True)
-        ),
-        effects=one.effects,
-        **{name: both(name) for name in arrays},
+        strips=tuple(strip.bent(np.maximum(strip.strain, twin.strain)) for strip, twin in strips),
+        **both,
     )
-
-
-REFUSED, FAILED = "refused", "failed"
-#: Columns beside keys and quantities.
-POINT, STATUS, REASON = "point", "status", "reason"
-
-
-def stored(task: Task) -> dict[str, Quantity]:
-    """Return the quantities that the task stores, by name, in their order."""
-    found = known(task.case, task.analysis.kind, task.analysis.options.get("count", 0))
-    return {name: found[name] for name in task.quantities}
-
-
-def known(case: Mapping[str, Any], kind: str, count: int) -> dict[str, Quantity]:
-    """Return all quantities of an analysis of the case's document."""
-    mechanism = isinstance(case.get("strips"), list)
-    bodies = [body["name"] for body in case.get("bodies", [])] if mechanism else None
-    return quantities.known(kind, bodies=bodies, count=count)
 
 
 def solve_each(
     task: Task, designs: list[dict[str, Any]]
 ) -> tuple[list[str], list[str], dict[str, list[float]]]:
     """Solve designs one by one; returns status, reason and quantities as columns."""
-    status, reason = [], []
+    ended, table = [], stored(task)
     found: dict[str, list[float]] = {name: [] for name in task.quantities}
-    table = stored(task)
     for design in designs:
-        how, why, answer = _answered(task, design)
-        status.append(how)
-        reason.append(why)
-        if answer is None:
-            row = dict.fromkeys(task.quantities, np.nan)
-        else:
-            row = {
-                name: values[0] for name, values in quantities.values(table, task.quantities, answer).items()
-            }
-        for name, value in row.items():
-            found[name].append(float(value))
-    return status, reason, found
+        *how, answer = _answered(task, design)
+        ended.append(how)
+        row = {} if answer is None else values(table, answer)
+        for name, column in found.items():
+            column.append(float(row[name][0]) if row else np.nan)
+    return [status for status, _ in ended], [reason for _, reason in ended], found
 
 
-def design_of(task: Task, values: Mapping[str, Any]) -> Design:
-    """Return one design of the sweep; CaseError where a value is out of its range."""
-    document = copy.deepcopy(task.case)
-    plan.put_all(document, values)
-    read = read_mechanism if isinstance(document.get("strips"), list) else read_problem
-    return read(task.where, document)
-
-
-def varied_settings(task: Task, values: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the keywords of the settings of one design: those of the sweep, and those that it varies."""
-    own = {
-        key.partition(".")[2]: value for key, value in values.items() if key.startswith(f"{plan.SETTINGS}.")
-    }
-    usual = {"control_points": CONTROL_POINTS} if task.model == "spline" else {}
-    return usual | task.settings | own
-
-
-def _answered(task: Task, values: Mapping[str, Any]) -> tuple[str, str, Answer | None]:
+def _answered(task: Task, given: Mapping[str, Any]) -> tuple[str, str, Answer | None]:
     """Return status, reason and answer of one design."""
     try:
-        design = design_of(task, values)
-        settings = settings_of_model(task.model, **varied_settings(task, values))
+        design = design_of(task, given)
+        settings = settings_of_model(task.model, **varied_settings(task, given))
         return _solved(task, design, settings)
     except BadInput as error:
         return REFUSED, str(error), None

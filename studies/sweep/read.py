@@ -4,6 +4,7 @@ import copy
 import hashlib
 import json
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -57,7 +58,7 @@ def plan_of(where: str, content: Mapping[str, Any], folder: Path) -> Plan:
     if not tables["vary"] and "file" not in tables["sample"]:
         raise CaseError(f"{where}: [vary]: got nothing to vary, expected keys of the case, as strip.length_m")
     case = _case(where, content.get("case"), folder)
-    model = _one_of(where, "model", content.get("model", "spline"), MODELS)
+    model = document.one_of(where, "model", content.get("model", "spline"), MODELS)
     known = plan.known(case, model)
     for key, value in leaves(tables["set"]):
         if key.startswith(f"{plan.SETTINGS}."):
@@ -111,13 +112,6 @@ def _case(where: str, name: Any, folder: Path) -> dict[str, Any]:
     raise CaseError(f"{where}: case: got {name}, expected {expected}, or a file that ends in .toml")
 
 
-def _one_of(where: str, label: str, value: Any, names: tuple[str, ...]) -> str:
-    if not isinstance(value, str) or value not in names:
-        expected = document.nearest(str(value), list(names))
-        raise CaseError(f"{where}: {label}: got {shown(value)}, expected {expected}")
-    return value
-
-
 def _settings(where: str, given: Mapping[str, Any], known: Mapping[str, Any]) -> dict[str, Any]:
     """Return the keywords of the model's settings."""
     own = [key.partition(".")[2] for key in known if key.startswith(f"{plan.SETTINGS}.")]
@@ -143,7 +137,7 @@ def _refuse_overlaps(where: str, varied: list[str], case: Mapping[str, Any]) -> 
 
 
 def _analysis(where: str, given: Mapping[str, Any]) -> Analysis:
-    kind = _one_of(where, "analysis.kind", given.get("kind", "static"), KINDS)
+    kind = document.one_of(where, "analysis.kind", given.get("kind", "static"), KINDS)
     document.refuse_unknown(where, "analysis", given, ["kind", *OPTIONS[kind]])
     found = dict(STANDARD[kind])
     for name, (keyword, rule) in OPTIONS[kind].items():
@@ -162,7 +156,7 @@ def _quantities(
     if not isinstance(names, list) or not names or len(set(map(str, names))) < len(names):
         raise CaseError(f"{where}: store.quantities: got {shown(names)}, expected different names in a list")
     for name in names:
-        _one_of(where, "store.quantities", name, tuple(found))
+        document.one_of(where, "store.quantities", name, tuple(found))
     return tuple(names)
 
 
@@ -172,23 +166,22 @@ def _checked(task: Task, sample: Sample) -> Task:
     Ends of ranges and listed values have kept their own rules by now; here the case as a whole is read.
     """
     first = {axis.key: axis.low if axis.values is None else axis.values[0] for axis in sample.axes}
-    design = points.design_of(task, first)
+    design = plan.design_of(task, first)
     if task.analysis.both_sides and design.rotation is None:
         raise CaseError(f"{task.where}: analysis.both_sides: got true, expected it with a driven rotation")
     for chosen in _settings_of(task, sample):
         settings = settings_of_model(task.model, **chosen)
         built(model_of(settings), design, settings, moving=task.analysis.kind != "static")
-    takes = batch.takes(task)
-    return Task(**{**vars(task), "batch": takes})
+    return replace(task, batch=batch.takes(task))
 
 
 def _settings_of(task: Task, sample: Sample) -> Iterator[dict[str, Any]]:
     """Yield the settings of the sweep with each value of each setting that it varies."""
-    yield points.varied_settings(task, {})
+    yield plan.varied_settings(task, {})
     for axis in sample.axes:
         if axis.key.startswith(f"{plan.SETTINGS}."):
             for value in axis.values or ():
-                yield points.varied_settings(task, {axis.key: value})
+                yield plan.varied_settings(task, {axis.key: value})
 
 
 def _content(content: Mapping[str, Any], task: Task, sample: Sample, chunk: int) -> dict[str, Any]:
@@ -204,12 +197,7 @@ def _content(content: Mapping[str, Any], task: Task, sample: Sample, chunk: int)
             "both_sides": task.analysis.both_sides,
             **task.analysis.options,
         },
-        "sample": {
-            "method": sample.method,
-            "points": sample.points,
-            "seed": sample.seed,
-            "chunk": chunk,
-        },
+        "sample": {name: getattr(sample, name) for name in ("method", "points", "seed")} | {"chunk": chunk},
         "vary": content.get("vary", {}),
         "file_sha256": hashlib.sha256(listed.encode()).hexdigest() if listed else "",
         "store": list(task.quantities),

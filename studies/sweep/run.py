@@ -109,15 +109,15 @@ def _solve(
     interrupted: Callable[[], None],
 ) -> int:
     """Solve and keep the missing chunks; returns the number of their points."""
-    sizes = {number: plan.span(number)[1] - plan.span(number)[0] for number in missing}
     total = plan.sample.points
-    done = total - sum(sizes.values())
+    left = sum(stop - start for start, stop in map(plan.span, missing))
+    done = total - left
     progress(done, total)
     for number, table in _tables(plan, missing, pool, interrupted):
         folder.write(number, table)
-        done += sizes[number]
+        done += table.num_rows
         progress(done, total)
-    return sum(sizes.values())
+    return left
 
 
 def _tables(

@@ -28,9 +28,7 @@ def sample_of(
     """Return the sample that the sections [sample] and [vary] describe."""
     document.refuse_unknown(where, "sample", given, ["method", "points", "seed", "chunk", "file"])
     method = given.get("method", "list" if "file" in given else "grid")
-    if method not in METHODS:
-        expected = document.nearest(str(method), list(METHODS))
-        raise CaseError(f"{where}: sample.method: got {shown(method)}, expected {expected}")
+    document.one_of(where, "sample.method", method, METHODS)
     random = method in METHODS[2:]
     for name in ("points", "seed"):
         if name in given and not random:
@@ -84,15 +82,12 @@ def _axis(where: str, key: str, given: Any, known: Mapping[str, Any], method: st
     document.refuse_unknown(where, label, given, FIELDS)
     if "values" in given:
         if len(given) > 1:
-            raise CaseError(f"{where}: {label}: got values beside {_others(given)}, expected one of the two")
+            others = ", ".join(name for name in given if name != "values")
+            raise CaseError(f"{where}: {label}: got values beside {others}, expected one of the two")
         return Axis(key=key, rule=known[key], values=_listed(where, label, known[key], given["values"]))
     if method == "list":
         raise CaseError(f'{where}: {label}: got a range, expected values for sample.method = "list"')
     return _range(where, key, given, known[key], grid=method == "grid")
-
-
-def _others(given: Mapping[str, Any]) -> str:
-    return ", ".join(name for name in given if name != "values")
 
 
 def _listed(where: str, label: str, rule: Any, values: Any) -> tuple[Any, ...]:
@@ -122,10 +117,7 @@ def _range(where: str, key: str, given: Mapping[str, Any], rule: Any, *, grid: b
         raise CaseError(
             f"{where}: {label}: got an empty range from {shown(low)} to {shown(high)}, expected from < to"
         )
-    scale = given.get("scale", "linear")
-    if scale not in SCALES:
-        expected = document.nearest(str(scale), list(SCALES))
-        raise CaseError(f"{where}: {label}.scale: got {shown(scale)}, expected {expected}")
+    scale = document.one_of(where, f"{label}.scale", given.get("scale", "linear"), SCALES)
     if scale == "log" and low <= 0:
         raise CaseError(f"{where}: {label}.from: got {low}, expected it above 0 for a logarithm")
     points = document.admitted(where, f"{label}.points", POINTS, given.get("points", 1))

@@ -45,10 +45,10 @@ SHORT = ("stiffness", "variation", "shift", "stress")
 WITTRICK = {"0.1273": 0.5 - 5.0**0.5 / 6.0, "0.8727": 0.5 + 5.0**0.5 / 6.0}
 #: A map's quantity -> factor, title and levels of its lines.
 MAPS = {
-    "centre_shift_max_m": (1e3, "Largest shift of the centre [mm], slenderness {:g}", (0.5, 1, 2, 4, 6, 8)),
+    "centre_shift_max_m": (1e3, "Largest shift [mm], L/t = {:g}", (0.5, 1, 2, 4, 6, 8)),
     "stiffness_variation": (
         1.0,
-        "Variation of the stiffness [1], slenderness {:g}",
+        "Variation of the stiffness, L/t = {:g}",
         (0.03, 0.1, 0.2, 0.4, 0.7),
     ),
 }
@@ -84,7 +84,7 @@ def space(tables: Mapping[str, pd.DataFrame]) -> Figure:
     above[1].set(xlabel="largest stress [MPa]", ylabel="stiffness at rest [N m/rad]")
     above[1].set_title("Stress and stiffness")
     figure.colorbar(marks, ax=list(above), label="crossing ratio [1]", shrink=0.95)
-    above[0].legend(loc="upper left", frameon=True, framealpha=0.9)
+    above[0].legend(loc="lower right", frameon=True, framealpha=0.9)
     for panel, name in zip(below, MAPS, strict=True):
         _map(panel, tables["map"], name, *MAPS[name])
     return figure
@@ -101,14 +101,14 @@ def _cloud(
     rest, best = designs[~front], designs[front]
     panel.scatter(
         rest[x], rest[y], s=3, color="#c8c8c8", linewidths=0, rasterized=True, antialiased=False,
-        label=f"bettered by another ({len(rest)})",
+        label=f"dominated ({len(rest)})",
     )  # fmt: skip
     marks = panel.scatter(
         best[x], best[y], s=8, c=best["crossing_ratio"], cmap=COLOURS, vmin=0.1, vmax=0.9, linewidths=0,
-        rasterized=True, antialiased=False, label=f"not bettered ({len(best)})",
+        rasterized=True, antialiased=False, label=f"not dominated ({len(best)})",
     )  # fmt: skip
     pair = designs[not_dominated(np.column_stack((designs[x], sign * designs[y])))].sort_values(x)
-    panel.plot(pair[x], pair[y], color=BLACK, linewidth=1.0, label="not bettered in these two")
+    panel.plot(pair[x], pair[y], color=BLACK, linewidth=1.0, label="not dominated in these two")
     panel.plot(star[x], star[y], label="Table 1", **STAR)
     panel.set(xscale="log", yscale="log")
     return marks

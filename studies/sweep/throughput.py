@@ -45,7 +45,7 @@ def missing() -> str:
     return lacking("cluster", absent(["distributed"]))
 
 
-def timed(kind: str, count: int) -> Answer:
+def _timed(kind: str, count: int) -> Answer:
     """Return the times of so many workers of a kind, from drawing to the written table.
 
     Tables: timings (a row a size: the least time of repeated sweeps, without starting the workers);
@@ -54,18 +54,20 @@ def timed(kind: str, count: int) -> Answer:
     row = {"workers": kind, "count": count, "cores": os.cpu_count()}
     timings, cuts = [], []
     with _pool_of(kind, count) as pool:
-        _timed(pool, 64 * count, chunk=32)  # loads the kernels in every worker
+        _seconds_of(pool, 64 * count, chunk=32)  # loads the kernels in every worker
         for size in SIZES:
-            timings.append(row | {"designs": size, "wall_s": min(_timed(pool, size) for _ in range(REPEAT))})
+            timings.append(
+                row | {"designs": size, "wall_s": min(_seconds_of(pool, size) for _ in range(REPEAT))}
+            )
         if (kind, count) == ("threads", max(WORKERS)):
-            timings.append(row | {"designs": LARGEST, "wall_s": _timed(pool, LARGEST)})
+            timings.append(row | {"designs": LARGEST, "wall_s": _seconds_of(pool, LARGEST)})
         for chunks in CHUNKS if count == 1 else ():
-            seconds = min(_timed(pool, CUT, chunk=CUT // chunks) for _ in range(REPEAT))
+            seconds = min(_seconds_of(pool, CUT, chunk=CUT // chunks) for _ in range(REPEAT))
             cuts.append(row | {"chunks": chunks, "wall_s": seconds})
     return {"timings": timings, "timings_of_chunks": cuts}
 
 
-def figure(tables: Tables) -> Figure:
+def _figure(tables: Tables) -> Figure:
     """Draw designs a second against the size of the sweep, and the time against the number of chunks."""
     drawn = page(9.5, 4.4)
     rate, cost = drawn.subplots(1, 2)
@@ -108,7 +110,7 @@ def _pool_of(kind: str, count: int) -> Iterator[Pool]:
             yield pool
 
 
-def content(designs: int, chunk: int | None = None) -> dict[str, Any]:
+def _content(designs: int, chunk: int | None = None) -> dict[str, Any]:
     """Return the sweep of so many designs of the design space, by six control points."""
     sample: dict[str, Any] = {"method": "sobol", "points": designs}
     if chunk is not None:
@@ -116,9 +118,9 @@ def content(designs: int, chunk: int | None = None) -> dict[str, Any]:
     return SPACE | {"settings": {}, "analysis": {"kind": "static"}, "sample": sample}
 
 
-def _timed(pool: Pool, designs: int, *, chunk: int | None = None) -> float:
+def _seconds_of(pool: Pool, designs: int, *, chunk: int | None = None) -> float:
     """Return the time of one sweep, from drawing to the written table [s]."""
-    plan = plan_of("throughput", content(designs, chunk), Path())
+    plan = plan_of("throughput", _content(designs, chunk), Path())
     with tempfile.TemporaryDirectory() as folder:
         start = time.perf_counter()
         sweep(plan, Path(folder) / "sweep", pool=nullcontext(pool))
@@ -127,7 +129,7 @@ def _timed(pool: Pool, designs: int, *, chunk: int | None = None) -> float:
 
 def _work(designs: int) -> dict[str, Any]:
     """Return what a sweep of that size is made of, which no machine changes."""
-    plan = plan_of("throughput", content(designs), Path())
+    plan = plan_of("throughput", _content(designs), Path())
     with tempfile.TemporaryDirectory() as folder:
         sweep(plan, Path(folder) / "sweep")
         found = pq.read_table(Path(folder) / "sweep" / "designs.parquet", columns=["status", "iterations"])
@@ -187,10 +189,10 @@ def _named(kind: str, count: int) -> str:
 STUDY = Study(
     cases=("cross_axis_pivot",),
     parts=(
-        Part(at=lambda: product(KINDS, WORKERS), ask=timed, alone=True),
+        Part(at=lambda: product(KINDS, WORKERS), ask=_timed, alone=True),
         Part(at=lambda: SIZES, ask=lambda size: {"work": _work(size)}, alone=True),
     ),
     claims_of_time=(_findings,),
-    figures={"sweep_throughput": figure},
+    figures={"sweep_throughput": _figure},
     missing=missing,
 )

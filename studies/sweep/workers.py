@@ -149,7 +149,7 @@ _QUIET = ("--no-dashboard", "--protocol", "tcp", "--host", "127.0.0.1")
 
 
 @dataclass(frozen=True, kw_only=True)
-class Loopback:
+class _Loopback:
     """Address of the scheduler, tcp://127.0.0.1:PORT, its process and those of the workers."""
 
     address: str
@@ -158,7 +158,7 @@ class Loopback:
 
 
 @contextmanager
-def loopback(workers: int) -> Iterator[Loopback]:
+def loopback(workers: int) -> Iterator[_Loopback]:
     """Yield a cluster of that many workers with one thread each; all processes end with the context.
 
     Raises:
@@ -173,7 +173,7 @@ def loopback(workers: int) -> Iterator[Loopback]:
             for number in range(workers):
                 options = ("--nthreads", "1", "--no-nanny", "--local-directory", f"{folder}/{number}")
                 running.append(_started("worker", address, *options))
-            yield Loopback(address=address, scheduler=running[0], workers=tuple(running[1:]))
+            yield _Loopback(address=address, scheduler=running[0], workers=tuple(running[1:]))
         finally:
             for process in running:  # they keep nothing, and take seconds to end when asked to
                 process.kill()

@@ -69,7 +69,7 @@ def advise_path(problem: Design, error: float, progress: Progress = silent) -> p
                 | {"uncertainty_stress": limit.uncertainty["stress"]}
                 | {"solve_s": path.solve_s, "wall_s": path.wall_s, "message": path.message}
             )
-    found = chosen(pd.DataFrame(rows), PATH_ERRORS, error)
+    found = _chosen(pd.DataFrame(rows), PATH_ERRORS, error)
     for place, row in found.iterrows():
         progress(len(rows), total)
         if not row["message"]:
@@ -118,7 +118,7 @@ def advise_motion(problem: Design, error: float, progress: Progress = silent) ->
                 | {"solve_s": motion.solve_s, "wall_s": math.nan, "message": motion.message}
             )
     progress(total, total)
-    return chosen(pd.DataFrame(rows), MOTION_ERRORS, error)
+    return _chosen(pd.DataFrame(rows), MOTION_ERRORS, error)
 
 
 def _integrator(problem: Design, duration: float) -> str:
@@ -127,7 +127,7 @@ def _integrator(problem: Design, duration: float) -> str:
     return "leapfrog" if trial.solve(problem, 0.1 * duration).converged else "energy"
 
 
-def chosen(rows: pd.DataFrame, columns: Sequence[str], error: float) -> pd.DataFrame:
+def _chosen(rows: pd.DataFrame, columns: Sequence[str], error: float) -> pd.DataFrame:
     """Return a row a series: the fastest of the coarsest ones whose errors are kept, or the best one.
 
     Adds the column meets; of a series without any answer the first row stands.

@@ -20,11 +20,9 @@ from studies.baselines.variants import missing
 from studies.cases.problem import named_case
 from studies.engine.study import Answer, Claim, Part, Ratio, Study, Tables
 from studies.kinds import Array
-from studies.work_precision.equal_error import cheapest, diagram, finer, less
+from studies.work_precision.equal_error import diagram, digits, finer, less
 from studies.work_precision.members import RECORDS, Member, at, motion_errors
 from studies.work_precision.series import SPLINE, Series, looks, moving_others, moving_series
-
-CASE = "cross_axis_pivot"
 
 DURATION = 0.05
 INSTANTS = np.linspace(0.0, DURATION, 501)
@@ -39,8 +37,8 @@ COMPARED = 1e-2
 AT_EQUAL = f"At {{target:g}} rad over {DURATION:g} s"
 #: Errors in the figure: titles of their columns, above and below.
 QUANTITIES = {
-    "rotation_rad": ("rotation", "largest error of the rotation over 0.05 s [rad]"),
-    "frequency": ("frequency", "error of the swing's frequency [1]"),
+    "rotation_rad": "error of the rotation [rad]",
+    "frequency": "error of the frequency [1]",
 }
 
 
@@ -55,7 +53,7 @@ def _members() -> list[tuple[Series, int, Member]]:
 
 def _solved(series: Series, rank: int, member: Member) -> Answer:
     """Return errors, work and times of a setting."""
-    motion: SolvedMotion = member.solve(named_case(CASE), DURATION)
+    motion: SolvedMotion = member.solve(named_case(), DURATION)
     rotation, reference = _reference()
     name = {"series": series.name, "setting": member.setting}
     errors = {
@@ -78,24 +76,13 @@ def _solved(series: Series, rank: int, member: Member) -> Answer:
     return {"errors": errors, "timings": name | times}
 
 
-def _cheapest(tables: Tables, cost: str) -> pd.DataFrame:
-    """Return the cheapest settings at equal error of the rotation."""
-    return cheapest(
-        tables["errors"].merge(tables["timings"], on=["series", "setting"]),
-        columns=["error_rotation_rad"],
-        cost=cost,
-        rank="rank",
-        targets=TARGETS,
-    )
-
-
 @cache
 def _reference() -> tuple[Array, list[dict[str, Any]]]:
     """Return the rotation at the instants (T,) [rad] and how uncertain it and its frequency are."""
     rotations = []
     for n, step in REFERENCE.items():
         motion = answer_release(
-            named_case(CASE), SplineSettings(control_points=n), duration=DURATION, records=RECORDS,
+            named_case(), SplineSettings(control_points=n), duration=DURATION, records=RECORDS,
             integrator="leapfrog", step=step,
         )  # fmt: skip
         rotations.append(at(motion, INSTANTS))
@@ -118,15 +105,11 @@ def _swing(tables: Tables) -> pd.DataFrame:
 
 
 STUDY = Study(
-    cases=(CASE,),
     parts=(
         Part(ask=lambda: {"reference": _reference()[1]}, alone=True),
         Part(at=_members, ask=_solved, alone=True),
     ),
-    made={
-        "digits": lambda tables: _cheapest(tables, "flops"),
-        "digits_of_time": lambda tables: _cheapest(tables, "solve_s"),
-    },
+    made=digits(["error_rotation_rad"], "rank", TARGETS),
     claims=(
         less("counted work", "digits", AT_EQUAL, (COMPARED,)),
         finer("The reference is ten times finer than every error", "{quantity}"),

@@ -1,7 +1,7 @@
 """The cheapest setting of every model at equal error, and what may be claimed of cost and of references."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 
 import pandas as pd
 from matplotlib.axes import Axes
@@ -10,6 +10,9 @@ from matplotlib.figure import Figure
 from studies.engine.study import Claim, Ratio, Tables, records
 from studies.record.style import Look, page
 from studies.work_precision.series import SPLINE
+
+#: Tables that follow from others.
+Made = dict[str, Callable[[Tables], pd.DataFrame]]
 
 
 def worst(rows: pd.DataFrame, columns: Sequence[str]) -> pd.Series:
@@ -58,26 +61,28 @@ def cheapest(
         rows: with series, setting, the error columns and the cost.
         columns: of the errors; cost: column of what is to be least; rank: see `kept`.
     """
-    found = []
+    names, tables = rows["series"].unique(), []
     for target in targets:
         within = coarsest(rows[rows[cost].notna()], columns, rank, target)
-        here = {}
-        for name in rows["series"].unique():
-            mine = within[within["series"] == name]
-            here[name] = mine.loc[mine[cost].idxmin()] if len(mine) else None
-        least = here.get(baseline)
-        for name, row in here.items():
-            found.append(
-                {
-                    "target": target,
-                    "series": name,
-                    "setting": "" if row is None else row["setting"],
-                    "error": math.nan if row is None else row["error"],
-                    cost: math.nan if row is None else row[cost],
-                    "ratio": math.nan if row is None or least is None else row[cost] / least[cost],
-                }
-            )
-    return pd.DataFrame(found)
+        best = within.loc[within.groupby("series")[cost].idxmin()].set_index("series").reindex(names)
+        found = best.assign(target=target, setting=best["setting"].fillna(""))
+        found["ratio"] = found[cost] / found[cost].get(baseline, math.nan)
+        tables.append(found.reset_index()[["target", "series", "setting", "error", cost, "ratio"]])
+    return pd.concat(tables, ignore_index=True)
+
+
+def joined(tables: Tables) -> pd.DataFrame:
+    """Return errors, work and times of every setting in one table."""
+    return tables["errors"].merge(tables["timings"], on=["series", "setting"])
+
+
+def digits(columns: Sequence[str], rank: str, targets: Sequence[float]) -> Made:
+    """Return what makes the tables of the cheapest settings at equal error: by counted work, and by time."""
+
+    def by(cost: str) -> Callable[[Tables], pd.DataFrame]:
+        return lambda tables: cheapest(joined(tables), columns=columns, cost=cost, rank=rank, targets=targets)
+
+    return {"digits": by("flops"), "digits_of_time": by("solve_s")}
 
 
 def less(cost: str, table: str, claim: str, targets: Sequence[float]) -> Claim:
@@ -130,7 +135,7 @@ def finer(claim: str, formulation: str, *, within: Sequence[str] = ()) -> Claim:
 
 def diagram(
     tables: Tables,
-    quantities: Mapping[str, tuple[str, str]],
+    quantities: Mapping[str, str],
     *,
     margin: float,
     rank: str,
@@ -138,26 +143,25 @@ def diagram(
     part: str,
     width: float,
 ) -> Figure:
-    """Draw time (above) and work (below) over the largest error, one column a quantity.
+    """Draw the largest error over time (left) and work (right), one row a quantity.
 
     Args:
-        tables: errors and timings; quantities: of the errors, with titles above and below.
+        tables: errors and timings; quantities: of the errors, with what they are called.
         margin: errors below so many times that of their reference are left out.
         rank: column by which the settings of a family are joined; styles: by series.
         part: what a path is made of: increments or steps; width: of the figure [inch].
     """
-    rows = tables["errors"].merge(tables["timings"], on=["series", "setting"])
-    figure = page(width, 7.0)
-    panels = figure.subplots(2, len(quantities), sharex="col", sharey="row")
+    rows, figure = joined(tables), page(width, 1.6 + 2.1 * len(quantities))
+    panels = figure.subplots(len(quantities), 2, sharex="col", sharey="row")
     costs = {"solve_s": f"time of the {part} [s]", "flops": "counted operations [1]"}
-    for column, (quantity, (above, below)) in enumerate(quantities.items()):
+    for line, (quantity, title) in zip(panels, quantities.items(), strict=True):
         shown = rows[rows[f"error_{quantity}"] >= margin * rows[f"reference_{quantity}"]]
-        for panel, (cost, title) in zip(panels[:, column], costs.items(), strict=True):
+        for panel, cost in zip(line, costs, strict=True):
             _curves(panel, shown, f"error_{quantity}", cost, rank, styles)
-            panel.set(xscale="log", yscale="log", ylabel=title if column == 0 else "")
-        panels[0, column].set_title(above)
-        panels[1, column].set_xlabel(below)
-        panels[1, column].invert_xaxis()
+            panel.set(xscale="log", yscale="log")
+        line[0].set_ylabel(title)
+    for panel, title in zip(panels[-1], costs.values(), strict=True):
+        panel.set_xlabel(title)
     handles, labels = panels[0, 0].get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside lower center", ncols=3)
     return figure
@@ -171,9 +175,9 @@ def _curves(
     for name, look in styles.items():
         for place, (_, mine) in enumerate(known[known["series"] == name].groupby("family", sort=False)):
             label = {} if place == 0 else {"label": None}
-            panel.plot(mine[error], mine[cost], **(look.keywords() | label))
+            panel.plot(mine[cost], mine[error], **(look.keywords() | label))
             if cost == "flops" and mine["family"].iloc[0] != "all":
                 panel.annotate(
-                    mine["family"].iloc[0], (mine[error].iloc[-1], mine[cost].iloc[-1]), (0, 4),
-                    textcoords="offset points", ha="center", fontsize=7, color=look.colour,
+                    mine["family"].iloc[0].removeprefix("n = "), (mine[cost].iloc[0], mine[error].iloc[0]),
+                    (6, 4), textcoords="offset points", ha="center", fontsize=7, color=look.colour,
                 )  # fmt: skip

@@ -19,11 +19,9 @@ from studies.cases.design import Design
 from studies.cases.problem import Problem
 from studies.errors import BadInput
 from studies.kinds import Array
-from studies.work_precision.work import work_of, work_of_motion
+from studies.work_precision.work import MOVED_WORK, WORK, work_of, work_of_motion
 
-#: Columns of machine-neutral work.
-WORK = ("unknowns", "points", "iterations", "factorisation_flops", "assembly_flops", "flops")
-#: Names of these in the counters of a baseline, where they differ.
+#: Names of columns of work in the counters of a baseline, where they differ.
 THEIRS = {"iterations": "newton_iterations"}
 
 
@@ -55,18 +53,7 @@ def of_settings(settings: Settings, setting: str, count: int, accuracy: float | 
     def solve(problem: Design, repeat: int) -> SolvedPath:
         answer = answer_static(problem, settings, repeat=repeat, accuracy=accuracy)
         chosen = {} if accuracy is None else {"control_points": answer.settings["control_points"]}
-        return SolvedPath(
-            status=answer.status,
-            message=answer.message,
-            rotation=answer.rotation,
-            centre=answer.centre,
-            torque=answer.torque,
-            stiffness=answer.stiffness,
-            max_stress=answer.max_stress,
-            solve_s=answer.solve_s,
-            wall_s=answer.wall_s,
-            work=dict(work_of(replace(settings, **chosen), answer.counters).row()),
-        )
+        return SolvedPath.of(answer, work=work_of(replace(settings, **chosen), answer.counters))
 
     return Member(setting=setting, count=count, solve=solve)
 
@@ -79,13 +66,13 @@ def of_baseline(module: Any, setting: str, count: int, **settings: Any) -> Membe
         try:
             path: SolvedPath = module.static_path(problem, rotations, **settings).timed(repeat)
         except (BaselineFailed, BadInput) as stopped:
-            return unsolved(str(stopped))
+            return _unsolved(str(stopped))
         return replace(path, work=_counted(WORK, path.work))
 
     return Member(setting=setting, count=count, solve=solve)
 
 
-def unsolved(message: str) -> SolvedPath:
+def _unsolved(message: str) -> SolvedPath:
     """Return the answer of a model that did not reach the end of the path."""
     nothing = np.full(0, np.nan)
     return SolvedPath(
@@ -163,7 +150,7 @@ def limit_of_theory(problem: Design, theory: str) -> Limit:
     limit = limit_of(answers)
     return Limit(
         path=replace(
-            unsolved(""),
+            _unsolved(""),
             status="converged",
             centre=limit.centre,
             torque=limit.torque,
@@ -188,7 +175,6 @@ def _spatial(problem: Design) -> Limit:
     )
 
 
-MOVED_WORK = ("unknowns", "points", "steps", "evaluations", "factorisations", "flops")
 #: Largest number of records: the strips' own oscillations, some 40 times as fast as the swing, need so many
 #: for cubic interpolation to err by less than 1e-6 rad (1000 leave 8e-5 rad).
 RECORDS = 4000
@@ -211,16 +197,12 @@ def moving(settings: Settings, setting: str, family: str = "all", **options: Any
             motion = run(RECORDS)
         except BadInput as refused:  # an integrator that the scene does not allow
             return _stopped(str(refused))
-        repeats = _repeats_of(motion.solve_s) if motion.converged else 0
-        timed = run(TIMED_RECORDS, repeats) if repeats else motion
-        return SolvedMotion(
-            status=motion.status,
-            message=motion.message,
-            time=motion.time,
-            rotation=motion.rotation,
-            solve_s=timed.solve_s,
-            repeats=repeats,
-            work=work_of_motion(settings, motion.counters) if motion.converged else _counted(MOVED_WORK, {}),
+        if not motion.converged:
+            return SolvedMotion.of(motion, repeats=0, work=_counted(MOVED_WORK, {}))
+        repeats = _repeats_of(motion.solve_s)
+        work = work_of_motion(settings, motion.counters)
+        return SolvedMotion.of(
+            motion, solve_s=run(TIMED_RECORDS, repeats).solve_s, repeats=repeats, work=work
         )
 
     return Member(setting=setting, family=family, step=options.get("step") or math.nan, solve=solve)

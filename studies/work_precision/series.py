@@ -9,10 +9,9 @@ from dataclasses import dataclass
 from typing import Any
 
 from studies.answers.settings import FeSettings, SplineSettings
-from studies.baselines import openseespy_frame
 from studies.baselines.exudyn_strips import exudyn_ancf, exudyn_exact
-from studies.baselines.four_bar import four_bar
-from studies.baselines.linear_pivot import linear_pivot, pin_joint
+from studies.baselines.openseespy import openseespy_frame
+from studies.baselines.pseudo_rigid import four_bar, linear_pivot, pin_joint
 from studies.record.style import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, RED, SKY, YELLOW, Look
 from studies.work_precision.members import Member, moving, moving_baseline, of_baseline, of_settings
 

@@ -23,12 +23,10 @@ from studies.baselines.variants import missing
 from studies.cases.problem import named_case
 from studies.engine.study import Answer, Claim, Part, Study, Tables
 from studies.record.style import BASES, BLUE, GREEN, page
-from studies.work_precision.equal_error import cheapest, diagram, finer, less
+from studies.work_precision.equal_error import diagram, digits, finer, joined, less
 from studies.work_precision.members import THEORIES, Limit, Member, limit_of_theory, path_errors
 from studies.work_precision.series import ELEMENTS, SPLINE, Series, looks, other_series, own_series
 from studies.work_precision.work import ELEMENT_FORCES, STRIPS, work_of
-
-CASE = "cross_axis_pivot"
 
 #: An error is shown where it is this many times that of its reference.
 MARGIN = 10.0
@@ -39,15 +37,14 @@ TARGETS = (1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8)
 #: Errors at which the two models are compared, and how it is said.
 COMPARED = (1e-3, 1e-4, 1e-6)
 AT_EQUAL = "At an error of {target:g} in path and torque"
-TITLES = {"trajectory": "trajectory", "torque": "torque", "stiffness": "stiffness K"}
 
 #: Elements of the compiled motion from which the speed of compiled elements is taken.
 COMPILED_ELEMENTS = 20
 
 #: Basis -> control points; the range from which the exponent is taken.
 COUNTS = {"bezier": (4, 6, 8, 12, 16, 20, 24), "bspline": (8, 12, 16, 24, 32, 48, 64)}
-#: Increments of the path that is timed, and how often it is.
-INCREMENTS, REPEAT = 20, 7
+#: How often the path is timed.
+REPEAT = 7
 
 
 def _members() -> list[tuple[Series, Member]]:
@@ -57,7 +54,7 @@ def _members() -> list[tuple[Series, Member]]:
 
 def _solved(series: Series, member: Member) -> Answer:
     """Return errors over the path and at its end, those of the reference, work, and times of a setting."""
-    path, exact = member.solve(named_case(CASE), series.repeat), _limit(series.theory)
+    path, exact = member.solve(named_case(), series.repeat), _limit(series.theory)
     name = {"series": series.name, "setting": member.setting}
     errors = {
         "series": series.name,
@@ -78,17 +75,7 @@ def _solved(series: Series, member: Member) -> Answer:
 @cache
 def _limit(theory: str) -> Limit:
     """Return what settings of a theory are held against."""
-    return limit_of_theory(named_case(CASE), theory)
-
-
-def _cheapest(tables: Tables, cost: str) -> pd.DataFrame:
-    """Return the cheapest settings at equal error."""
-    return cheapest(_joined(tables), columns=ERRORS, cost=cost, rank="count", targets=TARGETS)
-
-
-def _joined(tables: Tables) -> pd.DataFrame:
-    """Return errors, work and times of every setting in one table."""
-    return tables["errors"].merge(tables["timings"], on=["series", "setting"])
+    return limit_of_theory(named_case(), theory)
 
 
 def _reference(theory: str) -> list[dict[str, Any]]:
@@ -125,7 +112,7 @@ def _language(tables: Tables) -> pd.DataFrame:
     Columns: series, setting, flops, solve_s, flops_per_s, compiled_s (time at the speed of compiled elements;
     for splines their own), python_share (what is left of the time; 0 for splines).
     """
-    rows = _joined(tables)
+    rows = joined(tables)
     rows = rows[rows["series"].isin([SPLINE, ELEMENTS])]
     found = rows[["series", "setting", "flops", "solve_s"]].copy()
     found["flops_per_s"] = found["flops"] / found["solve_s"]
@@ -141,7 +128,7 @@ def _compiled_speed() -> float:
     The loop also moves the nodes, which is not counted: the speed is a little more than what is returned.
     """
     motion = answer_release(
-        named_case(CASE), FeSettings(elements=COMPILED_ELEMENTS), duration=2e-3, records=10, repeat=5
+        named_case(), FeSettings(elements=COMPILED_ELEMENTS), duration=2e-3, records=10, repeat=5
     )
     elements = motion.counters["force_evaluations"] * STRIPS * COMPILED_ELEMENTS
     return elements * ELEMENT_FORCES / motion.solve_s
@@ -153,12 +140,15 @@ def _twenty(tables: Tables) -> pd.DataFrame:
 
 
 def _growth(tables: Tables) -> list[dict[str, Any]]:
-    """Return how the time of one iteration grows with the control points of each basis."""
-    limits = {"bezier": ("no faster than n^3", 3.0), "bspline": ("about linearly, up to n = 64", 1.25)}
-    return [
-        {"basis": BASES[basis], "power": power, "grows": limits[basis][0], "most": limits[basis][1]}
-        for basis, power in _exponents(tables).items()
-    ]
+    """Return p of time ~ n^p of one iteration by least squares for each basis, beyond the smallest counts."""
+    asked = {"bezier": (8, "no faster than n^3", 3.0), "bspline": (16, "about linearly, up to n = 64", 1.25)}
+    found = []
+    for basis, (least, grows, most) in asked.items():
+        rows = _of_basis(tables["scaling_of_time"], basis)
+        used = np.log(rows[rows["control_points"] >= least][["control_points", "iteration_s"]])
+        power = float(np.polyfit(used["control_points"], used["iteration_s"], 1)[0])
+        found.append({"basis": BASES[basis], "power": power, "grows": grows, "most": most})
+    return found
 
 
 def _iterations_asked() -> list[tuple[str, int]]:
@@ -169,15 +159,15 @@ def _iterations_asked() -> list[tuple[str, int]]:
 def _iteration(basis: str, n: int) -> Answer:
     """Return scaling (unknowns, evaluations, flops of one) and scaling_of_time."""
     settings = SplineSettings(control_points=n, basis=basis)
-    answer = answer_static(named_case(CASE), settings, repeat=REPEAT)
+    answer = answer_static(named_case(), settings, repeat=REPEAT)
     work, evaluations = work_of(settings, answer.counters), answer.counters["factorisations"]
     row = {"basis": basis, "control_points": n}
     counted = {
         "status": answer.status,
-        "unknowns": work.unknowns,
+        "unknowns": work["unknowns"],
         "evaluations": evaluations,
-        "assembly_flops": work.assembly_flops,
-        "factorisation_flops": work.factorisation_flops,
+        "assembly_flops": work["assembly_flops"],
+        "factorisation_flops": work["factorisation_flops"],
     }
     timed = {"iteration_s": answer.solve_s / evaluations, "solve_s": answer.solve_s}
     return {"scaling": row | counted, "scaling_of_time": row | timed}
@@ -186,16 +176,6 @@ def _iteration(basis: str, n: int) -> Answer:
 def _of_basis(table: pd.DataFrame, basis: str) -> pd.DataFrame:
     """Return the rows of one basis, sorted by count."""
     return table[table["basis"] == basis].sort_values("control_points")
-
-
-def _exponents(tables: Tables) -> dict[str, float]:
-    """Return p of time ~ n^p of one iteration by least squares for each basis, beyond the smallest counts."""
-    found = {}
-    for basis, least in {"bezier": 8, "bspline": 16}.items():
-        rows = _of_basis(tables["scaling_of_time"], basis)
-        used = rows[rows["control_points"] >= least]
-        found[basis] = float(np.polyfit(np.log(used["control_points"]), np.log(used["iteration_s"]), 1)[0])
-    return found
 
 
 def _scaling_figure(tables: Tables) -> Figure:
@@ -234,17 +214,12 @@ def _slopes(panel: Axes, first: int, last: int) -> None:
 
 
 STUDY = Study(
-    cases=(CASE,),
     parts=(
         Part(at=lambda: THEORIES, ask=lambda theory: {"reference": _reference(theory)}),
         Part(at=_members, ask=_solved, alone=True),
         Part(at=_iterations_asked, ask=_iteration, alone=True),
     ),
-    made={
-        "digits": lambda tables: _cheapest(tables, "flops"),
-        "digits_of_time": lambda tables: _cheapest(tables, "solve_s"),
-        "language": _language,
-    },
+    made=digits(ERRORS, "count", TARGETS) | {"language": _language},
     claims=(
         less("counted work", "digits", AT_EQUAL, COMPARED),
         finer(
@@ -284,12 +259,12 @@ STUDY = Study(
     figures={
         "work_precision_statics": lambda tables: diagram(
             tables,
-            {name: (title, f"largest error of the {name} [1]") for name, title in TITLES.items()},
+            {name: f"error of the {name} [1]" for name in ("trajectory", "torque", "stiffness")},
             margin=MARGIN,
             rank="count",
             styles=looks(own_series()),
             part="increments",
-            width=10.0,
+            width=9.5,
         ),
         "work_precision_scaling": _scaling_figure,
     },

@@ -15,12 +15,11 @@ from matplotlib.figure import Figure
 from studies.answers.adapters import answer_static
 from studies.answers.settings import FeSettings, Settings, SplineSettings
 from studies.baselines.variants import spread
-from studies.cases.problem import named_case
+from studies.cases.problem import TABLE_1, named_case
 from studies.engine.study import Answer, Part, Study, Tables
 from studies.record.source import ROOT
 from studies.record.style import BLACK, BLUE, page
 
-CASE = "cross_axis_pivot"
 #: Label -> settings of the least number that keep path and torque to 1e-4, and the words that ask for them.
 MODELS: dict[str, tuple[Settings, tuple[str, ...]]] = {
     "spline, n = 6": (SplineSettings(control_points=6), ("--control-points", "6")),
@@ -33,10 +32,10 @@ FIRST = """
 import json, time
 begin = time.perf_counter()
 from studies.answers.adapters import answer_static
-from studies.work_precision.waits import CASE, MODELS
+from studies.work_precision.waits import MODELS
 from studies.cases.problem import named_case
 ready = time.perf_counter()
-answer_static(named_case(CASE), MODELS[{label!r}][0])
+answer_static(named_case(), MODELS[{label!r}][0])
 print(json.dumps([ready - begin, time.perf_counter() - ready]))
 """
 
@@ -44,7 +43,7 @@ print(json.dumps([ready - begin, time.perf_counter() - ready]))
 def _waited(label: str) -> Answer:
     """Return the times of a model: a row each of what is waited for."""
     settings, words = MODELS[label]
-    command = ("-m", "studies", "solve", CASE, *words)
+    command = ("-m", "studies", "solve", TABLE_1, *words)
     imported, first = zip(
         *(json.loads(_process("-c", FIRST.format(label=label))[1]) for _ in range(PROCESSES)), strict=True
     )
@@ -68,7 +67,7 @@ def _process(*words: str) -> tuple[float, str]:
 
 def _call(settings: Settings) -> tuple[float, float]:
     """Return how long a whole call takes, from the case in memory to the answer, and its increments [s]."""
-    problem = named_case(CASE)
+    problem = named_case()
     begin = time.perf_counter()
     answer = answer_static(problem, settings)
     return time.perf_counter() - begin, answer.solve_s
@@ -92,7 +91,6 @@ def _figure(tables: Tables) -> Figure:
 
 
 STUDY = Study(
-    cases=(CASE,),
     parts=(Part(at=lambda: tuple(MODELS), ask=_waited, alone=True),),
     figures={"waits": _figure},
 )

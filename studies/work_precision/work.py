@@ -32,8 +32,6 @@ update; those of the substitution 4 r + 1.
 
 import math
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
-from typing import Any
 
 from studies.answers.settings import FeSettings, Settings, SplineSettings
 
@@ -46,33 +44,20 @@ POINT = 163
 SPARSE_FROM, SPARSE_FLOPS, SPARSE_ENTRIES = 150, 308, 27
 
 
-@dataclass(frozen=True, kw_only=True)
-class _Work:
-    """Sizes and operations of one static path.
+#: Sizes and operations of a static path, and of a motion, as columns of tables.
+WORK = ("unknowns", "points", "iterations", "factorisation_flops", "assembly_flops", "flops")
+MOVED_WORK = ("unknowns", "points", "steps", "evaluations", "factorisations", "flops")
 
-    Attributes:
-        unknowns: of the system that one iteration solves [1].
-        points: quadrature points of all strips; elements count one each.
-        iterations: of Newton over the path.
-        factorisation_flops: of one factorisation; assembly_flops: of one residual with its tangent.
-        flops: of the whole path, substitutions included; like assembly_flops NaN of the shear-deformable
-            elements, which a library assembles: what it does is not counted.
+
+def work_of(settings: Settings, counters: Mapping[str, int]) -> dict[str, float]:
+    """Return the work of a path of the pivot with its default effects, from its settings and counters.
+
+    Keys, those of `WORK`: unknowns (of the system that one iteration solves), points (quadrature points of
+    all strips; elements count one each), iterations (of Newton over the path), factorisation_flops (of one
+    factorisation), assembly_flops (of one residual with its tangent), flops (of the whole path, substitutions
+    included; like assembly_flops NaN of the shear-deformable elements, which a library assembles: what that
+    does is not counted).
     """
-
-    unknowns: int
-    points: int
-    iterations: int
-    factorisation_flops: int
-    assembly_flops: float
-    flops: float
-
-    def row(self) -> dict[str, float]:
-        """Return the columns of a table."""
-        return asdict(self)
-
-
-def work_of(settings: Settings, counters: Mapping[str, int]) -> _Work:
-    """Return the work of a path of the pivot with its default effects, from its settings and counters."""
     if isinstance(settings, FeSettings):
         return _of_elements(settings, counters)
     condensed = (settings.basis, settings.measure, settings.stretch) == ("bezier", "material", "mixed")
@@ -84,7 +69,7 @@ def _pivot_flops(rows: int) -> int:
     return 1 + rows + rows * (rows + 1)
 
 
-def assembly_flops(points: int, functions: int, modes: int) -> int:
+def _assembly_flops(points: int, functions: int, modes: int) -> int:
     """Return the operations of `evaluate_points` for one strip.
 
     Pairs of control points are filled up to eights, as the vectors of a processor are.
@@ -97,7 +82,7 @@ def assembly_flops(points: int, functions: int, modes: int) -> int:
     return points * point + 6 * (modes + functions) + 7
 
 
-def condensation_flops(own: int, modes: int) -> int:
+def _condensation_flops(own: int, modes: int) -> int:
     """Return the operations of `condense` for one strip: own coordinates W, axial forces K."""
     size = own + 3
     axial = modes * (1 + 3 * size + size * (size + 1))
@@ -105,19 +90,19 @@ def condensation_flops(own: int, modes: int) -> int:
     return axial + sum(_pivot_flops(rows) + 2 * rows for rows in range(3, size))
 
 
-def confirmation_flops(points: int, functions: int, modes: int) -> int:
+def _confirmation_flops(points: int, functions: int, modes: int) -> int:
     """Return the operations that confirm a state of one strip without a tangent: `evaluate_residual`, and its
     Hessian times the rate."""
     at_point = 16 * functions + 4 * modes
     return points * (195 + 2 * at_point) + 8 * modes + 4 * functions - 2
 
 
-def forward_flops(own: int, modes: int) -> int:
+def _forward_flops(own: int, modes: int) -> int:
     """Return the operations that bring a right-hand side of one strip to its tip, by the factors at hand."""
     return modes * (2 * own + 7) + own * (own + 6)
 
 
-def recovery_flops(own: int, modes: int) -> int:
+def _recovery_flops(own: int, modes: int) -> int:
     """Return the operations of `recover` for one strip: the substitution."""
     return own * (own + 7) + modes * (2 * own + 8)
 
@@ -133,51 +118,51 @@ def _points(settings: SplineSettings) -> int:
     return (settings.gauss_points or degree + 3) * (settings.points - degree)
 
 
-def _condensed(settings: SplineSettings, counters: Mapping[str, int]) -> _Work:
+def _condensed(settings: SplineSettings, counters: Mapping[str, int]) -> dict[str, float]:
     n, modes, points = settings.points, _modes(settings), _points(settings)
     own = 2 * n - 6
-    assembly = STRIPS * assembly_flops(points, n - 1, modes)
-    factorisation = STRIPS * condensation_flops(own, modes)
+    assembly = STRIPS * _assembly_flops(points, n - 1, modes)
+    factorisation = STRIPS * _condensation_flops(own, modes)
     solves = counters["newton_iterations"] + counters["increments"] + 1
     confirmed = counters["residual_evaluations"] - counters["factorisations"]
     confirmation = (
-        confirmation_flops(points, n, modes) + forward_flops(own, modes) + recovery_flops(own, modes)
+        _confirmation_flops(points, n, modes) + _forward_flops(own, modes) + _recovery_flops(own, modes)
     )
-    return _Work(
-        unknowns=2 + STRIPS * (own + modes),
-        points=STRIPS * points,
-        iterations=counters["newton_iterations"],
-        factorisation_flops=factorisation,
-        assembly_flops=assembly,
-        flops=counters["factorisations"] * (assembly + factorisation)
-        + STRIPS * (confirmed * confirmation + solves * recovery_flops(own, modes)),
-    )
+    return {
+        "unknowns": 2 + STRIPS * (own + modes),
+        "points": STRIPS * points,
+        "iterations": counters["newton_iterations"],
+        "factorisation_flops": factorisation,
+        "assembly_flops": assembly,
+        "flops": counters["factorisations"] * (assembly + factorisation)
+        + STRIPS * (confirmed * confirmation + solves * _recovery_flops(own, modes)),
+    }
 
 
-def _bordered(settings: SplineSettings, counters: Mapping[str, int]) -> _Work:
+def _bordered(settings: SplineSettings, counters: Mapping[str, int]) -> dict[str, float]:
     n, modes, points = settings.points, _modes(settings), _points(settings)
     bezier = settings.basis == "bezier"
     # a hat basis has two modes at a point, and the slide mode reaches everywhere
     at_point = modes if bezier or not modes else min(modes, 3)
     size = STRIPS * (2 * n + modes + 6) + 3 + 1
-    assembly = STRIPS * assembly_flops(points, n if bezier else 4, at_point)
+    assembly = STRIPS * _assembly_flops(points, n if bezier else 4, at_point)
     sparse = settings.basis == "bspline" and size >= SPARSE_FROM
     factorisation = SPARSE_FLOPS * size if sparse else 2 * size**3 // 3
     substitution = 2 * size * (SPARSE_ENTRIES if sparse else size)
-    confirmation = STRIPS * confirmation_flops(points, n if bezier else 4, at_point)
-    return _Work(
-        unknowns=size,
-        points=STRIPS * points,
-        iterations=counters["newton_iterations"],
-        factorisation_flops=factorisation,
-        assembly_flops=assembly,
-        flops=counters["tangent_evaluations"] * assembly
+    confirmation = STRIPS * _confirmation_flops(points, n if bezier else 4, at_point)
+    return {
+        "unknowns": size,
+        "points": STRIPS * points,
+        "iterations": counters["newton_iterations"],
+        "factorisation_flops": factorisation,
+        "assembly_flops": assembly,
+        "flops": counters["tangent_evaluations"] * assembly
         + (counters["residual_evaluations"] - counters["tangent_evaluations"]) * (confirmation + substitution)
         + counters["factorisations"] * (factorisation + substitution),
-    )
+    }
 
 
-def _of_elements(settings: FeSettings, counters: Mapping[str, int]) -> _Work:
+def _of_elements(settings: FeSettings, counters: Mapping[str, int]) -> dict[str, float]:
     inner = max(settings.elements - 1, 0)
     counted = settings.element == "corotational"
     rows = STRIPS * ([5, 4, 3] * max(inner - 1, 0) + [4, 3, 2] * min(inner, 1)) + [1, 0]
@@ -186,69 +171,56 @@ def _of_elements(settings: FeSettings, counters: Mapping[str, int]) -> _Work:
     tangents = counters["tangent_evaluations"] * count * (ELEMENT_FORCES + ELEMENT_TANGENT)
     residuals = counters["residual_evaluations"] * count * ELEMENT_FORCES
     solves = counters["factorisations"] * (factorisation + sum(4 * row + 1 for row in rows))
-    return _Work(
-        unknowns=STRIPS * 3 * inner + 2,
-        points=count,
-        iterations=counters["newton_iterations"],
-        factorisation_flops=factorisation,
-        assembly_flops=count * (2 * ELEMENT_FORCES + ELEMENT_TANGENT) if counted else math.nan,
-        flops=tangents + residuals + solves if counted else math.nan,
-    )
+    return {
+        "unknowns": STRIPS * 3 * inner + 2,
+        "points": count,
+        "iterations": counters["newton_iterations"],
+        "factorisation_flops": factorisation,
+        "assembly_flops": count * (2 * ELEMENT_FORCES + ELEMENT_TANGENT) if counted else math.nan,
+        "flops": tangents + residuals + solves if counted else math.nan,
+    }
 
 
 #: Operations that move the three coordinates of a node by one step.
 MOVED_NODE = 12
 
 
-def work_of_motion(settings: Settings, counters: Mapping[str, int]) -> dict[str, Any]:
+def work_of_motion(settings: Settings, counters: Mapping[str, int]) -> dict[str, float]:
     """Return unknowns, points, steps, evaluations, factorisations and flops of a motion of the pivot."""
     if isinstance(settings, FeSettings):
         return _of_moving_elements(settings, counters)
     return _explicit(settings, counters) if "evaluations" in counters else _implicit(settings, counters)
 
 
-def strip_force_flops(control_points: int) -> int:
+def _strip_force_flops(control_points: int) -> int:
     """Return the operations of `add_forces` for a Bezier strip, n + 2 Gauss points, n - 1 axial forces."""
     points, modes = control_points + 2, control_points - 1
     return points * (16 * control_points + 4 * modes + 40) + modes
 
 
-def _of_moving_elements(settings: FeSettings, counters: Mapping[str, int]) -> dict[str, Any]:
+def _moved(*counts: float) -> dict[str, float]:
+    return dict(zip(MOVED_WORK, counts, strict=True))
+
+
+def _of_moving_elements(settings: FeSettings, counters: Mapping[str, int]) -> dict[str, float]:
     count, evaluations = STRIPS * settings.elements, counters["force_evaluations"]
-    return {
-        "unknowns": 3 * (count - STRIPS) + 3,
-        "points": count,
-        "steps": counters["steps"],
-        "evaluations": evaluations,
-        "factorisations": 0,
-        "flops": evaluations * (count * ELEMENT_FORCES + (count - STRIPS) * MOVED_NODE),
-    }
+    nodes = count - STRIPS
+    flops = evaluations * (count * ELEMENT_FORCES + nodes * MOVED_NODE)
+    return _moved(3 * nodes + 3, count, counters["steps"], evaluations, 0, flops)
 
 
-def _explicit(settings: SplineSettings, counters: Mapping[str, int]) -> dict[str, Any]:
+def _explicit(settings: SplineSettings, counters: Mapping[str, int]) -> dict[str, float]:
     n, evaluations = settings.points, counters["evaluations"]
     inner = 4 * (n - 3) * (n - 1)
-    return {
-        "unknowns": STRIPS * (2 * n - 6) + 3,
-        "points": STRIPS * (n + 2),
-        "steps": counters["steps"],
-        "evaluations": evaluations,
-        "factorisations": 0,
-        "flops": evaluations * STRIPS * (strip_force_flops(n) + inner),
-    }
+    flops = evaluations * STRIPS * (_strip_force_flops(n) + inner)
+    return _moved(STRIPS * (2 * n - 6) + 3, STRIPS * (n + 2), counters["steps"], evaluations, 0, flops)
 
 
-def _implicit(settings: SplineSettings, counters: Mapping[str, int]) -> dict[str, Any]:
+def _implicit(settings: SplineSettings, counters: Mapping[str, int]) -> dict[str, float]:
     n, factorisations = settings.points, counters["factorisations"]
     modes, points = n - 1, n + 2
     size = STRIPS * (2 * n + modes + 6) + 3
     evaluations = factorisations + counters["steps"]
-    return {
-        "unknowns": size,
-        "points": STRIPS * points,
-        "steps": counters["steps"],
-        "evaluations": evaluations,
-        "factorisations": factorisations,
-        "flops": evaluations * STRIPS * assembly_flops(points, n, modes)
-        + factorisations * (2 * size**3 // 3 + 2 * size**2),
-    }
+    flops = evaluations * STRIPS * _assembly_flops(points, n, modes)
+    flops += factorisations * (2 * size**3 // 3 + 2 * size**2)
+    return _moved(size, STRIPS * points, counters["steps"], evaluations, factorisations, flops)

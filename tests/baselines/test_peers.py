@@ -9,12 +9,12 @@ import pytest
 from studies.answers.adapters import answer_static
 from studies.answers.reference import limit_of
 from studies.answers.settings import FeSettings
-from studies.baselines import openseespy_frame, tasks, variants
+from studies.baselines import peers, tasks, variants
 from studies.baselines.answer import BaselineFailed
 from studies.baselines.exudyn_solve import SOLVERS
 from studies.baselines.exudyn_strips import exudyn_ancf, exudyn_exact
+from studies.baselines.openseespy import openseespy_frame
 from studies.baselines.own import elements, spline
-from studies.baselines.peers import ratios
 from studies.baselines.tasks import Limit
 from studies.baselines.variants import PEERS, Variant, kept, spread, tried
 from studies.cases.problem import named_case
@@ -189,7 +189,7 @@ def test_study_runs_without_other_codes(monkeypatch):
     rows, times = tasks.compared_paths(CASE, limits)
     assert [row["what"] for row in theories] == ["uncertainty", "uncertainty", "difference of the theories"]
     assert {row["status"] for row in rows} == {"converged", "not installed"}
-    found = ratios(pd.DataFrame(rows), pd.DataFrame(times), "worst", [1e-3])
+    found = peers._ratios(pd.DataFrame(rows), pd.DataFrame(times), "worst", [1e-3])
     assert set(found.dropna(subset="ratio")["group"]) <= {variants.ELEMENTS, variants.SURROGATE}
     assert (found["spline_s"] > 0.0).all()
 
@@ -222,12 +222,14 @@ def test_ratios_compare_at_equal_error():
     times = rows[["model", "variant"]].assign(
         solve_s=[1.0, 2.0, 30.0, 40.0], low_s=0.5, high_s=[1.5, 2.5, 35.0, 45.0]
     )
-    reached = ratios(rows, times, "error", [1e-4]).set_index("group")["ratio"]
+    reached = peers._ratios(rows, times, "error", [1e-4]).set_index("group")["ratio"]
     assert reached.to_dict() == {"Exudyn": 15.0}
-    assert ratios(rows, times, "error", [1e-6])["ratio"].isna().all()
+    assert peers._ratios(rows, times, "error", [1e-6])["ratio"].isna().all()
     doubtful = rows.assign(unsure=6e-5)
-    assert ratios(doubtful, times, "error", [1e-4], unsure="unsure")["ratio"].isna().all()
-    steady = ratios(kept(rows, "error"), times, "error", [1e-4, 1e-3]).set_index(["level", "group"])["ratio"]
+    assert peers._ratios(doubtful, times, "error", [1e-4], unsure="unsure")["ratio"].isna().all()
+    steady = peers._ratios(kept(rows, "error"), times, "error", [1e-4, 1e-3]).set_index(["level", "group"])[
+        "ratio"
+    ]
     assert math.isnan(steady[1e-4, "Exudyn"])
     assert steady[1e-3, "Exudyn"] == 15.0
 

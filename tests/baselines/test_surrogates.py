@@ -6,24 +6,24 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from studies.baselines import one_coordinate
+from studies.baselines import constraint_strips, one_coordinate, pseudo_rigid, surrogates
 from studies.baselines.answer import SolvedMotion, SolvedPath
 from studies.baselines.constraint_model import chained_constraint_model, constraint_model, with_beams
-from studies.baselines.constraint_strips import guide, placed
-from studies.baselines.four_bar import four_bar, link_length, spring
-from studies.baselines.linear_pivot import (
+from studies.baselines.constraint_strips import guide
+from studies.baselines.own import spline
+from studies.baselines.pseudo_rigid import (
+    four_bar,
     linear_pivot,
+    link_length,
     pin_joint,
     small_angle_stiffness,
-    stiffness_coefficient,
+    spring,
 )
-from studies.baselines.own import spline
-from studies.baselines.surrogates import first_above
 from studies.baselines.variants import SURROGATES
 from studies.cases.effects import Effects
 from studies.cases.problem import named_case
 from studies.errors import BadInput
-from studies.published.solve import moved
+from studies.published.problems import moved
 from tests import gates
 
 CASE = named_case("cross_axis_pivot")
@@ -149,7 +149,7 @@ def test_beam_in_closed_form_is_a_beam_column():
     u = c * p - (0.6 * y**2 - 0.1 * y * turn + turn**2 / 15.0)
     u += p * (y**2 / 700.0 - y * turn / 700.0 + 11.0 * turn**2 / 6300.0)
     start = np.zeros((1, 3))
-    _, force, _ = placed(start, np.array([[1.0 + u, y, turn]]), 0.0, 1.0, c)
+    _, force, _ = constraint_strips._placed(start, np.array([[1.0 + u, y, turn]]), 0.0, 1.0, c)
     stiff = [12 + 1.2 * p - p**2 / 700, -6 - p / 10 + p**2 / 1400, 4 + 2 * p / 15 - 11 * p**2 / 6300]
     expected = [p, stiff[0] * v[0] + stiff[1] * v[1], stiff[1] * v[0] + stiff[2] * v[1]]
     assert force[0, 3:] == pytest.approx(expected, rel=1e-12)
@@ -196,7 +196,7 @@ def test_constraint_model_of_a_guide():
 
 def test_pin_joint_polynomial():
     """Requirement: K_Theta is the published polynomial, at n = 1 the sum of its coefficients."""
-    assert stiffness_coefficient(1.0) == pytest.approx(4.307926, abs=1e-12)
+    assert pseudo_rigid._stiffness_coefficient(1.0) == pytest.approx(4.307926, abs=1e-12)
     rigidity = CASE.youngs_modulus * CASE.second_moment_of_area / CASE.length
     assert pin_joint.static_path(CASE, TURNS).stiffness / rigidity == pytest.approx(4.307926 / 2.0, rel=1e-12)
 
@@ -212,7 +212,7 @@ def energy_drift(model, step, duration=0.05):
     """Largest change of kinetic and potential energy of a swing from 90 degrees, over what is at stake."""
     law, start = model.law_of(CASE), math.pi / 2
     states = np.empty((round(duration / step) + 1, 2))
-    series = one_coordinate.series_of(law, start)
+    series = one_coordinate._series_of(law, start)
     tables = (series.reach, series.inertia, series.inertia_rate, series.torque)
     one_coordinate.integrate(start, step, states, *tables)
     p, v = states[:: len(states) // 250].T
@@ -281,10 +281,10 @@ def test_bad_input_is_refused_in_one_line(call, message):
 def test_first_above():
     """Requirement: where an error passes a level is interpolated; at rest it is zero, never is NaN."""
     turns = np.array([0.0, 1.0, 2.0, 3.0])
-    assert first_above(turns, np.array([0.0, 0.1, 0.3, 0.2]), 0.2) == pytest.approx(1.5)
-    assert first_above(turns, np.array([0.0, 0.5, 0.4, 0.1]), 0.2) == 0.0
-    assert first_above(turns, np.array([0.3, 0.1, 0.0, 0.1]), 0.2) == 0.0
-    assert math.isnan(first_above(turns, np.array([0.0, 0.1, 0.1, 0.1]), 0.2))
+    assert surrogates._first_above(turns, np.array([0.0, 0.1, 0.3, 0.2]), 0.2) == pytest.approx(1.5)
+    assert surrogates._first_above(turns, np.array([0.0, 0.5, 0.4, 0.1]), 0.2) == 0.0
+    assert surrogates._first_above(turns, np.array([0.3, 0.1, 0.0, 0.1]), 0.2) == 0.0
+    assert math.isnan(surrogates._first_above(turns, np.array([0.0, 0.1, 0.1, 0.1]), 0.2))
 
 
 def test_spline_refuses_what_the_condensed_path_does_not_cover():

@@ -9,9 +9,9 @@ from studies.cases.design import Design, named_design, read_design
 from studies.cases.document import parsed
 from studies.cases.problem import FOLDER
 from studies.cases.write import document_toml
+from studies.design.evaluate import STRESS, VARIATION
 from studies.design.numbers import NumbersTask, by_sides, number_of
 from studies.design.programme import gradient_error
-from studies.design.task import STRESS, VARIATION
 from tests import gates
 
 FREE = (

@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 
 from studies.cases.effects import Effects
+from studies.design import margins
 from studies.design import task as questions
-from studies.design import tolerances
-from studies.design.evaluate import PathEnds, answers, by_elements, of_spline
+from studies.design.evaluate import CENTRE_SHIFT, VARIATION, PathEnds, answers, by_elements, of_spline
+from studies.design.margins import off, resized
 from studies.design.optimise import best, numbered, optimise, search, starts
 from studies.design.programme import OUTSIDE, Programme, gradient_error
-from studies.design.sections import off, resized
-from studies.design.task import CENTRE_SHIFT, FIBRES, OBJECTIVES, VARIATION, variables_of
+from studies.design.task import FIBRES, OBJECTIVES, variables_of
 from studies.effects.beyond import with_sections
 from studies.record.progress import silent
 from tests import gates
@@ -151,15 +151,15 @@ def test_tolerances_change_what_whole_solves_say(own, monkeypatch):
     design = replace(own[0], increments=4)
 
     def rows():
-        every = list(tolerances.toleranced("Table 1", design, answers(design)))
+        every = list(margins.toleranced("Table 1", design, answers(design)))
         return {(row["dimension"], row["quantity"]): row for row in every}
 
     found = rows()
     gates.check("tolerances", max(abs(row["worst"] - row["solved"]) for row in found.values()))
     width = variables_of(design)[4]
-    assert found["width 0.05 mm", "stiffness"]["worst"] == pytest.approx(tolerances.LENGTH / width, rel=1e-9)
+    assert found["width 0.05 mm", "stiffness"]["worst"] == pytest.approx(margins.LENGTH / width, rel=1e-9)
     assert found["width 0.05 mm", VARIATION]["worst"] == pytest.approx(0.0, abs=1e-12)
-    monkeypatch.setattr(tolerances, "GRADE", gates.teeth("tolerances")["grade"])
+    monkeypatch.setattr(margins, "GRADE", gates.teeth("tolerances")["grade"])
     with pytest.raises(AssertionError, match="x the gate"):
         gates.check("tolerances", max(abs(row["worst"] - row["solved"]) for row in rows().values()))
 

@@ -39,7 +39,7 @@ NOT_RUN = {
     "python -m studies interactive": "serves until it is stopped; tests/interactive runs it",
     "python -m studies markers": "needs the extra `interactive`; tests/interactive runs it",
     "python -m studies calibrate": "needs a camera; tests/interactive gives it a film",
-    "python -m studies.interactive.web.pictures": "needs a browser",
+    "python -m tests.interactive": "needs the extra `interactive`, or a browser",
     "dask ": "runs until it is ended; tests/sweep runs a scheduler and workers",
     "python -m studies sweep designs.toml --out designs --scheduler": "as above",
     "source ": "the commands run with the environment of the tests",

@@ -9,7 +9,7 @@ import pytest
 
 from studies.__main__ import main
 from studies.cases.problem import FOLDER
-from studies.exchange.tables import COLUMNS
+from studies.exchange.formats import COLUMNS
 from studies.exchange.vtk import mesh
 from studies.record.source import ROOT
 from studies.record.store import RESULTS

@@ -20,8 +20,7 @@ from studies.answers.settings import FeSettings, SplineSettings
 from studies.cases.design import named_design
 from studies.cases.problem import FOLDER
 from studies.commands.path_output import as_frame
-from studies.exchange.formats import FORMATS, contents
-from studies.exchange.tables import COLUMNS, tables
+from studies.exchange.formats import COLUMNS, FORMATS, contents, tables
 from studies.exchange.vtk import BODY_ARM, BODY_CENTRE, CLAMP, STRIP, mesh, mode_scale
 
 PIVOT, FOUR_BAR = str(FOLDER / "cross_axis_pivot.toml"), str(FOLDER / "four_bar_of_flexures.toml")

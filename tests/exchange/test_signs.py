@@ -8,7 +8,7 @@ from studies.answers.fields import fields_of
 from studies.answers.settings import FeSettings, SplineSettings
 from studies.cases.effects import Effects
 from studies.cases.mechanism import Mechanism, Strip
-from studies.exchange.tables import tables
+from studies.exchange.formats import tables
 
 LENGTH, PULL, LIFT = 0.1, 0.02, 0.01
 CANTILEVER = Mechanism(

@@ -21,7 +21,7 @@ from studies.published.case import (
     published,
     read_published,
 )
-from studies.published.solve import ours
+from studies.published.problems import ours
 
 
 @pytest.mark.parametrize("name", names())

@@ -5,9 +5,8 @@ import math
 import pytest
 
 from fe_reference import plate_factors
-from studies.model_form import account, flattening
-from studies.model_form.flattening import linear_factor
-from studies.model_form.solids import guide_compliance, solid_factor
+from studies.model_form import account, solids
+from studies.model_form.solids import guide_compliance, linear_factor, solid_factor
 from tests import gates
 
 STRIP = {"width": 0.2, "thickness": 0.02}
@@ -19,9 +18,9 @@ def solid_error(cells=(24, 1, 2)):
     return abs(solid_factor(**STRIP, nu=0.0, cells=cells) / known - 1.0)
 
 
-def shell_error(terms=flattening.TERMS, monkeypatch=None):
+def shell_error(terms=solids.TERMS, monkeypatch=None):
     """Return how far the shell is from the plate where it is hardly bent."""
-    monkeypatch.setattr(flattening, "TERMS", tuple(terms))
+    monkeypatch.setattr(solids, "TERMS", tuple(terms))
     found = linear_factor(1e-3, **STRIP, nu=0.3)
     return abs(found - plate_factors(STRIP["width"], 0.3).linear)
 
@@ -58,7 +57,7 @@ def test_shell_hardly_bent(monkeypatch):
 
 def test_shell_flattens(monkeypatch):
     """Requirement: bent further a strip is stiffer, and never more than one that cannot curl."""
-    monkeypatch.setattr(flattening, "TERMS", (8, 2, 6))
+    monkeypatch.setattr(solids, "TERMS", (8, 2, 6))
     factors = [linear_factor(moment, **STRIP, nu=0.3) for moment in (0.1, 2.0, 8.0)]
     assert factors == sorted(factors)
     assert factors[-1] < 1.0 / (1.0 - 0.3**2)

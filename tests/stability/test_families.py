@@ -7,7 +7,7 @@ import pytest
 
 from studies.engine.answer import answered
 from studies.registry import STUDIES, study_of
-from studies.stability import long_run, rotation, slenderness, step_size
+from studies.stability import machine, paths, swings
 from studies.stability.family import DEFAULT, GENERALISED_ALPHA, PAPER, PATHS, SIX, VARIED
 from tests import gates
 
@@ -54,17 +54,17 @@ def test_the_paper_s_choices_are_seen_to_be_wrong():
 
 def slender_error(slenderness_):
     """Largest difference of torque to the inextensible strip, at one slenderness."""
-    table = slenderness.limit_table(PATHS[SIX], (slenderness_,))
+    table = paths._limit_table(PATHS[SIX], (slenderness_,))
     return float(table["error"].iloc[0])
 
 
 def test_slender_strips_tend_to_inextensible_ones():
-    """Requirement: at L/h = 1000 the torque is that of inextensible strips, and the work stays the same."""
+    """Requirement: at L/t = 1000 the torque is that of inextensible strips, and the work stays the same."""
     gates.check("stability_slender", slender_error(1000.0))
-    table = slenderness.limit_table(PATHS[SIX])
+    table = paths._limit_table(PATHS[SIX])
     iterations = table["iterations"]
     assert iterations.max() <= 1.2 * iterations.min()
-    assert table["constant"].max() / table["constant"].min() < 1.01  # the error goes with (L/h)^-2
+    assert table["constant"].max() / table["constant"].min() < 1.01  # the error goes with (L/t)^-2
     gates.check("stability_slender_digits", table["lost_digits"].max())
 
 
@@ -73,14 +73,14 @@ def test_slender_gates_have_teeth():
     with pytest.raises(AssertionError, match="x the gate"):
         gates.check("stability_slender", slender_error(gates.teeth("stability_slender")["slenderness"]))
     thick = gates.teeth("stability_slender_digits")["slenderness"]
-    table = slenderness.limit_table(PATHS[SIX], (thick,))
+    table = paths._limit_table(PATHS[SIX], (thick,))
     with pytest.raises(AssertionError, match="x the gate"):
         gates.check("stability_slender_digits", table["lost_digits"].max())
 
 
 def increments_error(settings=None):
     """Largest change of torque by the number of increments, and between there and back."""
-    rows = rotation.increments(SIX) if settings is None else rotation.increments(settings)
+    rows = paths._increments(SIX) if settings is None else paths._increments(settings)
     return max(max(row["torque_change"], row["hysteresis"]) for row in rows)
 
 
@@ -91,14 +91,14 @@ def test_increments_do_not_matter():
 
 def test_increments_gate_has_teeth(monkeypatch):
     """Requirement: a path that ends elsewhere fails the gate."""
-    there_and_back = rotation._there_and_back
+    there_and_back = paths._there_and_back
 
     def shifted(given, settings, count):
         return there_and_back(given, settings, count) * (
             1.0 + gates.teeth("stability_increments")["relative"] * count
         )
 
-    monkeypatch.setattr(rotation, "_there_and_back", shifted)
+    monkeypatch.setattr(paths, "_there_and_back", shifted)
     with pytest.raises(AssertionError, match="x the gate"):
         gates.check("stability_increments", increments_error())
 
@@ -123,7 +123,7 @@ def test_energy_gate_has_teeth():
 
 def test_error_goes_with_the_square_of_the_step():
     """Requirement: over the steps between the swing's period and the fastest waves the order is 2."""
-    order = step_size.order_table().set_index("step_s")
+    order = swings._order_table().set_index("step_s")
     errors = order["error_rad"]
     coarse = errors[order.index >= 1e-4]
     slope = np.polyfit(np.log(coarse.index), np.log(coarse), 1)[0]
@@ -133,7 +133,7 @@ def test_error_goes_with_the_square_of_the_step():
 
 def drift(pieces=4, steps=5000):
     """Rows of drift and memory of a run in pieces."""
-    drifts, memory = zip(*long_run.run(DEFAULT, pieces, steps), strict=True)
+    drifts, memory = zip(*machine._run(DEFAULT, pieces, steps), strict=True)
     assert len(drifts) == pieces
     return drifts, memory
 
@@ -144,7 +144,7 @@ def test_long_run_keeps_energy():
     rows, memory = drift()
     gates.check("stability_long_run", rows[-1]["energy_change"])
     residual = [row["constraint_residual_m"] for row in rows]
-    assert residual[-1] < long_run.GROWTH * residual[0]
+    assert residual[-1] < machine.GROWTH * residual[0]
     assert memory[-1]["largest_memory_MB"] < 1.05 * memory[0]["largest_memory_MB"]
 
 

@@ -11,7 +11,7 @@ from studies.paper import formulations
 from studies.record.store import Store
 from studies.stability import family as columns
 from studies.stability import maps
-from studies.stability.family import OUTCOMES, Found, counted, judged
+from studies.stability.family import OUTCOMES, Found, judged
 from studies.stability.maps import lines
 
 
@@ -50,7 +50,7 @@ def test_every_ending_has_its_outcome(attempt, outcome):
 def test_counts_add_up():
     """A row a model: the outcomes add up to the cases tried."""
     rows = [{"model": columns.DEFAULT, "outcome": name, "error": 0.1} for name in ("right", "right", "wrong")]
-    table = counted(pd.DataFrame(rows))
+    table = columns._counted(pd.DataFrame(rows))
     assert table.loc[0, "tried"] == 3
     assert [int(table.loc[0, name]) for name in OUTCOMES] == [2, 0, 1, 0]
 
@@ -81,7 +81,7 @@ def test_summary_reads_the_stored_counts(tmp_path):
     rows = [{"model": columns.DEFAULT, "outcome": name, "error": 0.1} for name in ("right", "refused")]
     store.save_tables(
         "stability/geometry",
-        {"counts": counted(pd.DataFrame(rows))},
+        {"counts": columns._counted(pd.DataFrame(rows))},
         module="studies.stability.geometry",
         cases=("cross_axis_pivot",),
         command="test",

@@ -13,9 +13,10 @@ from studies.baselines.answer import SolvedMotion, SolvedPath
 from studies.cases.problem import FOLDER, named_case
 from studies.commands import advise as command
 from studies.errors import BadInput
-from studies.work_precision import advice, series
+from studies.work_precision import advice, members, series
 from studies.work_precision.equal_error import cheapest, coarsest, kept
-from studies.work_precision.members import WORK, Member, of_baseline, path_errors, unsolved
+from studies.work_precision.members import Member, of_baseline, path_errors
+from studies.work_precision.work import WORK
 
 CASE = str(FOLDER / "cross_axis_pivot.toml")
 
@@ -51,7 +52,7 @@ def test_cheapest_at_equal_error():
 
 def test_a_model_that_cannot_says_so_with_its_best():
     """Of a series that does not reach the error the best setting stands, and that it does not meet it."""
-    found = advice.chosen(rows([[1e-1, 1e-3], [1e-2, 3e-2], [math.nan]]), ["error_x"], 5e-3)
+    found = advice._chosen(rows([[1e-1, 1e-3], [1e-2, 3e-2], [math.nan]]), ["error_x"], 5e-3)
     assert found["setting"].tolist() == ["a1", "b0", "c0"]
     assert found["meets"].tolist() == [True, False, False]
 
@@ -83,7 +84,9 @@ def test_errors_of_a_path_relate_to_its_reference():
     assert (found["error_stress"], found["end_stress"]) == pytest.approx((0.02, 0.02), rel=1e-9)
     silent = path_errors(replace(exact_path(problem), max_stress=None), exact_path(problem))
     assert math.isnan(silent["error_stress"]) and silent["error_torque"] == 0.0
-    assert all(math.isnan(value) for value in path_errors(unsolved("stopped"), exact_path(problem)).values())
+    assert all(
+        math.isnan(value) for value in path_errors(members._unsolved("stopped"), exact_path(problem)).values()
+    )
 
 
 def test_a_baseline_that_refuses_is_a_row():
@@ -188,6 +191,6 @@ def test_a_path_without_rotation_is_refused(tmp_path, capsys):
 
 def test_uncertain_references_are_told():
     """When a reference is too coarse for the wanted error, the table says that the verdict is not certain."""
-    found = advice.chosen(rows([[1e-4]]), ["error_x"], 1e-3).assign(uncertainty=5e-4)
+    found = advice._chosen(rows([[1e-4]]), ["error_x"], 1e-3).assign(uncertainty=5e-4)
     lines = list(command._readable(named_case("cross_axis_pivot"), found, ["error_x"], 1e-3))
     assert "not certain" in lines[-1]

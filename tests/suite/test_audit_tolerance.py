@@ -9,17 +9,17 @@ from studies.answers.settings import SplineSettings
 from studies.cases.effects import Effects
 from studies.cases.problem import named_case
 from studies.effects import audit, scenes
-from studies.effects.scenes import Answer, Outcome, Run, Size, Variant
+from studies.effects.scenes import CHANGES, SIZES, Answer, Outcome, Run, Variant
 
 TOLERANCE = 1e-3
-WITHIN = {"trajectory": 1e-4, "torque": 1e-4, "swing": 1e-4, "mode": 1e-4, "loss": 1e-4}
-SIZE = Size(unknowns=1, degrees_of_freedom=1, highest_frequency=1.0, explicit_step=1.0)
+WITHIN = dict.fromkeys(CHANGES, 1e-4)
+SIZE = dict.fromkeys(SIZES, 1)
 
 
 def scene(wall_s, *names, **changes):
     """A scene of the audit with these effects, changes and time."""
     variant = Variant(dropped=(), effects=Effects(names=names))
-    return Outcome(variant=variant, size=SIZE, wall_s=wall_s, **(WITHIN | changes))
+    return Outcome(variant=variant, size=SIZE, wall_s=wall_s, changes=WITHIN | changes)
 
 
 @pytest.mark.parametrize("change", WITHIN)
@@ -44,8 +44,8 @@ ANSWER = Answer(
 CHANGED = {
     "trajectory": {"path": {"body": np.array([[0.0, 0.0], [1.0, 0.1]])}},
     "torque": {"torque": np.array([0.0, 2.2])},
-    "swing": {"swing": 1.1},
-    "mode": {"mode": 1.1},
+    "swing_frequency": {"swing": 1.1},
+    "first_mode": {"mode": 1.1},
     "loss": {"loss": 0.4},
 }
 
@@ -61,6 +61,4 @@ def test_every_change_is_measured(change, monkeypatch):
         Run(settings=SplineSettings(control_points=6), duration=1.0, step=1.0),
     )
     found = scenes.outcome(Variant(dropped=(), effects=design.effects), design, run, ANSWER)
-    assert {name: getattr(found, name) for name in CHANGED} == pytest.approx(
-        {name: 0.1 if name == change else 0.0 for name in CHANGED}
-    )
+    assert found.changes == pytest.approx({name: 0.1 if name == change else 0.0 for name in CHANGED})

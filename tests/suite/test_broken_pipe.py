@@ -8,6 +8,8 @@ import pytest
 
 from studies.record.source import ROOT
 
+TABLE = ["solve", "studies/cases/cross_axis_pivot.toml", "--model", "fe", "--increments", "1"]
+
 
 def code_without_a_reader(*words: str, errors: int | None = subprocess.PIPE) -> tuple[int, str]:
     """Return exit code and error stream of `python -m studies` whose output nobody reads."""
@@ -31,8 +33,8 @@ def code_without_a_reader(*words: str, errors: int | None = subprocess.PIPE) -> 
     "words",
     [
         ["list"],
-        ["solve", "studies/cases/cross_axis_pivot.toml", "--model", "fe", "--increments", "1"],
-        ["solve", "studies/cases/cross_axis_pivot.toml", "--model", "fe", "--increments", "1", "--json", "-"],
+        TABLE,
+        pytest.param([*TABLE, "--json", "-"], marks=pytest.mark.slow),
     ],
     ids=["list", "table", "json"],
 )

@@ -9,16 +9,17 @@ from studies.answers.adapters import answer_static
 from studies.answers.settings import SplineSettings
 from studies.cases.problem import named_case
 from studies.convergence import error_estimate
-from studies.convergence.error_estimate import drawn
 from studies.engine.answer import answered
 from tests import gates
 
 
 def test_designs_fill_their_bounds_and_are_the_same_again():
     """The hypercube has one design in every stratum of every bound, and depends on its seed alone."""
-    case = named_case(error_estimate.CASE)
-    designs = drawn(case, error_estimate.BOUNDS, count=30, seed=1)
-    again, other = (drawn(case, error_estimate.BOUNDS, count=30, seed=seed) for seed in (1, 2))
+    case = named_case()
+    designs = error_estimate._drawn(case, error_estimate.BOUNDS, count=30, seed=1)
+    again, other = (
+        error_estimate._drawn(case, error_estimate.BOUNDS, count=30, seed=seed) for seed in (1, 2)
+    )
     assert designs == again != other
     low, high = error_estimate.BOUNDS["rotation"]
     strata = sorted(int(30 * (design.rotation - low) / (high - low)) for design in designs)

@@ -29,7 +29,7 @@ PARSED = {
 #: What an example is run with beside its own words, so that it writes nowhere but here.
 BESIDE = {name: ["--results", "results"] for name in ("run", "draw", "verify")}
 
-NUMBERS = (float, positive, not_negative, degrees, degrees_list, ROTATION.keywords["type"])
+NUMBERS = (float, positive, not_negative, degrees, degrees_list, ROTATION.read)
 UNIT = re.compile(r"\bin (s|deg|rad|m|mm|MPa|N m/rad|EI/L\^2)\b|\brelative\b|\bin s or rad\b")
 
 

@@ -6,12 +6,13 @@ import pytest
 from spline_model.modes import natural_frequencies
 from spline_model.sequential_impulse import solve_impulses, stability_limit
 from studies.answers.motion import motion
-from studies.convergence.impulse_tables import GROUPS, designs, pivot
+from studies.convergence import impulse_tables
+from studies.convergence.impulse_tables import GROUPS
 
 
 def test_a_motion_by_impulses_is_a_neutral_answer():
     """A trajectory of impulses becomes the neutral motion of the other integrators."""
-    run = solve_impulses(pivot("Table 1"), start=0.5, duration=0.05)
+    run = solve_impulses(impulse_tables._pivot("Table 1"), start=0.5, duration=0.05)
     answer = motion(
         run,
         model="spline",
@@ -36,16 +37,20 @@ def test_a_motion_by_impulses_is_a_neutral_answer():
 @pytest.mark.parametrize("design", ["Table 1", "polymer"])
 def test_groups_of_modes_are_apart(design):
     """Each group's fastest mode is of its kind: the limits fall from the swing to bending to stretching."""
-    limits = [stability_limit(pivot(design, GROUPS[group])) for group in ("swing", "bending", "axial")]
+    limits = [
+        stability_limit(impulse_tables._pivot(design, GROUPS[group]))
+        for group in ("swing", "bending", "axial")
+    ]
     assert limits[0] > 20.0 * limits[1] > 400.0 * limits[2]
     swing = [
-        natural_frequencies(pivot(design, settings), count=1).frequency[0] for settings in GROUPS.values()
+        natural_frequencies(impulse_tables._pivot(design, settings), count=1).frequency[0]
+        for settings in GROUPS.values()
     ]
     assert np.ptp(swing) < 1e-3 * swing[0]
-    assert len(natural_frequencies(pivot(design, GROUPS["swing"])).frequency) == 1
+    assert len(natural_frequencies(impulse_tables._pivot(design, GROUPS["swing"])).frequency) == 1
 
 
 def test_the_polymer_swings_at_a_few_hertz():
     """The soft design's swing can be seen at 25 pictures a second."""
-    assert set(designs()) == {"Table 1", "polymer"}
-    assert 1.0 < natural_frequencies(pivot("polymer"), count=1).frequency[0] < 5.0
+    assert set(impulse_tables._designs()) == {"Table 1", "polymer"}
+    assert 1.0 < natural_frequencies(impulse_tables._pivot("polymer"), count=1).frequency[0] < 5.0

@@ -4,10 +4,10 @@ import dataclasses
 import json
 import math
 import re
+from types import SimpleNamespace
 
 import pytest
 
-from studies.answers.response import Critical
 from studies.commands import solve
 from tests import gates
 
@@ -164,7 +164,7 @@ def test_critical_points_of_a_pivot_have_their_angle(case, command, monkeypatch)
     genuine = solve.answer_static
 
     def passing(*arguments, **keywords):
-        point = Critical(kind="limit point", load_factor=0.5, rotation=math.radians(15))
+        point = SimpleNamespace(kind="limit point", load_factor=0.5, rotation=math.radians(15))
         answer = genuine(*arguments, **keywords)
         return dataclasses.replace(answer, message="the torque has a limit", critical_points=(point,))
 

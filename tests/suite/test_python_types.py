@@ -7,8 +7,8 @@ import pytest
 
 import fe_reference.dynamics
 import fe_reference.errors
+import fe_reference.mechanism
 import fe_reference.modes
-import fe_reference.pivot
 import fe_reference.statics
 import spline_model.dynamics
 import spline_model.errors
@@ -19,7 +19,7 @@ from tests.table_one import TABLE_ONE
 
 REFUSALS = (spline_model.errors.InvalidParameter, fe_reference.errors.InvalidParameter)
 SPLINE = spline_model.pivot.cross_axis_pivot(**TABLE_ONE, control_points=4)
-ELEMENTS = fe_reference.pivot.cross_axis_pivot(**TABLE_ONE, elements=2)
+ELEMENTS = fe_reference.mechanism.cross_axis_pivot(**TABLE_ONE, elements=2)
 
 #: Function, what it is asked of, and keywords that it takes as they are.
 CALLS = {

@@ -9,8 +9,8 @@ import pytest
 from fe_reference import trajectory as of_elements
 from fe_reference.dynamics import solve_release as release_elements
 from fe_reference.errors import InvalidParameter
-from fe_reference.pivot import cross_axis_pivot as elements_pivot
-from spline_model import companion
+from fe_reference.mechanism import cross_axis_pivot as elements_pivot
+from spline_model import companion, dynamics
 from spline_model.dynamics import solve_motion, solve_release
 from spline_model.pivot import cross_axis_pivot
 from studies.answers.adapters import answer_release
@@ -69,7 +69,7 @@ def test_resolved_motion_has_an_error_and_no_remark():
 
 def test_check_can_be_left_out(monkeypatch):
     """With ``check=False`` no companion runs, and there is no estimate."""
-    monkeypatch.setattr(companion, "with_points", None)
+    monkeypatch.setattr(dynamics, "with_companion", None)
     motion = solve_release(cross_axis_pivot(**TABLE_ONE), duration=1e-3, check=False)
     assert math.isnan(motion.rotation_error)
 
@@ -102,9 +102,7 @@ def test_motion_without_explicit_steps_is_checked_too(effects):
 
 def test_companion_that_fails_is_told(monkeypatch):
     """A companion without an answer leaves the motion as it is and says that it was not checked."""
-    monkeypatch.setattr(
-        companion, "_scheme", lambda motion, task, chosen, spacing: ("leapfrog", 50.0 * spacing)
-    )
+    monkeypatch.setattr(companion, "_scheme", lambda motion, longest, spacing: ("leapfrog", 50.0 * spacing))
     motion = solve_release(cross_axis_pivot(**TABLE_ONE), duration=1e-3)
     assert motion.status.value == "converged"
     assert motion.resolution.startswith("not checked with 8 control points: ")

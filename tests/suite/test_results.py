@@ -12,9 +12,9 @@ from studies.commands import readme
 from studies.engine.answer import answered
 from studies.errors import BadInput
 from studies.paper import formulations
-from studies.record import provenance, style
+from studies.record import style
 from studies.record.source import ROOT
-from studies.record.store import Store, as_csv, as_json, same
+from studies.record.store import Store, as_csv, as_json, same, sha256
 from studies.registry import STUDIES, study_of
 from studies.stability.family import DEFAULT, DIGITS
 
@@ -47,7 +47,7 @@ def test_stored_tables_draw_the_stored_figures(name):
             pytest.skip(f"drawn with {library} {record['versions'][library]}")
     with style.applied():
         figures = study_of(name).draw(store.load_tables(name))
-    drawn = {f"{title}.svg": provenance.sha256(style.vector(page)) for title, page in figures.items()}
+    drawn = {f"{title}.svg": sha256(style.vector(page)) for title, page in figures.items()}
     assert drawn == {file: digest for file, digest in record["figures"].items() if file.endswith(".svg")}
 
 

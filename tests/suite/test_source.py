@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from studies.record.provenance import inputs
 from studies.record.source import ROOT, WITHOUT_INFLUENCE, reached, source_hash
+from studies.record.store import inputs
 from studies.record.syntax import PACKAGES
 from studies.registry import STUDIES, study_of
 
@@ -116,6 +116,16 @@ def test_studies_reach_models_and_no_command(study):
     places = reached(STUDIES[study])
     assert any(place.startswith(("spline_model", "fe_reference")) for place in places)
     assert not [place for place in places if place.startswith("studies.commands")]
+
+
+def test_studies_of_one_module_depend_on_what_each_reaches():
+    """A study that is a constant of its module does not depend on what only the module's other one names."""
+    rotation, slenderness = (
+        set(reached(STUDIES[f"stability/{name}"])) for name in ("rotation", "slenderness")
+    )
+    own = {"studies.stability.paths:ROTATION", "studies.stability.paths:_critical"}
+    assert own <= rotation and not own & slenderness
+    assert "studies.stability.family:outcomes_of" in rotation & slenderness
 
 
 @pytest.mark.parametrize(

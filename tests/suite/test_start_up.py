@@ -6,7 +6,7 @@ import sys
 import pytest
 
 from studies.record.source import ROOT
-from studies.registry import COMMANDS, STUDIES, selected
+from studies.registry import COMMANDS, STUDIES, question_of, selected
 
 HEAVY = ("numpy", "scipy", "numba", "skfem", "pandas", "matplotlib", "spline_model", "fe_reference")
 
@@ -60,3 +60,11 @@ def test_names_of_studies():
     )
     assert selected(["paper"]) == [name for name in STUDIES if name.startswith("paper/")]
     assert selected(["all", "paper"]) == list(STUDIES)
+
+
+def test_every_study_says_what_it_shows():
+    """What a study shows is a line of its own, be it the first of its module or that below its constant."""
+    questions = [question_of(study) for study in STUDIES]
+    assert len(set(questions)) == len(STUDIES)
+    assert all(len(each) > 20 and '"' not in each for each in questions)
+    assert question_of("stability/rotation").startswith("Rotation to a half turn and beyond")

@@ -93,7 +93,7 @@ def test_fresh_stale_missing(store, monkeypatch):
     """A result is fresh until the case, the source or a file changes, and missing without its files."""
     assert _state(store) == ("fresh", "")
     with monkeypatch.context() as patch:
-        patch.setattr("studies.record.provenance.source_hash", lambda module, said: "another")
+        patch.setattr("studies.record.store.source_hash", lambda module, said: "another")
         assert _state(store) == ("stale", "the source was changed")
     (store.figures / "example.png").write_bytes(b"edited")
     assert _state(store) == ("stale", "example.png was changed after it was made")
@@ -180,11 +180,13 @@ def test_figures_are_as_wide_as_the_page():
     assert style.page(4.0, 2.0).get_figwidth() == 4.0
 
 
-def test_axes_write_their_units_in_one_way():
-    """Degrees are written by their sign and a pure number without a unit, whatever a figure calls them."""
+def test_figures_write_units_and_the_pivot_in_one_way():
+    """Degrees are written by their sign, a pure number without a unit and the pivot of the paper's Table 1 as
+    the reference pivot, whatever a figure calls them."""
     with style.applied():
         figure = style.page(4.0, 2.0)
         panel = figure.subplots()
-        panel.set(xlabel="rotation [deg]", ylabel="error of the path / travel [1]")
+        panel.set(xlabel="rotation [deg]", ylabel="error of the path / travel [1]", title="Table 1, at rest")
         style.vector(figure)
     assert (panel.get_xlabel(), panel.get_ylabel()) == ("rotation [°]", "error of the path / travel")
+    assert panel.get_title(loc="left") == "reference pivot, at rest"

@@ -6,13 +6,12 @@ import numpy as np
 import pytest
 
 from fe_reference import law
-from fe_reference.pivot import cross_axis_pivot as element_pivot
+from fe_reference.mechanism import cross_axis_pivot as element_pivot
 from fe_reference.structure import structure_of
 from spline_model.compile import compile_scene
 from spline_model.motion import forces
 from spline_model.motion.arrays import Flexures
-from spline_model.motion.grid import Grid, grid_of
-from spline_model.motion.mechanism import moving
+from spline_model.motion.mechanism import Moving
 from spline_model.motion.start import set_in_motion
 from spline_model.newton import LEAST_SIZE, Workspace
 from spline_model.path import follow
@@ -26,7 +25,7 @@ from studies.answers.adapters import answer_release, answer_static
 from studies.answers.settings import FeSettings, SplineSettings
 from studies.cases.problem import named_case
 from studies.work_precision import work
-from studies.work_precision.work import strip_force_flops, work_of_motion
+from studies.work_precision.work import work_of_motion
 from tests.suite.counted import Counted
 from tests.table_one import TABLE_ONE
 
@@ -49,7 +48,7 @@ def test_operations_of_the_condensed_spline(monkeypatch, n):
         if hasattr(called, "py_func"):
             monkeypatch.setattr(points, name, called.py_func)
     monkeypatch.setattr(points, "math", SimpleNamespace(sqrt=lambda value: value.sqrt()))
-    for name in ("add_slopes", "curve_at", "four"):
+    for name in ("add_slopes", "curve_at", "four", "spring_of", "springs_of"):
         monkeypatch.setattr(beside, name, getattr(points, name))
     monkeypatch.setattr(beside, "_product_at", beside._product_at.py_func)
     monkeypatch.setattr(strip_condense, "eliminate", strip_condense.eliminate.py_func)
@@ -63,25 +62,25 @@ def test_operations_of_the_condensed_spline(monkeypatch, n):
     ones, out = counting(np.ones(modes)), counting(np.zeros(5))
     evaluate = points.evaluate_points
     done = operations(evaluate, 0, ones, n - 1, shape, strips._replace(**counted), local, out)
-    assert done == work.assembly_flops(shape.rule.shape[1], n - 1, modes)
+    assert done == work._assembly_flops(shape.rule.shape[1], n - 1, modes)
 
     size = own + 3
     gain, gap = counting(np.ones(modes)), counting(np.ones(modes))
     g, h = counting(np.ones(size)), counting(10.0 * np.eye(size) + 1.0)
     b = counting(np.ones((modes, size)))
     condense = (strip_condense.condense.py_func, own, size, gain, g, h, b, gap)
-    assert operations(*condense) == work.condensation_flops(own, modes)
+    assert operations(*condense) == work._condensation_flops(own, modes)
     count = len(shape.rule[0]), n, modes
     strip = 0, ones, n, shape, strips._replace(**counted), local
     along, covector = counting(np.ones(2 * n)), counting(np.zeros(2 * n))
     product = beside._add_product.py_func, 0, ones, along, *strip[3:], covector
     confirmed = operations(points.evaluate_residual, *strip, out) + operations(*product)
-    assert confirmed == work.confirmation_flops(*count)
+    assert confirmed == work._confirmation_flops(*count)
     forward = beside._forward.py_func, own, own, size, 0, 0, gain, h, b, gap, g
-    assert operations(*forward) == work.forward_flops(own, modes)
+    assert operations(*forward) == work._forward_flops(own, modes)
     change = (counting(np.zeros(k)) for k in (3, own, modes))
     recover = (strip_condense.recover.py_func, own, size, Counted(1.0), 0, 0, gain, g, h, b, gap, *change)
-    assert operations(*recover) == work.recovery_flops(own, modes)
+    assert operations(*recover) == work._recovery_flops(own, modes)
 
 
 def test_operations_of_an_element(monkeypatch):
@@ -113,16 +112,16 @@ def test_sizes_are_those_of_the_models(settings):
     found = work.work_of(settings, answer_static(named_case("cross_axis_pivot"), settings).counters)
     if isinstance(settings, FeSettings):
         structure = structure_of(element_pivot(**TABLE_ONE, **settings.keywords()))
-        assert (found.unknowns, found.points) == (structure.size - 1, 2 * settings.elements)
+        assert (found["unknowns"], found["points"]) == (structure.size - 1, 2 * settings.elements)
         return
     pivot = cross_axis_pivot(**TABLE_ONE, **settings.keywords())
     if settings.basis == "bezier":
         own, modes = 2 * 7 - 6, reduced(compile_scene(pivot.driven(1.0))).strips.compliance.shape[1]
-        assert found.unknowns == 2 + 2 * (own + modes)
+        assert found["unknowns"] == 2 + 2 * (own + modes)
     else:
         system = compile_scene(pivot.driven(1.0))
-        assert found.unknowns == system.layout.size
-        assert found.points == np.count_nonzero(system.points.rigidity)
+        assert found["unknowns"] == system.layout.size
+        assert found["points"] == np.count_nonzero(system.points.rigidity)
 
 
 @pytest.mark.parametrize("n", [24, 64])
@@ -144,7 +143,7 @@ def test_operations_of_a_strip_in_motion(monkeypatch, n):
     slide = swinging_slide_stiffness(n)
     pivot = cross_axis_pivot(**TABLE_ONE, control_points=n, slide_stiffness=slide)
     system = compile_scene(pivot.released())
-    strips = moving(set_in_motion(system)).strips
+    strips = Moving.of(set_in_motion(system)).strips
     for name in ("bending_law", "stretching_law"):
         monkeypatch.setattr(forces, name, getattr(forces, name).py_func)
     monkeypatch.setattr(forces, "math", SimpleNamespace(sqrt=lambda value: value.sqrt()))
@@ -155,9 +154,9 @@ def test_operations_of_a_strip_in_motion(monkeypatch, n):
 
     points = counting(np.array([np.linspace(0.0, 1.0, n), np.full(n, 0.01)]))
     room = counting(np.zeros((10, n + 2))), counting(np.zeros(n - 1)), counting(np.zeros((2, n)))
-    given = counted(strips, Flexures), counted(grid_of(strips), Grid)
+    given = counted(strips, Flexures), counted(forces.Grid.of(strips), forces.Grid)
     done = operations(forces.add_forces.py_func, 0, 0, *given, points, *room)
-    assert done == strip_force_flops(n)
+    assert done == work._strip_force_flops(n)
 
 
 @pytest.mark.parametrize(

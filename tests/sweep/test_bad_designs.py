@@ -4,7 +4,8 @@ import pytest
 
 from studies.__main__ import main
 from studies.cases.document import CaseError
-from studies.sweep.points import design_of, solve_each
+from studies.sweep.plan import design_of
+from studies.sweep.points import solve_each
 from tests.sweep.sweeps import plan
 
 GOOD = {

@@ -20,6 +20,7 @@ import ctypes
 import importlib.util
 import os
 from collections.abc import Callable
+from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -40,7 +41,6 @@ from studies.cases.problem import Problem
 from studies.errors import BadInput
 from studies.kinds import Array
 
-model = "openseespy frame"
 #: Stiffness of the links that stand for the body, over the strips': 1e4 still moves the torque by 6e-5.
 LINK_FACTOR = 1e6
 #: Largest increment of the static path to the start of a release [rad], and its tolerance.
@@ -48,16 +48,6 @@ INCREMENT = np.pi / 40.0
 START_TOLERANCE = 1e-16
 MOST_ITERATIONS = 50
 BODY = 1
-
-
-@cache
-def installed() -> bool:
-    """Return whether OpenSees can be imported."""
-    try:
-        _loaded()
-    except (ImportError, OSError, RuntimeError):
-        return False
-    return True
 
 
 @cache
@@ -73,95 +63,109 @@ def _loaded() -> Any:
     return commands
 
 
-def static_path(
-    problem: Problem, rotations: Any, *, elements: int = 20, tolerance: float = 1e-8
-) -> SolvedPath:
-    """Drive the body through `rotations` [rad], equal increments from 0.
+@dataclass(eq=False, kw_only=True)
+class _OpenSees:
+    """OpenSees as a baseline: its name."""
 
-    Args:
-        problem: the pivot.
-        rotations: (S,) [rad].
-        elements: a strip [1].
-        tolerance: of the energy of Newton's last iteration, in EI/L [1].
+    model: str = "openseespy frame"
 
-    Raises:
-        BadInput: a setting out of range, or increments that differ. BaselineFailed: no convergence.
-    """
-    turns = checked_rotations(rotations)
-    increments = np.diff(turns)
-    if np.abs(increments - increments[0]).max() > 1e-9 * abs(increments[0]):
-        raise BadInput("rotations: got unequal increments, expected equal ones for OpenSees")
-    asked = {"elements": elements, "tolerance": tolerance}
+    def installed(self) -> bool:
+        """Return whether OpenSees can be imported."""
+        try:
+            _loaded()
+        except (ImportError, OSError, RuntimeError):
+            return False
+        return True
 
-    def prepare() -> Callable[[], Any]:
+    def static_path(
+        self, problem: Problem, rotations: Any, *, elements: int = 20, tolerance: float = 1e-8
+    ) -> SolvedPath:
+        """Drive the body through `rotations` [rad], equal increments from 0.
+
+        Args:
+            problem: the pivot.
+            rotations: (S,) [rad].
+            elements: a strip [1].
+            tolerance: of the energy of Newton's last iteration, in EI/L [1].
+
+        Raises:
+            BadInput: a setting out of range, or increments that differ. BaselineFailed: no convergence.
+        """
+        turns = checked_rotations(rotations)
+        increments = np.diff(turns)
+        if np.abs(increments - increments[0]).max() > 1e-9 * abs(increments[0]):
+            raise BadInput("rotations: got unequal increments, expected equal ones for OpenSees")
+        asked = {"elements": elements, "tolerance": tolerance}
+
+        def prepare() -> Callable[[], Any]:
+            ops = _driven(problem, asked, float(increments[0]), moving=False)
+            return lambda: ops.analyze(len(increments))
+
         ops = _driven(problem, asked, float(increments[0]), moving=False)
-        return lambda: ops.analyze(len(increments))
+        states, iterations = [np.zeros(3)], 0
+        for turn in turns[1:]:
+            if ops.analyze(1) != 0:
+                raise BaselineFailed(f"OpenSees: no convergence at {turn:g} rad")
+            iterations += ops.testIter()
+            states.append(np.array([*ops.nodeDisp(BODY)[:2], ops.getTime()]))
+        answer = np.array(states)
+        return SolvedPath(
+            rotation=turns,
+            centre=geometry_of(problem).centre + answer[:, :2],
+            torque=answer[:, 2],
+            stiffness=np.full(len(turns), np.nan),
+            again=clocked(prepare),
+            work={
+                "unknowns": ops.systemSize(),
+                "newton_iterations": iterations,
+                "factorisations": iterations,
+            },
+        )
 
-    ops = _driven(problem, asked, float(increments[0]), moving=False)
-    states, iterations = [np.zeros(3)], 0
-    for turn in turns[1:]:
-        if ops.analyze(1) != 0:
-            raise BaselineFailed(f"OpenSees: no convergence at {turn:g} rad")
-        iterations += ops.testIter()
-        states.append(np.array([*ops.nodeDisp(BODY)[:2], ops.getTime()]))
-    answer = np.array(states)
-    return SolvedPath(
-        rotation=turns,
-        centre=geometry_of(problem).centre + answer[:, :2],
-        torque=answer[:, 2],
-        stiffness=np.full(len(turns), np.nan),
-        again=clocked(prepare),
-        work={
-            "unknowns": ops.systemSize(),
-            "newton_iterations": iterations,
-            "factorisations": iterations,
-        },
-    )
+    def release(
+        self,
+        problem: Problem,
+        *,
+        start: float,
+        duration: float,
+        step: float,
+        elements: int = 20,
+        tolerance: float = 1e-8,
+        alpha: float = 0.9,
+    ) -> SolvedMotion:
+        """Let go of the body at rest at `start` [rad] and follow it by Hilber, Hughes and Taylor's method.
 
+        Args:
+            step: [s]; alpha: of the method, 2/3 to 1 (1: none of its damping). Others as of `static_path`.
 
-def release(
-    problem: Problem,
-    *,
-    start: float,
-    duration: float,
-    step: float,
-    elements: int = 20,
-    tolerance: float = 1e-8,
-    alpha: float = 0.9,
-) -> SolvedMotion:
-    """Let go of the body at rest at `start` [rad] and follow it by Hilber, Hughes and Taylor's method.
+        Raises:
+            BadInput: a setting out of range. BaselineFailed: no convergence.
+        """
+        steps = checked_release(start, duration, step)
+        asked = {"elements": elements, "tolerance": tolerance, "alpha": alpha, "step_s": duration / steps}
 
-    Args:
-        step: [s]; alpha: of the method, 2/3 to 1 (1: none of its damping). The others as of `static_path`.
+        def prepare() -> Callable[[], Any]:
+            ops = _let_go(problem, asked, start)
+            return lambda: ops.analyze(steps, duration / steps)
 
-    Raises:
-        BadInput: a setting out of range. BaselineFailed: no convergence.
-    """
-    steps = checked_release(start, duration, step)
-    asked = {"elements": elements, "tolerance": tolerance, "alpha": alpha, "step_s": duration / steps}
-
-    def prepare() -> Callable[[], Any]:
         ops = _let_go(problem, asked, start)
-        return lambda: ops.analyze(steps, duration / steps)
-
-    ops = _let_go(problem, asked, start)
-    rotation, iterations = np.full(steps + 1, start), 0
-    for row in range(1, steps + 1):
-        if ops.analyze(1, duration / steps) != 0:
-            raise BaselineFailed(f"OpenSees: no convergence at {ops.getTime():g} s")
-        iterations += ops.testIter()
-        rotation[row] = ops.nodeDisp(BODY)[2]
-    return SolvedMotion(
-        time=np.linspace(0.0, duration, steps + 1),
-        rotation=rotation,
-        again=clocked(prepare),
-        work={
-            "unknowns": ops.systemSize(),
-            "newton_iterations": iterations,
-            "factorisations": iterations,
-            "steps": steps,
-        },
-    )
+        rotation, iterations = np.full(steps + 1, start), 0
+        for row in range(1, steps + 1):
+            if ops.analyze(1, duration / steps) != 0:
+                raise BaselineFailed(f"OpenSees: no convergence at {ops.getTime():g} s")
+            iterations += ops.testIter()
+            rotation[row] = ops.nodeDisp(BODY)[2]
+        return SolvedMotion(
+            time=np.linspace(0.0, duration, steps + 1),
+            rotation=rotation,
+            again=clocked(prepare),
+            work={
+                "unknowns": ops.systemSize(),
+                "newton_iterations": iterations,
+                "factorisations": iterations,
+                "steps": steps,
+            },
+        )
 
 
 def _build(problem: Problem, elements: int, *, moving: bool) -> Any:
@@ -232,3 +236,6 @@ def _solver(ops: Any, problem: Problem, tolerance: float) -> None:
     ops.system("BandSPD")
     ops.test("EnergyIncr", tolerance * energy, MOST_ITERATIONS)
     ops.algorithm("Newton")
+
+
+openseespy_frame = _OpenSees()

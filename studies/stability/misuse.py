@@ -1,9 +1,9 @@
-"""Bad starts: crumpled, reversed, coincident and other wrong guesses lead to the right state, or nowhere."""
+"""What can be set wrongly: axial modes, Gauss points, and the state that a solution begins from."""
 
 import math
 from collections.abc import Iterator
 from dataclasses import replace
-from functools import partial
+from functools import cache, partial
 from itertools import product
 from typing import Any
 
@@ -12,22 +12,94 @@ from matplotlib.figure import Figure
 
 from spline_model.pivot import Pivot
 from spline_model.statics import solve_from, solve_statics
+from studies.answers.adapters import answer_static
 from studies.answers.models import built, model_of
+from studies.answers.response import Response
 from studies.answers.settings import SplineSettings
-from studies.cases.problem import named_case
+from studies.cases.problem import TABLE_1, Problem, named_case
 from studies.engine.study import Answer, Part, Tables
 from studies.kinds import Array
 from studies.stability import family, maps
 
+COUNTS = (4, 5, 6, 8, 10)
+ROTATION_DEG = 45.0
+
+MODES = "axial modes,\nslide stiffness 10"
+FLOATING = "axial modes,\nno slide stiffness"
+POINTS = "Gauss points,\nmixed stretch"
+PAPER_POINTS = "Gauss points,\nconsistent stretch"
+PANELS = (MODES, FLOATING, POINTS, PAPER_POINTS)
+
+
+@cache
+def _reference() -> Response:
+    """Return the refined path that all are held against."""
+    return answer_static(_design(), family.REFINED)
+
+
+def _outcome_of(panel: str, model: str, count: int, other: int, settings: SplineSettings) -> Answer:
+    """Return how one discretisation ends."""
+    checked = model not in family.UNCHECKED
+    attempt = partial(family.attempted, _design(), settings, _reference(), checked=checked)
+    place = {"panel": panel, "model": model, "x": count, "y": other}
+    return {"outcomes": {**place, **family.judged(attempt, family.TOLERANCE)}}
+
+
+def _independent() -> Answer:
+    """Return how far finite elements are from the reference."""
+    gap = family.distance(answer_static(_design(), family.INDEPENDENT), _reference())
+    settled = "yes" if gap <= family.TOLERANCE / 5.0 else "no"
+    return {"references": {"case": TABLE_1, "model": family.FE, "independent": gap, "settled": settled}}
+
+
+def _design() -> Problem:
+    return replace(named_case(), rotation=math.radians(ROTATION_DEG))
+
+
+def _settings() -> Iterator[tuple[str, str, int, int, SplineSettings]]:
+    """Yield every count of axial modes, with and without slide stiffness, and of Gauss points: the panel, the
+    column it counts for, the place in the panel and the settings."""
+    for n in COUNTS:
+        plain = SplineSettings(control_points=n)
+        for m in range(1, n):
+            modes = replace(plain, axial_modes=m)
+            yield MODES, family.VARIED, n, m, modes
+            yield FLOATING, family.VARIED, n, m, replace(modes, slide_stiffness=0.0)
+        for points in range(1, n + 3):
+            few = replace(plain, gauss_points=points)
+            yield POINTS, family.VARIED, n, points, few
+            yield PAPER_POINTS, family.PAPER, n, points, replace(few, stretch="consistent", measure="spatial")
+
+
+AXIAL_MODES = family.study(
+    Part(at=_settings, ask=_outcome_of),
+    Part(ask=_independent),
+    figures={
+        "stability_axial_modes": lambda tables: maps.outcome_map(
+            tables["outcomes"],
+            panels_by="panel",
+            order=PANELS,
+            title=f"Table 1 driven to {ROTATION_DEG:g}°: torque and path within 5 % of the refined answer",
+            xlabel="control points [1]",
+            ylabel="axial modes, Gauss points [1]",
+            xlim=(3.0, 11.0),
+            ylim=(0.0, 13.0),
+            xticks=list(COUNTS),
+        )
+    },
+)
+"""Too few and too many axial modes, and too few Gauss points: singular ones are refused, with the reason."""
+
+
 ASKED = (family.DEFAULT, family.LOCKING_FREE, family.PAPER)
-ROTATIONS = (45, 90, 120)
+START_ROTATIONS = (45, 90, 120)
 #: Largest error of the torque, and of the unknowns, against the path from rest: both are solved to round-off.
 TOLERANCE = 1e-7
 #: Sizes of random displacements of the control points [L], and how many of each.
 SIZES, SEEDS = (1e-3, 1e-2, 0.1, 1.0, 10.0), 3
 
 
-def _figure(tables: Tables) -> Figure:
+def _starts_figure(tables: Tables) -> Figure:
     """Draw the map over the kinds of guess and the rotation."""
     outcomes = tables["outcomes"]
     kinds = sorted(dict.fromkeys(outcomes["guess"]), reverse=True)
@@ -39,16 +111,16 @@ def _figure(tables: Tables) -> Figure:
         ylabel="guess",
         xlim=(30.0, 135.0),
         ylim=(-0.7, len(kinds) - 0.3),
-        xticks=list(ROTATIONS),
+        xticks=list(START_ROTATIONS),
         yticks=range(len(kinds)),
         yticklabels=kinds,
     )
 
 
-def _outcomes_of(model: str, degrees: float) -> Answer:
+def _outcomes_of_starts(model: str, degrees: float) -> Answer:
     """Return the outcomes of one model's guesses at a rotation."""
     settings = family.PATHS[family.SIX if model == family.DEFAULT else model]
-    given = replace(named_case(family.CASE), rotation=math.radians(degrees))
+    given = replace(named_case(), rotation=math.radians(degrees))
     pivot, _ = built(model_of(settings), given, settings, moving=False)
     path = solve_statics(pivot, rotation=given.rotation, raise_on_failure=False)
     rows = []
@@ -95,7 +167,8 @@ def _guesses(pivot: Pivot, settings: Any, rotation: float) -> Iterator[tuple[str
     yield "no numbers", np.full_like(good, np.nan)
 
 
-STUDY = family.study(
-    Part(at=lambda: product(ASKED, ROTATIONS), ask=_outcomes_of),
-    figures={"stability_bad_starts": _figure},
+BAD_STARTS = family.study(
+    Part(at=lambda: product(ASKED, START_ROTATIONS), ask=_outcomes_of_starts),
+    figures={"stability_bad_starts": _starts_figure},
 )
+"""Bad starts: crumpled, reversed, coincident and other wrong guesses lead to the right state, or nowhere."""

@@ -1,0 +1,300 @@
+"""Surrogates of rigid links and springs: the linear cross-spring pivot, the pin joint and the four-bar.
+
+`linear_pivot`: constant stiffness, and a centre shift that grows with the square. With EI and L of a strip,
+l the crossing point's distance from the moving end over L, and a the strips' inclination to the ground plate,
+
+    T = K p,  K = 8 (EI/L) (1 - 3 l + 3 l^2)                          [N m, N m / rad]
+    d = -(9 l^2 - 9 l + 1) L p^2 / (15 sin(a)),  away from the ground  [m]
+
+where d moves the point of the body that lies at the crossing at rest. Exact for rotations p towards zero
+under a pure couple, K for strips that do not stretch (for l = 1/2 for any); leaves out all that follows in
+p. Source: the line of Haringx and Wittrick, checked against the spline in the tests. In motion the strips
+take the shape of small rotations (a cubic in the arc length) times p: with m, J and mu of body and strips,
+
+    M = J + m |dg/dp|^2 + 2 mu L^3 (b^2/5 + b c/3 + c^2/7),  b = 3 l - 1,  c = 1 - 2 l
+
+`pin_joint`: the model of Jensen and Howell with one pin, a joint at the crossing with a torsional spring.
+
+    T = K p,  K = K_Theta EI / (2 L),  n = height / width of the pivot between its four clamps
+    K_Theta = 5.300185 - 1.6866 n + 0.885356 n^2 - 0.2094 n^3 + 0.018385 n^4
+
+The body turns about the crossing point at rest, which stays where it is. Published for strips that cross at
+mid-length, as a mean over large rotations: at small ones it is several per cent too stiff, at large ones too
+soft. Range of validity 0.5 <= n <= 4 (n = tan(inclination)); outside it is refused. Source: Jensen and
+Howell, Mechanism and Machine Theory 37 (2002) 461-476, polynomial as public codes have it; the original was
+not at hand. In motion the part of each strip beyond the pin turns with the body,
+M = J + m |g - c|^2 + 2 mu (L/2)^3 / 3 with g - c from crossing to centre of mass: constant, so that the swing
+is harmonic.
+
+`four_bar`: their model with four pins, crossed rigid links with torsional springs. Each strip is a rigid link
+of length c L in the middle of it, with a pin and a spring k at either end; what is left of the strip is rigid
+with ground or body. THE PUBLISHED COEFFICIENTS WERE NOT FOUND: c and k are fitted to the exact small-angle
+stiffness and centre shift of the pivot (`linear_pivot`), which is not what Jensen and Howell did. For strips
+that cross at mid-length this gives c = 2/3 and k = 2 EI/L. Exact, by that fit, for small rotations; leaves
+out that the real links' springs and lengths change with the load. With q, b the pins' distances from the
+crossing towards ground and body, p the rotation, a the inclination, in complex numbers,
+
+    w = q + b e^(ip),  m = arg(w),  h = acos(cos(a) |w| / (q + b)) - a
+    V = k (m^2 + (p - m)^2 + 2 h^2)
+    u = i w (sqrt((q + b)^2 / |w|^2 - cos(a)^2) - sin(a))
+
+where the links turn by m + h and m - h and u moves the body's point that lies at the crossing at rest.
+In motion a link is a uniform rod on its ground pin, and the strip's part beyond the body pin belongs to the
+body. Source of the model: as of the pin joint; own derivation of the rest.
+"""
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from studies.baselines.answer import Geometry, geometry_of
+from studies.baselines.one_coordinate import Surrogate
+from studies.cases.problem import Problem
+from studies.errors import BadInput
+from studies.kinds import Array
+
+PIN_JOINT = "pin joint"
+#: Coefficients of K_Theta in ascending powers of n, and the range they are for.
+COEFFICIENTS = (5.300185, -1.6866, 0.885356, -0.2094, 0.018385)
+RANGE = (0.5, 4.0)
+#: Distance from mid-length, over L, at which strips still count as crossing there.
+MID_LENGTH = 1e-6
+
+
+def small_angle_stiffness(problem: Problem) -> float:
+    """Return K of the linear pivot [N m / rad]."""
+    rigidity = problem.youngs_modulus * problem.second_moment_of_area
+    away = 1.0 - problem.crossing_ratio
+    return 8.0 * rigidity / problem.length * (1.0 - 3.0 * away + 3.0 * away**2)
+
+
+def shift_coefficient(problem: Problem) -> float:
+    """Return d / p^2 of the linear pivot [m]."""
+    away = 1.0 - problem.crossing_ratio
+    return -(9.0 * away**2 - 9.0 * away + 1.0) * problem.length / (15.0 * math.sin(problem.inclination))
+
+
+def _stiffness_coefficient(ratio: float) -> float:
+    """Return K_Theta at n = `ratio` [1]."""
+    return float(np.polynomial.polynomial.polyval(ratio, COEFFICIENTS))
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Turned:
+    """A body whose point at the crossing moves as it turns; see `studies.baselines.one_coordinate.Law`.
+
+    at_rest: the pivot. mass, turning_inertia: of the body [kg], [kg m^2].
+    """
+
+    at_rest: Geometry
+    mass: float
+    turning_inertia: float
+
+    def centre(self, p: Array) -> Array:
+        """Return the centre of mass."""
+        z = self._shift(p)[0] + complex(*self._arm) * np.exp(1j * p)
+        return np.stack((z.real, z.imag), axis=-1) + self.at_rest.crossing
+
+    @property
+    def _arm(self) -> Array:
+        """From the crossing to the centre of mass, at rest [m]."""
+        return self.at_rest.centre - self.at_rest.crossing
+
+    def _rate(self, p: Array, arm: Array) -> Array:
+        """Return the velocity of a point of the body at p' = 1 as x + iy [m]."""
+        return np.asarray(self._shift(p)[1] + 1j * complex(*arm) * np.exp(1j * p))
+
+    def _shift(self, p: Array) -> tuple[Any, Any]:
+        """Return the displacement of the body's point at the crossing, as x + iy, and its derivative [m]."""
+        raise NotImplementedError
+
+
+@dataclass(frozen=True, kw_only=True)
+class _LinearPivot(_Turned):
+    """The law of one pivot with a constant stiffness [N m / rad], and a shift over p^2 [m]."""
+
+    constant: float
+    shift: float
+
+    def energy(self, p: Array) -> Array:
+        """Return K p^2 / 2."""
+        return np.asarray(0.5 * self.constant * p**2)
+
+    def torque(self, p: Array) -> Array:
+        """Return K p."""
+        return np.asarray(self.constant * p)
+
+    def stiffness(self, p: Array) -> Array:
+        """Return K."""
+        return np.full(len(p), self.constant)
+
+    def inertia(self, p: Array) -> Array:
+        """Return M."""
+        rate = self._rate(p, self._arm)
+        return np.asarray(self.turning_inertia + self.mass * (rate.real**2 + rate.imag**2))
+
+    def _shift(self, p: Array) -> tuple[Any, Any]:
+        return 1j * self.shift * p**2, 2j * self.shift * p
+
+
+def _linear_law(problem: Problem) -> _LinearPivot:
+    """Return the law of the linear pivot."""
+    away = 1.0 - problem.crossing_ratio
+    b, c = 3.0 * away - 1.0, 1.0 - 2.0 * away
+    strip = problem.density * problem.area * problem.length**3
+    strips = 2.0 * strip * (b**2 / 5.0 + b * c / 3.0 + c**2 / 7.0)
+    return _LinearPivot(
+        at_rest=geometry_of(problem),
+        constant=small_angle_stiffness(problem),
+        shift=shift_coefficient(problem),
+        mass=problem.body_mass,
+        turning_inertia=problem.body_moment_of_inertia + strips,
+    )
+
+
+def _pinned_law(problem: Problem) -> _LinearPivot:
+    """Return the law of the pin joint: that of the linear pivot without a shift.
+
+    Raises:
+        BadInput: a pivot outside the model's range.
+    """
+    if abs(problem.crossing_ratio - 0.5) > MID_LENGTH:
+        raise BadInput(
+            f"{PIN_JOINT}: got crossing ratio {problem.crossing_ratio:g}, expected 0.5 "
+            "(crossing at mid-length)"
+        )
+    ratio = math.tan(problem.inclination)
+    if not RANGE[0] <= ratio <= RANGE[1]:
+        raise BadInput(f"{PIN_JOINT}: got height / width {ratio:.3g}, expected {RANGE[0]:g} to {RANGE[1]:g}")
+    rigidity = problem.youngs_modulus * problem.second_moment_of_area
+    strips = 2.0 * problem.density * problem.area * (0.5 * problem.length) ** 3 / 3.0
+    return _LinearPivot(
+        at_rest=geometry_of(problem),
+        constant=_stiffness_coefficient(ratio) * rigidity / (2.0 * problem.length),
+        shift=0.0,
+        mass=problem.body_mass,
+        turning_inertia=problem.body_moment_of_inertia + strips,
+    )
+
+
+def link_length(problem: Problem) -> float:
+    """Return c, the links' length over L, with which the small-angle centre shift is exact.
+
+    The linkage shifts by q b p^2 / (2 (q + b) sin(a)) with q b = L^2 (c^2/4 - e^2), e = crossing ratio - 1/2.
+    """
+    offset = problem.crossing_ratio - 0.5
+    wanted = shift_coefficient(problem) * math.sin(problem.inclination) / problem.length
+    return 4.0 * wanted + math.sqrt(16.0 * wanted**2 + 4.0 * offset**2)
+
+
+def spring(problem: Problem) -> float:
+    """Return k [N m / rad], with which the small-angle stiffness k (1 + 4 (e / c)^2) is exact."""
+    offset = problem.crossing_ratio - 0.5
+    return small_angle_stiffness(problem) / (1.0 + 4.0 * (offset / link_length(problem)) ** 2)
+
+
+@dataclass(frozen=True, kw_only=True)
+class _FourBar(_Turned):
+    """The law of one linkage.
+
+    ground, body: the pins' distances from the crossing, q and b [m]. rod: inertia of a link about its ground
+    pin [kg m^2]. stub: mass of a strip's part on the body [kg]; stub_place: (2, 2) centres of both [m].
+    """
+
+    inclination: float
+    ground: float
+    body: float
+    spring: float
+    rod: float
+    stub: float
+    stub_place: Array
+
+    def energy(self, p: Array) -> Array:
+        """Return V."""
+        mean, half = self._links(p)
+        return np.asarray(self.spring * (mean[0] ** 2 + (p - mean[0]) ** 2 + 2.0 * half[0] ** 2))
+
+    def torque(self, p: Array) -> Array:
+        """Return V'."""
+        mean, half = self._links(p)
+        by_mean = mean[0] * mean[1] + (p - mean[0]) * (1.0 - mean[1])
+        return np.asarray(2.0 * self.spring * (by_mean + 2.0 * half[0] * half[1]))
+
+    def stiffness(self, p: Array) -> Array:
+        """Return V''."""
+        mean, half = self._links(p)
+        by_mean = mean[1] ** 2 + mean[0] * mean[2] + (1.0 - mean[1]) ** 2 - (p - mean[0]) * mean[2]
+        by_half = half[1] ** 2 + half[0] * half[2]
+        return np.asarray(2.0 * self.spring * (by_mean + 2.0 * by_half))
+
+    def inertia(self, p: Array) -> Array:
+        """Return M."""
+        mean, half = self._links(p)
+        links = self.rod * ((mean[1] + half[1]) ** 2 + (mean[1] - half[1]) ** 2)
+        return np.asarray(
+            self.turning_inertia
+            + links
+            + self.mass * self._speed(p, self._arm)
+            + self.stub * sum(self._speed(p, place) for place in self.stub_place)
+        )
+
+    def _speed(self, p: Array, arm: Array) -> Array:
+        """Return the square of the speed of a point of the body at p' = 1 [m^2]."""
+        return np.asarray(np.abs(self._rate(p, arm)) ** 2)
+
+    def _between(self, p: Array) -> tuple[Array, Array, Array]:
+        """Return |w| and its two derivatives by p [m]."""
+        q, b = self.ground, self.body
+        size = np.abs(q + b * np.exp(1j * p))
+        first = -q * b * np.sin(p) / size
+        return size, first, (-q * b * np.cos(p) - first**2) / size
+
+    def _links(self, p: Array) -> tuple[tuple[Array, ...], tuple[Array, ...]]:
+        """Return mean rotation and half difference of the links, each with two derivatives by p."""
+        q, b = self.ground, self.body
+        size, first, second = self._between(p)
+        mean = np.unwrap(np.angle(q + b * np.exp(1j * p)))
+        mean_1 = b * (b + q * np.cos(p)) / size**2
+        mean_2 = -q * b * np.sin(p) / size**2 - 2.0 * mean_1 * first / size
+        scale = math.cos(self.inclination) / (q + b)
+        z, z_1, z_2 = scale * size, scale * first, scale * second
+        height = np.sqrt(1.0 - z**2)
+        half = (np.arccos(z) - self.inclination, -z_1 / height, -z_2 / height - z * z_1**2 / height**3)
+        return (mean, mean_1, mean_2), half
+
+    def _shift(self, p: Array) -> tuple[Any, Any]:
+        q, b = self.ground, self.body
+        w, w_1 = q + b * np.exp(1j * p), 1j * b * np.exp(1j * p)
+        size, first, _ = self._between(p)
+        cosine, sine = math.cos(self.inclination), math.sin(self.inclination)
+        height = np.sqrt((q + b) ** 2 / size**2 - cosine**2)
+        height_1 = -((q + b) ** 2) * first / (size**3 * height)
+        return 1j * w * (height - sine), 1j * (w_1 * (height - sine) + w * height_1)
+
+
+def _linkage(problem: Problem) -> _FourBar:
+    """Return the law of the linkage."""
+    at_rest, link = geometry_of(problem), link_length(problem) * problem.length
+    left = 0.5 * (problem.length - link)
+    ground = problem.crossing_ratio * problem.length - left
+    body = (1.0 - problem.crossing_ratio) * problem.length - left
+    linear = problem.density * problem.area
+    return _FourBar(
+        at_rest=at_rest,
+        inclination=problem.inclination,
+        ground=ground,
+        body=body,
+        spring=spring(problem),
+        mass=problem.body_mass,
+        turning_inertia=problem.body_moment_of_inertia + 2.0 * linear * left**3 / 12.0,
+        rod=linear * link**3 / 3.0,
+        stub=linear * left,
+        stub_place=(body + 0.5 * left) * at_rest.direction,
+    )
+
+
+linear_pivot = Surrogate(model="linear pivot", law_of=_linear_law)
+pin_joint = Surrogate(model=PIN_JOINT, law_of=_pinned_law)
+four_bar = Surrogate(model="four-bar", law_of=_linkage)
