@@ -46,9 +46,7 @@ def designs(tables: Mapping[str, pd.DataFrame], baseline: str) -> Figure:
                 )
         panel.set(xlabel="rotation [deg]", ylabel=label, xticks=range(0, last + 1, last // 3))
     panels[0].set_ylim(bottom=0.0)
-    panels[0].plot(
-        [], [], "o", color=GREY, markersize=3.0, label="the same design in the FE model (lines: spline)"
-    )
+    panels[0].plot([], [], "o", color=GREY, markersize=3.0, label="elements (lines: spline)")
     below.legend(*panels[0].get_legend_handles_labels(), loc="outside upper center", ncols=3)
     figure.draw_without_rendering()  # panels of one scale have their place after a first layout only
     return figure

@@ -233,7 +233,7 @@ def _figure(tables: Tables) -> Figure:
     panel.set(xscale="log", xlabel="difference to the value in print [1]; bar: limit and uncertainty")
     panel.set_yticks(range(len(titles)), titles)
     panel.invert_yaxis()
-    drawn.legend(*panel.get_legend_handles_labels(), loc="outside lower center", ncols=4)
+    drawn.legend(*panel.get_legend_handles_labels(), loc="outside lower center", ncols=2)
     return drawn
 
 

@@ -6,6 +6,8 @@ import shutil
 import numpy as np
 import pandas as pd
 import pytest
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.legend import Legend
 
 from studies.__main__ import main
 from studies.commands import readme
@@ -49,6 +51,20 @@ def test_stored_tables_draw_the_stored_figures(name):
         figures = study_of(name).draw(store.load_tables(name))
     drawn = {f"{title}.svg": sha256(style.vector(page)) for title, page in figures.items()}
     assert drawn == {file: digest for file, digest in record["figures"].items() if file.endswith(".svg")}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", STUDIES)
+def test_legends_stand_on_their_page(name):
+    """No entry of a legend is cut by the edge of its figure."""
+    store = Store()
+    with style.applied():
+        for title, page in study_of(name).draw(store.load_tables(name)).items():
+            style.vector(page)  # which settles the layout and writes the words
+            renderer = FigureCanvasAgg(page).get_renderer()
+            for entry in (entry for legend in page.findobj(Legend) for entry in legend.get_texts()):
+                box, said = entry.get_window_extent(renderer), (title, entry.get_text())
+                assert page.bbox.contains(*box.min) and page.bbox.contains(*box.max), said
 
 
 def test_figure_names_are_unique():
