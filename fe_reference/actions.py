@@ -219,7 +219,7 @@ def _act(acting: Acting, state: State, time: float) -> tuple[float, float, float
     """Write all that resists on nodes and bodies; return strain energy, power of the loads, power lost."""
     (given, carried, weights), (relaxation, drag, grip), histories, written, (resultants, pulls) = acting
     u, v, bodies, bodies_v = state
-    (_, _, first), (force, _, matrices, _), targets, loss = given, written, histories[0], 0.0
+    (_, _, first, _), (force, _, matrices, _), targets, loss = given, written, histories[0], 0.0
     strain = elements(given, 1.0, MATERIAL if len(relaxation) else FORCES, u, written)
     if len(relaxation) or len(drag):
         loss += _viscous_forces(relaxation, first, matrices, v, force) + _drag_forces(drag, v, force)

@@ -20,32 +20,63 @@ Solids (2021).
 
 import math
 
+import numpy as np
+from numpy.polynomial import chebyshev
+
 from .arrays import Array, inlined, kernel
 
 Shares = tuple[float, float, float]
 Bent = tuple[float, float, float, float, float, float]
 
-#: w below which f is taken as 2 P / Q with P = sum w^k / (4 k + 2)! and Q = sum w^k / (4 k + 1)!, whose terms
-#: are all positive, and the number of them that is exact to the last digit there.
-NEAR, TERMS = 5.0**4, 9
-P = tuple(1.0 / math.factorial(4 * k + 2) for k in reversed(range(TERMS)))
-Q = tuple(1.0 / math.factorial(4 * k + 1) for k in reversed(range(TERMS)))
-#: w below which f is its own power series, and its terms that are exact to the last digit there.
-NEARER, FEW = 1.0, 8
+#: Everywhere f, f_M and f_K are polynomials of TERMS terms: in w below NEAR; in pieces of x, PIECES a unit, up to
+#: FAR, from where e^-x does not count; in 1/x beyond.
+TERMS, NEAR, FAR, PIECES = 8, 1.0, 37.0, 12
 
 
-def _quotient() -> tuple[float, ...]:
-    """Return the power series of f = 2 P / Q, the lowest coefficient first."""
-    found: list[float] = []
-    for k in range(FEW):
-        known = sum(f * Q[TERMS - 1 - k + j] for j, f in enumerate(found))
-        found.append(2.0 * P[TERMS - 1 - k] - known)
-    return tuple(found)
+def _series() -> Array:
+    """Return the power series of f = 2 P / Q in w, P = sum w^k / (4 k + 2)! and Q = sum w^k / (4 k + 1)!."""
+    p, q = (np.array([1.0 / math.factorial(4 * k + more) for k in range(TERMS)]) for more in (2, 1))
+    f = np.zeros(TERMS)
+    for k in range(TERMS):
+        f[k] = 2.0 * p[k] - q[k:0:-1] @ f[:k]
+    return f
 
 
-F = _quotient()
-F_M = tuple((k + 1) * f for k, f in enumerate(F))
-F_K = tuple((k + 1) * (2 * k + 1) * f for k, f in enumerate(F))
+def _closed(x: Array) -> Array:
+    """Return f, f_M and f_K (3, ...) at x, free of cancellation and of large numbers.
+
+    As w f' = x f_x / 4, f_M = 3 f / 4 + g and f_K = 3 f / 8 + 5 g / 2 + x g_x / 2 with
+    g = sinh x sin x / (sinh x + sin x)^2.
+    """
+    e = np.exp(-x)  # all relative to e^x
+    sinh, cosh, sine, cosine = -0.5 * np.expm1(-2.0 * x), 0.5 + 0.5 * e * e, e * np.sin(x), e * np.cos(x)
+    whole = sinh + sine
+    f = (np.expm1(-x) ** 2 + 4.0 * e * np.sin(0.5 * x) ** 2) / (x * whole)
+    g = sinh * sine / whole**2
+    slope = (sinh - sine) * (sinh * cosine - cosh * sine) / whole**3
+    return np.array([f, 0.75 * f + g, 0.375 * f + 2.5 * g + 0.5 * x * slope])
+
+
+def _table() -> Array:
+    """Return the coefficients of the polynomials (pieces, 3, TERMS), the lowest first.
+
+    The first is in w, the last in 1/x, those between in t from -1 to 1 over their pieces of x.
+    """
+    count, k = round((FAR - NEAR) * PIECES), np.arange(TERMS)
+    table = np.zeros((count + 2, 3, TERMS))
+    table[0] = np.array([np.ones(TERMS), k + 1, (k + 1) * (2 * k + 1)]) * _series()
+    table[-1, :, 1] = 2.0, 1.5, 0.75
+    t = chebyshev.chebpts1(TERMS)
+    values = _closed(NEAR + (np.arange(count) + 0.5 * (1.0 + t[:, None])) / PIECES)
+    fitted = chebyshev.chebfit(t, values.transpose(1, 0, 2).reshape(TERMS, -1), TERMS - 1)
+    powers = [np.polynomial.Chebyshev.basis(n).convert(kind=np.polynomial.Polynomial).coef for n in k]
+    for n, basis in enumerate(powers):
+        table[1:-1, :, : n + 1] += fitted[n].reshape(3, count).T[:, :, None] * basis
+    return table
+
+
+#: Handed to the compiled functions, which reach all of an array by its one address.
+CURL = _table()
 #: At most so many Newton steps to the curvature of a moment, and to the turns of an element's roots.
 STEPS = 50
 #: A change of a turn [rad] that no moment feels.
@@ -54,69 +85,46 @@ ROUND_OFF = 1e-17
 ROOT_3 = math.sqrt(3.0)
 
 
-@inlined()
-def _left_by_curvature(reach: float, curvature: float) -> Shares:
+@inlined(fastmath={"contract"})
+def _left_by_curvature(curl: Array, reach: float, curvature: float) -> Shares:
     """Return f, f_M and f_K at a curvature [1/m] of a section with the `reach` c [m], 0 for f = 1."""
-    if reach == 0.0:
-        return 1.0, 1.0, 1.0
-    w = (reach * curvature) ** 2
-    if w < NEARER:
-        return _short(F, w), _short(F_M, w), _short(F_K, w)
-    return _far(reach, curvature, w)
+    square = reach * abs(curvature)
+    piece, t = 0, square * square
+    if not t < NEAR:
+        x = math.sqrt(square)
+        place = PIECES * (x - NEAR)
+        piece, t = len(curl) - 1, 1.0 / x
+        if x < FAR:
+            piece = 1 + int(place)
+            t = 2.0 * (place - piece) + 1.0
+    row = curl[piece]
+    return _polynomial(row[0], t), _polynomial(row[1], t), _polynomial(row[2], t)
 
 
 @inlined(fastmath={"contract"})  # products and sums in one instruction, where the machine has it
-def _short(c: tuple[float, ...], w: float) -> float:
-    """Return a polynomial of eight coefficients in w, the lowest first, by pairs: no long chain of sums."""
-    y = w * w
-    return (c[0] + c[1] * w) + y * (c[2] + c[3] * w) + y * y * ((c[4] + c[5] * w) + y * (c[6] + c[7] * w))
-
-
-@kernel()
-def _far(reach: float, curvature: float, w: float) -> Shares:
-    """Return the same where the short series does not reach."""
-    if w < NEAR:
-        p, q = _series(P, w), _series(Q, w)
-        over = 1.0 / q[0]
-        y, z = p[0] * over, q[1] * over
-        once = p[1] * over - y * z
-        twice = (p[2] - y * q[2]) * over - 2.0 * once * z
-        return 2.0 * y, 2.0 * (y + once), 2.0 * y + 10.0 * once + 4.0 * twice
-    x = math.sqrt(reach * abs(curvature))
-    e = math.exp(-x)
-    c, s = 2.0 * e * math.cos(x), 2.0 * e * math.sin(x)
-    over = 1.0 / (1.0 - e * e + s)  # all relative to e^x / 2
-    y, z, n = (1.0 + e * e - c) * over, (1.0 + e * e + c) * over, (1.0 - e * e - s) * over
-    # f = 2 y / x with y' = 1 - y z and z' = n - z^2
-    slope, bend, f = 1.0 - y * z, 2.0 * y * z * z - z - y * n, 2.0 * y / x
-    once, twice = 2.0 * slope - f, 2.0 * x * bend - 4.0 * slope + 2.0 * f  # x f_x, x^2 f_xx
-    return f, f + 0.25 * once, f + 0.875 * once + 0.125 * twice
-
-
-@kernel()
-def _series(coefficients: tuple[float, ...], w: float) -> Shares:
-    """Return a polynomial in w with the highest coefficient first, w times its slope and w^2 its bend."""
-    value, slope, bend = 0.0, 0.0, 0.0
-    for coefficient in coefficients:
-        bend, slope, value = bend * w + slope, slope * w + value, value * w + coefficient
-    return value, w * slope, 2.0 * w * w * bend
+def _polynomial(c: Array, t: float) -> float:
+    """Return a polynomial of eight coefficients, the lowest first, by pairs: no long chain of sums."""
+    y = t * t
+    low, high = (c[0] + c[1] * t) + y * (c[2] + c[3] * t), (c[4] + c[5] * t) + y * (c[6] + c[7] * t)
+    value: float = low + y * y * high
+    return value
 
 
 @inlined(fastmath={"contract"})
-def section(rigidity: float, held: float, reach: float, curvature: float) -> Shares:
+def section(curl: Array, rigidity: float, held: float, reach: float, curvature: float) -> Shares:
     """Return energy [J/m], moment [N m] and tangent rigidity [N m^2] of a section at a curvature [1/m].
 
     Args:
-        rigidity: of the section held flat, D [N m^2]. held: nu^2 g. reach: c [m], 0 for f = 1.
+        curl: CURL. rigidity: of the section held flat, D [N m^2]. held: nu^2 g. reach: c [m], 0 for f = 1.
     """
-    f, f_m, f_k = _left_by_curvature(reach, curvature)
+    f, f_m, f_k = _left_by_curvature(curl, reach, curvature)
     moment = rigidity * curvature * (1.0 - held * f_m)
     energy = 0.5 * rigidity * curvature * curvature * (1.0 - held * f)
     return energy, moment, rigidity * (1.0 - held * f_k)
 
 
 @inlined(fastmath={"contract"})
-def bent_element(row: Array, rate: float, first: float, second: float) -> Bent:
+def bent_element(curl: Array, row: Array, rate: float, first: float, second: float) -> Bent:
     """Return energy [J], both end moments [N m] and their slopes 11, 12, 22 of an element with two points.
 
     Args:
@@ -124,8 +132,8 @@ def bent_element(row: Array, rate: float, first: float, second: float) -> Bent:
         first, second: turns of its end sections from the chord [rad].
     """
     even, odd = (second - first) * rate, ROOT_3 * (first + second) * rate
-    u_1, m_1, s_1 = section(row[8], row[9], row[11], even - odd)
-    u_2, m_2, s_2 = section(row[8], row[10], row[11], even + odd)
+    u_1, m_1, s_1 = section(curl, row[8], row[9], row[11], even - odd)
+    u_2, m_2, s_2 = section(curl, row[8], row[10], row[11], even + odd)
     equal, unlike = 0.5 * (m_2 + m_1), 0.5 * ROOT_3 * (m_2 - m_1)
     both, apart = rate * (s_2 + s_1), ROOT_3 * rate * (s_2 - s_1)
     slopes = (2.0 * both - apart, both, 2.0 * both + apart)
@@ -134,7 +142,7 @@ def bent_element(row: Array, rate: float, first: float, second: float) -> Bent:
 
 @kernel()
 def rooted_element(
-    row: Array, rate: float, natural: float, first: float, second: float, least: float
+    curl: Array, row: Array, rate: float, natural: float, first: float, second: float, least: float
 ) -> tuple[Bent, float, float]:
     """Return the same where roots hold the end sections, and how far these turn from the nodes [rad].
 
@@ -148,7 +156,7 @@ def rooted_element(
     """
     c_1, c_2, last, turn_1, turn_2 = row[12], row[13], 0.0, first, second  # from the straight element
     for n in range(STEPS):
-        energy, m_1, m_2, k_11, k_12, k_22 = bent_element(row, rate, first - turn_1, second - turn_2)
+        energy, m_1, m_2, k_11, k_12, k_22 = bent_element(curl, row, rate, first - turn_1, second - turn_2)
         r_1, r_2 = c_1 * (m_1 + natural) - turn_1, c_2 * (m_2 - natural) - turn_2
         a, b, c, d = 1.0 + c_1 * k_11, c_1 * k_12, c_2 * k_12, 1.0 + c_2 * k_22
         over = 1.0 / (a * d - b * c)
@@ -167,7 +175,7 @@ def rooted_element(
 
 
 @kernel()
-def curve(rigidity: Array, held: Array, reach: Array, moments: Array) -> None:
+def curve(curl: Array, rigidity: Array, held: Array, reach: Array, moments: Array) -> None:
     """Write the curvatures [1/m] of the sections of N nodes (N,) in place of their moments (S, N) [N m]."""
     for n in range(len(rigidity)):
         for k in range(len(moments)):
@@ -175,7 +183,7 @@ def curve(rigidity: Array, held: Array, reach: Array, moments: Array) -> None:
             curvature = moment / rigidity[n]
             # M grows with kappa everywhere: Newton's steps, until they grow no smaller
             for _ in range(STEPS):
-                parts = section(rigidity[n], held[n], reach[n], curvature)
+                parts = section(curl, rigidity[n], held[n], reach[n], curvature)
                 step = (parts[1] - moment) / parts[2]
                 if not abs(step) < last:
                     break

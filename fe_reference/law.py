@@ -48,7 +48,7 @@ Energies = tuple[float, float, float]
 #: The step of the displacement over an element [m], and the turns of its end sections [rad].
 Moved = tuple[float, float, float, float]
 #: What `elements` is given and what it writes.
-Given = tuple[bool, Array, Indices]
+Given = tuple[bool, Array, Indices, Array]
 Written = tuple[Array, Array, Array, Array]
 #: What is asked of the law: forces, with the tangent, or with the part of it that comes from the change of
 #: the strains alone.
@@ -58,62 +58,92 @@ QUADRATIC = 1e-9
 
 
 @inlined()
-def _corotational(row: Array, share: float, moved: Moved, asked: int, f: Array, h: Array) -> Energies:
-    """Write force x, y at the second node, both moments and the largest turn of an end from the element (5,).
+def _turn(given: Given, u: Array, ends: Array) -> None:
+    """Write of every element how far its ends are turned from the chord, and one from the other [rad]."""
+    _, table, first, _ = given
+    for e in range(len(first)):
+        row, f, i = table[e], ends[e], first[e]
+        j, turn_1, turn_2 = i + 1, u[i, 2], u[i + 1, 2]
+        x, y = row[0] + (u[j, 0] - u[i, 0]), row[1] + (u[j, 1] - u[i, 1])
+        turn = math.atan2(row[0] * y - row[1] * x, row[0] * x + row[1] * y)
+        first_, second = turn_1 - turn, turn_2 - turn
+        # less whole turns: nodes and chords may turn by any amount
+        first_ -= 2.0 * math.pi * math.floor(first_ / (2.0 * math.pi) + 0.5)
+        second -= 2.0 * math.pi * math.floor(second / (2.0 * math.pi) + 0.5)
+        f[2], f[3], f[4] = first_, second, turn_2 - turn_1
 
-    Also the tangent (4, 4) in `moved`, if it is asked for; return bending, axial and shear energy.
+
+@inlined()
+def _bend(given: Given, share: float, asked: int, ends: Array, matrices: Array) -> float:
+    """Write the moments of the ends for their turns, and the larger of these; return the energy.
+
+    Also the slopes of the moments in the turns, at their places in the tangents, if it is asked for.
     """
-    step_x, step_y, turn_1, turn_2 = moved
-    length_0, rate = row[2], 1.0 / row[2]
-    x, y = row[0] + step_x, row[1] + step_y
-    length = math.sqrt(x * x + y * y)
-    # (l^2 - l0^2) / (l + l0) from the displacements: no cancellation of two nearly equal lengths
-    strain = rate * ((row[0] + x) * step_x + (row[1] + y) * step_y) / (length + length_0)
-    strain -= share * row[6]
-    turn = math.atan2(row[0] * y - row[1] * x, row[0] * x + row[1] * y)
-    first, second = turn_1 - turn, turn_2 - turn
-    # less whole turns: nodes and chords may turn by any amount
-    first -= 2.0 * math.pi * math.floor(first / (2.0 * math.pi) + 0.5)
-    second -= 2.0 * math.pi * math.floor(second / (2.0 * math.pi) + 0.5)
-    axial, natural = row[3] * strain / length, share * row[4] * row[7]
-    if row[12] != 0.0 or row[13] != 0.0:
-        least = ROUND_OFF if asked == FORCES else 0.0
-        bent, slip_1, slip_2 = rooted_element(row, rate, natural, first, second, least)
-        bending, moment_1, moment_2, k_11, k_12, k_22 = bent
-        first, second, turn_1, turn_2 = first - slip_1, second - slip_2, turn_1 - slip_1, turn_2 - slip_2
-    elif row[8] == row[4]:
-        stiff = rate * row[4]
-        moment_1, moment_2 = stiff * (4.0 * first + 2.0 * second), stiff * (2.0 * first + 4.0 * second)
-        bending = 0.5 * (moment_1 * first + moment_2 * second)
-        k_11, k_12, k_22 = 4.0 * stiff, 2.0 * stiff, 4.0 * stiff
-    elif asked == FORCES:  # without the slopes
-        bending, moment_1, moment_2, _, _, _ = bent_element(row, rate, first, second)
-        k_11, k_12, k_22 = 0.0, 0.0, 0.0
-    else:
-        bending, moment_1, moment_2, k_11, k_12, k_22 = bent_element(row, rate, first, second)
-    shear = (moment_1 + moment_2) / (length * length)
-    f[0], f[1] = axial * x + shear * y, axial * y - shear * x
-    f[2], f[3] = moment_1 + natural, moment_2 - natural
-    # half the turn between the ends is more than the larger only where a node has gained a whole turn
-    f[4] = max(abs(first), abs(second), 0.5 * abs(turn_2 - turn_1))
-    if asked != FORCES:
-        c, s, stretching = x / length, y / length, row[3] / length_0
-        turning, mixed = (k_11 + 2.0 * k_12 + k_22) / (length * length), 0.0
-        if asked == TANGENT:
-            turning, mixed = turning + axial, shear
-        h[0, 0] = stretching * c * c + turning * s * s - 2.0 * mixed * c * s
-        h[1, 1] = stretching * s * s + turning * c * c + 2.0 * mixed * c * s
-        h[0, 1] = (stretching - turning) * c * s + mixed * (c * c - s * s)
-        lever_1, lever_2 = (k_11 + k_12) / length, (k_12 + k_22) / length
-        h[0, 2], h[0, 3] = lever_1 * s, lever_2 * s
-        h[1, 2], h[1, 3] = -lever_1 * c, -lever_2 * c
-        h[2, 2], h[2, 3], h[3, 3] = k_11, k_12, k_22
-    bending += natural * (0.5 * share * row[7] * length_0 - (turn_2 - turn_1))
-    return bending, 0.5 * row[3] * length_0 * strain * strain, 0.0
+    (_, table, _, curl), energy = given, 0.0
+    for e in range(len(table)):
+        row, f = table[e], ends[e]
+        rate, natural = 1.0 / row[2], share * row[4] * row[7]
+        first, second, apart = f[2], f[3], f[4]
+        if row[12] != 0.0 or row[13] != 0.0:
+            least = ROUND_OFF if asked == FORCES else 0.0
+            bent, slip_1, slip_2 = rooted_element(curl, row, rate, natural, first, second, least)
+            bending, moment_1, moment_2, k_11, k_12, k_22 = bent
+            first, second, apart = first - slip_1, second - slip_2, apart - slip_2 + slip_1
+        elif row[8] == row[4]:
+            stiff = rate * row[4]
+            moment_1, moment_2 = stiff * (4.0 * first + 2.0 * second), stiff * (2.0 * first + 4.0 * second)
+            bending = 0.5 * (moment_1 * first + moment_2 * second)
+            k_11, k_12, k_22 = 4.0 * stiff, 2.0 * stiff, 4.0 * stiff
+        elif asked == FORCES:  # without the slopes
+            bending, moment_1, moment_2, _, _, _ = bent_element(curl, row, rate, first, second)
+            k_11, k_12, k_22 = 0.0, 0.0, 0.0
+        else:
+            bending, moment_1, moment_2, k_11, k_12, k_22 = bent_element(curl, row, rate, first, second)
+        f[2], f[3] = moment_1 + natural, moment_2 - natural
+        # half the turn between the ends is more than the larger only where a node has gained a whole turn
+        f[4] = max(abs(first), abs(second), 0.5 * abs(apart))
+        energy += bending + natural * (0.5 * share * row[7] * row[2] - apart)
+        if asked != FORCES:
+            h = matrices[e]
+            h[2, 2], h[2, 5], h[5, 5] = k_11, k_12, k_22
+    return energy
+
+
+@inlined()
+def _hold(given: Given, share: float, asked: int, u: Array, ends: Array, matrices: Array, h: Array) -> float:
+    """Write the force that holds the second node against the moments, and the tangent; return axial energy."""
+    (_, table, first, _), energy = given, 0.0
+    for e in range(len(first)):
+        row, f, i = table[e], ends[e], first[e]
+        j, length_0 = i + 1, row[2]
+        step_x, step_y = u[j, 0] - u[i, 0], u[j, 1] - u[i, 1]
+        x, y = row[0] + step_x, row[1] + step_y
+        length = math.sqrt(x * x + y * y)
+        # (l^2 - l0^2) / (l + l0) from the displacements: no cancellation of two nearly equal lengths
+        strain = ((row[0] + x) * step_x + (row[1] + y) * step_y) / (length_0 * (length + length_0))
+        strain -= share * row[6]
+        axial, shear = row[3] * strain / length, (f[2] + f[3]) / (length * length)
+        f[0], f[1] = axial * x + shear * y, axial * y - shear * x
+        energy += 0.5 * row[3] * length_0 * strain * strain
+        if asked != FORCES:
+            k_11, k_12, k_22 = matrices[e, 2, 2], matrices[e, 2, 5], matrices[e, 5, 5]
+            c, s, stretching = x / length, y / length, row[3] / length_0
+            turning, mixed = (k_11 + 2.0 * k_12 + k_22) / (length * length), 0.0
+            if asked == TANGENT:
+                turning, mixed = turning + axial, shear
+            h[0, 0] = stretching * c * c + turning * s * s - 2.0 * mixed * c * s
+            h[1, 1] = stretching * s * s + turning * c * c + 2.0 * mixed * c * s
+            h[0, 1] = (stretching - turning) * c * s + mixed * (c * c - s * s)
+            lever_1, lever_2 = (k_11 + k_12) / length, (k_12 + k_22) / length
+            h[0, 2], h[0, 3] = lever_1 * s, lever_2 * s
+            h[1, 2], h[1, 3] = -lever_1 * c, -lever_2 * c
+            h[2, 2], h[2, 3], h[3, 3] = k_11, k_12, k_22
+            _spread(h, matrices[e])
+    return energy
 
 
 @kernel()
-def _reissner(row: Array, share: float, moved: Moved, asked: int, f: Array, h: Array) -> Energies:
+def _reissner(curl: Array, row: Array, share: float, moved: Moved, asked: int, f: Array, h: Array) -> Energies:
     """Write the same for the shear-deformable element."""
     x, y, turn_1, turn_2 = moved
     length, half = row[2], 0.25 * (turn_1 + turn_2)
@@ -129,7 +159,7 @@ def _reissner(row: Array, share: float, moved: Moved, asked: int, f: Array, h: A
     unit = 0.5 * length
     bent = unit * moment * curvature
     if row[8] != row[4]:
-        bent, moment, rigidity = section(row[8], row[9], row[11], curvature)
+        bent, moment, rigidity = section(curl, row[8], row[9], row[11], curvature)
         bent *= length
     lever = 0.5 * length * (axial * sliding - shear * stretch)
     f[0], f[1] = axial * c - shear * s, axial * s + shear * c
@@ -152,13 +182,13 @@ def _reissner(row: Array, share: float, moved: Moved, asked: int, f: Array, h: A
 
 
 @kernel()
-def _rooted(row: Array, share: float, moved: Moved, asked: int, f: Array, h: Array) -> Energies:
+def _rooted(curl: Array, row: Array, share: float, moved: Moved, asked: int, f: Array, h: Array) -> Energies:
     """Write the same for a shear-deformable element whose end sections are held to its nodes by roots."""
     x, y, turn_1, turn_2 = moved
     c_1, c_2, last, psi_1, psi_2 = row[12], row[13], math.inf, turn_1, turn_2
     # psi - phi + c M(psi) = 0
     for _ in range(STEPS):
-        _reissner(row, share, (x, y, psi_1, psi_2), TANGENT, f, h)
+        _reissner(curl, row, share, (x, y, psi_1, psi_2), TANGENT, f, h)
         r_1, r_2 = psi_1 - turn_1 + c_1 * f[2], psi_2 - turn_2 + c_2 * f[3]
         a, b, c, d = 1.0 + c_1 * h[2, 2], c_1 * h[2, 3], c_2 * h[2, 3], 1.0 + c_2 * h[3, 3]
         whole = a * d - b * c
@@ -167,7 +197,7 @@ def _rooted(row: Array, share: float, moved: Moved, asked: int, f: Array, h: Arr
         if not QUADRATIC < size < last:
             break
         last = size
-    parts = _reissner(row, share, (x, y, psi_1, psi_2), asked, f, h)
+    parts = _reissner(curl, row, share, (x, y, psi_1, psi_2), asked, f, h)
     if asked != FORCES:
         _condense(c_1, c_2, h)
     return parts[0] + 0.5 * (c_1 * f[2] * f[2] + c_2 * f[3] * f[3]), parts[1], parts[2]
@@ -206,30 +236,35 @@ def elements(given: Given, share: float, asked: int, u: Array, written: Written)
     Returns:
         Bending, axial and shear energy [J].
     """
-    (shear, table, first), (force, ends, matrices, h) = given, written
+    (shear, table, first, curl), (force, ends, matrices, h) = given, written
+    bending, axial, sliding = 0.0, 0.0, 0.0
+    if shear:
+        for e in range(len(first)):
+            i, f = first[e], ends[e]
+            j = i + 1
+            moved = (u[j, 0] - u[i, 0], u[j, 1] - u[i, 1], u[i, 2], u[j, 2])
+            if table[e, 12] != 0.0 or table[e, 13] != 0.0:
+                parts = _rooted(curl, table[e], share, moved, asked, f, h)
+            else:
+                parts = _reissner(curl, table[e], share, moved, asked, f, h)
+            bending, axial, sliding = bending + parts[0], axial + parts[1], sliding + parts[2]
+            if asked != FORCES:
+                _spread(h, matrices[e])
+    else:
+        _turn(given, u, ends)
+        bending = _bend(given, share, asked, ends, matrices)
+        axial = _hold(given, share, asked, u, ends, matrices, h)
     for i in range(len(force)):
         force[i, 0] = force[i, 1] = force[i, 2] = 0.0
-    bending, axial, sliding = 0.0, 0.0, 0.0
     for e in range(len(first)):
-        i = first[e]
-        j, f = i + 1, ends[e]
-        moved = (u[j, 0] - u[i, 0], u[j, 1] - u[i, 1], u[i, 2], u[j, 2])
-        # told apart here, as every call deeper costs as much as the element itself
-        if not shear:
-            parts = _corotational(table[e], share, moved, asked, f, h)
-        elif table[e, 12] != 0.0 or table[e, 13] != 0.0:
-            parts = _rooted(table[e], share, moved, asked, f, h)
-        else:
-            parts = _reissner(table[e], share, moved, asked, f, h)
-        bending, axial, sliding = bending + parts[0], axial + parts[1], sliding + parts[2]
+        i, f = first[e], ends[e]
+        j = i + 1
         force[i, 0] -= f[0]
         force[i, 1] -= f[1]
         force[i, 2] += f[2]
         force[j, 0] += f[0]
         force[j, 1] += f[1]
         force[j, 2] += f[3]
-        if asked != FORCES:
-            _spread(h, matrices[e])
     return bending, axial, sliding
 
 

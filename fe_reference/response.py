@@ -118,7 +118,7 @@ def _between(tables: Tables, u: Array, one: Array, other: Array, left: Array, wr
 
         c.H d + w (X c_y - Y c_x) + v (X d_y - Y d_x) + v w (X x + Y y)        [N m]
     """
-    ((_, table, first), (attached, _, offsets), _), (force, ends, matrices, _) = tables, written
+    ((_, table, first, _), (attached, _, offsets), _), (force, ends, matrices, _) = tables, written
     total = 0.0
     force[:] = 0.0
     for e in range(len(first)):

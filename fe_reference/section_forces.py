@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .arrays import Array
-from .bending import curve
+from .bending import CURL, curve
 from .effects import PreStrain
 from .errors import InvalidParameter
 from .law import FORCES
@@ -123,7 +123,7 @@ def _bent(model: Model, moment: Array) -> Array:
         np.broadcast_to(each, nodes).ravel() for each in (rigidity / (1.0 - square), held, reach)
     )
     curvature = moment.reshape(len(moment), -1).copy()
-    curve(flat, held, reach, curvature)
+    curve(CURL, flat, held, reach, curvature)
     return curvature.reshape(moment.shape)
 
 

@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from .arrays import Array, Flags, Indices, kernel
+from .bending import CURL
 from .effects import Gravity, PreStrain
 from .law import FORCES, TANGENT, Energies, Given, Written, elements
 from .matrix import Envelope, Symmetric
@@ -87,7 +88,7 @@ class Structure:
         ends = self.attachments
         self.carried = (ends.node, ends.body, ends.offsets)
         first = np.ascontiguousarray(self.basis.mesh.t[0], dtype=np.int64)
-        self.given = (self.shear, self.elements.table(model.effects.find(PreStrain) or PreStrain()), first)
+        self.given = (self.shear, self.elements.table(model.effects.find(PreStrain) or PreStrain()), first, CURL)
         self.tables = (self.given, self.carried, self._weight())
         nodes = self.strips * self.stations
         self.work = (np.zeros((nodes, 3)), np.zeros((4, 4)))
