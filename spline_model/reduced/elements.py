@@ -17,16 +17,22 @@ from spline_model.continuation.point import Point
 from spline_model.continuation.resolution import SMALLEST_MOMENT
 from spline_model.effects import Shear
 from spline_model.errors import InvalidParameter
-from spline_model.reduced.assembly import (
+from spline_model.newton import TOLERANCE
+from spline_model.reduced.arrays import (
     AXIAL,
     BENDING,
     DEAD,
     SLOWEST,
+    Answer,
+    Arrays,
     Bodies,
-    moment_defect,
+    Route,
+    empty_answer,
 )
-from spline_model.reduced.model import Reduced, from_unknowns, reduced
-from spline_model.reduced.path import empty_answer
+from spline_model.reduced.assembly import moment_defect
+from spline_model.reduced.equilibrium import CONFIRMED, EVALUATIONS, HALVED, ITERATIONS
+from spline_model.reduced.many import Share, follow_all
+from spline_model.reduced.model import Reduced, at_rest, from_unknowns, reduced
 from spline_model.reduced.preload import Preload, act, apart, preload_of
 from spline_model.reduced.states import by_state, unknowns_of
 from spline_model.reduced.whole import add_strip
@@ -35,6 +41,7 @@ from spline_model.strip.element import ON_POINTS, Local, Strips
 
 Array = NDArray[np.float64]
 
+ALONE = Share.none()
 ASIDE = 1e-5
 """Part of a direction over which it is followed to either side, in lengths and rad: exact to 1e-10."""
 
@@ -129,6 +136,33 @@ class Elements(Followed):
         unit[:poses] = np.repeat(1.0 / np.sqrt(1.0 + 2.0 * carried), 3)
         unit[poses : self.count].reshape(count, -1)[:, -2:] = 1.0 / strips.reach
         return unit
+
+    def run(self, load_factors: Array, start: Array) -> Answer:
+        """The states from ``start`` (Y,) at the first load factor on, until stability or a check ends it."""
+        origin, target = self.model.drives
+        return self._follow(Route(load_factors, origin, target, 1.0), start, self.model.arrays())
+
+    def grown(self) -> Array | None:
+        """The state (Y,) under all weight and pre-strain, grown from none; None where something happens."""
+        bodies, strips = self.loose
+        origin, target = self.model.drives
+        route = Route(np.array([0.0, 1.0]), origin, 0.0 * target, 0.0, swells=True)
+        arrays = self.model.arrays()._replace(bodies=bodies, strips=strips)
+        answer = self._follow(route, at_rest(self.model), arrays)
+        return answer.y[1] if len(answer.y) == 2 else None
+
+    def _follow(self, route: Route, start: Array, arrays: Arrays) -> Answer:
+        """A stretch of a path along which nothing happens, compiled."""
+        count = self.counters
+        answer = empty_answer(len(route.factor), self.model.size, len(route.origin))
+        done = follow_all(ALONE, start, route, self.judged, self.preload, arrays, TOLERANCE, answer)
+        count.halved_increments += int(answer.counters[HALVED])
+        count.newton_iterations += int(answer.counters[ITERATIONS])
+        evaluations = int(answer.counters[EVALUATIONS])
+        count.residual_evaluations += evaluations + int(answer.counters[CONFIRMED])
+        count.tangent_evaluations += evaluations
+        count.factorisations += evaluations
+        return answer.rows(slice(done))
 
     @property
     def energy(self) -> float:

@@ -10,12 +10,14 @@ from numpy.typing import NDArray
 
 from spline_model.basis import all_modes
 from spline_model.effects import MixedStretching
+from spline_model.reduced.arrays import Route
 from spline_model.reduced.equilibrium import ITERATIONS
 from spline_model.reduced.model import Reduced
 from spline_model.reduced.numbers import in_order
-from spline_model.reduced.path import Route, follow
+from spline_model.reduced.path import follow
 from spline_model.strip.compiled import called, copy, kernel
-from spline_model.strip.element import CURVATURE, MODES, ON_POINTS, POINTS, SPEED, place_points
+from spline_model.strip.element import CURVATURE, MODES, ON_POINTS, POINTS, SPEED
+from spline_model.strip.ends import place_points
 
 Array = NDArray[np.float64]
 
@@ -164,11 +166,12 @@ def _largest_strain(y, poses, depth, along, strips, local, stations):
 
 
 @kernel()
-def follow_all(share, start, route, judged, preload, bodies, strips, shape, local, space, tolerance, answer):
+def follow_all(share, start, route, judged, preload, arrays, tolerance, answer):
     """Follow a path, as ``follow`` does; or those of all designs of a share, where it has any."""
     rows, designs, growing, depth, place = share.rows, share.designs, share.growing, share.depth, share.place
     if rows.size == 0:
-        return follow(start, route, judged, preload, bodies, strips, shape, local, space, tolerance, answer)
+        return follow(start, route, judged, preload, arrays, tolerance, answer)
+    bodies, strips, _, local, _ = arrays
     states, centre, torque, stiffness, energy, strain, inertia, defect, iterations = share.results
     for i in range(share.begin, rows.size, share.stride):
         row = rows[i]
@@ -177,16 +180,12 @@ def follow_all(share, start, route, judged, preload, bodies, strips, shape, loca
             answer.counters[k] = 0
         begin, stands = designs.start[i], True
         if growing.factor.size > 0:
-            done = follow(
-                begin, growing, judged, preload, bodies, strips, shape, local, space, tolerance, answer
-            )
+            done = follow(begin, growing, judged, preload, arrays, tolerance, answer)
             stands = done == growing.factor.size
             copy(answer.y[1], begin)
         done = 0
         if stands:
-            done = follow(
-                begin, route, judged, preload, bodies, strips, shape, local, space, tolerance, answer
-            )
+            done = follow(begin, route, judged, preload, arrays, tolerance, answer)
         states[row] = done
         iterations[row] = answer.counters[ITERATIONS]
         length, unit = designs.length[i], designs.energy[i]

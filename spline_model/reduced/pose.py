@@ -15,7 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.checks import SLOWEST_SPEED
-from spline_model.reduced.assembly import AXIAL, BENDING, SLOWEST, condensed, element_of, recovered
+from spline_model.reduced.arrays import AXIAL, BENDING, SLOWEST
+from spline_model.reduced.assembly import condensed, element_of, recovered
 from spline_model.reduced.equilibrium import EVALUATIONS, HALVED, ITERATIONS
 from spline_model.strip.compiled import called, copy, kernel
 from spline_model.strip.condense import SINGULAR

@@ -7,14 +7,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from spline_model.reduced.assembly import (
-    AXIAL,
-    BENDING,
-    FORCE,
-    RATE,
-    Bodies,
-    place_of,
-)
+from spline_model.reduced.arrays import AXIAL, BENDING, FORCE, RATE, Bodies
+from spline_model.reduced.assembly import place_of
 from spline_model.reduced.beside import respond, to_coordinates
 from spline_model.reduced.model import Reduced
 from spline_model.reduced.numbers import in_order
@@ -84,12 +78,13 @@ def act(share, preload, bodies, strips):
 
 
 @called()
-def swell(y, share, preload, bodies, strips, shape, local, space):
+def swell(y, share, preload, arrays):
     """Rate of a state, just solved, in the share, in ``space``; first and second derivative of its potential.
 
     Energies are squares of the share, so that differences over a whole share are exact. The state is
     condensed as ``assemble`` left it, its gradients are overwritten.
     """
+    bodies, strips, shape, local, space = arrays
     n, modes, poses = shape.order.size, strips.compliance.shape[1], bodies.rest.size
     own, last = 2 * n - 6, 2 * n - 6 + strips.coupled - strips.outer
     push, out, vectors, rate = preload.push, preload.out, space.vectors, space.states[RATE]
@@ -128,7 +123,7 @@ def swell(y, share, preload, bodies, strips, shape, local, space):
             push[at + own + k] = gap[k] = given[2 * n + k]
             if strips.measure == MATERIAL:
                 slope += y[at + own + k] * gap[k]
-    respond(bodies, strips, shape, local, space, rate)
+    respond(arrays, rate)
     for i in range(y.size):
         bend += push[i] * rate[i]
     return slope, bend
