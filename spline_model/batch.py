@@ -19,11 +19,11 @@ from spline_model.effects.elastic import CLAMPED_WIDTH
 from spline_model.errors import InvalidParameter, require_count
 from spline_model.mechanism import Mechanism
 from spline_model.newton import TOLERANCE
-from spline_model.reduced.arrays import Route, empty_answer
+from spline_model.reduced.arrays import Answer, Route
 from spline_model.reduced.designs import Given, designs_of, one_each, pivots, varied
-from spline_model.reduced.many import Designs, Share, follow_all, stations_of
+from spline_model.reduced.many import Designs, Share, Stations, follow_all
 from spline_model.reduced.model import LEAST_COMPLIANCE, Reduced, reduced
-from spline_model.reduced.preload import preload_of
+from spline_model.reduced.preload import Preload
 from spline_model.sections import STATIONS
 
 Array = NDArray[np.float64]
@@ -196,7 +196,7 @@ def _solve_share(
 
     rows: theirs in the batch.
     """
-    strips, bodies, preload = model.strips, model.bodies, preload_of(model)
+    strips, bodies, preload = model.strips, model.bodies, Preload.of(model)
     own = {name: getattr(strips, name).copy() for name in ("along", "numbers", "compliance", "gain")}
     bodies = bodies._replace(**{k: getattr(bodies, k).copy() for k in ("rest", "load", "weight")})
     copies = {k: getattr(preload, k).copy() for k in ("curvature", "numbers", "bodies")}
@@ -209,7 +209,7 @@ def _solve_share(
         stride=workers,
         designs=designs,
         depth=depth,
-        stations=stations_of(model, STATIONS),
+        stations=Stations.of(model, STATIONS),
         growing=route._replace(factor=grows, target=np.zeros(held), growth=0.0, swells=True),
         place=place,
         along=strips.along,
@@ -217,6 +217,6 @@ def _solve_share(
         results=tuple(array for name, array in vars(batch).items() if name != "rotation"),
     )
     arrays = model.arrays()._replace(bodies=bodies, strips=strips._replace(**own))
-    answer = empty_answer(len(factors), model.size, held)
+    answer = Answer.empty(len(factors), model.size, held)
     # the moment defect refuses
     follow_all(share, designs.start[0], route, True, preload._replace(**copies), arrays, TOLERANCE, answer)

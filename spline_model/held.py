@@ -71,7 +71,7 @@ class HeldPivot:
         self._y = at_rest(model)
         self._rest = self._y.copy()
         own, modes = 2 * len(model.shape.order) - 6, model.strips.compliance.shape[1]
-        self._room = compiled.room_of(model.size, own + modes)
+        self._room = compiled.Room.of(model.size, own + modes)
         self.pose = self._y[:3] * self._unit
         self._free = True  # whether the centre is where no force is needed
         self.reset()

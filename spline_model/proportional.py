@@ -132,12 +132,7 @@ class Turn:
         total: int,
     ) -> Path:
         """The path of a scene through load factors; progress is told with what was done before it."""
-        progress = self.progress
-
-        def told(increments: int, _: int) -> None:
-            if progress is not None:
-                progress(min(done + increments, total), total)
-
+        told = None if self.progress is None else _later(self.progress, done, total)
         return follow(system, factors, told, start=start, branch=branch, method=self.method)
 
 
@@ -169,6 +164,11 @@ def _sides(system: System, factors: Array, begin: float) -> list[tuple[float, li
     if signs[0] != signs[1]:  # begun on the other side
         sides.insert(0, (float(signs[0]), [], True))
     return sides
+
+
+def _later(progress: Progress, done: int, total: int) -> Progress:
+    """The progress of a part, counted with what was done before it."""
+    return lambda increments, _: progress(min(done + increments, total), total)
 
 
 def _joined(before: Path, after: Path, back: bool) -> Path:

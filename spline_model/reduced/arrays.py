@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import NamedTuple, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -58,17 +58,17 @@ class Space(NamedTuple):
     states: Array
     out: Array
 
-
-def working_space(bodies: Bodies, size: int) -> Space:
-    """Arrays for that many unknowns."""
-    q, f = bodies.load.size, bodies.free.size
-    return Space(
-        tangent=np.zeros((q, q)),
-        factors=np.zeros((f, f)),
-        vectors=np.zeros((7, max(q, 7))),
-        states=np.zeros((2 * KNOWN + 4, size)),
-        out=np.zeros(SUMS),
-    )
+    @classmethod
+    def of(cls, bodies: Bodies, size: int) -> Self:
+        """Fresh ones for that many unknowns."""
+        q, f = bodies.load.size, bodies.free.size
+        return cls(
+            tangent=np.zeros((q, q)),
+            factors=np.zeros((f, f)),
+            vectors=np.zeros((7, max(q, 7))),
+            states=np.zeros((2 * KNOWN + 4, size)),
+            out=np.zeros(SUMS),
+        )
 
 
 class Arrays(NamedTuple):
@@ -115,16 +115,16 @@ class Answer(NamedTuple):
         by_state = {name: getattr(self, name)[kept] for name in self._fields if name != "counters"}
         return self._replace(**by_state)
 
-
-def empty_answer(states: int, size: int, held: int) -> Answer:
-    """Arrays for that many states."""
-    return Answer(
-        y=np.zeros((states, size)),
-        reaction=np.zeros((states, held)),
-        stiffness=np.full(states, np.nan),
-        energies=np.zeros((states, 2)),
-        done=np.zeros(states),
-        inertia=np.zeros(states, dtype=np.int64),
-        defect=np.zeros(states),
-        counters=np.zeros(4, dtype=np.int64),
-    )
+    @classmethod
+    def empty(cls, states: int, size: int, held: int) -> Self:
+        """One of that many states that are not solved yet."""
+        return cls(
+            y=np.zeros((states, size)),
+            reaction=np.zeros((states, held)),
+            stiffness=np.full(states, np.nan),
+            energies=np.zeros((states, 2)),
+            done=np.zeros(states),
+            inertia=np.zeros(states, dtype=np.int64),
+            defect=np.zeros(states),
+            counters=np.zeros(4, dtype=np.int64),
+        )

@@ -51,6 +51,18 @@ class Stations(NamedTuple):
     modes: Array
     work: Array
 
+    @classmethod
+    def of(cls, model: Reduced, stations: Array) -> Self:
+        """Tables at the stations u in [0, 1], with working arrays of their own."""
+        scene = model.system.scene
+        basis, mine = scene.strips[0].basis, scene.strips[0].name
+        parts = [all_modes(e.modes, stations) for e in scene.of(MixedStretching) if e.strip == mine]
+        modes = np.column_stack(parts) if parts else np.zeros((len(stations), 0))
+        tables = (in_order(basis.evaluate(stations, k)[..., None], model.shape)[..., 0] for k in (1, 2))
+        d1, d2 = (np.ascontiguousarray(table.T) for table in tables)
+        axial = np.ascontiguousarray((modes @ model.to_modes[0]).T)
+        return cls(d1=d1, d2=d2, modes=axial, work=np.zeros((5, len(stations))))
+
 
 class Share(NamedTuple):
     """What one thread does of many designs: every ``stride``-th from ``begin`` on, into ``rows`` (D,).
@@ -82,18 +94,6 @@ class Share(NamedTuple):
         designs = Designs(line, line, block, block, block, table, block, table)
         stations, growing = Stations(table, table, table, table), Route(line, line, line, 0.0)
         return cls(places, 0, 1, designs, line, stations, growing, 0, block, block, results)
-
-
-def stations_of(model: Reduced, stations: Array) -> Stations:
-    """Tables at the stations u in [0, 1], with working arrays of their own."""
-    scene = model.system.scene
-    basis, mine = scene.strips[0].basis, scene.strips[0].name
-    parts = [all_modes(e.modes, stations) for e in scene.of(MixedStretching) if e.strip == mine]
-    modes = np.column_stack(parts) if parts else np.zeros((len(stations), 0))
-    tables = (in_order(basis.evaluate(stations, k)[..., None], model.shape)[..., 0] for k in (1, 2))
-    d1, d2 = (np.ascontiguousarray(table.T) for table in tables)
-    axial = np.ascontiguousarray((modes @ model.to_modes[0]).T)
-    return Stations(d1=d1, d2=d2, modes=axial, work=np.zeros((5, len(stations))))
 
 
 @called()

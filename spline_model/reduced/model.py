@@ -14,7 +14,7 @@ from spline_model.compile import System
 from spline_model.effects import Bending, Clamp, MixedStretching, RootCompliance, Shear, Stretching
 from spline_model.effects.base import Constraint
 from spline_model.effects.elastic import MEASURES
-from spline_model.reduced.arrays import Arrays, Bodies, working_space
+from spline_model.reduced.arrays import Arrays, Bodies, Space
 from spline_model.reduced.ends import Ends, bodies_of, ends_of
 from spline_model.reduced.numbers import numbers_of, orthonormal_modes, speeds
 from spline_model.scene import Scene
@@ -31,7 +31,6 @@ from spline_model.strip.element import (
     Local,
     Shape,
     Strips,
-    local_arrays,
 )
 
 Array = NDArray[np.float64]
@@ -119,13 +118,13 @@ class Reduced:
 
     def arrays(self) -> Arrays:
         """What kernels know of it, with working arrays of their own."""
-        space = working_space(self.bodies, self.size)
+        space = Space.of(self.bodies, self.size)
         return Arrays(self.bodies, self.strips, self.shape, self.local(), space)
 
     def local(self) -> Local:
         """Working arrays of the strips."""
         s, g, k = self.strips.modes.shape
-        return local_arrays(s, len(self.shape.order), k, g, self.strips.coupled)
+        return Local.of(s, len(self.shape.order), k, g, self.strips.coupled)
 
 
 def reduced(system: System, *, longest: float = MOST_CONTROL_POINTS) -> Reduced | None:

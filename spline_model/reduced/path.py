@@ -136,7 +136,7 @@ def _is_alone(route, bodies):
     return alone
 
 
-@called()
+@part()
 def _stiffness(alone, route, bodies, space):
     """Of the driven rotation at fixed loads, at a state just solved; nan without one."""
     if bodies.driven < 0:
@@ -146,7 +146,7 @@ def _stiffness(alone, route, bodies, space):
     return stiffness_of(bodies, space)
 
 
-@called()
+@part()
 def _solve_at(here, alone, route, preload, arrays, tolerance, counters):
     """Solve at a factor, into Y, from PREDICTED; the negative eigenvalues, or -1 where it fails."""
     y, predicted, held = arrays.space.states[Y], arrays.space.states[PREDICTED], arrays.bodies.held
@@ -158,7 +158,7 @@ def _solve_at(here, alone, route, preload, arrays, tolerance, counters):
     return solve(y, here * route.growth, alone, route.target, route.growth, arrays, tolerance, counters)
 
 
-@called()
+@part()
 def _is_balanced(here, first, judged, route, preload, arrays):
     """Whether the moments of a state just solved are in balance, and the potential has gained the work done
     since the last state, where there is one. If so, this is the last state then."""
@@ -184,7 +184,7 @@ def _is_balanced(here, first, judged, route, preload, arrays):
     return True
 
 
-@called()
+@part()
 def _reach(row, known, inertia, alone, route, judged, preload, arrays, tolerance, counters):
     """Go on to a factor of the route in steps, of which one that fails is halved.
 
@@ -218,7 +218,7 @@ def _reach(row, known, inertia, alone, route, judged, preload, arrays, tolerance
             return known, -1
 
 
-@called()
+@part()
 def _store(row, negative, stiffness, space, answer):
     """Write a state that was reached into the answer."""
     out = space.out

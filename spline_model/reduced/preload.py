@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import NamedTuple, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -37,24 +37,24 @@ class Preload(NamedTuple):
     push: Array
     out: Array
 
-
-def preload_of(model: Reduced) -> Preload:
-    """What the mechanism is preloaded by."""
-    strips, bodies, system = model.strips, model.bodies, model.system
-    hung, (count, modes) = 0.0, strips.compliance.shape
-    if system.weight.size:
-        given = [in_order(s.control_points, model.shape).ravel() for s in system.scene.strips]
-        points = np.array(given)
-        hung = float((strips.dead * points).sum() / model.length)
-    return Preload(
-        curvature=np.array((model.rest, strips.curvature)),
-        numbers=strips.numbers,
-        bodies=bodies.weight,
-        hung=np.array([hung, hung + float(bodies.weight[: len(bodies.rest)] @ bodies.rest)]),
-        change=np.zeros((count, 2 * len(model.shape.order) + modes)),
-        push=np.zeros(model.size),
-        out=np.zeros(5),
-    )
+    @classmethod
+    def of(cls, model: Reduced) -> Self:
+        """What a mechanism is preloaded by."""
+        strips, bodies, system = model.strips, model.bodies, model.system
+        hung, (count, modes) = 0.0, strips.compliance.shape
+        if system.weight.size:
+            given = [in_order(s.control_points, model.shape).ravel() for s in system.scene.strips]
+            points = np.array(given)
+            hung = float((strips.dead * points).sum() / model.length)
+        return cls(
+            curvature=np.array((model.rest, strips.curvature)),
+            numbers=strips.numbers,
+            bodies=bodies.weight,
+            hung=np.array([hung, hung + float(bodies.weight[: len(bodies.rest)] @ bodies.rest)]),
+            change=np.zeros((count, 2 * len(model.shape.order) + modes)),
+            push=np.zeros(model.size),
+            out=np.zeros(5),
+        )
 
 
 def apart(model: Reduced) -> tuple[Bodies, Strips]:

@@ -16,7 +16,7 @@ constant.
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import NamedTuple, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -180,25 +180,25 @@ class Local(NamedTuple):
     map: Array
     scratch: Array
 
+    @classmethod
+    def of(cls, strips: int, control_points: int, modes: int, gauss_points: int, coupled: int) -> Self:
+        """Fresh ones for that many strips."""
+        s, n, k = strips, control_points, modes
+        size = 2 * n - 6 + coupled + 7
+        shapes = (
+            (s, 2 * n + k + 3, 2 * n),
+            (s, size + 2 * k + 1, size),
+            (s, k + 1, k),
+            (s, LANES, gauss_points),
+            (4, -(-n * (n + 1) // 16) * 8),
+            (s, 16),
+            (17, 8),
+        )
+        local = cls(*aligned(*shapes))
+        local.lanes[:, GIVEN + 3 : FORCE_AT] = 1.0  # of ``curl_law``, where nothing curls
+        return local
+
     @property
     def points(self) -> Array:
         """Control points (S, 2 n)."""
         return self.nodal[:, POINTS]
-
-
-def local_arrays(strips: int, control_points: int, modes: int, gauss_points: int, coupled: int) -> Local:
-    """Arrays of that many strips."""
-    s, n, k = strips, control_points, modes
-    size = 2 * n - 6 + coupled + 7
-    shapes = (
-        (s, 2 * n + k + 3, 2 * n),
-        (s, size + 2 * k + 1, size),
-        (s, k + 1, k),
-        (s, LANES, gauss_points),
-        (4, -(-n * (n + 1) // 16) * 8),
-        (s, 16),
-        (17, 8),
-    )
-    local = Local(*aligned(*shapes))
-    local.lanes[:, GIVEN + 3 : FORCE_AT] = 1.0  # of ``curl_law``, where nothing curls
-    return local

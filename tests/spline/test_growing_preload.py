@@ -9,7 +9,7 @@ from spline_model.newton import TOLERANCE
 from spline_model.reduced.arrays import AXIAL, BENDING, DEAD, RATE
 from spline_model.reduced.equilibrium import newton
 from spline_model.reduced.model import at_rest, reduced
-from spline_model.reduced.preload import act, apart, preload_of, swell
+from spline_model.reduced.preload import Preload, act, apart, swell
 from spline_model.strip.compiled import kernel
 from tests.spline.test_reduced import FORMS, stretching, strip
 
@@ -42,7 +42,7 @@ def _swell(y, share, preload, arrays):
 
 def states(model, shares):
     """y, potential, its two derivatives and the rate in the share at each of some shares, on one path."""
-    (bodies, strips), preload, y = apart(model), preload_of(model), at_rest(model)
+    (bodies, strips), preload, y = apart(model), Preload.of(model), at_rest(model)
     arrays = model.arrays()._replace(bodies=bodies, strips=strips)
     space = arrays.space
     for share in shares:
