@@ -26,12 +26,12 @@ if TYPE_CHECKING:
     from spline_model.mechanism import Mechanism as Mechanism
     from spline_model.modes import natural_frequencies as natural_frequencies
     from spline_model.pivot import cross_axis_pivot as cross_axis_pivot
-    from spline_model.proportional import solve_mechanism as solve_mechanism
     from spline_model.section_forces import moving_fields as moving_fields
     from spline_model.section_forces import static_fields as static_fields
     from spline_model.sensitivity.solve import sensitivities as sensitivities
     from spline_model.sequential_impulse import solve_impulses as solve_impulses
     from spline_model.solution import Status as Status
+    from spline_model.statics import solve_mechanism as solve_mechanism
     from spline_model.statics import solve_statics as solve_statics
 
 _HOMES = {
@@ -49,7 +49,7 @@ _HOMES = {
     "sensitivities": "sensitivity.solve",
     "solve_impulses": "sequential_impulse",
     "solve_many": "batch",
-    "solve_mechanism": "proportional",
+    "solve_mechanism": "statics",
     "solve_motion": "dynamics",
     "solve_release": "dynamics",
     "solve_statics": "statics",

@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 
 from spline_model.design import Design, Discretisation, StripDesign
 from spline_model.errors import InvalidParameter, require_positive
+from spline_model.path import Progress
 from spline_model.solution import ErrorEstimate, Status
 from spline_model.static_answers import StaticSolution
 
@@ -92,12 +93,6 @@ def wanted(accuracy: float | None, design: Design, start: object = None) -> floa
     return accuracy
 
 
-def settled(design: Design, start: StaticSolution | None) -> int | None:
-    """The control points of a path that does not choose: the design's, or those of what it goes on from."""
-    given = design.discretisation.control_points
-    return start.control_points if given is None and start is not None else given
-
-
 def _finer(grid: Discretisation) -> int:
     """The control points that a discretisation is checked against: a few more, or twice the spans."""
     return grid.points + MORE if grid.basis == "bezier" else 2 * grid.points - 3
@@ -148,8 +143,32 @@ def _next_count(levels: list[tuple[int, float]], accuracy: float, tried: int) ->
     return n + max(MORE, math.ceil(math.log(error / accuracy) / math.log(gain)))
 
 
-def solve_accurately(
-    design: Design, accuracy: float, solve: Callable[[int], StaticSolution], *, least: float | None = None
+def answered(
+    design: Design,
+    accuracy: float | None,
+    solve: Callable[[int | None, Progress | None, bool], StaticSolution],
+    start: StaticSolution | None,
+    progress: Progress | None,
+    increments: int,
+) -> StaticSolution:
+    """A path with the control points that an accuracy takes, or else the design's or those of its ``start``.
+
+    solve: the answer with a number of control points, what is told of its increments, and whether sections
+    are by balance, as they are where paths with several numbers are compared.
+    """
+    chosen = wanted(accuracy, design, start)
+    if chosen is None:
+        given = design.discretisation.control_points
+        return solve(start.control_points if given is None and start is not None else given, progress, False)
+    least = DOUBTFUL if accuracy is None else None
+    solution = _solve_accurately(design, chosen, lambda points: solve(points, None, True), least)
+    if progress is not None:
+        progress(increments, increments)
+    return solution
+
+
+def _solve_accurately(
+    design: Design, accuracy: float, solve: Callable[[int], StaticSolution], least: float | None
 ) -> StaticSolution:
     """The path with as many control points as the accuracy takes.
 

@@ -7,24 +7,23 @@ from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import asdict, dataclass
 from functools import partial
-from typing import Any
+from typing import Any, Unpack
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from spline_model.compile import compile_scene
-from spline_model.design import Discretisation
+from spline_model.design import Described, Discretisation
 from spline_model.effects import Bending, MixedStretching
 from spline_model.effects.elastic import CLAMPED_WIDTH
 from spline_model.errors import InvalidParameter, require_count
 from spline_model.mechanism import Mechanism
 from spline_model.newton import TOLERANCE
-from spline_model.reduced.assembly import working_space
+from spline_model.reduced.arrays import Answer, Route
 from spline_model.reduced.designs import Given, designs_of, one_each, pivots, varied
-from spline_model.reduced.many import Designs, Share, follow_all, stations_of
+from spline_model.reduced.many import Designs, Share, Stations, follow_all
 from spline_model.reduced.model import LEAST_COMPLIANCE, Reduced, reduced
-from spline_model.reduced.path import Route, empty_answer
-from spline_model.reduced.preload import preload_of
+from spline_model.reduced.preload import Preload
 from spline_model.sections import STATIONS
 
 Array = NDArray[np.float64]
@@ -71,19 +70,13 @@ def solve_many(
     increments: int = 20,
     threads: int | None = None,
     section_depth: ArrayLike | None = None,
-    control_points: int | None = None,
-    axial_modes: int | None = None,
-    basis: str = "bezier",
-    measure: str = "material",
-    stretch: str = "mixed",
-    gauss_points: int | None = None,
-    slide_stiffness: float | None = None,
+    **described: Unpack[Described],
 ) -> Batch:
     """Static paths of many designs to one rotation, or each to its own [rad], a number or (D,).
 
     designs: keywords of ``cross_axis_pivot`` as columns, each a number or an array (D,), or
-    one mapping a design, with a discretisation that is the same for all, as of ``design.Discretisation``,
-    with FIRST_POINTS control points unless their number is given. Or a mechanism, with the
+    one mapping a design, and ``described`` as there, the same for all, with FIRST_POINTS control points
+    unless their number is given. Or a mechanism, with the
     ``values`` (D,) of its numbers that vary, by the names of ``spline_model.sensitivity.parameters``:
     "thickness" of all strips, "crank.centre_x" of a body, "ground_crank.end_y" of a strip; a strip's end
     does not go with the body that it is clamped to. body: the one that is turned and reported, or the
@@ -93,16 +86,7 @@ def solve_many(
     number. Raises InvalidParameter with the number of a bad design.
     """
     require_count("increments", increments, 1)
-    grid = Discretisation(
-        control_points=control_points,
-        axial_modes=axial_modes,
-        basis=basis,
-        measure=measure,
-        stretch=stretch,
-        gauss_points=gauss_points,
-        slide_stiffness=slide_stiffness,
-    )
-    base, given = _given(designs, values, grid, np.size(rotation))
+    base, given = _given(designs, values, Discretisation(**described), np.size(rotation))
     count = len(given.ends)
     turned = np.broadcast_to(one_each("rotation", rotation, count), (count,))
     depth = _depth(base, given, section_depth)
@@ -212,7 +196,7 @@ def _solve_share(
 
     rows: theirs in the batch.
     """
-    strips, bodies, preload = model.strips, model.bodies, preload_of(model)
+    strips, bodies, preload = model.strips, model.bodies, Preload.of(model)
     own = {name: getattr(strips, name).copy() for name in ("along", "numbers", "compliance", "gain")}
     bodies = bodies._replace(**{k: getattr(bodies, k).copy() for k in ("rest", "load", "weight")})
     copies = {k: getattr(preload, k).copy() for k in ("curvature", "numbers", "bodies")}
@@ -225,14 +209,14 @@ def _solve_share(
         stride=workers,
         designs=designs,
         depth=depth,
-        stations=stations_of(model, STATIONS),
+        stations=Stations.of(model, STATIONS),
         growing=route._replace(factor=grows, target=np.zeros(held), growth=0.0, swells=True),
         place=place,
         along=strips.along,
         curved=preload.curvature,
         results=tuple(array for name, array in vars(batch).items() if name != "rotation"),
     )
-    strips, answer = strips._replace(**own), empty_answer(len(factors), model.size, held)
-    parts = bodies, strips, model.shape, model.local(), working_space(bodies, model.size)
+    arrays = model.arrays()._replace(bodies=bodies, strips=strips._replace(**own))
+    answer = Answer.empty(len(factors), model.size, held)
     # the moment defect refuses
-    follow_all(share, designs.start[0], route, True, preload._replace(**copies), *parts, TOLERANCE, answer)
+    follow_all(share, designs.start[0], route, True, preload._replace(**copies), arrays, TOLERANCE, answer)

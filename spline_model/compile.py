@@ -11,7 +11,6 @@ from typing import Any, Self, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from spline_model import tables as build
 from spline_model.effects import (
     Bending,
     BodyDamper,
@@ -25,9 +24,9 @@ from spline_model.effects import (
     StripInertia,
 )
 from spline_model.effects.base import Constraint, OpenPotential
-from spline_model.quadrature import PointTable, point_table
+from spline_model.quadrature import PointTable
 from spline_model.scene import Layout, Scene
-from spline_model.tables import DriveTable, LoadTable, Tables
+from spline_model.tables import ClampTable, DriveTable, LoadTable, Tables, weight
 
 Array = NDArray[np.float64]
 Table = TypeVar("Table")
@@ -60,29 +59,29 @@ class System:
     @cached_property
     def points(self) -> PointTable:
         """Gauss points of bending and stretching."""
-        return self._table("points", point_table)
+        return self._table("points", PointTable.of)
 
     @cached_property
     def drives(self) -> DriveTable:
         """Driven coordinates."""
-        return self._table("drives", build.drive_table)
+        return self._table("drives", DriveTable.of)
 
     @cached_property
     def loads(self) -> LoadTable:
         """Loads, one row a component."""
-        return self._table("loads", build.load_table)
+        return self._table("loads", LoadTable.of)
 
     @cached_property
     def weight(self) -> Array:
         """Generalised force of gravity and steady loads (Q,) [N, N m]; empty where no effect names any."""
-        return self._table("weight", build.weight)
+        return self._table("weight", weight)
 
     @cached_property
     def tables(self) -> Tables:
         """All tables, which the bordered form and the motions walk."""
         return Tables(
             points=self.points,
-            clamps=self._table("clamps", build.clamp_table),
+            clamps=self._table("clamps", ClampTable.of),
             drives=self.drives,
             loads=self.loads,
             weight=self.weight,

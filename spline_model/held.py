@@ -13,7 +13,7 @@ from spline_model.errors import InvalidParameter
 from spline_model.mechanism import Mechanism
 from spline_model.newton import TOLERANCE
 from spline_model.reduced import pose as compiled
-from spline_model.reduced.assembly import AXIAL, BENDING, FORCE, NEGATIVE, working_space
+from spline_model.reduced.arrays import AXIAL, BENDING, FORCE, NEGATIVE
 from spline_model.reduced.equilibrium import EVALUATIONS, HALVED, ITERATIONS, bear, turn
 from spline_model.reduced.model import Reduced, at_rest, reduced
 from spline_model.reduced.path import SMALLEST_STEP
@@ -67,12 +67,11 @@ class HeldPivot:
             )
             raise InvalidParameter("mechanism", list(mechanism.effects), expected)
         self.model = model
-        self._local = model.local()
-        self._space = working_space(model.bodies, model.size)
+        self._arrays = model.arrays()
         self._y = at_rest(model)
         self._rest = self._y.copy()
         own, modes = 2 * len(model.shape.order) - 6, model.strips.compliance.shape[1]
-        self._room = compiled.room_of(model.size, own + modes)
+        self._room = compiled.Room.of(model.size, own + modes)
         self.pose = self._y[:3] * self._unit
         self._free = True  # whether the centre is where no force is needed
         self.reset()
@@ -103,18 +102,9 @@ class HeldPivot:
         target = np.array([x, y, rotation])
         if not np.isfinite(target).all():
             raise InvalidParameter("pose", [x, y, rotation], "finite numbers [m, m, rad]")
-        counters, model = np.zeros(3, dtype=np.int64), self.model
-        reached = compiled.hold(
-            self._y,
-            target / self._unit,
-            np.zeros(3),
-            model.strips,
-            model.shape,
-            self._local,
-            self._room,
-            TOLERANCE,
-            counters,
-        )
+        counters = np.zeros(3, dtype=np.int64)
+        way = self._y, target / self._unit, np.zeros(3)
+        reached = compiled.hold(*way, *self._arrays[1:4], self._room, TOLERANCE, counters)
         if reached == 1.0:
             self.pose[:] = target
             self._free = False
@@ -147,16 +137,14 @@ class HeldPivot:
 
     def _turn(self, rotation: float, counters: NDArray[np.int64]) -> bool:
         """One part of the way of ``turn``, predicted by the tangent; the state stays if it fails."""
-        model = self.model
-        parts = (model.bodies, model.strips, model.shape, self._local, self._space)
-        solved = bool(turn(rotation, np.ones(1), self._y, *parts, TOLERANCE, counters))
+        solved = bool(turn(rotation, np.ones(1), self._y, self._arrays, TOLERANCE, counters))
         if solved:
             self.pose[:] = self._y[:3] * self._unit
         return solved
 
     def _state(self, reached: float, counters: NDArray[np.int64]) -> HeldState:
-        model, space = self.model, self._space
-        bear(self._y, model.bodies, model.strips, model.shape, self._local, space)
+        model, space = self.model, self._arrays.space
+        bear(self._y, self._arrays)
         stiffness, units = np.triu(space.tangent), 1.0 / self._unit
         return HeldState(
             solved=reached == 1.0,
@@ -175,7 +163,7 @@ class HeldPivot:
     @property
     def control_points(self) -> Array:
         """Control points of the strips in the ground's frame, (G, n, 2) [m]."""
-        shape, points = self.model.shape, self._local.points
+        shape, points = self.model.shape, self._arrays.local.points
         ordered = np.empty((len(points), len(shape.order), 2))
         ordered[:, shape.order] = points.reshape(ordered.shape) * self.model.length
         return ordered[:, : len(shape.order) - self.model.yields]  # the turns of roots are on no curve
@@ -184,7 +172,7 @@ class HeldPivot:
         """The unknowns z (N,) of a compiled scene of the same mechanism, clamp reactions included."""
         model = reduced(system)
         assert model is not None, "the scene of a held mechanism"
-        reaction = self._space.vectors[FORCE, model.bodies.held]
+        reaction = self._arrays.space.vectors[FORCE, model.bodies.held]
         return np.asarray(unknowns_of(model, self._y[None], reaction[None])[0])
 
 

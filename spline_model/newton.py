@@ -100,6 +100,24 @@ class Pattern:
     places: NDArray[np.int64]
     scale: Array
 
+    @classmethod
+    def of(cls, system: System) -> Self | None:
+        """The pattern of a system's tangent, or None where a dense factorisation is as fast or needed."""
+        size = system.layout.size
+        if size < LEAST_SIZE or system.open_potentials:
+            return None
+        filled = filled_entries(system)
+        if filled.mean() > LARGEST_FILL:
+            return None
+        columns, rows = np.nonzero(filled.T)
+        unit, energy = system.scales.unit, system.scales.energy
+        return cls(
+            rows=rows.astype(np.int32),
+            starts=np.concatenate(([0], np.cumsum(filled.sum(axis=0)))).astype(np.int32),
+            places=rows * size + columns,
+            scale=unit[rows] * unit[columns] / energy,
+        )
+
     def matrix(self, hessian: Array) -> csc_matrix:
         """The scaled tangent; raises LinAlgError if it is not finite."""
         size = len(self.starts) - 1
@@ -137,24 +155,6 @@ class Pattern:
             return splu(matrix, permc_spec="MMD_AT_PLUS_A", options={"SymmetricMode": True})
         except RuntimeError:
             raise np.linalg.LinAlgError("the tangent is singular") from None
-
-
-def pattern_of(system: System) -> Pattern | None:
-    """The pattern of a system's tangent, or None where a dense factorisation is as fast or needed."""
-    size = system.layout.size
-    if size < LEAST_SIZE or system.open_potentials:
-        return None
-    filled = filled_entries(system)
-    if filled.mean() > LARGEST_FILL:
-        return None
-    columns, rows = np.nonzero(filled.T)
-    unit, energy = system.scales.unit, system.scales.energy
-    return Pattern(
-        rows=rows.astype(np.int32),
-        starts=np.concatenate(([0], np.cumsum(filled.sum(axis=0)))).astype(np.int32),
-        places=rows * size + columns,
-        scale=unit[rows] * unit[columns] / energy,
-    )
 
 
 def filled_entries(system: System) -> NDArray[np.bool_]:
@@ -195,7 +195,7 @@ class Workspace:
             system=system,
             gradient=np.empty(size),
             hessian=np.empty((size, size)),
-            pattern=pattern_of(system),
+            pattern=Pattern.of(system),
         )
 
     @property

@@ -16,7 +16,6 @@ from spline_model.continuation.watch import BRANCHES, Watch
 from spline_model.errors import require_choice
 from spline_model.reduced.elements import Elements, followed
 from spline_model.reduced.model import Reduced, at_rest
-from spline_model.reduced.solve import grown, run
 from spline_model.reduced.states import by_state
 from spline_model.solution import Later, Path, joined
 
@@ -84,7 +83,7 @@ class _Track:
             elif not self.work.system.is_preloaded:
                 self.given = self.work.system.rest  # reactions at rest are none, not their round-off
                 self._run(self.work, at_rest(self.work.model))
-            elif (y := grown(self.work)) is not None:
+            elif (y := self.work.grown()) is not None:
                 self._run(self.work, y)
         if self.states == 0:
             point, norms = first_point(self.watch, start)
@@ -115,7 +114,7 @@ class _Track:
         """Go on from a state (Y,) of the first row or the last one, compiled."""
         known = min(self.states, 1)
         factors = self.factors[self.states - known :]
-        answer = run(work, factors, y)
+        answer = work.run(factors, y)
         count = len(answer.y)
         if count <= known:
             return

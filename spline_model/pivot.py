@@ -122,15 +122,9 @@ def cross_axis_pivot(
 
     Source: paper, section 2 and Table 1.
     """
-    require_positive("length", length, "m")
-    require_positive("body_mass", body_mass, "kg")
-    require_positive("body_moment_of_inertia", body_moment_of_inertia, "kg m^2")
-    if not 0 < inclination < math.pi / 2:
-        raise InvalidParameter("inclination", inclination, "an angle between 0 and pi/2 [rad]")
-    if not 0 < crossing_ratio < 1:
-        raise InvalidParameter("crossing_ratio", crossing_ratio, "a number between 0 and 1")
     points = _clamps_at_rest(length, inclination, crossing_ratio, orientation)
-    centre = (points[0][1] + points[1][1]) / 2.0 + cmath.rect(1.0, orientation) * complex(*centre_offset)
+    offset = cmath.rect(1.0, orientation) * complex(*centre_offset)
+    body = _body((points[0][1] + points[1][1]) / 2.0 + offset, body_mass, body_moment_of_inertia)
     strips = [
         StripDesign(
             name=name,
@@ -147,12 +141,6 @@ def cross_axis_pivot(
         )
         for name, (start, end) in zip(STRIPS, points, strict=True)
     ]
-    body = BodyDesign(
-        name=BODY,
-        centre=(centre.real, centre.imag),
-        mass=body_mass,
-        moment_of_inertia=body_moment_of_inertia,
-    )
     made = mechanism(strips=strips, bodies=[body], effects=effects, parameters=parameters, **described)
     return Pivot(design=made.design, effects=made.effects, parameters=made.parameters, scene=made.scene)
 
@@ -161,8 +149,21 @@ def _clamps_at_rest(
     length: float, inclination: float, crossing_ratio: float, orientation: float
 ) -> list[tuple[complex, complex]]:
     """Clamped points x + iy of each strip, from the ground to the body, crossing at r L."""
+    require_positive("length", length, "m")
+    if not 0 < inclination < math.pi / 2:
+        raise InvalidParameter("inclination", inclination, "an angle between 0 and pi/2 [rad]")
+    if not 0 < crossing_ratio < 1:
+        raise InvalidParameter("crossing_ratio", crossing_ratio, "a number between 0 and 1")
     along = cmath.rect(length, inclination)
     turn = cmath.rect(1.0, orientation)
     roots = (0j, complex(2.0 * crossing_ratio * along.real))
     tips = (roots[0] + along, roots[1] + complex(-along.real, along.imag))
     return [(root * turn, tip * turn) for root, tip in zip(roots, tips, strict=True)]
+
+
+def _body(centre: complex, mass: float, moment_of_inertia: float) -> BodyDesign:
+    """The body, its centre at x + iy; motions divide by its inertia."""
+    require_positive("body_mass", mass, "kg")
+    require_positive("body_moment_of_inertia", moment_of_inertia, "kg m^2")
+    at = (centre.real, centre.imag)
+    return BodyDesign(name=BODY, centre=at, mass=mass, moment_of_inertia=moment_of_inertia)

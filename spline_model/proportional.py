@@ -1,126 +1,29 @@
-"""Any mechanism or scene under loads and drives that grow in proportion, or under loads and then a rotation.
-
-Loads come on first, from rest to all of them with the body held, and stay as it turns; or together with the
-rotation, in proportion to its size, whatever its sign.
+"""A body that is turned under loads: these come on first, with the body held, and stay as it turns; or grow
+together with the rotation, in proportion to its size, whatever its sign.
 """
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from spline_model.accuracy import DOUBTFUL, settled, solve_accurately, wanted
 from spline_model.compile import System, compile_scene
-from spline_model.continuation.arc_length import follow_arc
 from spline_model.effects import DrivenDisplacement
 from spline_model.effects.base import Load
 from spline_model.effects.boundary import Sized
-from spline_model.errors import InvalidParameter, require_choice, require_count, require_finite
-from spline_model.mechanism import Mechanism
 from spline_model.newton import Laps
 from spline_model.path import Progress, follow
 from spline_model.scene import Scene
 from spline_model.solution import BY_STATE, Later, Path, Status, joined
-from spline_model.static_answers import StaticSolution
 
 Array = NDArray[np.float64]
 
-CONTROLS = ("load", "arc-length")
 LOADS_FIRST, TOGETHER = ORDERS = ("loads first", "together")
-
-
-def solve_loads(
-    scene: Scene,
-    *,
-    increments: int = 20,
-    end: float = 1.0,
-    control: str = "load",
-    branch: str = "primary",
-    start: Path | StaticSolution | None = None,
-    progress: Progress | None = None,
-) -> tuple[System, Path]:
-    """A scene from rest to the load factor ``end``, all its loads and drives growing in proportion.
-
-    control: "load" prescribes the load factors; "arc-length" follows the path through its limit
-    points, with ``increments`` for the first step only. branch: "primary" or "follow" at a
-    bifurcation. start: a result of the same scene to go on from, instead of rest.
-    """
-    require_count("increments", increments, 1)
-    require_choice("control", control, CONTROLS)
-    if not math.isfinite(end):
-        raise InvalidParameter("end", end, "a finite load factor")
-    system = compile_scene(scene)
-    begin = None if start is None else (float(start.load_factor[-1]), start.states[-1])
-    if control == "arc-length":
-        arc = follow_arc(system, end, increments=increments, start=begin, branch=branch, progress=progress)
-        return system, arc
-    factors = np.linspace(0.0 if begin is None else begin[0], end, increments + 1)[1:]
-    return system, follow(system, list(factors), progress, start=begin, branch=branch)
-
-
-def solve_mechanism(
-    mechanism: Mechanism,
-    *,
-    body: str | None = None,
-    rotation: float | None = None,
-    increments: int = 20,
-    order: str = LOADS_FIRST,
-    control: str = "load",
-    branch: str = "primary",
-    start: StaticSolution | None = None,
-    end: float = 1.0,
-    accuracy: float | None = None,
-    raise_on_failure: bool = True,
-    progress: Progress | None = None,
-) -> StaticSolution:
-    """Any mechanism from rest to load factor 1: its loads and drives grow in proportion.
-
-    rotation [rad] drives the named body, or the only one; None leaves all bodies to the loads. order: where
-    both meet, "loads first" as in ``statics.solve_statics``, which then stay, or "together"; so it is
-    always with control "arc-length" or another ``end``. control, branch, start and end as in
-    ``solve_loads``; accuracy as in ``statics.solve_statics``, with control "arc-length" of the state at the
-    end.
-    """
-    if rotation is not None:
-        require_finite("rotation", rotation, "rad")
-    require_count("increments", increments, 1)
-    laps, design = Laps(), mechanism.design
-    chosen = wanted(accuracy, design, start)
-    require_choice("order", order, ORDERS)
-    first = order == LOADS_FIRST and control == "load" and end == 1.0
-
-    def solve(control_points: int | None) -> StaticSolution:
-        given = mechanism.with_control_points(control_points)
-        told = progress if chosen is None else None
-        if first and rotation and has_loads(given.scene):
-            begin = None
-            if start is not None:
-                turned = float(start.bodies[body or design.body_named(body)][-1, 2])
-                begin = turned, float(start.load_factor[-1]), start.states[-1]
-            drive = partial(given.driven, body=body)
-            turns = np.linspace(0.0 if begin is None else begin[0], rotation, increments + 1)[1:]
-            how: dict[str, Any] = {"start": begin, "branch": branch, "laps": laps}
-            system, path = follow_loads_first(drive, turns, increments, told, **how)
-        else:
-            scene = given.scene if rotation is None else given.driven(rotation, body)
-            how = {"end": end, "control": control, "branch": branch, "start": start, "progress": told}
-            system, path = solve_loads(scene, increments=increments, **how)
-            laps.lap("solve")
-        return StaticSolution.of(system, path, given.effects, laps, balanced=chosen is not None)
-
-    if chosen is None:
-        solution = solve(settled(design, start))
-    else:
-        solution = solve_accurately(design, chosen, solve, least=DOUBTFUL if accuracy is None else None)
-        if progress is not None:
-            progress(increments, increments)
-    return solution.checked(raise_on_failure)
 
 
 def has_loads(scene: Scene) -> bool:
@@ -129,50 +32,108 @@ def has_loads(scene: Scene) -> bool:
     return not led and any(isinstance(effect, Load) for effect in scene.effects)
 
 
-def follow_loads_first(
-    driven: Callable[[float], Scene],
-    rotations: Array,
-    increments: int,
-    progress: Progress | None = None,
-    *,
-    start: tuple[float, float, Array] | None = None,
-    branch: str = "primary",
-    method: str = "condensed",
-    laps: Laps,
-) -> tuple[System, Path]:
-    """The scene and its path: loads in ``increments``, then the rotations [rad].
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Turn:
+    """Rotations (R,) [rad] that a body is turned through, under the loads of its scene.
 
-    driven: the scene that is driven to a rotation; start: rotation, load factor and unknowns (N,). The
-    path's load factors are those of the loads, in critical points too.
+    driven: the scene that is driven to a rotation; increments: those of the loads where they come on first;
+    laps: told when the scene is compiled and when the path is solved; start: rotation, load factor and
+    unknowns (N,) to go on from instead of rest; branch and method as in ``path.follow``.
     """
-    largest, total = _largest_of(rotations, 0.0 if start is None else start[0]), increments + len(rotations)
-    whole = compile_scene(driven(0.0))
-    turned = compile_scene(_steady(driven(largest)))
-    laps.lap("compile")
-    before = None
-    if start is None or (start[0] == 0.0 and start[1] < 1.0):
-        begin = None if start is None else start[1:]
-        factors = np.linspace(0.0 if begin is None else begin[0], 1.0, increments + 1)[1:]
-        told = None if progress is None else _later(progress, 0, total)
-        before = follow(whole, list(factors), told, start=begin, branch=branch, method=method)
-        branch = "primary" if before.critical_points else branch
-        if before.status is not Status.CONVERGED:
-            laps.lap("solve")
-            return whole, before
-        start = 0.0, 1.0, before.states[-1]
-    told = None if progress is None else _later(progress, increments if before else 0, total)
-    at = start[0] / largest, start[2]
-    after = follow(turned, list(rotations / largest), told, start=at, branch=branch, method=method)
-    laps.lap("solve")
-    loads = whole.loads
-    moved = (after.states - after.states[0])[:, loads.coordinate] @ loads.value
-    after = replace(
-        after,
-        load_factor=np.ones(len(after.work)),
-        work=after.work + moved,
-        critical_points=tuple(replace(point, load_factor=1.0) for point in after.critical_points),
-    )
-    return whole, after if before is None else _joined(before, after, back=False)
+
+    driven: Callable[[float], Scene]
+    rotations: Array
+    increments: int
+    laps: Laps
+    progress: Progress | None = None
+    start: tuple[float, float, Array] | None = None
+    branch: str = "primary"
+    method: str = "condensed"
+
+    def loads_first(self) -> tuple[System, Path]:
+        """The scene and its path: the loads in their increments, then the rotations.
+
+        The path's load factors are those of the loads, in critical points too.
+        """
+        start, branch, total = self.start, self.branch, self.increments + len(self.rotations)
+        whole = compile_scene(self.driven(0.0))
+        turned = compile_scene(_steady(self.driven(self._largest)))
+        self.laps.lap("compile")
+        before = None
+        if start is None or (start[0] == 0.0 and start[1] < 1.0):
+            begin = None if start is None else start[1:]
+            factors = np.linspace(0.0 if begin is None else begin[0], 1.0, self.increments + 1)[1:]
+            before = self._part(whole, list(factors), begin, branch, 0, total)
+            branch = "primary" if before.critical_points else branch
+            if before.status is not Status.CONVERGED:
+                self.laps.lap("solve")
+                return whole, before
+            start = 0.0, 1.0, before.states[-1]
+        at, aims = (start[0] / self._largest, start[2]), list(self.rotations / self._largest)
+        after = self._part(turned, aims, at, branch, self.increments if before else 0, total)
+        self.laps.lap("solve")
+        loads = whole.loads
+        moved = (after.states - after.states[0])[:, loads.coordinate] @ loads.value
+        after = replace(
+            after,
+            load_factor=np.ones(len(after.work)),
+            work=after.work + moved,
+            critical_points=tuple(replace(point, load_factor=1.0) for point in after.critical_points),
+        )
+        return whole, after if before is None else _joined(before, after, back=False)
+
+    def together(self) -> tuple[System, Path]:
+        """The scene driven to the largest of the rotations, and its path through them, loads together.
+
+        Where the body turns the other way the load factor is below zero and the loads still grow with its
+        size: under loads that part is the path of the scene driven the other way, which begins where the
+        other one has come back to rest. All rotations zero: loads grow from 0 to 1. The path's load factors
+        are signed, critical points' are not.
+        """
+        start, branch, largest, begun = self.start, self.branch, self._largest, None
+        count = len(self.rotations)
+        factors = self.rotations / largest if largest else np.linspace(0.0, 1.0, count + 1)[1:]
+        if start is not None:
+            begun = start[0] / largest if largest else start[1], start[2]
+        path, done, back = None, 0, False
+        whole = compile_scene(self.driven(largest))
+        self.laps.lap("compile")
+        for sign, part_factors, returns in _sides(whole, factors, 0.0 if begun is None else begun[0]):
+            system = whole if sign > 0.0 else compile_scene(self.driven(-largest))
+            begun = begun if path is None else (0.0, path.states[-1])
+            aims = [sign * factor for factor in part_factors] + [0.0] * returns
+            begin = None if begun is None else (sign * begun[0], begun[1])
+            part = self._part(system, aims, begin, branch, done, count)
+            if part.critical_points:
+                branch = "primary"  # the branch was left, or there was none to follow
+            if sign < 0.0:
+                part = replace(part, load_factor=-part.load_factor)
+            path = part if path is None else _joined(path, part, back)
+            if path.status is not Status.CONVERGED:
+                break
+            done, back = done + len(part_factors), returns
+        self.laps.lap("solve")
+        assert path is not None, "a path has at least one rotation"
+        points = tuple(replace(point, load_factor=abs(point.load_factor)) for point in path.critical_points)
+        return whole, replace(path, critical_points=points) if points else path
+
+    @property
+    def _largest(self) -> float:
+        """The rotation of largest size [rad], with its sign: there the loads act in full."""
+        return float(max(*self.rotations.tolist(), 0.0 if self.start is None else self.start[0], key=abs))
+
+    def _part(
+        self,
+        system: System,
+        factors: list[float],
+        start: tuple[float, Array] | None,
+        branch: str,
+        done: int,
+        total: int,
+    ) -> Path:
+        """The path of a scene through load factors; progress is told with what was done before it."""
+        told = None if self.progress is None else _later(self.progress, done, total)
+        return follow(system, factors, told, start=start, branch=branch, method=self.method)
 
 
 def _steady(scene: Scene) -> Scene:
@@ -180,57 +141,6 @@ def _steady(scene: Scene) -> Scene:
     timed = Sized | DrivenDisplacement
     effects = (replace(e, steady=True) if isinstance(e, timed) else e for e in scene.effects)
     return replace(scene, effects=tuple(effects))
-
-
-def _largest_of(rotations: Array, origin: float) -> float:
-    """The rotation of largest size [rad], with its sign: there the loads act in full."""
-    return float(max(*rotations.tolist(), origin, key=abs))
-
-
-def follow_rotations(
-    driven: Callable[[float], Scene],
-    rotations: Array,
-    progress: Progress | None = None,
-    *,
-    start: tuple[float, float, Array] | None = None,
-    branch: str = "primary",
-    method: str = "condensed",
-    laps: Laps,
-) -> tuple[System, Path]:
-    """The scene driven to the largest of the rotations [rad], and its path through them, loads together.
-
-    driven: the scene that is driven to a rotation. Where the body turns the other way the load factor is
-    below zero and the loads still grow with its size: under loads that part is the path of the
-    scene driven the other way, which begins where the other one has come back to rest. All rotations zero:
-    loads grow from 0 to 1. start: rotation, load factor and unknowns (N,). laps: told when the scene is
-    compiled and when the path is solved. The path's load factors are signed, critical points' are not.
-    """
-    largest, begun = _largest_of(rotations, 0.0 if start is None else start[0]), None
-    factors = rotations / largest if largest else np.linspace(0.0, 1.0, len(rotations) + 1)[1:]
-    if start is not None:
-        begun = start[0] / largest if largest else start[1], start[2]
-    path, done, back = None, 0, False
-    whole = compile_scene(driven(largest))
-    laps.lap("compile")
-    for sign, part_factors, returns in _sides(whole, factors, 0.0 if begun is None else begun[0]):
-        system = whole if sign > 0.0 else compile_scene(driven(-largest))
-        begun = begun if path is None else (0.0, path.states[-1])
-        aims = [sign * factor for factor in part_factors] + [0.0] * returns
-        begin = None if begun is None else (sign * begun[0], begun[1])
-        told = None if progress is None else _later(progress, done, len(factors))
-        part = follow(system, aims, told, start=begin, branch=branch, method=method)
-        if part.critical_points:
-            branch = "primary"  # the branch was left, or there was none to follow
-        if sign < 0.0:
-            part = replace(part, load_factor=-part.load_factor)
-        path = part if path is None else _joined(path, part, back)
-        if path.status is not Status.CONVERGED:
-            break
-        done, back = done + len(part_factors), returns
-    laps.lap("solve")
-    assert path is not None, "a path has at least one rotation"
-    points = tuple(replace(point, load_factor=abs(point.load_factor)) for point in path.critical_points)
-    return whole, replace(path, critical_points=points) if points else path
 
 
 def _sides(system: System, factors: Array, begin: float) -> list[tuple[float, list[float], bool]]:

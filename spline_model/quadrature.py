@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from functools import lru_cache
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -38,6 +38,22 @@ class PointTable(NamedTuple):
     modes: Array
     numbers: Array
 
+    @classmethod
+    def of(cls, scene: Scene) -> Self:
+        """Gauss points of bending and stretching; those that two effects share stand there once.
+
+        The stress-free curvature is the one at rest and the natural one.
+        """
+        groups = _groups(scene)
+        widest = max((scene.strip(e.strip).basis.degree + 1 for e, *_ in groups), default=0)
+        most = max((at.modes.width for _, at, _ in groups if isinstance(at, MixedStretching)), default=0)
+        parts = [_rows(scene, *group, widest, most) for group in groups]
+        if not parts:
+            return cls(np.zeros((0, 5), np.int64), np.zeros((2, 0, 0)), np.zeros((0, 0)), np.zeros((0, 11)))
+        place, basis, modes, numbers = zip(*parts, strict=True)
+        joined = np.ascontiguousarray(np.concatenate(basis, axis=1))
+        return cls(np.concatenate(place), joined, np.concatenate(modes), np.concatenate(numbers))
+
     @property
     def speed(self) -> Array:
         """J0 (P,) [m]."""
@@ -71,24 +87,6 @@ class PointTable(NamedTuple):
         numbers[:, CURVATURE] = (1.0 - share) * numbers[:, REST] + share * numbers[:, CURVATURE]
         numbers[:, STRAIN] *= share
         return self._replace(numbers=numbers)
-
-
-def point_table(scene: Scene) -> PointTable:
-    """Gauss points of bending and stretching; those that two effects share stand there once.
-
-    The stress-free curvature is the one at rest and the natural one.
-    """
-    groups = _groups(scene)
-    widest = max((scene.strip(e.strip).basis.degree + 1 for e, *_ in groups), default=0)
-    most = max((at.modes.width for _, at, _ in groups if isinstance(at, MixedStretching)), default=0)
-    parts = [_rows(scene, *group, widest, most) for group in groups]
-    if not parts:
-        return PointTable(
-            np.zeros((0, 5), np.int64), np.zeros((2, 0, 0)), np.zeros((0, 0)), np.zeros((0, 11))
-        )
-    place, basis, modes, numbers = zip(*parts, strict=True)
-    joined = np.ascontiguousarray(np.concatenate(basis, axis=1))
-    return PointTable(np.concatenate(place), joined, np.concatenate(modes), np.concatenate(numbers))
 
 
 def _groups(scene: Scene) -> list[tuple[Any, Any, int]]:

@@ -81,13 +81,7 @@ def _alike(system: System, states: Array, strips: list[Strip], stations: Array, 
         for g, strip in enumerate(strips):
             own = shown[:, layout.strip(strip.name)].reshape(count, -1, 2)
             curve[0, :, :, :count, g] = np.tensordot(values[: len(stations)], own, (1, 1)).swapaxes(1, 2)
-    pull = np.empty((2, len(stations), count, len(strips)))
-    for g, strip in enumerate(strips):
-        pull[..., g] = -clamp_reactions(system, states, strip.name, "start")[:, :2].T[:, None]
-        for weight in scene.of(StripGravity):
-            if weight.strip == strip.name:
-                mass = weight.linear_density * strip.length_to(stations)
-                pull[..., g] -= np.multiply.outer(weight.acceleration, mass)[..., None]
+    pull = _pulls(system, states, strips, stations)
     shear = (pull[1] * x1 - pull[0] * y1) / speed
     if balanced:
         force = ((pull[0] * x1 + pull[1] * y1) / speed).transpose(1, 2, 0)
@@ -108,6 +102,18 @@ def _alike(system: System, states: Array, strips: list[Strip], stations: Array, 
         bending_moment=np.ascontiguousarray(moment.transpose(1, 2, 0)),
         shear_force=np.ascontiguousarray(shear.transpose(1, 2, 0)),
     )
+
+
+def _pulls(system: System, states: Array, strips: list[Strip], stations: Array) -> Array:
+    """Force of what is beyond a station on what is before (2, P, S, G), by clamp of the root and weight."""
+    pull = np.empty((2, len(stations), len(states), len(strips)))
+    for g, strip in enumerate(strips):
+        pull[..., g] = -clamp_reactions(system, states, strip.name, "start")[:, :2].T[:, None]
+        for weight in system.scene.of(StripGravity):
+            if weight.strip == strip.name:
+                mass = weight.linear_density * strip.length_to(stations)
+                pull[..., g] -= np.multiply.outer(weight.acceleration, mass)[..., None]
+    return pull
 
 
 def _balanced_moments(

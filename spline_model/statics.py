@@ -1,35 +1,35 @@
-"""Statics: a pivot under a driven rotation, a scene under growing loads (Eq 19)."""
+"""Statics: a pivot under a driven rotation, any mechanism or scene under loads and drives (Eq 19)."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import partial
 from itertools import pairwise
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from spline_model.accuracy import DOUBTFUL, settled, solve_accurately, wanted
+from spline_model.accuracy import answered
 from spline_model.compile import System, compile_scene
+from spline_model.continuation.arc_length import follow_arc
 from spline_model.continuation.follower import equilibrium
-from spline_model.errors import InvalidParameter, finite_numbers, require_choice, require_count
+from spline_model.errors import (
+    InvalidParameter,
+    finite_numbers,
+    require_choice,
+    require_count,
+    require_finite,
+)
+from spline_model.mechanism import Mechanism
 from spline_model.newton import Laps
 from spline_model.path import Progress, follow
 from spline_model.pivot import Pivot
-from spline_model.proportional import (
-    CONTROLS,
-    LOADS_FIRST,
-    ORDERS,
-    TOGETHER,
-    follow_loads_first,
-    follow_rotations,
-    has_loads,
-    solve_loads,
-    solve_mechanism,
-)
+from spline_model.proportional import LOADS_FIRST, ORDERS, TOGETHER, Turn, has_loads
 from spline_model.reduced.elements import followed
+from spline_model.scene import Scene
 from spline_model.sections import STATIONS
 from spline_model.solution import Path, Status
 from spline_model.static_answers import StaticSolution
@@ -50,6 +50,7 @@ LEAST_ROTATION = 1e-12
 """Largest rotation of a path that is none [rad]: states are solved to 1e-11."""
 
 METHODS = ("condensed", "multipliers")
+CONTROLS = ("load", "arc-length")
 
 HOME = 1e-6
 """Distance from rest at which a path has come home, in lengths of a strip and rad."""
@@ -89,29 +90,108 @@ def solve_statics(
     require_count("increments", increments, 1)
     require_choice("method", method, METHODS)
     require_choice("order", order, ORDERS)
-    laps, design = Laps(), pivot.design
-    origin = 0.0 if start is None else float(start.rotation[-1])
+    laps, origin = Laps(), 0.0 if start is None else float(start.rotation[-1])
     rotations = _rotations(rotation, increments, origin)
-    chosen = wanted(accuracy, design, start)
+    begin = None if start is None else (origin, float(start.load_factor[-1]), start.states[-1])
 
-    def solve(control_points: int | None) -> StaticSolution:
+    def solve(control_points: int | None, told: Progress | None, balanced: bool) -> StaticSolution:
         given = pivot.with_control_points(control_points)
-        told = progress if chosen is None else None
-        begin = None if start is None else (origin, float(start.load_factor[-1]), start.states[-1])
-        how: dict[str, Any] = {"start": begin, "branch": branch, "method": method, "laps": laps}
-        if order == TOGETHER or not rotations.any() or not has_loads(given.scene):
-            system, path = follow_rotations(given.driven, rotations, told, **how)
-        else:
-            system, path = follow_loads_first(given.driven, rotations, increments, told, **how)
-        return StaticSolution.of(system, path, given.effects, laps, balanced=chosen is not None)
+        turn = Turn(
+            driven=given.driven,
+            rotations=rotations,
+            increments=increments,
+            laps=laps,
+            progress=told,
+            start=begin,
+            branch=branch,
+            method=method,
+        )
+        together = order == TOGETHER or not rotations.any() or not has_loads(given.scene)
+        system, path = turn.together() if together else turn.loads_first()
+        return StaticSolution.of(system, path, given.effects, laps, balanced=balanced)
 
-    if chosen is None:
-        solution = solve(settled(design, start))
-    else:
-        solution = solve_accurately(design, chosen, solve, least=DOUBTFUL if accuracy is None else None)
-        if progress is not None:
-            progress(len(rotations), len(rotations))
+    solution = answered(pivot.design, accuracy, solve, start, progress, len(rotations))
     return solution.checked(raise_on_failure)
+
+
+def solve_mechanism(
+    mechanism: Mechanism,
+    *,
+    body: str | None = None,
+    rotation: float | None = None,
+    increments: int = 20,
+    order: str = LOADS_FIRST,
+    control: str = "load",
+    branch: str = "primary",
+    start: StaticSolution | None = None,
+    end: float = 1.0,
+    accuracy: float | None = None,
+    raise_on_failure: bool = True,
+    progress: Progress | None = None,
+) -> StaticSolution:
+    """Any mechanism from rest to load factor 1: its loads and drives grow in proportion.
+
+    rotation [rad] drives the named body, or the only one; None leaves all bodies to the loads. order: where
+    both meet, "loads first" as in ``solve_statics``, which then stay, or "together"; so it is
+    always with control "arc-length" or another ``end``. control, branch, start and end as in
+    ``solve_loads``; accuracy as in ``solve_statics``, with control "arc-length" of the state at the
+    end.
+    """
+    if rotation is not None:
+        require_finite("rotation", rotation, "rad")
+    require_count("increments", increments, 1)
+    require_choice("order", order, ORDERS)
+    laps, first = Laps(), order == LOADS_FIRST and control == "load" and end == 1.0
+
+    def solve(control_points: int | None, told: Progress | None, balanced: bool) -> StaticSolution:
+        given = mechanism.with_control_points(control_points)
+        if first and rotation and has_loads(given.scene):
+            begin, origin = None, 0.0
+            if start is not None:
+                origin = float(start.bodies[mechanism.design.body_named(body)][-1, 2])
+                begin = origin, float(start.load_factor[-1]), start.states[-1]
+            turns = np.linspace(origin, rotation, increments + 1)[1:]
+            drive = partial(given.driven, body=body)
+            turn = Turn(driven=drive, rotations=turns, increments=increments, laps=laps, progress=told)
+            system, path = replace(turn, start=begin, branch=branch).loads_first()
+        else:
+            scene = given.scene if rotation is None else given.driven(rotation, body)
+            how: dict[str, Any] = {"end": end, "control": control, "branch": branch, "start": start}
+            system, path = solve_loads(scene, increments=increments, progress=told, **how)
+            laps.lap("solve")
+        return StaticSolution.of(system, path, given.effects, laps, balanced=balanced)
+
+    solution = answered(mechanism.design, accuracy, solve, start, progress, increments)
+    return solution.checked(raise_on_failure)
+
+
+def solve_loads(
+    scene: Scene,
+    *,
+    increments: int = 20,
+    end: float = 1.0,
+    control: str = "load",
+    branch: str = "primary",
+    start: Path | StaticSolution | None = None,
+    progress: Progress | None = None,
+) -> tuple[System, Path]:
+    """A scene from rest to the load factor ``end``, all its loads and drives growing in proportion.
+
+    control: "load" prescribes the load factors; "arc-length" follows the path through its limit
+    points, with ``increments`` for the first step only. branch: "primary" or "follow" at a
+    bifurcation. start: a result of the same scene to go on from, instead of rest.
+    """
+    require_count("increments", increments, 1)
+    require_choice("control", control, CONTROLS)
+    if not math.isfinite(end):
+        raise InvalidParameter("end", end, "a finite load factor")
+    system = compile_scene(scene)
+    begin = None if start is None else (float(start.load_factor[-1]), start.states[-1])
+    if control == "arc-length":
+        arc = follow_arc(system, end, increments=increments, start=begin, branch=branch, progress=progress)
+        return system, arc
+    factors = np.linspace(0.0 if begin is None else begin[0], end, increments + 1)[1:]
+    return system, follow(system, list(factors), progress, start=begin, branch=branch)
 
 
 def _rotations(rotation: float | Sequence[float], increments: int, origin: float) -> Array:

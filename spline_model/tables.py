@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import accumulate
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -45,6 +45,31 @@ class ClampTable(NamedTuple):
 
     place: Indices
     numbers: Array
+
+    @classmethod
+    def of(cls, scene: Scene) -> Self:
+        """The clamped strip ends of a scene."""
+        places, numbers = [], []
+        yielding = {(e.strip, e.end): e.compliance for e in scene.of(RootCompliance)}
+        for i, clamp in enumerate(scene.of(Constraint)):
+            if not isinstance(clamp, Clamp):
+                continue
+            strip = scene.strip(clamp.strip)
+            start, count = scene.layout.strips[clamp.strip]
+            at_start = clamp.end == "start"
+            end, inner = (0, 1) if at_start else (count - 1, count - 2)
+            sign = 1.0 if at_start else -1.0
+            along = sign * (strip.control_points[inner] - strip.control_points[end])
+            centre = np.zeros(2) if clamp.to == GROUND else scene.body(clamp.to).centre
+            body = -1 if clamp.to == GROUND else scene.layout.bodies[clamp.to]
+            places.append((start + 2 * end, start + 2 * inner, body, scene.layout.multipliers[i][0]))
+            point = strip.control_points[end] - centre
+            yields = yielding.get((clamp.strip, clamp.end), 0.0)
+            numbers.append((sign, *point, np.arctan2(along[1], along[0]), yields))
+        return cls(
+            place=np.array(places, dtype=np.int64).reshape(-1, 4),
+            numbers=np.array(numbers, dtype=float).reshape(-1, 5),
+        )
 
     @property
     def end(self) -> Indices:
@@ -103,6 +128,31 @@ class DriveTable(NamedTuple):
     begin: Array
     until: Array
 
+    @classmethod
+    def of(cls, scene: Scene) -> Self:
+        """The driven rotations and displacements, one row a coordinate."""
+        rows, histories = [], []  # type: list[tuple[float, ...]], list[History]
+        for i, drive in enumerate(scene.of(Constraint)):
+            if isinstance(drive, DrivenRotation):
+                parts = [(2, 0.0, drive.angle)]
+            elif isinstance(drive, DrivenDisplacement):
+                centre = scene.body(drive.body).centre
+                grown = 0.0 if drive.steady else 1.0
+                parts = [
+                    (axis, float(centre[axis]) + (1.0 - grown) * moved, grown * moved)
+                    for axis, moved in drive.parts.items()
+                ]
+            else:
+                continue
+            for k, (offset, origin, target) in enumerate(parts):
+                place = scene.layout.bodies[drive.body] + offset
+                rows.append(
+                    (place, origin, target, scene.layout.multipliers[i][0] + k, int(offset == 2), *drive.held)
+                )
+                histories.append(drive.history or STEADY)
+        names = ("coordinate", "origin", "target", "row", "turns", "begin", "until")
+        return cls(**_columns(names, rows), **_histories(histories))
+
 
 class LoadTable(NamedTuple):
     """One row a generalised force, F in all.
@@ -119,6 +169,12 @@ class LoadTable(NamedTuple):
     times: Array
     factors: Array
 
+    @classmethod
+    def of(cls, scene: Scene) -> LoadTable:
+        """Forces on bodies and strip ends and moments on bodies that grow, one row a component."""
+        growing = [load for load in scene.of(Load) if isinstance(load, Sized) and not load.steady]
+        return _table_of_loads(scene, growing) if growing else NO_LOADS
+
 
 class Tables(NamedTuple):
     """The tables of a scene; weight (Q,) or (0,) [N, N m]."""
@@ -128,62 +184,6 @@ class Tables(NamedTuple):
     drives: DriveTable
     loads: LoadTable
     weight: Array
-
-
-def clamp_table(scene: Scene) -> ClampTable:
-    """The clamped strip ends."""
-    places, numbers = [], []
-    yielding = {(e.strip, e.end): e.compliance for e in scene.of(RootCompliance)}
-    for i, clamp in enumerate(scene.of(Constraint)):
-        if not isinstance(clamp, Clamp):
-            continue
-        strip = scene.strip(clamp.strip)
-        start, count = scene.layout.strips[clamp.strip]
-        at_start = clamp.end == "start"
-        end, inner = (0, 1) if at_start else (count - 1, count - 2)
-        sign = 1.0 if at_start else -1.0
-        along = sign * (strip.control_points[inner] - strip.control_points[end])
-        centre = np.zeros(2) if clamp.to == GROUND else scene.body(clamp.to).centre
-        body = -1 if clamp.to == GROUND else scene.layout.bodies[clamp.to]
-        places.append((start + 2 * end, start + 2 * inner, body, scene.layout.multipliers[i][0]))
-        point = strip.control_points[end] - centre
-        yields = yielding.get((clamp.strip, clamp.end), 0.0)
-        numbers.append((sign, *point, np.arctan2(along[1], along[0]), yields))
-    return ClampTable(
-        place=np.array(places, dtype=np.int64).reshape(-1, 4),
-        numbers=np.array(numbers, dtype=float).reshape(-1, 5),
-    )
-
-
-def drive_table(scene: Scene) -> DriveTable:
-    """The driven rotations and displacements, one row a coordinate."""
-    rows, histories = [], []  # type: list[tuple[float, ...]], list[History]
-    for i, drive in enumerate(scene.of(Constraint)):
-        if isinstance(drive, DrivenRotation):
-            parts = [(2, 0.0, drive.angle)]
-        elif isinstance(drive, DrivenDisplacement):
-            centre = scene.body(drive.body).centre
-            grown = 0.0 if drive.steady else 1.0
-            parts = [
-                (axis, float(centre[axis]) + (1.0 - grown) * moved, grown * moved)
-                for axis, moved in drive.parts.items()
-            ]
-        else:
-            continue
-        for k, (offset, origin, target) in enumerate(parts):
-            place = scene.layout.bodies[drive.body] + offset
-            rows.append(
-                (place, origin, target, scene.layout.multipliers[i][0] + k, int(offset == 2), *drive.held)
-            )
-            histories.append(drive.history or STEADY)
-    names = ("coordinate", "origin", "target", "row", "turns", "begin", "until")
-    return DriveTable(**_columns(names, rows), **_histories(histories))
-
-
-def load_table(scene: Scene) -> LoadTable:
-    """Forces on bodies and strip ends and moments on bodies that grow, one row a component."""
-    growing = [load for load in scene.of(Load) if isinstance(load, Sized) and not load.steady]
-    return _table_of_loads(scene, growing) if growing else NO_LOADS
 
 
 def _table_of_loads(scene: Scene, growing: Sequence[Sized]) -> LoadTable:

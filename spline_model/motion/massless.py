@@ -17,16 +17,8 @@ from __future__ import annotations
 import math
 
 from spline_model.motion.step import FACTORISATIONS, MOST_ITERATIONS, NEWTON, solve_rows
-from spline_model.reduced.assembly import (
-    AXIAL,
-    BENDING,
-    DEAD,
-    FORCE,
-    MOVE,
-    RATE,
-    assemble,
-    move_strips,
-)
+from spline_model.reduced.arrays import AXIAL, BENDING, DEAD, FORCE, MOVE, RATE
+from spline_model.reduced.assembly import assemble, move_strips
 from spline_model.reduced.beside import condense_again, take_residual
 from spline_model.reduced.equilibrium import entry
 from spline_model.strip.compiled import copy, part
@@ -46,8 +38,9 @@ POOR = 0.1
 
 
 @part()
-def _stored(y, bodies, strips, shape, local, space):
+def _stored(y, arrays):
     """The potential W at a state just assembled: stationary in the strips' coordinates and forces."""
+    bodies, strips, shape, local, space = arrays
     total = space.out[BENDING] + space.out[AXIAL] + space.out[DEAD]
     if strips.measure == MATERIAL:
         own, modes = 2 * shape.order.size - 6, strips.compliance.shape[1]
@@ -59,11 +52,12 @@ def _stored(y, bodies, strips, shape, local, space):
 
 
 @part()
-def _look_ahead(poses, strips, shape, local, space):
+def _look_ahead(poses, arrays):
     """W and reactions behind the last correction, to the second and first order in it.
 
     What the strips were off their equilibrium raises W by g^2 / 2 d a pivot, and lowers it by gap^2 / 2 c.
     """
+    _, strips, shape, local, space = arrays
     for s in range(strips.roots.size):
         for i in range(2 * shape.order.size - 6):
             poses.energy[1] -= 0.5 * local.reduced[s, LAST, i] ** 2 / local.reduced[s, i, i]
@@ -140,10 +134,11 @@ def _balance(h, count, poses, masses, space):
 
 
 @part()
-def _move_all(share, count, poses, bodies, strips, shape, local, space):
+def _move_all(share, count, poses, arrays):
     """Move by the solution x of the rows, the strips with the bodies; share: 1 with their own residual."""
-    move, rate, dx, y = space.vectors[MOVE], space.states[RATE], poses.dx, poses.trial
-    for i in range(bodies.load.size):
+    space, dx, y = arrays.space, poses.dx, poses.trial
+    move, rate = space.vectors[MOVE], space.states[RATE]
+    for i in range(arrays.bodies.load.size):
         move[i] = 0.0
     for r in range(count):
         i = poses.free[r]
@@ -151,7 +146,7 @@ def _move_all(share, count, poses, bodies, strips, shape, local, space):
         if i < dx.size:
             dx[i] += poses.x[r]
             y[i] = poses.y[i] + dx[i]
-    move_strips(share, bodies, strips, shape, local, space, rate)
+    move_strips(share, arrays, rate)
     for i in range(dx.size, y.size):
         y[i] += rate[i]
 
@@ -166,27 +161,28 @@ def _bend_on(h, poses):
 
 
 @part()
-def _evaluate(fresh, poses, bodies, strips, shape, local, space):
+def _evaluate(fresh, poses, arrays):
     """Energy and reactions at ``trial``, with a fresh tangent or an older one; the strips' residual."""
     if fresh:
-        norm = assemble(poses.trial, 0.0, bodies, strips, shape, local, space)
+        norm = assemble(poses.trial, 0.0, arrays)
     else:
-        norm = take_residual(poses.trial, 0.0, bodies, strips, shape, local, space)
-        condense_again(bodies, strips, shape, local, space)
-    poses.energy[1] = _stored(poses.trial, bodies, strips, shape, local, space)
-    for i in range(bodies.load.size):
-        poses.next[i] = space.vectors[FORCE, i]
+        norm = take_residual(poses.trial, 0.0, arrays)
+        condense_again(arrays)
+    poses.energy[1] = _stored(poses.trial, arrays)
+    for i in range(poses.next.size):
+        poses.next[i] = arrays.space.vectors[FORCE, i]
     return norm
 
 
 @part()
-def solve(h, moving, poses, masses, bodies, strips, shape, local, space, tolerance, counters):
+def solve(h, moving, poses, masses, arrays, tolerance, counters):
     """Solve a step of length h for the state ``trial``, or the strips at held bodies; True if it converged.
 
     With bodies that move dx is their change, kept apart as their inertia would drown in its round-off. They
     begin from the last state along the last tangent.
     """
-    count, norm, before, fresh = _list_free(moving, poses, masses, bodies), math.inf, math.inf, False
+    space = arrays.space
+    count, norm, before, fresh = _list_free(moving, poses, masses, arrays.bodies), math.inf, math.inf, False
     for i in range(poses.dx.size):
         poses.dx[i] = 0.0
     copy(poses.y, poses.trial)
@@ -197,20 +193,20 @@ def solve(h, moving, poses, masses, bodies, strips, shape, local, space, toleran
         if trial >= 0:
             fresh, before = trial == 0 or moving == 0.0 or norm > POOR * before, norm
             counters[FACTORISATIONS] += fresh
-            strain = _evaluate(fresh, poses, bodies, strips, shape, local, space)
+            strain = _evaluate(fresh, poses, arrays)
         norm = max(strain, _balance(h, count, poses, masses, space)) if strain == strain else math.inf
         if trial >= 0 and (norm <= tolerance or (norm <= 1e3 * tolerance and norm > 0.5 * before)):
             return True
         if not norm < 1e12 or not solve_rows(count, poses.system, poses.x):
             return False
-        _move_all(0.0 if trial < 0 else 1.0, count, poses, bodies, strips, shape, local, space)
+        _move_all(0.0 if trial < 0 else 1.0, count, poses, arrays)
         if trial < 0:
             _bend_on(h, poses)
             norm = math.inf
             continue
         counters[NEWTON] += 1
         small = norm <= NEARLY if fresh else norm <= CLOSE and norm * norm <= AFTER * before
-        if moving > 0.0 and small and strips.coupled == 0:
-            _look_ahead(poses, strips, shape, local, space)
+        if moving > 0.0 and small and arrays.strips.coupled == 0:
+            _look_ahead(poses, arrays)
             return True
     return False

@@ -18,12 +18,14 @@ from spline_model.motion.records import ENERGIES, Records
 from spline_model.motion.run import SLOWEST_SPEED
 from spline_model.motion.start import Array, Start, Steps
 from spline_model.motion.step import FOLDS, REFUSED, SNAPS, STEPS, load_at
-from spline_model.reduced.assembly import NEGATIVE, SLOWEST, assemble, factorise, working_space
+from spline_model.reduced.arrays import NEGATIVE, SLOWEST
+from spline_model.reduced.assembly import assemble, factorise
 from spline_model.reduced.model import Reduced, at_rest, from_unknowns, reduced
 from spline_model.reduced.states import unknowns_of
 from spline_model.reduced.whole import whole_tangents
 from spline_model.strip.compiled import copy, kernel, part
-from spline_model.strip.element import ON_POINTS, POINTS, place_points
+from spline_model.strip.element import ON_POINTS, POINTS
+from spline_model.strip.ends import place_points
 
 NAME = "quasi-static strips"
 """What the energy integrator is called where only the bodies are dynamic."""
@@ -70,12 +72,13 @@ def softness(model: Reduced, y: Array, strip: int) -> float:
 
 
 @part()
-def _refused(poses, bodies, strips, shape, space, scene_bodies):
+def _refused(poses, arrays, scene_bodies):
     """Why a solved state is refused, or 0: FOLDS, or SNAPS where the strips' equilibrium is unstable.
 
     Every clamped end's tangent points forwards, |C'| is above a tenth of that at rest, and at held masses no
     direction lowers the energy: coordinates without mass would leave such a state at once.
     """
+    bodies, strips, shape, _, space = arrays
     own, modes = 2 * shape.order.size - 6, strips.compliance.shape[1]
     for s in range(strips.roots.size):
         at = bodies.rest.size + s * (own + modes) + own
@@ -113,8 +116,9 @@ def _settle(poses):
 
 
 @part()
-def _store(poses, masses, bodies, strips, shape, local, row):
+def _store(poses, masses, arrays, row):
     """A record: y, the bodies' rates and its energies, as of ``spline_model.motion.run.store``."""
+    bodies, strips, shape, local, _ = arrays
     y, rate, n = poses.y, poses.rate, shape.order.size
     own, modes = 2 * n - 6, strips.compliance.shape[1]
     kinetic = weight = 0.0
@@ -141,8 +145,7 @@ def _store(poses, masses, bodies, strips, shape, local, row):
 
 @kernel()
 def _run(
-    time, step, begin, end, every, scene_bodies, poses, masses, bodies, strips, shape, local, space,
-    tolerance, counters, records,
+    time, step, begin, end, every, scene_bodies, poses, masses, arrays, tolerance, counters, records
 ):  # fmt: skip
     """Take the steps ``begin`` ... ``end`` - 1 after a time; returns the first that fails, or end.
 
@@ -156,21 +159,21 @@ def _run(
             poses.load[i] = 0.0
         for f in range(masses.load_body.size * int(moving)):
             poses.load[masses.load_body[f]] += load_at(f, time + k * step + 0.5 * step, masses)
-        solved = solve(step, moving, poses, masses, bodies, strips, shape, local, space, tolerance, counters)
+        solved = solve(step, moving, poses, masses, arrays, tolerance, counters)
         if moving == 0.0:
             if not solved:
                 return k
             _settle(poses)
         else:
-            counters[REFUSED] = _refused(poses, bodies, strips, shape, space, scene_bodies) if solved else 0
+            counters[REFUSED] = _refused(poses, arrays, scene_bodies) if solved else 0
             if not solved or counters[REFUSED] != 0:
-                assemble(poses.y, 0.0, bodies, strips, shape, local, space)  # the tangent to begin along
+                assemble(poses.y, 0.0, arrays)  # the tangent to begin along
                 return k
             _accept(step, poses, masses)
             counters[STEPS] += 1
         if (k + 1) % every == 0:
             row = records[(k + 1) // every - begin // every - 1]
-            _store(poses, masses, bodies, strips, shape, local, row)
+            _store(poses, masses, arrays, row)
     return end
 
 
@@ -184,11 +187,9 @@ class _Stepper(energy_consistent.Moves):
         rate, moved = np.zeros((len(model.bodies.rest) // 3, 3)), model.system.layout.poses
         rate[: len(model.system.scene.bodies)] = start.v[moved].reshape(-1, 3) / self.unit
         self._poses = Poses.of(y, rate.ravel(), self._masses.inertia, len(model.bodies.load))
-        self._local, self._space = model.local(), working_space(model.bodies, model.size)
         self.width = model.size + rate.size + ENERGIES
         self.counters = np.zeros(6, dtype=np.int64)
-        made = self._masses, model.bodies, model.strips, model.shape, self._local, self._space
-        self._given = (self._poses, *made, TOLERANCE, self.counters)
+        self._given = self._poses, self._masses, model.arrays(), TOLERANCE, self.counters
 
     def steps(self, time: float, step: float, begin: int, end: int, every: int, records: Array) -> int:
         """The number of the first step that fails."""

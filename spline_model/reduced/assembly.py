@@ -3,11 +3,21 @@
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from spline_model.reduced.arrays import (
+    AXIAL,
+    BENDING,
+    DEAD,
+    ENDS,
+    FORCE,
+    MOVE,
+    NEGATIVE,
+    RAW,
+    SLOWEST,
+)
 from spline_model.strip.compiled import called, part
 from spline_model.strip.condense import SINGULAR, condense, condense_coupled, recover
 from spline_model.strip.element import (
@@ -23,71 +33,12 @@ from spline_model.strip.element import (
     VALUE,
     WEIGHT,
     WHERE,
-    place_points,
-    to_element,
 )
+from spline_model.strip.ends import place_points, to_element
 from spline_model.strip.laws import MATERIAL
 from spline_model.strip.points import evaluate_points
 
 Array = NDArray[np.float64]
-
-BENDING, AXIAL, DEAD, SLOWEST, NEGATIVE = range(5)
-"""Places of what ``assemble`` sums up: energies in EI/L, least v / J0, negative pivots of the strips."""
-KNOWN = 4
-"""States and rates that the next one is predicted from: of five, round-off would outgrow what they add."""
-
-
-FORCE, RAW, CHANGE, MOVE, REACTION, REACTION_RATE, ENDS = range(7)
-"""Rows of ``Space.vectors``."""
-Y, RATE, PREDICTED, SPARE = range(2 * KNOWN, 2 * KNOWN + 4)
-"""Rows of ``Space.states`` behind the known ones."""
-FACTORS = 5
-"""Place of the known states' factors behind the sums."""
-
-
-class Bodies(NamedTuple):
-    """B bodies, free strip ends among them, and what acts on them; coordinates x, y over L and theta.
-
-    rest (3 B,); load (Q,) generalised force at load factor 1; weight (Q,) at any, Q = 3 B and one more
-    for each strip whose mean axial force stands beside the bodies; free (F,) and held (D,) of these;
-    driven: place among the held ones of the rotation whose torque is asked for, or -1.
-    """
-
-    rest: Array
-    load: Array
-    weight: Array
-    free: NDArray[np.int64]
-    held: NDArray[np.int64]
-    driven: int
-
-
-class Space(NamedTuple):
-    """Working arrays of a path, few as in ``Strips``: the bodies' system and the states.
-
-    tangent (Q, Q), upper; factors (F, F) of its free part; vectors (7, Q or more): FORCE and RAW, the
-    residuals with the strips condensed and without, CHANGE (F,), MOVE, REACTION and REACTION_RATE (D,), and
-    ENDS of a strip;
-    states (2 KNOWN + 4, Y): known ones, their rates, Y, RATE, PREDICTED and SPARE; out (5 + KNOWN,): what
-    ``assemble`` sums up, and the factors of the known states.
-    """
-
-    tangent: Array
-    factors: Array
-    vectors: Array
-    states: Array
-    out: Array
-
-
-def working_space(bodies: Bodies, size: int) -> Space:
-    """Arrays for that many unknowns."""
-    q, f = bodies.load.size, bodies.free.size
-    return Space(
-        tangent=np.zeros((q, q)),
-        factors=np.zeros((f, f)),
-        vectors=np.zeros((7, max(q, 7))),
-        states=np.zeros((2 * KNOWN + 4, size)),
-        out=np.zeros(5 + KNOWN),
-    )
 
 
 @part()
@@ -167,12 +118,13 @@ def residual_of(s, own, last, strips, local, space):
 
 
 @called()
-def assemble(y, load, bodies, strips, shape, local, space):
+def assemble(y, load, arrays):
     """Condense all strips at y; the bodies' tangent (upper) and force in ``space``.
 
     y: the bodies' poses, then w and a of each strip. Returns the largest residual of the strips, in
     EI/L^2 and L, or inf for a singular strip; the bodies' own is RAW of ``space``.
     """
+    bodies, strips, shape, local, space = arrays
     poses, own = bodies.rest.size, 2 * shape.order.size - 6
     last = own + strips.coupled - strips.outer
     for i in range(bodies.load.size):
@@ -245,8 +197,9 @@ def recovered(s, own, share, strips, local, change, dw, da):
 
 
 @called()
-def move_strips(share, bodies, strips, shape, local, space, out):
+def move_strips(share, arrays, out):
     """w and a of all strips for the bodies' change, MOVE of the vectors (Q,), into out (Y,)."""
+    bodies, strips, shape, local, space = arrays
     n, modes, poses = shape.order.size, strips.compliance.shape[1], bodies.rest.size
     own, ends, move = 2 * n - 6, space.vectors[ENDS], space.vectors[MOVE]
     for s in range(strips.roots.size):

@@ -11,19 +11,8 @@ off by K^-1 H - 1 times what v is, and so is the stiffness.
 
 from __future__ import annotations
 
-from spline_model.reduced.assembly import (
-    FORCE,
-    MOVE,
-    RATE,
-    RAW,
-    REACTION,
-    REACTION_RATE,
-    SPARE,
-    begin,
-    move_strips,
-    place_of,
-    residual_of,
-)
+from spline_model.reduced.arrays import FORCE, MOVE, RATE, RAW, REACTION, REACTION_RATE, SPARE
+from spline_model.reduced.assembly import begin, move_strips, place_of, residual_of
 from spline_model.reduced.equilibrium import CLOSE, CONFIRMED, ITERATIONS, NEARLY, carry, newton, tangent
 from spline_model.strip.compiled import called, lane, part
 from spline_model.strip.element import (
@@ -36,9 +25,8 @@ from spline_model.strip.element import (
     PULL_AT,
     SHEAR,
     SPRING,
-    place_points,
 )
-from spline_model.strip.ends import by_roots, by_tip, to_ends
+from spline_model.strip.ends import by_roots, by_tip, place_points, to_ends
 from spline_model.strip.laws import MATERIAL
 from spline_model.strip.points import add_slopes, curve_at, evaluate_residual, four, spring_of, springs_of
 
@@ -80,8 +68,9 @@ def _forward(own, last, end, coupled, outer, gain, h, b, gap, g):
 
 
 @part()
-def condense_again(bodies, strips, shape, local, space):
+def condense_again(arrays):
     """Add to FORCE what the strips' g, overwritten, and gaps are at the ends by the factors at hand."""
+    bodies, strips, shape, local, space = arrays
     force, modes, own = space.vectors[FORCE], strips.compliance.shape[1], 2 * shape.order.size - 6
     last = own + strips.coupled - strips.outer
     for s in range(strips.roots.size):
@@ -93,23 +82,25 @@ def condense_again(bodies, strips, shape, local, space):
 
 
 @called()
-def respond(bodies, strips, shape, local, space, out):
+def respond(arrays, out):
     """The change (Y,) by which a residual beside a condensed state vanishes, into ``out``.
 
     The residual: FORCE of the vectors without the strips, and each strip's g and gap in its element, which
     are overwritten. REACTION_RATE: what the drives then bear.
     """
+    bodies, space = arrays.bodies, arrays.space
     move = space.vectors[MOVE]
-    condense_again(bodies, strips, shape, local, space)
+    condense_again(arrays)
     carry(REACTION_RATE, bodies, space)
     for i in range(bodies.rest.size):
         out[i] = move[i]
-    move_strips(1.0, bodies, strips, shape, local, space, out)
+    move_strips(1.0, arrays, out)
 
 
 @part()
-def take_residual(y, load, bodies, strips, shape, local, space):
+def take_residual(y, load, arrays):
     """As ``assemble``, but for the tangent, which is kept. Of the strips the largest."""
+    bodies, strips, shape, local, space = arrays
     n, modes = shape.order.size, strips.compliance.shape[1]
     own, last, norm = 2 * n - 6, 2 * n - 6 + strips.coupled - strips.outer, 0.0
     begin(y, load, bodies, space)
@@ -217,8 +208,9 @@ def _turn_ends(s, at, own, last, rate, strips, local):
 
 
 @part()
-def _take_product(rate, load_rate, bodies, strips, shape, local, space):
+def _take_product(rate, load_rate, arrays):
     """H v of a state just evaluated by ``take_residual`` along a rate v (Y,): its g, gap and FORCE."""
+    bodies, strips, shape, local, space = arrays
     force, poses = space.vectors[FORCE], bodies.rest.size
     n, modes = shape.order.size, strips.compliance.shape[1]
     own, last = 2 * n - 6, 2 * n - 6 + strips.coupled - strips.outer
@@ -233,8 +225,9 @@ def _take_product(rate, load_rate, bodies, strips, shape, local, space):
 
 
 @part()
-def _is_firm(least, strips, shape, local, space):
+def _is_firm(least, arrays):
     """Whether all pivots of strips and bodies are ``least`` or more."""
+    _, strips, shape, local, space = arrays
     firm, last = True, 2 * shape.order.size - 6 + strips.coupled - strips.outer
     for i in range(space.factors.shape[0]):
         firm = firm and abs(space.factors[i, i]) >= least
@@ -245,12 +238,13 @@ def _is_firm(least, strips, shape, local, space):
 
 
 @called()
-def _confirm(y, load, norm, held_rate, load_rate, bodies, strips, shape, local, space, tolerance):
+def _confirm(y, load, norm, held_rate, load_rate, arrays, tolerance):
     """Whether y, one correction behind a state of residual ``norm``, is solved; with reactions and rates.
 
     RATE: as predicted, which becomes the state's own.
     """
-    left = take_residual(y, load, bodies, strips, shape, local, space)
+    bodies, space = arrays.bodies, arrays.space
+    left = take_residual(y, load, arrays)
     for i in range(bodies.free.size):
         left = max(left, abs(space.vectors[RAW, bodies.free[i]]))
     if not left <= CLOSE * tolerance:
@@ -259,8 +253,8 @@ def _confirm(y, load, norm, held_rate, load_rate, bodies, strips, shape, local, 
     for d in range(bodies.held.size):
         space.vectors[REACTION, d] = space.vectors[RAW, bodies.held[d]]
         rate[bodies.held[d]] = held_rate[d]
-    _take_product(rate, load_rate, bodies, strips, shape, local, space)
-    respond(bodies, strips, shape, local, space, change)
+    _take_product(rate, load_rate, arrays)
+    respond(arrays, change)
     for i in range(y.size):
         rate[i] += change[i]
         most = max(most, abs(change[i]))
@@ -268,20 +262,20 @@ def _confirm(y, load, norm, held_rate, load_rate, bodies, strips, shape, local, 
 
 
 @called()
-def solve(y, load, alone, held_rate, load_rate, bodies, strips, shape, local, space, tolerance, counters):
+def solve(y, load, alone, held_rate, load_rate, arrays, tolerance, counters):
     """Solve in place at the held coordinates in y, with rates and reactions; negative eigenvalues, or -1.
 
     alone: whether the stiffness follows from the rates, so that the tangent need not be that of the state.
     """
-    early = alone and strips.measure == MATERIAL
-    negative, norm = newton(y, load, early, bodies, strips, shape, local, space, tolerance, counters)
+    early = alone and arrays.strips.measure == MATERIAL
+    negative, norm = newton(y, load, early, arrays, tolerance, counters)
     if early and negative >= 0 and norm > NEARLY * tolerance:
         counters[ITERATIONS] += 1
-        if _is_firm(FIRM * norm, strips, shape, local, space):
+        if _is_firm(FIRM * norm, arrays):
             counters[CONFIRMED] += 1
-            if _confirm(y, load, norm, held_rate, load_rate, bodies, strips, shape, local, space, tolerance):
+            if _confirm(y, load, norm, held_rate, load_rate, arrays, tolerance):
                 return negative
-        negative, _ = newton(y, load, False, bodies, strips, shape, local, space, tolerance, counters)
+        negative, _ = newton(y, load, False, arrays, tolerance, counters)
     if negative >= 0:
-        tangent(held_rate, load_rate, bodies, strips, shape, local, space)
+        tangent(held_rate, load_rate, arrays)
     return negative

@@ -89,25 +89,12 @@ def designs_of(model: Reduced, base: Given, given: Given, rotation: Array) -> De
     energy = given.rigidity.max(axis=1) / length
     turn = given.chord / base.chord
     longer, wide = np.abs(turn), length[:, None]
+    speed = longer * (model.length / wide)
+    stiffer, thicker = given.rigidity / base.rigidity, given.thickness / base.thickness
+    rigid = stiffer / (energy * length)[:, None] * (model.energy * model.length)
     force = (energy / length)[:, None] * (model.length / model.energy)
     area, _, modulus = np.moveaxis(given.section / base.section, -1, 0)
-    speed = longer * (model.length / wide)
-    thicker = given.thickness / base.thickness
-    rigid = given.rigidity / base.rigidity / (energy * length)[:, None] * (model.energy * model.length)
-    numbers = np.repeat(strips.numbers[None], count, axis=0)
-    numbers[..., STRETCHING] *= area * modulus / force
-    numbers[..., PER_U:] *= (area * longer / force)[..., None]
-    numbers[..., REACH:SPRING] *= speed[..., None]
-    springs = given.rigidity / base.rigidity / thicker * (model.energy / energy)[:, None]
-    numbers[..., SPRING:SHEAR] *= springs[..., None]
-    for end, (place, carriers) in enumerate(((ROOT, strips.roots), (TIP, strips.tips))):
-        numbers[..., place + 2] += np.angle(turn)
-        for s, body in enumerate(carriers):
-            if body < given.centres.shape[1]:
-                origin = given.centres[:, body] if body >= 0 else 0.0
-                numbers[:, s, place : place + 2] = (given.ends[:, s, end] - origin) / wide
-    slide = longer**2 / (given.rigidity / base.rigidity)
-    soft = np.stack((1.0 / (area * modulus), slide), axis=-1) * force[..., None]
+    soft = np.stack((1.0 / (area * modulus), longer**2 / stiffer), axis=-1) * force[..., None]
     which = (np.arange(strips.compliance.shape[1]) >= strips.split).astype(int)
     shares = np.concatenate((1.0 / force, 1.0 / force, model.energy / energy[:, None]), axis=1)
     shares = np.tile(shares, len(bodies.rest) // 3)
@@ -122,12 +109,32 @@ def designs_of(model: Reduced, base: Given, given: Given, rotation: Array) -> De
         length=length,
         energy=energy,
         factor=np.stack((speed, curvature, rigid, ones, curl, speed**-0.5), axis=-1),
-        numbers=numbers,
+        numbers=_numbers(model, base, given, energy, wide),
         compliance=strips.compliance * soft[..., which],
         start=_starts(model, base, given, turn, wide),
         force=np.stack((bodies.load, bodies.weight))[:, : len(bodies.rest)] * shares[:, None],
         target=target,
     )
+
+
+def _numbers(model: Reduced, base: Given, given: Given, energy: Array, wide: Array) -> Array:
+    """The numbers of ``Strips`` of each design (D, S, 15 + 2 n), by its energy (D,) and length (D, 1)."""
+    strips, turn = model.strips, given.chord / base.chord
+    force = energy[:, None] / wide * (model.length / model.energy)
+    area, _, modulus = np.moveaxis(given.section / base.section, -1, 0)
+    springs = given.rigidity / base.rigidity * (base.thickness / given.thickness)
+    numbers = np.repeat(strips.numbers[None], len(given.ends), axis=0)
+    numbers[..., STRETCHING] *= area * modulus / force
+    numbers[..., PER_U:] *= (area * np.abs(turn) / force)[..., None]
+    numbers[..., REACH:SPRING] *= (np.abs(turn) * (model.length / wide))[..., None]
+    numbers[..., SPRING:SHEAR] *= (springs * (model.energy / energy)[:, None])[..., None]
+    for end, (place, carriers) in enumerate(((ROOT, strips.roots), (TIP, strips.tips))):
+        numbers[..., place + 2] += np.angle(turn)
+        for s, body in enumerate(carriers):
+            if body < given.centres.shape[1]:
+                origin = given.centres[:, body] if body >= 0 else 0.0
+                numbers[:, s, place : place + 2] = (given.ends[:, s, end] - origin) / wide
+    return numbers
 
 
 def _starts(model: Reduced, base: Given, given: Given, turn: NDArray[Any], wide: Array) -> Array:

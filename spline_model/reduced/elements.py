@@ -17,34 +17,40 @@ from spline_model.continuation.point import Point
 from spline_model.continuation.resolution import SMALLEST_MOMENT
 from spline_model.effects import Shear
 from spline_model.errors import InvalidParameter
-from spline_model.reduced.assembly import (
+from spline_model.newton import TOLERANCE
+from spline_model.reduced.arrays import (
     AXIAL,
     BENDING,
     DEAD,
     SLOWEST,
-    Bodies,
-    moment_defect,
+    Answer,
+    Arrays,
+    Route,
 )
-from spline_model.reduced.model import Reduced, from_unknowns, reduced
-from spline_model.reduced.path import empty_answer
-from spline_model.reduced.preload import Preload, act, apart, preload_of
+from spline_model.reduced.assembly import moment_defect
+from spline_model.reduced.equilibrium import CONFIRMED, EVALUATIONS, HALVED, ITERATIONS
+from spline_model.reduced.many import Share, follow_all
+from spline_model.reduced.model import Reduced, at_rest, from_unknowns, reduced
+from spline_model.reduced.preload import Preload, act, apart
 from spline_model.reduced.states import by_state, unknowns_of
 from spline_model.reduced.whole import add_strip
 from spline_model.strip.compiled import kernel
-from spline_model.strip.element import ON_POINTS, Local, Strips
+from spline_model.strip.element import ON_POINTS
 
 Array = NDArray[np.float64]
 
+ALONE = Share.none()
 ASIDE = 1e-5
 """Part of a direction over which it is followed to either side, in lengths and rad: exact to 1e-10."""
 
 
 @kernel()
-def _gather(y, reaction, aim, load, bodies, strips, shape, local, out, gradient, hessian):
+def _gather(y, reaction, aim, load, arrays, out, gradient, hessian):
     """Gradient (N,) and tangent (Y, Y) in poses, w and then a of all strips, at y (Y,); energies in out.
 
     Reactions (D,) of the drives, which hold their coordinates at ``aim`` (D,), are the last unknowns.
     """
+    bodies, strips, shape, local, _ = arrays
     n, count, modes, poses = shape.order.size, strips.roots.size, strips.compliance.shape[1], bodies.rest.size
     own = 2 * n - 6
     gradient[:] = 0.0
@@ -65,20 +71,20 @@ def _gather(y, reaction, aim, load, bodies, strips, shape, local, out, gradient,
 
 
 @kernel()
-def _defect_of(y, strips, shape, local):
+def _defect_of(y, arrays):
     """The moment defect of the state that was last gathered."""
-    return moment_defect(y, strips, shape, local, SMALLEST_MOMENT)
+    return moment_defect(y, arrays.strips, arrays.shape, arrays.local, SMALLEST_MOMENT)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Elements(Followed):
     """Unknowns z (N,): poses, w of all strips, a of all strips, reactions of the drives; dimensionless.
 
-    local, out (5,): working arrays, and energies as ``_gather`` left them.
+    arrays, out (5,): the model to kernels, and energies as ``_gather`` left them.
     """
 
     model: Reduced
-    local: Local
+    arrays: Arrays
     out: Array
 
     @classmethod
@@ -97,7 +103,7 @@ class Elements(Followed):
             gradient=np.empty(size),
             hessian=np.empty((size, size)),
             model=model,
-            local=model.local(),
+            arrays=model.arrays(),
             out=np.zeros(5),
         )
 
@@ -110,12 +116,13 @@ class Elements(Followed):
     @cached_property
     def preload(self) -> Preload:
         """Weight and pre-strain of the model."""
-        return preload_of(self.model)
+        return Preload.of(self.model)
 
     @cached_property
-    def loose(self) -> tuple[Bodies, Strips]:
-        """Bodies and strips that a share of the preload is written to."""
-        return apart(self.model)
+    def loose(self) -> Arrays:
+        """The same with bodies and strips that a share of the preload is written to."""
+        bodies, strips = apart(self.model)
+        return self.arrays._replace(bodies=bodies, strips=strips)
 
     @cached_property
     def unit(self) -> Array:
@@ -129,6 +136,31 @@ class Elements(Followed):
         unit[:poses] = np.repeat(1.0 / np.sqrt(1.0 + 2.0 * carried), 3)
         unit[poses : self.count].reshape(count, -1)[:, -2:] = 1.0 / strips.reach
         return unit
+
+    def run(self, load_factors: Array, start: Array) -> Answer:
+        """The states from ``start`` (Y,) at the first load factor on, until stability or a check ends it."""
+        origin, target = self.model.drives
+        return self._follow(Route(load_factors, origin, target, 1.0), start, self.arrays)
+
+    def grown(self) -> Array | None:
+        """The state (Y,) under all weight and pre-strain, grown from none; None where something happens."""
+        origin, target = self.model.drives
+        route = Route(np.array([0.0, 1.0]), origin, 0.0 * target, 0.0, swells=True)
+        answer = self._follow(route, at_rest(self.model), self.loose)
+        return answer.y[1] if len(answer.y) == 2 else None
+
+    def _follow(self, route: Route, start: Array, arrays: Arrays) -> Answer:
+        """A stretch of a path along which nothing happens, compiled."""
+        count = self.counters
+        answer = Answer.empty(len(route.factor), self.model.size, len(route.origin))
+        done = follow_all(ALONE, start, route, self.judged, self.preload, arrays, TOLERANCE, answer)
+        count.halved_increments += int(answer.counters[HALVED])
+        count.newton_iterations += int(answer.counters[ITERATIONS])
+        evaluations = int(answer.counters[EVALUATIONS])
+        count.residual_evaluations += evaluations + int(answer.counters[CONFIRMED])
+        count.tangent_evaluations += evaluations
+        count.factorisations += evaluations
+        return answer.rows(slice(done))
 
     @property
     def energy(self) -> float:
@@ -159,13 +191,12 @@ class Elements(Followed):
     def fill(self, z: Array, load_factor: float, share: float) -> Energies:
         """Gradient, tangent and energies at z."""
         model, size = self.model, self.model.size
-        bodies, strips = (model.bodies, model.strips) if share == 1.0 else self.loose
+        arrays = self.arrays if share == 1.0 else self.loose
         if share != 1.0:
-            act(share, self.preload, bodies, strips)
+            act(share, self.preload, arrays.bodies, arrays.strips)
         origin, target = model.drives
         given = self.y(z), z[size:], origin + load_factor * target, load_factor
-        parts = bodies, strips, model.shape, self.local
-        _gather(*given, *parts, self.out, self.gradient, self.hessian)
+        _gather(*given, arrays, self.out, self.gradient, self.hessian)
         return float(self.out[BENDING]), float(self.out[AXIAL])
 
     def external(self, z: Array) -> tuple[float, float]:
@@ -173,7 +204,7 @@ class Elements(Followed):
         bodies, preload = self.model.bodies, self.preload
         moved = z[: len(bodies.rest)] - bodies.rest
         loads, weight = (float(moved @ force[: len(moved)]) for force in (bodies.load, bodies.weight))
-        hung = preload.numbers[:, ON_POINTS:] * self.local.points
+        hung = preload.numbers[:, ON_POINTS:] * self.arrays.local.points
         return loads, weight + float(hung.sum() - preload.hung[0])
 
     @cached_property
@@ -196,8 +227,7 @@ class Elements(Followed):
         """The moment defect of a state."""
         share = self.acting(load_factor)[1]
         self.fill(z, load_factor, share)
-        strips = self.model.strips if share == 1.0 else self.loose[1]
-        return float(_defect_of(self.y(z), strips, self.model.shape, self.local))
+        return float(_defect_of(self.y(z), self.arrays if share == 1.0 else self.loose))
 
     def state(self, unknowns: Array) -> Array:
         """z of the scene's unknowns, whose clamps hold."""
@@ -226,7 +256,7 @@ class Elements(Followed):
             for name in ("z", "load_factor", "stiffness", "energies", "inertia")
         )
         size = self.model.size
-        answer = empty_answer(len(points), size, len(self.model.bodies.held))._replace(
+        answer = Answer.empty(len(points), size, len(self.model.bodies.held))._replace(
             y=self.y(z),
             reaction=z[:, size:],
             stiffness=stiffness,

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from spline_model.compile import System
 from spline_model.effects import BodyGravity, Clamp
 from spline_model.effects.base import Constraint
-from spline_model.reduced.assembly import Bodies
+from spline_model.reduced.arrays import Bodies
 from spline_model.strip.element import GROUNDED
 from spline_model.tables import steady_loads
 
@@ -99,8 +99,3 @@ def bodies_of(system: System, ends: Ends, outer: int) -> Bodies | None:
         held=np.array(held, dtype=np.int64),
         driven=turns.index(1) if 1 in turns else -1,
     )
-
-
-def frames_of(ends: list[End], length: float) -> Array:
-    """Point over the length and direction of each end, (S, 3)."""
-    return np.array([(e.point[0] / length, e.point[1] / length, e.direction) for e in ends])

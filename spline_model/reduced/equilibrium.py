@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from spline_model.checks import SLOWEST_SPEED
-from spline_model.reduced.assembly import (
+from spline_model.reduced.arrays import (
     CHANGE,
     FORCE,
     MOVE,
@@ -19,11 +19,8 @@ from spline_model.reduced.assembly import (
     SLOWEST,
     SPARE,
     Y,
-    assemble,
-    factorise,
-    move_strips,
-    solve_free,
 )
+from spline_model.reduced.assembly import assemble, factorise, move_strips, solve_free
 from spline_model.strip.compiled import called, copy, kernel
 from spline_model.strip.condense import SINGULAR
 
@@ -62,15 +59,15 @@ def carry(row, bodies, space):
 
 
 @called()
-def newton(y, load, early, bodies, strips, shape, local, space, tolerance, counters):
+def newton(y, load, early, arrays, tolerance, counters):
     """Solve in place at the held coordinates in y; the negative eigenvalues, or -1 where it fails, and the
     last residual, behind which there is one correction more: NEARLY none, or ``early`` one whose square is.
     """
-    before = np.inf
+    bodies, space, before = arrays.bodies, arrays.space, np.inf
     free, poses, change = bodies.free, bodies.rest.size, space.states[SPARE]
     raw, move = space.vectors[RAW], space.vectors[MOVE]
     for trial in range(MOST_ITERATIONS + 1):
-        norm = assemble(y, load, bodies, strips, shape, local, space)
+        norm = assemble(y, load, arrays)
         counters[EVALUATIONS] += 1
         for i in range(free.size):
             norm = max(norm, abs(raw[free[i]]))
@@ -88,7 +85,7 @@ def newton(y, load, early, bodies, strips, shape, local, space, tolerance, count
         _solve_bodies(bodies, space)
         for i in range(poses):
             y[i] += move[i]
-        move_strips(1.0, bodies, strips, shape, local, space, change)
+        move_strips(1.0, arrays, change)
         for i in range(poses, y.size):
             y[i] += change[i]
         if done:  # with a last correction, whose own residual is of second order
@@ -104,11 +101,12 @@ def entry(matrix, i, j):
 
 
 @called()
-def tangent(held_rate, load_rate, bodies, strips, shape, local, space):
+def tangent(held_rate, load_rate, arrays):
     """Rates in the factor at a state that was just solved, reactions and their rates, in ``space``.
 
     The residual that is left is carried to equilibrium by the tangent.
     """
+    bodies, space = arrays.bodies, arrays.space
     free, held, matrix, vectors = bodies.free, bodies.held, space.tangent, space.vectors
     x, move, rate = vectors[CHANGE], vectors[MOVE], space.states[RATE]
     carry(REACTION, bodies, space)
@@ -129,7 +127,7 @@ def tangent(held_rate, load_rate, bodies, strips, shape, local, space):
         vectors[REACTION_RATE, d] = total
     for i in range(bodies.rest.size):
         rate[i] = move[i]
-    move_strips(0.0, bodies, strips, shape, local, space, rate)
+    move_strips(0.0, arrays, rate)
 
 
 @called()
@@ -161,21 +159,22 @@ def conjugate(held_rate, load_rate, bodies, y, space):
 
 
 @kernel()
-def turn(rotation, speed, y, bodies, strips, shape, local, space, tolerance, counters):
+def turn(rotation, speed, y, arrays, tolerance, counters):
     """Turn the body to ``rotation`` [rad], its centre free, in place; False, and y as it was, if it fails.
 
     speed (1,): of the rotation along the way that the tangent predicts, 1.
     """
+    bodies, strips, shape, _, space = arrays
     own, modes, before = 2 * shape.order.size - 6, strips.compliance.shape[1], space.states[Y]
     copy(y, before)
     # with the rotation as it is
-    solved = newton(y, 0.0, False, bodies, strips, shape, local, space, tolerance, counters)[0] >= 0
+    solved = newton(y, 0.0, False, arrays, tolerance, counters)[0] >= 0
     if solved:
-        tangent(speed, 0.0, bodies, strips, shape, local, space)
+        tangent(speed, 0.0, arrays)
         for i in range(y.size):
             y[i] += (rotation - before[2]) * space.states[RATE, i]
         y[2] = rotation
-        solved = newton(y, 0.0, False, bodies, strips, shape, local, space, tolerance, counters)[0] >= 0
+        solved = newton(y, 0.0, False, arrays, tolerance, counters)[0] >= 0
         solved = solved and space.out[SLOWEST] > SLOWEST_SPEED
     for s in range(strips.roots.size):
         behind = bodies.rest.size + s * (own + modes) + own
@@ -186,6 +185,6 @@ def turn(rotation, speed, y, bodies, strips, shape, local, space, tolerance, cou
 
 
 @kernel()
-def bear(y, bodies, strips, shape, local, space):
+def bear(y, arrays):
     """What holds the bodies at y, and its tangent, in ``space``."""
-    assemble(y, 0.0, bodies, strips, shape, local, space)
+    assemble(y, 0.0, arrays)

@@ -10,12 +10,14 @@ from numpy.typing import NDArray
 
 from spline_model.basis import all_modes
 from spline_model.effects import MixedStretching
+from spline_model.reduced.arrays import Route
 from spline_model.reduced.equilibrium import ITERATIONS
 from spline_model.reduced.model import Reduced
 from spline_model.reduced.numbers import in_order
-from spline_model.reduced.path import Route, follow
+from spline_model.reduced.path import follow
 from spline_model.strip.compiled import called, copy, kernel
-from spline_model.strip.element import CURVATURE, MODES, ON_POINTS, POINTS, SPEED, place_points
+from spline_model.strip.element import CURVATURE, MODES, ON_POINTS, POINTS, SPEED
+from spline_model.strip.ends import place_points
 
 Array = NDArray[np.float64]
 
@@ -49,6 +51,18 @@ class Stations(NamedTuple):
     modes: Array
     work: Array
 
+    @classmethod
+    def of(cls, model: Reduced, stations: Array) -> Self:
+        """Tables at the stations u in [0, 1], with working arrays of their own."""
+        scene = model.system.scene
+        basis, mine = scene.strips[0].basis, scene.strips[0].name
+        parts = [all_modes(e.modes, stations) for e in scene.of(MixedStretching) if e.strip == mine]
+        modes = np.column_stack(parts) if parts else np.zeros((len(stations), 0))
+        tables = (in_order(basis.evaluate(stations, k)[..., None], model.shape)[..., 0] for k in (1, 2))
+        d1, d2 = (np.ascontiguousarray(table.T) for table in tables)
+        axial = np.ascontiguousarray((modes @ model.to_modes[0]).T)
+        return cls(d1=d1, d2=d2, modes=axial, work=np.zeros((5, len(stations))))
+
 
 class Share(NamedTuple):
     """What one thread does of many designs: every ``stride``-th from ``begin`` on, into ``rows`` (D,).
@@ -80,18 +94,6 @@ class Share(NamedTuple):
         designs = Designs(line, line, block, block, block, table, block, table)
         stations, growing = Stations(table, table, table, table), Route(line, line, line, 0.0)
         return cls(places, 0, 1, designs, line, stations, growing, 0, block, block, results)
-
-
-def stations_of(model: Reduced, stations: Array) -> Stations:
-    """Tables at the stations u in [0, 1], with working arrays of their own."""
-    scene = model.system.scene
-    basis, mine = scene.strips[0].basis, scene.strips[0].name
-    parts = [all_modes(e.modes, stations) for e in scene.of(MixedStretching) if e.strip == mine]
-    modes = np.column_stack(parts) if parts else np.zeros((len(stations), 0))
-    tables = (in_order(basis.evaluate(stations, k)[..., None], model.shape)[..., 0] for k in (1, 2))
-    d1, d2 = (np.ascontiguousarray(table.T) for table in tables)
-    axial = np.ascontiguousarray((modes @ model.to_modes[0]).T)
-    return Stations(d1=d1, d2=d2, modes=axial, work=np.zeros((5, len(stations))))
 
 
 @called()
@@ -164,11 +166,12 @@ def _largest_strain(y, poses, depth, along, strips, local, stations):
 
 
 @kernel()
-def follow_all(share, start, route, judged, preload, bodies, strips, shape, local, space, tolerance, answer):
+def follow_all(share, start, route, judged, preload, arrays, tolerance, answer):
     """Follow a path, as ``follow`` does; or those of all designs of a share, where it has any."""
     rows, designs, growing, depth, place = share.rows, share.designs, share.growing, share.depth, share.place
     if rows.size == 0:
-        return follow(start, route, judged, preload, bodies, strips, shape, local, space, tolerance, answer)
+        return follow(start, route, judged, preload, arrays, tolerance, answer)
+    bodies, strips, _, local, _ = arrays
     states, centre, torque, stiffness, energy, strain, inertia, defect, iterations = share.results
     for i in range(share.begin, rows.size, share.stride):
         row = rows[i]
@@ -177,16 +180,12 @@ def follow_all(share, start, route, judged, preload, bodies, strips, shape, loca
             answer.counters[k] = 0
         begin, stands = designs.start[i], True
         if growing.factor.size > 0:
-            done = follow(
-                begin, growing, judged, preload, bodies, strips, shape, local, space, tolerance, answer
-            )
+            done = follow(begin, growing, judged, preload, arrays, tolerance, answer)
             stands = done == growing.factor.size
             copy(answer.y[1], begin)
         done = 0
         if stands:
-            done = follow(
-                begin, route, judged, preload, bodies, strips, shape, local, space, tolerance, answer
-            )
+            done = follow(begin, route, judged, preload, arrays, tolerance, answer)
         states[row] = done
         iterations[row] = answer.counters[ITERATIONS]
         length, unit = designs.length[i], designs.energy[i]

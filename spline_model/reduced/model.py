@@ -9,14 +9,14 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import BSpline
 
-from spline_model.basis import SplineBasis
+from spline_model.basis import SlideModes, SplineBasis
 from spline_model.compile import System
 from spline_model.effects import Bending, Clamp, MixedStretching, RootCompliance, Shear, Stretching
 from spline_model.effects.base import Constraint
 from spline_model.effects.elastic import MEASURES
-from spline_model.reduced.assembly import Bodies
+from spline_model.reduced.arrays import Arrays, Bodies, Space
 from spline_model.reduced.ends import Ends, bodies_of, ends_of
-from spline_model.reduced.numbers import len_modes, numbers_of, orthonormal_modes, speeds
+from spline_model.reduced.numbers import numbers_of, orthonormal_modes, speeds
 from spline_model.scene import Scene
 from spline_model.strip.element import (
     CURL,
@@ -31,7 +31,6 @@ from spline_model.strip.element import (
     Local,
     Shape,
     Strips,
-    local_arrays,
 )
 
 Array = NDArray[np.float64]
@@ -117,10 +116,15 @@ class Reduced:
         strips = strips._replace(coupled=coupled, outer=int(slender), gain=np.full_like(strips.gain, GAIN))
         return replace(self, bodies=bodies, strips=strips)
 
+    def arrays(self) -> Arrays:
+        """What kernels know of it, with working arrays of their own."""
+        space = Space.of(self.bodies, self.size)
+        return Arrays(self.bodies, self.strips, self.shape, self.local(), space)
+
     def local(self) -> Local:
         """Working arrays of the strips."""
         s, g, k = self.strips.modes.shape
-        return local_arrays(s, len(self.shape.order), k, g, self.strips.coupled)
+        return Local.of(s, len(self.shape.order), k, g, self.strips.coupled)
 
 
 def reduced(system: System, *, longest: float = MOST_CONTROL_POINTS) -> Reduced | None:
@@ -202,7 +206,7 @@ def strips_of(
     modes, to_modes = orthonormal_modes(
         [tuple(e.modes for e in each) for each in parts], basis, points, speed
     )
-    split = len_modes(parts[0], slide=False)
+    split = sum(e.modes.count for e in parts[0] if not isinstance(e.modes, SlideModes))
     measure = MEASURES.index(bends[0].measure)
     c = np.array([[e.axial_compliance for e in each for _ in range(e.modes.count)] for each in parts])
     c *= energy / length
@@ -212,18 +216,9 @@ def strips_of(
         c[list(mixed).index(shear.strip), :split] -= shear.compliance * energy / length
     beside_w = bool(scene.of(Shear)) or outer
     small |= c < 0.0
-    along = np.empty((*speed.shape, MODES + c.shape[1]))
-    along[..., SPEED], along[..., MODES:] = speed, modes
-    along[..., CURVATURE] = rest + np.array([[e.natural_curvature * length] for e in bends])
-    u = shape.rule[WHERE]
-    along[..., RIGIDITY] = np.array([e.rigidity_at(basis, u) for e in bends]) / (energy * length)
-    along[..., DROP : CURL + 1] = 0.0
-    for row, curl in zip(along, (e.curl for e in bends), strict=True):
-        if curl is not None:
-            row[:, DROP], row[:, CURL] = curl.drop(basis, u), curl.flattening / length
     starts, tips = ([ends[name, end] for name in mixed] for end in ("start", "end"))
     strips = Strips(
-        along=along,
+        along=_along(system, bends, shape.rule[WHERE], speed, rest, modes),
         compliance=c,
         gain=np.where(small, GAIN, 1.0 / np.where(small, 1.0, c)),
         numbers=numbers_of(system, shape, parts, consistent, starts, tips),
@@ -235,6 +230,19 @@ def strips_of(
         measure=measure,
     )
     return strips, rest, to_modes
+
+
+def _along(system: System, bends: list[Bending], u: Array, speed: Array, rest: Array, modes: Array) -> Array:
+    """What changes along the strips (S, G, 5 + K), at Gauss points u (G,)."""
+    basis, (length, energy) = system.scene.strips[0].basis, (system.scales.length, system.scales.energy)
+    along = np.zeros((*speed.shape, MODES + modes.shape[-1]))
+    along[..., SPEED], along[..., MODES:] = speed, modes
+    along[..., CURVATURE] = rest + np.array([[e.natural_curvature * length] for e in bends])
+    along[..., RIGIDITY] = np.array([e.rigidity_at(basis, u) for e in bends]) / (energy * length)
+    for row, curl in zip(along, (e.curl for e in bends), strict=True):
+        if curl is not None:
+            row[:, DROP], row[:, CURL] = curl.drop(basis, u), curl.flattening / length
+    return along
 
 
 def at_rest(model: Reduced) -> Array:

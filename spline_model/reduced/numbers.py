@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from spline_model.basis import AxialModes, SlideModes, SplineBasis, all_modes
 from spline_model.compile import System
 from spline_model.effects import MixedStretching, RootCompliance, Shear, Stretching, StripGravity
-from spline_model.reduced.ends import End, frames_of
+from spline_model.reduced.ends import End
 from spline_model.strip.element import (
     FIRST,
     ON_POINTS,
@@ -73,10 +73,15 @@ def numbers_of(
         s = [strip.name for strip in scene.strips].index(shear.strip)
         whole = float(scene.strips[s].share_of_length().sum())
         numbers[s, SHEAR] = length**2 / (energy * shear.compliance * whole)
-    numbers[:, ROOT:TIP], numbers[:, TIP:REACH] = frames_of(starts, length), frames_of(tips, length)
+    numbers[:, ROOT:TIP], numbers[:, TIP:REACH] = _frames(starts, length), _frames(tips, length)
     if system.weight.size:
         numbers[:, ON_POINTS:], numbers[:, PER_U:ON_POINTS] = _dead(system, shape)
     return numbers
+
+
+def _frames(ends: list[End], length: float) -> Array:
+    """Point over the length and direction of each end, (S, 3)."""
+    return np.array([(e.point[0] / length, e.point[1] / length, e.direction) for e in ends])
 
 
 def _dead(system: System, shape: Shape) -> tuple[Array, Array]:
@@ -97,11 +102,6 @@ def _dead(system: System, shape: Shape) -> tuple[Array, Array]:
 
 ROUND_OFF = 1e-14
 """Difference of speeds along a strip, in its mean, that is none."""
-
-
-def len_modes(parts: list[MixedStretching], *, slide: bool) -> int:
-    """Number of axial forces of a strip that belong to the stretching, or to the sliding."""
-    return sum(e.modes.count for e in parts if isinstance(e.modes, SlideModes) == slide)
 
 
 def orthonormal_modes(

@@ -6,28 +6,32 @@ does, or the path stops, ``continuation`` finds out why.
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.checks import LARGEST_CORRECTION, SLOWEST_SPEED, SMALLEST_CORRECTION
 from spline_model.continuation.point import ROUND_OFF, WORK_MISMATCH
 from spline_model.continuation.resolution import LARGEST_DEFECT, SMALLEST_MOMENT
-from spline_model.reduced.assembly import (
+from spline_model.reduced.arrays import (
+    AT,
     AXIAL,
+    BEND,
     BENDING,
     DEAD,
+    DEFECT,
+    DONE,
+    ENERGY,
     FACTORS,
     KNOWN,
     PREDICTED,
     RATE,
     REACTION,
     REACTION_RATE,
+    SLOPE,
     SLOWEST,
     Y,
-    moment_defect,
 )
+from spline_model.reduced.assembly import moment_defect
 from spline_model.reduced.beside import solve
 from spline_model.reduced.equilibrium import HALVED, conjugate, stiffness_of
 from spline_model.reduced.preload import act, swell
@@ -36,55 +40,6 @@ from spline_model.strip.compiled import called, copy, part
 Array = NDArray[np.float64]
 
 SMALLEST_STEP = 2.0**-10
-
-
-class Route(NamedTuple):
-    """Where a path goes: factors (S,), the first one its start; held coordinates are origin + factor
-    x target (D,), the load factor is factor x growth, the share of weight and pre-strain the
-    factor itself where it ``swells``, and all of it otherwise. Critical points end it, or it ``passes`` them.
-    """
-
-    factor: Array
-    origin: Array
-    target: Array
-    growth: float
-    swells: bool = False
-    passes: bool = False
-
-
-class Answer(NamedTuple):
-    """S states: y (S, Y); reaction (S, D); stiffness (S,) of the driven rotation at fixed loads; energies
-    (S, 2) bending, axial; done (S,) the potential's derivative integrated over the factor; inertia, defect
-    (S,); counters (4,).
-    """
-
-    y: Array
-    reaction: Array
-    stiffness: Array
-    energies: Array
-    done: Array
-    inertia: NDArray[np.int64]
-    defect: Array
-    counters: NDArray[np.int64]
-
-    def rows(self, kept: slice) -> Answer:
-        """Some of the states."""
-        by_state = {name: getattr(self, name)[kept] for name in self._fields if name != "counters"}
-        return self._replace(**by_state)
-
-
-def empty_answer(states: int, size: int, held: int) -> Answer:
-    """Arrays for that many states."""
-    return Answer(
-        y=np.zeros((states, size)),
-        reaction=np.zeros((states, held)),
-        stiffness=np.full(states, np.nan),
-        energies=np.zeros((states, 2)),
-        done=np.zeros(states),
-        inertia=np.zeros(states, dtype=np.int64),
-        defect=np.zeros(states),
-        counters=np.zeros(4, dtype=np.int64),
-    )
 
 
 @called()
@@ -110,8 +65,9 @@ def _predict(t, known, at, states):
 
 
 @called()
-def _accepted(y, known, bodies, strips, shape, space):
+def _accepted(y, known, arrays):
     """Whether a solved state is the continuation of the last one, with end tangents forward and no fold."""
+    bodies, strips, shape, _, space = arrays
     if not space.out[SLOWEST] > SLOWEST_SPEED:
         return False
     own, modes = 2 * shape.order.size - 6, strips.compliance.shape[1]
@@ -162,10 +118,11 @@ def _remember(t, known, at, states):
 
 @called()
 def _keep_last(known, at, states):
-    """Forget all known states but the last."""
+    """Forget all known states but the last; returns their number."""
     at[0] = at[known - 1]
     copy(states[known - 1], states[0])
     copy(states[KNOWN + known - 1], states[KNOWN])
+    return 1
 
 
 @called()
@@ -179,94 +136,123 @@ def _is_alone(route, bodies):
     return alone
 
 
+@part()
+def _stiffness(alone, route, bodies, space):
+    """Of the driven rotation at fixed loads, at a state just solved; nan without one."""
+    if bodies.driven < 0:
+        return np.nan
+    if alone:
+        return space.vectors[REACTION_RATE, bodies.driven] / route.target[bodies.driven]
+    return stiffness_of(bodies, space)
+
+
+@part()
+def _solve_at(here, alone, route, preload, arrays, tolerance, counters):
+    """Solve at a factor, into Y, from PREDICTED; the negative eigenvalues, or -1 where it fails."""
+    y, predicted, held = arrays.space.states[Y], arrays.space.states[PREDICTED], arrays.bodies.held
+    copy(predicted, y)
+    for d in range(held.size):
+        y[held[d]] = predicted[held[d]] = route.origin[d] + here * route.target[d]
+    if route.swells:
+        act(here, preload, arrays.bodies, arrays.strips)
+    return solve(y, here * route.growth, alone, route.target, route.growth, arrays, tolerance, counters)
+
+
+@part()
+def _is_balanced(here, first, judged, route, preload, arrays):
+    """Whether the moments of a state just solved are in balance, and the potential has gained the work done
+    since the last state, where there is one. If so, this is the last state then."""
+    bodies, strips, shape, local, space = arrays
+    y, out, load = space.states[Y], space.out, here * route.growth
+    slope, bend = conjugate(route.target, route.growth, bodies, y, space)
+    out[DEFECT] = moment_defect(y, strips, shape, local, SMALLEST_MOMENT)
+    potential = out[BENDING] + out[AXIAL] + out[DEAD]
+    for i in range(bodies.rest.size):
+        potential -= load * bodies.load[i] * (y[i] - bodies.rest[i])
+    if route.swells:
+        slope, bend = swell(y, here, preload, arrays)
+        potential += here * preload.hung[1]
+    if judged and out[DEFECT] > LARGEST_DEFECT:
+        return False
+    if not first:
+        width, stored = here - out[AT], abs(out[BENDING]) + abs(out[AXIAL])
+        work = work_of(width, out[SLOPE], slope, out[BEND], bend)
+        if not is_work(potential - out[ENERGY], work, width, out[SLOPE], slope, stored):
+            return False
+        out[DONE] += work
+    out[AT], out[ENERGY], out[SLOPE], out[BEND] = here, potential, slope, bend
+    return True
+
+
+@part()
+def _reach(row, known, inertia, alone, route, judged, preload, arrays, tolerance, counters):
+    """Go on to a factor of the route in steps, of which one that fails is halved.
+
+    Returns the number of known states, and the negative eigenvalues of the last one or -1.
+    """
+    states, known_at, begin = arrays.space.states, arrays.space.out[FACTORS:], arrays.space.out[AT]
+    at, aim = begin, route.factor[row]
+    whole = step = aim - begin
+    if known > 1 and whole * (begin - known_at[known - 2]) < 0.0:  # the path turns back
+        known = _keep_last(known, known_at, states)
+    while True:
+        last = row == 0 or abs(aim - at) <= abs(step) * (1 + 1e-9)
+        here = aim if last else at + step
+        if known > 1 and abs(here - at) > 2 * abs(at - known_at[known - 2]):
+            known = _keep_last(known, known_at, states)
+        if row > 0:
+            _predict(here, known, known_at, states)
+        negative = _solve_at(here, alone, route, preload, arrays, tolerance, counters)
+        sound = negative >= 0 and (row == 0 or negative == inertia or route.passes)
+        sound = sound and _accepted(states[Y], max(known, 1), arrays)
+        if sound and _is_balanced(here, row == 0, judged, route, preload, arrays):
+            at, known = here, _remember(here, known, known_at, states)
+            if last:
+                return known, negative
+            if abs(step) < abs(whole) and round(abs(at - begin) / abs(step)) % 2 == 0:
+                step *= 2.0
+            continue
+        counters[HALVED] += 1
+        step *= 0.5
+        if row == 0 or abs(step) < SMALLEST_STEP * abs(whole):
+            return known, -1
+
+
+@part()
+def _store(row, negative, stiffness, space, answer):
+    """Write a state that was reached into the answer."""
+    out = space.out
+    copy(space.states[Y], answer.y[row])
+    for d in range(answer.reaction.shape[1]):
+        answer.reaction[row, d] = space.vectors[REACTION, d]
+    answer.energies[row, 0], answer.energies[row, 1] = out[BENDING], out[AXIAL]
+    answer.inertia[row], answer.stiffness[row] = negative, stiffness
+    answer.defect[row], answer.done[row] = out[DEFECT], out[DONE]
+
+
 @called()
-def follow(start, route, judged, preload, bodies, strips, shape, local, space, tolerance, answer):
+def follow(start, route, judged, preload, arrays, tolerance, answer):
     """Follow a path from ``start`` (Y,) through the route; returns the number of states that converged.
 
     judged: whether the moment defect refuses; preload: what bodies and strips are overwritten with where
     the route swells. A state with another number of negative eigenvalues, or with a stiffness of another
     sign than the one before, ends the path, unless it passes such points: what happens there is not for here.
     """
-    states, out, counters, factors = space.states, space.out, answer.counters, route.factor
-    y, predicted, known_at = states[Y], states[PREDICTED], out[FACTORS:]
-    held, targets, growth = bodies.held, route.target, route.growth
-    copy(start, y)
-    copy(start, predicted)
-    copy(start, states[0])
-    known, at = 0, factors[0]
-    energy = gradient = curvature = done = defect = stiffness = 0.0
-    inertia, alone = -1, _is_alone(route, bodies)
+    bodies, space, factors = arrays.bodies, arrays.space, route.factor
+    copy(start, space.states[PREDICTED])
+    copy(start, space.states[0])
+    space.out[AT], space.out[DONE] = factors[0], 0.0
+    known, inertia, stiffness, alone = 0, -1, 0.0, _is_alone(route, bodies)
     for row in range(factors.size):
-        begin, step = at, factors[row] - at
-        if known > 1 and step * (at - known_at[known - 2]) < 0.0:  # the path turns back
-            _keep_last(known, known_at, states)
-            known = 1
-        whole = step
-        while True:
-            last, here = True, factors[row]
-            if row > 0:
-                last = abs(here - at) <= abs(step) * (1 + 1e-9)
-                if not last:
-                    here = at + step
-                if known > 1 and abs(here - at) > 2 * abs(at - known_at[known - 2]):
-                    _keep_last(known, known_at, states)
-                    known = 1
-                _predict(here, known, known_at, states)
-                copy(predicted, y)
-            for d in range(held.size):
-                y[held[d]] = predicted[held[d]] = route.origin[d] + here * targets[d]
-            load = here * growth
-            if route.swells:
-                act(here, preload, bodies, strips)
-            negative = solve(
-                y, load, alone, targets, growth, bodies, strips, shape, local, space, tolerance, counters
-            )
-            inertia = negative if row == 0 else inertia
-            sound = inertia >= 0 and (negative == inertia or (route.passes and negative >= 0))
-            sound = sound and _accepted(y, max(known, 1), bodies, strips, shape, space)
-            if sound:
-                slope, bend = conjugate(targets, growth, bodies, y, space)
-                defect = moment_defect(y, strips, shape, local, SMALLEST_MOMENT)
-                total = out[BENDING] + out[AXIAL] + out[DEAD]
-                for i in range(bodies.rest.size):
-                    total -= load * bodies.load[i] * (y[i] - bodies.rest[i])
-                if route.swells:
-                    slope, bend = swell(y, here, preload, bodies, strips, shape, local, space)
-                    total += here * preload.hung[1]
-                sound = not (judged and defect > LARGEST_DEFECT)
-                if sound and row > 0:
-                    stored = abs(out[BENDING]) + abs(out[AXIAL])
-                    work = work_of(here - at, gradient, slope, curvature, bend)
-                    sound = is_work(total - energy, work, here - at, gradient, slope, stored)
-                    done += work if sound else 0.0
-                if sound:
-                    energy, gradient, curvature = total, slope, bend
-            if not sound:
-                counters[HALVED] += 1
-                step *= 0.5
-                if row == 0 or abs(step) < SMALLEST_STEP * abs(whole):
-                    return row
-                continue
-            at = here
-            known = _remember(at, known, known_at, states)
-            if last:
-                break
-            steps = abs(at - begin) / abs(step)
-            if abs(step) < abs(whole) and round(steps) % 2 == 0:
-                step *= 2.0
-        if bodies.driven >= 0:
-            before = stiffness
-            stiffness = (
-                space.vectors[REACTION_RATE, bodies.driven] / targets[bodies.driven]
-                if alone
-                else stiffness_of(bodies, space)
-            )
-            if row > 0 and before * stiffness < 0.0 and not route.passes:
-                return row
-            answer.stiffness[row] = stiffness
-        copy(y, answer.y[row])
-        for d in range(held.size):
-            answer.reaction[row, d] = space.vectors[REACTION, d]
-        answer.energies[row, 0], answer.energies[row, 1] = out[BENDING], out[AXIAL]
-        answer.inertia[row], answer.defect[row], answer.done[row] = negative, defect, done
+        known, negative = _reach(
+            row, known, inertia, alone, route, judged, preload, arrays, tolerance, answer.counters
+        )
+        if negative < 0:
+            return row
+        before, stiffness = stiffness, _stiffness(alone, route, bodies, space)
+        if row == 0:
+            inertia = negative
+        elif before * stiffness < 0.0 and not route.passes:
+            return row
+        _store(row, negative, stiffness, space, answer)
     return factors.size

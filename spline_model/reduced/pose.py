@@ -9,13 +9,14 @@ A strip that is in equilibrium but unstable (it would buckle out of it) is let g
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import NamedTuple, Self
 
 import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.checks import SLOWEST_SPEED
-from spline_model.reduced.assembly import AXIAL, BENDING, SLOWEST, condensed, element_of, recovered
+from spline_model.reduced.arrays import AXIAL, BENDING, SLOWEST
+from spline_model.reduced.assembly import condensed, element_of, recovered
 from spline_model.reduced.equilibrium import EVALUATIONS, HALVED, ITERATIONS
 from spline_model.strip.compiled import called, copy, kernel
 from spline_model.strip.condense import SINGULAR
@@ -57,11 +58,11 @@ class Room(NamedTuple):
     place: Array
     out: Array
 
-
-def room_of(size: int, strip: int) -> Room:
-    """Working arrays for states of ``size`` unknowns, ``strip`` of them a strip's."""
-    sizes = (strip, strip, strip, strip, 7, size, size, 6, 5)
-    return Room(*(np.zeros(each) for each in sizes))
+    @classmethod
+    def of(cls, size: int, strip: int) -> Self:
+        """Working arrays for states of ``size`` unknowns, ``strip`` of them a strip's."""
+        sizes = (strip, strip, strip, strip, 7, size, size, 6, 5)
+        return cls(*(np.zeros(each) for each in sizes))
 
 
 @called()

@@ -2,19 +2,13 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import NamedTuple, Self
 
 import numpy as np
 from numpy.typing import NDArray
 
-from spline_model.reduced.assembly import (
-    AXIAL,
-    BENDING,
-    FORCE,
-    RATE,
-    Bodies,
-    place_of,
-)
+from spline_model.reduced.arrays import AXIAL, BENDING, FORCE, RATE, Bodies
+from spline_model.reduced.assembly import place_of
 from spline_model.reduced.beside import respond, to_coordinates
 from spline_model.reduced.model import Reduced
 from spline_model.reduced.numbers import in_order
@@ -43,24 +37,24 @@ class Preload(NamedTuple):
     push: Array
     out: Array
 
-
-def preload_of(model: Reduced) -> Preload:
-    """What the mechanism is preloaded by."""
-    strips, bodies, system = model.strips, model.bodies, model.system
-    hung, (count, modes) = 0.0, strips.compliance.shape
-    if system.weight.size:
-        given = [in_order(s.control_points, model.shape).ravel() for s in system.scene.strips]
-        points = np.array(given)
-        hung = float((strips.dead * points).sum() / model.length)
-    return Preload(
-        curvature=np.array((model.rest, strips.curvature)),
-        numbers=strips.numbers,
-        bodies=bodies.weight,
-        hung=np.array([hung, hung + float(bodies.weight[: len(bodies.rest)] @ bodies.rest)]),
-        change=np.zeros((count, 2 * len(model.shape.order) + modes)),
-        push=np.zeros(model.size),
-        out=np.zeros(5),
-    )
+    @classmethod
+    def of(cls, model: Reduced) -> Self:
+        """What a mechanism is preloaded by."""
+        strips, bodies, system = model.strips, model.bodies, model.system
+        hung, (count, modes) = 0.0, strips.compliance.shape
+        if system.weight.size:
+            given = [in_order(s.control_points, model.shape).ravel() for s in system.scene.strips]
+            points = np.array(given)
+            hung = float((strips.dead * points).sum() / model.length)
+        return cls(
+            curvature=np.array((model.rest, strips.curvature)),
+            numbers=strips.numbers,
+            bodies=bodies.weight,
+            hung=np.array([hung, hung + float(bodies.weight[: len(bodies.rest)] @ bodies.rest)]),
+            change=np.zeros((count, 2 * len(model.shape.order) + modes)),
+            push=np.zeros(model.size),
+            out=np.zeros(5),
+        )
 
 
 def apart(model: Reduced) -> tuple[Bodies, Strips]:
@@ -84,12 +78,13 @@ def act(share, preload, bodies, strips):
 
 
 @called()
-def swell(y, share, preload, bodies, strips, shape, local, space):
+def swell(y, share, preload, arrays):
     """Rate of a state, just solved, in the share, in ``space``; first and second derivative of its potential.
 
     Energies are squares of the share, so that differences over a whole share are exact. The state is
     condensed as ``assemble`` left it, its gradients are overwritten.
     """
+    bodies, strips, shape, local, space = arrays
     n, modes, poses = shape.order.size, strips.compliance.shape[1], bodies.rest.size
     own, last = 2 * n - 6, 2 * n - 6 + strips.coupled - strips.outer
     push, out, vectors, rate = preload.push, preload.out, space.vectors, space.states[RATE]
@@ -128,7 +123,7 @@ def swell(y, share, preload, bodies, strips, shape, local, space):
             push[at + own + k] = gap[k] = given[2 * n + k]
             if strips.measure == MATERIAL:
                 slope += y[at + own + k] * gap[k]
-    respond(bodies, strips, shape, local, space, rate)
+    respond(arrays, rate)
     for i in range(y.size):
         bend += push[i] * rate[i]
     return slope, bend

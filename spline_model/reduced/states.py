@@ -10,11 +10,12 @@ from numpy.typing import NDArray
 
 from spline_model.effects import Clamp, MixedStretching
 from spline_model.effects.base import Constraint
+from spline_model.reduced.arrays import Answer
 from spline_model.reduced.model import Reduced
-from spline_model.reduced.path import Answer
 from spline_model.solution import Later
 from spline_model.strip.compiled import kernel
-from spline_model.strip.element import GRADIENT, POINTS, SHEAR, place_points
+from spline_model.strip.element import GRADIENT, POINTS, SHEAR
+from spline_model.strip.ends import place_points
 from spline_model.strip.points import evaluate_residual
 
 Array = NDArray[np.float64]

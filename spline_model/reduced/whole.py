@@ -5,10 +5,12 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from spline_model.reduced.assembly import AXIAL, place_of
+from spline_model.reduced.arrays import AXIAL
+from spline_model.reduced.assembly import place_of
 from spline_model.reduced.model import Reduced
 from spline_model.strip.compiled import called, kernel
-from spline_model.strip.element import LAST, place_points, to_element
+from spline_model.strip.element import LAST
+from spline_model.strip.ends import place_points, to_element
 from spline_model.strip.laws import MATERIAL
 from spline_model.strip.points import evaluate_points
 

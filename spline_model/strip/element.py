@@ -16,13 +16,12 @@ constant.
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import NamedTuple, Self
 
 import numpy as np
 from numpy.typing import NDArray
 
-from spline_model.strip.compiled import aligned, part
-from spline_model.strip.ends import add_roots, add_shear, end_frame, to_ends
+from spline_model.strip.compiled import aligned
 
 Array = NDArray[np.float64]
 GROUNDED = -1
@@ -181,115 +180,25 @@ class Local(NamedTuple):
     map: Array
     scratch: Array
 
+    @classmethod
+    def of(cls, strips: int, control_points: int, modes: int, gauss_points: int, coupled: int) -> Self:
+        """Fresh ones for that many strips."""
+        s, n, k = strips, control_points, modes
+        size = 2 * n - 6 + coupled + 7
+        shapes = (
+            (s, 2 * n + k + 3, 2 * n),
+            (s, size + 2 * k + 1, size),
+            (s, k + 1, k),
+            (s, LANES, gauss_points),
+            (4, -(-n * (n + 1) // 16) * 8),
+            (s, 16),
+            (17, 8),
+        )
+        local = cls(*aligned(*shapes))
+        local.lanes[:, GIVEN + 3 : FORCE_AT] = 1.0  # of ``curl_law``, where nothing curls
+        return local
+
     @property
     def points(self) -> Array:
         """Control points (S, 2 n)."""
         return self.nodal[:, POINTS]
-
-
-def local_arrays(strips: int, control_points: int, modes: int, gauss_points: int, coupled: int) -> Local:
-    """Arrays of that many strips."""
-    s, n, k = strips, control_points, modes
-    size = 2 * n - 6 + coupled + 7
-    shapes = (
-        (s, 2 * n + k + 3, 2 * n),
-        (s, size + 2 * k + 1, size),
-        (s, k + 1, k),
-        (s, LANES, gauss_points),
-        (4, -(-n * (n + 1) // 16) * 8),
-        (s, 16),
-        (17, 8),
-    )
-    local = Local(*aligned(*shapes))
-    local.lanes[:, GIVEN + 3 : FORCE_AT] = 1.0  # of ``curl_law``, where nothing curls
-    return local
-
-
-@part()
-def place_points(s, w, pose, strips, local):
-    """Control points of strip s from its own coordinates w (W,) and the bodies' poses (3 B,), and its map."""
-    points, ends, frame, numbers = local.nodal[s, POINTS], local.map[s], local.scratch[16], strips.numbers[s]
-    own = w.size
-    inner = own - 2
-    for i in range(inner):
-        points[i] = w[i]
-    yields = numbers[SPRING] > 0.0
-    end_frame(strips.roots[s], numbers, ROOT, w[0] if yields else 0.0, pose, frame)
-    kx, ky = numbers[REACH] * frame[2], numbers[REACH] * frame[3]
-    points[inner], points[inner + 1] = frame[0] + w[own - 2] * kx, frame[1] + w[own - 2] * ky
-    points[inner + 6], points[inner + 7] = frame[0], frame[1]
-    ends[0], ends[1] = kx, ky
-    ends[8], ends[9] = frame[5] - points[inner + 1], points[inner] - frame[4]
-    ends[10], ends[11] = frame[5] - frame[1], frame[0] - frame[4]
-    end_frame(strips.tips[s], numbers, TIP, w[1] if yields else 0.0, pose, frame)
-    kx, ky = -numbers[REACH + 1] * frame[2], -numbers[REACH + 1] * frame[3]
-    points[inner + 2], points[inner + 3] = frame[0] + w[own - 1] * kx, frame[1] + w[own - 1] * ky
-    points[inner + 4], points[inner + 5] = frame[0], frame[1]
-    ends[2], ends[3] = kx, ky
-    ends[4], ends[5] = frame[5] - points[inner + 3], points[inner + 2] - frame[4]
-    ends[6], ends[7] = frame[5] - frame[1], frame[0] - frame[4]
-    if numbers[SHEAR] > 0.0:
-        for i in range(inner + 2, inner + 6):
-            points[i] += w[2 * yields + i % 2]
-
-
-@part()
-def to_element(s, moving, inner, strips, local):
-    """Gradient, upper Hessian and coupling of strip s in its element coordinates, into ``local.reduced``.
-
-    inner: coupled axial forces beside w. Returns the number of coordinates but outer axial forces.
-    """
-    tip, root, ends = strips.tips[s] >= 0, strips.roots[s] >= 0, local.map[s]
-    hessian, h, lines = local.nodal[s], local.reduced[s], local.scratch
-    gradient, g, width, first = hessian[GRADIENT], h[LAST], h.shape[1], hessian.shape[1]
-    at = gradient.size - 8
-    behind = at + 2 + inner
-    for i in range(at):
-        g[i] = gradient[i]
-        row, target = hessian[i], h[i]
-        for j in range(i, at):
-            target[j] = row[j]
-        to_ends(row, at, ends, tip, root, target, at, behind)
-    to_ends(gradient, at, ends, tip, root, g, at, behind)
-    for k in range(strips.compliance.shape[1]):
-        row, target = hessian[first + k], h[width + k]
-        for i in range(at):
-            target[i] = row[i]
-        to_ends(row, at, ends, tip, root, target, at, behind)
-    # the ends among themselves: J^T (H J), J column by column
-    special = 2 * moving - at
-    for i in range(special):
-        for j in range(i):
-            hessian[at + i, at + j] = hessian[at + j, at + i]
-    columns = 2 + 3 * tip + 3 * root
-    for i in range(special):
-        to_ends(hessian[at + i], at, ends, tip, root, lines[16], 0, 2)
-        for c in range(columns):
-            lines[c, i] = lines[16, c]
-    for c in range(columns):
-        to_ends(lines[c], 0, ends, tip, root, lines[8 + c], 0, 2)
-    for c in range(columns):
-        row = at + c if c < 2 else behind + c - 2
-        for d in range(c, columns):
-            h[row, at + d if d < 2 else behind + d - 2] = lines[8 + c, d]
-    if tip:
-        turn = behind + 2
-        x, y, bx, by = gradient[at + 4], gradient[at + 5], gradient[at + 2], gradient[at + 3]
-        h[at + 1, turn] += ends[2] * by - ends[3] * bx
-        h[turn, turn] += ends[6] * y - ends[7] * x + ends[4] * by - ends[5] * bx
-    if root:
-        turn = behind + 2 + 3 * tip
-        x, y, bx, by = gradient[at + 6], gradient[at + 7], gradient[at], gradient[at + 1]
-        h[at, turn] += ends[0] * by - ends[1] * bx
-        h[turn, turn] += ends[10] * y - ends[11] * x + ends[8] * by - ends[9] * bx
-    points, count, yields = hessian[POINTS], strips.compliance.shape[1], strips.numbers[s, SPRING] > 0.0
-    if yields:
-        add_roots(
-            at, special, behind, tip, root, ends, points, gradient, hessian, lines[16], h, g, width, count
-        )
-    if strips.numbers[s, SHEAR] > 0.0:
-        add_shear(
-            at, special, behind, tip, root, ends, points, gradient, hessian, lines[16], h, g, width, count,
-            2 * yields,
-        )  # fmt: skip
-    return behind + columns - 2

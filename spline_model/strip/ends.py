@@ -1,4 +1,4 @@
-"""The ends of a strip: their frames, what moves with them, and roots that turn in what they are cut from.
+"""Between control points of a strip and coordinates of its element: its ends and what goes with them.
 
 Where roots turn (``effects.RootCompliance``) the strips have a point more, the first in the order of
 elimination, that is on no curve: its coordinates are the turns of the root's and the tip's frame against
@@ -11,7 +11,8 @@ from __future__ import annotations
 
 import math
 
-from spline_model.strip.compiled import called
+from spline_model.strip.compiled import called, part
+from spline_model.strip.element import GRADIENT, LAST, POINTS, REACH, ROOT, SHEAR, SPRING, TIP
 
 
 @called()
@@ -63,14 +64,11 @@ def by_roots(v, at, points, out):
 
 
 @called()
-def add_roots(at, special, behind, tip, root, ends, points, gradient, hessian, line, h, g, couplings, count):
-    """Add the turns of both roots to a strip's element coordinates, which hold their springs already.
-
-    at: place of P_1; special: columns of the ends in ``hessian``, whose block is symmetric; behind: place of
-    the poses; couplings: first of the ``count`` rows of the axial forces in h.
-    """
-    by_roots(gradient, at, points, g)
-    axial = hessian.shape[1]
+def _add_roots(s, at, special, behind, tip, root, strips, local):
+    """Add the turns of both roots to the element coordinates of strip s, which hold their springs already."""
+    hessian, h, ends, line = local.nodal[s], local.reduced[s], local.map[s], local.scratch[16]
+    points, gradient, axial, couplings = hessian[POINTS], hessian[GRADIENT], hessian.shape[1], h.shape[1]
+    by_roots(gradient, at, points, h[LAST])
     for e in range(2):
         inner, outer = at + 2 * e, at + 6 - 2 * e
         x, y = points[inner] - points[outer], points[inner + 1] - points[outer + 1]
@@ -91,7 +89,7 @@ def add_roots(at, special, behind, tip, root, ends, points, gradient, hessian, l
             h[0, behind + 2 + 3 * tip] -= pull
         if e == 1 and tip:
             h[1, behind + 2] -= pull
-        for k in range(count):
+        for k in range(strips.compliance.shape[1]):
             row = hessian[axial + k]
             h[couplings + k, e] += x * row[inner + 1] - y * row[inner]
 
@@ -104,13 +102,16 @@ def by_tip(v, at, place, out):
 
 
 @called()
-def add_shear(
-    at, special, behind, tip, root, ends, points, gradient, hessian, line, h, g, couplings, count, place
-):
-    """Add the offset of the tip to a strip's element coordinates, as ``add_roots`` does the turns; they stand
-    at ``place``, behind these turns."""
-    axial = hessian.shape[1]
-    by_tip(gradient, at, place, g)
+def _add_shear(s, at, special, behind, tip, root, strips, local):
+    """Add the offset of the tip, as ``_add_roots`` does the turns of roots, behind which it stands."""
+    hessian, h, ends, line = local.nodal[s], local.reduced[s], local.map[s], local.scratch[16]
+    points, axial, couplings, place = (
+        hessian[POINTS],
+        hessian.shape[1],
+        h.shape[1],
+        2 * (strips.numbers[s, SPRING] > 0.0),
+    )
+    by_tip(hessian[GRADIENT], at, place, h[LAST])
     for c in range(2):
         row, inner, outer = place + c, at + 2 + c, at + 4 + c
         for j in range(place + 2, at):
@@ -124,5 +125,109 @@ def add_shear(
             mine, there = at + 2 * e, at + 6 - 2 * e
             x, y = points[mine] - points[there], points[mine + 1] - points[there + 1]
             h[e, row] += x * line[2 * e + 1] - y * line[2 * e]
-        for k in range(count):
+        for k in range(strips.compliance.shape[1]):
             h[couplings + k, row] += hessian[axial + k, inner] + hessian[axial + k, outer]
+
+
+@part()
+def place_points(s, w, pose, strips, local):
+    """Control points of strip s from its own coordinates w (W,) and the bodies' poses (3 B,), and its map."""
+    points, ends, frame, numbers = local.nodal[s, POINTS], local.map[s], local.scratch[16], strips.numbers[s]
+    own = w.size
+    inner = own - 2
+    for i in range(inner):
+        points[i] = w[i]
+    yields = numbers[SPRING] > 0.0
+    end_frame(strips.roots[s], numbers, ROOT, w[0] if yields else 0.0, pose, frame)
+    kx, ky = numbers[REACH] * frame[2], numbers[REACH] * frame[3]
+    points[inner], points[inner + 1] = frame[0] + w[own - 2] * kx, frame[1] + w[own - 2] * ky
+    points[inner + 6], points[inner + 7] = frame[0], frame[1]
+    ends[0], ends[1] = kx, ky
+    ends[8], ends[9] = frame[5] - points[inner + 1], points[inner] - frame[4]
+    ends[10], ends[11] = frame[5] - frame[1], frame[0] - frame[4]
+    end_frame(strips.tips[s], numbers, TIP, w[1] if yields else 0.0, pose, frame)
+    kx, ky = -numbers[REACH + 1] * frame[2], -numbers[REACH + 1] * frame[3]
+    points[inner + 2], points[inner + 3] = frame[0] + w[own - 1] * kx, frame[1] + w[own - 1] * ky
+    points[inner + 4], points[inner + 5] = frame[0], frame[1]
+    ends[2], ends[3] = kx, ky
+    ends[4], ends[5] = frame[5] - points[inner + 3], points[inner + 2] - frame[4]
+    ends[6], ends[7] = frame[5] - frame[1], frame[0] - frame[4]
+    if numbers[SHEAR] > 0.0:
+        for i in range(inner + 2, inner + 6):
+            points[i] += w[2 * yields + i % 2]
+
+
+@part()
+def _own_rows(s, at, behind, tip, root, strips, local):
+    """Rows of the points that are own coordinates, the gradient, and the coupling of the axial forces.
+
+    at: place of P_1; behind: that of the poses.
+    """
+    hessian, h, ends = local.nodal[s], local.reduced[s], local.map[s]
+    gradient, g, width, first = hessian[GRADIENT], h[LAST], h.shape[1], hessian.shape[1]
+    for i in range(at):
+        g[i] = gradient[i]
+        row, target = hessian[i], h[i]
+        for j in range(i, at):
+            target[j] = row[j]
+        to_ends(row, at, ends, tip, root, target, at, behind)
+    to_ends(gradient, at, ends, tip, root, g, at, behind)
+    for k in range(strips.compliance.shape[1]):
+        row, target = hessian[first + k], h[width + k]
+        for i in range(at):
+            target[i] = row[i]
+        to_ends(row, at, ends, tip, root, target, at, behind)
+
+
+@part()
+def _end_rows(s, at, behind, special, tip, root, local):
+    """The ends among themselves: J^T (H J), J column by column; special: columns of the ends in H."""
+    hessian, h, ends, lines = local.nodal[s], local.reduced[s], local.map[s], local.scratch
+    for i in range(special):
+        for j in range(i):
+            hessian[at + i, at + j] = hessian[at + j, at + i]
+    columns = 2 + 3 * tip + 3 * root
+    for i in range(special):
+        to_ends(hessian[at + i], at, ends, tip, root, lines[16], 0, 2)
+        for c in range(columns):
+            lines[c, i] = lines[16, c]
+    for c in range(columns):
+        to_ends(lines[c], 0, ends, tip, root, lines[8 + c], 0, 2)
+    for c in range(columns):
+        row = at + c if c < 2 else behind + c - 2
+        for d in range(c, columns):
+            h[row, at + d if d < 2 else behind + d - 2] = lines[8 + c, d]
+
+
+@part()
+def _add_turns(s, at, behind, tip, root, local):
+    """Add what the gradient does as the directions turn in which the ends' points move."""
+    h, ends, gradient = local.reduced[s], local.map[s], local.nodal[s, GRADIENT]
+    if tip:
+        turn = behind + 2
+        x, y, bx, by = gradient[at + 4], gradient[at + 5], gradient[at + 2], gradient[at + 3]
+        h[at + 1, turn] += ends[2] * by - ends[3] * bx
+        h[turn, turn] += ends[6] * y - ends[7] * x + ends[4] * by - ends[5] * bx
+    if root:
+        turn = behind + 2 + 3 * tip
+        x, y, bx, by = gradient[at + 6], gradient[at + 7], gradient[at], gradient[at + 1]
+        h[at, turn] += ends[0] * by - ends[1] * bx
+        h[turn, turn] += ends[10] * y - ends[11] * x + ends[8] * by - ends[9] * bx
+
+
+@part()
+def to_element(s, moving, inner, strips, local):
+    """Gradient, upper Hessian and coupling of strip s in its element coordinates, into ``local.reduced``.
+
+    inner: coupled axial forces beside w. Returns the number of coordinates but outer axial forces.
+    """
+    tip, root, at = strips.tips[s] >= 0, strips.roots[s] >= 0, local.nodal.shape[2] - 8
+    behind, special = at + 2 + inner, 2 * moving - at
+    _own_rows(s, at, behind, tip, root, strips, local)
+    _end_rows(s, at, behind, special, tip, root, local)
+    _add_turns(s, at, behind, tip, root, local)
+    if strips.numbers[s, SPRING] > 0.0:
+        _add_roots(s, at, special, behind, tip, root, strips, local)
+    if strips.numbers[s, SHEAR] > 0.0:
+        _add_shear(s, at, special, behind, tip, root, strips, local)
+    return behind + 3 * tip + 3 * root

@@ -128,6 +128,47 @@ def mixed_law(v, speed, strain0, force, loss, measure):
 
 
 @part()
+def axial_laws(v, speed, strain, count, stretching, force, sliding, soft, slide_soft, measure):
+    """Stretching, mixed or by quadrature: stored energy, derivatives in v, v v and N, and that one's in v.
+
+    force, sliding: both parts of N, of the compliances soft and slide_soft.
+    """
+    stored = by_v = by_vv = by_n = by_nv = 0.0
+    if count > 0:
+        loss = soft * force * force + slide_soft * sliding * sliding
+        density, by_v, by_vv, by_n, by_nv = mixed_law(v, speed, strain, force + sliding, loss, measure)
+        stored = density if measure != MATERIAL else 0.0
+    if stretching > 0.0:
+        density, more, much = stretching_law(v, speed, strain, stretching, measure)
+        stored, by_v, by_vv = stored + density, by_v + more, by_vv + much
+    return stored, by_v, by_vv, by_n, by_nv
+
+
+@part()
+def by_curve(weight, a1, b1, r, ex, ey, phi, p0, p1, p2, p3, m, m_phi, m_v, side, f_v):
+    """Hessian of E(phi, v) in (x', y', x'', y''): entries 00, 01, 11, 02, 03, 12, 13, 22, 23 and 33.
+
+    p: gradient of phi; m, m_phi, m_v, f_v: derivatives of E in phi, phi phi, phi v, v v; side: in v, over v.
+    """
+    two = 2.0 * r
+    q0, q1 = m_phi * p0 + m_v * ex, m_phi * p1 + m_v * ey
+    u0, u1 = m_v * p0 + f_v * ex, m_v * p1 + f_v * ey
+    bend = weight * m_phi
+    return (
+        weight * (q0 * p0 + u0 * ex - m * two * (2.0 * a1 * p0 + phi) + side * ey * ey),
+        weight * (q0 * p1 + u0 * ey - m * two * (a1 * p1 + b1 * p0) - side * ex * ey),
+        weight * (q1 * p1 + u1 * ey - m * two * (2.0 * b1 * p1 + phi) + side * ex * ex),
+        weight * (q0 * p2 - m * two * a1 * p2),
+        weight * (q0 * p3 + m * (1.0 - 2.0 * a1 * p3) * r),
+        weight * (q1 * p2 + m * (-1.0 - 2.0 * b1 * p2) * r),
+        weight * (q1 * p3 - m * two * b1 * p3),
+        bend * p2 * p2,
+        bend * p2 * p3,
+        bend * p3 * p3,
+    )
+
+
+@part()
 def springs_of(numbers):
     """Number of a strip's coordinates on no curve, which springs hold: turns of roots, offset of shear."""
     return 2 * (numbers[SPRING] > 0.0) + 2 * (numbers[SHEAR] > 0.0)

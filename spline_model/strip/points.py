@@ -35,12 +35,12 @@ from spline_model.strip.element import (
 )
 from spline_model.strip.laws import (
     MATERIAL,
+    axial_laws,
     bending_law,
+    by_curve,
     curl_law,
-    mixed_law,
     spring_of,
     springs_of,
-    stretching_law,
 )
 
 
@@ -108,20 +108,10 @@ def laws_at(
         )
         m, m_phi = m * by_m[p], m_phi * by_t[p]
         bending += weight * density * by_e[p]
-        stored = by_n = by_nv = 0.0
-        if count > 0:
-            loss = soft * stretch[p] * stretch[p] + slide_soft * slide[p] * slide[p]
-            density, by_v, by_vv, by_n, by_nv = mixed_law(
-                v, speed[p], strain, stretch[p] + slide[p], loss, measure
-            )
-            f += by_v
-            f_v += by_vv
-            stored = density if measure != MATERIAL else 0.0
-        if stretching > 0.0:
-            density, by_v, by_vv = stretching_law(v, speed[p], strain, stretching, measure)
-            stored += density
-            f += by_v
-            f_v += by_vv
+        stored, by_v, by_vv, by_n, by_nv = axial_laws(
+            v, speed[p], strain, count, stretching, stretch[p], slide[p], soft, slide_soft, measure
+        )
+        f, f_v = f + by_v, f_v + by_vv
         axial += weight * stored
         lengths[p], moments[p], pulls[p], mixed[p] = v, m, weight * by_n, by_nv
         tx[p], ty[p] = weight * ex, weight * ey
@@ -130,19 +120,9 @@ def laws_at(
         p2, p3 = -b1 * r, a1 * r
         g0[p], g1[p] = weight * (m * p0 + f * ex), weight * (m * p1 + f * ey)
         g2[p], g3[p] = weight * m * p2, weight * m * p3
-        # Hessian of E(phi, v): the second derivatives of phi and v are those of the curve
-        side, two = f / v, 2.0 * r
-        q0, q1 = m_phi * p0 + m_v * ex, m_phi * p1 + m_v * ey
-        u0, u1 = m_v * p0 + f_v * ex, m_v * p1 + f_v * ey
-        h00[p] = weight * (q0 * p0 + u0 * ex - m * two * (2.0 * a1 * p0 + phi) + side * ey * ey)
-        h11[p] = weight * (q1 * p1 + u1 * ey - m * two * (2.0 * b1 * p1 + phi) + side * ex * ex)
-        h01[p] = weight * (q0 * p1 + u0 * ey - m * two * (a1 * p1 + b1 * p0) - side * ex * ey)
-        h02[p] = weight * (q0 * p2 - m * two * a1 * p2)
-        h03[p] = weight * (q0 * p3 + m * (1.0 - 2.0 * a1 * p3) * r)
-        h12[p] = weight * (q1 * p2 + m * (-1.0 - 2.0 * b1 * p2) * r)
-        h13[p] = weight * (q1 * p3 - m * two * b1 * p3)
-        bend = weight * m_phi
-        h22[p], h23[p], h33[p] = bend * p2 * p2, bend * p2 * p3, bend * p3 * p3
+        h00[p], h01[p], h11[p], h02[p], h03[p], h12[p], h13[p], h22[p], h23[p], h33[p] = by_curve(
+            weight, a1, b1, r, ex, ey, phi, p0, p1, p2, p3, m, m_phi, m_v, f / v, f_v
+        )
     return bending, axial
 
 

@@ -70,6 +70,51 @@ def mean_moment(e0, e1, drop, curl):
 
 
 @part()
+def _turning_between(a0, b0, a2, b2, v0, x1, y1, x2, y2, v1, c0, c1, measure):
+    """Discrete gradient of c s^-k in (x', y', x'', y''), its derivative without what vanishes, by rows, the
+    derivative of c s^-k at the second state, and s^-k at both."""
+    mean, divided, mean_s, divided_s, r0, r1, slope = _powers_between(v0, v1, measure)
+    middle = 0.5 * (c0 + c1)
+    m0, m1, m2, m3 = 0.5 * (a0 + x1), 0.5 * (b0 + y1), 0.5 * (a2 + x2), 0.5 * (b2 + y2)
+    factor = 2.0 * middle * divided
+    d0, d1, d2, d3 = factor * m0 + mean * m3, factor * m1 - mean * m2, -mean * m1, mean * m0
+    # derivatives in the second state: of the product, of the factor and of the mean power
+    turn, wide = 2.0 * c1 * slope, 4.0 * middle * divided_s
+    k0, k1, k2, k3 = y2 * r1 + turn * x1, turn * y1 - x2 * r1, -y1 * r1, x1 * r1
+    f0, f1, f2, f3 = y2 * divided + wide * x1, wide * y1 - x2 * divided, -y1 * divided, x1 * divided
+    q0, q1, half = 2.0 * mean_s * x1, 2.0 * mean_s * y1, 0.5 * mean
+    return (
+        d0, d1, d2, d3,
+        f0 * m0 + q0 * m3 + 0.5 * factor, f1 * m0 + q1 * m3, f2 * m0, f3 * m0 + half,
+        f0 * m1 - q0 * m2, f1 * m1 - q1 * m2 + 0.5 * factor, f2 * m1 - half, f3 * m1,
+        -q0 * m1, -q1 * m1 - half, q0 * m0 + half, q1 * m0,
+        k0, k1, k2, k3, r0, r1,
+    )  # fmt: skip
+
+
+@part()
+def _moment_between(e0, e1, drop, curl, rate):
+    """Mean moment over R between two strains, with the viscous one, and its derivative in the second."""
+    mean, share = 0.5 * (e0 + e1), 0.5
+    if curl > 0.0:
+        mean, share = mean_moment(e0, e1, drop, curl)
+    return mean + rate * (e1 - e0), share + rate
+
+
+@part()
+def _of_product(
+    d0, d1, d2, d3, s0, s1, s2, s3, pull, t00, t01, t02, t03, t10, t11, t12, t13, t20, t21, t30, t31
+):
+    """Derivative of pull times d, 4 x 4 by rows: s that of pull, t that of d without what vanishes."""
+    return (
+        s0 * d0 + pull * t00, s1 * d0 + pull * t01, s2 * d0 + pull * t02, s3 * d0 + pull * t03,
+        s0 * d1 + pull * t10, s1 * d1 + pull * t11, s2 * d1 + pull * t12, s3 * d1 + pull * t13,
+        s0 * d2 + pull * t20, s1 * d2 + pull * t21, s2 * d2, s3 * d2,
+        s0 * d3 + pull * t30, s1 * d3 + pull * t31, s2 * d3, s3 * d3,
+    )  # fmt: skip
+
+
+@part()
 def bending_between(
     a0, b0, a2, b2, v0, x1, y1, x2, y2, v1, speed, curvature, rigidity, drop, curl, rate, measure
 ):
@@ -77,29 +122,14 @@ def bending_between(
 
     a0, b0, a2, b2: C' and C'' of the first state; x1, y1, x2, y2 of the second.
     """
-    mean, divided, mean_s, divided_s, r0, r1, slope = _powers_between(v0, v1, measure)
     c0, c1 = a0 * b2 - b0 * a2, x1 * y2 - y1 * x2
-    scale = 1.0 / speed if measure == MATERIAL else 1.0
-    w = speed if measure == MATERIAL else 0.5 * (v0 + v1)
+    (
+        d0, d1, d2, d3, t00, t01, t02, t03, t10, t11, t12, t13, t20, t21, t30, t31, k0, k1, k2, k3, r0, r1
+    ) = _turning_between(a0, b0, a2, b2, v0, x1, y1, x2, y2, v1, c0, c1, measure)  # fmt: skip
+    scale, w = (1.0 / speed, speed) if measure == MATERIAL else (1.0, 0.5 * (v0 + v1))
     e0, e1 = c0 * r0 * scale - curvature, c1 * r1 * scale - curvature
-    moment, share, middle = 0.5 * (e0 + e1), 0.5, 0.5 * (c0 + c1)
-    if curl > 0.0:
-        moment, share = mean_moment(e0, e1, drop, curl)
-    moment, share = moment + rate * (e1 - e0), share + rate
-    m0, m1, m2, m3 = 0.5 * (a0 + x1), 0.5 * (b0 + y1), 0.5 * (a2 + x2), 0.5 * (b2 + y2)
-    factor = 2.0 * middle * divided
-    d0, d1, d2, d3 = factor * m0 + mean * m3, factor * m1 - mean * m2, -mean * m1, mean * m0
-    # derivatives in the second state: of the strain, of the factor and of the mean power
-    turn = 2.0 * c1 * slope
-    k0, k1, k2, k3 = (
-        scale * (y2 * r1 + turn * x1),
-        scale * (turn * y1 - x2 * r1),
-        -scale * y1 * r1,
-        scale * x1 * r1,
-    )
-    wide = 4.0 * middle * divided_s
-    f0, f1, f2, f3 = y2 * divided + wide * x1, wide * y1 - x2 * divided, -y1 * divided, x1 * divided
-    q0, q1, half = 2.0 * mean_s * x1, 2.0 * mean_s * y1, 0.5 * mean
+    moment, share = _moment_between(e0, e1, drop, curl, rate)
+    k0, k1, k2, k3 = scale * k0, scale * k1, scale * k2, scale * k3
     force = rigidity * scale * w
     stiff, pull = force * share, force * moment
     s0, s1, s2, s3 = stiff * k0, stiff * k1, stiff * k2, stiff * k3
@@ -107,19 +137,13 @@ def bending_between(
         by_v = 0.5 * rigidity * moment / v1
         s0, s1 = s0 + by_v * x1, s1 + by_v * y1
     g0, g1, g2, g3 = pull * d0, pull * d1, pull * d2, pull * d3
-    h00 = s0 * d0 + pull * (f0 * m0 + q0 * m3 + 0.5 * factor)
-    h01 = s1 * d0 + pull * (f1 * m0 + q1 * m3)
-    h02 = s2 * d0 + pull * f2 * m0
-    h03 = s3 * d0 + pull * (f3 * m0 + half)
-    h10 = s0 * d1 + pull * (f0 * m1 - q0 * m2)
-    h11 = s1 * d1 + pull * (f1 * m1 - q1 * m2 + 0.5 * factor)
-    h12 = s2 * d1 + pull * (f2 * m1 - half)
-    h13 = s3 * d1 + pull * f3 * m1
-    h20, h21, h22, h23 = s0 * d2 - pull * q0 * m1, s1 * d2 - pull * (q1 * m1 + half), s2 * d2, s3 * d2
-    h30, h31, h32, h33 = s0 * d3 + pull * (q0 * m0 + half), s1 * d3 + pull * q1 * m0, s2 * d3, s3 * d3
+    h00, h01, h02, h03, h10, h11, h12, h13, h20, h21, h22, h23, h30, h31, h32, h33 = _of_product(
+        d0, d1, d2, d3, s0, s1, s2, s3, pull, t00, t01, t02, t03, t10, t11, t12, t13, t20, t21, t30, t31
+    )
     if measure != MATERIAL:  # + 1/2 EI mean(b^2) Dv
         push = 0.25 * rigidity * (e0 * e0 + e1 * e1) / w
         grow, less = 0.5 * rigidity * e1 / w, 0.5 * push / (w * v1)
+        m0, m1 = 0.5 * (a0 + x1), 0.5 * (b0 + y1)
         t0, t1, t2, t3 = grow * k0 - less * x1, grow * k1 - less * y1, grow * k2, grow * k3
         g0, g1 = g0 + push * m0, g1 + push * m1
         h00, h01, h02, h03 = h00 + m0 * t0 + 0.5 * push, h01 + m0 * t1, h02 + m0 * t2, h03 + m0 * t3

@@ -1,8 +1,8 @@
 """The suite's own models with the interface of a baseline, so that all are timed alike: the solve alone.
 
-Static paths of the spline are timed around `spline_model.reduced.solve.run`, with geometry and quadrature
-prepared, and its motions less one of one step, as the set-up of other codes is left out too; of the elements
-it is what they say their increments or steps took.
+Static paths of the spline are timed around `Elements.run` of `spline_model.reduced`, with geometry and
+quadrature prepared, and its motions less one of one step, as the set-up of other codes is left out too; of
+the elements it is what they say their increments or steps took.
 """
 
 from collections.abc import Callable
@@ -12,11 +12,10 @@ from typing import Any
 
 from spline_model.compile import compile_scene
 from spline_model.pivot import cross_axis_pivot
+from spline_model.reduced.arrays import Answer
 from spline_model.reduced.elements import Elements, followed
 from spline_model.reduced.equilibrium import EVALUATIONS, ITERATIONS
 from spline_model.reduced.model import at_rest
-from spline_model.reduced.path import Answer
-from spline_model.reduced.solve import run
 from studies.answers.adapters import answer_release, answer_static
 from studies.answers.settings import FeSettings, Settings, SplineSettings
 from studies.baselines.answer import (
@@ -114,7 +113,7 @@ class _Spline(_Own):
         scene, factors, rest = elements.model, turns / largest, at_rest(elements.model)
 
         def solve() -> Answer:
-            return run(elements, factors, rest)
+            return elements.run(factors, rest)
 
         answer = solve()
         if len(answer.y) < len(turns):

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import ellipe, ellipk
 
-from spline_model.proportional import solve_mechanism
+from spline_model.statics import solve_mechanism
 from studies.answers.models import built, model_of, refusals
 from studies.answers.settings import SplineSettings
 from studies.cases.effects import Effects

@@ -16,7 +16,6 @@ from spline_model.compile import compile_scene
 from spline_model.pivot import cross_axis_pivot
 from spline_model.reduced.elements import Elements
 from spline_model.reduced.model import at_rest
-from spline_model.reduced.solve import run
 from spline_model.statics import solve_statics
 from studies.record.source import ROOT
 from tests.table_one import SIX
@@ -76,9 +75,9 @@ def test_memory_does_not_grow_with_the_increments():
 
     def beyond_the_answer(increments):
         factors = np.linspace(0.0, 1.0, increments + 1)
-        run(work, factors, start)
+        work.run(factors, start)
         tracemalloc.start()
-        answer = run(work, factors, start)
+        answer = work.run(factors, start)
         peak = tracemalloc.get_traced_memory()[1]
         tracemalloc.stop()
         return peak - sum(part.nbytes for part in answer)

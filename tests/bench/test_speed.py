@@ -16,7 +16,6 @@ from spline_model.motion.start import Start, Steps, set_in_motion
 from spline_model.pivot import cross_axis_pivot
 from spline_model.reduced.elements import Elements
 from spline_model.reduced.model import at_rest
-from spline_model.reduced.solve import run
 from spline_model.statics import solve_statics
 from tests.table_one import SIX, TABLE_ONE
 
@@ -47,7 +46,7 @@ def test_compiled_path(benchmark, n):
     """Requirement: the condensed path alone, without recovery, reaches every state."""
     work = Elements.of(compile_scene(cross_axis_pivot(**TABLE_ONE, control_points=n).driven(QUARTER_TURN)))
     factors, start = np.linspace(0.0, 1.0, INCREMENTS + 1), at_rest(work.model)
-    answer = benchmark(lambda: run(work, factors, start))
+    answer = benchmark(lambda: work.run(factors, start))
     benchmark.extra_info.update(newton_iterations=int(answer.counters[0]))
     assert len(answer.y) == INCREMENTS + 1
 

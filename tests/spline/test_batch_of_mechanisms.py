@@ -8,7 +8,7 @@ import pytest
 from spline_model.batch import solve_many
 from spline_model.errors import InvalidParameter
 from spline_model.mechanism import Mechanism, mechanism
-from spline_model.proportional import solve_mechanism
+from spline_model.statics import solve_mechanism
 from studies.answers.models import built, model_of
 from studies.answers.settings import SplineSettings
 from studies.cases.design import named_design

@@ -6,10 +6,10 @@ import pytest
 from spline_model.compile import compile_scene
 from spline_model.mechanism import BodyDesign, mechanism
 from spline_model.newton import TOLERANCE
-from spline_model.reduced.assembly import AXIAL, BENDING, DEAD, RATE, working_space
+from spline_model.reduced.arrays import AXIAL, BENDING, DEAD, RATE
 from spline_model.reduced.equilibrium import newton
 from spline_model.reduced.model import at_rest, reduced
-from spline_model.reduced.preload import act, apart, preload_of, swell
+from spline_model.reduced.preload import Preload, act, apart, swell
 from spline_model.strip.compiled import kernel
 from tests.spline.test_reduced import FORMS, stretching, strip
 
@@ -29,28 +29,28 @@ def bridge(form):
 
 
 @kernel()
-def _solve(y, bodies, strips, shape, local, space, tolerance, counters):
+def _solve(y, arrays, tolerance, counters):
     """A state at the held coordinates; its negative eigenvalues."""
-    return newton(y, 0.0, False, bodies, strips, shape, local, space, tolerance, counters)[0]
+    return newton(y, 0.0, False, arrays, tolerance, counters)[0]
 
 
 @kernel()
-def _swell(y, share, preload, bodies, strips, shape, local, space):
+def _swell(y, share, preload, arrays):
     """Both derivatives of its potential."""
-    return swell(y, share, preload, bodies, strips, shape, local, space)
+    return swell(y, share, preload, arrays)
 
 
 def states(model, shares):
     """y, potential, its two derivatives and the rate in the share at each of some shares, on one path."""
-    (bodies, strips), preload, local = apart(model), preload_of(model), model.local()
-    space, y = working_space(bodies, model.size), at_rest(model)
+    (bodies, strips), preload, y = apart(model), Preload.of(model), at_rest(model)
+    arrays = model.arrays()._replace(bodies=bodies, strips=strips)
+    space = arrays.space
     for share in shares:
         act(share, preload, bodies, strips)
         counters = np.zeros(3, dtype=np.int64)
-        given = bodies, strips, model.shape, local, space
-        assert _solve(y, *given, TOLERANCE, counters) == 0
+        assert _solve(y, arrays, TOLERANCE, counters) == 0
         energy = space.out[[BENDING, AXIAL, DEAD]].sum() + share * preload.hung[1]
-        slope, bend = _swell(y, share, preload, *given)
+        slope, bend = _swell(y, share, preload, arrays)
         yield y.copy(), energy, slope, bend, space.states[RATE].copy()
 
 

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from spline_model.mechanism import BodyDesign, StripDesign, mechanism
-from spline_model.proportional import solve_mechanism
 from spline_model.sensitivity.solve import sensitivities
+from spline_model.statics import solve_mechanism
 from tests import gates
 
 STEEL = {

@@ -19,7 +19,7 @@ from spline_model.pivot import cross_axis_pivot, swinging_slide_stiffness
 from spline_model.reduced import beside
 from spline_model.reduced.model import reduced
 from spline_model.strip import condense as strip_condense
-from spline_model.strip import points
+from spline_model.strip import laws, points
 from spline_model.strip.element import POINTS
 from studies.answers.adapters import answer_release, answer_static
 from studies.answers.settings import FeSettings, SplineSettings
@@ -44,9 +44,10 @@ def test_operations_of_the_condensed_spline(monkeypatch, n):
     """Assembly, condensation and recovery of a strip do as many operations as the formulas say."""
     model = reduced(compile_scene(cross_axis_pivot(**TABLE_ONE, control_points=n).driven(1.0)))
     strips, shape, local = model.strips, model.shape, model.local()
-    for name, called in list(vars(points).items()):
-        if hasattr(called, "py_func"):
-            monkeypatch.setattr(points, name, called.py_func)
+    for module in (points, laws):
+        for name, called in list(vars(module).items()):
+            if hasattr(called, "py_func"):
+                monkeypatch.setattr(module, name, called.py_func)
     monkeypatch.setattr(points, "math", SimpleNamespace(sqrt=lambda value: value.sqrt()))
     for name in ("add_slopes", "curve_at", "four", "spring_of", "springs_of"):
         monkeypatch.setattr(beside, name, getattr(points, name))
