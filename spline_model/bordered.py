@@ -103,55 +103,75 @@ def derivatives(z, first, width, d1, d2):
 
 
 @part()
-def _printed_bending(phi, v, curvature, rigidity):
-    """The forces of Eq 12 as printed, without d|C'|/dq: energy, m, m_phi, m_v, f, f_phi and f_v."""
-    density, m, m_phi, m_v, _, _ = bending_law(phi, v, 1.0, curvature, rigidity, 0.0, 0.0, SPATIAL)
-    ratio = phi / v
-    slope = rigidity * (2.0 * ratio - curvature) / v
-    return density, m, m_phi, m_v, -m * ratio, -slope, slope * ratio
-
-
-@part()
 def _add_point(p, z, points, gradient, hessian, work):
     """Add the derivatives of a point's energy; returns its energies of bending and stretching, and v."""
     place, numbers, modes = points.place[p], points.numbers[p], points.modes[p]
-    first, width, mode, count, measure = place[FIRST], place[WIDTH], place[MODE], place[MODES], place[MEASURE]
-    d1, d2, g, h = points.basis[0, p], points.basis[1, p], work[0], work[1:]
-    weight, speed, strain = numbers[WEIGHT], numbers[SPEED], numbers[STRAIN]
-    curvature, rigidity, stretching = numbers[CURVATURE], numbers[RIGIDITY], numbers[STRETCHING]
-    law = min(measure, SPATIAL)
-    x1, y1, x2, y2 = derivatives(z, first, width, d1, d2)
+    first, width, mode, count = place[FIRST], place[WIDTH], place[MODE], place[MODES]
+    d1, d2, weight, force = points.basis[0, p], points.basis[1, p], numbers[WEIGHT], 0.0
+    curve = derivatives(z, first, width, d1, d2)
+    x1, y1, x2, y2 = curve
     s = x1 * x1 + y1 * y1
     v, phi = math.sqrt(s), (x1 * y2 - y1 * x2) / s
+    for k in range(count):
+        force += modes[k] * z[mode + k]
+    bent, m, m_phi, m_v, f, f_phi, f_v = bend(phi, v, numbers, place[MEASURE])
+    stretched, by_v, by_vv, by_n, by_nv, by_nn = stretch(v, force, count, numbers, place[MEASURE])
+    _turn_curve(curve, phi, v, weight, (m, m_phi, m_v, f + by_v, f_phi, f_v + by_vv), work)
+    _add_to_points(first, width, d1, d2, work, gradient, hessian)
+    for k in range(count):
+        row, share = mode + k, weight * modes[k]
+        gradient[row] += share * by_n
+        for j in range(count):
+            hessian[row, mode + j] += share * by_nn * modes[j]
+        for a in range(width):
+            _add_pair(hessian, row, first + 2 * a, share * by_nv * d1[a] * x1 / v)
+            _add_pair(hessian, row, first + 2 * a + 1, share * by_nv * d1[a] * y1 / v)
+    return weight * bent, weight * stretched, v
+
+
+@part()
+def bend(phi, v, numbers, measure):
+    """Bending: energy, m, m_phi, m_v, f, f_phi and f_v; as printed (Eq 12) without d|C'|/dq."""
+    curvature, rigidity = numbers[CURVATURE], numbers[RIGIDITY]
     if measure == PRINTED:
-        bent, m, m_phi, m_v, f, f_phi, f_v = _printed_bending(phi, v, curvature, rigidity)
-    else:
-        drop, curl = numbers[DROP], numbers[CURL]
-        bent, m, m_phi, m_v, f, f_v = bending_law(phi, v, speed, curvature, rigidity, drop, curl, law)
-        f_phi = m_v
-    stretched = force = by_n = by_nv = 0.0
+        density, m, m_phi, m_v, _, _ = bending_law(phi, v, 1.0, curvature, rigidity, 0.0, 0.0, SPATIAL)
+        ratio = phi / v
+        slope = rigidity * (2.0 * ratio - curvature) / v
+        return density, m, m_phi, m_v, -m * ratio, -slope, slope * ratio
+    density, m, m_phi, m_v, f, f_v = bending_law(
+        phi, v, numbers[SPEED], curvature, rigidity, numbers[DROP], numbers[CURL], measure
+    )
+    return density, m, m_phi, m_v, f, m_v, f_v
+
+
+@part()
+def stretch(v, force, count, numbers, measure):
+    """Stretching: energy, its derivatives in v, v v and N, that one's in v and N; N: the axial force."""
+    speed, strain, stretching = numbers[SPEED], numbers[STRAIN], numbers[STRETCHING]
+    law = min(measure, SPATIAL)
+    energy = by_v = by_vv = by_n = by_nv = by_nn = 0.0
     if stretching > 0.0:
-        stretched, by_v, by_vv = stretching_law(v, speed, strain, stretching, law)
+        energy, by_v, by_vv = stretching_law(v, speed, strain, stretching, law)
         if measure == PRINTED:  # Eq 15 without d|C'|/dq
             eps = v / speed - 1.0 - strain
             by_v -= 0.5 * stretching * eps * eps
             by_vv -= stretching * eps / speed
-        f += by_v
-        f_v += by_vv
-    compliance, w = numbers[COMPLIANCE], speed if measure == MATERIAL else v
     if count > 0:
-        for k in range(count):
-            force += modes[k] * z[mode + k]
-        loss = compliance * force * force
-        value, by_v, by_vv, by_n, by_nv = mixed_law(v, speed, strain, force, loss, law)
-        stretched += value
-        f += by_v
-        f_v += by_vv
+        compliance, w = numbers[COMPLIANCE], speed if measure == MATERIAL else v
+        value, pull, slope, by_n, by_nv = mixed_law(v, speed, strain, force, compliance * force * force, law)
+        energy, by_v, by_vv = energy + value, by_v + pull, by_vv + slope
         by_n -= compliance * force * w
+        by_nn = -compliance * w
         if measure != MATERIAL:
             by_nv -= compliance * force
+    return energy, by_v, by_vv, by_n, by_nv, by_nn
 
-    # the gradient g and Hessian h in (x', y', x'', y'') of E(phi, v), phi = c / s and v = sqrt(s)
+
+@part()
+def _turn_curve(curve, phi, v, weight, law, work):
+    """Gradient work[0] and Hessian work[1:] in (x', y', x'', y'') of E(phi, v): phi = c / s, v = sqrt(s)."""
+    (x1, y1, x2, y2), (m, m_phi, m_v, f, f_phi, f_v), s = curve, law, v * v
+    g, h = work[0], work[1:]
     c_i, s_i, v_i = (y2, -x2, -y1, x1), (2.0 * x1, 2.0 * y1, 0.0, 0.0), (x1 / v, y1 / v, 0.0, 0.0)
     for i in range(4):
         phi_i = (c_i[i] - phi * s_i[i]) / s
@@ -166,6 +186,12 @@ def _add_point(p, z, points, gradient, hessian, work):
             v_ij = (same - v_i[i] * v_i[j]) / v
             turning = phi_i * (m_phi * phi_j + m_v * v_i[j]) + m * phi_ij
             h[i, j] = weight * (turning + v_i[i] * (f_phi * phi_j + f_v * v_i[j]) + f * v_ij)
+
+
+@part()
+def _add_to_points(first, width, d1, d2, work, gradient, hessian):
+    """Add gradient work[0] and Hessian work[1:] in (x', y', x'', y'') to those of the control points."""
+    g, h = work[0], work[1:]
     for a in range(width):
         for i in range(2):
             row = first + 2 * a + i
@@ -175,41 +201,39 @@ def _add_point(p, z, points, gradient, hessian, work):
             for b in range(width):
                 hessian[row, first + 2 * b] += left0 * d1[b] + left2 * d2[b]
                 hessian[row, first + 2 * b + 1] += left1 * d1[b] + left3 * d2[b]
-    for k in range(count):
-        row, share = mode + k, weight * modes[k]
-        gradient[row] += share * by_n
-        for j in range(count):
-            hessian[row, mode + j] -= share * compliance * w * modes[j]
-        for a in range(width):
-            for i in range(2):
-                column, value = first + 2 * a + i, share * by_nv * d1[a] * v_i[i]
-                hessian[row, column] += value
-                hessian[column, row] += value
-    return weight * bent, weight * stretched, v
 
 
 @part()
 def _subtract_clamp(z, place, numbers, gradient, hessian):
     """Subtract lambda psi of a clamped end, its gradient and its Hessian (Eqs 5 and 6); returns the energy of
     its root, if that yields [J]."""
-    end, inner, body, row, sign = place[END], place[INNER], place[BODY], place[ROW], numbers[SIGN]
-    fx, fy, moment = z[row], z[row + 1], z[row + 2]
-    bx, by, angle = numbers[ACROSS], numbers[ALONG], 0.0
-    ax, ay = bx, by
+    angle = 0.0 if place[BODY] < 0 else z[place[BODY] + 2]
+    _subtract_position(z, angle, place, numbers, gradient, hessian)
+    _subtract_direction(z, angle, place, numbers, gradient, hessian)
+    row = place[ROW] + 2
+    yielded = numbers[YIELDING] * z[row]
+    gradient[row] -= yielded
+    hessian[row, row] -= numbers[YIELDING]
+    return 0.5 * yielded * z[row]
+
+
+@part()
+def _subtract_position(z, angle, place, numbers, gradient, hessian):
+    """Of the rows that hold the end's point: P_end - X - R(theta) b (Eq 5)."""
+    end, body, row, bx, by = place[END], place[BODY], place[ROW], numbers[ACROSS], numbers[ALONG]
+    fx, fy, ax, ay = z[row], z[row + 1], bx, by
     if body >= 0:
-        angle = z[body + 2]
         cos, sin = math.cos(angle), math.sin(angle)
         ax, ay = cos * bx - sin * by, sin * bx + cos * by
         gradient[row] += z[body]
         gradient[row + 1] += z[body + 1]
         gradient[body] += fx
         gradient[body + 1] += fy
-        gradient[body + 2] += fy * ax - fx * ay + moment
+        gradient[body + 2] += fy * ax - fx * ay
         _add_pair(hessian, row, body, 1.0)
         _add_pair(hessian, row + 1, body + 1, 1.0)
         _add_pair(hessian, row, body + 2, -ay)
         _add_pair(hessian, row + 1, body + 2, ax)
-        _add_pair(hessian, row + 2, body + 2, 1.0)
         hessian[body + 2, body + 2] -= fx * ax + fy * ay
     gradient[row] -= z[end] - ax
     gradient[row + 1] -= z[end + 1] - ay
@@ -218,6 +242,15 @@ def _subtract_clamp(z, place, numbers, gradient, hessian):
     _add_pair(hessian, row, end, -1.0)
     _add_pair(hessian, row + 1, end + 1, -1.0)
 
+
+@part()
+def _subtract_direction(z, angle, place, numbers, gradient, hessian):
+    """Of the row that holds the tangent: the angle of C' from the clamp's direction (Eq 6)."""
+    end, inner, body, row, sign = place[END], place[INNER], place[BODY], place[ROW], numbers[SIGN]
+    moment = z[row + 2]
+    if body >= 0:
+        gradient[body + 2] += moment
+        _add_pair(hessian, row + 2, body + 2, 1.0)
     dx, dy = sign * (z[inner] - z[end]), sign * (z[inner + 1] - z[end + 1])
     s = dx * dx + dy * dy
     mx, my = math.cos(numbers[DIRECTION] + angle), math.sin(numbers[DIRECTION] + angle)
@@ -235,10 +268,6 @@ def _subtract_clamp(z, place, numbers, gradient, hessian):
             hessian[end + i, end + j] += value
             hessian[inner + i, end + j] -= value
             hessian[end + i, inner + j] -= value
-    yielded = numbers[YIELDING] * moment
-    gradient[row + 2] -= yielded
-    hessian[row + 2, row + 2] -= numbers[YIELDING]
-    return 0.5 * yielded * moment
 
 
 @part()

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from functools import partial
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -48,34 +49,9 @@ STEP = 5e-5
 """Default step of the implicit integrators [s]: some 240 steps a swing of Table 1."""
 
 
-def solve_release(
-    pivot: Pivot,
-    *,
-    start: float | None = math.pi / 2,
-    drive: DrivenRotation | None = None,
-    duration: float = 0.05,
-    step: float | None = None,
-    integrator: str = "energy",
-    accuracy: float | None = None,
-    records: int | None = None,
-    after: Trajectory | None = None,
-    check: bool = True,
-    spectral_radius: float | None = None,
-) -> Trajectory:
-    """Let the pivot go at rest from the static state at rotation ``start`` [rad]; see ``solve_motion``."""
-    return solve_motion(
-        pivot,
-        start=start,
-        drive=drive,
-        duration=duration,
-        step=step,
-        integrator=integrator,
-        accuracy=accuracy,
-        records=records,
-        after=after,
-        check=check,
-        spectral_radius=spectral_radius,
-    )
+def solve_release(pivot: Pivot, *, start: float | None = math.pi / 2, **options: Any) -> Trajectory:
+    """Let the pivot go at rest from the static state at rotation ``start`` [rad]: see ``solve_motion``."""
+    return solve_motion(pivot, start=start, **options)
 
 
 def solve_motion(

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import cache, lru_cache
+from functools import cache, lru_cache, partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -86,46 +87,45 @@ def natural_frequencies(
         require_finite("rotation", rotation, "rad")
     if rotation is None and (held or isinstance(pivot, Pivot)):
         rotation = 0.0
+    solve = partial(_modes, rotation=rotation, body=body, count=count, held=held, increments=increments)
     chosen = wanted(accuracy, pivot.design)
     if chosen is None:
-        return _modes(pivot.in_motion(), rotation, body, count, held, increments)
+        return solve(pivot.in_motion())
+    return _accurate_modes(pivot, chosen, solve, strict=accuracy is not None)
+
+
+def _accurate_modes(
+    pivot: Mechanism, accuracy: float, solve: Callable[[Mechanism], Modes], *, strict: bool
+) -> Modes:
+    """The modes with as many control points as the accuracy takes; strict: refused where none reaches it."""
 
     @cache
-    def modes(control_points: int) -> Modes | ConvergenceError:
-        finer = pivot.with_control_points(control_points).in_motion()
+    def modes(control_points: int) -> Modes | None:
         try:
-            return _modes(finer, rotation, body, count, held, increments)
-        except ConvergenceError as error:  # more control points may reach the state
-            return error
+            return solve(pivot.with_control_points(control_points).in_motion())
+        except ConvergenceError:  # more control points may reach the state
+            return None
 
     def attempt(fewer: int, more: int) -> tuple[float, Modes] | None:
         coarse, fine = modes(fewer), modes(more)
-        if isinstance(coarse, ConvergenceError) or isinstance(fine, ConvergenceError):
+        if coarse is None or fine is None or coarse.frequency.shape != fine.frequency.shape:
             return None
-        apart = _apart(coarse.frequency, fine.frequency)
-        return None if apart is None else (apart, coarse)
+        return _apart(coarse.frequency, fine.frequency), coarse
 
-    outcome = search(pivot.design, chosen, attempt)
+    outcome = search(pivot.design, accuracy, attempt)
     if outcome.found is None:
-        last = modes(outcome.trials[-1])
-        if isinstance(last, ConvergenceError):
-            raise last
-        return last
-    if accuracy is not None and outcome.message:
+        return solve(pivot.with_control_points(outcome.trials[-1]).in_motion())
+    if strict and outcome.message:
         raise InvalidParameter("accuracy", accuracy, f"no less than {outcome.error:.2g}, which is reached")
+    points, trials = outcome.control_points, outcome.trials
     estimate = FrequencyEstimate(
-        accuracy=chosen,
-        frequency=outcome.error,
-        control_points=outcome.control_points,
-        trials=outcome.trials,
+        accuracy=accuracy, frequency=outcome.error, control_points=points, trials=trials
     )
     return replace(outcome.found, estimate=estimate)
 
 
-def _apart(frequency: Array, better: Array) -> float | None:
-    """Largest relative difference of frequencies; None where one has fewer."""
-    if frequency.shape != better.shape:
-        return None
+def _apart(frequency: Array, better: Array) -> float:
+    """Largest relative difference of frequencies."""
     least = NEARLY_NONE * float(np.abs(better).max(initial=0.0))
     return float((np.abs(frequency - better) / np.maximum(np.abs(better), least)).max(initial=0.0))
 
@@ -135,10 +135,9 @@ def _modes(
 ) -> Modes:
     """The modes of a mechanism in motion, with its control points."""
     body = mechanism.design.body_named(body) if mechanism.design.bodies else None
-    released = mechanism.released()
-    scene = released
+    scene = mechanism.released()
     if held:
-        scene = released.with_effects(DrivenRotation(body=mechanism.design.body_named(body), angle=0.0))
+        scene = scene.with_effects(DrivenRotation(body=mechanism.design.body_named(body), angle=0.0))
     system = compile_scene(scene)
     layout = system.layout
     z = static_state(mechanism, rotation, increments, body)[: layout.size]

@@ -7,6 +7,7 @@ to N^3; one that keeps to the order of the chain, to N: long B-splines are facto
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from time import perf_counter
 from typing import Self
@@ -22,6 +23,7 @@ from spline_model.compile import System
 from spline_model.quadrature import FIRST, MODE, MODES, WIDTH
 
 Array = NDArray[np.float64]
+Change = Callable[[Array, float], tuple[Array, float]]
 
 getrf, getrs = get_lapack_funcs(("getrf", "getrs"))  # without the checks and warnings of lu_factor
 
@@ -76,12 +78,13 @@ class Counters:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Newton:
-    """Outcome of one solve: the state, its energies (bending, axial) [J] and the residual norms.
+    """Outcome of one solve: the state, its load factor, energies (bending, axial) [J] and residual norms.
 
     ``reason`` is empty when it converged and says what went wrong otherwise.
     """
 
     z: Array
+    load_factor: float
     energies: tuple[float, float]
     norms: tuple[float, ...]
     reason: str
@@ -237,24 +240,30 @@ class Workspace:
         return np.asarray(own * getrs(factors, pivots, right_side * own / energy)[0])
 
 
-def solve(work: Workspace, start: Array, load_factor: float) -> Newton:
-    """Newton from ``start`` at fixed load factor, until the residual is below TOLERANCE."""
-    z = start.copy()
+def solve(work: Workspace, start: Array, load_factor: float, change: Change | None = None) -> Newton:
+    """Newton from ``start``, until the residual is below TOLERANCE.
+
+    change: of the unknowns and of the load factor, from both; by default the latter is fixed.
+    """
+    z, energies, reason = start.copy(), (np.nan, np.nan), ""
     norms: list[float] = []
     for iteration in range(MOST_ITERATIONS + 1):
         energies = work.evaluate(z, load_factor)
         norms.append(work.norm())
-        if not np.isfinite(norms[-1]):
-            return Newton(z=z, energies=energies, norms=tuple(norms), reason="the residual is not finite")
         stalled = len(norms) > 1 and norms[-1] > 0.5 * norms[-2]
         if norms[-1] <= TOLERANCE or (stalled and norms[-1] <= FLOOR):
-            return Newton(z=z, energies=energies, norms=tuple(norms), reason="")
+            break
+        if not np.isfinite(norms[-1]):
+            reason = "the residual is not finite"
+            break
         if iteration == MOST_ITERATIONS:
+            reason = f"no convergence in {MOST_ITERATIONS} iterations (residual {norms[-1]:.1e})"
             break
         try:
-            z = z + work.solve(-work.gradient)
+            moved, more = change(z, load_factor) if change else (work.solve(-work.gradient), 0.0)
         except np.linalg.LinAlgError as error:
-            return Newton(z=z, energies=energies, norms=tuple(norms), reason=str(error))
+            reason = str(error)
+            break
+        z, load_factor = z + moved, load_factor + more
         work.counters.newton_iterations += 1
-    reason = f"no convergence in {MOST_ITERATIONS} iterations (residual {norms[-1]:.1e})"
-    return Newton(z=z, energies=energies, norms=tuple(norms), reason=reason)
+    return Newton(z=z, load_factor=load_factor, energies=energies, norms=tuple(norms), reason=reason)

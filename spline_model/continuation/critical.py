@@ -67,7 +67,7 @@ class Bracket:
 def corrected(work: Followed, z: Array, load_factor: float, normal: Array, along: float) -> Point | None:
     """The point of the path on a plane through (z, load factor); None if Newton does not find it."""
     found = correct(work, z, load_factor, normal, along)
-    point, _ = reached(work, found, found.load_factor)
+    point, _ = reached(work, found)
     return None if point is None else directed(work, point, normal, along)
 
 

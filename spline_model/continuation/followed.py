@@ -16,7 +16,7 @@ from spline_model.bordered import evaluate, open_energy
 from spline_model.compile import compile_scene
 from spline_model.continuation.resolution import LARGEST_DEFECT, Resolution
 from spline_model.effects import Bending, MixedStretching, Stretching
-from spline_model.newton import FLOOR, MOST_ITERATIONS, TOLERANCE, Newton, Workspace, getrf, getrs
+from spline_model.newton import Newton, Workspace, getrf, getrs, solve
 from spline_model.solution import Later
 
 if TYPE_CHECKING:
@@ -246,43 +246,25 @@ class Bordered(Followed):
         }
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Corrected(Newton):
-    """Where Newton ended, with the load factor as one of the unknowns."""
-
-    load_factor: float
-
-
-def correct(work: Followed, z: Array, load_factor: float, normal: Array, along: float) -> Corrected:
+def correct(work: Followed, z: Array, load_factor: float, normal: Array, along: float) -> Newton:
     """Newton from (z, load factor), orthogonal to (normal (N,), along) in dimensionless unknowns.
 
     The bordered matrix is regular at a limit point, where the tangent is not. normal = 0 and
     along = 1 hold the load factor.
     """
-    unit, energy = work.unit, work.energy
-    size = len(z)
-    matrix = np.zeros((size + 1, size + 1))
+    unit, energy, size = work.unit, work.energy, len(z)
+    matrix, right = np.zeros((size + 1, size + 1)), np.zeros(size + 1)
     matrix[size, :size], matrix[size, size] = normal, along
-    right, norms = np.zeros(size + 1), []
-    energies, reason = (np.nan, np.nan), ""
-    for iteration in range(MOST_ITERATIONS + 1):
-        energies = work.evaluate(z, load_factor)
-        norms.append(work.norm())
-        stalled = len(norms) > 1 and norms[-1] > 0.5 * norms[-2]
-        if norms[-1] <= TOLERANCE or (stalled and norms[-1] <= FLOOR):
-            break
-        if not np.isfinite(norms[-1]) or iteration == MOST_ITERATIONS:
-            reason = f"no convergence in {iteration} iterations (residual {norms[-1]:.1e})"
-            break
+
+    def change(z: Array, load_factor: float) -> tuple[Array, float]:
         matrix[:size, size] = -work.push(z, load_factor) * unit / energy
         matrix[:size, :size] = work.hessian * (unit[:, None] * unit / energy)
         right[:size] = -work.gradient * unit / energy
         work.counters.factorisations += 1
         factors, pivots, failed = getrf(matrix)
         if failed:
-            reason = "the bordered tangent is singular"
-            break
-        change = getrs(factors, pivots, right)[0].ravel()
-        z, load_factor = z + unit * change[:size], load_factor + float(change[size])
-        work.counters.newton_iterations += 1
-    return Corrected(z=z, load_factor=load_factor, energies=energies, norms=tuple(norms), reason=reason)
+            raise np.linalg.LinAlgError("the bordered tangent is singular")
+        found = getrs(factors, pivots, right)[0].ravel()
+        return unit * found[:size], float(found[size])
+
+    return solve(work, z, load_factor, change)

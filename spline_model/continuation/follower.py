@@ -1,7 +1,7 @@
-"""A path in its load factor.
+"""A path in a parameter: predict, correct, check, halve.
 
-It begins at rest, weight and pre-strain grown from nothing, or at a state that is given, and goes on:
-predict, correct, check, halve.
+It begins at rest, weight and pre-strain grown from nothing, or at a state that is given. The parameter is the
+load factor, or the arc length (``spline_model.continuation.arc_length``).
 """
 
 from __future__ import annotations
@@ -27,44 +27,97 @@ SMALLEST_STEP = 2.0**-14
 
 
 class Follower:
-    """The state of a path while it is followed.
+    """The state of a path while it is followed in a parameter, by default its load factor.
 
-    ``points`` holds the states that were asked for, ``trail`` those on the way to the next one;
-    ``done``: int P_lambda d(lambda) from the first state to each of points, and to here [J].
+    at: the parameter here; known: the last states, with their parameters. ``points`` holds the states that
+    were asked for, ``trail`` those on the way to the next one; ``done``: int P_lambda d(lambda) from the
+    first state to each of points, and to here [J].
     """
+
+    at = 0.0
 
     def __init__(self, watch: Watch, begin: Point, norms: tuple[float, ...]) -> None:
         self.work, self.watch, self.here = watch.work, watch, begin
-        self.known: deque[Point] = deque([begin], maxlen=KNOWN_STATES)
+        self.at = self._parameter(begin)
+        self.known: deque[tuple[float, Point]] = deque([(self.at, begin)], maxlen=KNOWN_STATES)
         self.points, self.trail = [begin], []  # type: list[Point], list[Point]
         self.done, self.done_here = [0.0], 0.0
         self.history = [norms]
 
+    def _parameter(self, point: Point) -> float:
+        """The parameter of the path at a point that follows on here."""
+        return point.load_factor
+
+    def _correct(self, z: Array, load_factor: float) -> Newton:
+        """The equilibrium near a predicted state."""
+        return solve(self.work, z, load_factor)
+
+    def _judged(self, point: Point) -> tuple[Point, str]:
+        """A point that was found, with its rates in the parameter, and why it is not the next one."""
+        return point, ""
+
+    def _predict(self, aim: float) -> tuple[Array, float]:
+        """The state where the parameter is ``aim``, by the last states and rates, and its load factor."""
+        return hermite_extrapolation([(at, p.z, p.rate) for at, p in self._near(aim)], aim), aim
+
+    def _near(self, aim: float) -> list[tuple[float, Point]]:
+        """The states to extrapolate; further than twice their distance, the tangent only."""
+        known = list(self.known)
+        far = len(known) > 1 and abs(aim - self.at) > 2 * abs(self.at - known[-2][0])
+        return known[-1:] if far else known
+
+    def _try(self, aim: float) -> tuple[Newton, str]:
+        """One step to ``aim``, and why it failed; else the follower stands there, or on another branch."""
+        predicted, load_factor = self._predict(aim)
+        found = self._correct(predicted, load_factor)
+        self.history.append(found.norms)
+        reason = found.reason or self.watch.refuse(self.here, predicted, found.z, found.load_factor)
+        if reason:
+            return found, reason
+        point, reason = reached(self.work, found)
+        if point is None:
+            return found, reason
+        point, reason = self._judged(point)
+        if reason:
+            return found, reason
+        end, done, reason = self.watch.go(self.here, point, self._parameter(point) - self.at)
+        if not reason:
+            if end is not point:
+                self.known.clear()
+            self.at, self.here = self._parameter(end), end
+            self.done_here += done
+            self.known.append((self.at, end))
+            self.trail.append(end)
+        return found, reason
+
     def advance(self, target: float) -> str:
         """Go on to ``target`` and keep its state; returns why it failed, or nothing."""
-        begin = self.here.load_factor
+        begin = self.at
         step = whole = target - begin
-        if len(self.known) > 1 and whole * (begin - self.known[-2].load_factor) < 0:
-            self.known = deque([self.here], maxlen=KNOWN_STATES)  # the path turns back
-        while self.here.load_factor != target:
-            at = self.here.load_factor
+        if len(self.known) > 1 and whole * (begin - self.known[-2][0]) < 0:
+            self.known = deque([(begin, self.here)], maxlen=KNOWN_STATES)  # the path turns back
+        while self.at != target:
+            at = self.at
             aim = target if abs(target - at) <= abs(step) * (1 + 1e-9) else at + step
-            newton, reason = self._try(aim)
-            self.history.append(newton.norms)
+            _, reason = self._try(aim)
             if reason:
                 self.work.counters.halved_increments += 1
                 step /= 2
                 if abs(step) < SMALLEST_STEP * abs(whole):
                     return self._stop(at + 2 * step, reason)
-            elif self.here.load_factor != aim:  # on another branch, and somewhere else
-                begin = self.here.load_factor
+            elif self.at != aim:  # on another branch, and somewhere else
+                begin = self.at
                 step = whole = target - begin
             elif (abs(aim - begin) / abs(step)) % 2 == 0 and abs(step) < abs(whole):
                 step *= 2  # after an easy part the next may be twice as long, on the grid of halves
+        self._keep()
+        return ""
+
+    def _keep(self) -> None:
+        """Keep the state here as one that was asked for."""
         self.points.append(self.here)
         self.done.append(self.done_here)
         self.trail.clear()
-        return ""
 
     def _stop(self, aim: float, reason: str) -> str:
         """Keep the last state of a path that stopped, whether or not it was asked for; says why it did."""
@@ -73,34 +126,6 @@ class Follower:
         self.points += self.trail[-1:]
         self.done += [self.done_here] * len(self.trail[-1:])
         return self.watch.stopped(self.here, aim, reason)
-
-    def _try(self, load_factor: float) -> tuple[Newton, str]:
-        """One step to ``load_factor``; on success the follower stands there, or on another branch."""
-        predicted = self._predict(load_factor)
-        newton = solve(self.work, predicted, load_factor)
-        reason = newton.reason or self.watch.refuse(self.here, predicted, newton.z, load_factor)
-        if reason:
-            return newton, reason
-        point, reason = reached(self.work, newton, load_factor)
-        if point is None:
-            return newton, reason
-        end, done, reason = self.watch.go(self.here, point, load_factor - self.here.load_factor)
-        if not reason:
-            if end is not point:
-                self.known.clear()
-            self.done_here += done
-            self.here = end
-            self.known.append(end)
-            self.trail.append(end)
-        return newton, reason
-
-    def _predict(self, load_factor: float) -> Array:
-        """Extrapolate the last states and rates; further than twice their distance, the tangent only."""
-        known = list(self.known)
-        at = self.here.load_factor
-        if len(known) > 1 and abs(load_factor - at) > 2 * abs(at - known[-2].load_factor):
-            known = known[-1:]
-        return hermite_extrapolation([(p.load_factor, p.z, p.rate) for p in known], load_factor)
 
 
 def hermite_extrapolation(known: Sequence[tuple[float, Array, Array]], at: float) -> Array:
@@ -146,12 +171,12 @@ def first_point(watch: Watch, start: tuple[float, Array] | None) -> tuple[Point,
     """
     work = watch.work
     newton = _settle(watch) if start is None else equilibrium(work, *start)
-    return _held(work, newton, 0.0 if start is None else start[0]), newton.norms
+    return _held(work, newton), newton.norms
 
 
-def _held(work: Followed, newton: Newton, load_factor: float) -> Point:
+def _held(work: Followed, newton: Newton) -> Point:
     """The point where Newton ended; refused where nothing holds the scene."""
-    point, reason = reached(work, newton, load_factor)
+    point, reason = reached(work, newton)
     if point is None:
         raise InvalidParameter("scene", reason, "strips that can move, but not freely")
     return point
@@ -175,7 +200,7 @@ def _grown(watch: Watch) -> Array:
     growing = watch.work.growing()
     own = Watch(growing, leaves=watch.leaves, by_load=True, place=Place(system=None))
     newton = solve(growing, growing.state(growing.system.rest), 0.0)
-    begin = _held(growing, newton, 0.0)
+    begin = _held(growing, newton)
     follower = Follower(own, begin, newton.norms)
     own.first = (0.0, begin.z)
     message = follower.advance(1.0)

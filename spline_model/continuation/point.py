@@ -101,12 +101,12 @@ def stand(work: Followed, z: Array, load_factor: float, energies: tuple[float, f
     )
 
 
-def reached(work: Followed, found: Newton, load_factor: float) -> tuple[Point | None, str]:
+def reached(work: Followed, found: Newton) -> tuple[Point | None, str]:
     """The point where Newton ended; None, and why, where it did not converge or the tangent is singular."""
     if found.reason:
         return None, found.reason
     try:
-        return stand(work, found.z, load_factor, found.energies), ""
+        return stand(work, found.z, found.load_factor, found.energies), ""
     except np.linalg.LinAlgError as error:
         return None, str(error)
 

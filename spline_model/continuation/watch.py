@@ -167,7 +167,7 @@ def _leave(work: Followed, crossing: Crossing) -> Point | None:
         found = correct(work, z, crossing.told.load_factor, normal, 0.0)
         if found.reason or work.refuse(found.z) or work.unresolved(found.z, found.load_factor):
             continue
-        point, _ = reached(work, found, found.load_factor)
+        point, _ = reached(work, found)
         if point is not None:
             return point
     return None

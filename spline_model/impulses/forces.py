@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import math
 
-from spline_model.bordered import assemble, derivatives
+from spline_model.bordered import assemble, bend, derivatives, stretch
 from spline_model.effects.boundary import factor_at
 from spline_model.impulses.arrays import ACTIVE, BEGIN, COORDINATE, DRIVE, ORIGIN, PAIRS, SIZE
 from spline_model.quadrature import (
-    CURVATURE,
     FIRST,
     MEASURE,
     MODE,
@@ -22,7 +21,7 @@ from spline_model.quadrature import (
     WIDTH,
 )
 from spline_model.strip.compiled import called, kernel
-from spline_model.strip.laws import MATERIAL, SPATIAL, bending_law, stretching_law
+from spline_model.strip.laws import MATERIAL
 
 
 @called()
@@ -88,10 +87,10 @@ def strain_energy(z, v, problem, space):
     for p in range(points.place.shape[0]):
         place, numbers = points.place[p], points.numbers[p]
         x1, y1, x2, y2 = derivatives(z, place[FIRST], place[WIDTH], points.basis[0, p], points.basis[1, p])
-        s, speed, law = x1 * x1 + y1 * y1, numbers[SPEED], min(place[MEASURE], SPATIAL)
+        s = x1 * x1 + y1 * y1
         length, phi = math.sqrt(s), (x1 * y2 - y1 * x2) / s
-        bent = bending_law(phi, length, speed, numbers[CURVATURE], numbers[RIGIDITY], 0.0, 0.0, law)[0]
-        stretched = stretching_law(length, speed, numbers[STRAIN], numbers[STRETCHING], law)[0]
+        bent = bend(phi, length, numbers, place[MEASURE])[0]
+        stretched = stretch(length, 0.0, 0, numbers, place[MEASURE])[0]
         energy += numbers[WEIGHT] * (bent + stretched)
     axial_strains(z, v, False, problem, strains)
     for k in range(strains.size):

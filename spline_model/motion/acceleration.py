@@ -166,18 +166,17 @@ def _strip_system(s, tied, grid, strips, room):
 
 
 @part()
-def _follow_ends(s, at, tied, size, poses, grid, strips, room, push):
-    """Accelerations of a strip from those of the bodies, in place of the rest of its equations."""
-    lead, count, g, h, y = strips.lead, grid.follow.shape[2], room.g[s], room.h[s], room.y
-    tip, root, first = strips.tips[s] >= 0, strips.roots[s] >= 0, 2 + max(tied - 1, 0)
-    k, last, force, drift = first, at + strips.own - 2, room.force[s], room.drift[s]
-    if tip:
+def _solve_ends(s, tied, size, poses, strips, room, push):
+    """A strip's unknowns y from its bodies' and the rest of its equations, and its axial forces."""
+    g, h, y, first = room.g[s], room.h[s], room.y, 2 + max(tied - 1, 0)
+    tip, root, k = strips.tips[s], strips.roots[s], first
+    if tip >= 0:
         for i in range(3):
-            y[k + i] = push[3 * strips.tips[s] + i]
+            y[k + i] = push[3 * tip + i]
         k += 3
-    if root:
+    if root >= 0:
         for i in range(3):
-            y[k + i] = push[3 * strips.roots[s] + i]
+            y[k + i] = push[3 * root + i]
         k += 3
     if tied > 0:
         y[k] = room.axial[s, 0] = room.load[poses + s]
@@ -188,19 +187,26 @@ def _follow_ends(s, at, tied, size, poses, grid, strips, room, push):
         y[i] = total / h[i, i]
     for a in range(1, tied):
         room.axial[s, a] = y[a + 1]
+
+
+@part()
+def _follow_ends(s, at, tied, grid, strips, room, push):
+    """Accelerations of a strip's ends (2, 4) from its unknowns and its bodies, and of its own coordinates."""
+    lead, count, y, last = strips.lead, grid.follow.shape[2], room.y, at + strips.own - 2
+    force, drift, tip, root = room.force[s], room.drift[s], strips.tips[s], strips.roots[s]
+    c, lever, ends, pull = room.covector, room.lever[s], room.ends[s], room.inner
     if lead == 2:
         push[last], push[last + 1] = y[0], y[1]
-    c, lever, ends, pull = room.covector, room.lever[s], room.ends[s], room.inner
     for i in range(2):
         c[i, INNER_ROOT] = drift[i, INNER_ROOT] + y[0] * ends[0, 2 + i]
         c[i, INNER_TIP] = drift[i, INNER_TIP] + y[1] * ends[1, 2 + i]
         c[i, TIP], c[i, ROOT] = drift[i, TIP], drift[i, ROOT]
-        if tip:
-            shift, spin = push[3 * strips.tips[s] + i], push[3 * strips.tips[s] + 2]
+        if tip >= 0:
+            shift, spin = push[3 * tip + i], push[3 * tip + 2]
             c[i, INNER_TIP] += shift + spin * lever[i]
             c[i, TIP] += shift + spin * lever[2 + i]
-        if root:
-            shift, spin = push[3 * strips.roots[s] + i], push[3 * strips.roots[s] + 2]
+        if root >= 0:
+            shift, spin = push[3 * root + i], push[3 * root + 2]
             c[i, INNER_ROOT] += shift + spin * lever[4 + i]
             c[i, ROOT] += shift + spin * lever[6 + i]
         for q in range(count):
@@ -214,6 +220,24 @@ def _follow_ends(s, at, tied, size, poses, grid, strips, room, push):
             for p in range(4):
                 total -= grid.follow[s, p, j] * c[i, p]
             push[at + 2 * j + i] = total
+
+
+@part()
+def _solve_bodies(poses, tangent, load, push):
+    """Accelerations of the bodies, and in place of the load the axial forces beside them; upper tangent."""
+    for i in range(load.size):
+        inverse = 1.0 / tangent[i, i]
+        for j in range(i + 1, load.size):
+            factor = tangent[i, j] * inverse
+            load[j] -= factor * load[i]
+            for k in range(j, load.size):
+                tangent[j, k] -= factor * tangent[i, k]
+    for i in range(load.size - 1, -1, -1):
+        for j in range(i + 1, load.size):
+            load[i] -= tangent[i, j] * load[j]
+        load[i] /= tangent[i, i]
+        if i < poses:
+            push[i] = load[i]
 
 
 @part()
@@ -244,21 +268,10 @@ def accelerate(r, w, sharpness, grid, strips, masses, room, push):
         first = 2 + max(tied - 1, 0)
         eliminate(first, size, room.g[s], room.h[s])
         scatter(first, size, strips.tips[s], strips.roots[s], poses + s, room.g[s], room.h[s], load, tangent)
-    for i in range(load.size):
-        inverse = 1.0 / tangent[i, i]
-        for j in range(i + 1, load.size):
-            factor = tangent[i, j] * inverse
-            load[j] -= factor * load[i]
-            for k in range(j, load.size):
-                tangent[j, k] -= factor * tangent[i, k]
-    for i in range(load.size - 1, -1, -1):
-        for j in range(i + 1, load.size):
-            load[i] -= tangent[i, j] * load[j]
-        load[i] /= tangent[i, i]
-        if i < poses:
-            push[i] = load[i]
+    _solve_bodies(poses, tangent, load, push)
     for s in range(strips.roots.size):
         tied = grid.tied[s]
         size = 2 + max(tied - 1, 0) + (3 if strips.tips[s] >= 0 else 0) + (3 if strips.roots[s] >= 0 else 0)
         size += 1 if tied > 0 else 0
-        _follow_ends(s, poses + s * own, tied, size, poses, grid, strips, room, push)
+        _solve_ends(s, tied, size, poses, strips, room, push)
+        _follow_ends(s, poses + s * own, tied, grid, strips, room, push)

@@ -162,38 +162,53 @@ def _add_turning(row, turn, maps, ends, fx, fy, ox, oy, h):
     )
 
 
+@called()
+def _combine_end(row, inner, outer, half, n, maps, held, size, h, m):
+    """The three rows of an end that moves, its inner point with it or not."""
+    m[0], m[1], m[2], m[3] = held, 0.0, 1.0, 0.0
+    _combine(row, inner, outer, half, n, m, size, h)
+    m[0], m[1], m[2], m[3] = 0.0, held, 0.0, 1.0
+    _combine(row + 1, inner, outer, half, n, m, size, h)
+    m[0], m[1], m[2], m[3] = maps[2], maps[3], maps[4], maps[5]
+    _combine(row + 2, inner, outer, half, n, m, size, h)
+
+
+@part()
+def _project_columns(s, strips, work):
+    """The tangent with the inertia by changes of the element coordinates: forces on the control points."""
+    n, lead, roots, tips = strips.mass.shape[1], strips.lead, strips.roots[s], strips.tips[s]
+    blocks, half, root, tip = work.blocks, work.half, work.maps[s, 0, 8:], work.maps[s, 1, 8:]
+    for i in range(n):
+        for j in range(n):
+            blocks[0, i * n + j] += work.stiff[s, i, j]
+            blocks[3, i * n + j] += work.stiff[s, i, j]
+    for i in range(n):
+        begin, end = i * n, i * n + n
+        _project(blocks[0, begin:end], blocks[1, begin:end], root, tip, lead, roots, tips, half[i])
+        _project(blocks[2, begin:end], blocks[3, begin:end], root, tip, lead, roots, tips, half[n + i])
+
+
 @part()
 def to_reduced(s, strips, work):
     """Force, tangent and coupling of a strip in its element coordinates; returns their number.
 
     The inertia is added to the tangent on the way.
     """
-    n, count, lead, own = strips.mass.shape[1], strips.compliance.shape[1], strips.lead, strips.own
+    n, lead, own, held = strips.mass.shape[1], strips.lead, strips.own, 1.0 if strips.lead == 2 else 0.0
     roots, tips, root, tip = strips.roots[s], strips.tips[s], work.maps[s, 0], work.maps[s, 1]
-    half, g, h, force, held = work.half, work.g[s], work.h[s], work.force[s], 1.0 if lead == 2 else 0.0
-    by_root, by_tip = root[8:], tip[8:]
-    blocks, stiff = work.blocks, work.stiff[s]
-    for i in range(n):
-        for j in range(n):
-            blocks[0, i * n + j] += stiff[i, j]
-            blocks[3, i * n + j] += stiff[i, j]
+    half, g, h, force, m, k = work.half, work.g[s], work.h[s], work.force[s], work.mix, own
     size = own + (3 if tips >= 0 else 0) + (3 if roots >= 0 else 0)
-    for i in range(n):
-        begin, end = i * n, i * n + n
-        _project(blocks[0, begin:end], blocks[1, begin:end], by_root, by_tip, lead, roots, tips, half[i])
-        _project(blocks[2, begin:end], blocks[3, begin:end], by_root, by_tip, lead, roots, tips, half[n + i])
+    _project_columns(s, strips, work)
     for i in range(lead, n - lead):
         for j in range(size):
             h[2 * (i - lead), j] = half[i, j]
             h[2 * (i - lead) + 1, j] = half[n + i, j]
-    m = work.mix
     if lead == 2:
         m[2] = m[3] = 0.0
         m[0], m[1] = root[0], root[1]
         _combine(own - 2, 1, 0, half, n, m, size, h)
         m[0], m[1] = tip[0], tip[1]
         _combine(own - 1, n - 2, n - 1, half, n, m, size, h)
-    k = own
     _project(force[0], force[1], root, tip, lead, roots, tips, g)
     if tips >= 0:
         _combine_end(k, n - 2, n - 1, half, n, tip, held, size, h, m)
@@ -208,22 +223,11 @@ def to_reduced(s, strips, work):
             own - 2, k + 2, root, work.ends[s, 0], held * force[0, 1], held * force[1, 1], force[0, 0],
             force[1, 0], h,
         )  # fmt: skip
-    for c in range(count):
+    for c in range(strips.compliance.shape[1]):
         pull, along = work.pull[c], work.along[c]
         _project(pull[:n], pull[n:], root, tip, lead, roots, tips, work.left[c])
-        _project(along[:n], along[n:], by_root, by_tip, lead, roots, tips, work.right[s, c])
+        _project(along[:n], along[n:], root[8:], tip[8:], lead, roots, tips, work.right[s, c])
     return size
-
-
-@called()
-def _combine_end(row, inner, outer, half, n, maps, held, size, h, m):
-    """The three rows of an end that moves, its inner point with it or not."""
-    m[0], m[1], m[2], m[3] = held, 0.0, 1.0, 0.0
-    _combine(row, inner, outer, half, n, m, size, h)
-    m[0], m[1], m[2], m[3] = 0.0, held, 0.0, 1.0
-    _combine(row + 1, inner, outer, half, n, m, size, h)
-    m[0], m[1], m[2], m[3] = maps[2], maps[3], maps[4], maps[5]
-    _combine(row + 2, inner, outer, half, n, m, size, h)
 
 
 @part()

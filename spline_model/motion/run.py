@@ -47,10 +47,9 @@ def clamp_forces(s, state, strips, work):
 
 
 @part()
-def _accept(time, h, active, state, strips, masses, work):
-    """Take the solved step: books of work and losses, velocities, coordinates."""
-    poses, n, modes = masses.inertia.size, strips.mass.shape[1], strips.compliance.shape[1]
-    own, dy, y, totals = strips.own, work.dy, state.y, state.totals
+def _count_work(time, h, active, state, strips, masses, work):
+    """What loads and drives did in the solved step, and what the drives' reactions were."""
+    n, dy, totals = strips.mass.shape[1], work.dy, state.totals
     for f in range(masses.load_body.size):
         value, i = load_at(f, time + 0.5 * h, masses), masses.load_body[f]
         if i >= 0:
@@ -64,6 +63,14 @@ def _accept(time, h, active, state, strips, masses, work):
             i = masses.drive_at[d]
             totals[0] += work.residual[i] * dy[i]
             state.reaction[d] = work.residual[i] / (cayley(dy[i])[0] if i % 3 == 2 else 1.0)
+
+
+@part()
+def _accept(time, h, active, state, strips, masses, work):
+    """Take the solved step: books of work and losses, velocities, coordinates."""
+    poses, n, modes = masses.inertia.size, strips.mass.shape[1], strips.compliance.shape[1]
+    own, dy, y, totals = strips.own, work.dy, state.y, state.totals
+    _count_work(time, h, active, state, strips, masses, work)
     for i in range(poses):
         mean = dy[i] / h
         totals[1] += h * masses.drag[i] * mean * mean

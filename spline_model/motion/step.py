@@ -75,19 +75,11 @@ def _place_of(i, tip, root, behind):
     return behind + i
 
 
-@called(entered=True)
-def assemble(h, state, strips, masses, work):
-    """Residual of the step dy, and its tangent at the bodies with the strips condensed; the largest residual.
-
-    In EI/L^2, EI/L and L, by the places of y; those of held coordinates are what holds them and do not count.
-    """
-    poses, n, modes = masses.inertia.size, strips.mass.shape[1], strips.compliance.shape[1]
-    own, dy, raw, reduced, tangent = strips.own, work.dy, work.residual, work.reduced, work.tangent
-    for i in range(reduced.size):
-        reduced[i] = 0.0
-        for j in range(reduced.size):
-            tangent[i, j] = 0.0
-    for i in range(poses):
+@part()
+def _add_bodies(h, state, masses, work):
+    """Residual and tangent of the bodies alone, and their poses at the step's end."""
+    dy, raw, tangent = work.dy, work.residual, work.tangent
+    for i in range(masses.inertia.size):
         mean, load = dy[i] / h, work.load[i]
         work.pose[i] = state.y[i] + dy[i]
         tangent[i, i] = 2.0 / (h * h) * masses.inertia[i] + masses.drag[i] / h
@@ -99,38 +91,57 @@ def assemble(h, state, strips, masses, work):
                 load *= share
         raw[i] = 2.0 / h * masses.inertia[i] * (mean - state.rate[i]) + masses.drag[i] * mean
         raw[i] -= masses.weight[i] + load
-        reduced[i] = raw[i]
+        work.reduced[i] = raw[i]
+
+
+@part()
+def _add_strip(s, poses, h, state, strips, work):
+    """Residual of a strip, and what it does to the bodies with its own coordinates condensed."""
+    n, own, modes = strips.mass.shape[1], strips.own, strips.compliance.shape[1]
+    at, behind, dy, raw = poses + s * (own + modes), poses + s * strips.outer, work.dy, work.residual
+    tip, root = strips.tips[s], strips.roots[s]
+    move_strip(s, at, state, strips, work)
+    force, move = work.force[s], work.move[s]
+    for k in range(2):
+        for i in range(n):
+            total = work.steady[s, k, i]
+            for j in range(n):
+                total += work.stiff[s, i, j] * move[k, j]
+            force[k, i] = total
+    add_points(s, dy[at + own : at + own + modes], h, state, strips, work)
+    if strips.lead == 1:
+        turn_roots(s, dy, state, strips, work)
+    size, g, hessian = to_reduced(s, strips, work), work.g[s], work.h[s]
+    if strips.lead == 1:
+        turn_bodies(s, strips, work)
+    for i in range(own):
+        raw[at + i] = g[i]
+    for k in range(modes):
+        raw[at + own + k] = work.gap[s, k]
+    for i in range(own, size):
+        raw[_place_of(i - own, tip, root, behind)] += g[i]
+    size = condense(s, size, strips, work)
+    for i in range(own, size):
+        row = _place_of(i - own, tip, root, behind)
+        work.reduced[row] += g[i]
+        for j in range(own, size):
+            work.tangent[row, _place_of(j - own, tip, root, behind)] += hessian[i, j]
+
+
+@called(entered=True)
+def assemble(h, state, strips, masses, work):
+    """Residual of the step dy, and its tangent at the bodies with the strips condensed; the largest residual.
+
+    In EI/L^2, EI/L and L, by the places of y; those of held coordinates are what holds them and do not count.
+    """
+    poses, raw, norm = masses.inertia.size, work.residual, 0.0
+    for i in range(work.reduced.size):
+        work.reduced[i] = 0.0
+        for j in range(work.reduced.size):
+            work.tangent[i, j] = 0.0
+    _add_bodies(h, state, masses, work)
     for s in range(strips.roots.size):
-        at = poses + s * (own + modes)
-        tip, root = strips.tips[s], strips.roots[s]
-        move_strip(s, at, state, strips, work)
-        force, move = work.force[s], work.move[s]
-        for k in range(2):
-            for i in range(n):
-                total = work.steady[s, k, i]
-                for j in range(n):
-                    total += work.stiff[s, i, j] * move[k, j]
-                force[k, i] = total
-        add_points(s, dy[at + own : at + own + modes], h, state, strips, work)
-        if strips.lead == 1:
-            turn_roots(s, dy, state, strips, work)
-        size, g, hessian = to_reduced(s, strips, work), work.g[s], work.h[s]
-        if strips.lead == 1:
-            turn_bodies(s, strips, work)
-        behind = poses + s * strips.outer
-        for i in range(own):
-            raw[at + i] = g[i]
-        for k in range(modes):
-            raw[at + own + k] = work.gap[s, k]
-        for i in range(own, size):
-            raw[_place_of(i - own, tip, root, behind)] += g[i]
-        size = condense(s, size, strips, work)
-        for i in range(own, size):
-            row = _place_of(i - own, tip, root, behind)
-            reduced[row] += g[i]
-            for j in range(own, size):
-                tangent[row, _place_of(j - own, tip, root, behind)] += hessian[i, j]
-    norm = 0.0
+        _add_strip(s, poses, h, state, strips, work)
     for i in range(raw.size):
         if i >= poses or work.held[i] == 0:
             norm = max(norm, abs(raw[i])) if raw[i] == raw[i] else math.inf

@@ -144,22 +144,49 @@ def _add_products(begin, n, pairs, h0, h1, h2, h3, block):
 
 
 @part()
+def _clear_points(s, a, strips, work):
+    """Set what the Gauss points add to to zero, and the gaps to what axial forces do to their own strains."""
+    for q in range(4):
+        for c in range(work.blocks.shape[1]):
+            work.blocks[q, c] = 0.0
+    for k in range(a.size):
+        work.gap[s, k] = -strips.compliance[s, k] * a[k]
+        for c in range(work.pull.shape[1]):
+            work.pull[k, c] = work.along[k, c] = 0.0
+
+
+@part()
+def _add_axial(begin, weight, rate, mean, dx, dy, tx, ty, modes, d1, a, gap, pull, along):
+    """Add one Gauss point to gaps, pulls and their derivatives, of axial forces a (K,); returns their sum N.
+
+    mean: of the strain over the step; dx, dy: its discrete gradient; tx, ty: the tangent at the end.
+    """
+    tension, n = 0.0, pull.shape[1] // 2
+    share = weight * (0.5 + rate)
+    for k in range(a.size):
+        mode = modes[k]
+        tension += mode * a[k]
+        gap[k] += weight * mode * mean
+        px, py = weight * mode * dx, weight * mode * dy
+        qx, qy = share * mode * tx, share * mode * ty
+        for i in range(d1.size):
+            u = d1[i]
+            pull[k, begin + i] += px * u
+            pull[k, n + begin + i] += py * u
+            along[k, begin + i] += qx * u
+            along[k, n + begin + i] += qy * u
+    return tension
+
+
+@part()
 def add_points(s, a, h, state, strips, work):
     """Forces on the control points, their tangent in the new ones, gaps and their derivatives."""
-    n, width = strips.mass.shape[1], strips.d1.shape[1]
-    count, measure = strips.compliance.shape[1], strips.measure
-    force, blocks, pull, along, gap = work.force[s], work.blocks, work.pull, work.along, work.gap[s]
-    rate, strain = strips.relaxation[s] / h, strips.strain[s]
-    for q in range(4):
-        for c in range(n * n):
-            blocks[q, c] = 0.0
-    for k in range(count):
-        gap[k] = -strips.compliance[s, k] * a[k]
-        for c in range(2 * n):
-            pull[k, c] = along[k, c] = 0.0
+    n, measure, force, blocks = strips.mass.shape[1], strips.measure, work.force[s], work.blocks
+    rate, strain, stretching = strips.relaxation[s] / h, strips.strain[s], strips.stretching[s]
+    _clear_points(s, a, strips, work)
     for p in range(strips.weight.size):
         begin, weight, speed = strips.first[p], strips.weight[p], strips.speed[s, p]
-        old, new = state.at[s, p], work.at[s, p]
+        old, new, d1, d2 = state.at[s, p], work.at[s, p], strips.d1[p], strips.d2[p]
         curve_at(p, work.points[s], strips.first, strips.d1, strips.d2, new)
         x1, y1, v0, v1 = new[0], new[1], old[4], new[4]
         (
@@ -170,37 +197,23 @@ def add_points(s, a, h, state, strips, work):
             speed, strips.curvature[s, p], strips.rigidity[s, p], strips.curl[s, p, 0],
             strips.curl[s, p, 1], rate, measure,
         )  # fmt: skip
-        inverse, w = 1.0 / v1, 2.0 / (v0 + v1)
+        inverse, w, tension, stiffness = 1.0 / v1, 2.0 / (v0 + v1), 0.0, 0.0
         dx, dy = 0.5 * (old[0] + x1) * w, 0.5 * (old[1] + y1) * w
         tx, ty = x1 * inverse, y1 * inverse
-        tension = stiffness = 0.0
-        if count > 0:
-            mean = 0.5 * (v0 + v1) - (1.0 + strain) * speed + rate * (v1 - v0)
-            share = weight * (0.5 + rate)
-            for k in range(count):
-                mode = strips.modes[s, p, k]
-                tension += mode * a[k]
-                gap[k] += weight * mode * mean
-                px, py = weight * mode * dx, weight * mode * dy
-                qx, qy = share * mode * tx, share * mode * ty
-                for i in range(width):
-                    u = strips.d1[p, i]
-                    pull[k, begin + i] += px * u
-                    pull[k, n + begin + i] += py * u
-                    along[k, begin + i] += qx * u
-                    along[k, n + begin + i] += qy * u
-        if strips.stretching[s] > 0.0:
-            tension, stiffness = stretching_between(
-                v0, v1, speed, strain, strips.stretching[s], rate, measure
+        if a.size > 0:
+            mean, modes = 0.5 * (v0 + v1) - (1.0 + strain) * speed + rate * (v1 - v0), strips.modes[s, p]
+            tension = _add_axial(
+                begin, weight, rate, mean, dx, dy, tx, ty, modes, d1, a, work.gap[s], work.pull, work.along
             )
+        if stretching > 0.0:
+            tension, stiffness = stretching_between(v0, v1, speed, strain, stretching, rate, measure)
         turn = 0.5 * tension * w
         grow = stiffness - turn
         g0, g1 = weight * (g0 + tension * dx), weight * (g1 + tension * dy)
         g2, g3 = weight * g2, weight * g3
-        for i in range(width):
-            u, q = strips.d1[p, i], strips.d2[p, i]
-            force[0, begin + i] += u * g0 + q * g2
-            force[1, begin + i] += u * g1 + q * g3
+        for i in range(d1.size):
+            force[0, begin + i] += d1[i] * g0 + d2[i] * g2
+            force[1, begin + i] += d1[i] * g1 + d2[i] * g3
         pairs = strips.pairs[p]
         xx, xy = weight * (h00 + grow * dx * tx + turn), weight * (h01 + grow * dx * ty)
         yx, yy = weight * (h10 + grow * dy * tx), weight * (h11 + grow * dy * ty + turn)

@@ -11,13 +11,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.basis import all_modes
-from spline_model.compile import compile_scene
+from spline_model.compile import System, compile_scene
 from spline_model.effects import Bending, MixedStretching
 from spline_model.effects.plate import STEP
 from spline_model.errors import InvalidParameter
 from spline_model.mechanism import Mechanism
 from spline_model.pivot import Pivot
-from spline_model.reduced.model import from_unknowns, reduced
+from spline_model.reduced.model import Reduced, from_unknowns, reduced
 from spline_model.reduced.numbers import in_order
 from spline_model.reduced.states import gathered
 from spline_model.reduced.whole import whole_tangents
@@ -68,14 +68,8 @@ def sensitivities(
     mechanism = asked
     driven = not np.isnan(solution.torque).all()
     system = compile_scene(mechanism.driven(1.0, body) if driven else mechanism.scene)
-    model = reduced(system, longest=math.inf)
-    if model is None:
-        unknown = "printed forces or an own potential"
-        raise InvalidParameter("effects", unknown, "what the strips' elements know")
     z = solution.states
-    if z.shape[1:] != (system.layout.size,):
-        got = f"{z.shape[1:]} unknowns"
-        raise InvalidParameter("solution", got, f"a solution of this pivot with {system.layout.size}")
+    model = _model_of(system, z)
     y, varied = from_unknowns(model, z), Varied.of(model, mechanism.design, rates)
     still = Elements(model=model, varied=varied, y=y[None] + 0j)
     changes, rate = _differentiate(still, solution, rates.held(model))
@@ -99,6 +93,18 @@ def sensitivities(
         states=states.derivative,
         counters={"factorisations": len(z), "back_substitutions": len(z) * (len(parameters) + 1)},
     )
+
+
+def _model_of(system: System, z: Array) -> Reduced:
+    """The strips' elements of a system; refuses what they do not know, and z (S, N) of another system."""
+    model = reduced(system, longest=math.inf)
+    if model is None:
+        unknown = "printed forces or an own potential"
+        raise InvalidParameter("effects", unknown, "what the strips' elements know")
+    if z.shape[1:] != (system.layout.size,):
+        got = f"{z.shape[1:]} unknowns"
+        raise InvalidParameter("solution", got, f"a solution of this pivot with {system.layout.size}")
+    return model
 
 
 def _unknowns(elements: Elements) -> NDArray[Any]:
