@@ -1,5 +1,6 @@
-"""What the tests in a browser share: opening the page, and scripts that look at it."""
+"""What the tests in a browser share: opening the page, choosing in it, and scripts that look at it."""
 
+import json
 import time
 
 #: Collects, for two rounds of the film, the burned-in number of each picture that is shown and its state.
@@ -28,6 +29,14 @@ def load(browser, server):
     browser.open(server.address)
     browser.wait("window.studio?.drawn ? true : false", 20.0)
     return time.monotonic() - begin
+
+
+def chosen(browser, name, value):
+    """Choose a value of the list, or type it into the box, of that id."""
+    browser.ask(
+        f"(e => {{ e.value = {json.dumps(value)}; e.dispatchEvent(new Event('change')); }})"
+        f"(document.getElementById('{name}'))"
+    )
 
 
 #: Makes copies of a picture late, and every other one's code later than that of the next: a busy machine.
