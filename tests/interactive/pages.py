@@ -39,20 +39,14 @@ def chosen(browser, name, value):
     )
 
 
-#: Makes copies of a picture late, and every other one's code later than that of the next: a busy machine.
-LATE = """
-const wait = (time) => new Promise((done) => setTimeout(done, time));
-const copied = window.createImageBitmap.bind(window), coded = OffscreenCanvas.prototype.convertToBlob;
-let turn = 0;
-window.createImageBitmap = async (...words) => {
-  const picture = await copied(...words);
-  await wait(100);
-  return picture;
-};
+#: Keeps the page busy most of the time, and codes what is kept of a picture late: a busy machine.
+BUSY = """
+const coded = OffscreenCanvas.prototype.convertToBlob;
 OffscreenCanvas.prototype.convertToBlob = async function (...words) {
-  await wait(turn++ % 2 ? 20 : 140);
+  await new Promise((done) => setTimeout(done, 140));
   return coded.apply(this, words);
 };
+setInterval(() => { const end = performance.now() + 90; while (performance.now() < end); }, 130);
 """
 #: Counts the sockets that a page opens.
 COUNT_SOCKETS = """
