@@ -2,16 +2,16 @@
 
     python -m tests.interactive.latency [PICTURES]
 
-One picture is under way at a time, each new one as soon as the state of the last has come, as JPEG of 640 x
-480 px over the loopback; the camera, the page's coding and the drawing come on top in a browser.
+One picture is under way at a time, each new one as soon as the state of the last has come, of 640 x 480
+px over the loopback; the camera, the page's reading and the drawing come on top in a browser.
 """
 
 import sys
 import time
+from itertools import pairwise
 
 import numpy as np
 
-from studies.interactive.tracking.tracker import encoded
 from studies.interactive.web import protocol
 from studies.interactive.web.server import Server, Settings, warm_up
 from tests.interactive.films import PERIOD, film
@@ -19,23 +19,26 @@ from tests.interactive.sockets import answer, opened
 
 #: Parts of the way through the server that it times itself; the rest is the loopback's, the threads' and this
 #: client's.
-PARTS = ("decode", "track", "solve", "send")
+PARTS = ("track", "solve", "send")
 
 
 def measured(count):
-    """Milliseconds (count, 6) of `count` pictures: the parts, the rest, and the whole."""
-    pictures, rows = [encoded(picture) for picture in film(frames=PERIOD, samples=3)], []
+    """Milliseconds (count, 5) of `count` pictures: the parts, the rest, and the whole."""
+    pictures = [picture.tobytes() for picture in film(frames=PERIOD, samples=3)]
+    states, wholes = [], []
     with Server(Settings(camera="browser")) as hosted, opened(hosted) as socket:
-        for k in range(count):
-            head = protocol.HEADER.pack(protocol.PICTURE, 1, protocol.JPEG, 0, k, 640, 480, 40.0 * k)
+        for k in range(count + 1):
+            head = protocol.HEADER.pack(protocol.PICTURE, 1, k, 640, 480, 40.0 * k)
             begin = time.perf_counter()
             socket.send(head + pictures[k % PERIOD])
             while (state := answer(socket))["seq"] != k:
                 pass
-            whole = 1e3 * (time.perf_counter() - begin)
-            parts = [state[f"{name}_ms"] for name in PARTS]
-            rows.append([*parts, whole - sum(parts), whole])
-    return np.array(rows)
+            wholes.append(1e3 * (time.perf_counter() - begin))
+            states.append(state)
+    # a state tells how long sending the one before took
+    parts = [[s["track_ms"], s["solve_ms"], after["send_ms"]] for s, after in pairwise(states)]
+    whole = np.array(wholes[:-1])
+    return np.column_stack((parts, whole - np.sum(parts, axis=1), whole))
 
 
 def main(count=250):

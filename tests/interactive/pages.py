@@ -1,5 +1,6 @@
-"""What the tests in a browser share: opening the page, and scripts that look at it."""
+"""What the tests in a browser share: opening the page, choosing in it, and scripts that look at it."""
 
+import json
 import time
 
 #: Collects, for two rounds of the film, the burned-in number of each picture that is shown and its state.
@@ -30,20 +31,22 @@ def load(browser, server):
     return time.monotonic() - begin
 
 
-#: Makes copies of a picture late, and every other one's code later than that of the next: a busy machine.
-LATE = """
-const wait = (time) => new Promise((done) => setTimeout(done, time));
-const copied = window.createImageBitmap.bind(window), coded = OffscreenCanvas.prototype.convertToBlob;
-let turn = 0;
-window.createImageBitmap = async (...words) => {
-  const picture = await copied(...words);
-  await wait(100);
-  return picture;
-};
+def chosen(browser, name, value):
+    """Choose a value of the list, or type it into the box, of that id."""
+    browser.ask(
+        f"(e => {{ e.value = {json.dumps(value)}; e.dispatchEvent(new Event('change')); }})"
+        f"(document.getElementById('{name}'))"
+    )
+
+
+#: Keeps the page busy most of the time, and codes what is kept of a picture late: a busy machine.
+BUSY = """
+const coded = OffscreenCanvas.prototype.convertToBlob;
 OffscreenCanvas.prototype.convertToBlob = async function (...words) {
-  await wait(turn++ % 2 ? 20 : 140);
+  await new Promise((done) => setTimeout(done, 140));
   return coded.apply(this, words);
 };
+setInterval(() => { const end = performance.now() + 90; while (performance.now() < end); }, 130);
 """
 #: Counts the sockets that a page opens.
 COUNT_SOCKETS = """

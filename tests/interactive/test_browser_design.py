@@ -19,14 +19,6 @@ pytestmark = [
 ]
 
 
-@pytest.fixture(scope="module")
-def page():
-    """A page without a camera."""
-    with Server(Settings(camera="none")) as hosted, Browser() as browser:
-        load(browser, hosted)
-        yield browser
-
-
 #: Where a clamp of a strip's end is on the page [px], and what is dragged of the design.
 CLAMP = "studio.view.page(...studio.view.clamp(studio.state, {strip}, {end}))"
 DESIGN = "['length', 'inclination', 'crossing_ratio'].map((name) => studio.state.values[name])"
@@ -86,20 +78,6 @@ def test_load_is_set_and_seen(page):
     slider = "document.querySelector(\"input[aria-label='load, downward, slider']\")"
     page.ask(f"(e => {{ e.value = '0'; e.dispatchEvent(new Event('change')); }})({slider})")
     page.wait("studio.state.values.load === 0")
-
-
-def test_video_is_recorded(page):
-    """Requirement: a key begins a video of the picture, with its words, and ends it as a file."""
-    page.key("f")
-    page.wait("studio.view.caption && document.getElementById('video').textContent.startsWith('Stop')")
-    for _ in range(4):
-        page.key("ArrowUp")
-    page.key("r")
-    page.wait("studio.video.kept > 1000")
-    page.key("f")
-    page.wait("studio.saved?.name === 'pivot.webm' && studio.saved.size > 1000")
-    assert not page.ask("studio.view.caption")
-    assert page.ask("studio.errors") == []
 
 
 def test_scrubbing_shows_the_pictures():

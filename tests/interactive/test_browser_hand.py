@@ -1,6 +1,5 @@
-"""The page in a real browser without a window and without a camera: mouse, touch, keys and files."""
+"""The page in a real browser without a window and without a camera: mouse, touch and keys."""
 
-import json
 import re
 import time
 
@@ -9,41 +8,10 @@ import pytest
 pytest.importorskip("cv2", reason="the extra `interactive` is not installed")
 pytest.importorskip("uvicorn", reason="the extra `interactive` is not installed")
 
-from studies.interactive.web.browser import Browser, executable
-from studies.interactive.web.server import Server, Settings
-from tests.interactive.pages import ANGLE, BODY, CONTRAST, COUNT_SOCKETS, load
+from studies.interactive.web.browser import executable
+from tests.interactive.pages import ANGLE, BODY, CONTRAST, chosen
 
 pytestmark = [pytest.mark.slow, pytest.mark.skipif(executable() is None, reason="no Chromium on the PATH")]
-
-
-@pytest.fixture(scope="module")
-def hand():
-    """A page without a camera, and its browser."""
-    with Server(Settings(camera="none")) as hosted, Browser() as browser:
-        load(browser, hosted)
-        yield browser
-
-
-@pytest.fixture
-def page(hand):
-    """The same page at rest, with nothing held against it."""
-    hand.ask("document.activeElement.blur()")
-    for key in ("Escape", "l", "0"):
-        hand.key(key)
-    send(hand, do="preset", name="polymer")
-    send(hand, do="drive", by="rotation")
-    hand.wait("studio.state.mode === 'held' && studio.state.displacement[2] === 0")
-    hand.wait("studio.state.drive === 'rotation'")
-    return hand
-
-
-def send(browser, **event):
-    """Send an event as the page would."""
-    names = {"preset": "preset", "drive": "drive"}
-    value = json.dumps(event.get("name") or event.get("by"))
-    browser.ask(
-        f"(e => {{ e.value = {value}; e.onchange(); }})(document.getElementById('{names[event['do']]}'))"
-    )
 
 
 def test_drag_turns_the_body(page):
@@ -65,7 +33,7 @@ def test_drag_turns_the_body(page):
 
 def test_touch_moves_with_two_fingers(page):
     """Requirement: two fingers move and turn the body where the hand holds its whole pose."""
-    send(page, do="drive", by="pose")
+    chosen(page, "drive", "pose")
     page.wait("studio.state.drive === 'pose'")
     x, y = page.ask(BODY)
     page.touch("touchStart", [(x - 60, y), (x + 60, y)])
@@ -167,21 +135,17 @@ def test_solvers_are_chosen_by_their_names(page):
     names = page.ask("[...document.getElementById('solver').options].map((option) => option.text)")
     assert names[0] == "impulses at once (Eq 30), stable form"
     assert "impulses by sweeps over constraints, as printed" in names
-    choose = (
-        "((id, value) => { const e = document.getElementById(id); e.value = value;"
-        " e.dispatchEvent(new Event('change')); })"
-    )
     assert page.ask("document.getElementById('sweeps-row').hidden")
-    page.ask(f"{choose}('solver', 'printed strips')")
+    chosen(page, "solver", "printed strips")
     page.wait("!document.getElementById('sweeps-row').hidden")
-    page.ask(f"{choose}('sweeps', 7)")
+    chosen(page, "sweeps", "7")
     page.wait("studio.state.sweeps === 7")
     page.key("ArrowUp")
     page.key("r")
     text = page.wait("document.getElementById('pace').textContent")
     assert re.search(r"runs at 0\.0*\d of real time", text)
     page.key("0")
-    page.ask(f"{choose}('solver', 'stable direct')")
+    chosen(page, "solver", "stable direct")
     page.wait("studio.state.solver === 'stable direct' && !document.getElementById('pace').textContent")
 
 
@@ -194,49 +158,6 @@ def test_parameters_are_typed_in_their_units(page):
     page.wait("Math.abs(studio.state.values.thickness - 8e-4) < 1e-12")
     page.key("z")
     page.wait("Math.abs(studio.state.values.thickness - 5e-4) < 1e-6")
-
-
-def give(browser, name, text):
-    """Choose a file with that text in the file input of that id."""
-    browser.ask(
-        f"(text => {{ const d = new DataTransfer(); d.items.add(new File([text], 'file'));"
-        f"const f = document.getElementById('{name}'); f.files = d.files;"
-        f"f.dispatchEvent(new Event('change')); }})({json.dumps(text)})"
-    )
-
-
-def test_session_file_is_recorded_and_replayed(page):
-    """Requirement: a session that is recorded in the page is saved as a file, and replayed by it to the
-    states that were recorded; then the page has its own again."""
-    page.key("v")
-    page.wait("document.getElementById('record').classList.contains('on')")
-    for _ in range(4):
-        page.key("ArrowLeft")
-    page.wait("Math.abs(studio.state.pose[2] - 4 * Math.PI / 180) < 1e-9")
-    page.key("v")
-    page.wait("studio.saved?.name === 'session.jsonl'")
-    page.key("0")
-    page.wait("studio.state.pose[2] === 0")
-    give(page, "file", page.ask("studio.saved.text"))
-    page.wait("studio.ring.states.some((s) => s.replay && Math.abs(s.pose[2] - 4 * Math.PI / 180) < 1e-9)")
-    page.wait("!studio.state.replay && studio.state.pose[2] === 0")
-    said = page.ask("document.getElementById('note').textContent")
-    same, count = re.fullmatch(r"The session file has ended: (\d+) of (\d+) states .*\.", said).groups()
-    assert same == count
-
-
-def test_design_is_saved_opened_and_kept(page):
-    """Requirement: the design is saved as a case file and opened from one, and a page that is loaded again
-    goes on with design and pose."""
-    page.key("k")
-    text = page.wait("studio.saved?.name === 'pivot.toml' && studio.saved.text")
-    give(page, "case", text.replace("width_m = 0.01", "width_m = 0.02"))
-    page.wait("studio.state.preset === 'own' && studio.state.values.width === 0.02")
-    page.key("ArrowUp")
-    page.wait("studio.state.pose[2] > 0.08 && JSON.parse(sessionStorage.design).pose[2] > 0.08")
-    page.call("Page.reload")
-    time.sleep(0.5)
-    page.wait("window.studio?.state?.values.width === 0.02 && studio.state.pose[2] > 0.08")
 
 
 #: Drags a slider for two seconds, 60 steps a second, and counts the states that come meanwhile.
@@ -309,16 +230,3 @@ def test_numbers_at_rest_are_nought(page):
     assert page.ask("document.getElementById('status').textContent") == (
         "Held at 0.0°: moment 0 N m, stress 0 % of yield."
     )
-
-
-def test_design_that_is_refused_ends_the_calls(hand):
-    """Requirement: a kept design that the server refuses does not make the page call again and again."""
-    design = {"preset": "polymer", "values": {"width": "x" * 6000}, "drive": "rotation", "pose": [0, 0, 0]}
-    hand.ask(f"window.sessionStorage.setItem('design', {json.dumps(json.dumps(design))})")
-    stop = "Storage.prototype.setItem = () => {};"
-    counted = hand.call("Page.addScriptToEvaluateOnNewDocument", source=COUNT_SOCKETS + stop)
-    hand.call("Page.reload")
-    time.sleep(5.0)
-    assert 1 <= hand.ask("window.sockets") <= 3
-    hand.ask("sessionStorage.removeItem('design')")
-    hand.call("Page.removeScriptToEvaluateOnNewDocument", **counted)

@@ -126,7 +126,12 @@ SAME = {"test_loads_release.py": 2, "test_watched_paths.py": 1}
 #: What theory leaves: the next order of a closed form, a difference for a derivative.
 THEORY = {"test_surrogates.py": 3, "test_readout.py": 3, "test_size_command.py": 1}
 #: What the page promises of what it shows, coarser than it is.
-PROMISED = {"test_browser_hand.py": 1, "test_clock.py": 1, "test_commands.py": 1, "test_server.py": 2}
+PROMISED = {
+    "test_browser_hand.py": 1,
+    "test_clock.py": 1,
+    "test_commands.py": 1,
+    "test_server_pictures.py": 2,
+}
 
 
 def test_accuracies_of_answers_are_gates():

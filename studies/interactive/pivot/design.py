@@ -64,13 +64,11 @@ def build(values: Mapping[str, float], *, loaded: bool = False) -> Pivot:
 class Reading:
     """What the control points of both strips tell; P stations.
 
-    shape (2, P, 2) [m]; stress (2, P): largest in the section [Pa], |N| / A + |M| / W; strain (2,): mean
-    axial strain.
+    shape (2, P, 2) [m]; stress (2, P): largest in the section [Pa], |N| / A + |M| / W.
     """
 
     shape: Array
     stress: Array
-    strain: Array
 
 
 @cache
@@ -100,7 +98,7 @@ def read(values: Mapping[str, float], points: Array) -> Reading:
     stretch = np.linalg.norm(slope @ points, axis=-1) / values["length"] - 1.0
     axial = stretch @ spread.T
     stress = values["youngs_modulus"] * (np.abs(axial) + np.abs(curvature) * values["thickness"] / 2.0)
-    return Reading(shape=shape, stress=stress, strain=axial.mean(axis=1))
+    return Reading(shape=shape, stress=stress)
 
 
 #: Rotation up to which it is known [rad], and at how many places.

@@ -8,7 +8,7 @@ import numpy as np
 
 from spline_model.sequential_impulse import SWEEPS
 from studies.interactive.pivot.bench import Bench
-from studies.interactive.pivot.design import Curve, Placing, scales
+from studies.interactive.pivot.design import Curve, Placing, Reading, scales
 from studies.interactive.pivot.input import Clock, Hand, Readings
 from studies.interactive.pivot.mechanics import Mechanics
 from studies.interactive.pivot.motion import SOLVERS
@@ -18,6 +18,8 @@ from studies.kinds import Array
 FINEST = 1e-4
 #: What lies below this part of a design's own scale is round-off, and written as nought.
 ROUND_OFF = 1e-6
+#: Energies of a state, by the names that its snapshot has for them.
+ENERGIES = ("strain", "kinetic", "potential", "dissipated", "lost")
 PREFIXES = ((1e9, "G"), (1e6, "M"), (1e3, "k"), (1.0, ""), (1e-3, "m"), (1e-6, "µ"), (1e-9, "n"))
 
 
@@ -61,10 +63,7 @@ def _readout(state: Mapping[str, Any], reading: Array) -> dict[str, str]:
     shift = "" if sd is None else f" ± {1e3 * max(sd[0], sd[1]):.2f}"
     of_yield = state["stress"]["of_yield"]
     percent = 100.0 * of_yield if of_yield > ROUND_OFF else 0.0
-    energy = {
-        name: quantity(state["energy"][name], "J", least["energy"])
-        for name in ("strain", "kinetic", "potential", "dissipated", "lost")
-    }
+    energy = {name: quantity(state["energy"][name], "J", least["energy"]) for name in ENERGIES}
     return energy | {
         "rotation": fixed(math.degrees(turn), 2)
         + ("" if sd is None else f" ± {math.degrees(sd[2]):.2f}")
@@ -211,62 +210,77 @@ class Instant:
 def shown(session: Instant) -> dict[str, Any]:
     """Return the state of a session: equal sessions give equal states, digit by digit."""
     mechanics, now = session.mechanics, session.mechanics.snapshot
-    reading, values = now.reading, session.mechanics.values
-    strip, place = np.unravel_index(int(np.argmax(reading.stress)), reading.stress.shape)
+    values, moving = mechanics.values, mechanics.moving
     state: dict[str, Any] = {
         "t": session.time,
-        "mode": "released" if mechanics.moving else "held",
+        "mode": "released" if moving else "held",
         "paused": session.paused,
         "preset": session.bench.preset,
         "values": values,
         "drive": session.drive,
         "solver": session.solver,
         "sweeps": session.sweeps,
-        "step": mechanics.step,
         "steps": session.clock.steps,
         "simulated": session.clock.simulated,
-        "pose": _plain(now.pose),
-        "displacement": [*_plain(now.pose[:2] - session.placing.centre), float(now.pose[2])],
-        "wanted": _plain(session.wanted),
-        "centre_shift": session.placing.crossing_shift(now.pose),
-        "velocity": _plain(now.velocity),
-        "shape": _plain(reading.shape),
-        "force": _plain(now.force),
-        "stiffness": now.stiffness,
-        "stress": {
-            "max": float(reading.stress[strip, place]),
-            "of_yield": float(reading.stress[strip, place]) / values["yield_strength"],
-            "strip": int(strip),
-            "place": int(place),
-            "along": _plain(np.round(reading.stress / values["yield_strength"], 4)),
-        },
-        "strain": _plain(reading.strain),
-        "energy": {
-            "strain": now.strain,
-            "kinetic": now.kinetic,
-            "potential": now.potential,
-            "dissipated": now.dissipated,
-            "lost": now.lost,
-            "start": mechanics.begun if mechanics.moving else None,
-        },
-        "centre": None if now.centre is None else list(now.centre),
         "iterations": now.iterations,
         "sight": session.sight,
-        "sd": None if session.readings.sd is None else _plain(session.readings.sd),
-        "force_sd": _force_sd(session),
-        "grip": session.grip if session.drive in SPRUNG and not mechanics.moving else None,
         "scale": scales(values),
-        "placing": {
-            "ground": _plain(session.placing.ground),
-            "marker": _plain(session.placing.marker(now.pose)),
-            "clamps": _plain(mechanics.pivot.clamp_points),
-            "centre": _plain(mechanics.pivot.centre),
+        **_body(session),
+        **_strips(now.reading, values["yield_strength"]),
+        "energy": {
+            **{name: getattr(now, name) for name in ENERGIES},
+            "start": mechanics.begun if moving else None,
         },
+        "placing": _placing(session),
         "warnings": [{"code": code, "text": text} for code, text in session.warnings.said.items()],
     }
     state["texts"] = _readout(state, session.readings.mean(now))
     state["status"] = _sentence(state, state["texts"])
     return state
+
+
+def _body(session: Instant) -> dict[str, Any]:
+    """Where the body is, how it moves, what holds it, and how sure that is."""
+    now, placing, sd = session.mechanics.snapshot, session.placing, session.readings.sd
+    held_by_spring = session.drive in SPRUNG and not session.mechanics.moving
+    return {
+        "pose": _plain(now.pose),
+        "displacement": [*_plain(now.pose[:2] - placing.centre), float(now.pose[2])],
+        "wanted": _plain(session.wanted),
+        "centre_shift": placing.crossing_shift(now.pose),
+        "velocity": _plain(now.velocity),
+        "centre": None if now.centre is None else list(now.centre),
+        "force": _plain(now.force),
+        "stiffness": now.stiffness,
+        "grip": session.grip if held_by_spring else None,
+        "sd": None if sd is None else _plain(sd),
+        "force_sd": _force_sd(session),
+    }
+
+
+def _strips(reading: Reading, strength: float) -> dict[str, Any]:
+    """Shapes of the strips, and their stress over their strength [Pa]."""
+    strip, place = np.unravel_index(int(np.argmax(reading.stress)), reading.stress.shape)
+    largest = float(reading.stress[strip, place])
+    stress = {
+        "max": largest,
+        "of_yield": largest / strength,
+        "strip": int(strip),
+        "place": int(place),
+        "along": _plain(np.round(reading.stress / strength, 4)),
+    }
+    return {"shape": _plain(reading.shape), "stress": stress}
+
+
+def _placing(session: Instant) -> dict[str, Any]:
+    """Places of markers, clamps and body at rest."""
+    placing, pivot = session.placing, session.mechanics.pivot
+    return {
+        "ground": _plain(placing.ground),
+        "marker": _plain(placing.marker(session.mechanics.snapshot.pose)),
+        "clamps": _plain(pivot.clamp_points),
+        "centre": _plain(pivot.centre),
+    }
 
 
 def _plain(array: Array) -> Any:

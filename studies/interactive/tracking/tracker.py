@@ -1,11 +1,11 @@
 """From pictures to the events of a session: find, follow where a corner is covered, fit, and say what is
 wrong."""
 
-import os
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
+import cv2
 import numpy as np
 
 from studies.interactive.pivot.design import SIDE
@@ -14,11 +14,6 @@ from studies.interactive.tracking.edges import Picture
 from studies.interactive.tracking.planar import Camera
 from studies.interactive.tracking.shrinkage import Shrinkage
 from studies.kinds import Array
-
-# a picture of more pixels than this is refused before it is decoded; read when cv2 is first imported
-os.environ.setdefault("OPENCV_IO_MAX_IMAGE_PIXELS", str(1 << 22))
-
-import cv2
 
 #: Residuals of the fit [px] from which it is doubted, and refused.
 DOUBT_PX, REFUSE_PX = 0.12, 0.25
@@ -85,14 +80,9 @@ class Detector:
         )
 
 
-def decoded(data: bytes) -> Picture | None:
-    """Return the grey picture in the bytes of a JPEG or PNG, or None if there is none."""
-    try:
-        picture = cv2.imdecode(np.frombuffer(data, dtype=np.uint8), cv2.IMREAD_GRAYSCALE)
-    except cv2.error:
-        return None
-    if picture is None or picture.shape[0] < 32 or picture.shape[1] < 32:
-        return None
+def decoded(data: bytes) -> Picture:
+    """Return the grey picture of a JPEG."""
+    picture = cv2.imdecode(np.frombuffer(data, dtype=np.uint8), cv2.IMREAD_GRAYSCALE)
     return np.asarray(picture, dtype=np.uint8)
 
 

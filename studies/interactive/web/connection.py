@@ -20,7 +20,7 @@ from studies.interactive.pivot.session import Session
 from studies.interactive.pivot.view import DRIVES, curved
 from studies.interactive.tracking.tracker import Picture, Tracker
 from studies.interactive.web import protocol
-from studies.interactive.web.sources import Settings, Shot, Source, grey_of
+from studies.interactive.web.sources import Settings, Shot, Source
 
 LOG = logging.getLogger(__name__)
 
@@ -264,13 +264,8 @@ class Connection:
                 await self._say({"kind": "skipped", "seq": sent.seq})
                 continue
             self._last_picture = time.monotonic()
-            begin, grey = time.perf_counter(), sent.coding == protocol.GREY
-            picture = await asyncio.to_thread(grey_of, grey, sent.data, sent.width, sent.height)
-            if picture is None:
-                raise BadInput("picture: got bytes that are none, expected a JPEG of the stated size")
-            decode_ms = 1e3 * (time.perf_counter() - begin)
-            event, more = await self._tracked(picture, sent.time)
-            await self._feed(event, sent.seq, **more, decode_ms=decode_ms)
+            event, more = await self._tracked(sent.picture, sent.time)
+            await self._feed(event, sent.seq, **more)
 
     async def _play(self, source: Source) -> None:
         """Track the pictures of a source and send each with its state, no faster than they are shown."""

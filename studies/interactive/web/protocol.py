@@ -9,6 +9,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Self
 
+import numpy as np
+from numpy.typing import NDArray
+
 from studies.errors import BadInput
 
 VERSION = 1
@@ -17,10 +20,9 @@ LONGEST_TEXT = 4096
 LARGEST_PICTURE = 3_000_000
 MOST_WIDTH, MOST_HEIGHT = 1920, 1080
 LEAST_SIDE = 64
-#: Picture: kind, version, coding, flags, seq, width, height, time of capture [ms].
-HEADER = struct.Struct("<BBBBIHHd")
+#: Picture: kind, version, seq, width, height, time of capture [ms]; its grey levels follow, row after row.
+HEADER = struct.Struct("<BB2xIHHd")
 PICTURE = 1
-GREY, JPEG = 0, 1
 #: Part of a file, kind, version and whether it is the last; of a session to be replayed, or of a design.
 PART = struct.Struct("<BBB")
 REPLAY, DESIGN = 2, 3
@@ -60,14 +62,11 @@ FIELDS: dict[str, frozenset[str]] = {
 
 @dataclass(frozen=True, kw_only=True)
 class Sent:
-    """A picture that the page sent: its number, time of capture [s], size and bytes."""
+    """A picture that the page sent: its number, time of capture [s] and grey levels."""
 
     seq: int
     time: float
-    width: int
-    height: int
-    coding: int
-    data: bytes
+    picture: NDArray[np.uint8]
 
 
 def event(text: str) -> dict[str, Any]:
@@ -113,39 +112,22 @@ def sent_picture(data: bytes) -> Sent:
     """Return the picture in a binary message.
 
     Raises:
-        BadInput: a header, size or coding that does not fit; one line.
+        BadInput: a header or size that does not fit; one line.
     """
     if not HEADER.size < len(data) <= LARGEST_PICTURE:
         raise BadInput(f"picture: got {len(data)} bytes, expected {HEADER.size} to {LARGEST_PICTURE}")
-    kind, version, coding, _, seq, width, height, time = HEADER.unpack_from(data)
-    if (kind, version) != (PICTURE, VERSION) or coding not in (GREY, JPEG):
-        raise BadInput(f"picture: got kind {kind}, version {version}, coding {coding}, expected 1, 1, 0 or 1")
+    kind, version, seq, width, height, time = HEADER.unpack_from(data)
+    if (kind, version) != (PICTURE, VERSION):
+        raise BadInput(f"picture: got kind {kind}, version {version}, expected {PICTURE}, {VERSION}")
     if not (LEAST_SIDE <= width <= MOST_WIDTH and LEAST_SIDE <= height <= MOST_HEIGHT):
         raise BadInput(f"picture: got {width} x {height}, expected at most {MOST_WIDTH} x {MOST_HEIGHT}")
-    body = data[HEADER.size :]
-    if coding == GREY and len(body) != width * height:
-        raise BadInput(f"picture: got {len(body)} grey levels, expected {width} x {height}")
-    if coding == JPEG and _jpeg_size(body) != (width, height):
-        raise BadInput(f"picture: got a JPEG of {_jpeg_size(body)}, expected {width} x {height}")
+    levels = np.frombuffer(data, dtype=np.uint8, offset=HEADER.size)
+    if levels.size != width * height:
+        raise BadInput(f"picture: got {levels.size} grey levels, expected {width} x {height}")
     if not 0.0 <= time < 1e15:
         raise BadInput(f"picture: got time {time}, expected milliseconds")
-    return Sent(seq=seq, time=time / 1e3, width=width, height=height, coding=coding, data=body)
-
-
-def _jpeg_size(data: bytes) -> tuple[int, int] | None:
-    """Return width and height that a JPEG's header states, before anything is decoded; None if it states
-    none."""
-    if data[:2] != b"\xff\xd8":
-        return None
-    at = 2
-    while at + 9 < len(data):
-        if data[at] != 0xFF:
-            return None
-        kind, length = data[at + 1], int.from_bytes(data[at + 2 : at + 4], "big")
-        if 0xC0 <= kind <= 0xCF and kind not in (0xC4, 0xC8, 0xCC):
-            return int.from_bytes(data[at + 7 : at + 9], "big"), int.from_bytes(data[at + 5 : at + 7], "big")
-        at += 2 + length
-    return None
+    # a copy, for the tracker's kernels are compiled for arrays that may be written to
+    return Sent(seq=seq, time=time / 1e3, picture=levels.reshape(height, width).copy())
 
 
 def text(content: Mapping[str, Any]) -> str:

@@ -74,9 +74,8 @@ class FilmSource:
             k = number % self._film.frames
             if k not in self._kept:
                 self._kept[k] = encoded(self._film.picture(k))
-            picture = decoded(self._kept[k])
-            assert picture is not None
-            yield Shot(number=number, time=number / self.rate, picture=picture, jpeg=self._kept[k])
+            jpeg = self._kept[k]
+            yield Shot(number=number, time=number / self.rate, picture=decoded(jpeg), jpeg=jpeg)
             number += 1
 
 
@@ -124,11 +123,3 @@ class VideoSource:
                 number += 1
             if number == first or not self.lock_step:
                 return
-
-
-def grey_of(coding_is_grey: bool, data: bytes, width: int, height: int) -> Picture | None:
-    """Return the picture that the page sent, None where its bytes are none of that size."""
-    if coding_is_grey:
-        return np.frombuffer(data, dtype=np.uint8).reshape(height, width).copy()
-    picture = decoded(data)
-    return picture if picture is not None and picture.shape == (height, width) else None

@@ -1,0 +1,84 @@
+"""Pictures through the server: films, those of the page, and how long they take."""
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+pytest.importorskip("cv2", reason="the extra `interactive` is not installed")
+pytest.importorskip("uvicorn", reason="the extra `interactive` is not installed")
+
+from studies.interactive.web import protocol
+from studies.interactive.web.server import Server, Settings
+from studies.interactive.web.sources import FilmSource, VideoSource
+from tests.interactive.films import counter, film, truth
+from tests.interactive.latency import measured
+from tests.interactive.sockets import answer, closing, frame, opened, say
+
+
+def test_film_is_tracked_and_sent():
+    """Requirement: a film's pictures come with the state that belongs to them; released, each is four
+    steps."""
+    made = FilmSource(film(frames=12, samples=3))
+    with Server(Settings(camera="film", source=lambda: made)) as hosted, opened(hosted) as socket:
+        for k in range(12):
+            state, jpeg = frame(socket)
+            say(socket, do="shown")
+            assert state["seq"] == k
+            assert jpeg[:2] == b"\xff\xd8"
+            assert state["sight"]["state"] == "found"
+            assert abs(state["placing"]["marker"][2] - truth(k)[2]) < 0.01 or state["warnings"]
+        say(socket, do="release")
+        counts = []
+        for _ in range(8):
+            state, _ = frame(socket)
+            say(socket, do="shown")
+            counts.append(state["steps"])
+        assert {b - a for a, b in pairwise(counts[2:])} == {4}
+
+
+def test_pictures_of_the_page_are_tracked(server):
+    """Requirement: pictures of the page give the pose that they show, numbered as they are."""
+    with opened(server) as socket:
+        picture = film(frames=4).picture(3)
+        socket.send(protocol.HEADER.pack(1, 1, 42, 640, 480, 1000.0) + picture.tobytes())
+        state = answer(socket)
+    assert (state["seq"], state["sight"]["state"]) == (42, "found")
+    assert state["pose"][2] == pytest.approx(truth(3)[2], abs=2e-3)
+
+
+def test_wrong_size_is_refused_and_right_one_scales(server):
+    """Requirement: the printed side is taken within bounds, and scales the shift."""
+    with opened(server) as socket:
+        say(socket, do="size", side_mm=1000)
+        assert closing(socket)[0] == 4400
+    with opened(server) as socket:
+        say(socket, do="size", side_mm=58.2)
+        socket.send(protocol.HEADER.pack(1, 1, 1, 640, 480, 0.0) + film(frames=1).picture(0).tobytes())
+        state = answer(socket)
+        assert [w["code"] for w in state["warnings"]] == ["off-path"]
+
+
+def test_film_file_is_played(tmp_path):
+    """Requirement: a film file gives its pictures in order, and begins anew at its end."""
+    import cv2
+
+    path = tmp_path / "film.avi"
+    writer = cv2.VideoWriter(str(path), cv2.VideoWriter.fourcc(*"MJPG"), 25.0, (640, 480), False)
+    for picture in film(frames=3):
+        writer.write(picture)
+    writer.release()
+    shots = [shot for shot, _ in zip(VideoSource(path).shots(), range(5), strict=False)]
+    assert [shot.number for shot in shots] == [0, 1, 2, 3, 4]
+    assert [counter(shot.picture) for shot in shots] == [0, 1, 2, 0, 1]
+    assert shots[4].time == pytest.approx(4 / 25)
+
+
+@pytest.mark.slow
+def test_way_of_a_picture_is_told_in_parts():
+    """Requirement: the state of a picture says how long tracking, solving and sending took; together
+    they are no longer than its whole way, most of which is tracking."""
+    rows = measured(20)
+    assert (rows >= 0.0).all()
+    track, solve, send = np.median(rows[:, :3], axis=0)
+    assert track > max(solve, send)
