@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from studies.answers.metrics import extrapolate
-from studies.answers.models import built, effects_of, is_given, model_of, refusals
+from studies.answers.models import put
 from studies.answers.response import assembled
 from studies.answers.settings import FeSettings, Settings, SplineSettings
 from studies.cases.design import Design
@@ -101,7 +101,7 @@ def _refined(settings: Settings) -> Iterator[Settings]:
     """Yield the discretisations to answer with."""
     if isinstance(settings, FeSettings):
         yield from (replace(settings, elements=settings.elements * times) for times in MESHES)
-    elif is_given(settings):
+    elif settings.control_points is not None:
         yield settings
     else:
         yield from (replace(settings, control_points=points) for points in POINTS)
@@ -116,23 +116,23 @@ def _settled(settings: Settings, found: list[Capacity]) -> bool:
 
 def _of(design: Design, settings: Settings, direction: float, held: bool, body: str) -> Capacity:
     """Return the capacity with one discretisation."""
-    unit, model, reached = _unit(design), model_of(settings), 0.0
+    unit, reached = _unit(design), 0.0
     towards = (float(np.cos(direction)), float(np.sin(direction)))
     for part in PARTS:
         size = part * unit
         loaded = _loaded(design, (size * towards[0], size * towards[1]), body)
-        asked, keywords = built(model, loaded, settings, moving=False)
+        asked = put(loaded, settings)
         how = {"rotation": 0.0 if held else None, "increments": INCREMENTS, "raise_on_failure": False}
-        with refusals(model, settings):
-            path = model.statics.solve_mechanism(asked, body=body, **how)
+        with asked.refusals():
+            path = asked.model.statics.solve_mechanism(asked.modelled, body=body, **how)
         lost = [each for each in path.critical_points if not (held and each.kind == HELD_STABLE)]
         reached = size * float(lost[0].load_factor if lost else path.load_factor[-1])
         if lost or path.status.value != "converged":
             break
     return Capacity(
         model=settings.model,
-        settings=keywords,
-        effects=assembled(effects_of(asked)),
+        settings=asked.discretised(path),
+        effects=assembled(asked.effects),
         direction=direction,
         held=held,
         force=reached if lost else None,

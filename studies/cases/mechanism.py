@@ -17,8 +17,9 @@ Values = Mapping[str, Any]
 
 
 class Sectioned:
-    """What has a section: its area, second moment and, where it is no rectangle, its depth [m]."""
+    """What has a section: modulus, area, second moment and, where it is no rectangle, its depth [m]."""
 
+    youngs_modulus: float
     area: float
     second_moment_of_area: float
     section_depth: float | None

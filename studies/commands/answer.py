@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from studies.answers.response import Answered, Response
-from studies.cases.design import Design
 from studies.commands.parser import Argument
 from studies.errors import BadInput
 from studies.kinds import Array
@@ -180,24 +179,24 @@ PLOT = Argument(
 )
 
 
-def pictured(arguments: argparse.Namespace, design: Design, *answers: Answered) -> None:
+def pictured(arguments: argparse.Namespace, *answers: Answered) -> None:
     """Draw what there is of the answers to a design where --plot says, and say where it is."""
     if arguments.plot is None:
         return
     draw(
         arguments,
-        [shown_of(arguments.case, design, each) for each in answers if each.solution is not None],
+        [shown_of(arguments.case, each) for each in answers if each.solution is not None],
         arguments.plot,
     )
 
 
-def shown_of(case: str, design: Design, answer: Answered) -> "Shown":
+def shown_of(case: str, answer: Answered) -> "Shown":
     """Return an answer as pictures show it, with the least known yield strength of its strips."""
     from studies.answers.fields import fields_of
     from studies.pictures.shown import Shown
 
-    known = [strip.yield_strength for strip in design.strips if strip.yield_strength is not None]
-    name, fields = called(case, answer), fields_of(answer, design)
+    known = [strip.yield_strength for strip in answer.design.strips if strip.yield_strength is not None]
+    name, fields = called(case, answer), fields_of(answer)
     return Shown(name=name, fields=fields, yield_strength=min(known, default=None))
 
 

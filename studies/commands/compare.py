@@ -25,7 +25,7 @@ from studies.answers.adapters import answer_modes, answer_static
 from studies.answers.response import Response
 from studies.answers.settings import Settings
 from studies.answers.strength import strength
-from studies.cases.design import Design, read_design
+from studies.cases.design import read_design
 from studies.commands import arguments as take
 from studies.commands.answer import PLOT, called, deliver, draw, require_target, shown_of
 from studies.commands.columns import NOTHING, PREFIXES, plain, quantity, significant, table
@@ -76,9 +76,9 @@ class _Compared(NamedTuple):
         return self.values.get(key, math.nan)
 
 
-def _values(design: Design, answer: Response, shown: Shown) -> dict[str, float]:
+def _values(answer: Response, shown: Shown) -> dict[str, float]:
     """Return the numbers of a path by their keys."""
-    fields, limits = shown.fields, strength(design, answer)
+    fields, limits = shown.fields, strength(answer)
     found: dict[str, Any] = {
         "max_stress_Pa": fields.max_stress.max(),
         "strain_energy_J": fields.strain_energy[-1],
@@ -159,10 +159,10 @@ def _solved(case: str, settings: Settings, arguments: argparse.Namespace) -> _Co
     spectrum = answer_modes(design, settings, count=1 if arguments.plot_modes is None else MODES)
     shown, modes, values = None, None, {}
     if len(answer.load_factor):
-        shown = shown_of(case, design, answer)
-        values = _values(design, answer, shown)
+        shown = shown_of(case, answer)
+        values = _values(answer, shown)
     if len(spectrum.frequency):
-        modes = shown_of(case, design, spectrum)
+        modes = shown_of(case, spectrum)
         values["first_frequency_Hz"] = float(spectrum.frequency[0])
     return _Compared(case, answer, shown, modes, values)
 

@@ -54,7 +54,7 @@ def main(arguments: argparse.Namespace) -> int:
     failure = (
         None if answer.converged else f"at {math.degrees(arguments.rotation or 0.0):g} deg: {answer.message}"
     )
-    tell.pictured(arguments, design, answer)
+    tell.pictured(arguments, answer)
     return tell.deliver(arguments, _document(answer), _readable(answer, arguments.count), failure=failure)
 
 

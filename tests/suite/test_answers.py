@@ -159,6 +159,7 @@ def test_limit_of_swings_removes_the_error_of_the_mesh():
         arrays = {name: np.ones_like(instants) for name in (*SHARED_ARRAYS, *RESIDUALS) if name != "time"}
         levels.append(
             Motion(
+                design=TABLE_1,
                 model="fe",
                 settings={"elements": elements},
                 status="converged",
@@ -167,7 +168,6 @@ def test_limit_of_swings_removes_the_error_of_the_mesh():
                 effects=(),
                 time=instants,
                 bodies={"body": np.stack((rotation, 2.0 * rotation, rotation), axis=1)},
-                body="body",
                 counters={},
                 wall_s=0.0,
                 solve_s=0.0,
