@@ -31,10 +31,10 @@ from pathlib import Path
 from typing import Any
 
 from studies.answers.reference import NoReference
-from studies.cases.document import parsed
+from studies.cases.document import is_mechanism, parsed
 from studies.cases.keys import LOADS_FIRST
 from studies.cases.problem import Problem
-from studies.cases.write import as_toml, document_toml
+from studies.cases.write import as_toml, document_of
 from studies.commands import arguments as take
 from studies.commands.answer import deliver, not_converged, require_target
 from studies.commands.parser import Argument, command, positive, reads, whole_number
@@ -114,7 +114,7 @@ def _interval(most: float) -> Callable[[str], tuple[float, float]]:
 def main(arguments: argparse.Namespace) -> int:
     """Search, check, report; return the exit code."""
     content = parsed(arguments.case)
-    mechanism = isinstance(content.get("strips"), list)
+    mechanism = is_mechanism(content)
     _refuse_others(arguments, mechanism)
     given = _numbers(content, arguments) if mechanism else _start(arguments)
     require_target(arguments)
@@ -207,8 +207,8 @@ def _asked(task: NumbersTask, arguments: argparse.Namespace) -> NumbersTask:
 def _file(task: Sizing, found: Outcome, remarks: list[str]) -> str:
     """Return the optimum as a case file."""
     if isinstance(task, NumbersTask):
-        return document_toml(task.content(task.values(found.at)), remarks)
-    return as_toml(found.problem, remarks)
+        return as_toml(task.content(task.values(found.at)), remarks)
+    return as_toml(document_of(found.problem), remarks)
 
 
 def _remarks(task: Sizing, arguments: argparse.Namespace) -> list[str]:

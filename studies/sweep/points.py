@@ -20,6 +20,7 @@ from studies.answers.settings import Settings, settings_of_model
 from studies.answers.strength import moduli_of
 from studies.answers.validity import Strip, strips_of
 from studies.cases.design import Design
+from studies.cases.document import is_mechanism
 from studies.errors import BadInput
 from studies.kinds import Array
 from studies.sweep.plan import Task, design_of, varied_settings
@@ -177,7 +178,7 @@ def known(case: Mapping[str, Any], kind: str, count: int) -> dict[str, _Quantity
         return _of_modes(count)
     if kind == "release":
         return RELEASE
-    mechanism = isinstance(case.get("strips"), list)
+    mechanism = is_mechanism(case)
     return PATH | (_of_bodies([body["name"] for body in case.get("bodies", [])]) if mechanism else SHIFT)
 
 
