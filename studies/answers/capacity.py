@@ -9,7 +9,7 @@ import numpy as np
 
 from studies.answers.metrics import extrapolate
 from studies.answers.models import put
-from studies.answers.response import assembled
+from studies.answers.response import Answered, assembled, taken
 from studies.answers.settings import FeSettings, Settings, SplineSettings
 from studies.cases.design import Design
 from studies.cases.effects import Effects
@@ -30,22 +30,18 @@ HELD_STABLE = "limit point"
 
 
 @dataclass(frozen=True, kw_only=True)
-class Capacity:
+class Capacity(Answered):
     """The first load that a design does not bear, in one direction.
 
+    Its message is that of the model on the path where the load was found, or where that ended.
+
     Attributes:
-        model, settings, effects: as of any answer.
         direction: of the force [rad], from x to y; held: whether the body is kept from turning.
         force: at which stability is lost [N]; None where it is not, up to `reached`, the largest force that
             was borne [N]; turned: rotation of the body there [rad].
         kind: of the critical point. uncertainty: of the force, relative [1]; NaN of one discretisation.
-        message: of the model, on the path where it was found, or why it ended; whole: whether it reached the
-            end, where it lost nothing.
     """
 
-    model: str
-    settings: dict[str, Any]
-    effects: tuple[str, ...]
     direction: float
     held: bool
     force: float | None
@@ -53,8 +49,6 @@ class Capacity:
     turned: float
     kind: str
     uncertainty: float
-    message: str
-    whole: bool
 
 
 def capacity(
@@ -82,7 +76,7 @@ def capacity(
     found: list[Capacity] = []
     for each in _refined(settings):
         found.append(_of(design, each, direction, held, name))
-        if found[-1].force is None and found[-1].whole:
+        if found[-1].force is None and found[-1].converged:
             return found[-1]
         if _settled(settings, found):
             break
@@ -130,9 +124,9 @@ def _of(design: Design, settings: Settings, direction: float, held: bool, body: 
         if lost or path.status.value != "converged":
             break
     return Capacity(
-        model=settings.model,
-        settings=asked.discretised(path),
-        effects=assembled(asked.effects),
+        **taken(asked, path) | {"effects": assembled(asked.effects)},
+        status="converged" if lost else str(path.status.value),
+        message=str(path.message),
         direction=direction,
         held=held,
         force=reached if lost else None,
@@ -140,8 +134,6 @@ def _of(design: Design, settings: Settings, direction: float, held: bool, body: 
         turned=float(path.bodies[body][-1, 2]) if not lost else float(lost[0].rotation),
         kind=lost[0].kind if lost else "",
         uncertainty=float("nan"),
-        message=str(path.message),
-        whole=path.status.value == "converged",
     )
 
 

@@ -45,10 +45,9 @@ def document_of(problem: Problem) -> dict[str, dict[str, Any]]:
     for key, value in given.items():
         if value is not None:
             found.setdefault(key.section, {})[key.name] = _in_file(key, value)
-    return found | {
-        "scene": {"effects": problem.effects.names},
-        "effects": {name: dict(_parameters(name, own)) for name, own in problem.effects.tables.items()},
-    }
+    found["scene"] = {"effects": problem.effects.names}
+    tables = {name: dict(_parameters(name, own)) for name, own in problem.effects.tables.items()}
+    return found | ({"effects": tables} if tables else {})
 
 
 def _parameters(effect: str, values: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:

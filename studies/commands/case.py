@@ -14,10 +14,10 @@ from studies.cases import keys
 from studies.cases.effects import DEFAULT
 from studies.cases.rules import Choice, Key
 from studies.cases.write import MECHANISM, PIVOT
-from studies.commands.arguments import OUT
+from studies.commands.arguments import OUT_FILE
 from studies.commands.parser import Argument, command
 from studies.errors import BadInput
-from studies.record.files import require_writable_file, write_whole
+from studies.record.files import write_whole
 
 #: Keys that may be left out and yet are shown in use: a section by its sides, a material by its name.
 SHOWN = {keys.NAMED.name, *(key.name for key in keys.SIDES), "rotation_deg", "centre_offset_m"}
@@ -30,7 +30,7 @@ COLUMN = 36
 @command(
     Argument("--pivot", "of a cross-axis pivot (default)"),
     Argument("--mechanism", "of any mechanism of strips and bodies"),
-    OUT.but("write it there (default: the output stream)", metavar="FILE"),
+    OUT_FILE.but("write it there (default: the output stream)"),
 )
 def main(arguments: argparse.Namespace) -> int:
     """Print or write the template; return the exit code."""
@@ -40,7 +40,6 @@ def main(arguments: argparse.Namespace) -> int:
     if arguments.out is None:
         print(text)
         return 0
-    require_writable_file(arguments.out)
     write_whole(arguments.out, f"{text}\n".encode())
     print(f"{arguments.out}: written; `python -m studies solve {arguments.out}`")
     return 0

@@ -27,7 +27,7 @@ from studies.answers.settings import Settings
 from studies.answers.strength import strength
 from studies.cases.design import read_design
 from studies.commands import arguments as take
-from studies.commands.answer import PLOT, called, deliver, draw, require_target, shown_of
+from studies.commands.answer import called, deliver, draw, shown_of
 from studies.commands.columns import NOTHING, PREFIXES, plain, quantity, significant, table
 from studies.commands.parser import Argument, command
 from studies.errors import BadInput
@@ -41,7 +41,7 @@ MODES = 6
 PLOT_MODES = Argument(
     "--plot-modes FILE",
     "draw the first six natural modes at rest over one another (default: no picture)",
-    PLOT.read,
+    take.PLOT.read,
 )
 
 
@@ -111,7 +111,7 @@ def _values(answer: Response, shown: Shown) -> dict[str, float]:
     take.INCREMENTS,
     take.ACCURACY.but("wanted relative error of the paths, as of `solve` (default: that of `solve`)"),
     take.JSON,
-    PLOT,
+    take.PLOT,
     PLOT_MODES,
 )
 def main(arguments: argparse.Namespace) -> int:
@@ -120,7 +120,6 @@ def main(arguments: argparse.Namespace) -> int:
     if not 2 <= len(asked) <= len(LETTERS):
         got = f"{len(asked)} (designs: {len(arguments.cases)}, models: {len(arguments.model)})"
         raise BadInput(f"compare: got {got}, expected 2 to {len(LETTERS)} designs, or a design by two models")
-    require_target(arguments)
     with Bar("compare") as bar:
         found = []
         for done, (case, settings) in enumerate(asked, start=1):

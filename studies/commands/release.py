@@ -81,7 +81,7 @@ LINES = 20
         whole_number(1),
     ),
     take.JSON,
-    tell.PLOT,
+    take.PLOT,
 )
 def main(arguments: argparse.Namespace) -> int:
     """Release and report; return the exit code."""
@@ -89,7 +89,6 @@ def main(arguments: argparse.Namespace) -> int:
     settings = take.chosen_settings(arguments)[0]
     if settings.model == "spline":
         take.refuse(arguments, FE_OPTIONS, OPTIONS)
-    tell.require_target(arguments)
     options = {name: getattr(arguments, name) for name in (*OPTIONS, *FE_OPTIONS)}
     duration, options["step"] = _pace(arguments, design, settings)
     answer = answer_release(

@@ -34,7 +34,7 @@ from studies.answers.adapters import answer_static
 from studies.answers.metrics import differences
 from studies.answers.response import Response
 from studies.commands import arguments as take
-from studies.commands.answer import PLOT, deliver, passed, pictured, require_target
+from studies.commands.answer import deliver, passed, pictured
 from studies.commands.columns import fixed
 from studies.commands.parser import command
 from studies.commands.path_output import as_document, as_frame, critical, readable
@@ -53,13 +53,12 @@ from studies.record.progress import Bar
     ),
     take.JSON,
     take.CSV,
-    PLOT,
+    take.PLOT,
 )
 def main(arguments: argparse.Namespace) -> int:
     """Solve and report; return the exit code."""
     design = take.driven(take.chosen_design(arguments), arguments)
     every = take.chosen_settings(arguments)
-    require_target(arguments)
     how, answers = {"repeat": arguments.repeat, "accuracy": arguments.accuracy}, []
     for settings in every:
         with Bar(f"solve {settings.model}") as bar:
