@@ -1,4 +1,4 @@
-"""Commands and their arguments as values, a parser whose errors are one line, and the types of numbers and files."""
+"""Commands and their arguments as values, a parser whose errors are one line, and types of what they read."""
 
 import argparse
 import difflib
