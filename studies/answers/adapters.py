@@ -7,20 +7,11 @@ from typing import Any
 
 import numpy as np
 
-from studies.answers.models import (
-    Model,
-    built,
-    effects_of,
-    is_given,
-    mode_bodies,
-    model_of,
-    refusals,
-    static_path,
-)
+from studies.answers.models import Asked, mode_bodies, put
 from studies.answers.motion import Motion, Spectrum, motion, no_motion
 from studies.answers.response import Response, response, taken
-from studies.answers.settings import Settings, SplineSettings
-from studies.cases.design import Design, flexural_scale
+from studies.answers.settings import Settings
+from studies.cases.design import Design
 from studies.cases.problem import Problem
 from studies.errors import BadInput
 from studies.kinds import Progress
@@ -61,21 +52,17 @@ def answer_static(
     Raises:
         BadInput: a setting that the model refuses; one line.
     """
-    model = model_of(settings)
-    asked, keywords = built(model, design, settings, moving=False)
-    path = partial(static_path, model, design, asked)
+    asked = put(design, settings)
     wanted = {} if accuracy is None else {"accuracy": accuracy}
     short = {} if design.rotation is None else {"rotation": WARM_UP_ROTATION}
-    with refusals(model, settings):
-        path(**short, increments=1, raise_on_failure=False)
-        timing = measure(
-            lambda: path(raise_on_failure=raise_on_failure, progress=progress, **wanted),
-            repeat=repeat,
-            warm_up=1 if repeat > 1 else 0,
-            part=_solve_s,
-        )
-    about = {"model": settings.model, "settings": keywords, "effects": effects_of(asked)}
-    return response(design, timing.result, wall_s=timing.median, solve_s=timing.median_part, **about)
+    asked.static_path(**short, increments=1, raise_on_failure=False)
+    timing = measure(
+        lambda: asked.static_path(raise_on_failure=raise_on_failure, progress=progress, **wanted),
+        repeat=repeat,
+        warm_up=1 if repeat > 1 else 0,
+        part=_solve_s,
+    )
+    return response(asked, timing.result, wall_s=timing.median, solve_s=timing.median_part)
 
 
 def answer_release(
@@ -119,29 +106,29 @@ def answer_release(
     if design.body is None and swings:
         expected = "`export --analysis release` has the motion of strips alone"
         raise BadInput(f"bodies: got none, expected a body whose swing is followed; {expected}")
-    model = model_of(settings)
-    asked, keywords = built(model, design, settings, moving=True)
-    about = {"model": settings.model, "settings": keywords, "effects": effects_of(asked), "body": design.body}
-    at = {"start": design.rotation if start is None else start, "body": design.body}
-    with refusals(model, settings):
-        at |= _drive_of(model, design)
+    asked = put(design, settings, moving=True)
+    model, at = asked.model, {"start": design.rotation if start is None else start, "body": design.body}
+    with asked.refusals():
+        at |= _drive_of(asked)
     given = {name: value for name, value in options.items() if value is not None} | model.release_options
     if records is not None:
         given[model.records] = records
-    release = partial(model.dynamics.solve_motion, asked, duration=duration, check=False, **at, **given)
+    release = partial(
+        model.dynamics.solve_motion, asked.modelled, duration=duration, check=False, **at, **given
+    )
     with suppress(model.errors.InvalidParameter, model.errors.ConvergenceError):
         short = min(duration, max(WARM_UP_DURATION, given.get("step", 0.0)))
         release(start=WARM_UP_ROTATION, duration=short)
     try:
-        with refusals(model, settings):
+        with asked.refusals():
             timing = measure(release, repeat=repeat, warm_up=1 if repeat > 1 else 0, part=_solve_s)
     except model.errors.ConvergenceError as error:
-        return no_motion(f"statics does not reach the start: {error}", design, **about)
+        return no_motion(asked, f"statics does not reach the start: {error}")
     result = timing.result
     wall_s = max(timing.median - _wall_of_start(release, result, repeat), 0.0)
     if check:
-        result = model.dynamics.checked(asked, result, **at)
-    return motion(result, energy=flexural_scale(design), wall_s=wall_s, solve_s=timing.median_part, **about)
+        result = model.dynamics.checked(asked.modelled, result, **at)
+    return motion(asked, result, wall_s=wall_s, solve_s=timing.median_part)
 
 
 def answer_modes(
@@ -171,55 +158,43 @@ def answer_modes(
     Raises:
         BadInput: a setting or option that the model refuses; one line.
     """
-    model = model_of(settings)
-    asked, keywords = built(model, design, settings, moving=is_given(settings))
+    asked = put(design, settings, moving=True)
     how: dict[str, Any] = {"count": count, "held": held, "body": design.body}
     how |= {} if accuracy is None else {"accuracy": accuracy}
     still = rotation is None and (held or isinstance(design, Problem))
-    solve = partial(model.modes.natural_frequencies, asked, rotation=0.0 if still else rotation, **how)
-    nothing = np.zeros(0)
-    about: dict[str, Any] = {
-        "model": settings.model,
-        "settings": keywords,
-        "effects": effects_of(asked),
-        "rotation": rotation or 0.0,
-        "body": design.body,
-    }
+    at = 0.0 if still else rotation
+    solve = partial(asked.model.modes.natural_frequencies, asked.modelled, rotation=at, **how)
+    state: dict[str, Any] = {"rotation": rotation or 0.0, "held": held}
     try:
-        with refusals(model, settings):
+        with asked.refusals():
             timing = measure(solve, repeat=1, warm_up=0)
-    except model.errors.ConvergenceError as error:
+    except asked.model.errors.ConvergenceError as error:
         return Spectrum(
             status="not_converged",
             message=f"statics does not reach the state: {error}",
-            held=held,
-            frequency=nothing,
+            frequency=np.zeros(0),
             body_shapes=np.zeros((0, 3)),
-            slide_frequency=nothing,
+            slide_frequency=np.zeros(0),
             wall_s=0.0,
-            **about,
+            **state,
+            **taken(asked),
         )
-    return _spectrum(timing.result, design, wall_s=timing.median, **about)
+    return _spectrum(asked, timing.result, wall_s=timing.median, **state)
 
 
-def _spectrum(modes: Any, design: Design, **about: Any) -> Spectrum:
+def _spectrum(asked: Asked, modes: Any, **about: Any) -> Spectrum:
     """Return the neutral form of a model's modes; only a spline has slide modes."""
-    names = [body.name for body in design.bodies]
+    names, body = [body.name for body in asked.design.bodies], asked.design.body
     shapes = mode_bodies(modes, names)
     return Spectrum(
         status="converged",
         message="",
-        held=modes.held,
         frequency=np.asarray(modes.frequency, dtype=float),
-        body_shapes=shapes[:, names.index(design.body)] if design.body else np.zeros((len(shapes), 3)),
+        body_shapes=shapes[:, names.index(body)] if body else np.zeros((len(shapes), 3)),
         slide_frequency=np.asarray(getattr(modes, "slide_frequency", ()), dtype=float),
-        **taken(modes, about),
+        **taken(asked, modes),
+        **about,
     )
-
-
-def spline_mechanism(design: Design, settings: SplineSettings) -> Any:
-    """Return the spline model's mechanism of a design, as it is in motion; errors as of `answer_release`."""
-    return built(model_of(settings), design, settings, moving=True)[0]
 
 
 def _solve_s(result: Any) -> float:
@@ -239,16 +214,17 @@ def _wall_of_start(release: Callable[..., Any], result: Any, repeat: int) -> flo
     return measure(lambda: release(**brief), repeat=repeat, warm_up=0).median
 
 
-def _drive_of(model: Model, design: Design) -> dict[str, Any]:
+def _drive_of(asked: Asked) -> dict[str, Any]:
     """Return the model's drive of a rotation that a motion goes on with, by its keyword; none if it lets go.
 
     Raises:
         BadInput: a mechanism without a rotation; InvalidParameter of the model.
     """
+    design = asked.design
     given = {"history": design.history, "held": design.held}
     given = {name: value for name, value in given.items() if value is not None}
     if not given:
         return {}
     if design.rotation is None:
         raise BadInput("drive.rotation_deg: got none, expected the rotation that a history or held_s leads")
-    return {"drive": model.drive(body=design.body, angle=design.rotation, **given)}
+    return {"drive": asked.model.drive(body=design.body, angle=design.rotation, **given)}

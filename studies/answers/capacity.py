@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 
 from studies.answers.metrics import extrapolate
-from studies.answers.models import built, effects_of, is_given, model_of, refusals
-from studies.answers.response import assembled
+from studies.answers.models import put
+from studies.answers.response import Answered, assembled, taken
 from studies.answers.settings import FeSettings, Settings, SplineSettings
 from studies.cases.design import Design
 from studies.cases.effects import Effects
@@ -30,22 +30,18 @@ HELD_STABLE = "limit point"
 
 
 @dataclass(frozen=True, kw_only=True)
-class Capacity:
+class Capacity(Answered):
     """The first load that a design does not bear, in one direction.
 
+    Its message is that of the model on the path where the load was found, or where that ended.
+
     Attributes:
-        model, settings, effects: as of any answer.
         direction: of the force [rad], from x to y; held: whether the body is kept from turning.
         force: at which stability is lost [N]; None where it is not, up to `reached`, the largest force that
             was borne [N]; turned: rotation of the body there [rad].
         kind: of the critical point. uncertainty: of the force, relative [1]; NaN of one discretisation.
-        message: of the model, on the path where it was found, or why it ended; whole: whether it reached the
-            end, where it lost nothing.
     """
 
-    model: str
-    settings: dict[str, Any]
-    effects: tuple[str, ...]
     direction: float
     held: bool
     force: float | None
@@ -53,8 +49,6 @@ class Capacity:
     turned: float
     kind: str
     uncertainty: float
-    message: str
-    whole: bool
 
 
 def capacity(
@@ -82,7 +76,7 @@ def capacity(
     found: list[Capacity] = []
     for each in _refined(settings):
         found.append(_of(design, each, direction, held, name))
-        if found[-1].force is None and found[-1].whole:
+        if found[-1].force is None and found[-1].converged:
             return found[-1]
         if _settled(settings, found):
             break
@@ -101,7 +95,7 @@ def _refined(settings: Settings) -> Iterator[Settings]:
     """Yield the discretisations to answer with."""
     if isinstance(settings, FeSettings):
         yield from (replace(settings, elements=settings.elements * times) for times in MESHES)
-    elif is_given(settings):
+    elif settings.control_points is not None:
         yield settings
     else:
         yield from (replace(settings, control_points=points) for points in POINTS)
@@ -116,23 +110,23 @@ def _settled(settings: Settings, found: list[Capacity]) -> bool:
 
 def _of(design: Design, settings: Settings, direction: float, held: bool, body: str) -> Capacity:
     """Return the capacity with one discretisation."""
-    unit, model, reached = _unit(design), model_of(settings), 0.0
+    unit, reached = _unit(design), 0.0
     towards = (float(np.cos(direction)), float(np.sin(direction)))
     for part in PARTS:
         size = part * unit
         loaded = _loaded(design, (size * towards[0], size * towards[1]), body)
-        asked, keywords = built(model, loaded, settings, moving=False)
+        asked = put(loaded, settings)
         how = {"rotation": 0.0 if held else None, "increments": INCREMENTS, "raise_on_failure": False}
-        with refusals(model, settings):
-            path = model.statics.solve_mechanism(asked, body=body, **how)
+        with asked.refusals():
+            path = asked.model.statics.solve_mechanism(asked.modelled, body=body, **how)
         lost = [each for each in path.critical_points if not (held and each.kind == HELD_STABLE)]
         reached = size * float(lost[0].load_factor if lost else path.load_factor[-1])
         if lost or path.status.value != "converged":
             break
     return Capacity(
-        model=settings.model,
-        settings=keywords,
-        effects=assembled(effects_of(asked)),
+        **taken(asked, path) | {"effects": assembled(asked.effects)},
+        status="converged" if lost else str(path.status.value),
+        message=str(path.message),
         direction=direction,
         held=held,
         force=reached if lost else None,
@@ -140,8 +134,6 @@ def _of(design: Design, settings: Settings, direction: float, held: bool, body: 
         turned=float(path.bodies[body][-1, 2]) if not lost else float(lost[0].rotation),
         kind=lost[0].kind if lost else "",
         uncertainty=float("nan"),
-        message=str(path.message),
-        whole=path.status.value == "converged",
     )
 
 

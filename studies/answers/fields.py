@@ -6,18 +6,12 @@ from typing import Any
 
 import numpy as np
 
-from studies.answers.models import (
-    Model,
-    built,
-    effects_of,
-    mode_bodies,
-    model_of,
-    settings_of,
-)
-from studies.answers.response import Answered, Response, assembled
+from studies.answers.models import Model, effects_of, mode_bodies, model_of
+from studies.answers.response import Answered, assembled
 from studies.answers.settings import FeSettings, SplineSettings
-from studies.cases.design import Design
+from studies.answers.strength import moduli_of, strains_of
 from studies.cases.keys import GROUND
+from studies.cases.mechanism import Sectioned
 from studies.errors import BadInput
 from studies.kinds import Array
 
@@ -31,28 +25,28 @@ OF_MOTION = {f"{name}_energy": name for name in ("kinetic", "strain", "gravity")
 
 
 @dataclass(frozen=True, kw_only=True)
-class _Part:
+class _Part(Sectioned):
     """A strip as its fields need it: what its root and its tip are on, and its section.
 
     Attributes:
         root, tip: "ground", the name of a body, or None for a free end.
-        axial_rigidity: EA [N]; flexural_rigidity: EI [N m^2]; youngs_modulus: E [Pa]; depth: [m].
     """
 
     name: str
     root: str | None
     tip: str | None
-    axial_rigidity: float
-    flexural_rigidity: float
     youngs_modulus: float
-    depth: float
+    area: float
+    second_moment_of_area: float
+    section_depth: float | None = None
 
 
 @dataclass(frozen=True, kw_only=True)
-class Fields(Answered):
+class Fields:
     """Fields of a static path, a motion or natural modes: S states, G strips, P stations, B bodies.
 
     Attributes:
+        model, settings, effects, status, message: as of any answer.
         analysis: "static", "release" or "modes".
         parts: the strips. blocks: the bodies, as the model has them: `name`, `mass` [kg] and
             `moment_of_inertia` about the centre [kg m^2].
@@ -72,6 +66,11 @@ class Fields(Answered):
             static state that the motion is about, the same in all.
     """
 
+    model: str
+    settings: dict[str, Any]
+    effects: tuple[str, ...]
+    status: str
+    message: str
     analysis: str
     parts: tuple[_Part, ...]
     blocks: tuple[Any, ...]
@@ -105,13 +104,8 @@ class Fields(Answered):
     @property
     def stress(self) -> Array:
         """(S, G, P) larger magnitude of axial and bending stress together at the two outer fibres [Pa]."""
-        given = [
-            (part.axial_rigidity, part.flexural_rigidity, part.youngs_modulus, part.depth)
-            for part in self.parts
-        ]
-        axial, bending, modulus, depth = np.array(given).T[:, :, None]
-        strain = np.abs(self.axial_force / axial) + np.abs(self.bending_moment * depth / (2.0 * bending))
-        return np.asarray(modulus * strain)
+        strain = strains_of(self.parts, self.axial_force, self.bending_moment)
+        return np.asarray(moduli_of(self.parts)[:, None] * strain)
 
     @property
     def strain_energy(self) -> Array:
@@ -125,44 +119,49 @@ class Fields(Answered):
         return np.asarray(self.stress.max(axis=(1, 2)))
 
 
-def fields_of(answer: Answered, design: Design) -> Fields:
-    """Return the fields of what a neutral answer to `design` was made of; BadInput if it has no state."""
+def fields_of(answer: Answered) -> Fields:
+    """Return the fields of what a neutral answer was made of; BadInput if it has no state."""
     if answer.solution is None:
         raise BadInput(f"{answer.model}: got no state, expected a solution with one: {answer.message}")
-    settings = settings_of(answer)
-    model = model_of(settings)
-    asked, keywords = built(model, design, settings, moving=not isinstance(answer, Response))
-    found = _solved(model, asked, answer.solution, design.body)
-    parts = zip(found.parts, design.strips, strict=True)
+    found = own_fields(answer.solution, answer.modelled)
+    parts = zip(found.parts, answer.design.strips, strict=True)
     return replace(
         found,
         model=answer.model,
-        settings=keywords | answer.settings,
-        parts=tuple(replace(part, depth=strip.depth) for part, strip in parts),
+        settings=answer.settings,
+        driven=[block.name for block in found.blocks].index(answer.body) if answer.body else 0,
+        parts=tuple(replace(part, section_depth=strip.depth) for part, strip in parts),
     )
 
 
-def own_fields(solution: Any, asked: Any) -> Fields:
+def own_fields(solution: Any, modelled: Any) -> Fields:
     """Return the fields of a solution, trajectory or modes of either model, of a pivot or mechanism of it.
 
     Args:
         solution: what a function of `spline_model` or `fe_reference` returned.
-        asked: the pivot or mechanism that it was called with.
+        modelled: the pivot or mechanism that it was called with.
 
     Raises:
         BadInput: something else, or of two models; one line.
     """
     package = type(solution).__module__.partition(".")[0]
-    if type(solution).__name__ not in KINDS or type(asked).__module__.partition(".")[0] != package:
-        got = f"{type(solution).__name__} and {type(asked).__name__}"
+    if type(solution).__name__ not in KINDS or type(modelled).__module__.partition(".")[0] != package:
+        got = f"{type(solution).__name__} and {type(modelled).__name__}"
         raise BadInput(
             f"solution: got {got}, expected a static solution, a trajectory or modes, with their design"
         )
-    asked = _as_fine(asked, solution)
-    splines = package == "spline_model"
-    settings = SplineSettings() if splines else FeSettings(element=asked.element)
+    asked = _as_fine(modelled, solution)
+    settings = SplineSettings() if package == "spline_model" else FeSettings(element=asked.element)
     body = getattr(solution, "driven", None) or getattr(solution, "body", None)
-    return replace(_solved(model_of(settings), asked, solution, body), model=settings.model)
+    blocks = _bodies_of(asked)
+    return Fields(
+        model=settings.model,
+        settings={},
+        parts=_strips_of(asked),
+        blocks=blocks,
+        driven=[block.name for block in blocks].index(body) if body else 0,
+        **KINDS[type(solution).__name__](model_of(settings), asked, solution),
+    )
 
 
 def _as_fine(asked: Any, solution: Any) -> Any:
@@ -176,19 +175,6 @@ def _as_fine(asked: Any, solution: Any) -> Any:
     for _ in meshes[1:]:
         asked = finer(asked)
     return asked
-
-
-def _solved(model: Model, asked: Any, result: Any, body: str | None) -> Fields:
-    """Return the fields of a model's result about a design in the model, discretised as the result is."""
-    blocks = _bodies_of(asked)
-    return Fields(
-        model="",
-        settings={},
-        parts=_strips_of(asked),
-        blocks=blocks,
-        driven=[block.name for block in blocks].index(body) if body else 0,
-        **KINDS[type(result).__name__](model, asked, result),
-    )
 
 
 def _path(model: Model, asked: Any, result: Any) -> dict[str, Any]:
@@ -267,15 +253,8 @@ def _strips_of(asked: Any) -> tuple[_Part, ...]:
 
 
 def _part(name: str, root: str | None, tip: str | None, section: Any) -> _Part:
-    return _Part(
-        name=name,
-        root=root,
-        tip=tip,
-        axial_rigidity=section.youngs_modulus * section.area,
-        flexural_rigidity=section.youngs_modulus * section.second_moment_of_area,
-        youngs_modulus=section.youngs_modulus,
-        depth=float(np.sqrt(12.0 * section.second_moment_of_area / section.area)),
-    )
+    names = ("youngs_modulus", "area", "second_moment_of_area")
+    return _Part(name=name, root=root, tip=tip, **{each: getattr(section, each) for each in names})
 
 
 def _bodies_of(asked: Any) -> tuple[Any, ...]:

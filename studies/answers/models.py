@@ -2,13 +2,13 @@
 
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from types import ModuleType
 from typing import Any
 
 import numpy as np
 
-from studies.answers.settings import FeSettings, Settings, SplineSettings
+from studies.answers.settings import FeSettings, Settings
 from studies.cases.design import Design
 from studies.cases.problem import Problem
 from studies.errors import BadInput
@@ -68,68 +68,103 @@ def _spline() -> Model:
     )
 
 
-def built(model: Model, design: Design, settings: Settings, *, moving: bool) -> tuple[Any, dict[str, Any]]:
-    """Return the design in the model and the keywords of its discretisation, complete for one in motion.
+@dataclass(frozen=True)
+class Asked:
+    """A design as it is put to a model: what the functions of the model take, and how they refuse it.
+
+    Attributes:
+        design: of the case; settings: of the model.
+        model: its modules.
+        moving: whether it is asked in motion, where a spline has another slide stiffness.
+        modelled: the design in the model.
+    """
+
+    design: Design
+    settings: Settings
+    model: Model
+    moving: bool
+    modelled: Any
+
+    @property
+    def effects(self) -> tuple[str, ...]:
+        """Names of the effects, as the model took them."""
+        return effects_of(self.modelled)
+
+    def discretised(self, result: Any) -> dict[str, Any]:
+        """Return the keywords of the discretisation that a result was reached with, and what else the model
+        has set: control points or elements among them that it has chosen for its accuracy."""
+        given = self.settings.keywords()
+        if meshes := getattr(getattr(result, "estimate", None), "meshes", ()):
+            given["elements"] = meshes[-1]
+        elif hasattr(result, "control_points"):
+            given["control_points"] = result.control_points
+        return _keywords(self.model, given, self.moving) | dict(getattr(result, "settings", {}))
+
+    @contextmanager
+    def refusals(self) -> Iterator[None]:
+        """Turn what the model refuses into one line."""
+        with _refusals(self.model, self.settings):
+            yield
+
+    def static_path(self, **how: Any) -> Any:
+        """Return the model's static solution.
+
+        The path is the design's own, unless `rotation`, `increments` or `order` say otherwise; the other
+        keywords are those of the model.
+
+        Raises:
+            BadInput: what the model refuses; one line.
+        """
+        design, statics = self.design, self.model.statics
+        given = {"rotation": design.rotation, "increments": design.increments, "order": design.order} | how
+        with self.refusals():
+            if isinstance(design, Problem):
+                return statics.solve_statics(self.modelled, **given)
+            return statics.solve_mechanism(self.modelled, body=design.body, **given)
+
+
+def put(design: Design, settings: Settings, *, moving: bool = False) -> Asked:
+    """Return the design as the settings' model has it, discretised for a motion if it is `moving`.
 
     Raises:
         BadInput: a setting or an effect that the model refuses; one line.
     """
-    keywords = settings.keywords()
-    if moving and "control_points" in keywords:  # the slide stiffness that goes with those of a spline
-        stiffness = model.pivot.swinging_slide_stiffness(keywords["control_points"])
-        keywords = {"slide_stiffness": stiffness} | keywords
+    model = model_of(settings)
+    keywords = _keywords(model, settings.keywords(), moving)
     scene = {"effects": design.effects.names, "parameters": design.effects.parameters()}
-    with refusals(model, settings):
+    with _refusals(model, settings):
         if isinstance(design, Problem):
-            return model.pivot.cross_axis_pivot(**design.pivot_parameters(), **scene, **keywords), keywords
-        parts = design.mechanism_parameters()
-        mechanism = model.mechanism.mechanism(
-            strips=[model.mechanism.StripDesign(**strip) for strip in parts["strips"]],
-            bodies=[model.mechanism.BodyDesign(**body) for body in parts["bodies"]],
-            **scene,
-            **keywords,
-        )
-        return mechanism, keywords
+            modelled = model.pivot.cross_axis_pivot(**design.pivot_parameters(), **scene, **keywords)
+        else:
+            parts = design.mechanism_parameters()
+            modelled = model.mechanism.mechanism(
+                strips=[model.mechanism.StripDesign(**strip) for strip in parts["strips"]],
+                bodies=[model.mechanism.BodyDesign(**body) for body in parts["bodies"]],
+                **scene,
+                **keywords,
+            )
+    return Asked(design, settings, model, moving, modelled)
 
 
-def is_given(settings: Settings) -> bool:
-    """Return whether settings say how fine the discretisation is, or leave that to the model's accuracy."""
-    return getattr(settings, "control_points", 0) is not None
+def _keywords(model: Model, given: dict[str, Any], moving: bool) -> dict[str, Any]:
+    """Return keywords of a discretisation with the slide stiffness of control points that are in motion."""
+    if not moving or "control_points" not in given:
+        return given
+    return {"slide_stiffness": model.pivot.swinging_slide_stiffness(given["control_points"])} | given
 
 
-def settings_of(answer: Any) -> Settings:
-    """Return the settings that a neutral answer was reached with: its model's, with what that chose."""
-    kind = SplineSettings if answer.model == "spline" else FeSettings
-    return kind(
-        **{key.name: answer.settings[key.name] for key in fields(kind) if key.name in answer.settings}
-    )
-
-
-def effects_of(asked: Any) -> tuple[str, ...]:
-    """Return the names of the effects of what `built` returned, as the model took them."""
-    effects = getattr(asked, "mechanism", asked).effects
+def effects_of(modelled: Any) -> tuple[str, ...]:
+    """Return the names of the effects of a pivot or mechanism of a model."""
+    effects = getattr(modelled, "mechanism", modelled).effects
     return tuple(getattr(effects, "names", effects))
 
 
 @contextmanager
-def refusals(model: Model, settings: Settings) -> Iterator[None]:
-    """Turn what the model refuses into one line."""
+def _refusals(model: Model, settings: Settings) -> Iterator[None]:
     try:
         yield
     except model.errors.InvalidParameter as error:
         raise BadInput(f"{settings.model}: {error}") from None
-
-
-def static_path(model: Model, design: Design, asked: Any, **how: Any) -> Any:
-    """Return the model's static solution of a design, `asked` as `built` returned it.
-
-    The path is the design's own, unless `rotation`, `increments` or `order` say otherwise; the other keywords
-    are those of the model.
-    """
-    given = {"rotation": design.rotation, "increments": design.increments, "order": design.order} | how
-    if isinstance(design, Problem):
-        return model.statics.solve_statics(asked, **given)
-    return model.statics.solve_mechanism(asked, body=design.body, **given)
 
 
 def mode_bodies(modes: Any, names: Sequence[str]) -> Array:

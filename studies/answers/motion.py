@@ -7,8 +7,9 @@ from typing import Any
 import numpy as np
 
 from studies.answers.frequency import Frequency, swing_frequency
+from studies.answers.models import Asked
 from studies.answers.response import Answered, Solved, ended, taken
-from studies.cases.design import Design
+from studies.cases.design import flexural_scale
 from studies.kinds import Array
 
 #: Arrays that a motion takes over from a model's trajectory as they are.
@@ -40,9 +41,6 @@ class Motion(Solved):
         status: "converged", "not_converged" or "unstable".
         rotation_error: estimated error of the rotation, by a companion motion [rad]; NaN without one.
         time: (T,) [s]; empty when statics does not reach the start.
-        bodies: (T, 3) by name: centre of mass x, y [m], rotation, counter-clockwise [rad]; a pivot's origin
-            is A1.
-        body: name of the one that swings: that was let go; None of strips alone.
         kinetic_energy, strain_energy: (T,) of strips and bodies together [J].
         gravity_energy: (T,) against rest [J]; work, dissipated: (T,) by loads, and lost, since the start [J].
         constraint_residual: (T,) largest gap of clamps [m]; velocity_residual: (T,) its rate [m/s].
@@ -50,8 +48,6 @@ class Motion(Solved):
     """
 
     time: Array
-    bodies: dict[str, Array]
-    body: str | None
     kinetic_energy: Array
     strain_energy: Array
     gravity_energy: Array
@@ -60,16 +56,6 @@ class Motion(Solved):
     constraint_residual: Array
     velocity_residual: Array
     rotation_error: float = math.nan
-
-    @property
-    def rotation(self) -> Array:
-        """(T,) of the body that swings, counter-clockwise [rad]."""
-        return self.bodies[str(self.body)][:, 2]
-
-    @property
-    def centre(self) -> Array:
-        """(T, 2) centre of mass of the body that swings [m]."""
-        return self.bodies[str(self.body)][:, :2]
 
     @property
     def energy_error(self) -> float:
@@ -94,42 +80,41 @@ class Motion(Solved):
         return self.swing.value
 
 
-def motion(result: Any, *, energy: float = 0.0, **about: Any) -> Motion:
+def motion(asked: Asked, result: Any, *, wall_s: float, solve_s: float) -> Motion:
     """Return the neutral form of a model's trajectory; only some say how well they resolve the swing.
 
-    Args:
-        energy: a scale of the design's [J]: a motion without a part of it stands still, and says so. With
-            none that is not asked.
-        about: model, settings, effects, body that swings and times.
+    One without a part of the design's energy in it stands still, and says so.
     """
     exact, kinetic = np.zeros(len(result.time)), np.asarray(result.kinetic_energy)
     arrays: dict[str, Any] = {name: getattr(result, name) for name in SHARED_ARRAYS}
     arrays |= {name: getattr(result, name, exact) for name in RESIDUALS}
     arrays = {name: np.asarray(array, dtype=float) for name, array in arrays.items()}
     found = ended(result)
-    if len(kinetic) and energy > 0.0 and float(kinetic.max()) <= STILL * energy:
+    if len(kinetic) and float(kinetic.max()) <= STILL * flexural_scale(asked.design):
         found |= {"message": result.message or NOTHING_MOVES, "resolution": ""}
     return Motion(
         bodies={name: np.asarray(place, dtype=float) for name, place in result.bodies.items()},
         rotation_error=getattr(result, "rotation_error", math.nan),
-        **taken(result, about | {"settings": about["settings"] | dict(result.settings)}),
+        wall_s=wall_s,
+        solve_s=solve_s,
+        **taken(asked, result),
         **found,
         **arrays,
     )
 
 
-def no_motion(message: str, design: Design, **about: Any) -> Motion:
+def no_motion(asked: Asked, message: str) -> Motion:
     """Return the motion of a design that statics does not bring to the start: without a record."""
     nothing: dict[str, Any] = {name: np.zeros(0) for name in (*SHARED_ARRAYS, *RESIDUALS)}
     return Motion(
         status="not_converged",
         message=message,
         resolution="",
-        bodies={body.name: np.zeros((0, 3)) for body in design.bodies},
+        bodies={body.name: np.zeros((0, 3)) for body in asked.design.bodies},
         counters={},
         wall_s=0.0,
         solve_s=0.0,
-        **about,
+        **taken(asked),
         **nothing,
     )
 
@@ -141,18 +126,14 @@ class Spectrum(Answered):
     Attributes:
         rotation: of the static state [rad]; held: whether it is held.
         frequency: (F,) [Hz]; negative where the state is unstable.
-        body: name of the body that may be driven; None without one.
-        body_shapes: (F, 3) its displacement x, y and rotation at unit modal mass.
+        body_shapes: (F, 3) displacement x, y and rotation of the body at unit modal mass.
         slide_frequency: frequencies that are left out because they are the discretisation's alone [Hz].
         wall_s: time of the static path to the state and of the modes [s].
-        estimate: of the frequencies' error, by name; None of a model that was not asked for an accuracy.
     """
 
     rotation: float
     held: bool
     frequency: Array
-    body: str | None
     body_shapes: Array
     slide_frequency: Array
     wall_s: float
-    estimate: dict[str, Any] | None = None

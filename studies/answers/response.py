@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from studies.answers.models import Asked
 from studies.answers.strength import moduli_of, strains_of
 from studies.cases.design import Design
 from studies.cases.effects import MOTION_ONLY
@@ -33,25 +34,35 @@ class Answered:
     """What every answer says of how it came about.
 
     Attributes:
+        design: that was asked; modelled: the same in the model.
         model: "spline", "fe" or "fe-shear".
         settings: discretisation keywords, and what the model chose beside them.
         effects: names of what was assembled.
         status: "converged", or how it ended early; `message` says why and where or when, or what a path that
             reached its end has passed.
         solution: the model's own, which `answers.fields` makes fields of; None where there is none.
+        estimate: what a model that was asked for an accuracy says of its error, by name; None otherwise.
     """
 
+    design: Design
+    modelled: Any = field(default=None, repr=False, compare=False)
     model: str
     settings: dict[str, Any]
     effects: tuple[str, ...]
     status: str
     message: str
     solution: Any = field(default=None, repr=False, compare=False)
+    estimate: dict[str, Any] | None = None
 
     @property
     def converged(self) -> bool:
         """Whether all that was asked for was reached."""
         return self.status == "converged"
+
+    @property
+    def body(self) -> str | None:
+        """Name of the body that is driven or let go, or may be; None without one."""
+        return self.design.body
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -64,14 +75,25 @@ class Solved(Answered):
         counters: work done, by kind.
         wall_s: time of the answer, without import, compilation and set-up of the model [s].
         solve_s: of it, the increments or steps alone [s].
-        estimate: what a model that was asked for an accuracy says of its error, by name; None otherwise.
+        bodies: (S, 3) by name, over states or instants: centre of mass x, y [m], rotation, counter-clockwise
+            [rad]; a pivot's origin is A1.
     """
 
     resolution: str
     counters: dict[str, int]
     wall_s: float
     solve_s: float
-    estimate: dict[str, Any] | None = None
+    bodies: dict[str, Array]
+
+    @property
+    def rotation(self) -> Array:
+        """(S,) of the body that is driven or let go, counter-clockwise [rad]."""
+        return self.bodies[str(self.body)][:, 2]
+
+    @property
+    def centre(self) -> Array:
+        """(S, 2) centre of mass of that body [m]."""
+        return self.bodies[str(self.body)][:, :2]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -81,9 +103,6 @@ class Response(Solved):
     Attributes:
         critical_points: where it loses or regains stability, in its order, each with `kind` ("limit point",
             "turning point" or "bifurcation"), `load_factor` [1] and `rotation` [rad], NaN where none turns.
-        bodies: (S, 3) by name: centre of mass x, y [m], rotation, counter-clockwise [rad]; a pivot's origin
-            is A1.
-        driven: name of the one that may be driven; None without one.
         load_factor: (S,) share of the loads that acts, of the rotation where there are none [1].
         torque: (S,) driving torque [N m]; stiffness: (S,) its derivative from the tangent [N m / rad]; NaN
             where nothing is driven.
@@ -91,12 +110,9 @@ class Response(Solved):
         gravity_energy: (S,) against rest [J]; work: (S,) of loads and drives since the first state [J].
         stations: (P,) reference arc length over L [1]; axial_force: (S, G, P) [N]; bending_moment: [N m];
             extreme_fibre_stress: its largest magnitude over the section's depth [Pa].
-        crossing: where a pivot's strips cross at rest [m]; None of a mechanism.
     """
 
     critical_points: tuple[Any, ...] = ()
-    bodies: dict[str, Array]
-    driven: str | None
     load_factor: Array
     torque: Array
     stiffness: Array
@@ -109,17 +125,11 @@ class Response(Solved):
     axial_force: Array
     bending_moment: Array
     extreme_fibre_stress: Array
-    crossing: tuple[float, float] | None = None
 
     @property
-    def rotation(self) -> Array:
-        """(S,) of the body that may be driven, counter-clockwise [rad]."""
-        return self.bodies[str(self.driven)][:, 2]
-
-    @property
-    def centre(self) -> Array:
-        """(S, 2) centre of mass of the body that may be driven [m]."""
-        return self.bodies[str(self.driven)][:, :2]
+    def crossing(self) -> tuple[float, float] | None:
+        """Where a pivot's strips cross at rest [m]; None of a mechanism."""
+        return getattr(self.design, "crossing_point", None)
 
     @property
     def centres(self) -> dict[str, Array]:
@@ -150,41 +160,43 @@ class Response(Solved):
     def body_stiffness(self) -> Array:
         """(S, 3, 3) of the body that is driven or may be, about its centre, in x, y and turn, at fixed loads
         [N/m, N, N m/rad]; found when it is first asked for."""
-        return np.asarray(self.solution.body_stiffness(self.driven))
+        return np.asarray(self.solution.body_stiffness(self.body))
 
 
-def response(design: Design, result: Any, **about: Any) -> Response:
-    """Return the neutral form of a model's path, with what follows from it and the given data.
-
-    about: model, settings, effects and times.
-    """
+def response(asked: Asked, result: Any, *, wall_s: float, solve_s: float) -> Response:
+    """Return the neutral form of a model's path, with what follows from it and the given data."""
     arrays: dict[str, Any] = {name: np.asarray(getattr(result, name), dtype=float) for name in ARRAYS}
-    strain = strains_of(design, arrays["axial_force"], arrays["bending_moment"])
+    strips = asked.design.strips
+    strain = strains_of(strips, arrays["axial_force"], arrays["bending_moment"])
     return Response(
         bodies={name: np.asarray(place, dtype=float) for name, place in result.bodies.items()},
-        driven=design.body,
         critical_points=tuple(result.critical_points),
-        extreme_fibre_stress=moduli_of(design)[:, None] * strain,
-        crossing=getattr(design, "crossing_point", None),
-        **taken(result, about | {"effects": assembled(about["effects"])}),
+        extreme_fibre_stress=moduli_of(strips)[:, None] * strain,
+        wall_s=wall_s,
+        solve_s=solve_s,
+        **taken(asked, result) | {"effects": assembled(asked.effects)},
         **ended(result),
         **arrays,
     )
 
 
-def taken(result: Any, about: dict[str, Any]) -> dict[str, Any]:
-    """Return what is known about an answer with the model's own: the settings that it has chosen for its
-    accuracy among them, and its estimate of its error, None where it was not asked for an accuracy."""
+def taken(asked: Asked, result: Any = None) -> dict[str, Any]:
+    """Return what was asked, and of the model's own answer, where there is one, the settings that it has
+    chosen for its accuracy and its estimate of its error."""
     estimate: Any = getattr(result, "estimate", None)
-    chosen, parts = {}, None
-    if getattr(estimate, "meshes", None) is not None:
-        chosen = {"elements": estimate.meshes[-1]}
-    elif hasattr(result, "control_points"):
-        chosen = {"control_points": result.control_points}
+    parts = None
     if estimate is not None:
         parts = asdict(estimate)
         parts |= dict(parts.pop("errors", {}))
-    return about | {"settings": about["settings"] | chosen, "estimate": parts, "solution": result}
+    return {
+        "design": asked.design,
+        "modelled": asked.modelled,
+        "model": asked.settings.model,
+        "settings": asked.discretised(result),
+        "effects": asked.effects,
+        "solution": result,
+        "estimate": parts,
+    }
 
 
 def ended(result: Any) -> dict[str, Any]:

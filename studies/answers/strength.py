@@ -1,13 +1,12 @@
 """What the material says to an answer: stress at the outer fibres, where it is largest, where it yields."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from studies.cases.design import Design
-from studies.cases.mechanism import Strip
-from studies.cases.problem import Problem
+from studies.cases.mechanism import Sectioned
 from studies.kinds import Array
 
 if TYPE_CHECKING:
@@ -49,12 +48,13 @@ class Strength:
         return f"at {self.station:.2f} of its length"
 
 
-def strength(design: Design, answer: "Response") -> Strength:
-    """Return the largest stress of an answer to a design, and what of its path the material bears.
+def strength(answer: "Response") -> Strength:
+    """Return the largest stress of an answer, and what of its path the material bears.
 
     Between states the share of the yield strength is interpolated monotonically, by cubics.
     """
-    stress, limits = answer.extreme_fibre_stress, [strip.yield_strength for strip in design.strips]
+    stress, strips = answer.extreme_fibre_stress, answer.design.strips
+    limits = [strip.yield_strength for strip in strips]
     first = int(np.argmax(stress >= (1.0 - SAME) * stress.max()))
     state, strip, station = map(int, np.unravel_index(first, stress.shape))
     places = np.stack((answer.load_factor, _turns(answer)), axis=1)
@@ -62,7 +62,7 @@ def strength(design: Design, answer: "Response") -> Strength:
     share = (stress.max(axis=2) / np.array(limits, dtype=float)).max(axis=1) if known else None
     return Strength(
         stress=float(stress.max()),
-        strip=design.strips[strip].name,
+        strip=strips[strip].name,
         station=float(answer.stations[station]),
         load_factor=float(places[state, 0]),
         rotation=float(places[state, 1]),
@@ -72,7 +72,7 @@ def strength(design: Design, answer: "Response") -> Strength:
     )
 
 
-def extreme_fibre_strain(strip: Problem | Strip, axial_force: Array, bending_moment: Array) -> Array:
+def extreme_fibre_strain(strip: Sectioned, axial_force: Array, bending_moment: Array) -> Array:
     """Return max |N/(EA) +- M d/(2 EI)|, the larger magnitude of the two extreme fibres (d: depth of the
     section).
 
@@ -90,23 +90,21 @@ def extreme_fibre_strain(strip: Problem | Strip, axial_force: Array, bending_mom
     return np.asarray(np.abs(axial) + np.abs(bending))
 
 
-def strains_of(design: Design, axial_force: Array, bending_moment: Array) -> Array:
-    """Return the extreme fibre strains of all strips (S, G, P) [1], of their forces (S, G, P) [N, N m]."""
+def strains_of(strips: Sequence[Sectioned], axial_force: Array, bending_moment: Array) -> Array:
+    """Return the extreme fibre strains of strips (S, G, P) [1], of their forces (S, G, P) [N, N m]."""
     forces = zip(np.moveaxis(axial_force, 1, 0), np.moveaxis(bending_moment, 1, 0), strict=True)
-    each = [extreme_fibre_strain(strip, *own) for strip, own in zip(design.strips, forces, strict=True)]
+    each = [extreme_fibre_strain(strip, *own) for strip, own in zip(strips, forces, strict=True)]
     return np.stack(each, axis=1)
 
 
-def moduli_of(design: Design) -> Array:
+def moduli_of(strips: Sequence[Sectioned]) -> Array:
     """Return Young's modulus of every strip (G,) [Pa]."""
-    return np.array([strip.youngs_modulus for strip in design.strips])
+    return np.array([strip.youngs_modulus for strip in strips])
 
 
 def _turns(answer: "Response") -> Array:
     """Return the rotation of the body that is driven or may be (S,); NaN without a body."""
-    if answer.driven is None:
-        return np.full(len(answer.load_factor), np.nan)
-    return np.asarray(answer.bodies[answer.driven][:, 2])
+    return np.full(len(answer.load_factor), np.nan) if answer.body is None else answer.rotation
 
 
 def _crossed(share: Array, places: Array) -> tuple[float, float] | None:

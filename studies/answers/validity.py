@@ -9,12 +9,15 @@ import math
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
 from functools import cache
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from studies.answers.strength import extreme_fibre_strain
 from studies.cases.design import Design
+
+if TYPE_CHECKING:
+    from studies.answers.response import Response
 
 #: Effects that take in what a plain beam leaves out.
 CLAMPED_WIDTH, ANTICLASTIC, ROOTS = "clamped_width", "anticlastic", "root_compliance"
@@ -212,18 +215,12 @@ class Validity:
     outside: tuple[str, ...]
 
 
-def validity(design: Design, forces: Any, *, effects: Iterable[str]) -> Validity:
-    """Return what the answer to a design is worth.
-
-    Args:
-        design: that was asked.
-        forces: the answer, or anything with `axial_force` and `bending_moment` (S, G, P) of all states.
-        effects: names of what was assembled.
-    """
-    strips = strips_of(design, forces)
+def validity(answer: "Response") -> Validity:
+    """Return what an answer is worth."""
+    strips = strips_of(answer.design, answer)
     ratios = ("width_ratio", "curvature_ratio", "thickness_ratio", "strain")
     most = {name: max(float(getattr(strip, name)) for strip in strips) for name in ratios}
-    return Validity(**most, outside=tuple(told(RULES, strips, effects)))
+    return Validity(**most, outside=tuple(told(RULES, strips, answer.effects)))
 
 
 def told(rules: Iterable[_Rule], strips: list[Strip], effects: Iterable[str]) -> Iterator[str]:

@@ -1,8 +1,13 @@
 """Designs: what a case file may hold, a cross-axis pivot or any mechanism of strips and bodies."""
 
+import hashlib
+import json
+from collections.abc import Mapping
+from dataclasses import asdict
 from pathlib import Path
+from typing import Any
 
-from studies.cases.document import parsed
+from studies.cases.document import is_mechanism, parsed
 from studies.cases.mechanism import Mechanism, read_mechanism
 from studies.cases.problem import FOLDER, Problem, read_problem
 
@@ -10,7 +15,7 @@ Design = Problem | Mechanism
 
 
 def read_design(path: str | Path, *, changes: str | None = None) -> Design:
-    """Return the design in the case file at `path`, a mechanism if it has [[strips]].
+    """Return the design in the case file at `path`.
 
     Args:
         path: of the file.
@@ -19,10 +24,18 @@ def read_design(path: str | Path, *, changes: str | None = None) -> Design:
     Raises:
         CaseError: the file cannot be used; one line.
     """
-    content = parsed(path)
-    if isinstance(content.get("strips"), list):
-        return read_mechanism(str(path), content, changes)
-    return read_problem(str(path), content, changes)
+    return design_of(str(path), parsed(path), changes)
+
+
+def design_of(where: str, document: Mapping[str, Any], changes: str | None = None) -> Design:
+    """Return the design of a parsed case file, a mechanism if it has [[strips]]; as of `read_design`."""
+    read = read_mechanism if is_mechanism(document) else read_problem
+    return read(where, document, changes)
+
+
+def named_design(name: str) -> Design:
+    """Return the design of that name that comes with the suite."""
+    return read_design(FOLDER / f"{name}.toml")
 
 
 def flexural_scale(design: Design) -> float:
@@ -30,6 +43,6 @@ def flexural_scale(design: Design) -> float:
     return max(strip.youngs_modulus * strip.second_moment_of_area / strip.length for strip in design.strips)
 
 
-def named_design(name: str) -> Design:
-    """Return the design of that name that comes with the suite."""
-    return read_design(FOLDER / f"{name}.toml")
+def fingerprint(design: Design) -> str:
+    """Return the SHA-256 of a design's values, whatever the layout or comments of its file."""
+    return hashlib.sha256(json.dumps(asdict(design), sort_keys=True).encode()).hexdigest()

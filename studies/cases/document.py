@@ -32,6 +32,12 @@ def parsed(path: str | Path) -> dict[str, Any]:
         raise CaseError(f"{path}: got lists or tables nested too deep, expected a TOML case file") from None
 
 
+def is_mechanism(document: Mapping[str, Any]) -> bool:
+    """Return whether a case's document is of any strips and bodies, each a table of its own; if not, of a
+    cross-axis pivot."""
+    return isinstance(document.get("strips"), list)
+
+
 def values(where: str, keys: Iterable[Key], content: Mapping[str, Any], label: str) -> dict[str, Any]:
     """Return the values of a table by the attributes they fill, in SI; an optional key that is not there is
     left out.

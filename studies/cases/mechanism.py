@@ -1,10 +1,8 @@
 """Read a case file of any strips and bodies into a `Mechanism`: given data in SI units and radians."""
 
-import hashlib
-import json
 import math
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, fields
+from dataclasses import dataclass, fields
 from typing import Any
 
 from studies.cases import document, keys
@@ -17,8 +15,9 @@ Values = Mapping[str, Any]
 
 
 class Sectioned:
-    """What has a section: its area, second moment and, where it is no rectangle, its depth [m]."""
+    """What has a section: modulus, area, second moment and, where it is no rectangle, its depth [m]."""
 
+    youngs_modulus: float
     area: float
     second_moment_of_area: float
     section_depth: float | None
@@ -103,10 +102,6 @@ class Mechanism:
             "strips": [_keywords(strip) for strip in self.strips],
             "bodies": [_keywords(body) for body in self.bodies],
         }
-
-    def fingerprint(self) -> str:
-        """Return the SHA-256 of the values, whatever the file's layout or comments."""
-        return hashlib.sha256(json.dumps(asdict(self), sort_keys=True).encode()).hexdigest()
 
 
 def read_mechanism(path: str, content: Mapping[str, Any], changes: str | None = None) -> Mechanism:

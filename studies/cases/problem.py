@@ -1,20 +1,18 @@
 """Read a case file into a `Problem`: the given data of one pivot, in SI units and radians."""
 
 import cmath
-import hashlib
-import json
 import math
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, field, fields
+from dataclasses import dataclass, field, fields
 from pathlib import Path
 from typing import Any
 
-from studies.cases.document import CaseError, parsed, refuse_sections, table, values
+from studies.cases.document import CaseError, is_mechanism, parsed, refuse_sections, table, values
 from studies.cases.effects import Effects, read_effects
 from studies.cases.keys import KEYS, LOADS_FIRST
 from studies.cases.mechanism import Body, Sectioned, Strip, completed, of_sides
 
-__all__ = ["FOLDER", "TABLE_1", "CaseError", "Problem", "named_case", "read_case", "read_problem"]
+__all__ = ["FOLDER", "TABLE_1", "CaseError", "Problem", "named_case", "read_problem"]
 
 #: Name of the paper's pivot.
 TABLE_1 = "cross_axis_pivot"
@@ -157,29 +155,22 @@ class Problem(Sectioned):
         sides = SIDES if self.width is not None else ()
         return {name: getattr(self, name) for name in (*PIVOT_PARAMETERS, *sides)}
 
-    def fingerprint(self) -> str:
-        """Return the SHA-256 of the values, whatever the file's layout or comments."""
-        return hashlib.sha256(json.dumps(asdict(self), sort_keys=True).encode()).hexdigest()
 
-
-def named_case(name: str = TABLE_1) -> Problem:
-    """Return the case of that name that comes with the suite; the paper's without one."""
-    return read_case(FOLDER / f"{name}.toml")
-
-
-def read_case(path: str | Path) -> Problem:
-    """Read the case file of a cross-axis pivot at `path`.
+def named_case(case: str | Path = TABLE_1) -> Problem:
+    """Return the pivot of that name that comes with the suite, the paper's without one; or that in a file.
 
     Raises:
         CaseError: the file is unreadable or not TOML, a section or key is missing, unknown or misspelt, a
             value has the wrong type or lies outside its range. One line: file, key, got, expected.
     """
+    own = FOLDER / f"{case}.toml"
+    path = own if own.is_file() else Path(case)
     return read_problem(str(path), parsed(path))
 
 
 def read_problem(path: str, content: Mapping[str, Any], changes: str | None = None) -> Problem:
-    """Return the pivot of a parsed case file with its effects changed; errors as of `read_case`."""
-    if isinstance(content.get("strips"), list):
+    """Return the pivot of a parsed case file with its effects changed; errors as of `named_case`."""
+    if is_mechanism(content):
         raise CaseError(f"{path}: [[strips]]: got a mechanism, expected a cross-axis pivot, with [strip]")
     sections = list(dict.fromkeys(key.section for key in KEYS))
     refuse_sections(path, content, [*sections, "scene", "effects"])

@@ -1,5 +1,5 @@
-"""Case files as text: designs that are written as one, commented files to begin with, and the tables of the
-page of case files; all from the declarations that read them."""
+"""Case files as text: designs that are written as one, and the tables of the page of case files, from the
+declarations that read them."""
 
 import json
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -9,25 +9,17 @@ from studies.cases import keys
 from studies.cases.effects import DEFAULT
 from studies.cases.keys import EFFECT_KEYS, KEYS, MOMENTS
 from studies.cases.problem import Problem
-from studies.cases.rules import FREE, Choice, Key, Number
+from studies.cases.rules import FREE, Key, Number
+
+#: Significant digits of a number that is made in the file's unit.
+DIGITS = 15
 
 
-def as_toml(problem: Problem, remarks: Iterable[str] = ()) -> str:
-    """Return the case file of a pivot, which `read_case` reads as the same pivot.
-
-    A section with known sides is written by these.
-
-    Args:
-        problem: what is written. remarks: lines of comment to begin with.
-    """
-    return "\n".join([*(f"# {remark}" for remark in remarks), *_lines(problem)]) + "\n"
-
-
-def document_toml(document: Mapping[str, Any], remarks: Iterable[str] = ()) -> str:
+def as_toml(document: Mapping[str, Any], remarks: Iterable[str] = ()) -> str:
     """Return the text of a case's document: tables, and arrays of tables, of numbers, texts and lists.
 
     Args:
-        document: as it was parsed. remarks: lines of comment to begin with.
+        document: as a file is parsed. remarks: lines of comment to begin with.
     """
     lines = [f"# {remark}" for remark in remarks]
     for section, content in document.items():
@@ -35,51 +27,53 @@ def document_toml(document: Mapping[str, Any], remarks: Iterable[str] = ()) -> s
             nested = {name: value for name, value in table.items() if isinstance(value, Mapping)}
             if len(nested) < len(table) or not table:
                 lines += ["", f"[[{section}]]" if isinstance(content, list) else f"[{section}]"]
-                lines += [
-                    f"{name} = {_text(value, repr)}" for name, value in table.items() if name not in nested
-                ]
+                lines += [f"{name} = {_text(value)}" for name, value in table.items() if name not in nested]
             for name, inner in nested.items():
                 lines += ["", f"[{section}.{name}]"]
-                lines += [f"{key} = {_text(each, repr)}" for key, each in inner.items()]
+                lines += [f"{key} = {_text(each)}" for key, each in inner.items()]
     return "\n".join(lines) + "\n"
 
 
-def _lines(problem: Problem) -> Iterator[str]:
+def document_of(problem: Problem) -> dict[str, dict[str, Any]]:
+    """Return the document of a pivot's case, which is read as the same pivot to the digits that a file has.
+
+    A section with known sides has these.
+    """
     implied = {key.attribute for key in MOMENTS} if problem.width is not None else set()
-    section = ""
-    for key in KEYS:
-        value = getattr(problem, key.attribute, None)
-        if value is None or key.attribute in implied:
-            continue
-        if key.section != section:
-            section = key.section
-            yield from ("", f"[{section}]")
-        yield f"{key.name} = {_in_file(key, value)}"
-    yield from ("", "[scene]", f"effects = {_text(problem.effects.names)}")
-    for name, values in problem.effects.tables.items():
-        known = {key.attribute: key for key in EFFECT_KEYS.get(name, ())}
-        yield from ("", f"[effects.{name}]")
-        for attribute, value in values.items():
-            if attribute in known:
-                yield f"{known[attribute].name} = {_in_file(known[attribute], value)}"
-            else:  # of an effect that was added to the splines'
-                yield f"{attribute} = {_text(value)}"
+    given = {key: getattr(problem, key.attribute, None) for key in KEYS if key.attribute not in implied}
+    found: dict[str, dict[str, Any]] = {}
+    for key, value in given.items():
+        if value is not None:
+            found.setdefault(key.section, {})[key.name] = _in_file(key, value)
+    found["scene"] = {"effects": problem.effects.names}
+    tables = {name: dict(_parameters(name, own)) for name, own in problem.effects.tables.items()}
+    return found | ({"effects": tables} if tables else {})
 
 
-def _in_file(key: Key, value: Any) -> str:
-    """Return the value of a key in the file's unit."""
-    return _text(key.rule.from_si(value) if isinstance(key.rule, Number) else value)
+def _parameters(effect: str, values: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
+    """Yield key and value of an effect's parameters; those of one that was added to the splines' as they
+    are."""
+    known = {key.attribute: key for key in EFFECT_KEYS.get(effect, ())}
+    for attribute, value in values.items():
+        key = known.get(attribute)
+        yield (attribute, value) if key is None else (key.name, _in_file(key, value))
 
 
-def _text(value: Any, number: Callable[[float], str] = "{:.15g}".format) -> str:
+def _in_file(key: Key, value: Any) -> Any:
+    """Return the value of a key in the file's unit, to the digits that survive the way back."""
+    return float(f"{key.rule.from_si(value):.{DIGITS}g}") if isinstance(key.rule, Number) else value
+
+
+def _text(value: Any) -> str:
     """Return a number, a text or a list as it stands in a TOML file."""
     if value is None:
         return f'"{FREE}"'
     if isinstance(value, str):
         return json.dumps(value)
     if isinstance(value, Sequence):
-        return f"[{', '.join(_text(each, number) for each in value)}]"
-    return number(value) if isinstance(value, float) else str(value)
+        return f"[{', '.join(map(_text, value))}]"
+    short = f"{value:.{DIGITS}g}" if isinstance(value, float) else str(value)
+    return short if float(short) == value else repr(value)
 
 
 #: Tables of a pivot's file, and of a mechanism's, in the order of a file, with their keys.
@@ -149,54 +143,3 @@ def _rows(rows: Iterable[Key]) -> Iterator[str]:
     for key in rows:
         default = key.default if key.optional else "refused"
         yield f"| `{key.name}` | {key.unit or '-'} | {key.admitted} | {default} | {key.meaning} |"
-
-
-#: Keys that may be left out and yet are shown in use: a section by its sides, a material by its name.
-SHOWN = {keys.NAMED.name, *(key.name for key in keys.SIDES), "rotation_deg", "centre_offset_m"}
-#: The effect that the template of a mechanism names beside the usual ones.
-NAMES = "gravity"
-#: Where the comments begin.
-COLUMN = 36
-
-
-def template(*, mechanism: bool) -> Iterator[str]:
-    """Yield the lines of a case file to begin with, which can be solved as it is: of a pivot, or of a
-    mechanism of one strip with a body at its end."""
-    if mechanism:
-        yield "# A mechanism of strips and bodies: as many [[strips]] and [[bodies]] as it has."
-        yield "# Lines that begin with # may be taken out or put into use."
-    else:
-        yield "# A cross-axis flexural pivot. Lines that begin with # may be taken out or put into use."
-    for title, rows in (MECHANISM if mechanism else PIVOT).items():
-        yield ""
-        yield title
-        yield from _template_lines(rows)
-    yield from _scene([NAMES] if mechanism else [])
-
-
-def _template_lines(rows: Iterable[Key], prefix: str = "") -> Iterator[str]:
-    """Yield a line for each key, with what it is; those that may be left out are comments."""
-    for key in rows:
-        used = not key.optional or key.name in SHOWN
-        begin = f"{prefix if used else '# '}{key.name} = {key.example}"
-        unit = f" [{key.unit}]" if key.unit not in ("", "1") else ""
-        choice = f": {key.admitted}" if isinstance(key.rule, Choice) else ""
-        default = "" if used else f"; left out: {key.default}"
-        yield f"{begin:<{COLUMN}} # {key.meaning}{unit}{choice}{default}"
-
-
-def _scene(named: list[str]) -> Iterator[str]:
-    """Yield the scene, and the tables of all effects, those that are not named as comments."""
-    yield ""
-    yield f"# What acts: {', '.join(DEFAULT)} unless said otherwise, + adds to them."
-    yield "[scene]"
-    words = ", ".join(f'"+{name}"' for name in named or [NAMES])
-    yield f"{'' if named else '# '}effects = [{words}]"
-    for name, rows in keys.EFFECT_KEYS.items():
-        if name in DEFAULT or (not rows and name not in named):
-            continue
-        mark = "" if name in named else "# "
-        yield ""
-        yield f"# {name}: {keys.EFFECTS[name]}"
-        yield f"{mark}[effects.{name}]"
-        yield from _template_lines(rows, mark)

@@ -24,7 +24,7 @@ import pandas as pd
 from studies.answers.reference import NoReference
 from studies.cases.design import Design
 from studies.commands import arguments as take
-from studies.commands.answer import deliver, not_converged, require_target
+from studies.commands.answer import deliver, not_converged
 from studies.commands.columns import cell
 from studies.commands.parser import Argument, command
 from studies.record.progress import Bar
@@ -40,7 +40,6 @@ from studies.work_precision.advice import MOTION_ERRORS, PATH_ERRORS, advise_mot
 def main(arguments: argparse.Namespace) -> int:
     """Try, report; return the exit code."""
     problem = take.turned_design(arguments, "rotation to relate errors to")
-    require_target(arguments)
     advise, judged = (advise_motion, MOTION_ERRORS) if arguments.dynamic else (advise_path, PATH_ERRORS)
     try:
         with Bar("advise") as bar:

@@ -11,11 +11,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from studies.answers.response import Answered, Response
-from studies.cases.design import Design
-from studies.commands.parser import Argument
+from studies.commands.parser import STREAM
 from studies.errors import BadInput
 from studies.kinds import Array
-from studies.record.files import PICTURES, require_writable_file, write_whole
+from studies.record.files import write_whole
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -26,13 +25,6 @@ NOT_CONVERGED = 3
 
 #: Parts of an estimate that are no error.
 CHOSEN = ("control_points", "trials", "meshes")
-
-
-def require_target(arguments: argparse.Namespace) -> None:
-    """Raise OutputError unless the files that the answer is to go to can be written: asked before solving."""
-    for target in (arguments.json, getattr(arguments, "csv", None)):
-        if target not in (None, "-"):
-            require_writable_file(Path(target))
 
 
 def deliver(
@@ -70,12 +62,12 @@ def deliver(
     return not_converged(failure)
 
 
-def _put(target: str, text: str, what: str) -> None:
+def _put(target: Path, text: str, what: str) -> None:
     """Write a text to a file and say so, or to the output stream."""
-    if target == "-":
+    if target == STREAM:
         sys.stdout.write(text)
     else:
-        write_whole(Path(target), text.encode())
+        write_whole(target, text.encode())
         print(f"{target}: {what}")
 
 
@@ -161,43 +153,24 @@ def _short(value: Any) -> str:
     return f"{value:.6g}" if isinstance(value, float) else str(value)
 
 
-def _picture_file(text: str) -> Path:
-    """Parse the file of a picture, which must have one of the known endings and a place to be written to."""
-    path = Path(text)
-    if path.suffix[1:].lower() not in PICTURES:
-        raise argparse.ArgumentTypeError(f"got {text}, expected a file that ends in .svg, .png or .pdf")
-    try:
-        require_writable_file(path)
-    except BadInput as error:
-        raise argparse.ArgumentTypeError(str(error)) from None
-    return path
-
-
-PLOT = Argument(
-    "--plot FILE",
-    "draw the answer at the width of a page, as .svg, .png or .pdf (default: no picture)",
-    _picture_file,
-)
-
-
-def pictured(arguments: argparse.Namespace, design: Design, *answers: Answered) -> None:
+def pictured(arguments: argparse.Namespace, *answers: Answered) -> None:
     """Draw what there is of the answers to a design where --plot says, and say where it is."""
     if arguments.plot is None:
         return
     draw(
         arguments,
-        [shown_of(arguments.case, design, each) for each in answers if each.solution is not None],
+        [shown_of(arguments.case, each) for each in answers if each.solution is not None],
         arguments.plot,
     )
 
 
-def shown_of(case: str, design: Design, answer: Answered) -> "Shown":
+def shown_of(case: str, answer: Answered) -> "Shown":
     """Return an answer as pictures show it, with the least known yield strength of its strips."""
     from studies.answers.fields import fields_of
     from studies.pictures.shown import Shown
 
-    known = [strip.yield_strength for strip in design.strips if strip.yield_strength is not None]
-    name, fields = called(case, answer), fields_of(answer, design)
+    known = [strip.yield_strength for strip in answer.design.strips if strip.yield_strength is not None]
+    name, fields = called(case, answer), fields_of(answer)
     return Shown(name=name, fields=fields, yield_strength=min(known, default=None))
 
 
@@ -211,7 +184,7 @@ def draw(arguments: argparse.Namespace, shown: "list[Shown]", target: Path) -> N
     except BadInput as error:
         print(f"studies: {target}: nothing is drawn: {error}", file=sys.stderr)
     else:
-        taken = "-" in (arguments.json, getattr(arguments, "csv", None))
+        taken = STREAM in (arguments.json, getattr(arguments, "csv", None))
         stream = sys.stderr if taken else sys.stdout
         print(f"{target}: the picture", file=stream)
 

@@ -13,11 +13,14 @@ from studies.cases.problem import FOLDER
 from studies.commands.parser import (
     Argument,
     degrees,
+    file_or_stream,
     names_of,
     not_negative,
+    picture_file,
     positive,
     ruled,
     whole_number,
+    writable_file,
 )
 from studies.errors import BadInput
 
@@ -105,12 +108,22 @@ INTEGRATOR = Argument(
 )
 
 JSON = Argument(
-    "--json FILE|-", "write the answer as JSON to FILE or the output stream (default: a table to read)"
+    "--json FILE|-",
+    "write the answer as JSON to FILE or the output stream (default: a table to read)",
+    file_or_stream,
 )
 CSV = Argument(
-    "--csv FILE|-", "write a row a state as CSV to FILE or the output stream (default: a table to read)"
+    "--csv FILE|-",
+    "write a row a state as CSV to FILE or the output stream (default: a table to read)",
+    file_or_stream,
+)
+PLOT = Argument(
+    "--plot FILE",
+    "draw the answer at the width of a page, as .svg, .png or .pdf (default: no picture)",
+    picture_file,
 )
 OUT = Argument("--out FOLDER", read=Path)
+OUT_FILE = Argument("--out FILE", read=writable_file)
 NAMES = Argument("names NAME", "studies, groups, or all; `list` names them", nargs="+")
 RESULTS = Argument(
     "--results FOLDER",

@@ -23,7 +23,7 @@ from typing import Any
 
 from studies.answers.settings import SplineSettings
 from studies.commands import arguments as take
-from studies.commands.answer import deliver, not_converged, require_target
+from studies.commands.answer import deliver, not_converged
 from studies.commands.columns import cell
 from studies.commands.parser import Argument, command, positive, whole_number
 from studies.effects.audit import Audit, audit
@@ -42,7 +42,6 @@ def main(arguments: argparse.Namespace) -> int:
     """Audit and report; return the exit code."""
     design = take.chosen_design(arguments)
     settings = SplineSettings(control_points=arguments.control_points)
-    require_target(arguments)
     try:
         with Bar("audit") as bar:
             found = audit(design, settings, arguments.tolerance, bar)

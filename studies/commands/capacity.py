@@ -19,7 +19,7 @@ from typing import Any
 
 from studies.answers.capacity import Capacity, capacity
 from studies.commands import arguments as take
-from studies.commands.answer import deliver, described, require_target
+from studies.commands.answer import deliver, described, headed
 from studies.commands.columns import one
 from studies.commands.parser import Argument, command, degrees
 from studies.record.progress import Bar
@@ -44,13 +44,12 @@ DIGITS, NO_TURN = 6, 1e-6
 def main(arguments: argparse.Namespace) -> int:
     """Raise the force and report; return the exit code."""
     design, every = take.chosen_design(arguments), take.chosen_settings(arguments)
-    require_target(arguments)
     how = {"direction": math.radians(arguments.direction), "held": arguments.held, "body": arguments.body}
     found = []
     for settings in every:
         with Bar(f"capacity {settings.model}"):
             found.append(capacity(design, settings, **how))
-    stopped = [f"{each.model}: {each.message}" for each in found if each.force is None and not each.whole]
+    stopped = [f"{each.model}: {each.message}" for each in found if not each.converged]
     every_one = [_document(each) for each in found]
     document = every_one[0] if len(found) == 1 else {"answers": every_one}
     return deliver(arguments, document, _readable(found), failure="; ".join(stopped) or None)
@@ -59,11 +58,7 @@ def main(arguments: argparse.Namespace) -> int:
 def _document(found: Capacity) -> dict[str, Any]:
     """Return the answer as the JSON object of the command."""
     return {
-        "status": "converged" if found.force is not None or found.whole else "not_converged",
-        "message": found.message,
-        "model": found.model,
-        "settings": found.settings,
-        "effects": found.effects,
+        **headed(found),
         "force_direction_rad": found.direction,
         "held": found.held,
         "capacity_N": found.force,

@@ -8,28 +8,81 @@ docs/cases.md tells the same with the rules. Exit code 0: done; 2: bad input.
 """
 
 import argparse
+from collections.abc import Iterable, Iterator
 
-from studies.cases.write import template
-from studies.commands.arguments import OUT
+from studies.cases import keys
+from studies.cases.effects import DEFAULT
+from studies.cases.rules import Choice, Key
+from studies.cases.write import MECHANISM, PIVOT
+from studies.commands.arguments import OUT_FILE
 from studies.commands.parser import Argument, command
 from studies.errors import BadInput
-from studies.record.files import require_writable_file, write_whole
+from studies.record.files import write_whole
+
+#: Keys that may be left out and yet are shown in use: a section by its sides, a material by its name.
+SHOWN = {keys.NAMED.name, *(key.name for key in keys.SIDES), "rotation_deg", "centre_offset_m"}
+#: The effect that the template of a mechanism names beside the usual ones.
+NAMES = "gravity"
+#: Where the comments begin.
+COLUMN = 36
 
 
 @command(
     Argument("--pivot", "of a cross-axis pivot (default)"),
     Argument("--mechanism", "of any mechanism of strips and bodies"),
-    OUT.but("write it there (default: the output stream)", metavar="FILE"),
+    OUT_FILE.but("write it there (default: the output stream)"),
 )
 def main(arguments: argparse.Namespace) -> int:
     """Print or write the template; return the exit code."""
     if arguments.pivot and arguments.mechanism:
         raise BadInput("case: got --pivot and --mechanism, expected one of them")
-    text = "\n".join(template(mechanism=arguments.mechanism))
+    text = "\n".join(_template(mechanism=arguments.mechanism))
     if arguments.out is None:
         print(text)
         return 0
-    require_writable_file(arguments.out)
     write_whole(arguments.out, f"{text}\n".encode())
     print(f"{arguments.out}: written; `python -m studies solve {arguments.out}`")
     return 0
+
+
+def _template(*, mechanism: bool) -> Iterator[str]:
+    """Yield the lines of a case file to begin with, which can be solved as it is: of a pivot, or of a
+    mechanism of one strip with a body at its end."""
+    if mechanism:
+        yield "# A mechanism of strips and bodies: as many [[strips]] and [[bodies]] as it has."
+        yield "# Lines that begin with # may be taken out or put into use."
+    else:
+        yield "# A cross-axis flexural pivot. Lines that begin with # may be taken out or put into use."
+    for title, rows in (MECHANISM if mechanism else PIVOT).items():
+        yield ""
+        yield title
+        yield from _template_lines(rows)
+    yield from _scene([NAMES] if mechanism else [])
+
+
+def _template_lines(rows: Iterable[Key], prefix: str = "") -> Iterator[str]:
+    """Yield a line for each key, with what it is; those that may be left out are comments."""
+    for key in rows:
+        used = not key.optional or key.name in SHOWN
+        begin = f"{prefix if used else '# '}{key.name} = {key.example}"
+        unit = f" [{key.unit}]" if key.unit not in ("", "1") else ""
+        choice = f": {key.admitted}" if isinstance(key.rule, Choice) else ""
+        default = "" if used else f"; left out: {key.default}"
+        yield f"{begin:<{COLUMN}} # {key.meaning}{unit}{choice}{default}"
+
+
+def _scene(named: list[str]) -> Iterator[str]:
+    """Yield the scene, and the tables of all effects, those that are not named as comments."""
+    yield ""
+    yield f"# What acts: {', '.join(DEFAULT)} unless said otherwise, + adds to them."
+    yield "[scene]"
+    words = ", ".join(f'"+{name}"' for name in named or [NAMES])
+    yield f"{'' if named else '# '}effects = [{words}]"
+    for name, rows in keys.EFFECT_KEYS.items():
+        if name in DEFAULT or (not rows and name not in named):
+            continue
+        mark = "" if name in named else "# "
+        yield ""
+        yield f"# {name}: {keys.EFFECTS[name]}"
+        yield f"{mark}[effects.{name}]"
+        yield from _template_lines(rows, mark)

@@ -25,9 +25,9 @@ from studies.answers.adapters import answer_modes, answer_static
 from studies.answers.response import Response
 from studies.answers.settings import Settings
 from studies.answers.strength import strength
-from studies.cases.design import Design, read_design
+from studies.cases.design import read_design
 from studies.commands import arguments as take
-from studies.commands.answer import PLOT, called, deliver, draw, require_target, shown_of
+from studies.commands.answer import called, deliver, draw, shown_of
 from studies.commands.columns import NOTHING, PREFIXES, plain, quantity, significant, table
 from studies.commands.parser import Argument, command
 from studies.errors import BadInput
@@ -41,7 +41,7 @@ MODES = 6
 PLOT_MODES = Argument(
     "--plot-modes FILE",
     "draw the first six natural modes at rest over one another (default: no picture)",
-    PLOT.read,
+    take.PLOT.read,
 )
 
 
@@ -76,9 +76,9 @@ class _Compared(NamedTuple):
         return self.values.get(key, math.nan)
 
 
-def _values(design: Design, answer: Response, shown: Shown) -> dict[str, float]:
+def _values(answer: Response, shown: Shown) -> dict[str, float]:
     """Return the numbers of a path by their keys."""
-    fields, limits = shown.fields, strength(design, answer)
+    fields, limits = shown.fields, strength(answer)
     found: dict[str, Any] = {
         "max_stress_Pa": fields.max_stress.max(),
         "strain_energy_J": fields.strain_energy[-1],
@@ -111,7 +111,7 @@ def _values(design: Design, answer: Response, shown: Shown) -> dict[str, float]:
     take.INCREMENTS,
     take.ACCURACY.but("wanted relative error of the paths, as of `solve` (default: that of `solve`)"),
     take.JSON,
-    PLOT,
+    take.PLOT,
     PLOT_MODES,
 )
 def main(arguments: argparse.Namespace) -> int:
@@ -120,7 +120,6 @@ def main(arguments: argparse.Namespace) -> int:
     if not 2 <= len(asked) <= len(LETTERS):
         got = f"{len(asked)} (designs: {len(arguments.cases)}, models: {len(arguments.model)})"
         raise BadInput(f"compare: got {got}, expected 2 to {len(LETTERS)} designs, or a design by two models")
-    require_target(arguments)
     with Bar("compare") as bar:
         found = []
         for done, (case, settings) in enumerate(asked, start=1):
@@ -159,10 +158,10 @@ def _solved(case: str, settings: Settings, arguments: argparse.Namespace) -> _Co
     spectrum = answer_modes(design, settings, count=1 if arguments.plot_modes is None else MODES)
     shown, modes, values = None, None, {}
     if len(answer.load_factor):
-        shown = shown_of(case, design, answer)
-        values = _values(design, answer, shown)
+        shown = shown_of(case, answer)
+        values = _values(answer, shown)
     if len(spectrum.frequency):
-        modes = shown_of(case, design, spectrum)
+        modes = shown_of(case, spectrum)
         values["first_frequency_Hz"] = float(spectrum.frequency[0])
     return _Compared(case, answer, shown, modes, values)
 

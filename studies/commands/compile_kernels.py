@@ -62,7 +62,7 @@ def call(settings: Settings, tasks: tuple[str, ...]) -> None:
     from spline_model.batch import solve_many
     from spline_model.sequential_impulse import solve_impulses
     from studies.answers.adapters import answer_modes, answer_release, answer_static
-    from studies.answers.models import built, model_of
+    from studies.answers.models import put
     from studies.cases.effects import Effects
     from studies.cases.problem import named_case
 
@@ -75,7 +75,7 @@ def call(settings: Settings, tasks: tuple[str, ...]) -> None:
         elif task == "modes":
             answer_modes(problem, settings)
         elif task == "sequential impulses":
-            pivot = built(model_of(settings), problem, settings, moving=True)[0]
+            pivot = put(problem, settings, moving=True).modelled
             for form in ("printed", "stable"):
                 solve_impulses(pivot, duration=1e-5, step=1e-6, form=form)
         elif task == "energy from rest":
@@ -95,9 +95,9 @@ def _from_rest(problem: Problem, settings: Settings) -> None:
     from spline_model.motion.energy_consistent import integrate
     from spline_model.motion.start import Start, Steps, set_in_motion
     from spline_model.solution import Later
-    from studies.answers.models import built, model_of
+    from studies.answers.models import put
 
-    pivot = built(model_of(settings), problem, settings, moving=True)[0].in_motion()
+    pivot = put(problem, settings, moving=True).modelled.in_motion()
     motion = set_in_motion(compile_scene(pivot.released()))
     start = Start(motion, Later(motion.system.rest[None].copy), np.zeros(len(motion.mass)))
     integrate(start, Steps(1e-8, 4, 1))

@@ -85,12 +85,12 @@ def main(arguments: argparse.Namespace) -> int:
     answer = _solved(arguments.analysis, design, settings, own)
     if answer.solution is None:
         return not_converged(answer.message)
-    fields = fields_of(answer, design)
+    fields = fields_of(answer)
     files = contents(fields, arguments.formats, _drawn(fields, arguments.draw_deg))
     write(arguments.out, files, fields, Path(arguments.case).name)
     print(described(fields.model, fields.settings, fields.effects))
     print(f"{arguments.out}: {len(fields.values)} states of {fields.analysis} in {len(files)} files")
-    return 0 if fields.converged else not_converged(fields.message)
+    return 0 if answer.converged else not_converged(answer.message)
 
 
 def _own_options(arguments: argparse.Namespace) -> dict[str, Any]:

@@ -24,10 +24,10 @@ import sys
 import webbrowser
 from pathlib import Path
 
-from studies.commands.arguments import CASE, OUT
+from studies.commands.arguments import CASE, OUT_FILE
 from studies.commands.parser import Argument, command, whole_number
 from studies.errors import BadInput
-from studies.record.files import require_writable_file, write_whole
+from studies.record.files import write_whole
 
 #: What the extra brings: module -> package.
 EXTRA = {
@@ -100,7 +100,7 @@ def main(arguments: argparse.Namespace) -> int:
     return 0
 
 
-@command(OUT.but("default markers.pdf", default=Path("markers.pdf"), metavar="FILE"))
+@command(OUT_FILE.but("default markers.pdf", default="markers.pdf"))
 def markers(arguments: argparse.Namespace) -> int:
     """Print the sheet with both markers, the pivot's outline and a ruler, as PDF for A4.
 
@@ -113,7 +113,6 @@ def markers(arguments: argparse.Namespace) -> int:
     _require_extra("markers")
     from studies.interactive.tracking.sheet import sheet
 
-    require_writable_file(arguments.out)
     write_whole(arguments.out, sheet())
     print(f"{arguments.out}: print at 100 %; the ruler must measure 100 mm")
     return 0
@@ -122,7 +121,7 @@ def markers(arguments: argparse.Namespace) -> int:
 @command(
     Argument("source FILM|N", "a film file of the whole sheet, or number N of this machine's cameras"),
     Argument("--views N", "from other sides, default 12", whole_number(3), default=12),
-    OUT.but("default camera.json", default=Path("camera.json"), metavar="FILE"),
+    OUT_FILE.but("default camera.json", default="camera.json"),
 )
 def calibrate(arguments: argparse.Namespace) -> int:
     """Find a camera's constants from views of the uncut marker sheet, for `interactive --calibration`.
@@ -139,7 +138,6 @@ def calibrate(arguments: argparse.Namespace) -> int:
     from studies.interactive.tracking.views import calibrated, views
     from studies.interactive.web.sources import VideoSource
 
-    require_writable_file(arguments.out)
     place = int(arguments.source) if arguments.source.isdecimal() else Path(arguments.source)
     found, size = [], (0, 0)
     for corners, seen in views(VideoSource(place).once(), arguments.views):

@@ -42,19 +42,18 @@ SHAPE_UNITS, NOISE = ("kg^-0.5", "kg^-0.5", "kg^-0.5/m"), 1e-7
         "with --control-points) or doubles the elements (default: none is asked for)"
     ),
     take.JSON,
-    tell.PLOT,
+    take.PLOT,
 )
 def main(arguments: argparse.Namespace) -> int:
     """Solve and report; return the exit code."""
     design = take.chosen_design(arguments)
     settings = take.chosen_settings(arguments)[0]
-    tell.require_target(arguments)
     how = {"count": arguments.count, "held": arguments.held, "accuracy": arguments.accuracy}
     answer = answer_modes(design, settings, rotation=arguments.rotation, **how)
     failure = (
         None if answer.converged else f"at {math.degrees(arguments.rotation or 0.0):g} deg: {answer.message}"
     )
-    tell.pictured(arguments, design, answer)
+    tell.pictured(arguments, answer)
     return tell.deliver(arguments, _document(answer), _readable(answer, arguments.count), failure=failure)
 
 

@@ -1,4 +1,4 @@
-"""Commands and their arguments as values, a parser whose errors are one line, and the types of numbers."""
+"""Commands and their arguments as values, a parser whose errors are one line, and types of what they read."""
 
 import argparse
 import difflib
@@ -6,10 +6,15 @@ import math
 import re
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any, NoReturn
 
 from studies.cases.rules import Rule
 from studies.errors import BadInput
+from studies.record.files import PICTURES, require_writable_file
+
+#: What stands for the output stream in place of a file.
+STREAM = Path("-")
 
 
 class Parser(argparse.ArgumentParser):
@@ -165,6 +170,27 @@ def names_of(known: Iterable[str]) -> Callable[[str], tuple[str, ...]]:
         return given
 
     return parse
+
+
+def writable_file(text: str) -> Path:
+    """Parse a file that is to be written, refused before anything is computed where it cannot be."""
+    try:
+        require_writable_file(Path(text))
+    except BadInput as error:
+        raise argparse.ArgumentTypeError(str(error)) from None
+    return Path(text)
+
+
+def file_or_stream(text: str) -> Path:
+    """Parse a file that is to be written, or "-" for the output stream."""
+    return STREAM if text == str(STREAM) else writable_file(text)
+
+
+def picture_file(text: str) -> Path:
+    """Parse the file of a picture, which must have one of the known endings."""
+    if Path(text).suffix[1:].lower() not in PICTURES:
+        raise argparse.ArgumentTypeError(f"got {text}, expected a file that ends in .svg, .png or .pdf")
+    return writable_file(text)
 
 
 def degrees_list(text: str) -> tuple[float, ...]:

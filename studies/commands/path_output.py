@@ -10,7 +10,7 @@ import numpy as np
 from studies.answers.response import Response
 from studies.answers.strength import Strength, strength
 from studies.answers.validity import validity
-from studies.cases.design import Design, flexural_scale
+from studies.cases.design import flexural_scale
 from studies.commands import columns
 from studies.commands.answer import described, ending, estimated, headed, places, remarks
 from studies.commands.columns import Column, one, quantity
@@ -38,7 +38,7 @@ DIGITS, ROUND_OFF = 4, 1e-9
 SHIFT_FLOOR = 1e-12
 
 
-def _arrays(design: Design, answer: Response) -> dict[str, Array]:
+def _arrays(answer: Response) -> dict[str, Array]:
     """Return what is one number in every state, by names with units."""
     found, pivot = {"load_factor": answer.load_factor}, answer.crossing is not None
     if pivot:
@@ -50,48 +50,48 @@ def _arrays(design: Design, answer: Response) -> dict[str, Array]:
     if not pivot:
         found |= {"gravity_energy_J": answer.gravity_energy, "work_J": answer.work}
     found["max_stress_Pa"] = answer.max_stress
-    if answer.driven is not None:
+    if answer.body is not None:
         matrix = answer.body_stiffness
         found |= {f"body_stiffness_{name}": matrix[:, i, j] for name, (i, j) in ENTRIES.items()}
-        found |= dict(zip(("off_axis_ratio_x", "off_axis_ratio_y"), _off_axis(design, answer), strict=True))
+        found |= dict(zip(("off_axis_ratio_x", "off_axis_ratio_y"), _off_axis(answer), strict=True))
     return found
 
 
-def _off_axis(design: Design, answer: Response) -> tuple[Array, Array]:
+def _off_axis(answer: Response) -> tuple[Array, Array]:
     """Return the stiffness in x and in y over that of the rotation, whose lever is a strip's length (S,) [1].
 
     In x and y all else is held; the rotation is free to shift.
     """
-    matrix, length = answer.body_stiffness, _length(design)
+    matrix, length = answer.body_stiffness, _length(answer)
     known = ~np.isnan(matrix).any(axis=(1, 2))
     turning = np.full(len(matrix), np.nan)
     turning[known] = 1.0 / np.linalg.inv(matrix[known])[:, 2, 2]
     return length**2 * matrix[:, 0, 0] / turning, length**2 * matrix[:, 1, 1] / turning
 
 
-def _length(design: Design) -> float:
+def _length(answer: Response) -> float:
     """Return the length of the longest strip [m]."""
-    return max(strip.length for strip in design.strips)
+    return max(strip.length for strip in answer.design.strips)
 
 
-def as_document(design: Design, answer: Response) -> dict[str, Any]:
+def as_document(answer: Response) -> dict[str, Any]:
     """Return the answer as the JSON object of the command: of a pivot the one body, of a mechanism all."""
     return {
         **headed(answer),
-        "critical_points": critical(design, answer),
+        "critical_points": critical(answer),
         **({} if answer.crossing is not None else {"bodies": places(answer.bodies)}),
-        **_arrays(design, answer),
-        "strength": _strength(strength(design, answer)),
-        "validity": asdict(validity(design, answer, effects=answer.effects)),
+        **_arrays(answer),
+        "strength": _strength(strength(answer)),
+        "validity": asdict(validity(answer)),
         **({} if answer.estimate is None else {"estimate": answer.estimate}),
         "counters": answer.counters,
         "wall_s": answer.wall_s,
     }
 
 
-def critical(design: Design, answer: Response) -> list[dict[str, Any]]:
+def critical(answer: Response) -> list[dict[str, Any]]:
     """Return the critical points of a path as JSON has them, with the force that acts on a body there [N]."""
-    acting = design.effects.parameters().get("applied_force")
+    acting = answer.design.effects.parameters().get("applied_force")
     force = math.hypot(*acting["force"]) if acting and "applied_force" in answer.effects else None
     return [
         {
@@ -104,9 +104,9 @@ def critical(design: Design, answer: Response) -> list[dict[str, Any]]:
     ]
 
 
-def as_frame(design: Design, answer: Response) -> "pd.DataFrame":
+def as_frame(answer: Response) -> "pd.DataFrame":
     """Return a row a state: the model, its arrays, and of a mechanism the places of all bodies."""
-    found: dict[str, Any] = {"model": answer.model} | _arrays(design, answer)
+    found: dict[str, Any] = {"model": answer.model} | _arrays(answer)
     for name, place in places(answer.bodies if answer.crossing is None else {}).items():
         found |= {f"{name}_{key}": column for key, column in place.items()}
     import pandas as pd  # only who asks for a table waits for it
@@ -114,23 +114,23 @@ def as_frame(design: Design, answer: Response) -> "pd.DataFrame":
     return pd.DataFrame(found)
 
 
-def readable(design: Design, answer: Response) -> Iterator[str]:
+def readable(answer: Response) -> Iterator[str]:
     """Yield the lines of the tables, and what is to be said of the answer."""
     yield described(answer.model, answer.settings, answer.effects)
-    yield from columns.table([*_states(design, answer), *_columns(design, answer)])
-    if answer.driven is not None:
-        body = answer.driven if answer.crossing is None else "the body"
+    yield from columns.table([*_states(answer), *_columns(answer)])
+    if answer.body is not None:
+        body = answer.body if answer.crossing is None else "the body"
         yield f"stiffness of {body} about its centre at fixed loads, and over that of the rotation"
-        yield from columns.table(list(_body_columns(design, answer)))
-    yield from _told(strength(design, answer))
-    worth = validity(design, answer, effects=answer.effects)  # of yield the strength has told
+        yield from columns.table(list(_body_columns(answer)))
+    yield from _told(strength(answer))
+    worth = validity(answer)  # of yield the strength has told
     yield from (f"beyond the model: {each}" for each in worth.outside)
     yield from estimated(answer.estimate)
-    yield from remarks(answer, critical(design, answer))
+    yield from remarks(answer, critical(answer))
     yield ending(answer.status, answer.counters, answer.wall_s)
 
 
-def _states(design: Design, answer: Response) -> Iterator[Column]:
+def _states(answer: Response) -> Iterator[Column]:
     """Yield the columns that say which state it is."""
     pivot = answer.crossing is not None
     if not pivot or LOADS & set(answer.effects):
@@ -139,18 +139,18 @@ def _states(design: Design, answer: Response) -> Iterator[Column]:
         yield columns.angle(answer.rotation)
 
 
-def _columns(design: Design, answer: Response) -> Iterator[Column]:
+def _columns(answer: Response) -> Iterator[Column]:
     """Yield the columns of places, torque, stiffness, energy and stress."""
-    pivot, scale = answer.crossing is not None, flexural_scale(design)
+    pivot, scale = answer.crossing is not None, flexural_scale(answer.design)
     if answer.crossing is not None:
         yield from quantity("m", highest=-3, x=answer.centre[:, 0], y=answer.centre[:, 1])
-        floor = SHIFT_FLOOR * _length(design)
+        floor = SHIFT_FLOOR * _length(answer)
         yield from quantity("m", highest=-3, floor=floor, digits=6, shift=np.hypot(*answer.centre_shift.T))
     if pivot or np.isfinite(answer.torque).any():
         yield from quantity("N m", floor=columns.FORCE_FLOOR * scale, torque=answer.torque)
         yield from quantity("N m/rad", floor=columns.FORCE_FLOOR * scale, stiffness=answer.stiffness)
     yield from quantity("J", floor=columns.ENERGY_FLOOR * scale, energy=answer.strain_energy)
-    floor = columns.STRAIN_FLOOR * max(strip.youngs_modulus for strip in design.strips)
+    floor = columns.STRAIN_FLOOR * max(strip.youngs_modulus for strip in answer.design.strips)
     yield from quantity("Pa", floor=floor, highest=6, digits=6, stress=answer.max_stress)
     if not pivot:
         for name, place in answer.bodies.items():
@@ -158,22 +158,22 @@ def _columns(design: Design, answer: Response) -> Iterator[Column]:
             yield columns.angle(place[:, 2], group=name)
 
 
-def _body_columns(design: Design, answer: Response) -> Iterator[Column]:
+def _body_columns(answer: Response) -> Iterator[Column]:
     """Yield the columns of the stiffness of the body, at a few of the states."""
     last = len(answer.load_factor) - 1
     rows = sorted({round(last * part / SHOWN) for part in range(SHOWN + 1)})
-    for column in _states(design, answer):
+    for column in _states(answer):
         yield Column(name=column.name, unit=column.unit, cells=tuple(column.cells[row] for row in rows))
     if answer.crossing is None and np.isfinite(answer.torque).any():
-        yield columns.angle(answer.bodies[str(answer.driven)][rows, 2])
+        yield columns.angle(answer.bodies[str(answer.body)][rows, 2])
     matrix = answer.body_stiffness[rows]
     xx, yy, xy = matrix[:, 0, 0], matrix[:, 1, 1], matrix[:, 0, 1]
     floor = ROUND_OFF * float(np.nanmax(np.abs(xx) + np.abs(yy), initial=0.0))
     yield from columns.wide("N/m", DIGITS, floor=floor, **{"x": xx, "y": yy, "x y": xy})
     coupled = {"x turn": matrix[:, 0, 2], "y turn": matrix[:, 1, 2]}
-    yield from columns.wide("N", DIGITS, floor=floor * _length(design), **coupled)
+    yield from columns.wide("N", DIGITS, floor=floor * _length(answer), **coupled)
     yield from columns.wide("N m/rad", DIGITS, turn=matrix[:, 2, 2])
-    for name, ratio in zip(("x over", "y over"), _off_axis(design, answer), strict=True):
+    for name, ratio in zip(("x over", "y over"), _off_axis(answer), strict=True):
         yield columns.plain(name, (one(each, DIGITS) for each in ratio[rows]))
 
 

@@ -81,7 +81,7 @@ LINES = 20
         whole_number(1),
     ),
     take.JSON,
-    tell.PLOT,
+    take.PLOT,
 )
 def main(arguments: argparse.Namespace) -> int:
     """Release and report; return the exit code."""
@@ -89,7 +89,6 @@ def main(arguments: argparse.Namespace) -> int:
     settings = take.chosen_settings(arguments)[0]
     if settings.model == "spline":
         take.refuse(arguments, FE_OPTIONS, OPTIONS)
-    tell.require_target(arguments)
     options = {name: getattr(arguments, name) for name in (*OPTIONS, *FE_OPTIONS)}
     duration, options["step"] = _pace(arguments, design, settings)
     answer = answer_release(
@@ -102,8 +101,8 @@ def main(arguments: argparse.Namespace) -> int:
         **options,
     )
     failure = None if answer.converged else answer.message
-    tell.pictured(arguments, design, answer)
-    return tell.deliver(arguments, _document(design, answer), _readable(design, answer), failure=failure)
+    tell.pictured(arguments, answer)
+    return tell.deliver(arguments, _document(answer), _readable(answer), failure=failure)
 
 
 def _pace(arguments: argparse.Namespace, design: Design, settings: Settings) -> tuple[float, float | None]:
@@ -144,12 +143,12 @@ def _last_time(design: Design) -> float:
     return float(max([0.0, *times, *(design.held or ())]))
 
 
-def _document(design: Design, answer: Motion) -> dict[str, Any]:
+def _document(answer: Motion) -> dict[str, Any]:
     """Return the answer as the JSON object of the command: of a pivot the one body, of a mechanism all.
 
     The energies of gravity, loads and damping are there where more than the usual effects act.
     """
-    pivot, estimate = isinstance(design, Problem), answer.estimate
+    pivot, estimate = isinstance(answer.design, Problem), answer.estimate
     if estimate is not None:
         estimate = {f"{name}_rad" if name in ANGLES else name: value for name, value in estimate.items()}
     place = {
@@ -179,10 +178,10 @@ def _document(design: Design, answer: Motion) -> dict[str, Any]:
     }
 
 
-def _readable(design: Design, answer: Motion) -> Iterator[str]:
+def _readable(answer: Motion) -> Iterator[str]:
     """Yield the lines of a short table: a few of the instants, of the body that was let go."""
     yield tell.described(answer.model, answer.settings, answer.effects)
-    last = len(answer.time) - 1
+    last, scale = len(answer.time) - 1, flexural_scale(answer.design)
     shown = sorted({round(last * part / LINES) for part in range(LINES + 1)} if last >= 0 else ())
     kinetic, strain = answer.kinetic_energy[shown], answer.strain_energy[shown]
     yield from table(
@@ -190,14 +189,14 @@ def _readable(design: Design, answer: Motion) -> Iterator[str]:
             *quantity("s", highest=-3, digits=6, time=answer.time[shown]),
             angle(answer.rotation[shown]),
             *quantity("m", highest=-3, x=answer.centre[shown, 0], y=answer.centre[shown, 1]),
-            *quantity("J", floor=ENERGY_FLOOR * flexural_scale(design), kinetic=kinetic, strain=strain),
+            *quantity("J", floor=ENERGY_FLOOR * scale, kinetic=kinetic, strain=strain),
             plain("clamp gap", (f"{gap:.1e}" for gap in answer.constraint_residual[shown]), "m"),
         ]
     )
     swing = answer.swing
     if len(answer.time):
         rate = f"{swing.value:.4f} Hz" if math.isfinite(swing.value) else f"-: {swing.reason}"
-        moved = max(float(each.max()) for each in (kinetic, strain)) > STILL * flexural_scale(design)
+        moved = max(float(each.max()) for each in (kinetic, strain)) > STILL * scale
         yield f"frequency {rate}" + (f"; energy balanced to {answer.energy_error:.1e}" if moved else "")
     if math.isfinite(answer.rotation_error):
         yield f"rotation uncertain by {answer.rotation_error:.1e} rad, by the discretisation"

@@ -31,12 +31,12 @@ from pathlib import Path
 from typing import Any
 
 from studies.answers.reference import NoReference
-from studies.cases.document import parsed
+from studies.cases.document import is_mechanism, parsed
 from studies.cases.keys import LOADS_FIRST
 from studies.cases.problem import Problem
-from studies.cases.write import as_toml, document_toml
+from studies.cases.write import as_toml, document_of
 from studies.commands import arguments as take
-from studies.commands.answer import deliver, not_converged, require_target
+from studies.commands.answer import deliver, not_converged
 from studies.commands.parser import Argument, command, positive, reads, whole_number
 from studies.commands.sized import as_document, question, readable
 from studies.design.evaluate import STRESS, Answers, PathEnds, answers, sides_of
@@ -45,7 +45,7 @@ from studies.design.optimise import Outcome, best, search, starts
 from studies.design.programme import Sizing
 from studies.design.task import OBJECTIVES, Task, usual_task
 from studies.errors import BadInput
-from studies.record.files import require_writable_file, write_whole
+from studies.record.files import write_whole
 from studies.record.progress import Bar
 
 #: Variable -> option, its unit in SI, what the option must be below, and its bounds where it is not given.
@@ -108,18 +108,15 @@ def _interval(most: float) -> Callable[[str], tuple[float, float]]:
     ),
     Argument("--aspect R", "largest width, relative to the length, default 1", positive, default=1.0),
     Argument("--starts N", "starts of the search, default 8", whole_number(1), default=8),
-    take.OUT.but("write the optimum there as a case file (default: nowhere)", metavar="FILE"),
+    take.OUT_FILE.but("write the optimum there as a case file (default: nowhere)"),
     take.JSON,
 )
 def main(arguments: argparse.Namespace) -> int:
     """Search, check, report; return the exit code."""
     content = parsed(arguments.case)
-    mechanism = isinstance(content.get("strips"), list)
+    mechanism = is_mechanism(content)
     _refuse_others(arguments, mechanism)
     given = _numbers(content, arguments) if mechanism else _start(arguments)
-    require_target(arguments)
-    if arguments.out is not None:
-        require_writable_file(arguments.out)
     try:
         task: Sizing = _task(given, arguments) if isinstance(given, Problem) else _asked(given, arguments)
         with Bar("size") as bar:
@@ -207,8 +204,8 @@ def _asked(task: NumbersTask, arguments: argparse.Namespace) -> NumbersTask:
 def _file(task: Sizing, found: Outcome, remarks: list[str]) -> str:
     """Return the optimum as a case file."""
     if isinstance(task, NumbersTask):
-        return document_toml(task.content(task.values(found.at)), remarks)
-    return as_toml(found.problem, remarks)
+        return as_toml(task.content(task.values(found.at)), remarks)
+    return as_toml(document_of(found.problem), remarks)
 
 
 def _remarks(task: Sizing, arguments: argparse.Namespace) -> list[str]:

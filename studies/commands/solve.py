@@ -33,9 +33,8 @@ from typing import Any
 from studies.answers.adapters import answer_static
 from studies.answers.metrics import differences
 from studies.answers.response import Response
-from studies.cases.design import Design
 from studies.commands import arguments as take
-from studies.commands.answer import PLOT, deliver, passed, pictured, require_target
+from studies.commands.answer import deliver, passed, pictured
 from studies.commands.columns import fixed
 from studies.commands.parser import command
 from studies.commands.path_output import as_document, as_frame, critical, readable
@@ -54,65 +53,64 @@ from studies.record.progress import Bar
     ),
     take.JSON,
     take.CSV,
-    PLOT,
+    take.PLOT,
 )
 def main(arguments: argparse.Namespace) -> int:
     """Solve and report; return the exit code."""
     design = take.driven(take.chosen_design(arguments), arguments)
     every = take.chosen_settings(arguments)
-    require_target(arguments)
     how, answers = {"repeat": arguments.repeat, "accuracy": arguments.accuracy}, []
     for settings in every:
         with Bar(f"solve {settings.model}") as bar:
             answers.append(answer_static(design, settings, progress=bar, **how))
-    stopped = [_stopped(design, answer) for answer in answers if not answer.converged]
-    pictured(arguments, design, *answers)
+    stopped = [_stopped(answer) for answer in answers if not answer.converged]
+    pictured(arguments, *answers)
     return deliver(
         arguments,
-        _document(design, answers),
-        _table(design, answers),
+        _document(answers),
+        _table(answers),
         failure="; ".join(stopped) or None,
-        frame=lambda: _frame(design, answers),
+        frame=lambda: _frame(answers),
     )
 
 
-def _stopped(design: Design, answer: Response) -> str:
+def _stopped(answer: Response) -> str:
     """Return how far a path came, why it stopped, and what mends a discretisation that is too coarse."""
     given = answer.resolution and not answer.estimate
     mend = "; without --control-points their number is chosen" if given else ""
-    points = critical(design, answer)
+    points, asked = critical(answer), answer.design.rotation
     if points and "buckle" not in answer.message:
         mend += f"; it lost its stability before, first at {passed(points[0])}"
     if answer.model == "spline" and not given:
         mend += "; --model fe may go further"
-    if answer.crossing is not None and design.rotation:
+    if answer.crossing is not None and asked:
         last = math.degrees(answer.rotation[-1]) if len(answer.rotation) else 0.0
         mend = f"{answer.message}{mend}"
-        return f"reached {fixed(last, 3)} of {math.degrees(design.rotation):.3f} deg: {mend}"
+        return f"reached {fixed(last, 3)} of {math.degrees(asked):.3f} deg: {mend}"
     return f"{answer.message}{mend}"
 
 
-def _document(design: Design, answers: Sequence[Response]) -> dict[str, Any]:
+def _document(answers: Sequence[Response]) -> dict[str, Any]:
     """Return the JSON object: of one answer, or of several with their differences."""
     if len(answers) == 1:
-        return as_document(design, answers[0])
+        return as_document(answers[0])
     return {
-        "answers": [as_document(design, answer) for answer in answers],
+        "answers": [as_document(answer) for answer in answers],
         "differences": {answer.model: differences(answer, answers[0]) for answer in answers[1:]},
     }
 
 
-def _frame(design: Design, answers: Sequence[Response]) -> Any:
+def _frame(answers: Sequence[Response]) -> Any:
     """Return the rows of all answers as a table of pandas, which only who asks for one waits for."""
     import pandas as pd
 
-    return pd.concat([as_frame(design, answer) for answer in answers])
+    return pd.concat([as_frame(answer) for answer in answers])
 
 
-def _table(design: Design, answers: Sequence[Response]) -> Iterator[str]:
+def _table(answers: Sequence[Response]) -> Iterator[str]:
     """Yield the lines to read: every answer, and how far those after the first are from it."""
     for answer in answers:
-        yield from readable(design, answer)
+        yield from readable(answer)
         yield from [""] * (len(answers) > 1)
     for answer in answers[1:]:
         apart = differences(answer, answers[0])

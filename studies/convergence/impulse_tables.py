@@ -20,7 +20,7 @@ from spline_model.sequential_impulse import (
     stability_limit,
     sweep_errors,
 )
-from studies.answers.models import built, model_of
+from studies.answers.models import put
 from studies.answers.settings import SplineSettings
 from studies.cases.problem import Problem, named_case
 from studies.engine.study import Answer, Part
@@ -59,7 +59,7 @@ def _designs() -> dict[str, Problem]:
 @cache
 def _pivot(design: str, settings: SplineSettings = SETTINGS) -> Pivot:
     """Return a design as a spline in motion."""
-    found: Pivot = built(model_of(settings), _designs()[design], settings, moving=True)[0]
+    found: Pivot = put(_designs()[design], settings, moving=True).modelled
     return found
 
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from spline_model.sensitivity.solve import Quantity, Sensitivities, sensitivities
-from studies.answers.models import built, model_of, refusals, static_path
+from studies.answers.models import put
 from studies.answers.reference import reference
 from studies.answers.response import Response, centre_shift
 from studies.answers.settings import SplineSettings
@@ -130,16 +130,15 @@ def _behind_first(begin: int, sides: list[Array]) -> Array:
 def _to_one_side(problem: Problem, rotation: float, control_points: int) -> tuple[Array, Sensitivities]:
     """Return the rotations of the path to one side, and its derivatives; errors as of `answers`."""
     settings = SplineSettings(control_points=control_points)
-    model = model_of(settings)
-    pivot, _ = built(model, problem, settings, moving=False)
-    with refusals(model, settings):
+    asked = put(problem, settings)
+    with asked.refusals():
         try:
-            path = static_path(model, problem, pivot, rotation=rotation)
-        except model.errors.ConvergenceError as error:
+            path = asked.static_path(rotation=rotation)
+        except asked.model.errors.ConvergenceError as error:
             raise PathEnds(str(error)) from None
         if path.critical_points and len(sides_of(problem)) > 1:
             raise PathEnds(path.message)
-        return path.rotation, sensitivities(pivot, path, parameters=VARIABLES, stations=STATIONS)
+        return path.rotation, sensitivities(asked.modelled, path, parameters=VARIABLES, stations=STATIONS)
 
 
 @dataclass(frozen=True, kw_only=True)

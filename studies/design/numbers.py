@@ -12,7 +12,7 @@ import numpy as np
 from spline_model.sensitivity.parameters import CENTRES, MATERIAL, POINTS
 from spline_model.sensitivity.solve import sensitivities
 from studies.answers.adapters import answer_static
-from studies.answers.models import built, model_of, refusals, static_path
+from studies.answers.models import put
 from studies.answers.reference import MESHES, limit_of
 from studies.answers.settings import FeSettings, SplineSettings
 from studies.cases.keys import MOMENTS, SIDES
@@ -187,16 +187,15 @@ class NumbersTask(Bounded):
         design = self.problem(values)
         names, by = self._chain(values)
         settings = SplineSettings(control_points=CONTROL_POINTS)
-        model = model_of(settings)
-        asked, _ = built(model, design, settings, moving=False)
-        with refusals(model, settings):
+        asked = put(design, settings)
+        with asked.refusals():
             try:
-                path = static_path(model, design, asked)
-            except model.errors.ConvergenceError as error:
+                path = asked.static_path()
+            except asked.model.errors.ConvergenceError as error:
                 raise PathEnds(str(error)) from None
             if path.critical_points:
                 raise PathEnds(path.message)
-            found = sensitivities(asked, path, parameters=names, stations=STATIONS, body=design.body)
+            found = sensitivities(asked.modelled, path, parameters=names, stations=STATIONS, body=design.body)
         begin = len(path.torque) - 1 - design.increments
         shift, by_shift = found.body_shift.value, found.body_shift.derivative @ by
         stiffness, by_stiffness = found.stiffness.value[begin:], found.stiffness.derivative[begin:] @ by

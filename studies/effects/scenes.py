@@ -12,8 +12,8 @@ from spline_model.mechanism import Mechanism
 from spline_model.modes import linear_modes, static_state
 from spline_model.motion.explicit import highest_frequency, stability_limit
 from spline_model.motion.start import set_in_motion
-from studies.answers.adapters import answer_modes, answer_release, answer_static, spline_mechanism
-from studies.answers.models import model_of, refusals
+from studies.answers.adapters import answer_modes, answer_release, answer_static
+from studies.answers.models import put
 from studies.answers.motion import Motion, Spectrum
 from studies.answers.response import Response
 from studies.answers.settings import SplineSettings
@@ -90,9 +90,10 @@ def size_of(design: Design, settings: SplineSettings) -> dict[str, float]:
         BadInput: what the model refuses; one line. spline_model.errors.ConvergenceError: statics does not
         reach the start.
     """
-    mechanism: Mechanism = spline_mechanism(design, settings)
+    asked = put(design, settings, moving=True)
+    mechanism: Mechanism = asked.modelled
     body = design.body if isinstance(design, MechanismData) else None
-    with refusals(model_of(settings), settings):
+    with asked.refusals():
         system = compile_scene(mechanism.released())
         motion = set_in_motion(system)
         start = static_state(mechanism.at_start(), design.rotation, body=body)[: system.layout.size]

@@ -16,7 +16,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from studies.answers.adapters import answer_static
-from studies.answers.models import built, model_of
+from studies.answers.models import put
 from studies.answers.settings import FeSettings, Settings, SplineSettings
 from studies.baselines.constraint_strips import guide
 from studies.engine.study import Answer, Claim, Part, Ratio, Study, Tables, records
@@ -81,14 +81,8 @@ def _asked() -> Iterable[tuple[str, Settings, str]]:
 
 def _solved(model: str, settings: Settings, answer: str) -> Answer:
     """Return error and whole time of a state: the design built in the model, and solved up to the load."""
-    design, package = loaded(guide_design(), answer, LOAD), model_of(settings)
-
-    def whole() -> Any:
-        model, _ = built(package, design, settings, moving=False)
-        given = {"body": design.body, "rotation": design.rotation, "order": design.order}
-        return package.statics.solve_mechanism(model, **given, increments=design.increments)
-
-    timing = measure(whole, repeat=REPEATS)
+    design = loaded(guide_design(), answer, LOAD)
+    timing = measure(lambda: put(design, settings).static_path(), repeat=REPEATS)
     found = float(answer_static(design, settings).bodies["stage"][-1][1])
     count = settings.points if isinstance(settings, SplineSettings) else settings.elements
     setting = f"{count} " + ("control points" if model == "spline" else "elements")

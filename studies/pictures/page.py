@@ -238,7 +238,9 @@ class Picture:
         return style.printed(self.figure, "svg").decode()
 
 
-def plot(solution: Any, design: Any, *, name: str = "", yield_strength: float | None = None) -> Picture:
+def plot(
+    solution: Any, design: Any = None, *, name: str = "", yield_strength: float | None = None
+) -> Picture:
     """Return the picture of a static solution, of a motion or of natural modes, of either model.
 
     Of a path: the shapes, torque and stiffness, path and shift of the centre, largest stress and energy; of a
@@ -248,7 +250,7 @@ def plot(solution: Any, design: Any, *, name: str = "", yield_strength: float | 
         solution: what `solve_statics`, `solve_mechanism`, `solve_release`, `solve_motion` or
             `natural_frequencies` of `spline_model` or `fe_reference` returned, or an answer of
             `studies.answers.adapters`.
-        design: the pivot or mechanism of the model that was solved; of an answer the design of its case.
+        design: the pivot or mechanism of the model that was solved; None of an answer, which knows its own.
             Sections of a model's own are taken as rectangles of their area and second moment.
         name: heading; the model's name where none is given.
         yield_strength: drawn across the stress [Pa].
@@ -259,17 +261,20 @@ def plot(solution: Any, design: Any, *, name: str = "", yield_strength: float | 
     return Picture(picture([_shown_of(solution, design, name, yield_strength)]))
 
 
-def overlay(solved: Mapping[str, tuple[Any, Any]], *, yield_strength: float | None = None) -> Picture:
+def overlay(solved: Mapping[str, Any], *, yield_strength: float | None = None) -> Picture:
     """Return the picture of two to five paths, motions or modes over one another; arguments as of `plot`.
 
     Args:
-        solved: solution and design by their name.
+        solved: solution and design, or an answer, by their name.
         yield_strength: drawn across the stress [Pa].
     """
-    return Picture(picture([_shown_of(*pair, name, yield_strength) for name, pair in solved.items()]))
+    shown = []
+    for name, each in solved.items():
+        solution, design = each if isinstance(each, tuple) else (each, None)
+        shown.append(_shown_of(solution, design, name, yield_strength))
+    return Picture(picture(shown))
 
 
 def _shown_of(solution: Any, design: Any, name: str, yield_strength: float | None) -> Shown:
-    made = fields_of if isinstance(solution, Answered) else own_fields
-    fields = made(solution, design)
+    fields = fields_of(solution) if isinstance(solution, Answered) else own_fields(solution, design)
     return Shown(name=name or shapes.NAMES[fields.model], fields=fields, yield_strength=yield_strength)

@@ -10,10 +10,9 @@ from pathlib import Path
 from typing import Any
 
 from studies.cases import document
-from studies.cases.design import Design
+from studies.cases.design import Design, design_of
 from studies.cases.document import CaseError
-from studies.cases.mechanism import Mechanism, read_mechanism
-from studies.cases.problem import read_problem
+from studies.cases.mechanism import Mechanism
 from studies.cases.rules import Key, Rule, Text, choice, finite, not_negative, positive, shown
 
 FOLDER = Path(__file__).parent / "cases"
@@ -162,12 +161,9 @@ def read_published(path: Path) -> _Published:
                 f"{where}: values number {i}.limit: got none of {', '.join(without)}, expected one"
             )
     rest = {key: part for key, part in content.items() if key not in ("problem", "values")}
-    design: Design
-    if isinstance(rest.get("strips"), list):
-        design = read_mechanism(where, rest)
+    design = design_of(where, rest)
+    if isinstance(design, Mechanism):
         _require_bodies(where, design, about, values)
-    else:
-        design = read_problem(where, rest)
     return _Published(name=path.stem, values=values, design=design, **about)
 
 

@@ -19,7 +19,7 @@ import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
-from studies.cases.design import FOLDER, named_design
+from studies.cases.design import FOLDER, fingerprint, named_design
 from studies.cases.document import parsed
 from studies.record.files import replace_folder, require_writable_folder, write_whole
 from studies.record.source import ROOT, source_hash
@@ -55,7 +55,7 @@ def inputs(module: str, cases: Iterable[str]) -> dict[str, Any]:
 def _fingerprint(name: str) -> str:
     """Return the hash of a design by its name, of the values of another file by its path below studies/."""
     if "/" not in name:
-        return named_design(name).fingerprint()
+        return fingerprint(named_design(name))
     return sha256(json.dumps(parsed(_file(name)), sort_keys=True).encode())
 
 

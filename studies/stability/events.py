@@ -11,8 +11,8 @@ import numpy as np
 
 from spline_model.dynamics import Trajectory, solve_motion
 from spline_model.effects import DrivenRotation
-from studies.answers.adapters import answer_static, spline_mechanism
-from studies.answers.models import built, model_of
+from studies.answers.adapters import answer_static
+from studies.answers.models import put
 from studies.answers.settings import Settings, SplineSettings
 from studies.cases.problem import Problem, named_case
 from studies.engine.study import Answer, Part
@@ -78,7 +78,7 @@ def _mechanism_of(model: str) -> Any:
     """Return Table 1 in motion in a column of splines."""
     settings = family.COLUMNS[model]
     assert isinstance(settings, SplineSettings)
-    return spline_mechanism(named_case(), settings)
+    return put(named_case(), settings, moving=True).modelled
 
 
 def _reversals(model: str, count: int) -> family.Found:
@@ -154,10 +154,8 @@ def _jumping(settings: Settings) -> family.Found:
     """Follow a target that jumps to and fro; the torque is the same every time."""
     design: Problem = replace(named_case(), rotation=math.radians(60.0), increments=1)
     once = answer_static(design, settings)
-    model = model_of(settings)
-    pivot, _ = built(model, design, settings, moving=False)
     targets = [design.rotation * (-1) ** k for k in range(ROUNDS)]
-    path = model.statics.solve_statics(pivot, rotation=targets, increments=1, raise_on_failure=False)
+    path = put(design, settings).static_path(rotation=targets, raise_on_failure=False)
     expected = once.torque[-1] * np.sign(path.rotation[1:])
     error = float(np.abs(path.torque[1:] / expected - 1.0).max()) if len(path.torque) > 1 else math.inf
     return _bounded(

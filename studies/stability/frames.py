@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from scipy.special import ellipe, ellipk
 
 from spline_model.statics import solve_mechanism
-from studies.answers.models import built, model_of, refusals
+from studies.answers.models import put
 from studies.answers.settings import SplineSettings
 from studies.cases.effects import Effects
 from studies.cases.mechanism import Mechanism
@@ -134,11 +134,10 @@ def spline_arc(frame: Frame, settings: SplineSettings, *, branch: str = "primary
 
     branch: "primary" or "follow" at a bifurcation.
     """
-    model = model_of(settings)
-    asked, _ = built(model, frame.design, settings, moving=False)
-    with refusals(model, settings):
+    asked = put(frame.design, settings)
+    with asked.refusals():
         path = solve_mechanism(
-            asked.pinned(*frame.pins),
+            asked.modelled.pinned(*frame.pins),
             increments=frame.design.increments,
             control="arc-length",
             branch=branch,

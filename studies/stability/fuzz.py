@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from studies.answers.adapters import answer_release
-from studies.answers.models import built, model_of, refusals
+from studies.answers.models import put
 from studies.answers.settings import FeSettings, Settings, SplineSettings
 from studies.cases.problem import Problem, named_case
 from studies.engine.study import Answer, Claim, Part, Tables
@@ -145,12 +145,8 @@ def _path(example: _Example, settings: SplineSettings) -> family.Found:
 
 
 def _legs(example: _Example, settings: Settings, increments: int) -> Any:
-    model = model_of(settings)
-    pivot, _ = built(model, example.problem(), settings, moving=False)
-    with refusals(model, settings):
-        return model.statics.solve_statics(
-            pivot, rotation=list(example.targets), increments=increments, raise_on_failure=False
-        )
+    asked = put(example.problem(), settings)
+    return asked.static_path(rotation=list(example.targets), increments=increments, raise_on_failure=False)
 
 
 def _unit(example: _Example) -> float:

@@ -17,7 +17,8 @@ from matplotlib.figure import Figure
 
 from spline_model.batch import solve_many
 from spline_model.dynamics import solve_motion
-from studies.answers.adapters import answer_modes, answer_release, answer_static, spline_mechanism
+from studies.answers.adapters import answer_modes, answer_release, answer_static
+from studies.answers.models import put
 from studies.answers.settings import FeSettings, Settings, SplineSettings
 from studies.cases.design import named_design
 from studies.cases.mechanism import Mechanism
@@ -51,7 +52,7 @@ def _run(model: str, count: int, steps: int = PIECE) -> Iterator[tuple[dict[str,
     settings = family.COLUMNS[model]
     if not isinstance(settings, SplineSettings):
         raise TypeError(f"model: got {model}, expected a spline")
-    mechanism = spline_mechanism(named_case(), settings)
+    mechanism = put(named_case(), settings, moving=True).modelled
     begin: dict[str, Any] = {"start": math.radians(START_DEG)}
     first, change = 0.0, 0.0
     for number in range(1, count + 1):

@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 from spline_model.pivot import Pivot
 from spline_model.statics import solve_from, solve_statics
 from studies.answers.adapters import answer_static
-from studies.answers.models import built, model_of
+from studies.answers.models import put
 from studies.answers.response import Response
 from studies.answers.settings import SplineSettings
 from studies.cases.problem import TABLE_1, Problem, named_case
@@ -121,7 +121,7 @@ def _outcomes_of_starts(model: str, degrees: float) -> Answer:
     """Return the outcomes of one model's guesses at a rotation."""
     settings = family.PATHS[family.SIX if model == family.DEFAULT else model]
     given = replace(named_case(), rotation=math.radians(degrees))
-    pivot, _ = built(model_of(settings), given, settings, moving=False)
+    pivot = put(given, settings).modelled
     path = solve_statics(pivot, rotation=given.rotation, raise_on_failure=False)
     rows = []
     for name, guess in _guesses(pivot, settings, given.rotation):

@@ -11,7 +11,7 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from studies.answers.adapters import answer_static
-from studies.answers.models import built, model_of
+from studies.answers.models import put
 from studies.answers.response import Response
 from studies.answers.settings import Settings, SplineSettings
 from studies.cases.problem import Problem, named_case
@@ -58,22 +58,15 @@ def _increments(model: str) -> list[dict[str, Any]]:
 
 def _there_and_back(given: Problem, settings: Settings, count: int) -> Any:
     """Return the torque at all states of a path to the end of the case's and back to rest."""
-    model = model_of(settings)
-    pivot, _ = built(model, given, settings, moving=False)
     legs = [given.rotation, 0.0]
-    return np.asarray(model.statics.solve_statics(pivot, rotation=legs, increments=count).torque)
+    return np.asarray(put(given, settings).static_path(rotation=legs, increments=count).torque)
 
 
 def _critical() -> list[dict[str, Any]]:
     """Return the critical points on the refined spline's path to the last rotation, or one row that says
     that there are none."""
     given = replace(named_case(), rotation=math.radians(ROTATIONS[-1]), increments=52)
-    model = model_of(family.REFINED)
-    pivot, _ = built(model, given, FAR, moving=False)
-    path = model.statics.solve_statics(
-        pivot, rotation=given.rotation, increments=given.increments, method="multipliers",
-        raise_on_failure=False,
-    )  # fmt: skip
+    path = put(given, FAR).static_path(method="multipliers", raise_on_failure=False)
     rows = [
         {"kind": point.kind, "rotation_deg": math.degrees(point.rotation), "inertia": point.inertia}
         for point in path.critical_points

@@ -17,7 +17,7 @@ from fe_reference.model import Model
 from fe_reference.path import follow
 from fe_reference.response import respond
 from fe_reference.structure import structure_of
-from studies.answers.models import built, model_of
+from studies.answers.models import put
 from studies.answers.settings import FeSettings, Settings, SplineSettings
 from studies.engine.study import Answer, Part
 from studies.errors import BadInput
@@ -222,7 +222,7 @@ def _attempt(
 
 def element_arc(frame: frames.Frame, settings: FeSettings) -> frames.Arc:
     """Return the path to load factor 1; BadInput for what the model refuses to be asked."""
-    model, _ = built(model_of(settings), frame.design, settings, moving=False)
+    model: Model = put(frame.design, settings).modelled
     message = ""
     try:
         path = follow_arc(_led(model, frame), increments=frame.design.increments)
@@ -255,7 +255,7 @@ def _tilted_state(frame: frames.Frame, settings: FeSettings, tilt: float) -> fra
     The body is turned, then led to its displacement while it is turned, then let turn. So a branch is reached
     that the path from rest crosses; the path has this one state.
     """
-    model, _ = built(model_of(settings), frame.design, settings, moving=False)
+    model: Model = put(frame.design, settings).modelled
     control = _led(model, frame)
     turn = structure_of(model).body_slice(model.body_index(frame.body)).stop - 1
     held = np.append(control.held, turn)

@@ -12,6 +12,7 @@ from studies.answers.response import centre_shift
 from studies.answers.settings import SplineSettings
 from studies.answers.validity import SAME_NAME, Strip
 from studies.cases import keys as case_keys
+from studies.cases.document import is_mechanism
 from studies.cases.effects import DEFAULT, MOTION_ONLY
 from studies.cases.mechanism import of_sides
 from studies.cases.problem import PIVOT_PARAMETERS, SIDES, Problem
@@ -71,7 +72,7 @@ def takes(task: Task) -> bool:
     What it refuses in the end (other curves, or strips too slender) goes one by one.
     """
     own = {*_KEYS, *_PARTS, plan.SLENDERNESS}
-    if task.model != "spline" or task.analysis.kind != "static" or isinstance(task.case.get("strips"), list):
+    if task.model != "spline" or task.analysis.kind != "static" or is_mechanism(task.case):
         return False
     effects = set(task.case.get("scene", {}).get("effects", DEFAULT))
     return PLAIN <= effects <= PLAIN | set(MOTION_ONLY) and all(

@@ -8,10 +8,9 @@ from dataclasses import dataclass, field, fields
 from typing import Any
 
 from studies.answers.settings import settings_of_model
-from studies.cases import effects, keys
+from studies.cases import design, effects, keys
 from studies.cases.design import Design
-from studies.cases.mechanism import read_mechanism
-from studies.cases.problem import read_problem
+from studies.cases.document import is_mechanism
 from studies.cases.rules import Number, Pair, Rule, Text, not_negative, positive, whole
 
 METHODS = ("grid", "list", "latin-hypercube", "sobol")
@@ -141,7 +140,7 @@ NAMES = Rule(expected="names of effects with commas", read=_names)
 
 def known(document: Mapping[str, Any], model: str) -> dict[str, Rule]:
     """Return the rule of every key that a sweep of the case's document with the model may vary."""
-    if isinstance(document.get("strips"), list):
+    if is_mechanism(document):
         found = _of_mechanism(document)
     else:
         found = {f"{key.section}.{key.name}": key.rule for key in keys.KEYS}
@@ -237,8 +236,7 @@ def design_of(task: Task, values: Mapping[str, Any]) -> Design:
     """Return one design of the sweep; CaseError where a value is out of its range."""
     document = copy.deepcopy(task.case)
     put_all(document, values)
-    read = read_mechanism if isinstance(document.get("strips"), list) else read_problem
-    return read(task.where, document)
+    return design.design_of(task.where, document)
 
 
 def varied_settings(task: Task, values: Mapping[str, Any]) -> dict[str, Any]:

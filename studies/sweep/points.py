@@ -13,13 +13,14 @@ from numpy.typing import NDArray
 
 from studies.answers import validity
 from studies.answers.adapters import answer_modes, answer_release
-from studies.answers.models import built, model_of, refusals, static_path
+from studies.answers.models import Asked, put
 from studies.answers.motion import Motion, Spectrum
 from studies.answers.response import response
 from studies.answers.settings import Settings, settings_of_model
 from studies.answers.strength import moduli_of
 from studies.answers.validity import Strip, strips_of
 from studies.cases.design import Design
+from studies.cases.document import is_mechanism
 from studies.errors import BadInput
 from studies.kinds import Array
 from studies.sweep.plan import Task, design_of, varied_settings
@@ -177,7 +178,7 @@ def known(case: Mapping[str, Any], kind: str, count: int) -> dict[str, _Quantity
         return _of_modes(count)
     if kind == "release":
         return RELEASE
-    mechanism = isinstance(case.get("strips"), list)
+    mechanism = is_mechanism(case)
     return PATH | (_of_bodies([body["name"] for body in case.get("bodies", [])]) if mechanism else SHIFT)
 
 
@@ -198,30 +199,24 @@ def static_answer(design: Design, settings: Settings, *, both_sides: bool) -> tu
     if both_sides:
         sides.append(replace(design, rotation=-(design.rotation or 0.0)))
     found: list[Any] = []
-    for side in sides:
-        result = _static_result(side, settings)
+    asked = [put(side, settings) for side in sides]
+    for side in asked:
+        result = side.static_path(raise_on_failure=False)
         if result.status.value != CONVERGED:
             words = "" if not both_sides else "to the other side: " if found else "to the one side: "
             return NOT_CONVERGED, words + result.message, None
         found.append(result)
     remark = "; ".join(dict.fromkeys(result.message for result in found if result.message))
-    paths = [_paths_of(side, result) for side, result in zip(sides, found, strict=True)]
+    paths = [_paths_of(side, result) for side, result in zip(asked, found, strict=True)]
     return CONVERGED, remark, paths[0] if len(paths) == 1 else _joined(*paths)
 
 
-def _static_result(design: Design, settings: Settings) -> Any:
-    model = model_of(settings)
-    asked, _ = built(model, design, settings, moving=False)
-    with refusals(model, settings):
-        return static_path(model, design, asked, raise_on_failure=False)
-
-
-def _paths_of(design: Design, result: Any) -> Paths:
+def _paths_of(asked: Asked, result: Any) -> Paths:
     """Return the path of one design from a model's solution."""
-    answer = response(design, result, model="", settings={}, effects=(), wall_s=np.nan, solve_s=np.nan)
+    design, answer = asked.design, response(asked, result, wall_s=np.nan, solve_s=np.nan)
     inertia, states = getattr(result, "inertia", None), len(answer.load_factor)
     places = {name: place[None] for name, place in answer.bodies.items()}
-    strains = (answer.extreme_fibre_stress.max(axis=2) / moduli_of(design)).max(axis=0)
+    strains = (answer.extreme_fibre_stress.max(axis=2) / moduli_of(design.strips)).max(axis=0)
     strips = zip(strips_of(design), strains[:, None], strict=True)
     nowhere = np.full((states, 2), np.nan)
     return Paths(

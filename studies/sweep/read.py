@@ -8,7 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from studies.answers.models import built, model_of
+from studies.answers.models import put
 from studies.answers.settings import MODELS, settings_of_model
 from studies.cases import document
 from studies.cases.document import CaseError
@@ -171,7 +171,7 @@ def _checked(task: Task, sample: Sample) -> Task:
         raise CaseError(f"{task.where}: analysis.both_sides: got true, expected it with a driven rotation")
     for chosen in _settings_of(task, sample):
         settings = settings_of_model(task.model, **chosen)
-        built(model_of(settings), design, settings, moving=task.analysis.kind != "static")
+        put(design, settings, moving=task.analysis.kind != "static")
     return replace(task, batch=batch.takes(task))
 
 

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from studies.answers.models import built, model_of, static_path
+from studies.answers.models import put
 from studies.answers.settings import FeSettings, Settings, SplineSettings
 from studies.cases.design import Design
 from studies.cases.effects import DEFAULT, Effects
@@ -120,10 +120,9 @@ def design(effect: str, rotation: float | None = ROTATION, **parameters: Any) ->
 
 def solution(asked: Design, settings: Settings) -> tuple[Any, Any]:
     """Return the model's own answer for the static path, and its fields along the strips."""
-    model = model_of(settings)
-    given, _ = built(model, asked, settings, moving=False)
-    found = static_path(model, asked, given)
-    return found, model.static_fields(given, found.states)
+    posed = put(asked, settings)
+    found = posed.static_path()
+    return found, posed.model.static_fields(posed.modelled, found.states)
 
 
 def state(asked: Design, settings: Settings) -> State:

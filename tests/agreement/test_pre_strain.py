@@ -45,7 +45,7 @@ def left_over(folder, settings: Settings) -> tuple[float, float]:
     path = folder / "arc.toml"
     path.write_text(ARC)
     design = read_design(path)
-    fields = fields_of(answer_static(design, settings), design)
+    fields = fields_of(answer_static(design, settings))
     turn = NATURAL_CURVATURE * fields.arc_length[0, -1]
     moment = np.abs(fields.bending_moment[-1]).max() / (RIGIDITY * NATURAL_CURVATURE)
     return float(moment), float(abs(fields.rotation[-1, 0, -1] / turn - 1.0))

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from studies.answers.models import built, model_of, static_path
+from studies.answers.models import put
 from studies.answers.settings import FeSettings, Settings, SplineSettings
 from studies.cases.design import Design
 from tests.agreement.random_scenes import described, scene
@@ -33,10 +33,8 @@ class Answer:
 
 def answer(asked: Design, settings: Settings, times: int = 1) -> Answer:
     """Return the answer with `times` as many increments, at those of the scene."""
-    model = model_of(settings)
-    given, _ = built(model, asked, settings, moving=False)
-    how = {"increments": times * asked.increments, "raise_on_failure": False}
-    found = static_path(model, asked, given, **how)
+    increments = times * asked.increments
+    found = put(asked, settings).static_path(increments=increments, raise_on_failure=False)
     place = np.hstack([found.bodies[body.name] for body in asked.bodies])
     energy = found.bending_energy + found.axial_energy + getattr(found, "shear_energy", 0.0)
     values = {"path": place, "energy": energy + found.gravity_energy}

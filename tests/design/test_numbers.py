@@ -8,7 +8,7 @@ import pytest
 from studies.cases.design import Design, named_design, read_design
 from studies.cases.document import parsed
 from studies.cases.problem import FOLDER
-from studies.cases.write import document_toml
+from studies.cases.write import as_toml
 from studies.design.evaluate import STRESS, VARIATION
 from studies.design.numbers import NumbersTask, by_sides, number_of
 from studies.design.programme import gradient_error
@@ -64,7 +64,7 @@ def test_a_number_stands_for_the_sections_of_all_strips():
 def test_a_document_is_written_as_it_is_read(path, tmp_path):
     """The text of a case's document is the same document, and the same design."""
     document, target = parsed(path), tmp_path / "case.toml"
-    target.write_text(document_toml(document, ["a remark"]), encoding="utf-8")
+    target.write_text(as_toml(document, ["a remark"]), encoding="utf-8")
     assert tomllib.loads(target.read_text(encoding="utf-8")) == document
     found: Design = read_design(target)
     assert found == named_design(path.stem)

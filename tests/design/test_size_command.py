@@ -8,7 +8,7 @@ from studies.__main__ import main
 from studies.answers.adapters import answer_static
 from studies.answers.settings import SplineSettings
 from studies.cases.design import read_design
-from studies.cases.problem import FOLDER, named_case, read_case
+from studies.cases.problem import FOLDER, named_case
 from studies.design.evaluate import answers, of_spline
 from tests import gates
 from tests.exchange.test_data_page import described
@@ -201,7 +201,7 @@ def test_optimum_as_a_case_file_with_what_is_held(tmp_path, capsys):
     out, err = capsys.readouterr()
     assert "under applied_force" in out and "held as asked: length, inclination, width" in out
     assert f"{path}: the optimum as a case file" in err
-    case, best = named_case("large_steel_pivot"), read_case(path)
+    case, best = named_case("large_steel_pivot"), named_case(path)
     assert (best.length, best.width) == (pytest.approx(0.3), pytest.approx(0.05))
     assert best.effects == case.effects
     sized, own = of_spline(answers(best)).quantities(), of_spline(answers(case)).quantities()

@@ -34,16 +34,16 @@ def fields(kind: str) -> Fields:
     pivot, linkage = (replace(named_design(name), increments=3) for name in
                       ("cross_axis_pivot", "four_bar_of_flexures"))  # fmt: skip
     if kind == "static":
-        return fields_of(answer_static(pivot, spline), pivot)
+        return fields_of(answer_static(pivot, spline))
     if kind == "mechanism":
-        return fields_of(answer_static(linkage, elements), linkage)
+        return fields_of(answer_static(linkage, elements))
     if kind == "modes":
-        return fields_of(answer_modes(linkage, spline, rotation=linkage.rotation, count=3), linkage)
+        return fields_of(answer_modes(linkage, spline, rotation=linkage.rotation, count=3))
     if kind == "loads":
         guide = replace(named_design("parallel_strip_guide"), increments=2)
-        return fields_of(answer_static(guide, spline), guide)
+        return fields_of(answer_static(guide, spline))
     step = {"step": 1e-4, "integrator": "generalised-alpha"}
-    return fields_of(answer_release(pivot, elements, duration=5e-4, records=5, **step), pivot)
+    return fields_of(answer_release(pivot, elements, duration=5e-4, records=5, **step))
 
 
 KINDS = pytest.mark.parametrize("kind", ["static", "mechanism", "loads", "modes", "release"])
@@ -124,8 +124,8 @@ def test_states_have_the_columns_of_the_solved_table(name):
     joined by the number of the state, as a load factor stays 1 while a loaded pivot is turned."""
     design = replace(named_design(name), increments=2)
     answer = answer_static(design, SplineSettings(control_points=6))
-    found = tables(fields_of(answer, design))
-    states, rows = found["states"], as_frame(design, answer)
+    found = tables(fields_of(answer))
+    states, rows = found["states"], as_frame(answer)
     both = [column for column in states if column in rows]
     assert {"load_factor", "torque_Nm", "stiffness_Nm_per_rad", "strain_energy_J", "max_stress_Pa"} <= set(
         both

@@ -28,7 +28,7 @@ def solved(case: str, settings: Settings) -> Fields:
 
 
 def static_fields(design: Design, settings: Settings) -> Fields:
-    return fields_of(answer_static(design, settings), design)
+    return fields_of(answer_static(design, settings))
 
 
 def force(fields: Fields, state: int = -1) -> np.ndarray:
@@ -176,7 +176,7 @@ def test_a_release_begins_with_the_static_section_forces(settings):
     """The first record of a motion has the fields of the static state that was let go."""
     step = {"step": 1e-4} if settings is SPLINE else {"integrator": "generalised-alpha", "step": 1e-4}
     pivot = design_of("cross_axis_pivot")
-    begin = fields_of(answer_release(pivot, settings, duration=2e-4, records=2, **step), pivot)
+    begin = fields_of(answer_release(pivot, settings, duration=2e-4, records=2, **step))
     static = solved("cross_axis_pivot", settings)
     assert begin.bending_moment[0] == pytest.approx(static.bending_moment[-1], rel=1e-3)
     # by the moments' balance the spline's shear force is a derivative, and its strips are stiffer in motion
@@ -191,7 +191,7 @@ def test_motion_keeps_the_bodies_and_strips_together(settings):
     """Ends of strips stay on their bodies in every record of a mechanism whose reference points differ."""
     design = design_of("four_bar_of_flexures")
     step = {} if settings is SPLINE else {"integrator": "generalised-alpha", "step": 1e-4}
-    fields = fields_of(answer_release(design, settings, duration=1e-3, records=4, **step), design)
+    fields = fields_of(answer_release(design, settings, duration=1e-3, records=4, **step))
     crank = [block.name for block in fields.blocks].index("crank")
     turn, centre = fields.bodies[:, crank, 2], fields.bodies[:, crank, :2]
     offset = fields.rest_shape[0, -1] - fields.rest_bodies[crank]
@@ -211,7 +211,7 @@ def test_modes_move_strips_with_their_bodies():
     found = []
     for settings in (SPLINE, ELEMENTS):
         linkage = design_of("four_bar_of_flexures")
-        fields = fields_of(answer_modes(linkage, settings, rotation=linkage.rotation, count=2), linkage)
+        fields = fields_of(answer_modes(linkage, settings, rotation=linkage.rotation, count=2))
         x, y = fields.shape[0, 0, -1] - fields.bodies[0, 0, :2]
         body = fields.mode_bodies[:, 0]
         carried = body[:, :2] + body[:, 2:] * np.array([-y, x])

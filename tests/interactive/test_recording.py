@@ -8,7 +8,7 @@ import sys
 import pytest
 
 from spline_model.modes import natural_frequencies
-from studies.cases.problem import FOLDER, read_case
+from studies.cases.problem import FOLDER, named_case
 from studies.errors import BadInput
 from studies.interactive.pivot import presets
 from studies.interactive.pivot.design import build
@@ -44,7 +44,7 @@ def test_a_session_replays_to_the_same_states(preset):
 def test_a_design_of_ones_own_is_one_more_preset(monkeypatch):
     """Requirement: a case file joins the presets, swings once a second, and its session replays alone."""
     monkeypatch.setattr(presets, "PRESETS", dict(presets.PRESETS))
-    problem = read_case(FOLDER / "spring_steel_pivot.toml")
+    problem = named_case(FOLDER / "spring_steel_pivot.toml")
     presets.PRESETS[presets.OWN] = presets.own(str(FOLDER / "spring_steel_pivot.toml"))
     values = presets.preset(presets.OWN).values()
     assert (values["length"], values["thickness"]) == (problem.length, pytest.approx(1e-3))

@@ -10,7 +10,7 @@ import pytest
 pytest.importorskip("cv2", reason="the extra `interactive` is not installed")
 pytest.importorskip("uvicorn", reason="the extra `interactive` is not installed")
 
-from studies.cases.problem import read_case
+from studies.cases.problem import named_case
 from studies.errors import BadInput
 from studies.interactive.pivot.mechanics import Mechanics
 from studies.interactive.pivot.recording import Recorder, mark, replay
@@ -170,7 +170,7 @@ def test_design_is_saved_and_opened(server, tmp_path):
         say(socket, do="save")
         text = answer(socket, "case")["text"]
         (tmp_path / "mine.toml").write_text(text, encoding="utf-8")
-        problem = read_case(tmp_path / "mine.toml")
+        problem = named_case(tmp_path / "mine.toml")
         assert (problem.width, problem.thickness) == pytest.approx((0.01, 7e-4))
         assert problem.effects.parameters()["strip_damping"] == {"relaxation_time": 2e-3}
         say(socket, do="preset", name="table-1")

@@ -9,7 +9,7 @@ from spline_model.batch import solve_many
 from spline_model.errors import InvalidParameter
 from spline_model.mechanism import Mechanism, mechanism
 from spline_model.statics import solve_mechanism
-from studies.answers.models import built, model_of
+from studies.answers.models import put
 from studies.answers.settings import SplineSettings
 from studies.cases.design import named_design
 from tests import gates
@@ -26,9 +26,7 @@ VALUES = {
 def linkage() -> Mechanism:
     """The four-bar linkage of flexures, under its weight."""
     settings = SplineSettings(control_points=6)
-    found: Mechanism = built(
-        model_of(settings), named_design("four_bar_of_flexures"), settings, moving=False
-    )[0]
+    found: Mechanism = put(named_design("four_bar_of_flexures"), settings).modelled
     return found
 
 

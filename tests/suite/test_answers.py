@@ -107,10 +107,10 @@ def test_problem_checks_its_values_wherever_they_come_from():
 
 def test_fingerprint_follows_values_not_layout(case, table_1):
     """Comments leave the fingerprint of a problem as it is; a changed value changes it."""
-    from studies.cases.problem import read_case
+    from studies.cases.design import fingerprint
 
-    assert read_case(case(("# Table 1: 206 GPa", ""))).fingerprint() == TABLE_1.fingerprint()
-    assert read_case(case(("206e9", "207e9"))).fingerprint() != TABLE_1.fingerprint()
+    assert fingerprint(named_case(case(("# Table 1: 206 GPa", "")))) == fingerprint(TABLE_1)
+    assert fingerprint(named_case(case(("206e9", "207e9")))) != fingerprint(TABLE_1)
 
 
 def implied(cubic, amplitude, states=21):
@@ -159,6 +159,7 @@ def test_limit_of_swings_removes_the_error_of_the_mesh():
         arrays = {name: np.ones_like(instants) for name in (*SHARED_ARRAYS, *RESIDUALS) if name != "time"}
         levels.append(
             Motion(
+                design=TABLE_1,
                 model="fe",
                 settings={"elements": elements},
                 status="converged",
@@ -167,7 +168,6 @@ def test_limit_of_swings_removes_the_error_of_the_mesh():
                 effects=(),
                 time=instants,
                 bodies={"body": np.stack((rotation, 2.0 * rotation, rotation), axis=1)},
-                body="body",
                 counters={},
                 wall_s=0.0,
                 solve_s=0.0,

@@ -13,8 +13,8 @@ from studies.cases.design import named_design, read_design
 from studies.cases.effects import Effects
 from studies.cases.keys import EFFECT_KEYS, EFFECTS, MATERIALS, OWN
 from studies.cases.mechanism import Mechanism
-from studies.cases.problem import FOLDER, CaseError, Problem, read_case
-from studies.cases.write import as_toml
+from studies.cases.problem import FOLDER, CaseError, Problem, named_case
+from studies.cases.write import as_toml, document_of
 
 DECLARED = [
     *(key for each in (write.PIVOT, write.MECHANISM, EFFECT_KEYS) for keys in each.values() for key in keys),
@@ -224,9 +224,9 @@ OTHER = {
 def test_a_pivot_that_is_written_is_read_as_it_was(design, tmp_path):
     """A pivot written as a case file is read as the same pivot, to the digits that a file has."""
     path = tmp_path / "written.toml"
-    path.write_text(as_toml(design, ["one", "two"]), encoding="utf-8")
+    path.write_text(as_toml(document_of(design), ["one", "two"]), encoding="utf-8")
     assert path.read_text(encoding="utf-8").startswith("# one\n# two\n\n[strip]\n")
-    found = read_case(path)
+    found = named_case(path)
     assert found.effects == design.effects
     assert found.effects.parameters() == design.effects.parameters()
     for name, value in vars(design).items():

@@ -5,30 +5,26 @@ import pytest
 
 from spline_model.modes import natural_frequencies
 from spline_model.sequential_impulse import solve_impulses, stability_limit
+from studies.answers.models import put
 from studies.answers.motion import motion
+from studies.cases.problem import named_case
 from studies.convergence import impulse_tables
 from studies.convergence.impulse_tables import GROUPS
 
 
 def test_a_motion_by_impulses_is_a_neutral_answer():
     """A trajectory of impulses becomes the neutral motion of the other integrators."""
-    run = solve_impulses(impulse_tables._pivot("Table 1"), start=0.5, duration=0.05)
-    answer = motion(
-        run,
-        model="spline",
-        settings={},
-        effects=run.effects,
-        body=run.body,
-        wall_s=0.0,
-        solve_s=0.0,
-    )
+    asked = put(named_case(), impulse_tables.SETTINGS, moving=True)
+    run = solve_impulses(asked.modelled, start=0.5, duration=0.05)
+    answer = motion(asked, run, wall_s=0.0, solve_s=0.0)
     assert answer.converged
-    assert answer.settings == {
+    own = {
         "integrator": "sequential impulses, stable",
         "step_s": 0.01,
         "control_points": run.control_points,
         "impulses": "direct",
     }
+    assert answer.settings == asked.discretised(None) | own
     assert answer.rotation[0] == pytest.approx(0.5)
     assert "of the swing's period at rest" in answer.resolution
     assert 0.0 < answer.energy_error <= 1.0  # all that the damping of the swing takes

@@ -48,7 +48,7 @@ def shown(kind):
         answer = answer_modes(design, settings, count=3)
     else:
         answer = answer_static(design, settings)
-    return Shown(name=kind, fields=fields_of(answer, design), yield_strength=1.1e9), answer
+    return Shown(name=kind, fields=fields_of(answer), yield_strength=1.1e9), answer
 
 
 SEVERAL = [

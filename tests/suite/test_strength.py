@@ -28,7 +28,7 @@ def yielding(limit):
 def test_the_range_ends_where_the_stress_is_that_of_yield():
     """Requirement: a path to the rotation from which on the material yields ends at its yield strength."""
     design = yielding(YIELD)
-    found = strength(design, answer_static(design, SIX))
+    found = strength(answer_static(design, SIX))
     assert found.safety == pytest.approx(YIELD / found.stress)
     there = answer_static(replace(TABLE_1, rotation=found.yields[1]), SIX)
     assert there.max_stress[-1] == pytest.approx(YIELD, rel=2e-3)
@@ -37,14 +37,14 @@ def test_the_range_ends_where_the_stress_is_that_of_yield():
 def test_a_design_that_bears_its_path_has_no_end_of_range():
     """Requirement: below the yield strength all along there is a safety above one and no such angle."""
     design = yielding(1e12)
-    found = strength(design, answer_static(design, SIX))
+    found = strength(answer_static(design, SIX))
     assert (found.yields, found.safety > 1.0) == (None, True)
     assert found.yield_strength == 1e12
 
 
 def test_without_a_yield_strength_there_is_the_stress_alone():
     """Requirement: what is largest has its strip, its place in words, and its state."""
-    found = strength(TABLE_1, answer_static(TABLE_1, SIX))
+    found = strength(answer_static(TABLE_1, SIX))
     assert (found.strip, found.place, found.safety, found.yields) == ("strip_1", "at its root", None, None)
     assert math.degrees(found.rotation) == pytest.approx(90.0)
 

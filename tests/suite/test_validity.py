@@ -23,7 +23,6 @@ from studies.answers.validity import (
 from studies.cases.design import named_design
 from studies.cases.problem import named_case
 from studies.model_form.plate import RITZ
-from studies.sweep.points import _static_result
 from tests import gates
 
 SIX = SplineSettings(control_points=6)
@@ -46,7 +45,7 @@ def solved(name):
 def test_ratios_of_table_one():
     """Requirement: width, thickness, curvature and strain are those of the section and of the answer."""
     given, answer = solved("cross_axis_pivot")
-    found = validity(given, answer, effects=answer.effects)
+    found = validity(answer)
     thickness = sqrt(12.0 * given.second_moment_of_area / given.area)
     width = given.area / thickness
     bending = given.youngs_modulus * given.second_moment_of_area
@@ -59,23 +58,23 @@ def test_ratios_of_table_one():
 
 def test_what_is_left_out_is_said_until_an_effect_takes_it_in():
     """Requirement: plate action, flattening, roots and strain are told, those of named effects not."""
-    given, answer = solved("polymer_pivot")
-    thin = validity(given, answer, effects=answer.effects).outside
+    _, answer = solved("polymer_pivot")
+    thin = validity(answer).outside
     assert [line.split()[0] for line in thin] == ["b/L", "b^2/(R"]
-    assert validity(given, answer, effects=(CLAMPED_WIDTH, ANTICLASTIC)).outside == ()
-    given, answer = solved("cross_axis_pivot")
-    thick = validity(given, answer, effects=answer.effects).outside
+    assert validity(replace(answer, effects=(CLAMPED_WIDTH, ANTICLASTIC))).outside == ()
+    _, answer = solved("cross_axis_pivot")
+    thick = validity(answer).outside
     assert [line.split()[0] for line in thick] == ["b/L", "t/L", "strain"]
-    assert len(validity(given, answer, effects=(CLAMPED_WIDTH, ROOTS)).outside) == 1
+    assert len(validity(replace(answer, effects=(CLAMPED_WIDTH, ROOTS))).outside) == 1
 
 
 def test_yield():
     """Requirement: stress over the yield strength is told, with both; below it nothing is."""
     given, answer = solved("spring_steel_pivot")
     stress = answer.max_stress.max()
-    none = validity(given, answer, effects=answer.effects).outside
+    none = validity(answer).outside
     over, within = (
-        validity(replace(given, yield_strength=share * stress), answer, effects=()).outside
+        validity(replace(answer, design=replace(given, yield_strength=share * stress), effects=())).outside
         for share in (0.9, 1.1)
     )
     assert over[:-1] == none == within
@@ -88,8 +87,7 @@ def test_the_strip_that_is_worst_speaks():
     given = named_design("parallel_strip_guide")
     short = replace(given.strips[1], start=(0.06, 0.05))
     design = replace(given, strips=(given.strips[0], short))
-    result = _static_result(design, SIX)
-    found = validity(design, result, effects=result.effects)
+    found = validity(answer_static(design, SIX))
     assert found.width_ratio == pytest.approx(0.01 / 0.05)
     assert found.outside[0].startswith("b/L 0.2:")
 

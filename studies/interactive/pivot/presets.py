@@ -10,8 +10,8 @@ from typing import Any
 from spline_model.modes import natural_frequencies
 from studies.cases.effects import Effects
 from studies.cases.keys import MATERIALS
-from studies.cases.problem import Problem, named_case, read_case
-from studies.cases.write import as_toml
+from studies.cases.problem import Problem, named_case
+from studies.cases.write import as_toml, document_of
 from studies.errors import BadInput
 from studies.interactive.pivot.design import POISSON_RATIO, build, scene
 
@@ -95,7 +95,7 @@ class _Preset:
 
     def values(self) -> dict[str, float]:
         """Return all parameters of the design by name, in SI units."""
-        problem = read_case(self.case) if self.case.endswith(".toml") else named_case(self.case)
+        problem = named_case(self.case)
         thickness = math.sqrt(12.0 * problem.second_moment_of_area / problem.area)
         values = {
             "thickness": thickness,
@@ -143,7 +143,7 @@ def own(case: str) -> _Preset:
     Raises:
         BadInput: the file cannot be used, or a number of the design is beyond what a slider may set.
     """
-    problem = read_case(case)
+    problem = named_case(case)
     given = problem.effects.parameters()
     strength = problem.yield_strength
     made = _Preset(
@@ -191,7 +191,7 @@ def as_case(values: Mapping[str, float]) -> str:
         increments=45,
         effects=Effects(names=names, tables=tables),
     )
-    return as_toml(problem, ["a design of the interactive environment"])
+    return as_toml(document_of(problem), ["a design of the interactive environment"])
 
 
 def checked(values: Mapping[str, object]) -> dict[str, float]:
