@@ -53,16 +53,18 @@ SETTINGS: Any = {
 
 @dataclass(frozen=True, kw_only=True)
 class Look:
-    """Label, colour, line and marker of one formulation, the same in every figure."""
+    """Label, colour, line and marker of one formulation, the same in every figure; a marker may be hollow."""
 
     label: str
     colour: str
     line: str = "-"
     marker: str = ""
+    hollow: bool = False
 
     def keywords(self) -> dict[str, Any]:
         """Return the keyword arguments of `Axes.plot`."""
-        return {"label": self.label, "color": self.colour, "linestyle": self.line, "marker": self.marker}
+        words = {"label": self.label, "color": self.colour, "linestyle": self.line, "marker": self.marker}
+        return words | ({"markerfacecolor": "none"} if self.hollow else {})
 
 
 #: One look for each formulation, wherever it is drawn.
