@@ -16,7 +16,8 @@ from studies.effects.audit import audit
 from studies.effects.beyond import ALL, SHEAR, prices
 from studies.effects.scenes import CHANGES, SIZES, Variant, size_of
 from studies.engine.study import Answer, Claim, Finding, Part, Study, Tables
-from studies.record.style import BLACK, BLUE, GREEN, ORANGE, RED, page
+from studies.record.panels import CONTROL_POINTS, Axis, Curves, Panel, Slope, key, sheet
+from studies.record.style import BLACK, BLUE, GREEN, ORANGE, RED, Look, page
 
 SETTINGS = SplineSettings(control_points=6)
 TOLERANCE = 1e-3
@@ -200,8 +201,7 @@ def _worth(tables: Tables) -> Figure:
         panel.set_xticks([1e-6, 1e-4, 1e-2, 1.0])
         panel.set_ylim(-0.6, len(order) - 0.4)
     panels[0].set_yticks(range(len(order)), labels=list(order))
-    handles, labels = _once(panels[0].get_legend_handles_labels())
-    figure.legend(handles, labels, loc="outside lower center", ncols=len(SHOWN))
+    key(figure, panels[:1], columns=len(SHOWN))
     figure.suptitle(
         f"Change by leaving out one effect of the full scene; line: {TOLERANCE:g}; left edge: no more"
     )
@@ -210,34 +210,29 @@ def _worth(tables: Tables) -> Figure:
 
 def _savings(tables: Tables) -> Figure:
     """Draw highest frequency and explicit step without stretching, and the shift by massless strips."""
-    figure = page(9.5, 3.6)
-    frequency, step, shift = figure.subplots(1, 3)
-    for stretching, colour, label in (("yes", BLUE, "stretching"), ("no", ORANGE, "inextensible")):
-        rows = tables["steps"][tables["steps"]["stretching"] == stretching]
-        counts = rows["control_points"]
-        frequency.semilogy(counts, 1e-3 * rows["highest_frequency_Hz"], "o-", color=colour, label=label)
-        step.semilogy(counts, 1e6 * rows["explicit_step_s"], "o-", color=colour, label=label)
-    frequency.set(xlabel="control points a strip, n", ylabel="highest frequency [kHz]")
-    step.set(xlabel="control points a strip, n", ylabel="largest stable explicit step [µs]")
-    for panel in (frequency, step):
-        panel.set_xticks(sorted(set(tables["steps"]["control_points"])))
-    frequency.set_title("Table 1, at rest and at 90°")
-    frequency.legend()
+    looks = {
+        "yes": Look(label="stretching", colour=BLUE, marker="o"),
+        "no": Look(label="inextensible", colour=ORANGE, marker="o"),
+    }
+    steps = (Curves(rows=tables["steps"], looks=looks, by="stretching"),)
+    frequency = Axis(column="highest_frequency_Hz", label="highest frequency [kHz]", factor=1e-3, log=True)
+    step = Axis(column="explicit_step_s", label="largest stable explicit step [µs]", factor=1e6, log=True)
     rows = tables["mass_ratio"].sort_values("mass_ratio")
-    shift.loglog(rows["mass_ratio"], rows["shift"].abs(), "o-", color=BLUE, label="massless strips")
-    ratio = rows["mass_ratio"].to_numpy(float)
-    line = float(rows["shift"].iloc[0]) * ratio / ratio[0]
-    shift.loglog(ratio, line, ":", color="#444444", label="in proportion")
-    shift.set(xlabel="mass of strips / of body", ylabel="shift of the first mode [1]")
-    shift.set_title("Strips without inertia")
-    shift.legend()
-    return figure
-
-
-def _once(drawn: tuple[list, list[str]]) -> tuple[list, list[str]]:
-    """Return handles and labels without repeats."""
-    chosen = np.unique(drawn[1], return_index=True)[1]
-    return [drawn[0][place] for place in sorted(chosen)], [drawn[1][place] for place in sorted(chosen)]
+    ratio, shift = rows["mass_ratio"], Axis(column="shift", label="shift of the first mode [1]", log=True)
+    start, span = (ratio.iloc[0], abs(rows["shift"].iloc[0])), (ratio.iloc[0], ratio.iloc[-1])
+    massless = Panel(
+        x=Axis(column="mass_ratio", label="mass of strips / of body", log=True),
+        y=shift,
+        marks=(
+            Curves(rows=rows, looks=Look(label="massless strips", colour=BLUE, marker="o")),
+            Slope(through=start, power=1, span=span, label="in proportion"),
+        ),
+        title="Strips without inertia",
+        legend="best",
+    )
+    title = "Table 1, at rest and at 90°"
+    highest = Panel(x=CONTROL_POINTS, y=frequency, marks=steps, title=title, legend="best")
+    return sheet(9.5, 3.6, [[highest, Panel(x=CONTROL_POINTS, y=step, marks=steps), massless]])
 
 
 STUDY = Study(

@@ -18,6 +18,8 @@ from studies.record.style import Look, page
 
 #: Colour of levels and slopes, and of the words beside them.
 MARK = "#444444"
+#: Beyond this a logarithmic axis has no marks within its decades: hundreds that say nothing.
+CROWDED = 1e4
 #: What words beside a mark stand on, so that curves behind them do not disturb.
 BACKGROUND = {"facecolor": "white", "edgecolor": "none", "pad": 0.5, "alpha": 0.85}
 
@@ -58,7 +60,12 @@ class Axis:
             words = {"labels": [f"{tick:g}" for tick in ticks]} if self.log and self.each else {}
             getattr(panel, f"set_{name}ticks")(ticks, **words)
             getattr(panel, f"{name}axis").minorticks_off()
-        panel.set(**{f"{name}label": self.label, f"{name}lim": self.limits})
+        panel.set(**{f"{name}label": self.label})
+        if self.limits != (None, None):  # which would keep those of panels that share it from growing
+            panel.set(**{f"{name}lim": self.limits})
+        low, high = getattr(panel, f"get_{name}lim")()
+        if self.log and high > CROWDED * low:
+            getattr(panel, f"{name}axis").minorticks_off()
 
 
 #: Axes that many figures have.
@@ -66,7 +73,7 @@ ROTATION = Axis(column="rotation_rad", label="rotation [deg]", factor=180.0 / ma
 AMPLITUDE = replace(ROTATION, column="amplitude_rad", label="amplitude of the swing [deg]")
 TIME = Axis(column="time_s", label="time [ms]", factor=1e3)
 CONTROL_POINTS = Axis(column="control_points", label="control points a strip, n", each=1)
-ELEMENTS = Axis(column="elements", label="elements a strip", log=True, each=1)
+MESH = Axis(column="elements", label="elements a strip", log=True, each=1)
 STEP = Axis(column="step_s", label="step [s]", log=True)
 
 
@@ -217,14 +224,14 @@ class Panel:
     """Marks over two axes.
 
     Attributes:
-        legend: where a legend of its own stands, as of `Axes.legend`; none without.
+        legend: where a legend of its own stands, or how, as of `Axes.legend`; none without.
     """
 
     x: Axis
     y: Axis
     marks: Sequence[Mark]
     title: str = ""
-    legend: Any = ""
+    legend: str | Mapping[str, Any] = ""
 
     def __call__(self, panel: Axes) -> None:
         """Draw it all."""
@@ -236,7 +243,7 @@ class Panel:
             axis.apply(panel, name, (value for some in rows for value in axis.of(some).dropna()))
         panel.set_title(self.title)
         if self.legend:
-            panel.legend(loc=self.legend)
+            panel.legend(**({"loc": self.legend} if isinstance(self.legend, str) else self.legend))
 
 
 #: What stands in a place of a sheet.
@@ -255,10 +262,11 @@ def sheet(
     drawn = page(width, height)
     columns = list(zip(*rows, strict=True))
     shared_x = all(_same("x", column) for column in columns) and len(rows) > 1
+    along: Any = "all" if _same("x", [panel for row in rows for panel in row]) else "col"
     shared_y = all(_same("y", row) for row in rows) and len(columns) > 1
     across: Any = "row" if shared_y else "col" if all(_same("y", column) for column in columns) else "none"
     grid = drawn.subplots(
-        len(rows), len(columns), squeeze=False, sharex="col" if shared_x else "none", sharey=across
+        len(rows), len(columns), squeeze=False, sharex=along if shared_x else "none", sharey=across
     )
     for line, draws in zip(grid, rows, strict=True):
         for panel, draw in zip(line, draws, strict=True):

@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from typing import Any
 
 import matplotlib as mpl
-from matplotlib.axes import Axes
 from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 from matplotlib.text import Text
@@ -132,17 +131,6 @@ def page(width: float, height: float) -> Figure:
     """
     share = min(1.0, PAGE_WIDTH / width)
     return Figure(figsize=(share * width, (0.1 + 0.9 * share) * height), layout="constrained")
-
-
-def uncertain(panel: Axes, level: float) -> None:
-    """Shade what lies below the uncertainty of the reference in a panel of errors."""
-    panel.set_ylim(bottom=level / 10.0)
-    panel.axhspan(level / 1e3, level, color="#eeeeee", zorder=0)
-    panel.annotate(
-        "uncertainty of the reference", (0.98, level), (0, -3), ("axes fraction", "data"), "offset points",
-        ha="right", va="top", fontsize=8, color="#666666",
-        bbox={"facecolor": "#eeeeee", "edgecolor": "none", "pad": 0.5, "alpha": 0.85},
-    )  # fmt: skip
 
 
 def rendered(figure: Figure) -> Mapping[str, bytes]:
