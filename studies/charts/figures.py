@@ -9,8 +9,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
-from studies.engine.study import Tables
-from studies.record.panels import Axis, Curves, Level, Panel, sheet
+from studies.engine.study import Tables, records
+from studies.record.panels import Axis, Curves, Level, Mark, Panel, Words, sheet
 from studies.record.style import BLACK, BLUE, GREEN, ORANGE, PURPLE, SKY, Look, page
 
 #: Quantity -> how it is written beside its charts.
@@ -101,29 +101,29 @@ def _buckling(rows: pd.DataFrame) -> Panel:
 
 def _validity(tables: Tables) -> Figure:
     """Draw where a plain beam is off by a percent: width and thickness over length, with pivots marked."""
-    drawn = page(WIDTH, 3.1)
-    panel = drawn.subplots()
-    rows = tables["validity"]
-    for row in tables["limits"].to_dict("records"):
+    marks: list[Mark] = []
+    for row in records(tables["limits"]):
         line, share = "-" if row["share"] < 0.02 else "--", f"{row['share']:.0%}"
         if row["ratio"] == "width_ratio":
-            panel.axvline(row["value"], color=GREEN, linestyle=line)
-            at, text = (row["value"], 0.18), f"clamped width {share}"
-            panel.annotate(text, at, (2, 0), textcoords="offset points", rotation=90, va="top",
-                           fontsize=8, color=GREEN)  # fmt: skip
+            place, words = (row["value"], 0.18), f"clamped width {share}"
+            marks.append(Level(at=row["value"], colour=GREEN, line=line, upright=True))
+            marks.append(Words(text=words, at=place, by=(2, 0), colour=GREEN, turned=True))
         elif row["ratio"] == "thickness_ratio":
-            panel.axhline(row["value"], color=PURPLE, linestyle=line)
-            panel.annotate(f"roots of one block {share}", (0.7, row["value"]), (0, 2),
-                           textcoords="offset points", fontsize=8, color=PURPLE)  # fmt: skip
-    for row in rows.to_dict("records"):
-        place = (row["width_ratio"], row["thickness_ratio"])
-        panel.plot(*place, "o", color=BLACK)
+            place, words = (0.7, row["value"]), f"roots of one block {share}"
+            marks.append(Level(at=row["value"], colour=PURPLE, line=line))
+            marks.append(Words(text=words, at=place, by=(0, 2), colour=PURPLE))
+    marks.append(Curves(rows=tables["validity"], looks=Look(label="_", colour=BLACK, line="", marker="o")))
+    for row in records(tables["validity"]):
         text = row["pivot"].removesuffix("_pivot").replace("_", " ")
         by, side = BESIDE.get(text, ((4, 4), "left"))
-        panel.annotate(text, place, by, textcoords="offset points", fontsize=8, ha=side)
-    panel.set(xscale="log", yscale="log", xlim=(0.02, 2.0), ylim=(2.5e-3, 0.2))
-    panel.set(xlabel="width over length $b/L$", ylabel="thickness over length $t/L$")
-    return drawn
+        place = (row["width_ratio"], row["thickness_ratio"])
+        marks.append(Words(text=text, at=place, by=by, colour=BLACK, side=side))
+    panel = Panel(
+        x=Axis(column="width_ratio", label="width over length $b/L$", log=True, limits=(0.02, 2.0)),
+        y=Axis(column="thickness_ratio", label="thickness over length $t/L$", log=True, limits=(2.5e-3, 0.2)),
+        marks=marks,
+    )
+    return sheet(WIDTH, 3.1, [[panel]])
 
 
 DRAWN: Mapping[str, Callable[[Tables], Figure]] = {

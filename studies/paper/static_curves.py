@@ -166,6 +166,7 @@ def _curves_and_errors(tables: Tables, quantity: str, column: str, label: str) -
             Words(
                 text=f"as the paper:\nup to {locked:.0f} {unit}",
                 at=(0.03, 0.86),
+                placed=True,
                 colour=LOOKS[formulations.PAPER].colour,
             ),
         ),

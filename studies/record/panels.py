@@ -34,6 +34,7 @@ class Axis:
         least: smaller sizes are drawn here.
         limits: lowest and highest value, None for those of the curves.
         ticks: the only ones; each: or a tick at every so manieth value of the column, 1 for all.
+        names: what the column has in place of numbers, from the top, or from the left, on.
     """
 
     column: str
@@ -44,9 +45,12 @@ class Axis:
     limits: tuple[float | None, float | None] = (None, None)
     ticks: Iterable[float] = ()
     each: int = 0
+    names: Sequence[str] = ()
 
     def of(self, rows: pd.DataFrame) -> pd.Series:
         """Return what is drawn of rows."""
+        if self.names:
+            return rows[self.column].map({name: place for place, name in enumerate(self.names)})
         values = self.factor * rows[self.column]
         if not self.log:
             return values
@@ -63,6 +67,10 @@ class Axis:
         panel.set(**{f"{name}label": self.label})
         if self.limits != (None, None):  # which would keep those of panels that share it from growing
             panel.set(**{f"{name}lim": self.limits})
+        if self.names:
+            getattr(panel, f"set_{name}ticks")(range(len(self.names)), labels=self.names)
+            last = len(self.names) - 0.4
+            panel.set(**{f"{name}lim": (last, -0.6) if name == "y" else (-0.6, last)})
         low, high = getattr(panel, f"get_{name}lim")()
         if self.log and high > CROWDED * low:
             getattr(panel, f"{name}axis").minorticks_off()
@@ -190,16 +198,27 @@ class Slope:
 
 @dataclass(frozen=True, kw_only=True)
 class Words:
-    """Words at a place in parts of the panel; beyond half of its width they end there."""
+    """Words beside a point of the axes, or at a place of the panel, in parts of it, where `placed`.
+
+    Attributes:
+        by: how far from there [pt]; side: of the words that is there, left or right; turned: written upwards.
+    """
 
     text: str
     at: tuple[float, float]
+    by: tuple[float, float] = (0.0, 0.0)
     colour: str = MARK
+    side: str = "left"
+    turned: bool = False
+    placed: bool = False
 
     def draw(self, panel: Axes, x: Axis, y: Axis) -> None:
         """Write the words."""
-        side = "right" if self.at[0] > 0.5 else "left"
-        panel.annotate(self.text, self.at, xycoords="axes fraction", ha=side, color=self.colour, fontsize=8)
+        panel.annotate(
+            self.text, self.at, self.by, "axes fraction" if self.placed else "data", "offset points",
+            ha=self.side, va="top" if self.turned else "baseline", rotation=90 if self.turned else 0,
+            color=self.colour, fontsize=8,
+        )  # fmt: skip
 
 
 @dataclass(frozen=True)
