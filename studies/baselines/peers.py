@@ -13,7 +13,6 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from studies.baselines import tasks
@@ -32,7 +31,8 @@ from studies.baselines.variants import (
 )
 from studies.cases.problem import named_case
 from studies.engine.study import Answer, Claim, Part, Study, Tables, records
-from studies.record.style import BLACK, BLUE, ORANGE, PURPLE, YELLOW, page
+from studies.record.panels import Axis, Curves, Level, Panel, sheet
+from studies.record.style import BLACK, BLUE, ORANGE, PURPLE, YELLOW, Look
 
 GROUPS = (ELEMENTS, EXUDYN, AS_DELIVERED, OPENSEES, SURROGATE)
 
@@ -94,67 +94,52 @@ def _fastest(joined: pd.DataFrame, group: str, error: str, level: float) -> dict
     return {"name": f"{best['model']}, {setting}"} | {name: float(best[TIMES[name]]) for name in TIMES}
 
 
-#: (model, group) -> label, colour and marker; a colour a code, a marker a beam.
+#: Looks by model and group: a colour a code, a marker a beam.
 LOOKS = {
-    ("spline", SPLINE): ("spline", BLUE, "x"),
-    ("finite elements", ELEMENTS): ("finite elements", BLACK, "s"),
-    ("exudyn ancf", "Exudyn"): ("Exudyn, ANCF cable", PURPLE, "^"),
-    ("exudyn exact", "Exudyn"): ("Exudyn, geometrically exact", PURPLE, "v"),
-    ("exudyn ancf", "Exudyn as delivered"): ("Exudyn as delivered, ANCF cable", YELLOW, "^"),
-    ("exudyn exact", "Exudyn as delivered"): ("Exudyn as delivered, geometrically exact", YELLOW, "v"),
-    ("openseespy frame", "OpenSees"): ("OpenSees, corotational frame", ORANGE, "<"),
+    ("spline", SPLINE): Look(label="spline", colour=BLUE, marker="x"),
+    ("finite elements", ELEMENTS): Look(label="finite elements", colour=BLACK, marker="s"),
+    ("exudyn ancf", EXUDYN): Look(label="Exudyn, ANCF cable", colour=PURPLE, marker="^"),
+    ("exudyn exact", EXUDYN): Look(label="Exudyn, geometrically exact", colour=PURPLE, marker="v"),
+    ("exudyn ancf", AS_DELIVERED): Look(label="Exudyn as delivered, ANCF cable", colour=YELLOW, marker="^"),
+    ("exudyn exact", AS_DELIVERED): Look(
+        label="Exudyn as delivered, geometrically exact", colour=YELLOW, marker="v"
+    ),
+    ("openseespy frame", OPENSEES): Look(label="OpenSees, corotational frame", colour=ORANGE, marker="<"),
 }
 
 
-def _work_precision(tables: Mapping[str, pd.DataFrame]) -> Figure:
+def _work_precision(tables: Tables) -> Figure:
     """Draw every setting as a point and the best of each model as a line, for the path and the swing."""
-    figure = page(9.5, 4.6)
-    path, swing = figure.subplots(1, 2)
-    _panel(path, tables["statics"], tables["statics_timings"], "worst")
-    path.set(
-        xlabel="time of the solver [ms]",
-        ylabel="larger error of trajectory and torque [1]",
-        title="Static path to 90° in 20 increments",
+    path = Axis(column="worst", label="larger error of trajectory and torque [1]", log=True)
+    swing = Axis(column="rotation_rad", label="largest error of the rotation [rad]", log=True)
+    doubts = [
+        Level(at=row["rotation_rad"], words=f"uncertainty of the limit {row['theory']}", line=":", place=0.99)
+        for row in records(tables["swing_theories"].query("what == 'uncertainty'"))
+    ]
+    panels = [
+        _panel(tables, "statics", path, "Static path to 90° in 20 increments"),
+        _panel(tables, "swings", swing, "Free swing of 0.05 s from 90°", *doubts),
+    ]
+    title = "Each against the limit of its own theory; points: all settings tried; lines: the best of them"
+    return sheet(9.5, 4.6, [panels], title=title, legend=3)
+
+
+def _panel(tables: Tables, task: str, y: Axis, title: str, *marks: Level) -> Panel:
+    """Return the panel of a task: all settings that converged, and of each model and beam those that none
+    that is faster betters."""
+    rows, times = tables[task], tables[f"{task}_timings"]
+    rows = rows[rows["status"] == "converged"].merge(times, on=["model", "variant"]).sort_values("solve_s")
+    best = rows[rows[y.column] <= rows.groupby(["model", "group"])[y.column].cummin()]
+    return Panel(
+        x=Axis(column="solve_s", label="time of the solver [ms]", factor=1e3, log=True),
+        y=y,
+        marks=(
+            Curves(rows=rows, looks=LOOKS, by=("model", "group"), faint=True),
+            Curves(rows=best, looks=LOOKS, by=("model", "group")),
+            *marks,
+        ),
+        title=title,
     )
-    _panel(swing, tables["swings"], tables["swings_timings"], "rotation_rad")
-    swing.set(
-        xlabel="time of the solver [ms]",
-        ylabel="largest error of the rotation [rad]",
-        title="Free swing of 0.05 s from 90°",
-    )
-    _doubt(swing, tables["swing_theories"])
-    handles, labels = path.get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside lower center", ncols=3)
-    figure.suptitle(
-        "Each against the limit of its own theory; points: all settings tried; lines: the best of them"
-    )
-    return figure
-
-
-def _doubt(panel: Axes, theories: pd.DataFrame) -> None:
-    """Mark how certain the limits of the swing are."""
-    for row in theories[theories["what"] == "uncertainty"].to_dict("records"):
-        level = float(row["rotation_rad"])
-        panel.axhline(level, color="#444444", linewidth=0.9, linestyle=":")
-        panel.annotate(
-            f"uncertainty of the limit {row['theory']}", (0.99, level), (0, 2),
-            ("axes fraction", "data"), "offset points",
-            ha="right", va="bottom", fontsize=7, color="#444444",
-            bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.5, "alpha": 0.85},
-        )  # fmt: skip
-
-
-def _panel(panel: Axes, rows: pd.DataFrame, times: pd.DataFrame, error: str) -> None:
-    joined = rows[rows["status"] == "converged"].merge(times, on=["model", "variant"])
-    for (model, group), (label, colour, marker) in LOOKS.items():
-        mine = joined[(joined["model"] == model) & (joined["group"] == group)].sort_values("solve_s")
-        if mine.empty:
-            continue
-        panel.loglog(
-            1e3 * mine["solve_s"], mine[error], marker, color=colour, alpha=0.35, markersize=3, linestyle=""
-        )
-        best = mine[mine[error] <= mine[error].cummin()]
-        panel.loglog(1e3 * best["solve_s"], best[error], marker + "-", color=colour, label=label)
 
 
 #: Errors at which times are compared: of the path [1], and of the swing [rad].

@@ -11,7 +11,6 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from studies.answers.adapters import answer_release, answer_static
@@ -34,7 +33,8 @@ from studies.model_form.account import CASE as GUIDE
 from studies.model_form.account import LOADS, guide_design, guide_shape
 from studies.paper import formulations
 from studies.published.problems import moved
-from studies.record.style import BLACK, GREEN, LOOKS, ORANGE, PURPLE, SKY, YELLOW, page
+from studies.record.panels import AMPLITUDE, ROTATION, TIME, Axis, Curves, Level, Panel, sheet
+from studies.record.style import BLACK, GREEN, LOOKS, ORANGE, PURPLE, SKY, YELLOW, Look
 
 #: Splines beside them: what the paper wrote, the same count without locking, and the default.
 SPLINES = (formulations.PAPER, formulations.LOCKING_FREE, "n = 6")
@@ -203,74 +203,66 @@ def _over_the_best(tables: Tables) -> list[dict[str, Any]]:
     ]
 
 
-#: Model -> label, colour and line.
+#: Looks of the models.
 MODELS = {
-    "linear pivot": ("linear pivot", ORANGE, "-"),
-    "pin joint": ("pin joint", PURPLE, "-"),
-    "four-bar": ("four-bar (fitted)", GREEN, "-"),
-    "beam constraint model": ("beam constraint model", YELLOW, "-"),
-    "chained constraint model": ("the same, chained", SKY, "-"),
+    "linear pivot": Look(label="linear pivot", colour=ORANGE),
+    "pin joint": Look(label="pin joint", colour=PURPLE),
+    "four-bar": Look(label="four-bar (fitted)", colour=GREEN),
+    "beam constraint model": Look(label="beam constraint model", colour=YELLOW),
+    "chained constraint model": Look(label="the same, chained", colour=SKY),
 }
-DRAWN = {name: (LOOKS[name].label, LOOKS[name].colour, "--") for name in SPLINES}
-#: Errors below this are not drawn.
-LEAST = 1e-6
+DRAWN = {name: replace(LOOKS[name], line="--", marker="") for name in SPLINES}
+#: The smallest and the largest error that is drawn.
+ERRORS = (1e-6, 30.0)
 
 
 def _figure(tables: Tables) -> Figure:
     """Draw the static errors over the rotation (above), frequencies and motion (below)."""
-    figure = page(9.5, 6.4)
-    above, below = figure.subplots(2, 3)
-    for panel, quantity in zip(above, QUANTITIES, strict=True):
-        _static(panel, tables["errors"], quantity)
-    above[0].set_title("Static path to 90°")
-    _frequencies(below[0], tables["swings"])
-    _motions(below[1], below[2], tables["motion"])
-    handles, labels = above[0].get_legend_handles_labels()
-    reference, name = below[1].get_legend_handles_labels()
-    figure.legend([*handles, *reference[:1]], [*labels, *name[:1]], loc="outside lower center", ncols=4)
-    return figure
+    above = [_static(tables["errors"], quantity) for quantity in QUANTITIES]
+    above[0] = replace(above[0], title="Static path to 90°")
+    below = [_frequencies(tables["swings"]), *_motions(tables["motion"])]
+    return sheet(9.5, 6.4, [above, below], legend=4)
 
 
-def _static(panel: Axes, rows: pd.DataFrame, quantity: str) -> None:
-    for model, (label, colour, line) in (MODELS | DRAWN).items():
-        mine = rows[rows["model"] == model]
-        error = mine[quantity].abs()
-        shown, look = error.where(error > LEAST), {"color": colour, "linestyle": line, "label": label}
-        panel.semilogy(np.degrees(mine["rotation_rad"]), shown, **look)
-    for level in LEVELS:
-        panel.axhline(level, color="#999999", linewidth=0.8)
-        panel.annotate(
-            f"{level:.0%}", (1.0, level), (2, 0), ("axes fraction", "data"), "offset points",
-            ha="left", va="center", fontsize=7, color="#666666",
-        )  # fmt: skip
-    panel.set(
-        xlabel="rotation [°]", ylabel=f"|error of the {quantity}| [1]", ylim=(LEAST, 30.0), xlim=(0, 90)
+def _static(rows: pd.DataFrame, quantity: str) -> Panel:
+    label = f"|error of the {quantity}| [1]"
+    return Panel(
+        x=replace(ROTATION, limits=(0, 90)),
+        y=Axis(column=quantity, label=label, log=True, limits=ERRORS),
+        marks=(
+            Curves(rows=rows, looks=MODELS | DRAWN, by="model"),
+            *(Level(at=level, words=f"{level:.0%}", place=1.0) for level in LEVELS),
+        ),
     )
-    panel.set_xticks(range(0, 91, 15))
 
 
-def _frequencies(panel: Axes, rows: pd.DataFrame) -> None:
-    for model, (_, colour, _) in MODELS.items():
-        mine = rows[rows["model"] == model].sort_values("amplitude_rad")
-        panel.plot(np.degrees(mine["amplitude_rad"]), 100.0 * mine["shift"], "o-", color=colour)
-    panel.axhline(0.0, color=BLACK, linewidth=0.8)
-    panel.set(xlabel="amplitude of the swing [°]", ylabel="shift of the frequency [%]", title="Free swing")
-    panel.set_xticks(range(0, 91, 15))
-
-
-def _motions(whole: Axes, apart: Axes, rows: pd.DataFrame) -> None:
-    reference = rows[rows["model"] == "reference"].sort_values("time_s")
-    whole.plot(
-        1e3 * reference["time_s"], np.degrees(reference["rotation_rad"]), color=BLACK, label="refined spline"
+def _frequencies(rows: pd.DataFrame) -> Panel:
+    looks = {name: replace(look, marker="o") for name, look in MODELS.items()}
+    return Panel(
+        x=AMPLITUDE,
+        y=Axis(column="shift", label="shift of the frequency [%]", factor=100.0),
+        marks=(Curves(rows=rows, looks=looks, by="model"), Level(at=0.0)),
+        title="Free swing",
     )
-    for model, (_, colour, _) in MODELS.items():
-        mine = rows[rows["model"] == model].sort_values("time_s")
-        whole.plot(1e3 * mine["time_s"], np.degrees(mine["rotation_rad"]), color=colour, linewidth=1.0)
-        apart.plot(1e3 * mine["time_s"], np.degrees(mine["difference_rad"]), color=colour)
-    whole.set(xlabel="time [ms]", ylabel="rotation [°]", title="Released at 90°")
-    apart.set(xlabel="time [ms]", ylabel="difference to the refined spline [°]")
-    whole.set_yticks(range(-90, 91, 45))
-    apart.set_yticks(range(-180, 181, 60))
+
+
+def _motions(rows: pd.DataFrame) -> tuple[Panel, Panel]:
+    """Return the rotation and its difference to the refined spline over time."""
+    looks = {"reference": Look(label="refined spline", colour=BLACK)} | MODELS
+    label = "difference to the refined spline [°]"
+    return (
+        Panel(
+            x=TIME,
+            y=replace(ROTATION, label="rotation [°]", ticks=range(-90, 91, 45)),
+            marks=(Curves(rows=rows, looks=looks, by="model"),),
+            title="Released at 90°",
+        ),
+        Panel(
+            x=TIME,
+            y=replace(ROTATION, column="difference_rad", label=label, ticks=range(-180, 181, 60)),
+            marks=(Curves(rows=rows, looks=MODELS, by="model"),),
+        ),
+    )
 
 
 STUDY = Study(

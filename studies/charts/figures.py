@@ -1,16 +1,17 @@
 """The design charts as they are printed: contours over crossing ratio and inclination, loads, validity."""
 
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from typing import Any
 
-import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
-from studies.engine.study import Tables
-from studies.record.style import BLACK, BLUE, GREEN, ORANGE, PURPLE, SKY, page
+from studies.engine.study import Tables, records
+from studies.record.panels import Axis, Curves, Level, Mark, Panel, Words, sheet
+from studies.record.style import BLACK, BLUE, GREEN, ORANGE, PURPLE, SKY, Look, page
 
 #: Quantity -> how it is written beside its charts.
 NAMES = {
@@ -58,57 +59,71 @@ def _chart(panel: Axes, rows: pd.DataFrame, name: str) -> None:
 
 def _loads(tables: Tables) -> Figure:
     """Draw the stiffness at rest over the load by crossing ratio, and the load at which it buckles."""
-    drawn = page(WIDTH, 2.5)
-    along, across, most = drawn.subplots(1, 3)
     rows = tables["loads"].query("inclination_deg == 45")
+    away = rows["direction"] == "away from the ground"
+    rest = rows[rows["load"] == 0.0].groupby("crossing_ratio")["stiffness"].first()
+    rows = rows.assign(
+        load=rows["load"].where(~away, -rows["load"]),
+        relative=rows["stiffness"] / rows["crossing_ratio"].map(rest),
+    )
+    across = rows["direction"] == "across"
     colours = dict(zip(sorted(set(rows["crossing_ratio"])), (BLUE, SKY, GREEN, ORANGE, BLACK), strict=True))
-    for ratio, colour in colours.items():
-        own = rows[rows["crossing_ratio"] == ratio].set_index("direction")
-        away, towards = own.loc["away from the ground"], own.loc["towards the ground"]
-        load = np.r_[-away["load"].to_numpy()[::-1], towards["load"].to_numpy()[1:]]
-        stiffness = np.r_[away["stiffness"].to_numpy()[::-1], towards["stiffness"].to_numpy()[1:]]
-        along.plot(load, stiffness / away["stiffness"].iloc[0], color=colour, label=f"λ = {ratio:.3g}")
-        side = own.loc["across"]
-        across.plot(side["load"], side["stiffness"] / side["stiffness"].iloc[0], color=colour)
-    along.axhline(0.0, color=BLACK, linewidth=0.8)
-    along.set(xlabel="$P L^2/(EI)$, + to the ground", ylabel="$K/K(P=0)$, α = 45°", title="along the axis")
-    across.set(xlabel="$P L^2/(EI)$", title="across it")
-    for inclination, look in ((30.0, ":"), (45.0, "-"), (60.0, "--")):
-        own = tables["buckling"].query("inclination_deg == @a", local_dict={"a": inclination})
-        most.plot(
-            own["crossing_ratio"], own["load"], look, marker="o", color=BLACK, label=f"{inclination:g}°"
-        )
-    most.set(xlabel="crossing ratio λ", ylabel="buckling $P L^2/(EI)$", title="to the ground", ylim=(0, None))
-    most.legend(title="inclination", title_fontsize=8)
-    drawn.legend(*along.get_legend_handles_labels(), loc="outside lower center", ncols=5, columnspacing=1.0)
-    return drawn
+    looks = {ratio: Look(label=f"λ = {ratio:.3g}", colour=colour) for ratio, colour in colours.items()}
+    load = Axis(column="load", label="$P L^2/(EI)$")
+    stiffness = Axis(column="relative", label="$K/K(P=0)$, α = 45°")
+    panels = (
+        Panel(
+            x=replace(load, label="$P L^2/(EI)$, + to the ground"), y=stiffness, title="along the axis",
+            marks=(Curves(rows=rows[~across], looks=looks, by="crossing_ratio"), Level(at=0.0)),
+        ),
+        Panel(
+            x=load, y=replace(stiffness, label=""), title="across it",
+            marks=(Curves(rows=rows[across], looks=looks, by="crossing_ratio"),),
+        ),
+        _buckling(tables["buckling"]),
+    )  # fmt: skip
+    return sheet(WIDTH, 2.5, [panels], legend=5)
+
+
+def _buckling(rows: pd.DataFrame) -> Panel:
+    """Return the loads to the ground at which pivots buckle, over the crossing ratio by inclination."""
+    looks = {
+        inclination: Look(label=f"α = {inclination:g}°", colour=BLACK, line=line, marker="o")
+        for inclination, line in ((30.0, ":"), (45.0, "-"), (60.0, "--"))
+    }
+    return Panel(
+        x=Axis(column="crossing_ratio", label="crossing ratio λ"),
+        y=Axis(column="load", label="buckling $P L^2/(EI)$", limits=(0.0, None)),
+        marks=(Curves(rows=rows, looks=looks, by="inclination_deg"),),
+        title="to the ground",
+    )
 
 
 def _validity(tables: Tables) -> Figure:
     """Draw where a plain beam is off by a percent: width and thickness over length, with pivots marked."""
-    drawn = page(WIDTH, 3.1)
-    panel = drawn.subplots()
-    rows = tables["validity"]
-    for row in tables["limits"].to_dict("records"):
+    marks: list[Mark] = []
+    for row in records(tables["limits"]):
         line, share = "-" if row["share"] < 0.02 else "--", f"{row['share']:.0%}"
         if row["ratio"] == "width_ratio":
-            panel.axvline(row["value"], color=GREEN, linestyle=line)
-            at, text = (row["value"], 0.18), f"clamped width {share}"
-            panel.annotate(text, at, (2, 0), textcoords="offset points", rotation=90, va="top",
-                           fontsize=8, color=GREEN)  # fmt: skip
+            place, words = (row["value"], 0.18), f"clamped width {share}"
+            marks.append(Level(at=row["value"], colour=GREEN, line=line, upright=True))
+            marks.append(Words(text=words, at=place, by=(2, 0), colour=GREEN, turned=True))
         elif row["ratio"] == "thickness_ratio":
-            panel.axhline(row["value"], color=PURPLE, linestyle=line)
-            panel.annotate(f"roots of one block {share}", (0.7, row["value"]), (0, 2),
-                           textcoords="offset points", fontsize=8, color=PURPLE)  # fmt: skip
-    for row in rows.to_dict("records"):
-        place = (row["width_ratio"], row["thickness_ratio"])
-        panel.plot(*place, "o", color=BLACK)
+            place, words = (0.7, row["value"]), f"roots of one block {share}"
+            marks.append(Level(at=row["value"], colour=PURPLE, line=line))
+            marks.append(Words(text=words, at=place, by=(0, 2), colour=PURPLE))
+    marks.append(Curves(rows=tables["validity"], looks=Look(label="_", colour=BLACK, line="", marker="o")))
+    for row in records(tables["validity"]):
         text = row["pivot"].removesuffix("_pivot").replace("_", " ")
         by, side = BESIDE.get(text, ((4, 4), "left"))
-        panel.annotate(text, place, by, textcoords="offset points", fontsize=8, ha=side)
-    panel.set(xscale="log", yscale="log", xlim=(0.02, 2.0), ylim=(2.5e-3, 0.2))
-    panel.set(xlabel="width over length $b/L$", ylabel="thickness over length $t/L$")
-    return drawn
+        place = (row["width_ratio"], row["thickness_ratio"])
+        marks.append(Words(text=text, at=place, by=by, colour=BLACK, side=side))
+    panel = Panel(
+        x=Axis(column="width_ratio", label="width over length $b/L$", log=True, limits=(0.02, 2.0)),
+        y=Axis(column="thickness_ratio", label="thickness over length $t/L$", log=True, limits=(2.5e-3, 0.2)),
+        marks=marks,
+    )
+    return sheet(WIDTH, 3.1, [[panel]])
 
 
 DRAWN: Mapping[str, Callable[[Tables], Figure]] = {

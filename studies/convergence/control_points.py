@@ -1,5 +1,7 @@
 """Convergence of the splines with their control points in every form: the locking map."""
 
+from dataclasses import replace
+
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
@@ -12,7 +14,8 @@ from studies.cases.problem import named_case
 from studies.convergence.sweep import reaching, spline_row
 from studies.engine.study import Finding, Part, Study, Tables, percent
 from studies.paper.formulations import refined
-from studies.record.style import BASES, STRETCH, page, uncertain
+from studies.record.panels import CONTROL_POINTS, Axis, Curves, Doubt, Panel, sheet
+from studies.record.style import BASES, STRETCH, page
 
 COUNTS = range(4, 13)
 MEASURES = ("material", "spatial")
@@ -38,25 +41,18 @@ def _default_modes(rows: pd.DataFrame) -> pd.DataFrame:
 
 
 def _lines(tables: Tables) -> Figure:
-    figure = page(9.5, 6.6)
-    panels = figure.subplots(2, 2, sharex=True, sharey="row")
     rows, limits = _default_modes(tables["map"]), tables["reference"]
-    for line, quantity in enumerate(("trajectory", "torque")):
-        level = float(limits["uncertainty"][limits["quantity"] == quantity].max())
-        for column, (basis, label) in enumerate(BASES.items()):
-            panel = panels[line, column]
-            for (stretch, measure), look in STRETCH.items():
-                named = (rows["basis"] == basis) & (rows["stretch"] == stretch)
-                curve = rows[named & (rows["measure"] == measure)]
-                panel.semilogy(curve["control_points"], curve[f"error_{quantity}"], **look.keywords())
-            panel.set(ylabel=f"largest error of the {quantity} [1]" if column == 0 else "")
-            panel.set_title(label if line == 0 else "")
-            panel.set_xticks(list(COUNTS))
-            uncertain(panel, level)
-    for panel in panels[1]:
-        panel.set_xlabel("control points a strip, n")
-    figure.legend(*panels[0, 0].get_legend_handles_labels(), loc="outside lower center", ncols=3)
-    return figure
+    lines = []
+    for quantity in ("trajectory", "torque"):
+        y = Axis(column=f"error_{quantity}", label=f"largest error of the {quantity} [1]", log=True)
+        doubt = Doubt(float(limits["uncertainty"][limits["quantity"] == quantity].max()))
+        forms = [
+            Curves(rows=rows[rows["basis"] == basis], looks=STRETCH, by=("stretch", "measure"))
+            for basis in BASES
+        ]
+        lines.append([Panel(x=CONTROL_POINTS, y=y, marks=(curves, doubt)) for curves in forms])
+    lines[0] = [replace(panel, title=label) for panel, label in zip(lines[0], BASES.values(), strict=True)]
+    return sheet(9.5, 6.6, lines, legend=3)
 
 
 def _maps(tables: Tables) -> Figure:

@@ -1,15 +1,35 @@
 """Frequency of the swing and of small motion against control points, elements, step and amplitude."""
 
-import numpy as np
+from dataclasses import replace
+
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 
 from studies.convergence.swing_sweep import INTEGRATORS, MODES, PARTS
 from studies.engine.study import Finding, Study, Tables
-from studies.record.style import BLACK, BLUE, LOOKS, ORANGE, page, uncertain
+from studies.record.panels import (
+    AMPLITUDE,
+    CONTROL_POINTS,
+    MESH,
+    STEP,
+    Axis,
+    Curves,
+    Doubt,
+    Drawn,
+    Level,
+    Panel,
+    sheet,
+)
+from studies.record.style import BLACK, BLUE, LOOKS, ORANGE, Look
 
 SPLINE, TWENTY = "n = 6", "FE, 20 elements"
+MESHES = replace(LOOKS[TWENTY], colour=BLACK, label="_")
+STEPPED = {
+    "energy": Look(label=INTEGRATORS["energy"], colour=BLUE, marker="x"),
+    "generalised-alpha": Look(label=INTEGRATORS["generalised-alpha"], colour=ORANGE, marker="o"),
+}
 
 #: The part of a shift by which its prediction from statics may be off and still explain it.
 EXPLAINED = 0.25
@@ -20,97 +40,83 @@ ALIKE = 1e-3
 
 
 def _shifts(tables: Tables) -> Figure:
-    figure = page(9.5, 6.6)
-    (points, meshes, steps), (point_modes, mesh_modes, key) = figure.subplots(2, 3)
-    level = float(tables["reference"]["uncertainty"].iloc[0])
-    for stretch, look in (("consistent", LOOKS["n = 4, as the paper"]), ("mixed", LOOKS[SPLINE])):
-        rows = tables["control_points"].query(f"stretch == '{stretch}'")
-        style = {"color": look.colour, "marker": look.marker}
-        points.semilogy(rows["control_points"], rows["shift"].abs(), **style, label=stretch)
-        predicted = rows["shift_from_statics"].abs()
-        label = f"{stretch}, statics"
-        points.semilogy(
-            rows["control_points"], predicted, **(style | {"marker": ""}), linestyle=":", label=label
-        )
-    points.set(xlabel="control points a strip", ylabel="|shift of the frequency| [1]", title="Swing from 90°")
-    points.legend(loc="upper right", fontsize=7)
-    rows = tables["elements"]
-    meshes.loglog(rows["elements"], rows["shift"].abs(), "s--", color=BLACK)
-    meshes.set(xlabel="elements a strip", title="Swing from 90°")
-    _counts(meshes, rows["elements"])
-    for (integrator, label), line in zip(INTEGRATORS.items(), (("x-", BLUE), ("o-", ORANGE)), strict=True):
-        rows = tables["steps"][tables["steps"]["integrator"] == integrator]
-        steps.loglog(rows["step_s"], rows["shift"].abs(), line[0], color=line[1], label=label)
-    steps.set(xlabel="step [s]", title="Swing from 90°, n = 6")
-    steps.legend(loc="upper left")
-    for panel in (points, meshes):
-        uncertain(panel, level)
-    _modes(point_modes, mesh_modes, tables["modes"])
-    key.set_axis_off()
-    handles, labels = point_modes.get_legend_handles_labels()
-    key.legend(handles, labels, loc="center left", title="small motion at rest")
-    return figure
+    """Draw the shifts of the swing (above) and the errors of the linear modes (below), by refinement."""
+    doubt = Doubt(float(tables["reference"]["uncertainty"].iloc[0]))
+    size = Axis(column="shift", label="|shift of the frequency| [1]", log=True)
+    unnamed = replace(size, label="")
+    swing = (
+        Panel(
+            x=CONTROL_POINTS, y=size, marks=(*_by_stretch(tables["control_points"]), doubt),
+            title="Swing from 90°", legend={"loc": "upper right", "fontsize": 7},
+        ),
+        Panel(
+            x=replace(MESH, each=2), y=unnamed, title="Swing from 90°",
+            marks=(Curves(rows=tables["elements"], looks=MESHES), doubt),
+        ),
+        Panel(
+            x=STEP, y=unnamed, marks=(Curves(rows=tables["steps"], looks=STEPPED, by="integrator"),),
+            title="Swing from 90°, n = 6", legend="upper left",
+        ),
+    )  # fmt: skip
+    return sheet(9.5, 6.6, (swing, _modes(tables["modes"])))
 
 
-def _modes(points: Axes, meshes: Axes, rows: pd.DataFrame) -> None:
-    """Draw the errors of the linear modes over either refinement, a colour a mode."""
-    colours = [look.colour for look in LOOKS.values()]
-    for mode, colour in zip(range(1, MODES + 1), colours, strict=False):
-        for panel, model in ((points, "spline"), (meshes, "fe")):
-            curve = rows[(rows["model"] == model) & (rows["mode"] == mode)]
-            frequency = curve["limit_Hz"].iloc[0]
-            style = {"color": colour, "marker": "o", "markersize": 3.0}
-            panel.semilogy(
-                curve["count"], curve["error"].abs(), **style, label=f"mode {mode}: {frequency:.1f} Hz"
-            )
-    points.set(
-        xlabel="control points a strip", ylabel="|error of the frequency| [1]", title="Small motion at rest"
+def _by_stretch(rows: pd.DataFrame) -> tuple[Curves, Curves]:
+    """Return the shifts of either form of stretching, as they swing and as their statics predict them."""
+    forms = {"consistent": LOOKS["n = 4, as the paper"], "mixed": LOOKS[SPLINE]}
+    swung = {name: replace(look, label=name) for name, look in forms.items()}
+    predicted = {
+        name: replace(look, label=f"{name}, statics", line=":", marker="") for name, look in forms.items()
+    }
+    return (
+        Curves(rows=rows, looks=swung, by="stretch"),
+        Curves(rows=rows, looks=predicted, by="stretch", y="shift_from_statics"),
     )
-    meshes.set(xlabel="elements a strip", title="Small motion at rest", xscale="log")
-    _counts(meshes, rows.query("model == 'fe'")["count"])
-    for panel in (points, meshes):
-        panel.set_ylim(bottom=1e-11)
 
 
-def _counts(panel: Axes, counts: "pd.Series[int]") -> None:
-    """Put a tick at every other count, without the decades' own."""
-    shown = sorted(set(counts))[::2]
-    panel.set_xticks(shown, labels=[str(count) for count in shown])
-    panel.minorticks_off()
+def _modes(rows: pd.DataFrame) -> list[Drawn]:
+    """Return the errors of the linear modes over either refinement, a colour a mode, and their legend."""
+    looks = {}
+    for mode, look in zip(range(1, MODES + 1), LOOKS.values(), strict=False):
+        frequency = rows.loc[rows["mode"] == mode, "limit_Hz"].iloc[0]
+        looks[mode] = Look(label=f"mode {mode}: {frequency:.1f} Hz", colour=look.colour, marker="o")
+    y = Axis(column="error", label="|error of the frequency| [1]", log=True, limits=(1e-11, None))
+    points, meshes = (
+        Panel(x=replace(x, column="count"), y=y, title="Small motion at rest",
+              marks=(Curves(rows=rows[rows["model"] == model], looks=looks, by="mode"),))
+        for x, model in ((CONTROL_POINTS, "spline"), (replace(MESH, each=2), "fe"))
+    )  # fmt: skip
+
+    def named(panel: Axes) -> None:
+        panel.set_axis_off()
+        handles = [Line2D([], [], **look.keywords()) for look in looks.values()]
+        panel.legend(handles=handles, loc="center left", title="small motion at rest")
+
+    return [points, replace(meshes, y=replace(y, label="")), named]
 
 
 def _backbone(tables: Tables) -> Figure:
     rows = tables["backbone"]
-    figure = page(9.5, 3.8)
-    curve, difference = figure.subplots(1, 2)
     wide = rows.pivot(index="amplitude_rad", columns="formulation", values="frequency_Hz")
-    degrees = np.degrees(wide.index.to_numpy(float))
-    for name in (TWENTY, SPLINE):
-        curve.plot(degrees, wide[name], **LOOKS[name].keywords())
-    statics = rows[rows["formulation"] == SPLINE].sort_values("amplitude_rad")
-    curve.plot(
-        degrees,
-        statics["frequency_from_statics_Hz"],
-        ":",
-        color=BLACK,
-        label="from statics alone, massless strips",
+    apart = (wide[SPLINE] / wide[TWENTY] - 1.0).rename("difference").reset_index()
+    spline = rows[rows["formulation"] == SPLINE]
+    massless = Look(label="from statics alone, massless strips", colour=BLACK, line=":")
+    curve = Panel(
+        x=AMPLITUDE,
+        y=Axis(column="frequency_Hz", label="frequency of the swing [Hz]"),
+        marks=(
+            Curves(rows=rows, looks={name: LOOKS[name] for name in (TWENTY, SPLINE)}),
+            Curves(rows=spline, looks=massless, y="frequency_from_statics_Hz"),
+            Level(at=rows["first_mode_Hz"].iloc[0], words="first mode at rest", place=0.99),
+        ),
+        legend="upper left",
     )
-    curve.axhline(rows["first_mode_Hz"].iloc[0], color="#888888", linewidth=0.8)
-    curve.annotate(
-        "first mode at rest",
-        (60.0, rows["first_mode_Hz"].iloc[0]),
-        (0, 3),
-        textcoords="offset points",
-        fontsize=8,
+    difference = Panel(
+        x=AMPLITUDE,
+        y=Axis(column="difference", label="difference to 20 elements [1e-4]", factor=1e4),
+        marks=(Curves(rows=apart, looks=LOOKS[SPLINE]), Level(at=0.0)),
     )
-    curve.set(xlabel="amplitude [deg]", ylabel="frequency of the swing [Hz]", xticks=range(0, 91, 15))
-    curve.legend(loc="upper left")
-    difference.plot(degrees, 1e4 * (wide[SPLINE] / wide[TWENTY] - 1.0), **LOOKS[SPLINE].keywords())
-    difference.axhline(0.0, color="#444444", linewidth=0.8)
-    difference.set(
-        xlabel="amplitude [deg]", ylabel="difference to 20 elements [1e-4]", xticks=range(0, 91, 15)
-    )
-    return figure
+    return sheet(9.5, 3.8, [[curve, difference]])
 
 
 def _findings(tables: Tables) -> list[Finding]:

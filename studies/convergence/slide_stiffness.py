@@ -20,7 +20,8 @@ from studies.answers.settings import SplineSettings
 from studies.cases.problem import named_case
 from studies.engine.study import Answer, Finding, Part, Study, Tables
 from studies.paper import formulations
-from studies.record.style import COUNT_COLOURS, page
+from studies.record.panels import Axis, Curves, Panel, sheet
+from studies.record.style import BLACK, COUNT_COLOURS, Look
 
 #: Values in units of EI/L^2; EA is 3.5e3 of them for Table 1.
 VALUES = (1e-3, 0.1, 1.0, 3.0, 10.0, 30.0, 100.0, 300.0, 1000.0)
@@ -31,6 +32,9 @@ DURATION = 0.025
 
 #: A default is called near the best when its error is at most this many times the least.
 NEAR = 3.0
+
+#: About what a default gives.
+RING = Look(label="_", colour=BLACK, line="", marker="o", hollow=True)
 
 
 def _defaults() -> list[dict[str, Any]]:
@@ -47,27 +51,27 @@ def _moving() -> list[tuple[int, float]]:
 
 def _figure(tables: Tables) -> Figure:
     """Draw the errors of torque, stiffness and rotation in motion over the slide stiffness."""
-    drawn = page(9.5, 4.4)
-    torque, stiffness, motion = drawn.subplots(1, 3)
-    chosen = tables["defaults"].set_index(["problem", "control_points"])["slide_stiffness"]
+    static, moving = "Static path to 90°", f"{1e3 * DURATION:g} ms after the release"
     panels = (
-        (torque, "statics", "error_torque", "largest error of the torque [1]"),
-        (stiffness, "statics", "error_stiffness", "largest error of the stiffness [1]"),
-        (motion, "motion", "error_rotation_rad", "largest error of the rotation [rad]"),
+        _panel(tables, "statics", "error_torque", "largest error of the torque [1]", static),
+        _panel(tables, "statics", "error_stiffness", "largest error of the stiffness [1]", static),
+        _panel(tables, "motion", "error_rotation_rad", "largest error of the rotation [rad]", moving),
     )
-    for panel, problem, column, label in panels:
-        for n, curve in tables[problem].groupby("control_points"):
-            style = {"color": COUNT_COLOURS[int(str(n))], "marker": "o", "markersize": 3.0}
-            panel.loglog(curve["slide_stiffness"], curve[column], **style, label=f"n = {n}")
-            default = chosen[problem, n]
-            at = curve.set_index("slide_stiffness")[column][default]
-            panel.loglog(default, at, "o", markersize=8.0, fillstyle="none", color="black")
-        panel.set(xlabel="slide stiffness [EI/L²]", ylabel=label)
-    torque.set_title("Static path to 90°")
-    stiffness.set_title("Static path to 90°")
-    motion.set_title(f"{1e3 * DURATION:g} ms after the release")
-    drawn.legend(*torque.get_legend_handles_labels(), loc="outside lower center", ncols=len(COUNTS))
-    return drawn
+    return sheet(9.5, 4.4, [panels], legend=len(COUNTS))
+
+
+def _panel(tables: Tables, problem: str, column: str, label: str, title: str) -> Panel:
+    """Return the panel of one error, with a ring about that of each default."""
+    rows, keys = tables[problem], ["control_points", "slide_stiffness"]
+    looks = {n: Look(label=f"n = {n}", colour=COUNT_COLOURS[n], marker="o") for n in COUNTS}
+    defaults = rows.merge(tables["defaults"].query("problem == @problem")[keys], on=keys)
+    rings = Curves(rows=defaults, looks=RING, more={"markersize": 8.0})
+    return Panel(
+        x=Axis(column="slide_stiffness", label="slide stiffness [EI/L²]", log=True),
+        y=Axis(column=column, label=label, log=True),
+        marks=(Curves(rows=rows, looks=looks, by="control_points"), rings),
+        title=title,
+    )
 
 
 def _static(n: int, value: float) -> Answer:

@@ -1,11 +1,11 @@
 """Sweeps over refinement: one row a discretisation with its largest errors, failed ones included."""
 
 from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import replace
 from typing import Any, TypeVar
 
 import numpy as np
 import pandas as pd
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from studies.answers.adapters import answer_static
@@ -17,8 +17,9 @@ from studies.cases.design import Design
 from studies.cases.problem import named_case
 from studies.engine.study import Answer, Claim, Part, Study, Tables
 from studies.kinds import Progress
+from studies.record.panels import CONTROL_POINTS, MESH, Axis, Curves, Doubt, Panel, Slope, sheet
 from studies.record.progress import silent
-from studies.record.style import ELEMENTS, LOOKS, page, uncertain
+from studies.record.style import ELEMENTS, LOOKS
 
 Item = TypeVar("Item")
 
@@ -131,23 +132,14 @@ def drawn(splines: pd.DataFrame, elements: pd.DataFrame, limit: Reference) -> Fi
         splines, elements: rows of `spline_sweep` and `element_sweep`.
         limit: the reference, for its uncertainty.
     """
-    figure = page(11.5, 6.0)
-    panels = figure.subplots(2, len(QUANTITIES), sharey="col")
-    for column, quantity in enumerate(QUANTITIES):
-        above, below = panels[:, column]
-        above.semilogy(
-            splines["control_points"], splines[f"error_{quantity}"], "x-", color=LOOKS["n = 6"].colour
-        )
-        above.set(xlabel="control points a strip", ylabel=f"error of the {quantity} [1]")
-        below.loglog(elements["elements"], elements[f"error_{quantity}"], "s--", color="#000000")
-        below.set(xlabel="elements a strip", ylabel=f"error of the {quantity} [1]")
-        below.set_xticks(list(elements["elements"]), labels=[str(n) for n in elements["elements"]])
-        below.minorticks_off()
-        for panel in (above, below):
-            uncertain(panel, limit.uncertainty[quantity])
-    panels[0, 0].set_title("spline")
-    panels[1, 0].set_title("finite elements")
-    return figure
+    above, below = [], []
+    for quantity in QUANTITIES:
+        y = Axis(column=f"error_{quantity}", label=f"error of the {quantity} [1]", log=True)
+        doubt = Doubt(limit.uncertainty[quantity])
+        above.append(Panel(x=CONTROL_POINTS, y=y, marks=(Curves(rows=splines, looks=LOOKS["n = 6"]), doubt)))
+        below.append(Panel(x=MESH, y=y, marks=(Curves(rows=elements, looks=LOOKS["FE, 20 elements"]), doubt)))
+    above[0], below[0] = replace(above[0], title="spline"), replace(below[0], title="finite elements")
+    return sheet(11.5, 6.0, (above, below))
 
 
 MESHES = (5, 10, 20, 40, 80, 160, 320)
@@ -163,28 +155,18 @@ def _refined(element: str) -> Answer:
 
 
 def _elements_figure(tables: Tables) -> Figure:
-    """Draw the errors over the number of elements, one panel a quantity."""
-    drawn = page(11.5, 3.9)
-    panels = drawn.subplots(1, len(QUANTITIES))
-    for panel, quantity in zip(panels, QUANTITIES, strict=True):
-        for element, look in ELEMENTS.items():
-            rows = tables["meshes"][tables["meshes"]["element"] == element]
-            panel.loglog(rows["elements"], rows[f"error_{quantity}"], **look.keywords())
-        _second_order(panel, tables["meshes"], f"error_{quantity}")
-        panel.set(xlabel="elements a strip", ylabel=f"largest error of the {quantity} [1]")
-        panel.set_xticks(MESHES, labels=[str(mesh) for mesh in MESHES], minor=False)
-        panel.minorticks_off()
-    handles, labels = panels[0].get_legend_handles_labels()
-    drawn.legend(handles, labels, loc="outside lower center", ncols=3)
-    return drawn
-
-
-def _second_order(panel: Axes, meshes: pd.DataFrame, column: str) -> None:
-    """Draw the slope of second order, a little below the errors so that it can be seen."""
-    first = meshes.sort_values("elements").iloc[0]
-    counts = np.array([MESHES[0], MESHES[-1]])
-    slope = 0.5 * first[column] * (MESHES[0] / counts) ** ORDER
-    panel.loglog(counts, slope, ":", color="#444444", label="order 2")
+    """Draw the errors over the number of elements, one panel a quantity, beside the slope of second order."""
+    rows, span, panels = tables["meshes"], (MESHES[0], MESHES[-1]), []
+    for quantity in QUANTITIES:
+        y = Axis(column=f"error_{quantity}", label=f"largest error of the {quantity} [1]", log=True)
+        start = (span[0], 0.5 * rows.sort_values("elements")[y.column].iloc[0])
+        order = Slope(through=start, power=-ORDER, span=span, label="order 2")
+        panels.append(
+            Panel(
+                x=replace(MESH, each=2), y=y, marks=(Curves(rows=rows, looks=ELEMENTS, by="element"), order)
+            )
+        )
+    return sheet(11.5, 3.9, [panels], legend=3)
 
 
 def _limits(element: str, limit: Reference) -> list[dict[str, Any]]:

@@ -1,11 +1,12 @@
 """What each effect is worth for four designs, and what inextensible and massless strips save."""
 
 import textwrap
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
+import pandas as pd
 from matplotlib.figure import Figure
 
 from studies.answers.adapters import answer_modes
@@ -15,8 +16,9 @@ from studies.cases.problem import TABLE_1, Problem, named_case
 from studies.effects.audit import audit
 from studies.effects.beyond import ALL, SHEAR, prices
 from studies.effects.scenes import CHANGES, SIZES, Variant, size_of
-from studies.engine.study import Answer, Claim, Finding, Part, Study, Tables
-from studies.record.style import BLACK, BLUE, GREEN, ORANGE, RED, page
+from studies.engine.study import Answer, Claim, Finding, Part, Study, Tables, records
+from studies.record.panels import CONTROL_POINTS, Axis, Curves, Level, Panel, Slope, Words, sheet
+from studies.record.style import BLACK, BLUE, GREEN, ORANGE, RED, Look
 
 SETTINGS = SplineSettings(control_points=6)
 TOLERANCE = 1e-3
@@ -41,15 +43,23 @@ PRICED = {
 STRETCHING, INERTIA = "stretching", "strip_inertia"
 
 WORTH = ("design", "scene", "dropped", "status", *CHANGES, "largest", *SIZES, "reason")
-#: Column -> label, colour and marker of a change.
+#: Looks of the changes.
 SHOWN = {
-    "trajectory": ("path", BLACK, "o"),
-    "torque": ("torque", ORANGE, "s"),
-    "swing_frequency": ("frequency of the swing", BLUE, "D"),
-    "first_mode": ("first mode at rest", GREEN, "x"),
+    "trajectory": Look(label="path", colour=BLACK, line="", marker="o", hollow=True),
+    "torque": Look(label="torque", colour=ORANGE, line="", marker="s", hollow=True),
+    "swing_frequency": Look(label="frequency of the swing", colour=BLUE, line="", marker="D", hollow=True),
+    "first_mode": Look(label="first mode at rest", colour=GREEN, line="", marker="x"),
 }
-#: Changes below this are drawn on the edge.
-LEAST = 1e-7
+#: Changes below the first of these are drawn on the edge; the last is the other edge.
+LEAST, MOST = 1e-7, 30.0
+CHANGE = Axis(
+    column="change",
+    label="|change| [1]",
+    log=True,
+    least=LEAST,
+    limits=(LEAST, MOST),
+    ticks=(1e-6, 1e-4, 1e-2, 1.0),
+)
 
 
 def _designs() -> dict[str, Problem]:
@@ -173,71 +183,57 @@ def _exponent(tables: Tables) -> list[dict[str, Any]]:
 
 def _worth(tables: Tables) -> Figure:
     """Draw the changes by every effect, one panel a design."""
-    figure, designs = page(9.5, 3.9), list(_designs())
-    panels = figure.subplots(1, len(designs), sharex=True, sharey=True)
     rows = tables["worth"].query("status != 'refused'")
-    order = rows.set_index("scene")[list(SHOWN)].abs().groupby("scene").max().max(axis=1).sort_values().index
+    largest = rows.set_index("scene")[list(SHOWN)].abs().groupby("scene").max().max(axis=1)
+    order = list(largest.sort_values(ascending=False).index)
     times = tables["timings"].set_index(["design", "scene"])["time_ratio"]
-    for panel, design in zip(panels, designs, strict=True):
-        mine = rows[rows["design"] == design].set_index("scene")
-        for place, scene in enumerate(order):
-            row = mine.loc[scene]
-            for column, (label, colour, marker) in SHOWN.items():
-                value = max(abs(float(row[column])), LEAST)  # of a NaN: NaN, which is not drawn
-                panel.plot(
-                    value, place, marker, color=colour, linestyle="", label=label if place == 0 else None,
-                    markerfacecolor="none", markersize=5.5, clip_on=False,
-                )  # fmt: skip
-            ratio = float(times[design, scene])
-            alone = "motion stops" if row["status"] == "not_converged" else "no motion"
-            panel.annotate(
-                f"time x {1.0 / ratio:.2g}" if np.isfinite(ratio) else alone,
-                (1.0, place), (-2, 10), ("axes fraction", "data"), "offset points",
-                ha="right", va="center", fontsize=7, color="#666666",
-            )  # fmt: skip
-        panel.axvline(TOLERANCE, color=RED, linewidth=0.9)
-        panel.set(xscale="log", xlim=(LEAST, 30.0), title=textwrap.fill(design, 16), xlabel="|change| [1]")
-        panel.set_xticks([1e-6, 1e-4, 1e-2, 1.0])
-        panel.set_ylim(-0.6, len(order) - 0.4)
-    panels[0].set_yticks(range(len(order)), labels=list(order))
-    handles, labels = _once(panels[0].get_legend_handles_labels())
-    figure.legend(handles, labels, loc="outside lower center", ncols=len(SHOWN))
-    figure.suptitle(
-        f"Change by leaving out one effect of the full scene; line: {TOLERANCE:g}; left edge: no more"
-    )
-    return figure
+    panels = []
+    for design in _designs():
+        mine = rows[rows["design"] == design]
+        changes = mine.melt(id_vars="scene", value_vars=list(SHOWN), var_name="what", value_name="change")
+        curves = Curves(rows=changes, looks=SHOWN, by="what", more={"markersize": 5.5, "clip_on": False})
+        marks = (curves, Level(at=TOLERANCE, colour=RED, upright=True), *_times(mine, times[design], order))
+        y = Axis(column="scene", label="", names=order)
+        panels.append(Panel(x=CHANGE, y=y, marks=marks, title=textwrap.fill(design, 16)))
+    title = f"Change by leaving out one effect of the full scene; line: {TOLERANCE:g}; left edge: no more"
+    return sheet(9.5, 3.9, [panels], title=title, legend=len(SHOWN))
+
+
+def _times(rows: pd.DataFrame, ratios: pd.Series, order: Sequence[str]) -> Iterator[Words]:
+    """Yield how many times faster every scene is, or what there is of it without a motion."""
+    for row in records(rows):
+        ratio = float(ratios[row["scene"]])
+        alone = "motion stops" if row["status"] == "not_converged" else "no motion"
+        text = f"time x {1.0 / ratio:.2g}" if np.isfinite(ratio) else alone
+        place = (MOST, order.index(row["scene"]))
+        yield Words(text=text, at=place, by=(-2, 7), colour="#666666", side="right")
 
 
 def _savings(tables: Tables) -> Figure:
     """Draw highest frequency and explicit step without stretching, and the shift by massless strips."""
-    figure = page(9.5, 3.6)
-    frequency, step, shift = figure.subplots(1, 3)
-    for stretching, colour, label in (("yes", BLUE, "stretching"), ("no", ORANGE, "inextensible")):
-        rows = tables["steps"][tables["steps"]["stretching"] == stretching]
-        counts = rows["control_points"]
-        frequency.semilogy(counts, 1e-3 * rows["highest_frequency_Hz"], "o-", color=colour, label=label)
-        step.semilogy(counts, 1e6 * rows["explicit_step_s"], "o-", color=colour, label=label)
-    frequency.set(xlabel="control points a strip, n", ylabel="highest frequency [kHz]")
-    step.set(xlabel="control points a strip, n", ylabel="largest stable explicit step [µs]")
-    for panel in (frequency, step):
-        panel.set_xticks(sorted(set(tables["steps"]["control_points"])))
-    frequency.set_title("Table 1, at rest and at 90°")
-    frequency.legend()
+    looks = {
+        "yes": Look(label="stretching", colour=BLUE, marker="o"),
+        "no": Look(label="inextensible", colour=ORANGE, marker="o"),
+    }
+    steps = (Curves(rows=tables["steps"], looks=looks, by="stretching"),)
+    frequency = Axis(column="highest_frequency_Hz", label="highest frequency [kHz]", factor=1e-3, log=True)
+    step = Axis(column="explicit_step_s", label="largest stable explicit step [µs]", factor=1e6, log=True)
     rows = tables["mass_ratio"].sort_values("mass_ratio")
-    shift.loglog(rows["mass_ratio"], rows["shift"].abs(), "o-", color=BLUE, label="massless strips")
-    ratio = rows["mass_ratio"].to_numpy(float)
-    line = float(rows["shift"].iloc[0]) * ratio / ratio[0]
-    shift.loglog(ratio, line, ":", color="#444444", label="in proportion")
-    shift.set(xlabel="mass of strips / of body", ylabel="shift of the first mode [1]")
-    shift.set_title("Strips without inertia")
-    shift.legend()
-    return figure
-
-
-def _once(drawn: tuple[list, list[str]]) -> tuple[list, list[str]]:
-    """Return handles and labels without repeats."""
-    chosen = np.unique(drawn[1], return_index=True)[1]
-    return [drawn[0][place] for place in sorted(chosen)], [drawn[1][place] for place in sorted(chosen)]
+    ratio, shift = rows["mass_ratio"], Axis(column="shift", label="shift of the first mode [1]", log=True)
+    start, span = (ratio.iloc[0], abs(rows["shift"].iloc[0])), (ratio.iloc[0], ratio.iloc[-1])
+    massless = Panel(
+        x=Axis(column="mass_ratio", label="mass of strips / of body", log=True),
+        y=shift,
+        marks=(
+            Curves(rows=rows, looks=Look(label="massless strips", colour=BLUE, marker="o")),
+            Slope(through=start, power=1, span=span, label="in proportion"),
+        ),
+        title="Strips without inertia",
+        legend="best",
+    )
+    title = "Table 1, at rest and at 90°"
+    highest = Panel(x=CONTROL_POINTS, y=frequency, marks=steps, title=title, legend="best")
+    return sheet(9.5, 3.6, [[highest, Panel(x=CONTROL_POINTS, y=step, marks=steps), massless]])
 
 
 STUDY = Study(

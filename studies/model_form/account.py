@@ -27,7 +27,8 @@ from studies.cases.mechanism import Mechanism
 from studies.engine.study import Answer, Claim, Part, Ratio, Study, Tables
 from studies.model_form.solids import guide_compliance, linear_factor, solid_factor
 from studies.published.case import loaded, published
-from studies.record.style import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, page
+from studies.record.panels import Axis, Curves, Level, Panel, Words, sheet
+from studies.record.style import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, Look
 
 CASE = "parallelogram"
 #: Load of the refined mesh [EI/L^2], and what the mesh of 10 mm has there [m].
@@ -40,15 +41,16 @@ FINE = SplineSettings(control_points=12)
 BEAM, CLAMPED, BOTH = "beam", "clamped_width", "clamped_width, anticlastic"
 SHEARED = "clamped_width, shear"
 SHELL, COMPLETE = "shell", "complete"
-#: Kind of answer -> its words and colour.
+#: Looks of the kinds of answer, and those of them that are held against the finest mesh.
 LOOKS = {
-    BEAM: ("beam", GREY),
-    CLAMPED: ("clamped width", BLUE),
-    SHEARED: ("and shear", BLACK),
-    BOTH: ("and anticlastic", ORANGE),
-    SHELL: ("flattened as a shell", PURPLE),
-    COMPLETE: ("complete", GREEN),
+    BEAM: Look(label="beam", colour=GREY, marker="o"),
+    CLAMPED: Look(label="clamped width", colour=BLUE, marker="o"),
+    SHEARED: Look(label="and shear", colour=BLACK, marker="o"),
+    BOTH: Look(label="and anticlastic", colour=ORANGE, marker="o"),
+    SHELL: Look(label="flattened as a shell", colour=PURPLE, marker="o"),
+    COMPLETE: Look(label="complete", colour=GREEN, marker="o"),
 }
+STARS = {answer: replace(look, line="", marker="*") for answer, look in LOOKS.items()}
 CLOSE, ALIKE = 2e-3, 1.1
 
 
@@ -122,25 +124,27 @@ def _solids(load: float) -> Iterable[tuple[float, float]]:
 
 def _figure(tables: Tables) -> Figure:
     """Draw the differences to the solids of 10 mm over the load, by what is taken in."""
-    drawn = page(6.3, 3.2)
-    panel = drawn.subplots()
-    for (answer, mesh), rows in tables["account"].groupby(["answer", "mesh_mm"], sort=False):
-        (words, colour), whole = LOOKS[str(answer)], float(str(mesh)) > 3.0
-        panel.plot(
-            rows["load"],
-            100.0 * rows["error"],
-            "o-" if whole else "*",
-            color=colour,
-            markersize=4 if whole else 9,
-        )
-        if whole:
-            last = rows.iloc[-1]
-            place = (last["load"], 100.0 * last["error"])
-            panel.annotate(words, place, (5, -3), textcoords="offset points", color=colour, fontsize=8)
-    panel.set(xlabel="load across [EI/L²]", ylabel="difference to solids [%]", xlim=(0.0, 25.0))
-    panel.set_title("Lines: elements of 10 mm; stars: of 3 mm")
-    panel.axhline(0.0, color=BLACK, linewidth=0.6)
-    return drawn
+    fine = tables["account"]["mesh_mm"] == 3.0
+    coarse, stars = tables["account"][~fine], tables["account"][fine]
+    ends = coarse.sort_values("load").groupby("answer").last()
+    panel = Panel(
+        x=Axis(column="load", label="load across [EI/L²]", limits=(0.0, 25.0)),
+        y=Axis(column="error", label="difference to solids [%]", factor=100.0),
+        marks=(
+            Curves(rows=coarse, looks=LOOKS, by="answer", more={"markersize": 4}),
+            Curves(rows=stars, looks=STARS, by="answer", more={"markersize": 9}),
+            *(
+                Words(
+                    text=LOOKS[str(answer)].label, at=(end["load"], 100.0 * end["error"]), by=(5, -3),
+                    colour=LOOKS[str(answer)].colour,
+                )
+                for answer, end in ends.iterrows()
+            ),
+            Level(at=0.0),
+        ),
+        title="Lines: elements of 10 mm; stars: of 3 mm",
+    )  # fmt: skip
+    return sheet(6.3, 3.2, [[panel]])
 
 
 def _flattened(account: pd.DataFrame) -> list[dict[str, Any]]:

@@ -7,12 +7,11 @@ out is accounted for in `model_form/account`, whose answer with all of it is dra
 """
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from typing import Any
 
 import numpy as np
 import pandas as pd
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from studies.answers.adapters import answer_static
@@ -36,7 +35,8 @@ from studies.model_form.account import (
 )  # fmt: skip
 from studies.model_form.account import LOOKS as WORDS
 from studies.published.case import loaded
-from studies.record.style import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, page
+from studies.record.panels import Axis, Curves, Level, Mark, Panel, Words, sheet
+from studies.record.style import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, Look
 from studies.record.timing import measure
 
 #: Displacement of the stage [m] by solids of 3 mm, the finest in print, and the strips' length [m].
@@ -113,12 +113,6 @@ def _theirs() -> Answer:
     return {"theirs": rows}
 
 
-LOOKS = {
-    "spline": (BLUE, "o"),
-    "fe": (BLACK, "s"),
-    "fe-shear": (ORANGE, "^"),
-    "constraint model": (GREEN, "D"),
-}
 #: Model and kind of answer -> label, which of its points it stands beside, how far [pt], and on which side.
 LINES = {
     ("spline", BEAM): ("splines,\nbeam", 0, (-8, -36), "right"),
@@ -129,56 +123,61 @@ LINES = {
     ("fe-shear", SHEARED): ("elements, clamped\nwidth and shear", 3, (8, -9), "left"),
     ("constraint model", BEAM): ("constraint model,\n1, 4, 8 beams", 0, (5, 3), "left"),
 }
-
-
+#: Looks of our curves, hollow where they are those of a beam, and of what is in print.
+OURS = {
+    "spline": (BLUE, "o"),
+    "fe": (BLACK, "s"),
+    "fe-shear": (ORANGE, "^"),
+    "constraint model": (GREEN, "D"),
+}
+LOOKS = {
+    (model, answer): Look(label="_", colour=OURS[model][0], marker=OURS[model][1], hollow=answer == BEAM)
+    for model, answer in LINES
+}
+PRINTED = Look(label="_", colour=PURPLE, line="", marker="x")
 #: Where their labels stand, but above [pt].
 THEIR_LABELS = {"constraint model": (5, -3), "guided beam": (0, -12), "same, optimised": (-60, 6)}
 
 
 def _figure(tables: Tables) -> Figure:
     """Draw errors against solids over the time of a state, with what each theory leaves."""
-    drawn = page(6.3, 4.1)
-    panel = drawn.subplots()
-    rows = _timed(tables)
-    for (model, answer), mine in rows.groupby(["model", "answer"], sort=False):
-        if (str(model), str(answer)) in LINES:
-            _line(panel, mine.sort_values("count"), str(model), str(answer))
-    _levels(panel, tables["floors"])
-    printed = tables["theirs"].query("error != 0")
-    panel.plot(printed["wall_s"], 100.0 * printed["error"].abs(), "x", color=PURPLE)
-    for row in printed.to_dict("records"):
-        name, place = str(row["model"]), (row["wall_s"], 100.0 * abs(row["error"]))
-        _say(panel, name, place, THEIR_LABELS.get(name, (0, 5)), PURPLE)
-    panel.set(
-        xscale="log", yscale="log", xlim=(1e-7, 3e4), ylim=(0.03, 30.0),
-        xlabel="time of a state, whole call [s]",
-        ylabel="difference to solids of 3 mm [%]",
+    rows, printed = _timed(tables).sort_values("count"), tables["theirs"].query("error != 0")
+    panel = Panel(
+        x=Axis(column="wall_s", label="time of a state, whole call [s]", log=True, limits=(1e-7, 3e4)),
+        y=Axis(
+            column="error", label="difference to solids of 3 mm [%]", factor=100.0, log=True,
+            limits=(0.03, 30.0),
+        ),
+        marks=(
+            Curves(rows=rows, looks=LOOKS, by=("model", "answer"), along="count", more={"linewidth": 0.9}),
+            Curves(rows=printed, looks=PRINTED),
+            *_said(rows, printed),
+            *_levels(tables["floors"]),
+        ),
+        title="Crosses: Su and Servey, their machine",
     )  # fmt: skip
-    panel.set_title("Crosses: Su and Servey, their machine")
-    return drawn
+    return sheet(6.3, 4.1, [[panel]])
 
 
-def _line(panel: Axes, rows: pd.DataFrame, model: str, answer: str) -> None:
-    colour, marker = LOOKS[model]
-    label, point, offset, side = LINES[model, answer]
-    error = 100.0 * rows["error"].abs()
-    fill = "none" if answer == BEAM else "full"
-    panel.plot(rows["wall_s"], error, marker=marker, color=colour, fillstyle=fill, linewidth=0.9)
-    _say(panel, label, (rows["wall_s"].iloc[point], error.iloc[point]), offset, colour, ha=side)
+def _said(rows: pd.DataFrame, printed: pd.DataFrame) -> Iterator[Words]:
+    """Yield the names of our curves and of their theories."""
+    for (model, answer), (text, point, by, side) in LINES.items():
+        at = rows[(rows["model"] == model) & (rows["answer"] == answer)].iloc[point]
+        place = (at["wall_s"], 100.0 * abs(at["error"]))
+        yield Words(text=text, at=place, by=by, colour=LOOKS[model, answer].colour, side=side)
+    for row in records(printed):
+        place, by = (row["wall_s"], 100.0 * abs(row["error"])), THEIR_LABELS.get(row["model"], (0, 5))
+        yield Words(text=row["model"], at=place, by=by, colour=PURPLE)
 
 
-def _levels(panel: Axes, floors: pd.DataFrame) -> None:
-    for row in floors.to_dict("records"):
-        level = 100.0 * abs(float(row["error"]))
-        panel.axhline(level, color=GREY, linewidth=0.7, linestyle=":")
+def _levels(floors: pd.DataFrame) -> Iterator[Mark]:
+    """Yield what each theory leaves, with its name."""
+    for row in records(floors):
+        level = 100.0 * abs(row["error"])
         by = -9 if row["answer"] == SHEARED else 2  # below its line: another is close above
-        _say(panel, f"{WORDS[row['answer']][0]}: {level:.2g} %", (1.2e-7, level), (0, by), GREY)
-
-
-def _say(
-    panel: Axes, text: str, at: tuple[float, float], by: tuple[int, int], colour: str, **how: Any
-) -> None:
-    panel.annotate(text, at, by, textcoords="offset points", color=colour, fontsize=8, **how)
+        yield Level(at=level, colour=GREY, line=":")
+        text = f"{WORDS[row['answer']].label}: {level:.2g} %"
+        yield Words(text=text, at=(1.2e-7, level), by=(0, by), colour=GREY)
 
 
 def _cheaper(tables: Tables) -> list[dict[str, Any]]:

@@ -12,12 +12,14 @@ from matplotlib.figure import Figure
 from fe_reference import PlateFactors, plate_factors
 from studies.cases.problem import named_case
 from studies.engine.study import Answer, Claim, Part, Study, Tables
-from studies.record.style import BLACK, BLUE, GREEN, GREY, ORANGE, RED, page
+from studies.record.panels import Axis, Curves, Level, Panel, sheet
+from studies.record.style import BLACK, BLUE, GREEN, GREY, ORANGE, RED, Look
 
 CASE = "cross_axis_pivot"
 WIDTHS = (0.05, 0.1, 0.2, 0.3, 0.5, 0.7, 1.0, 1.5, 2.0, 3.0)
 POISSON_RATIOS = (0.25, 0.3, 0.35, 0.4, 0.45)
-COLOURS = (BLACK, BLUE, GREEN, ORANGE, RED)
+#: Poisson ratio -> colour.
+COLOURS = dict(zip(POISSON_RATIOS, (BLACK, BLUE, GREEN, ORANGE, RED), strict=True))
 #: b/L, Poisson ratio, f_b, f_s: an independent Ritz solution, to its printed digits. Its row of b/L = 0.1 has
 #: fewer digits than it prints (the mesh's own error is 1e-6 there) and sets the limit.
 RITZ = (
@@ -40,6 +42,7 @@ RITZ = (
     (1.0, 0.33, 1.0789, 1.1027),
     (2.0, 0.33, 1.1009, 1.1125),
 )
+RITZ_LOOK = Look(label="Ritz, ν = 0.3", colour=GREY, line="", marker="s", hollow=True)
 AGREES, RESOLVED, BEAM = 2e-4, 1e-5, 0.01
 
 
@@ -74,32 +77,33 @@ def _paper() -> Answer:
 
 def _figure(tables: Tables) -> Figure:
     """Draw what a beam lacks of the strip's stiffness over its width."""
-    drawn = page(9.0, 3.8)
-    panels = drawn.subplots(1, 2, sharey=True)
-    for panel, kind in zip(panels, ("constant", "linear"), strict=True):
-        for (nu, rows), colour in zip(tables["factors"].groupby("poisson_ratio"), COLOURS, strict=True):
-            flat = 1.0 / (1.0 - float(str(nu)) ** 2) - 1.0
-            panel.axhline(100.0 * flat, color=colour, linewidth=0.6, linestyle=":")
-            panel.semilogx(
-                rows["width_ratio"],
-                100.0 * (rows[f"factor_{kind}"] - 1.0),
-                marker="o",
-                color=colour,
-                label=f"ν = {nu}",
-            )
-        ritz = tables["ritz"].query("poisson_ratio == 0.3")
-        style = {"marker": "s", "markersize": 7.0, "fillstyle": "none", "linestyle": "", "color": GREY}
-        panel.semilogx(
-            ritz["width_ratio"], 100.0 * (ritz[f"ritz_{kind}"] - 1.0), **style, label="Ritz, ν = 0.3"
-        )
-        own = tables["paper"].query("kind == @kind")
-        panel.semilogx(
-            own["width_ratio"], 100.0 * own["excess"], "*", markersize=11, color=RED, label="Table 1"
-        )
-        panel.set(xlabel="width over length b/L", title=f"{kind} moment")
-    panels[0].set_ylabel("stiffness above the beam's [%]")
-    drawn.legend(*panels[0].get_legend_handles_labels(), loc="outside lower center", ncols=7)
-    return drawn
+    panels = [_lacking(tables, kind) for kind in ("constant", "linear")]
+    return sheet(9.0, 3.8, [panels], legend=7)
+
+
+def _lacking(tables: Tables, kind: str) -> Panel:
+    """Return the panel of one kind of moment, with the limits of infinitely wide strips."""
+    looks = {nu: Look(label=f"ν = {nu}", colour=each, marker="o") for nu, each in COLOURS.items()}
+    factors, ritz = tables["factors"], tables["ritz"].query("poisson_ratio == 0.3")
+    return Panel(
+        x=Axis(column="width_ratio", label="width over length b/L", log=True),
+        y=Axis(column="excess", label="stiffness above the beam's [%]", factor=100.0),
+        marks=(
+            *(Level(at=100.0 / (1.0 - nu**2) - 100.0, colour=each, line=":") for nu, each in COLOURS.items()),
+            Curves(
+                rows=factors.assign(excess=factors[f"factor_{kind}"] - 1.0), by="poisson_ratio", looks=looks
+            ),
+            Curves(
+                rows=ritz.assign(excess=ritz[f"ritz_{kind}"] - 1.0), looks=RITZ_LOOK, more={"markersize": 7.0}
+            ),
+            Curves(
+                rows=tables["paper"].query("kind == @kind"),
+                looks=Look(label="Table 1", colour=RED, line="", marker="*"),
+                more={"markersize": 11.0},
+            ),
+        ),
+        title=f"{kind} moment",
+    )
 
 
 STUDY = Study(

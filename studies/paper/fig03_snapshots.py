@@ -1,12 +1,11 @@
 """Fig 3 of the paper: snapshots of the pivot, both models superposed, and the distance of their strips."""
 
-from typing import Any
+from dataclasses import replace
 
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 from scipy.interpolate import CubicSpline
 
 from studies.answers.response import Response
@@ -15,14 +14,15 @@ from studies.engine.study import Answer, Finding, Part, Study, Tables
 from studies.kinds import Array
 from studies.paper import formulations
 from studies.paper.formulations import FE, LOCKING_FREE, PAPER, REFINED, SETTINGS
-from studies.record.style import BLACK, LOOKS, page
+from studies.record.panels import ROTATION, Axis, Curves, Level, Panel, key
+from studies.record.style import LOOKS, page
 
 #: Parts of the path at which the pivot is drawn.
 SNAPSHOTS = (0.0, 0.25, 0.5, 0.75, 1.0)
 DRAWN = (PAPER, LOCKING_FREE, REFINED)
 
 #: In the snapshots the finite elements are points over the splines' lines, so that both can be seen.
-NODES: dict[str, Any] = {"color": BLACK, "linestyle": "", "marker": "o", "markersize": 2.6}
+NODES = replace(LOOKS[REFINED], line="", marker="o").keywords() | {"markersize": 2.6}
 
 BOUND = 0.01
 
@@ -55,17 +55,17 @@ def _figure(tables: Tables) -> Figure:
         _draw_pivot(panels[label], shapes[shapes["rotation_rad"] == rotation])
         panels[label].set_title(f"{np.degrees(rotation):.3g}°")
     panels["a"].set_ylabel("y [mm]")
-    panel = panels["error"]
-    for name, curve in tables["distances"].groupby("formulation", sort=False):
-        moved = curve[curve["rotation_rad"] != 0.0]
-        panel.semilogy(np.degrees(moved["rotation_rad"]), moved["distance"], **LOOKS[str(name)].keywords())
-    panel.axhline(BOUND, color="#444444", linewidth=0.8)
-    panel.annotate("1 %", (1.0, BOUND), xytext=(0, 3), textcoords="offset points", fontsize=8)
-    panel.set(xlabel="rotation [deg]", ylabel="largest distance / length [1]", xticks=range(0, 91, 15))
-    panel.set_title("Distance of the strips to those of the refined finite elements")
-    handles, labels = panel.get_legend_handles_labels()
-    points = Line2D([], [], **NODES)
-    drawn.legend([points, *handles], [LOOKS[REFINED].label, *labels], loc="outside lower center", ncols=4)
+    error = Panel(
+        x=ROTATION,
+        y=Axis(column="distance", label="largest distance / length [1]", log=True),
+        marks=(
+            Curves(rows=tables["distances"].query("rotation_rad > 0"), looks=LOOKS),
+            Level(at=BOUND, words="1 %"),
+        ),
+        title="Distance of the strips to those of the refined finite elements",
+    )
+    error(panels["error"])
+    key(drawn, (panels["error"], panels["a"]), columns=4)
     return drawn
 
 
@@ -73,7 +73,7 @@ def _draw_pivot(panel: Axes, shapes: pd.DataFrame) -> None:
     """Draw ground, strips and body of one snapshot; the formulations lie over one another."""
     for name in DRAWN:
         shape = shapes[shapes["formulation"] == name]
-        look: dict[str, Any] = NODES if name == REFINED else LOOKS[name].keywords() | {"marker": ""}
+        look = NODES if name == REFINED else LOOKS[name].keywords() | {"marker": ""}
         every = 16 if name == REFINED else 1
         ends = []
         for _, strip in shape.groupby("strip"):

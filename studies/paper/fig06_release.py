@@ -1,10 +1,10 @@
 """Fig 6 of the paper: the motion of the body's centre after the release from 90 degrees, and its errors."""
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pandas as pd
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from studies.answers.motion import Motion
@@ -13,7 +13,8 @@ from studies.answers.settings import SplineSettings
 from studies.engine.study import Answer, Finding, Part, Study, Tables
 from studies.paper import formulations
 from studies.paper.formulations import FE, LOCKING_FREE, MEANING, PAPER, REFINED, SETTINGS
-from studies.record.style import CHECK, LOOKS, page, uncertain
+from studies.record.panels import TIME, Axis, Curves, Doubt, Panel, sheet
+from studies.record.style import CHECK, LOOKS
 
 #: Formulations of Fig 6, and the refined spline that the reference, which it shares nothing with, is held to.
 SPLINES = (PAPER, LOCKING_FREE, "n = 6")
@@ -30,6 +31,9 @@ QUANTITIES = (
     ("com_x_m", "x of the centre [mm]", 1e3),
     ("com_y_m", "y of the centre [mm]", 1e3),
 )
+
+#: Lines of the figure: motions have too many points for markers.
+LINES = {name: replace(LOOKS[name], marker="") for name in (REFINED, FE, *SPLINES)} | {REFINED_SPLINE: CHECK}
 
 
 def _compared(name: str) -> Answer:
@@ -62,55 +66,47 @@ def _figure(tables: Tables) -> Figure:
 
     Where curves cross the difference is nought, which says nothing of how far a swing has strayed.
     """
-    drawn = page(8.8, 8.0)
-    panels = drawn.subplots(4, 2, sharex=True)
-    motions = tables["motions"]
+    motions = tables["motions"].sort_values(["formulation", "time_s"])
+    motions["energy_J"] = motions["strain_J"] + motions["kinetic_J"]
+    whole = motions.groupby("formulation")["energy_J"]
+    motions["change"] = (motions["energy_J"] / whole.transform("first") - 1.0).abs().clip(lower=1e-16)
     level = tables["reference"].set_index("quantity")["uncertainty"]
-    for (value, error), (column, label, scale) in zip(panels, QUANTITIES, strict=False):
-        for name, curve in motions.groupby("formulation", sort=False):
-            look = _look(str(name))
-            time = 1e3 * curve["time_s"]
-            if name != REFINED_SPLINE:
-                value.plot(time, scale * curve[column], **look)
-            if name != REFINED:
-                late = curve["time_s"] > 0.0
-                error.semilogy(time[late], scale * curve[f"difference_{column}"].abs()[late].cummax(), **look)
-        value.set_ylabel(label)
-        error.set_ylabel(f"difference {label[label.index('[') :]}")
-        uncertain(error, scale * level[column])
-        error.minorticks_off()  # hundreds of marks that say nothing
-    _energies(panels[3, 0], panels[3, 1], motions)
-    panels[0, 0].set_title("After the release from 90°")
-    panels[0, 1].set_title("Largest difference to refined elements so far")
-    handles, labels = panels[0, 1].get_legend_handles_labels()
-    refined = panels[0, 0].get_legend_handles_labels()
-    first = refined[1].index(LOOKS[REFINED].label)
-    drawn.legend(
-        [refined[0][first], *handles], [refined[1][first], *labels], loc="outside lower center", ncols=3
+    rows = []
+    for column, label, factor in QUANTITIES:
+        unit = label[label.index("[") :]
+        far = Axis(column=f"difference_{column}", label=f"difference {unit}", factor=factor, log=True)
+        rows.append(
+            [
+                _values(motions, Axis(column=column, label=label, factor=factor)),
+                _largest(motions, far, Doubt(factor * level[column])),
+            ]
+        )
+    rows[0] = [
+        replace(rows[0][0], title="After the release from 90°"),
+        replace(rows[0][1], title="Largest difference to refined elements so far"),
+    ]
+    rows.append(
+        [
+            _values(motions, Axis(column="strain_J", label="strain energy [J]")),
+            _largest(motions, Axis(column="change", label="change of energy [1]", log=True)),
+        ]
     )
-    return drawn
+    return sheet(8.8, 8.0, rows, legend=3)
 
 
-def _energies(value: Axes, error: Axes, motions: pd.DataFrame) -> None:
-    """Draw the strain energy, and the change of the whole energy, over time."""
-    for name, curve in motions.groupby("formulation", sort=False):
-        look = _look(str(name))
-        if name != REFINED_SPLINE:
-            value.plot(1e3 * curve["time_s"], curve["strain_J"], **look)
-        if name != REFINED:
-            total = curve["strain_J"] + curve["kinetic_J"]
-            late = curve["time_s"] > 0.0
-            change = (total / total.iloc[0] - 1.0).abs()[late]
-            error.semilogy(1e3 * curve["time_s"][late], change.clip(lower=1e-16).cummax(), **look)
-    value.set(ylabel="strain energy [J]", xlabel="time [ms]")
-    error.set(ylabel="change of energy [1]", xlabel="time [ms]")
-    error.minorticks_off()
+def _values(motions: pd.DataFrame, y: Axis) -> Panel:
+    """Return the panel of a quantity; the reference is broad and lies below the others, which cover it."""
+    broad = Curves(rows=motions, looks={REFINED: LINES[REFINED]}, more={"linewidth": 2.8, "zorder": 1.9})
+    others = {name: look for name, look in LINES.items() if name not in (REFINED, REFINED_SPLINE)}
+    return Panel(x=TIME, y=y, marks=(broad, Curves(rows=motions, looks=others)))
 
 
-def _look(name: str) -> dict[str, Any]:
-    """Return the line of a formulation; the reference is broad and lies below the others, which cover it."""
-    look = (CHECK if name == REFINED_SPLINE else LOOKS[name]).keywords() | {"marker": ""}
-    return look | ({"linewidth": 2.8, "zorder": 1.9} if name == REFINED else {})
+def _largest(motions: pd.DataFrame, y: Axis, *marks: Doubt) -> Panel:
+    """Return the panel of the largest size of a difference so far."""
+    late = motions[motions["time_s"] > 0.0]
+    so_far = late.assign(**{y.column: late[y.column].abs().groupby(late["formulation"]).cummax()})
+    others = {name: look for name, look in LINES.items() if name != REFINED}
+    return Panel(x=TIME, y=y, marks=(Curves(rows=so_far, looks=others), *marks))
 
 
 def _motion(name: str) -> Motion:

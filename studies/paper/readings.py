@@ -20,7 +20,8 @@ from studies.cases.effects import Effects
 from studies.cases.problem import Problem, named_case
 from studies.engine.study import Answer, Part, Study, Tables
 from studies.paper.formulations import DURATION, INSTANTS, refined
-from studies.record.style import ORANGE, RED, page
+from studies.record.panels import Axis, Curves, Panel, sheet
+from studies.record.style import ORANGE, RED, Look
 
 #: Gauss points of the paper's four control points: two do not see every stretch, the last are all but exact.
 GAUSS = (3, 4, 5, 6, 8, 12)
@@ -94,13 +95,17 @@ def _read() -> Answer:
 
 def _figure(tables: Tables) -> Figure:
     """Draw the errors of torque and stiffness over the number of Gauss points."""
-    drawn, rows = page(4.0, 2.4), tables["quadrature"].sort_values("gauss_points")
-    panel = drawn.subplots()
-    panel.semilogy(rows["gauss_points"], rows["error_torque"], "o-", color=RED, label="torque")
-    panel.semilogy(rows["gauss_points"], rows["error_stiffness"], "s--", color=ORANGE, label="stiffness")
-    panel.set(xlabel="Gauss points a strip", ylabel="largest error [1]")
-    panel.legend()
-    return drawn
+    looks = {
+        "error_torque": Look(label="torque", colour=RED, marker="o"),
+        "error_stiffness": Look(label="stiffness", colour=ORANGE, line="--", marker="s"),
+    }
+    panel = Panel(
+        x=Axis(column="gauss_points", label="Gauss points a strip"),
+        y=Axis(column="error_torque", label="largest error [1]", log=True),
+        marks=[Curves(rows=tables["quadrature"], looks=look, y=column) for column, look in looks.items()],
+        legend="best",
+    )
+    return sheet(4.0, 2.4, [[panel]])
 
 
 STUDY = Study(

@@ -1,8 +1,9 @@
 """Figs 4 and 5 of the paper: path of the body's centre, torque, stiffness over the rotation, and errors."""
 
+from dataclasses import replace
+
 import numpy as np
 import pandas as pd
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from studies.answers.metrics import relative_error, trajectory_error
@@ -12,7 +13,8 @@ from studies.engine.study import Answer, Claim, Finding, Part, Study, Tables
 from studies.kinds import Array
 from studies.paper import formulations
 from studies.paper.formulations import FE, REFINED, SETTINGS
-from studies.record.style import LOOKS, page, uncertain
+from studies.record.panels import ROTATION, Axis, Curves, Doubt, Level, Panel, Words, key, sheet
+from studies.record.style import LOOKS, page
 
 BOUND = 0.01
 
@@ -45,30 +47,31 @@ def _refined_path() -> Answer:
 
 def _trajectories(tables: Tables) -> Figure:
     """Draw the paths beside their errors over the rotation."""
-    drawn = page(9.5, 5.6)
+    drawn, paths = page(9.5, 5.6), tables["paths"]
     panels = drawn.subplot_mosaic([["path", "error"], ["end", "error"]])
-    plane, end, panel = panels["path"], panels["end"], panels["error"]
-    for name, look in LOOKS.items():
-        path = tables["paths"].query("formulation == @name")
-        for view in (plane, end):
-            view.plot(1e3 * path["com_x_m"], 1e3 * path["com_y_m"], **look.keywords(), markersize=3.5)
-        moved = path[path["error_trajectory"] > 0.0]
-        if name != REFINED:
-            panel.semilogy(np.degrees(moved["rotation_rad"]), moved["error_trajectory"], **look.keywords())
-    for view in (plane, end):
-        view.set(xlabel="x of the centre of mass [mm]", ylabel="y [mm]", aspect="equal")
-    plane.set_title("Path from 0 to 90°")
-    last = 1e3 * tables["paths"].query("formulation == @REFINED")[["com_x_m", "com_y_m"]].to_numpy()[-1]
-    end.set(xlim=last[0] + np.array([-0.8, 2.2]), ylim=last[1] + np.array([-0.3, 1.4]))
-    end.set_title("Its end, enlarged")
-    drawn.legend(*plane.get_legend_handles_labels(), loc="outside lower center", ncols=4)
-    uncertain(panel, tables["reference"]["uncertainty"].max())
-    panel.axhline(BOUND, color="#444444", linewidth=0.8)
-    panel.annotate("the paper's 1 %", (2.0, BOUND), xytext=(0, 3), textcoords="offset points", fontsize=8)
-    panel.set(
-        xlabel="rotation [deg]", ylabel="distance to the refined path / travel [1]", xticks=range(0, 91, 15)
+    last = 1e3 * paths.query("formulation == @REFINED")[["com_x_m", "com_y_m"]].to_numpy()[-1]
+    x = Axis(column="com_x_m", label="x of the centre of mass [mm]", factor=1e3)
+    y = Axis(column="com_y_m", label="y [mm]", factor=1e3)
+    near_x, near_y = (
+        replace(axis, limits=(value - below, value + above))
+        for axis, value, below, above in ((x, last[0], 0.8, 2.2), (y, last[1], 0.3, 1.4))
     )
-    panel.set_title("Error of the path")
+    curves = Curves(rows=paths, looks=LOOKS, along="rotation_rad", more={"markersize": 3.5})
+    Panel(x=x, y=y, marks=(curves,), title="Path from 0 to 90°")(panels["path"])
+    Panel(x=near_x, y=near_y, marks=(curves,), title="Its end, enlarged")(panels["end"])
+    for name in ("path", "end"):
+        panels[name].set_aspect("equal")
+    Panel(
+        x=ROTATION,
+        y=Axis(column="error_trajectory", label="distance to the refined path / travel [1]", log=True),
+        marks=(
+            Curves(rows=paths.query("formulation != @REFINED"), looks=LOOKS),
+            Doubt(tables["reference"]["uncertainty"].max()),
+            Level(at=BOUND, words="the paper's 1 %"),
+        ),
+        title="Error of the path",
+    )(panels["error"])
+    key(drawn, panels.values(), columns=4)
     return drawn
 
 
@@ -142,42 +145,42 @@ def _refined_curves() -> Answer:
 
 def _stiffnesses(tables: Tables) -> Figure:
     """Draw torque and stiffness above their errors over the rotation."""
-    drawn = page(9.0, 7.0)
-    panels = drawn.subplots(2, 2, sharex=True)
-    for column, (quantity, unit) in enumerate((("torque", "Nm"), ("stiffness", "Nm_per_rad"))):
-        above, below = panels[:, column]
-        for name, look in LOOKS.items():
-            curve = tables["curves"].query("formulation == @name")
-            degrees = np.degrees(curve["rotation_rad"])
-            above.plot(degrees, curve[f"{quantity}_{unit}"], **look.keywords(), markevery=2)
-            if name != REFINED:
-                size = np.abs(curve[f"error_{quantity}"])
-                below.semilogy(degrees[degrees != 0.0], size[degrees != 0.0], **look.keywords())
-        _annotate(above, below, tables["curves"], f"{quantity}_{unit}")
-        uncertain(below, tables["reference"].query("quantity == @quantity")["uncertainty"].max())
-    panels[0, 0].set(ylabel="driving torque [N m]")
-    panels[0, 1].set(ylabel="stiffness dT/dθ [N m / rad]")
-    panels[1, 0].set(ylabel="|error of the torque| [1]")
-    panels[1, 1].set(ylabel="|error of the stiffness| [1]")
-    drawn.legend(*panels[0, 0].get_legend_handles_labels(), loc="outside upper center", ncols=4)
-    return drawn
+    columns = [
+        _curves_and_errors(tables, "torque", "torque_Nm", "driving torque [N m]"),
+        _curves_and_errors(tables, "stiffness", "stiffness_Nm_per_rad", "stiffness dT/dθ [N m / rad]"),
+    ]
+    return sheet(9.0, 7.0, list(zip(*columns, strict=True)), legend=4)
 
 
-def _annotate(above: Axes, below: Axes, curves: pd.DataFrame, column: str) -> None:
-    """Limit the upper panel to what can be compared there, and say where locking leaves it."""
-    top = 1.8 * curves.query("formulation == @REFINED")[column].max()
-    above.set_ylim(0.0, top)
+def _curves_and_errors(tables: Tables, quantity: str, column: str, label: str) -> tuple[Panel, Panel]:
+    """Return the panel of a quantity, limited to what can be compared there, and that of its error."""
+    curves = tables["curves"]
+    refined = curves.query("formulation == @REFINED")
     locked = curves.query("formulation == @formulations.PAPER")[column].max()
-    above.annotate(
-        f"as the paper:\nup to {locked:.0f} {'N m' if 'torque' in column else 'N m/rad'}",
-        (0.03, 0.86),
-        xycoords="axes fraction",
-        color=LOOKS[formulations.PAPER].colour,
-        fontsize=8,
+    unit = label[label.index("[") + 1 : -1]
+    above = Panel(
+        x=ROTATION,
+        y=Axis(column=column, label=label, limits=(0.0, 1.8 * refined[column].max())),
+        marks=(
+            Curves(rows=curves, looks=LOOKS, more={"markevery": 2}),
+            Words(
+                text=f"as the paper:\nup to {locked:.0f} {unit}",
+                at=(0.03, 0.86),
+                placed=True,
+                colour=LOOKS[formulations.PAPER].colour,
+            ),
+        ),
     )
-    below.axhline(NEGLIGIBLE, color="#444444", linewidth=0.8)
-    below.annotate("3 %", (1.0, NEGLIGIBLE), xytext=(0, 3), textcoords="offset points", fontsize=8)
-    below.set(xlabel="rotation [deg]", xticks=range(0, 91, 15))
+    below = Panel(
+        x=ROTATION,
+        y=Axis(column=f"error_{quantity}", label=f"|error of the {quantity}| [1]", log=True),
+        marks=(
+            Curves(rows=curves.query("formulation != @REFINED and rotation_rad > 0"), looks=LOOKS),
+            Level(at=NEGLIGIBLE, words="3 %"),
+            Doubt(tables["reference"].query("quantity == @quantity")["uncertainty"].max()),
+        ),
+    )
+    return above, below
 
 
 def _findings(name: str, answer: Response, against: Response) -> list[Finding]:

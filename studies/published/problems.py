@@ -45,7 +45,8 @@ from studies.published.case import (
     loaded,
     published,
 )
-from studies.record.style import BLACK, BLUE, GREY, ORANGE, page
+from studies.record.panels import Axis, Curves, Panel, sheet
+from studies.record.style import BLACK, BLUE, GREY, ORANGE, Look
 from studies.stability.frames import SIDE, Arc, frame_of, spline_arc
 from studies.stability.questions import LIMIT, element_arc
 
@@ -150,6 +151,7 @@ PROBLEMS = (
 #: How a model is called.
 LABELS = {"spline": "spline", "fe": "elements", "fe-shear": "elements with shear"}
 COLOURS = {"spline": BLUE, "fe": BLACK, "fe-shear": ORANGE}
+BAR = Look(label="_", colour=GREY, line="", marker="|")
 MARKERS = {BEAM: "o", CLAMPED_WIDTH: "s", SHEAR: "^", SHEARED: "D"}
 #: Differences below it are drawn at it [1].
 FLOOR = 1e-6
@@ -213,28 +215,29 @@ def met(value: Value, found: float, limit: float) -> bool:
 
 def _figure(tables: Tables) -> Figure:
     """Draw the differences to the values in print, a line a problem, beside the limits."""
-    drawn = page(7.5, 4.6)
-    panel = drawn.subplots()
     rows = tables["values"]
     rows = rows[rows["bound"] == EQUAL]
+    known = np.maximum(np.abs(rows["published"]), 1e-300)
+    slack = (rows["limit"] + rows["uncertainty"] / known).groupby(rows["problem"]).max()
+    bars = slack[(slack > 0.0) & (slack < 1.0)].rename("error").reset_index()
     titles = list(dict.fromkeys(published(name).title for name in PROBLEMS))
-    titles = [title for title in titles if title in set(rows["problem"])]
-    for (model, answer), mine in rows.groupby(["model", "answer"], sort=False):
-        place = [titles.index(title) for title in mine["problem"]]
-        label = f"{LABELS[str(model)]}, {answer}".replace("_", " ")
-        panel.plot(
-            np.maximum(np.abs(mine["error"]), FLOOR), place, linestyle="", marker=MARKERS[str(answer)],
-            markersize=5.0, fillstyle="none", color=COLOURS[str(model)], label=label,
-        )  # fmt: skip
-    for title, mine in rows.groupby("problem"):
-        slack = (mine["limit"] + mine["uncertainty"] / np.maximum(np.abs(mine["published"]), 1e-300)).max()
-        if 0.0 < slack < 1.0:
-            panel.plot(slack, titles.index(str(title)), "|", markersize=14.0, color=GREY)
-    panel.set(xscale="log", xlabel="difference to the value in print [1]; bar: limit and uncertainty")
-    panel.set_yticks(range(len(titles)), titles)
-    panel.invert_yaxis()
-    drawn.legend(*panel.get_legend_handles_labels(), loc="outside lower center", ncols=2)
-    return drawn
+    looks = {
+        (model, answer): Look(
+            label=f"{LABELS[model]}, {answer}".replace("_", " "), colour=COLOURS[model], line="",
+            marker=MARKERS[answer], hollow=True,
+        )
+        for model, answer in rows[["model", "answer"]].drop_duplicates().itertuples(index=False)
+    }  # fmt: skip
+    label = "difference to the value in print [1]; bar: limit and uncertainty"
+    panel = Panel(
+        x=Axis(column="error", label=label, log=True, least=FLOOR),
+        y=Axis(column="problem", label="", names=[each for each in titles if each in set(rows["problem"])]),
+        marks=(
+            Curves(rows=rows, looks=looks, by=("model", "answer"), more={"markersize": 5.0}),
+            Curves(rows=bars, looks=BAR, more={"markersize": 14.0}),
+        ),
+    )
+    return sheet(7.5, 4.6, [[panel]], legend=2)
 
 
 STUDY = Study(

@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from typing import Any
 
 import matplotlib as mpl
-from matplotlib.axes import Axes
 from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 from matplotlib.text import Text
@@ -53,16 +52,18 @@ SETTINGS: Any = {
 
 @dataclass(frozen=True, kw_only=True)
 class Look:
-    """Label, colour, line and marker of one formulation, the same in every figure."""
+    """Label, colour, line and marker of one formulation, the same in every figure; a marker may be hollow."""
 
     label: str
     colour: str
     line: str = "-"
     marker: str = ""
+    hollow: bool = False
 
     def keywords(self) -> dict[str, Any]:
         """Return the keyword arguments of `Axes.plot`."""
-        return {"label": self.label, "color": self.colour, "linestyle": self.line, "marker": self.marker}
+        words = {"label": self.label, "color": self.colour, "linestyle": self.line, "marker": self.marker}
+        return words | ({"markerfacecolor": "none"} if self.hollow else {})
 
 
 #: One look for each formulation, wherever it is drawn.
@@ -130,17 +131,6 @@ def page(width: float, height: float) -> Figure:
     """
     share = min(1.0, PAGE_WIDTH / width)
     return Figure(figsize=(share * width, (0.1 + 0.9 * share) * height), layout="constrained")
-
-
-def uncertain(panel: Axes, level: float) -> None:
-    """Shade what lies below the uncertainty of the reference in a panel of errors."""
-    panel.set_ylim(bottom=level / 10.0)
-    panel.axhspan(level / 1e3, level, color="#eeeeee", zorder=0)
-    panel.annotate(
-        "uncertainty of the reference", (0.98, level), (0, -3), ("axes fraction", "data"), "offset points",
-        ha="right", va="top", fontsize=8, color="#666666",
-        bbox={"facecolor": "#eeeeee", "edgecolor": "none", "pad": 0.5, "alpha": 0.85},
-    )  # fmt: skip
 
 
 def rendered(figure: Figure) -> Mapping[str, bytes]:

@@ -24,8 +24,9 @@ from studies.cases.design import named_design
 from studies.cases.mechanism import Mechanism
 from studies.cases.problem import TABLE_1, named_case
 from studies.engine.study import Answer, Part, Tables
+from studies.record.panels import Axis, Curves, Level, Panel, sheet
 from studies.record.source import ROOT
-from studies.record.style import BLUE, ORANGE, RED, SKY, page
+from studies.record.style import BLUE, ORANGE, RED, SKY, Look
 from studies.stability import family, maps
 from studies.stability.geometry import as_mechanism
 
@@ -79,22 +80,23 @@ def _run(model: str, count: int, steps: int = PIECE) -> Iterator[tuple[dict[str,
 
 def _drift_figure(tables: Tables) -> Figure:
     """Draw energy, constraint residual and memory against the number of steps."""
-    drawn = page(9.6, 3.1)
-    panels = drawn.subplots(1, 3)
-    for model, colour in COLOURS.items():
-        mine = tables["drift"].query("model == @model").sort_values("steps")
-        panels[0].loglog(mine["steps"], mine["energy_change"].clip(1e-16), color=colour, label=model)
-        panels[1].loglog(mine["steps"], mine["constraint_residual_m"].clip(1e-19), color=colour)
-    mine = tables["timings_memory"].query("model == @family.DEFAULT").sort_values("steps")
-    panels[2].semilogx(mine["steps"], mine["largest_memory_MB"], color=ORANGE)
-    panels[0].axhline(DRIFT, color=RED, linewidth=0.9, linestyle=":")
-    panels[0].set(ylabel="largest change of energy [1]", xlabel="steps [1]", ylim=(1e-16, 1e-5))
-    panels[0].legend(loc="upper left")
-    panels[1].set(ylabel="constraint residual of a piece [m]", xlabel="steps [1]", ylim=(1e-18, 1e-14))
-    panels[2].set(ylabel="largest memory of the process [MB]", xlabel="steps [1]")
-    panels[2].set_ylim(bottom=0.0)
-    drawn.suptitle(f"Free swing of Table 1 from {START_DEG:g}° in steps of {LONG_STEP:g} s, without damping")
-    return drawn
+    looks = {model: Look(label=model, colour=colour) for model, colour in COLOURS.items()}
+    drift = Curves(rows=tables["drift"], looks=looks, by="model")
+    memory = tables["timings_memory"].query("model == @family.DEFAULT")
+    steps, residual = Axis(column="steps", label="steps [1]", log=True), "constraint residual of a piece [m]"
+    energy = Axis(column="energy_change", label="largest change of energy [1]", log=True, least=1e-16)
+    clamps = Axis(column="constraint_residual_m", label=residual, log=True, least=1e-19)
+    held = Axis(column="largest_memory_MB", label="largest memory of the process [MB]", limits=(0.0, None))
+    panels = (
+        Panel(
+            x=steps, y=replace(energy, limits=(1e-16, 1e-5)), legend="upper left",
+            marks=(drift, Level(at=DRIFT, colour=RED, line=":")),
+        ),
+        Panel(x=steps, y=replace(clamps, limits=(1e-18, 1e-14)), marks=(drift,)),
+        Panel(x=steps, y=held, marks=(Curves(rows=memory, looks=Look(label="_", colour=ORANGE)),)),
+    )  # fmt: skip
+    title = f"Free swing of Table 1 from {START_DEG:g}° in steps of {LONG_STEP:g} s, without damping"
+    return sheet(9.6, 3.1, [panels], title=title)
 
 
 def _judgement(model: str, drift: pd.DataFrame) -> dict[str, Any]:

@@ -16,7 +16,8 @@ from studies.answers.response import Response
 from studies.answers.settings import Settings, SplineSettings
 from studies.cases.problem import Problem, named_case
 from studies.engine.study import Part, Tables
-from studies.record.style import BLACK, BLUE, GREY, ORANGE, page
+from studies.record.panels import Axis, Curves, Level, Panel, sheet
+from studies.record.style import BLACK, BLUE, GREY, ORANGE, Look
 from studies.stability import family, maps
 
 ROTATIONS = (-180, -90, 90, 135, 150, 165, 180, 200, 220, 240, 260)
@@ -25,6 +26,7 @@ INCREMENTS = (1, 2, 5, 20, 200)
 FAR, FAR_CHECK = SplineSettings(control_points=16), SplineSettings(control_points=14)
 #: Columns whose answers to other increments are compared with one another, and their colours.
 COMPARED = {family.SIX: BLUE, family.FE: BLACK}
+DIFFERENCE = Axis(column="", label="difference of torque [1]", log=True)
 
 
 def _rotated() -> Iterator[family.StaticCase]:
@@ -77,19 +79,24 @@ def _critical() -> list[dict[str, Any]]:
 
 
 def _increments_figure(tables: Tables) -> Figure:
-    figure = page(4.6, 3.2)
-    panel = figure.subplots()
-    looks = {"torque_change": ("o-", "torque at 90°"), "hysteresis": ("s--", "there and back")}
-    for (model, colour), (column, (line, label)) in product(COMPARED.items(), looks.items()):
-        mine = tables["increments"].query("model == @model").sort_values("increments")
-        panel.loglog(
-            mine["increments"], mine[column].clip(1e-17), line, color=colour, label=f"{model}: {label}"
+    parts = (("torque_change", "o", "-", "torque at 90°"), ("hysteresis", "s", "--", "there and back"))
+    curves = [
+        Curves(
+            rows=tables["increments"], by="model", y=column,
+            looks={
+                model: Look(label=f"{model}: {label}", colour=colour, line=line, marker=marker)
+                for model, colour in COMPARED.items()
+            },
         )
-    panel.axhline(1e-8, color=ORANGE, linewidth=0.9)
-    panel.axhline(1e-9, color=GREY, linewidth=0.9, linestyle=":")
-    panel.set(xlabel="increments [1]", ylabel="difference of torque [1]", ylim=(1e-17, 1e-6))
-    panel.legend(loc="center left", fontsize=7)
-    return figure
+        for column, marker, line, label in parts
+    ]  # fmt: skip
+    panel = Panel(
+        x=Axis(column="increments", label="increments [1]", log=True),
+        y=replace(DIFFERENCE, least=1e-17, limits=(1e-17, 1e-6)),
+        marks=(*curves, Level(at=1e-8, colour=ORANGE), Level(at=1e-9, colour=GREY, line=":")),
+        legend={"loc": "center left", "fontsize": 7},
+    )
+    return sheet(4.6, 3.2, [[panel]])
 
 
 ROTATION = family.study(
@@ -190,20 +197,31 @@ def _gap(one: Response, other: Response) -> float:
 
 def _limit_figure(tables: Tables) -> Figure:
     limit = tables["limit"]
-    figure = page(7.4, 3.1)
-    left, right = figure.subplots(1, 2)
-    left.loglog(limit["slenderness"], limit["error"], "o-", color=BLUE, label="to the inextensible strip")
-    left.loglog(
-        limit["slenderness"], limit["lost_digits"], "s--", color=ORANGE, label="beyond the law, neighbours"
+    slenderness = Axis(column="slenderness", label="slenderness L/t [1]", log=True)
+    iterations = "Newton iterations of the path [1]"
+    error = Look(label="to the inextensible strip", colour=BLUE, marker="o")
+    lost = Look(label="beyond the law, neighbours", colour=ORANGE, line="--", marker="s")
+    left = Panel(
+        x=slenderness,
+        y=DIFFERENCE,
+        marks=(
+            Curves(rows=limit, looks=error, y="error"),
+            Curves(rows=limit, looks=lost, y="lost_digits"),
+            Level(at=1e-9, colour=GREY, line=":"),
+        ),
+        title="Spline n = 6, 90°",
+        legend="upper right",
     )
-    left.axhline(1e-9, color=GREY, linewidth=0.9, linestyle=":")
-    left.set(xlabel="slenderness L/t [1]", ylabel="difference of torque [1]", title="Spline n = 6, 90°")
-    left.legend(loc="upper right")
-    right.semilogx(limit["slenderness"], limit["iterations"], "o-", color=BLUE, label="extensible")
-    right.axhline(limit["iterations_inextensible"].iloc[0], color=BLACK, linestyle="--", label="inextensible")
-    right.set(xlabel="slenderness L/t [1]", ylabel="Newton iterations of the path [1]", ylim=(0.0, 30.0))
-    right.legend(loc="lower right")
-    return figure
+    right = Panel(
+        x=slenderness,
+        y=Axis(column="iterations", label=iterations, limits=(0.0, 30.0)),
+        marks=(
+            Curves(rows=limit, looks=Look(label="extensible", colour=BLUE, marker="o")),
+            Level(at=limit["iterations_inextensible"].iloc[0], label="inextensible", colour=BLACK, line="--"),
+        ),
+        legend="lower right",
+    )
+    return sheet(7.4, 3.1, [[left, right]])
 
 
 SLENDERNESS = family.study(

@@ -23,7 +23,8 @@ from studies.answers.settings import FeSettings, Settings, SplineSettings
 from studies.cases.design import Design
 from studies.cases.problem import named_case
 from studies.engine.study import Answer, Part, Tables
-from studies.record.style import BLACK, BLUE, ORANGE, RED, page
+from studies.record.panels import STEP, Axis, Curves, Level, Panel, Slope, sheet
+from studies.record.style import BLUE, GREEN, ORANGE, RED, Look
 from studies.stability import family, maps
 from studies.stability.geometry import as_mechanism
 
@@ -155,24 +156,38 @@ def _order_table() -> pd.DataFrame:
 
 
 def _order_figure(tables: Tables) -> Figure:
-    figure = page(7.6, 3.2)
-    left, right = figure.subplots(1, 2)
     order = tables["order"].sort_values("step_s")
-    for resolved, colour, label in (("yes", BLUE, "resolved"), ("no", ORANGE, "said to be unresolved")):
-        some = order[order["resolved"] == resolved]
-        left.loglog(some["step_s"], some["error_rad"], "o", color=colour, label=label)
-    slope = order["error_rad"].iloc[2] * (order["step_s"] / order["step_s"].iloc[2]) ** 2
-    left.loglog(order["step_s"], slope, "--", color=BLACK, linewidth=0.9, label="order 2")
-    left.set(xlabel="step [s]", ylabel="error of the rotation [rad]", title=f"{family.DEFAULT}, from 90°")
-    left.legend(loc="upper left")
-    mine = tables["outcomes"].query("model == @family.DEFAULT")
-    for degrees, marker in zip(STARTS, "ovsD", strict=True):
-        some = mine[mine["y"] == degrees].sort_values("x")
-        right.loglog(some["x"], some["energy_gain"].clip(1e-17), marker + "-", label=f"from {degrees}°")
-    right.axhline(1e-8, color=RED, linewidth=0.9)
-    right.set(xlabel="step [s]", ylabel="gain of energy over that of the start [1]", ylim=(1e-17, 1e-6))
-    right.legend(loc="upper left", ncols=2)
-    return figure
+    looks = {
+        "yes": Look(label="resolved", colour=BLUE, line="", marker="o"),
+        "no": Look(label="said to be unresolved", colour=ORANGE, line="", marker="o"),
+    }
+    third, span = order.iloc[2], (order["step_s"].min(), order["step_s"].max())
+    through = (third["step_s"], third["error_rad"])
+    left = Panel(
+        x=STEP,
+        y=Axis(column="error_rad", label="error of the rotation [rad]", log=True),
+        marks=(
+            Curves(rows=order, looks=looks, by="resolved"),
+            Slope(through=through, power=2, span=span, label="order 2", line="--"),
+        ),
+        title=f"{family.DEFAULT}, from 90°",
+        legend="upper left",
+    )
+    starts = {
+        degrees: Look(label=f"from {degrees}°", colour=colour, marker=marker)
+        for degrees, colour, marker in zip(STARTS, (BLUE, ORANGE, GREEN, RED), "ovsD", strict=True)
+    }
+    gain = "gain of energy over that of the start [1]"
+    right = Panel(
+        x=replace(STEP, column="x"),
+        y=Axis(column="energy_gain", label=gain, log=True, least=1e-17, limits=(1e-17, 1e-6)),
+        marks=(
+            Curves(rows=tables["outcomes"].query("model == @family.DEFAULT"), looks=starts, by="y"),
+            Level(at=1e-8, colour=RED),
+        ),
+        legend={"loc": "upper left", "ncols": 2},
+    )
+    return sheet(7.6, 3.2, [[left, right]])
 
 
 STEP_SIZE = family.study(

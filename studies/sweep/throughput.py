@@ -19,7 +19,8 @@ import pyarrow.parquet as pq
 from matplotlib.figure import Figure
 
 from studies.engine.study import Answer, Finding, Part, Study, Tables, absent, lacking
-from studies.record.style import BLUE, GREEN, ORANGE, page
+from studies.record.panels import Axis, Curves, Panel, sheet
+from studies.record.style import BLUE, GREEN, ORANGE, Look
 from studies.sweep.design_space import SPACE
 from studies.sweep.read import plan_of
 from studies.sweep.run import sweep
@@ -69,28 +70,32 @@ def _timed(kind: str, count: int) -> Answer:
 
 def _figure(tables: Tables) -> Figure:
     """Draw designs a second against the size of the sweep, and the time against the number of chunks."""
-    drawn = page(9.5, 4.4)
-    rate, cost = drawn.subplots(1, 2)
     colours = dict(zip(KINDS, (BLUE, ORANGE, GREEN), strict=True))
     timings, cuts = tables["timings"], tables["timings_of_chunks"]
-    for kind, count in [(kind, count) for kind in KINDS for count in WORKERS]:
-        mine = timings.query("workers == @kind and count == @count").sort_values("designs")
-        rate.semilogx(
-            mine["designs"], mine["designs"] / mine["wall_s"], color=colours[kind], marker="o",
-            linestyle="--" if count == 1 else "-", label=f"{count} {_named(kind, count)}",
-        )  # fmt: skip
-    cores = timings["cores"].iloc[0]
-    rate.set(xlabel="designs of the sweep [1]", ylabel="designs a second [1/s]", ylim=(0.0, None))
-    rate.set_title(f"Paths of 20 increments, n = 6, {cores} cores")
-    for kind, colour in colours.items():
-        mine = cuts[cuts["workers"] == kind].sort_values("chunks")
-        label = f"1 {_named(kind, 1)}: {1e3 * chunk_cost(cuts, kind):.1f} ms a chunk"
-        cost.semilogx(mine["chunks"], mine["wall_s"], color=colour, marker="o", label=label)
-    cost.set(xlabel="chunks [1]", ylabel="time [s]", ylim=(0.0, None))
-    cost.set_title(f"{CUT} designs in more chunks")
-    drawn.legend(*rate.get_legend_handles_labels(), loc="outside lower left", ncols=3)
-    cost.legend(loc="upper left")
-    return drawn
+    workers = {
+        (kind, count): Look(
+            label=f"{count} {_named(kind, count)}", colour=colours[kind], line="--" if count == 1 else "-",
+            marker="o",
+        )
+        for kind in KINDS
+        for count in WORKERS
+    }  # fmt: skip
+    costs = {kind: f"1 {_named(kind, 1)}: {1e3 * chunk_cost(cuts, kind):.1f} ms a chunk" for kind in KINDS}
+    rates = timings.assign(rate=timings["designs"] / timings["wall_s"])
+    rate = Panel(
+        x=Axis(column="designs", label="designs of the sweep [1]", log=True),
+        y=Axis(column="rate", label="designs a second [1/s]", limits=(0.0, None)),
+        marks=(Curves(rows=rates, looks=workers, by=("workers", "count")),),
+        title=f"Paths of 20 increments, n = 6, {timings['cores'].iloc[0]} cores",
+    )
+    looks = {kind: Look(label=label, colour=colours[kind], marker="o") for kind, label in costs.items()}
+    cost = Panel(
+        x=Axis(column="chunks", label="chunks [1]", log=True),
+        y=Axis(column="wall_s", label="time [s]", limits=(0.0, None)),
+        marks=(Curves(rows=cuts, looks=looks, by="workers"),),
+        title=f"{CUT} designs in more chunks",
+    )
+    return sheet(9.5, 4.4, [[rate, cost]], legend=3)
 
 
 def chunk_cost(cuts: pd.DataFrame, kind: str) -> float:

@@ -2,13 +2,16 @@
 
 import math
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
 
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from studies.engine.study import Claim, Ratio, Tables, records
-from studies.record.style import Look, page
+from studies.record.panels import Axis, Curves, Panel, sheet
+from studies.record.style import Look
 from studies.work_precision.series import SPLINE
 
 #: Tables that follow from others.
@@ -151,33 +154,34 @@ def diagram(
         rank: column by which the settings of a family are joined; styles: by series.
         part: what a path is made of: increments or steps; width: of the figure [inch].
     """
-    rows, figure = joined(tables), page(width, 1.6 + 2.1 * len(quantities))
-    panels = figure.subplots(len(quantities), 2, sharex="col", sharey="row")
-    costs = {"solve_s": f"time of the {part} [s]", "flops": "counted operations [1]"}
-    for line, (quantity, title) in zip(panels, quantities.items(), strict=True):
+    rows = joined(tables)
+    curves: dict[str, Any] = {"looks": styles, "by": "series", "family": "family", "along": rank}
+    time = Axis(column="solve_s", label=f"time of the {part} [s]", log=True)
+    work = Axis(column="flops", label="counted operations [1]", log=True)
+    lines = []
+    for quantity, title in quantities.items():
         shown = rows[rows[f"error_{quantity}"] >= margin * rows[f"reference_{quantity}"]]
-        for panel, cost in zip(line, costs, strict=True):
-            _curves(panel, shown, f"error_{quantity}", cost, rank, styles)
-            panel.set(xscale="log", yscale="log")
-        line[0].set_ylabel(title)
-    for panel, title in zip(panels[-1], costs.values(), strict=True):
-        panel.set_xlabel(title)
-    handles, labels = panels[0, 0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside lower center", ncols=3)
-    return figure
+        counted = shown[shown["flops"].notna()]
+        y = Axis(column=f"error_{quantity}", label=title, log=True)
+        timed = Panel(x=time, y=y, marks=(Curves(rows=shown[shown["solve_s"].notna()], **curves),))
+        named = Families(counted, rank, styles)
+        lines.append((timed, Panel(x=work, y=y, marks=(Curves(rows=counted, **curves), named))))
+    return sheet(width, 1.6 + 2.1 * len(quantities), lines, legend=3)
 
 
-def _curves(
-    panel: Axes, rows: pd.DataFrame, error: str, cost: str, rank: str, styles: Mapping[str, Look]
-) -> None:
-    """Draw one curve a family of each series, of the rows that have both numbers, in the order of `rank`."""
-    known = rows[rows[error].notna() & rows[cost].notna()].sort_values(rank)
-    for name, look in styles.items():
-        for place, (_, mine) in enumerate(known[known["series"] == name].groupby("family", sort=False)):
-            label = {} if place == 0 else {"label": None}
-            panel.plot(mine[cost], mine[error], **(look.keywords() | label))
-            if cost == "flops" and mine["family"].iloc[0] != "all":
-                panel.annotate(
-                    mine["family"].iloc[0].removeprefix("n = "), (mine[cost].iloc[0], mine[error].iloc[0]),
-                    (6, 4), textcoords="offset points", ha="center", fontsize=7, color=look.colour,
-                )  # fmt: skip
+@dataclass(frozen=True)
+class Families:
+    """The names of families at the coarsest setting of each, which stands first in the order of a column."""
+
+    rows: pd.DataFrame
+    rank: str
+    styles: Mapping[str, Look]
+
+    def draw(self, panel: Axes, x: Axis, y: Axis) -> None:
+        """Write the names."""
+        named = self.rows[self.rows["family"] != "all"].sort_values(self.rank)
+        for (series, family), mine in named.groupby(["series", "family"], sort=False):
+            panel.annotate(
+                str(family).removeprefix("n = "), (mine[x.column].iloc[0], mine[y.column].iloc[0]), (6, 4),
+                textcoords="offset points", ha="center", fontsize=7, color=self.styles[str(series)].colour,
+            )  # fmt: skip

@@ -8,12 +8,12 @@ work is counted from sizes (see `work`).
 """
 
 import math
+from dataclasses import replace
 from functools import cache
 from typing import Any
 
 import numpy as np
 import pandas as pd
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from studies.answers.adapters import answer_release, answer_static
@@ -22,7 +22,8 @@ from studies.answers.settings import FeSettings, SplineSettings
 from studies.baselines.variants import missing
 from studies.cases.problem import named_case
 from studies.engine.study import Answer, Claim, Part, Study, Tables
-from studies.record.style import BASES, BLUE, GREEN, page
+from studies.record.panels import CONTROL_POINTS, Axis, Curves, Panel, Slope, sheet
+from studies.record.style import BASES, BLUE, GREEN, Look
 from studies.work_precision.equal_error import diagram, digits, finer, joined, less
 from studies.work_precision.members import THEORIES, Limit, Member, limit_of_theory, path_errors
 from studies.work_precision.series import ELEMENTS, SPLINE, Series, looks, other_series, own_series
@@ -33,6 +34,9 @@ MARGIN = 10.0
 ERRORS = ("error_trajectory", "error_torque")
 #: Errors at which models are compared.
 TARGETS = (1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8)
+
+#: Powers of the control points that work is held to, and their lines.
+POWERS = ((1, ":"), (3, "--"))
 
 #: Errors at which the two models are compared, and how it is said.
 COMPARED = (1e-3, 1e-4, 1e-6)
@@ -180,37 +184,24 @@ def _of_basis(table: pd.DataFrame, basis: str) -> pd.DataFrame:
 
 def _scaling_figure(tables: Tables) -> Figure:
     """Draw time and counted work of one Newton iteration over the control points."""
-    drawn = page(9.5, 3.8)
-    timed, counted = drawn.subplots(1, 2)
-    styles = {
-        "bezier": ("Bézier curve, condensed", BLUE, "x-"),
-        "bspline": ("cubic B-spline, sparse from n = 24 on", GREEN, "o-."),
+    looks = {
+        "bezier": Look(label="Bézier curve, condensed", colour=BLUE, marker="x"),
+        "bspline": Look(label="cubic B-spline, sparse from n = 24 on", colour=GREEN, line="-.", marker="o"),
     }
-    for basis, (label, colour, line) in styles.items():
-        times, flops = (_of_basis(tables[name], basis) for name in ("scaling_of_time", "scaling"))
-        n = times["control_points"].to_numpy(float)
-        timed.loglog(n, 1e6 * times["iteration_s"], line, color=colour, label=label)
-        total = flops["assembly_flops"] + flops["factorisation_flops"]
-        counted.loglog(n, total, line, color=colour, label=label)
-    counts = sorted(set(tables["scaling"]["control_points"]))
-    for panel in (timed, counted):
-        _slopes(panel, counts[0], counts[-1])
-        panel.set_xlabel("control points a strip, n")
-        panel.set_xticks(counts, labels=[str(each) for each in counts])
-        panel.minorticks_off()
-    timed.set_ylabel("time of one iteration [µs]")
-    counted.set_ylabel("operations of one iteration [1]")
-    timed.legend()
-    return drawn
-
-
-def _slopes(panel: Axes, first: int, last: int) -> None:
-    """Draw lines of slope 1 and 3 from the lower left, within the panel."""
-    low, high = panel.get_ylim()
-    for power, line in ((1, ":"), (3, "--")):
-        n = np.array([first, min(last, first * (high / low) ** (1.0 / power))])
-        panel.plot(n, low * (n / first) ** power, line, color="#888888", linewidth=0.9, label=f"n^{power}")
-    panel.set_ylim(low, high)
+    timed, counted = tables["scaling_of_time"], tables["scaling"]
+    counted = counted.assign(flops=counted["assembly_flops"] + counted["factorisation_flops"])
+    time = Axis(column="iteration_s", label="time of one iteration [µs]", factor=1e6, log=True)
+    work = Axis(column="flops", label="operations of one iteration [1]", log=True)
+    panels = []
+    for rows, y in ((timed, time), (counted, work)):
+        x, span = (
+            replace(CONTROL_POINTS, log=True),
+            (rows["control_points"].min(), rows["control_points"].max()),
+        )
+        start = (span[0], 0.8 * y.of(rows).min())
+        slopes = [Slope(through=start, power=p, span=span, label=f"n^{p}", line=line) for p, line in POWERS]
+        panels.append(Panel(x=x, y=y, marks=(Curves(rows=rows, looks=looks, by="basis"), *slopes)))
+    return sheet(9.5, 3.8, [panels], legend=4)
 
 
 STUDY = Study(

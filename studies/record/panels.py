@@ -1,0 +1,318 @@
+"""Panels of figures: curves of tables over axes, with levels, slopes and doubt, alike in every study.
+
+A study says of a panel what stands along its axes and which marks are drawn over them; `sheet` puts panels on
+a page. What no other figure has, a study draws itself, by a function of matplotlib's axes in a panel's place.
+"""
+
+import math
+from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any, Protocol
+
+import numpy as np
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure, SubFigure
+
+from studies.record.style import Look, page
+
+#: Colour of levels and slopes, and of the words beside them.
+MARK = "#444444"
+#: Beyond this a logarithmic axis has no marks within its decades: hundreds that say nothing.
+CROWDED = 1e4
+#: What words beside a mark stand on, so that curves behind them do not disturb.
+BACKGROUND = {"facecolor": "white", "edgecolor": "none", "pad": 0.5, "alpha": 0.85}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Axis:
+    """What stands along an axis of a panel.
+
+    Attributes:
+        column: of the tables that are drawn; factor: from its unit to that of the label.
+        log: whether it is logarithmic. Sizes are drawn then, without a sign, and nothing of what is nought.
+        least: smaller sizes are drawn here.
+        limits: lowest and highest value, None for those of the curves.
+        ticks: the only ones; each: or a tick at every so manieth value of the column, 1 for all.
+        names: what the column has in place of numbers, from the top, or from the left, on.
+    """
+
+    column: str
+    label: str
+    factor: float = 1.0
+    log: bool = False
+    least: float = 0.0
+    limits: tuple[float | None, float | None] = (None, None)
+    ticks: Iterable[float] = ()
+    each: int = 0
+    names: Sequence[str] = ()
+
+    def of(self, rows: pd.DataFrame) -> pd.Series:
+        """Return what is drawn of rows."""
+        if self.names:
+            return rows[self.column].map({name: place for place, name in enumerate(self.names)})
+        values = self.factor * rows[self.column]
+        if not self.log:
+            return values
+        sizes = values.abs().clip(lower=self.least)
+        return sizes.where(sizes > 0.0)
+
+    def apply(self, panel: Axes, name: str, values: Iterable[float]) -> None:
+        """Give the axis of that name, x or y, its looks, once the values along it are drawn."""
+        ticks = list(self.ticks) or (sorted(set(values))[:: self.each] if self.each else [])
+        if ticks:
+            words = {"labels": [f"{tick:g}" for tick in ticks]} if self.log and self.each else {}
+            getattr(panel, f"set_{name}ticks")(ticks, **words)
+            getattr(panel, f"{name}axis").minorticks_off()
+        panel.set(**{f"{name}label": self.label})
+        if self.limits != (None, None):  # which would keep those of panels that share it from growing
+            panel.set(**{f"{name}lim": self.limits})
+        if self.names:
+            getattr(panel, f"set_{name}ticks")(range(len(self.names)), labels=self.names)
+            last = len(self.names) - 0.4
+            panel.set(**{f"{name}lim": (last, -0.6) if name == "y" else (-0.6, last)})
+        low, high = getattr(panel, f"get_{name}lim")()
+        if self.log and high > CROWDED * low:
+            getattr(panel, f"{name}axis").minorticks_off()
+
+
+#: Axes that many figures have.
+ROTATION = Axis(column="rotation_rad", label="rotation [deg]", factor=180.0 / math.pi, ticks=range(0, 91, 15))
+AMPLITUDE = replace(ROTATION, column="amplitude_rad", label="amplitude of the swing [deg]")
+TIME = Axis(column="time_s", label="time [ms]", factor=1e3)
+CONTROL_POINTS = Axis(column="control_points", label="control points a strip, n", each=1)
+MESH = Axis(column="elements", label="elements a strip", log=True, each=1)
+STEP = Axis(column="step_s", label="step [s]", log=True)
+
+
+class Mark(Protocol):
+    """What is drawn in a panel."""
+
+    def draw(self, panel: Axes, x: Axis, y: Axis) -> None:
+        """Draw it over these axes."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Curves:
+    """Curves of a table, one a look.
+
+    Attributes:
+        looks: of each curve, by the value of the column `by`, or by the values of several; or the look of all
+            rows as one curve.
+        family: column whose values have a curve each in the same look.
+        along: column in whose order points are joined, x by default.
+        y: column in place of the axis's.
+        faint: whether marks alone are drawn, faintly and without a name.
+        more: of `Axes.plot`.
+    """
+
+    rows: pd.DataFrame
+    looks: Mapping[Any, Look] | Look
+    by: str | Sequence[str] = "formulation"
+    family: str = ""
+    along: str = ""
+    y: str = ""
+    faint: bool = False
+    more: Mapping[str, Any] | None = None
+
+    def draw(self, panel: Axes, x: Axis, y: Axis) -> None:
+        """Draw the curves."""
+        upright = replace(y, column=self.y or y.column)
+        for look, rows in self._curves():
+            ordered = rows.sort_values(self.along or x.column, kind="stable")
+            how = look.keywords() | dict(self.more or {})
+            if self.faint:
+                how |= {"linestyle": "", "alpha": 0.35, "label": None}
+            panel.plot(x.of(ordered), upright.of(ordered), **how)
+
+    def _curves(self) -> Iterable[tuple[Look, pd.DataFrame]]:
+        """Yield the rows of every curve with its look, which has a name where it is first drawn."""
+        looks = self.looks if isinstance(self.looks, Mapping) else {None: self.looks}
+        for key, look in looks.items():
+            mine = self.rows if key is None else self.rows[self._is(key)]
+            families = mine.groupby(self.family, sort=False) if self.family else [("", mine)]
+            for place, (_, rows) in enumerate(families):
+                if len(rows):
+                    yield (look if place == 0 else replace(look, label="_")), rows
+
+    def _is(self, key: Hashable) -> Any:
+        """Return which rows are of a look."""
+        if isinstance(self.by, str):
+            return self.rows[self.by] == key
+        return (self.rows[list(self.by)] == key).all(axis=1)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Level:
+    """A line across a panel, or up where `upright`: a bound, what the paper has, a number to compare with.
+
+    Attributes:
+        words: beside it; label: or in the legend.
+        place: of the words over the line [of the width, or height]: beyond one half they end there, at 1 they
+            stand beside the panel.
+    """
+
+    at: float
+    words: str = ""
+    label: str = "_"
+    colour: str = MARK
+    line: str = "-"
+    upright: bool = False
+    place: float = 0.01
+
+    def draw(self, panel: Axes, x: Axis, y: Axis) -> None:
+        """Draw the level."""
+        line = panel.axvline if self.upright else panel.axhline
+        line(self.at, color=self.colour, linestyle=self.line, linewidth=0.9, label=self.label)
+        if self.words:
+            beside = self.place >= 1.0
+            panel.annotate(
+                self.words, (self.place, self.at), (2, 0) if beside else (0, 2), ("axes fraction", "data"),
+                "offset points", ha="right" if 0.5 < self.place < 1.0 else "left",
+                va="center" if beside else "bottom", fontsize=8, color=self.colour, bbox=BACKGROUND,
+            )  # fmt: skip
+
+
+@dataclass(frozen=True, kw_only=True)
+class Slope:
+    """What goes with a power of x, over a span of x through a point: an order.
+
+    It comes after what it is held against, and leaves the limits of the panel as they are.
+    """
+
+    through: tuple[float, float]
+    power: float
+    span: tuple[float, float]
+    label: str
+    line: str = ":"
+
+    def draw(self, panel: Axes, x: Axis, y: Axis) -> None:
+        """Draw the slope, within what else is drawn."""
+        at, value = self.through
+        ends, limits = np.array(self.span), panel.get_ylim()
+        panel.plot(
+            ends, value * (ends / at) ** self.power, self.line, color=MARK, linewidth=0.9, label=self.label
+        )
+        panel.set_ylim(limits)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Words:
+    """Words beside a point of the axes, or at a place of the panel, in parts of it, where `placed`.
+
+    Attributes:
+        by: how far from there [pt]; side: of the words that is there, left or right; turned: written upwards.
+    """
+
+    text: str
+    at: tuple[float, float]
+    by: tuple[float, float] = (0.0, 0.0)
+    colour: str = MARK
+    side: str = "left"
+    turned: bool = False
+    placed: bool = False
+
+    def draw(self, panel: Axes, x: Axis, y: Axis) -> None:
+        """Write the words."""
+        panel.annotate(
+            self.text, self.at, self.by, "axes fraction" if self.placed else "data", "offset points",
+            ha=self.side, va="top" if self.turned else "baseline", rotation=90 if self.turned else 0,
+            color=self.colour, fontsize=8,
+        )  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Doubt:
+    """How uncertain the reference is that errors are held against [of the axis y]: shaded below."""
+
+    level: float
+
+    def draw(self, panel: Axes, x: Axis, y: Axis) -> None:
+        """Shade what lies below."""
+        panel.set_ylim(bottom=self.level / 10.0)
+        panel.axhspan(self.level / 1e3, self.level, color="#eeeeee", zorder=0)
+        panel.annotate(
+            "uncertainty of the reference", (0.98, self.level), (0, -3), ("axes fraction", "data"),
+            "offset points", ha="right", va="top", fontsize=8, color="#666666",
+            bbox=BACKGROUND | {"facecolor": "#eeeeee"},
+        )  # fmt: skip
+
+
+@dataclass(frozen=True, kw_only=True)
+class Panel:
+    """Marks over two axes.
+
+    Attributes:
+        legend: where a legend of its own stands, or how, as of `Axes.legend`; none without.
+    """
+
+    x: Axis
+    y: Axis
+    marks: Sequence[Mark]
+    title: str = ""
+    legend: str | Mapping[str, Any] = ""
+
+    def __call__(self, panel: Axes) -> None:
+        """Draw it all."""
+        panel.set(xscale="log" if self.x.log else "linear", yscale="log" if self.y.log else "linear")
+        for mark in self.marks:
+            mark.draw(panel, self.x, self.y)
+        rows = [mark.rows for mark in self.marks if isinstance(mark, Curves)]
+        for name, axis in (("x", self.x), ("y", self.y)):
+            axis.apply(panel, name, (value for some in rows for value in axis.of(some).dropna()))
+        panel.set_title(self.title)
+        if self.legend:
+            panel.legend(**({"loc": self.legend} if isinstance(self.legend, str) else self.legend))
+
+
+#: What stands in a place of a sheet.
+Drawn = Callable[[Axes], None]
+
+
+def sheet(
+    width: float, height: float, rows: Sequence[Sequence[Drawn]], *, title: str = "", legend: int = 0
+) -> Figure:
+    """Return the page with rows of panels; those with the same axis share it, and its name stands once.
+
+    Args:
+        width, height: as of `page` [inch]; title: of the whole.
+        legend: columns of the one below all panels, for all of them; 0 for none.
+    """
+    drawn = page(width, height)
+    columns = list(zip(*rows, strict=True))
+    shared_x = all(_same("x", column) for column in columns) and len(rows) > 1
+    along: Any = "all" if _same("x", [panel for row in rows for panel in row]) else "col"
+    shared_y = all(_same("y", row) for row in rows) and len(columns) > 1
+    across: Any = "row" if shared_y else "col" if all(_same("y", column) for column in columns) else "none"
+    grid = drawn.subplots(
+        len(rows), len(columns), squeeze=False, sharex=along if shared_x else "none", sharey=across
+    )
+    for line, draws in zip(grid, rows, strict=True):
+        for panel, draw in zip(line, draws, strict=True):
+            draw(panel)
+    for panel in grid[:-1].flat if shared_x else ():
+        panel.set_xlabel("")
+    for panel in grid[:, 1:].flat if shared_y else ():
+        panel.set_ylabel("")
+    if title:
+        drawn.suptitle(title)
+    if legend:
+        key(drawn, grid.flat, columns=legend)
+    return drawn
+
+
+def _same(name: str, draws: Sequence[Drawn]) -> bool:
+    """Whether panels have the same axis of that name."""
+    first = draws[0]
+    return isinstance(first, Panel) and all(
+        isinstance(draw, Panel) and getattr(draw, name) == getattr(first, name) for draw in draws
+    )
+
+
+def key(drawn: Figure | SubFigure, panels: Iterable[Axes], *, columns: int) -> None:
+    """Put one legend below a figure that names what its panels show, each once."""
+    handles: dict[str, Any] = {}
+    for panel in panels:
+        for handle, label in zip(*panel.get_legend_handles_labels(), strict=True):
+            handles.setdefault(label, handle)
+    drawn.legend(handles.values(), handles, loc="outside lower center", ncols=columns)
