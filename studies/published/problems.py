@@ -52,7 +52,7 @@ from studies.stability.questions import LIMIT, element_arc
 
 #: Fine enough that what is left is the model's, not its discretisation's.
 SETTINGS: dict[str, Settings] = {
-    "spline": SplineSettings(control_points=12),
+    "spline": SplineSettings(control_points=14),
     "fe": FeSettings(elements=40),
     "fe-shear": FeSettings(elements=80, element="reissner"),
 }
@@ -115,12 +115,17 @@ def _limit_points(arc: Arc, value: Value) -> float:
 
 
 def _load_at_rotation(arc: Arc, value: Value) -> float:
-    """Return the load at which the body has turned so far, between the states of the path."""
+    """Return the load at which the body has turned so far, between the states of the path.
+
+    Load and turn are both smooth over the way of the body; one over the other is steep where a column closes.
+    """
     turned = np.abs(arc.place[:, 2])
-    bent = turned > TURNED
     if not arc.reached or turned[-1] < math.radians(value.at):
         return math.nan
-    return float(CubicSpline(turned[bent], arc.load[bent])(math.radians(value.at)))
+    bent = turned > TURNED
+    way = np.cumsum(np.linalg.norm(np.diff(arc.place[bent], axis=0, prepend=arc.place[bent][:1]), axis=1))
+    found = CubicSpline(way, turned[bent]).solve(math.radians(value.at), extrapolate=False)
+    return float(CubicSpline(way, arc.load[bent])(found[0]))
 
 
 #: Turn from which a column counts as buckled [rad].

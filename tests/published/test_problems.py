@@ -1,11 +1,13 @@
 """Published problems: case files that say what is in print and where, and our answers beside it."""
 
+import math
 from types import SimpleNamespace
 from typing import Any
 
 import pandas as pd
 import pytest
 
+from studies.answers.settings import SplineSettings
 from studies.cases.document import CaseError
 from studies.commands import readme
 from studies.engine.answer import answered
@@ -22,6 +24,8 @@ from studies.published.case import (
     read_published,
 )
 from studies.published.problems import ours
+from studies.stability.frames import load_ratio
+from tests import gates
 
 
 @pytest.mark.parametrize("name", names())
@@ -97,6 +101,28 @@ def test_splines_meet_what_is_in_print(name):
     """Requirement: the spline's answers to problems of milliseconds are those in print."""
     for value in published(name).values:
         assert problems.met(value, ours(name, "spline", "beam", value), value.limits["beam"])
+
+
+def error_of_the_column(control_points):
+    """Largest relative error of the loads at the printed angles of the tip, by elliptic integrals."""
+    asked = SplineSettings(control_points=control_points)
+    with pytest.MonkeyPatch.context() as changed:
+        changed.setitem(problems.SETTINGS, "spline", asked)
+        problems._arc.cache_clear()
+        found = [(ours("column", "spline", "beam", value), value) for value in published("column").values]
+        problems._arc.cache_clear()
+    return max(abs(load / load_ratio(math.radians(value.at)) - 1.0) for load, value in found)
+
+
+def test_the_column_is_the_elastica_between_printed_digits():
+    """Requirement: what stands beside a printed load is off the exact one by the discretisation alone."""
+    gates.check("published_column", error_of_the_column(problems.SETTINGS["spline"].control_points))
+
+
+def test_gate_of_the_column_has_teeth():
+    """Requirement: fewer control points fail the gate."""
+    with pytest.raises(AssertionError, match="x the gate"):
+        gates.check("published_column", error_of_the_column(**gates.teeth("published_column")))
 
 
 @pytest.mark.slow
