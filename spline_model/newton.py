@@ -145,7 +145,7 @@ class Pattern:
             raise np.linalg.LinAlgError("the tangent is singular") from None
         pivots = factors.U.diagonal()
         left_diagonal = not np.array_equal(factors.perm_r, factors.perm_c)
-        # a pivot that is the entries' round-off has the sign of chance, as where a straight strip has no stiffness
+        # a pivot that is round-off has the sign of chance, as where a straight strip has no stiffness
         by_chance = np.abs(pivots).min() < np.finfo(float).eps * np.abs(softened.data).max()
         if left_diagonal or by_chance:
             return int((np.linalg.eigvalsh(softened.toarray()) < 0.0).sum())

@@ -74,7 +74,7 @@ def test_a_dead_moment_changes_no_frequency(settings):
     """Requirement: a constant moment is taken by the drive and leaves the modes as they are."""
     loads = frequencies(loaded.design("applied_moment", -ROTATION), settings)
     none = frequencies(loaded.pivot(loaded.scene(), -ROTATION), settings)
-    # an eigenvalue carries the round-off of the largest, that of the strips' stretching; processors differ by 1e-12
+    # an eigenvalue carries the round-off of the largest, that of the strips' stretching
     assert loads[0] == pytest.approx(none[0], rel=1e-10)
 
 
