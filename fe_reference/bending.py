@@ -14,6 +14,8 @@ function of w = x^4 = (c kappa)^2, and with f_1 = w f'(w) and f_2 = w^2 f''(w)
     M = D kappa (1 - nu^2 g f_M),            f_M = f + f_1,
     dM/dkappa = D (1 - nu^2 g f_K),          f_K = f + 5 f_1 + 2 f_2.
 
+All three are read off a table over x^2 = c |kappa|, to round-off and at one cost for any strip.
+
 Sources: D. G. Ashwell, J. Roy. Aeronaut. Soc. 54 (1950) 708-715; B. Audoly, S. Neukirch, J. Mech. Phys.
 Solids (2021).
 """
@@ -21,29 +23,20 @@ Solids (2021).
 import math
 
 import numpy as np
-from numpy.polynomial import chebyshev
+from numpy.polynomial import Chebyshev, Polynomial, chebyshev
 
 from .arrays import Array, inlined, kernel
 
 Shares = tuple[float, float, float]
 Bent = tuple[float, float, float, float, float, float]
 
-#: Everywhere f, f_M and f_K are polynomials of TERMS terms: in w below NEAR; in pieces of x, PIECES a unit, up to
-#: FAR, from where e^-x does not count; in 1/x beyond.
-TERMS, NEAR, FAR, PIECES = 8, 1.0, 37.0, 12
-
-
-def _series() -> Array:
-    """Return the power series of f = 2 P / Q in w, P = sum w^k / (4 k + 2)! and Q = sum w^k / (4 k + 1)!."""
-    p, q = (np.array([1.0 / math.factorial(4 * k + more) for k in range(TERMS)]) for more in (2, 1))
-    f = np.zeros(TERMS)
-    for k in range(TERMS):
-        f[k] = 2.0 * p[k] - q[k:0:-1] @ f[:k]
-    return f
+#: f, f_M and f_K are polynomials of TERMS terms in pieces of x^2, PIECES a unit, up to x = FAR, from where
+#: e^-x does not count, and in 1/x beyond.
+TERMS, PIECES, FAR = 8, 3, 37
 
 
 def _closed(x: Array) -> Array:
-    """Return f, f_M and f_K (3, ...) at x, free of cancellation and of large numbers.
+    """Return f, f_M and f_K (3, ...) at x > 0, free of cancellation and of large numbers.
 
     As w f' = x f_x / 4, f_M = 3 f / 4 + g and f_K = 3 f / 8 + 5 g / 2 + x g_x / 2 with
     g = sinh x sin x / (sinh x + sin x)^2.
@@ -58,20 +51,16 @@ def _closed(x: Array) -> Array:
 
 
 def _table() -> Array:
-    """Return the coefficients of the polynomials (pieces, 3, TERMS), the lowest first.
-
-    The first is in w, the last in 1/x, those between in t from -1 to 1 over their pieces of x.
-    """
-    count, k = round((FAR - NEAR) * PIECES), np.arange(TERMS)
-    table = np.zeros((count + 2, 3, TERMS))
-    table[0] = np.array([np.ones(TERMS), k + 1, (k + 1) * (2 * k + 1)]) * _series()
-    table[-1, :, 1] = 2.0, 1.5, 0.75
-    t = chebyshev.chebpts1(TERMS)
-    values = _closed(NEAR + (np.arange(count) + 0.5 * (1.0 + t[:, None])) / PIECES)
+    """Return the coefficients of the polynomials (pieces, 3, TERMS), the lowest first, in t from 0 to 1 over
+    a piece of x^2; the last are those in 1/x."""
+    pieces = np.arange(PIECES * FAR**2)
+    t, table = chebyshev.chebpts1(TERMS), np.zeros((len(pieces) + 1, 3, TERMS))
+    values = _closed(np.sqrt((pieces + 0.5 * (1.0 + t[:, None])) / PIECES))
     fitted = chebyshev.chebfit(t, values.transpose(1, 0, 2).reshape(TERMS, -1), TERMS - 1)
-    powers = [np.polynomial.Chebyshev.basis(n).convert(kind=np.polynomial.Polynomial).coef for n in k]
-    for n, basis in enumerate(powers):
-        table[1:-1, :, : n + 1] += fitted[n].reshape(3, count).T[:, :, None] * basis
+    for k, parts in enumerate(fitted):
+        powers = Chebyshev.basis(k, domain=[0.0, 1.0]).convert(kind=Polynomial).coef
+        table[:-1, :, : k + 1] += parts.reshape(3, -1).T[:, :, None] * powers
+    table[-1, :, 1] = 2.0, 1.5, 0.75
     return table
 
 
@@ -88,15 +77,15 @@ ROOT_3 = math.sqrt(3.0)
 @inlined(fastmath={"contract"})
 def _left_by_curvature(curl: Array, reach: float, curvature: float) -> Shares:
     """Return f, f_M and f_K at a curvature [1/m] of a section with the `reach` c [m], 0 for f = 1."""
+    if reach == 0.0:
+        return 1.0, 1.0, 1.0
     square = reach * abs(curvature)
-    piece, t = 0, square * square
-    if not t < NEAR:
-        x = math.sqrt(square)
-        place = PIECES * (x - NEAR)
-        piece, t = len(curl) - 1, 1.0 / x
-        if x < FAR:
-            piece = 1 + int(place)
-            t = 2.0 * (place - piece) + 1.0
+    place, last = PIECES * square, len(curl) - 1
+    if place < last:
+        piece = int(place)
+        t = place - piece
+    else:
+        piece, t = last, 1.0 / math.sqrt(square)
     row = curl[piece]
     return _polynomial(row[0], t), _polynomial(row[1], t), _polynomial(row[2], t)
 
@@ -135,9 +124,15 @@ def bent_element(curl: Array, row: Array, rate: float, first: float, second: flo
     u_1, m_1, s_1 = section(curl, row[8], row[9], row[11], even - odd)
     u_2, m_2, s_2 = section(curl, row[8], row[10], row[11], even + odd)
     equal, unlike = 0.5 * (m_2 + m_1), 0.5 * ROOT_3 * (m_2 - m_1)
-    both, apart = rate * (s_2 + s_1), ROOT_3 * rate * (s_2 - s_1)
-    slopes = (2.0 * both - apart, both, 2.0 * both + apart)
-    return 0.5 * row[2] * (u_1 + u_2), unlike - equal, unlike + equal, slopes[0], slopes[1], slopes[2]
+    k_11, k_12, k_22 = _slopes(rate, s_1, s_2)
+    return 0.5 * row[2] * (u_1 + u_2), unlike - equal, unlike + equal, k_11, k_12, k_22
+
+
+@inlined(fastmath={"contract"})
+def _slopes(rate: float, one: float, two: float) -> Shares:
+    """Return the slopes 11, 12, 22 of the end moments for the tangent rigidities at the two points."""
+    both, apart = rate * (two + one), ROOT_3 * rate * (two - one)
+    return 2.0 * both - apart, both, 2.0 * both + apart
 
 
 @kernel()
@@ -154,9 +149,13 @@ def rooted_element(
         least: Newton step [rad] that need not be made any more: ROUND_OFF for moments, 0 for slopes, which
             are those before the last step.
     """
-    c_1, c_2, last, turn_1, turn_2 = row[12], row[13], 0.0, first, second  # from the straight element
+    c_1, c_2, last, turn_1, turn_2 = row[12], row[13], 0.0, first, second
+    energy, m_1, m_2 = 0.0, 0.0, 0.0  # from the straight element, whose sections curl freely
+    k_11, k_12, k_22 = _slopes(rate, row[8] * (1.0 - row[9]), row[8] * (1.0 - row[10]))
     for n in range(STEPS):
-        energy, m_1, m_2, k_11, k_12, k_22 = bent_element(curl, row, rate, first - turn_1, second - turn_2)
+        if n > 0:
+            bent = bent_element(curl, row, rate, first - turn_1, second - turn_2)
+            energy, m_1, m_2, k_11, k_12, k_22 = bent
         r_1, r_2 = c_1 * (m_1 + natural) - turn_1, c_2 * (m_2 - natural) - turn_2
         a, b, c, d = 1.0 + c_1 * k_11, c_1 * k_12, c_2 * k_12, 1.0 + c_2 * k_22
         over = 1.0 / (a * d - b * c)

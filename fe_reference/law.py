@@ -47,7 +47,7 @@ from .bending import ROUND_OFF, STEPS, bent_element, rooted_element, section
 Energies = tuple[float, float, float]
 #: The step of the displacement over an element [m], and the turns of its end sections [rad].
 Moved = tuple[float, float, float, float]
-#: What `elements` is given and what it writes.
+#: What `elements` is given, and what it writes.
 Given = tuple[bool, Array, Indices, Array]
 Written = tuple[Array, Array, Array, Array]
 #: What is asked of the law: forces, with the tangent, or with the part of it that comes from the change of
@@ -58,32 +58,34 @@ QUADRATIC = 1e-9
 
 
 @inlined()
-def _turn(given: Given, u: Array, ends: Array) -> None:
-    """Write of every element how far its ends are turned from the chord, and one from the other [rad]."""
-    _, table, first, _ = given
-    for e in range(len(first)):
-        row, f, i = table[e], ends[e], first[e]
-        j, turn_1, turn_2 = i + 1, u[i, 2], u[i + 1, 2]
+def _turns(given: Given, u: Array, ends: Array) -> None:
+    """Write how far both ends are turned from the chord, and the second from the first [rad].
+
+    In `ends` they stand where the moments and the largest turn come.
+    """
+    _, table, nodes, _ = given
+    for e in range(len(nodes)):
+        row, f, i = table[e], ends[e], nodes[e]
+        j = i + 1
         x, y = row[0] + (u[j, 0] - u[i, 0]), row[1] + (u[j, 1] - u[i, 1])
         turn = math.atan2(row[0] * y - row[1] * x, row[0] * x + row[1] * y)
-        first_, second = turn_1 - turn, turn_2 - turn
+        first, second = u[i, 2] - turn, u[j, 2] - turn
         # less whole turns: nodes and chords may turn by any amount
-        first_ -= 2.0 * math.pi * math.floor(first_ / (2.0 * math.pi) + 0.5)
+        first -= 2.0 * math.pi * math.floor(first / (2.0 * math.pi) + 0.5)
         second -= 2.0 * math.pi * math.floor(second / (2.0 * math.pi) + 0.5)
-        f[2], f[3], f[4] = first_, second, turn_2 - turn_1
+        f[2], f[3], f[4] = first, second, u[j, 2] - u[i, 2]
 
 
 @inlined()
-def _bend(given: Given, share: float, asked: int, ends: Array, matrices: Array) -> float:
-    """Write the moments of the ends for their turns, and the larger of these; return the energy.
+def _moments(given: Given, share: float, asked: int, ends: Array, matrices: Array) -> float:
+    """Write the moments for the turns, and the largest of these; return the energy of bending.
 
-    Also the slopes of the moments in the turns, at their places in the tangents, if it is asked for.
+    Also the slopes of the moments in the turns, where they stand in the tangents, if it is asked for.
     """
     (_, table, _, curl), energy = given, 0.0
     for e in range(len(table)):
-        row, f = table[e], ends[e]
-        rate, natural = 1.0 / row[2], share * row[4] * row[7]
-        first, second, apart = f[2], f[3], f[4]
+        row, f, bend = table[e], ends[e], share * table[e, 7]
+        rate, natural, first, second, apart = 1.0 / row[2], row[4] * bend, f[2], f[3], f[4]
         if row[12] != 0.0 or row[13] != 0.0:
             least = ROUND_OFF if asked == FORCES else 0.0
             bent, slip_1, slip_2 = rooted_element(curl, row, rate, natural, first, second, least)
@@ -102,32 +104,34 @@ def _bend(given: Given, share: float, asked: int, ends: Array, matrices: Array) 
         f[2], f[3] = moment_1 + natural, moment_2 - natural
         # half the turn between the ends is more than the larger only where a node has gained a whole turn
         f[4] = max(abs(first), abs(second), 0.5 * abs(apart))
-        energy += bending + natural * (0.5 * share * row[7] * row[2] - apart)
+        energy += bending + natural * (0.5 * bend * row[2] - apart)
         if asked != FORCES:
-            h = matrices[e]
-            h[2, 2], h[2, 5], h[5, 5] = k_11, k_12, k_22
+            matrices[e, 2, 2], matrices[e, 2, 5], matrices[e, 5, 5] = k_11, k_12, k_22
     return energy
 
 
 @inlined()
-def _hold(given: Given, share: float, asked: int, u: Array, ends: Array, matrices: Array, h: Array) -> float:
-    """Write the force that holds the second node against the moments, and the tangent; return axial energy."""
-    (_, table, first, _), energy = given, 0.0
+def _forces(given: Given, share: float, asked: int, u: Array, written: Written) -> float:
+    """Write the force at the second node that balances both moments; return the energy of stretching.
+
+    Also the tangent, if it is asked for.
+    """
+    (_, table, first, _), (_, ends, matrices, h), energy = given, written, 0.0
     for e in range(len(first)):
         row, f, i = table[e], ends[e], first[e]
-        j, length_0 = i + 1, row[2]
-        step_x, step_y = u[j, 0] - u[i, 0], u[j, 1] - u[i, 1]
+        step_x, step_y = u[i + 1, 0] - u[i, 0], u[i + 1, 1] - u[i, 1]
         x, y = row[0] + step_x, row[1] + step_y
         length = math.sqrt(x * x + y * y)
         # (l^2 - l0^2) / (l + l0) from the displacements: no cancellation of two nearly equal lengths
-        strain = ((row[0] + x) * step_x + (row[1] + y) * step_y) / (length_0 * (length + length_0))
+        strain = ((row[0] + x) * step_x + (row[1] + y) * step_y) / (length + row[2]) / row[2]
         strain -= share * row[6]
-        axial, shear = row[3] * strain / length, (f[2] + f[3]) / (length * length)
+        axial, shear = row[3] * strain, (f[2] + f[3]) / (length * length)
+        energy += 0.5 * axial * row[2] * strain
+        axial /= length
         f[0], f[1] = axial * x + shear * y, axial * y - shear * x
-        energy += 0.5 * row[3] * length_0 * strain * strain
         if asked != FORCES:
             k_11, k_12, k_22 = matrices[e, 2, 2], matrices[e, 2, 5], matrices[e, 5, 5]
-            c, s, stretching = x / length, y / length, row[3] / length_0
+            c, s, stretching = x / length, y / length, row[3] / row[2]
             turning, mixed = (k_11 + 2.0 * k_12 + k_22) / (length * length), 0.0
             if asked == TANGENT:
                 turning, mixed = turning + axial, shear
@@ -143,8 +147,13 @@ def _hold(given: Given, share: float, asked: int, u: Array, ends: Array, matrice
 
 
 @kernel()
-def _reissner(curl: Array, row: Array, share: float, moved: Moved, asked: int, f: Array, h: Array) -> Energies:
-    """Write the same for the shear-deformable element."""
+def _reissner(
+    curl: Array, row: Array, share: float, moved: Moved, asked: int, f: Array, h: Array
+) -> Energies:
+    """Write the ends (5,) of a shear-deformable element; return bending, axial and shear energy.
+
+    Also the tangent (4, 4) in `moved`, if it is asked for.
+    """
     x, y, turn_1, turn_2 = moved
     length, half = row[2], 0.25 * (turn_1 + turn_2)
     sine, less = 2.0 * math.sin(half) * math.cos(half), 2.0 * math.sin(half) ** 2
@@ -222,11 +231,31 @@ def _condense(c_1: float, c_2: float, h: Array) -> None:
 
 
 @inlined()
+def _sheared(given: Given, share: float, asked: int, u: Array, written: Written) -> Energies:
+    """Write ends and tangents of all shear-deformable elements; return their energies."""
+    (_, table, first, curl), (_, ends, matrices, h) = given, written
+    bending, axial, sliding = 0.0, 0.0, 0.0
+    for e in range(len(first)):
+        i, f = first[e], ends[e]
+        j = i + 1
+        moved = (u[j, 0] - u[i, 0], u[j, 1] - u[i, 1], u[i, 2], u[j, 2])
+        if table[e, 12] != 0.0 or table[e, 13] != 0.0:
+            parts = _rooted(curl, table[e], share, moved, asked, f, h)
+        else:
+            parts = _reissner(curl, table[e], share, moved, asked, f, h)
+        bending, axial, sliding = bending + parts[0], axial + parts[1], sliding + parts[2]
+        if asked != FORCES:
+            _spread(h, matrices[e])
+    return bending, axial, sliding
+
+
+@inlined()
 def elements(given: Given, share: float, asked: int, u: Array, written: Written) -> Energies:
     """Evaluate all elements at once.
 
     Args:
-        given: whether they are Reissner's, the table (E, 14), first nodes (E,); the second is the next one.
+        given: whether they are Reissner's, the table (E, 14), first nodes (E,); the second is the next one;
+            CURL.
         share: of the natural strains that acts. asked: FORCES, TANGENT or MATERIAL.
         u (nodes, 3): displacements and turns.
         written: the force (nodes, 3) that holds the elements; ends (E, 5): force x, y [N] at the second node,
@@ -236,24 +265,13 @@ def elements(given: Given, share: float, asked: int, u: Array, written: Written)
     Returns:
         Bending, axial and shear energy [J].
     """
-    (shear, table, first, curl), (force, ends, matrices, h) = given, written
-    bending, axial, sliding = 0.0, 0.0, 0.0
+    (shear, _, first, _), (force, ends, matrices, _) = given, written
     if shear:
-        for e in range(len(first)):
-            i, f = first[e], ends[e]
-            j = i + 1
-            moved = (u[j, 0] - u[i, 0], u[j, 1] - u[i, 1], u[i, 2], u[j, 2])
-            if table[e, 12] != 0.0 or table[e, 13] != 0.0:
-                parts = _rooted(curl, table[e], share, moved, asked, f, h)
-            else:
-                parts = _reissner(curl, table[e], share, moved, asked, f, h)
-            bending, axial, sliding = bending + parts[0], axial + parts[1], sliding + parts[2]
-            if asked != FORCES:
-                _spread(h, matrices[e])
-    else:
-        _turn(given, u, ends)
-        bending = _bend(given, share, asked, ends, matrices)
-        axial = _hold(given, share, asked, u, ends, matrices, h)
+        energies = _sheared(given, share, asked, u, written)
+    else:  # in three passes: what takes long in an element waits for nothing of the one before
+        _turns(given, u, ends)
+        bending = _moments(given, share, asked, ends, matrices)
+        energies = (bending, _forces(given, share, asked, u, written), 0.0)
     for i in range(len(force)):
         force[i, 0] = force[i, 1] = force[i, 2] = 0.0
     for e in range(len(first)):
@@ -265,7 +283,7 @@ def elements(given: Given, share: float, asked: int, u: Array, written: Written)
         force[j, 0] += f[0]
         force[j, 1] += f[1]
         force[j, 2] += f[3]
-    return bending, axial, sliding
+    return energies
 
 
 @kernel()

@@ -88,7 +88,12 @@ class Structure:
         ends = self.attachments
         self.carried = (ends.node, ends.body, ends.offsets)
         first = np.ascontiguousarray(self.basis.mesh.t[0], dtype=np.int64)
-        self.given = (self.shear, self.elements.table(model.effects.find(PreStrain) or PreStrain()), first, CURL)
+        self.given = (
+            self.shear,
+            self.elements.table(model.effects.find(PreStrain) or PreStrain()),
+            first,
+            CURL,
+        )
         self.tables = (self.given, self.carried, self._weight())
         nodes = self.strips * self.stations
         self.work = (np.zeros((nodes, 3)), np.zeros((4, 4)))

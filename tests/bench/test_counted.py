@@ -11,6 +11,11 @@ import tracemalloc
 import numpy as np
 import pytest
 
+from fe_reference import bending
+from fe_reference.bending import ROUND_OFF, bent_element
+from fe_reference.effects import DEFAULT_EFFECTS
+from fe_reference.mechanism import cross_axis_pivot as element_pivot
+from fe_reference.structure import structure_of
 from spline_model import newton
 from spline_model.compile import compile_scene
 from spline_model.pivot import cross_axis_pivot
@@ -18,7 +23,7 @@ from spline_model.reduced.elements import Elements
 from spline_model.reduced.model import at_rest
 from spline_model.statics import solve_statics
 from studies.record.source import ROOT
-from tests.table_one import SIX
+from tests.table_one import SIX, TABLE_ONE
 
 FIRST_SOLVE = """
 from spline_model.pivot import cross_axis_pivot
@@ -84,3 +89,26 @@ def test_memory_does_not_grow_with_the_increments():
 
     # less than a byte an increment; compiled code cannot allocate at all, see `spline_model.strip.compiled`
     assert abs(beyond_the_answer(2000) - beyond_the_answer(20)) < 2000 - 20
+
+
+@pytest.mark.parametrize(("more", "evaluations"), [((), 1), (("clamped_width",), 1), (("anticlastic",), 2)])
+def test_turns_of_roots_take_few_evaluations_of_the_law(monkeypatch, more, evaluations):
+    """Requirement: the turns of an element's roots are exact after one evaluation of a linear law, and two
+    where sections flatten, as far as they turn in the reference pivot at 90 degrees."""
+    bare = {name: value for name, value in TABLE_ONE.items() if name not in ("area", "second_moment_of_area")}
+    pivot = element_pivot(
+        **bare,
+        width=0.01,
+        thickness=0.005,
+        elements=20,
+        effects=(*DEFAULT_EFFECTS, "root_compliance", *more),
+        parameters={"root_compliance": {"root": "monolithic"}},
+    )
+    _, table, _, curl = structure_of(pivot).given
+    asked = []
+    monkeypatch.setattr(bending, "bent_element", lambda *given: asked.append(given) or bent_element(*given))
+    bent, *turns = bending.rooted_element.py_func(
+        curl, table[0], 1.0 / table[0, 2], 0.0, 0.03, -0.015, ROUND_OFF
+    )
+    assert len(asked) == evaluations
+    np.testing.assert_allclose(turns, table[0, 12:] * bent[1:3], rtol=1e-14)

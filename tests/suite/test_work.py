@@ -90,12 +90,20 @@ def test_operations_of_an_element(monkeypatch):
         pi=np.pi, sqrt=Counted.sqrt, atan2=Counted.arctan2, floor=lambda value: np.floor(float(value))
     )
     monkeypatch.setattr(law, "math", plain)
-    (row,) = counting(structure_of(element_pivot(**TABLE_ONE, elements=1)).given[1][:1])
-    moved = counting(1e-3 * np.random.default_rng(3).normal(size=4))
+    monkeypatch.setattr(law, "_spread", law._spread.py_func)
+    structure = structure_of(element_pivot(**TABLE_ONE, elements=1))
+    shear, table, first, curl = structure.given
+    given, u = (
+        (shear, counting(table[:1]), first[:1], curl),
+        1e-3 * np.random.default_rng(3).normal(size=(2, 3)),
+    )
     done = []
     for asked in (law.FORCES, law.TANGENT):
-        room = np.empty(5, dtype=object), np.empty((4, 4), dtype=object)
-        done.append(operations(law._corotational.py_func, row, 1.0, tuple(moved), asked, *room))
+        ends, matrices, h = (np.empty(shape, dtype=object) for shape in ((1, 5), (1, 6, 6), (4, 4)))
+        turns = law._turns.py_func, given, u, ends
+        moments = law._moments.py_func, given, 1.0, asked, ends, matrices
+        forces = law._forces.py_func, given, 1.0, asked, u, (None, ends, matrices, h)
+        done.append(sum(operations(*each) for each in (turns, moments, forces)))
     assert done == [work.ELEMENT_FORCES, work.ELEMENT_FORCES + work.ELEMENT_TANGENT]
 
 
