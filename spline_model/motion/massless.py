@@ -40,7 +40,8 @@ POOR = 0.1
 @part()
 def _stored(y, arrays):
     """The potential W at a state just assembled: stationary in the strips' coordinates and forces."""
-    bodies, strips, shape, local, space = arrays
+    bodies, strips, shape = arrays.bodies, arrays.strips, arrays.shape
+    local, space = arrays.local, arrays.space
     total = space.out[BENDING] + space.out[AXIAL] + space.out[DEAD]
     if strips.measure == MATERIAL:
         own, modes = 2 * shape.order.size - 6, strips.compliance.shape[1]
@@ -57,7 +58,8 @@ def _look_ahead(poses, arrays):
 
     What the strips were off their equilibrium raises W by g^2 / 2 d a pivot, and lowers it by gap^2 / 2 c.
     """
-    _, strips, shape, local, space = arrays
+    strips, shape = arrays.strips, arrays.shape
+    local, space = arrays.local, arrays.space
     for s in range(strips.roots.size):
         for i in range(2 * shape.order.size - 6):
             poses.energy[1] -= 0.5 * local.reduced[s, LAST, i] ** 2 / local.reduced[s, i, i]

@@ -78,7 +78,8 @@ def _refused(poses, arrays, scene_bodies):
     Every clamped end's tangent points forwards, |C'| is above a tenth of that at rest, and at held masses no
     direction lowers the energy: coordinates without mass would leave such a state at once.
     """
-    bodies, strips, shape, _, space = arrays
+    bodies, strips = arrays.bodies, arrays.strips
+    shape, space = arrays.shape, arrays.space
     own, modes = 2 * shape.order.size - 6, strips.compliance.shape[1]
     for s in range(strips.roots.size):
         at = bodies.rest.size + s * (own + modes) + own
@@ -118,7 +119,8 @@ def _settle(poses):
 @part()
 def _store(poses, masses, arrays, row):
     """A record: y, the bodies' rates and its energies, as of ``spline_model.motion.run.store``."""
-    bodies, strips, shape, local, _ = arrays
+    bodies, strips = arrays.bodies, arrays.strips
+    shape, local = arrays.shape, arrays.local
     y, rate, n = poses.y, poses.rate, shape.order.size
     own, modes = 2 * n - 6, strips.compliance.shape[1]
     kinetic = weight = 0.0

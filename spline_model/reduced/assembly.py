@@ -124,7 +124,8 @@ def assemble(y, load, arrays):
     y: the bodies' poses, then w and a of each strip. Returns the largest residual of the strips, in
     EI/L^2 and L, or inf for a singular strip; the bodies' own is RAW of ``space``.
     """
-    bodies, strips, shape, local, space = arrays
+    bodies, strips, shape = arrays.bodies, arrays.strips, arrays.shape
+    local, space = arrays.local, arrays.space
     poses, own = bodies.rest.size, 2 * shape.order.size - 6
     last = own + strips.coupled - strips.outer
     for i in range(bodies.load.size):
@@ -199,7 +200,8 @@ def recovered(s, own, share, strips, local, change, dw, da):
 @called()
 def move_strips(share, arrays, out):
     """w and a of all strips for the bodies' change, MOVE of the vectors (Q,), into out (Y,)."""
-    bodies, strips, shape, local, space = arrays
+    bodies, strips, shape = arrays.bodies, arrays.strips, arrays.shape
+    local, space = arrays.local, arrays.space
     n, modes, poses = shape.order.size, strips.compliance.shape[1], bodies.rest.size
     own, ends, move = 2 * n - 6, space.vectors[ENDS], space.vectors[MOVE]
     for s in range(strips.roots.size):

@@ -70,7 +70,8 @@ def _forward(own, last, end, coupled, outer, gain, h, b, gap, g):
 @part()
 def condense_again(arrays):
     """Add to FORCE what the strips' g, overwritten, and gaps are at the ends by the factors at hand."""
-    bodies, strips, shape, local, space = arrays
+    bodies, strips, shape = arrays.bodies, arrays.strips, arrays.shape
+    local, space = arrays.local, arrays.space
     force, modes, own = space.vectors[FORCE], strips.compliance.shape[1], 2 * shape.order.size - 6
     last = own + strips.coupled - strips.outer
     for s in range(strips.roots.size):
@@ -100,7 +101,8 @@ def respond(arrays, out):
 @part()
 def take_residual(y, load, arrays):
     """As ``assemble``, but for the tangent, which is kept. Of the strips the largest."""
-    bodies, strips, shape, local, space = arrays
+    bodies, strips, shape = arrays.bodies, arrays.strips, arrays.shape
+    local, space = arrays.local, arrays.space
     n, modes = shape.order.size, strips.compliance.shape[1]
     own, last, norm = 2 * n - 6, 2 * n - 6 + strips.coupled - strips.outer, 0.0
     begin(y, load, bodies, space)
@@ -210,7 +212,8 @@ def _turn_ends(s, at, own, last, rate, strips, local):
 @part()
 def _take_product(rate, load_rate, arrays):
     """H v of a state just evaluated by ``take_residual`` along a rate v (Y,): its g, gap and FORCE."""
-    bodies, strips, shape, local, space = arrays
+    bodies, strips, shape = arrays.bodies, arrays.strips, arrays.shape
+    local, space = arrays.local, arrays.space
     force, poses = space.vectors[FORCE], bodies.rest.size
     n, modes = shape.order.size, strips.compliance.shape[1]
     own, last = 2 * n - 6, 2 * n - 6 + strips.coupled - strips.outer
@@ -227,7 +230,8 @@ def _take_product(rate, load_rate, arrays):
 @part()
 def _is_firm(least, arrays):
     """Whether all pivots of strips and bodies are ``least`` or more."""
-    _, strips, shape, local, space = arrays
+    strips, shape = arrays.strips, arrays.shape
+    local, space = arrays.local, arrays.space
     firm, last = True, 2 * shape.order.size - 6 + strips.coupled - strips.outer
     for i in range(space.factors.shape[0]):
         firm = firm and abs(space.factors[i, i]) >= least

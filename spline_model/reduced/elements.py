@@ -50,7 +50,8 @@ def _gather(y, reaction, aim, load, arrays, out, gradient, hessian):
 
     Reactions (D,) of the drives, which hold their coordinates at ``aim`` (D,), are the last unknowns.
     """
-    bodies, strips, shape, local, _ = arrays
+    bodies, strips = arrays.bodies, arrays.strips
+    shape, local = arrays.shape, arrays.local
     n, count, modes, poses = shape.order.size, strips.roots.size, strips.compliance.shape[1], bodies.rest.size
     own = 2 * n - 6
     gradient[:] = 0.0

@@ -164,7 +164,8 @@ def turn(rotation, speed, y, arrays, tolerance, counters):
 
     speed (1,): of the rotation along the way that the tangent predicts, 1.
     """
-    bodies, strips, shape, _, space = arrays
+    bodies, strips = arrays.bodies, arrays.strips
+    shape, space = arrays.shape, arrays.space
     own, modes, before = 2 * shape.order.size - 6, strips.compliance.shape[1], space.states[Y]
     copy(y, before)
     # with the rotation as it is

@@ -171,7 +171,7 @@ def follow_all(share, start, route, judged, preload, arrays, tolerance, answer):
     rows, designs, growing, depth, place = share.rows, share.designs, share.growing, share.depth, share.place
     if rows.size == 0:
         return follow(start, route, judged, preload, arrays, tolerance, answer)
-    bodies, strips, _, local, _ = arrays
+    bodies, strips, local = arrays.bodies, arrays.strips, arrays.local
     states, centre, torque, stiffness, energy, strain, inertia, defect, iterations = share.results
     for i in range(share.begin, rows.size, share.stride):
         row = rows[i]

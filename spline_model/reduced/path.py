@@ -35,7 +35,7 @@ from spline_model.reduced.assembly import moment_defect
 from spline_model.reduced.beside import solve
 from spline_model.reduced.equilibrium import HALVED, conjugate, stiffness_of
 from spline_model.reduced.preload import act, swell
-from spline_model.strip.compiled import called, copy, part
+from spline_model.strip.compiled import called, copy, once, part
 
 Array = NDArray[np.float64]
 
@@ -67,7 +67,8 @@ def _predict(t, known, at, states):
 @called()
 def _accepted(y, known, arrays):
     """Whether a solved state is the continuation of the last one, with end tangents forward and no fold."""
-    bodies, strips, shape, _, space = arrays
+    bodies, strips = arrays.bodies, arrays.strips
+    shape, space = arrays.shape, arrays.space
     if not space.out[SLOWEST] > SLOWEST_SPEED:
         return False
     own, modes = 2 * shape.order.size - 6, strips.compliance.shape[1]
@@ -136,7 +137,7 @@ def _is_alone(route, bodies):
     return alone
 
 
-@part()
+@called()
 def _stiffness(alone, route, bodies, space):
     """Of the driven rotation at fixed loads, at a state just solved; nan without one."""
     if bodies.driven < 0:
@@ -146,7 +147,7 @@ def _stiffness(alone, route, bodies, space):
     return stiffness_of(bodies, space)
 
 
-@part()
+@once()
 def _solve_at(here, alone, route, preload, arrays, tolerance, counters):
     """Solve at a factor, into Y, from PREDICTED; the negative eigenvalues, or -1 where it fails."""
     y, predicted, held = arrays.space.states[Y], arrays.space.states[PREDICTED], arrays.bodies.held
@@ -158,11 +159,12 @@ def _solve_at(here, alone, route, preload, arrays, tolerance, counters):
     return solve(y, here * route.growth, alone, route.target, route.growth, arrays, tolerance, counters)
 
 
-@part()
+@once()
 def _is_balanced(here, first, judged, route, preload, arrays):
     """Whether the moments of a state just solved are in balance, and the potential has gained the work done
     since the last state, where there is one. If so, this is the last state then."""
-    bodies, strips, shape, local, space = arrays
+    bodies, strips, shape = arrays.bodies, arrays.strips, arrays.shape
+    local, space = arrays.local, arrays.space
     y, out, load = space.states[Y], space.out, here * route.growth
     slope, bend = conjugate(route.target, route.growth, bodies, y, space)
     out[DEFECT] = moment_defect(y, strips, shape, local, SMALLEST_MOMENT)
@@ -184,7 +186,7 @@ def _is_balanced(here, first, judged, route, preload, arrays):
     return True
 
 
-@part()
+@once()
 def _reach(row, known, inertia, alone, route, judged, preload, arrays, tolerance, counters):
     """Go on to a factor of the route in steps, of which one that fails is halved.
 
@@ -218,7 +220,7 @@ def _reach(row, known, inertia, alone, route, judged, preload, arrays, tolerance
             return known, -1
 
 
-@part()
+@called()
 def _store(row, negative, stiffness, space, answer):
     """Write a state that was reached into the answer."""
     out = space.out

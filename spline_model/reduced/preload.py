@@ -84,7 +84,8 @@ def swell(y, share, preload, arrays):
     Energies are squares of the share, so that differences over a whole share are exact. The state is
     condensed as ``assemble`` left it, its gradients are overwritten.
     """
-    bodies, strips, shape, local, space = arrays
+    bodies, strips, shape = arrays.bodies, arrays.strips, arrays.shape
+    local, space = arrays.local, arrays.space
     n, modes, poses = shape.order.size, strips.compliance.shape[1], bodies.rest.size
     own, last = 2 * n - 6, 2 * n - 6 + strips.coupled - strips.outer
     push, out, vectors, rate = preload.push, preload.out, space.vectors, space.states[RATE]
@@ -92,8 +93,7 @@ def swell(y, share, preload, arrays):
     for side in range(2):
         sign = 1.0 - 2.0 * side
         act(share + 0.5 * sign, preload, bodies, strips)
-        for i in range(out.size):
-            out[i] = 0.0
+        out[:] = 0.0
         for s in range(strips.roots.size):
             at = poses + s * (own + modes) + own
             evaluate_residual(s, y[at : at + modes], n, shape, strips, local, out)
