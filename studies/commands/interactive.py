@@ -205,13 +205,12 @@ def _source(arguments: argparse.Namespace):  # type: ignore[no-untyped-def]
         if arguments.camera != "browser":
             raise BadInput(f"--camera: got {arguments.camera} beside --film, expected one of them")
         made = FilmSource(demo_film()) if arguments.film == "demo" else VideoSource(Path(arguments.film))
-        return (lambda: made), "film"
+        return made, "film"
     if arguments.camera in ("browser", "none"):
         return None, arguments.camera
     if not arguments.camera.isdecimal():
         raise BadInput(f"--camera: got {arguments.camera}, expected browser, none or a number")
-    video = VideoSource(int(arguments.camera))
-    return (lambda: video), "server"
+    return VideoSource(int(arguments.camera)), "server"
 
 
 def _stream(path: Path | None):  # type: ignore[no-untyped-def]

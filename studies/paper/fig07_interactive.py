@@ -60,7 +60,7 @@ def _browsed() -> Answer:
     shots = source.shots()
     for _ in range(WATCHED):  # draw the film before it is timed
         next(shots)
-    with Server(Settings(camera="film", source=lambda: source)) as hosted, Browser() as browser:
+    with Server(Settings(camera="film", source=source)) as hosted, Browser() as browser:
         browser.open(hosted.address)
         browser.wait("window.studio?.drawn ? true : false", 60.0)
         snapshots = list(_snapshots(browser))

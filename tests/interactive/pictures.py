@@ -54,7 +54,7 @@ def main(folder: Path) -> None:
             _open(browser, hosted.address)
             browser.ask(f"{TYPE}('rotation in °', 30)")
             _take(browser, folder / "interactive_phone.png")
-    film = Server(Settings(camera="film", source=lambda: source))
+    film = Server(Settings(camera="film", source=source))
     with film as hosted, Browser(width=1366, height=768) as browser:
         _open(browser, hosted.address)
         browser.wait(f"studio.drawn.seq >= {FRAME}", 120.0)

@@ -84,7 +84,7 @@ def test_scrubbing_shows_the_pictures():
     """Requirement: back in the last minute the picture of that moment is shown under the strips, of the same
     size, for less than 20 kB a picture; a film offers no list of cameras."""
     made = FilmSource(film(frames=12, samples=2))
-    with Server(Settings(camera="film", source=lambda: made)) as hosted, Browser() as browser:
+    with Server(Settings(camera="film", source=made)) as hosted, Browser() as browser:
         load(browser, hosted)
         browser.wait("studio.ring.states.filter((s) => s.small).length > 12")
         browser.key("[")

@@ -90,7 +90,7 @@ def still():
     optics, picture = Optics(), film().picture(6)
     one = FilmSource(film(frames=1))
     one._kept[0] = encoded(picture, 95)
-    with Server(Settings(camera="film", source=lambda: one)) as hosted, Browser() as browser:
+    with Server(Settings(camera="film", source=one)) as hosted, Browser() as browser:
         load(browser, hosted)
         browser.wait(
             "studio.state.seq > 4 && studio.state.sight.state === 'found' && !studio.state.warnings.length"

@@ -39,7 +39,7 @@ def test_ten_minutes_of_film_do_not_grow(monkeypatch):
     monkeypatch.setattr(protocol, "BURST", 1e9)
     source = FilmSource(film(Optics(width=480, height=360, focal=450.0), frames=40, samples=3))
     source.rate = 1e6
-    with Server(Settings(camera="film", source=lambda: source)) as hosted:
+    with Server(Settings(camera="film", source=source)) as hosted:
         port, token = hosted.port, hosted.token
         address, origin = f"ws://127.0.0.1:{port}/ws", f"http://127.0.0.1:{port}"
         with connect(address, origin=origin, max_size=None, compression=None) as socket:

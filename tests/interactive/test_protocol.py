@@ -55,10 +55,11 @@ def test_bad_pictures_are_refused(message, text):
         ('{"do": "pose", "pose": [0, 0, NaN]}', "got no JSON"),
         ('{"do": "format_disk"}', "do: got 'format_disk'"),
         ('{"do": "tick", "path": "x"}', "'path': got an unknown field of tick"),
+        ('{"do": "tick", "t": 5}', "'t': got an unknown field of tick"),
         ('{"do": "tick"' + " " * 5000 + "}", "got 5014 characters"),
         ("[" * 4000, "got no JSON"),
     ],
-    ids=["empty", "half", "list", "nan", "name", "field", "long", "deep"],
+    ids=["empty", "half", "list", "nan", "name", "field", "time", "long", "deep"],
 )
 def test_bad_events_are_refused(message, text):
     """Requirement: a text that is no known event with known fields is refused in one line."""

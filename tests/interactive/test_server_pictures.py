@@ -20,7 +20,7 @@ def test_film_is_tracked_and_sent():
     """Requirement: a film's pictures come with the state that belongs to them; released, each is four
     steps."""
     made = FilmSource(film(frames=12, samples=3))
-    with Server(Settings(camera="film", source=lambda: made)) as hosted, opened(hosted) as socket:
+    with Server(Settings(camera="film", source=made)) as hosted, opened(hosted) as socket:
         for k in range(12):
             state, jpeg = frame(socket)
             say(socket, do="shown")

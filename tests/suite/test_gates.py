@@ -130,7 +130,7 @@ PROMISED = {
     "test_browser_hand.py": 1,
     "test_clock.py": 1,
     "test_commands.py": 1,
-    "test_server_pictures.py": 2,
+    "test_server_pictures.py": 1,
 }
 
 

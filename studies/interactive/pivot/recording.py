@@ -102,7 +102,7 @@ class Player:
         if self._task is not None:
             self._task.cancel()
 
-    def whole(self, kind: int, last: bool, data: bytes) -> str | None:
+    def whole(self, last: bool, data: bytes) -> str | None:
         """Take a part of a file and return the whole text with its last one.
 
         Raises:

@@ -38,9 +38,9 @@ class Connection:
 
     def __init__(self, socket: WebSocket, settings: Settings, *, first: bool) -> None:
         self._socket, self._settings = socket, settings
-        self._source = settings.source() if settings.source else None
         self._keep = settings.keep if first else None
-        self.session = Session(settings.preset, lock_step=self._source is not None and self._source.lock_step)
+        source = settings.source
+        self.session = Session(settings.preset, lock_step=source is not None and source.lock_step)
         self._tracker = Tracker(camera=settings.calibration)
         self._recorder: Recorder | None = None
         self._begin, self._lock = time.monotonic(), asyncio.Lock()
@@ -63,8 +63,8 @@ class Connection:
         await self._feed({"do": "tick"}, None)
         await self._show_curve(self.session)
         workers = [asyncio.create_task(work()) for work in (self._ticks, self._pictures, self._poses)]
-        if self._source is not None:
-            workers.append(asyncio.create_task(self._play(self._source)))
+        if self._settings.source is not None:
+            workers.append(asyncio.create_task(self._play(self._settings.source)))
         receiver = asyncio.create_task(self._receive())
         try:
             done, _ = await asyncio.wait([receiver, *workers], return_when=asyncio.FIRST_COMPLETED)
@@ -146,7 +146,6 @@ class Connection:
         elif name == "hello":
             raise BadInput("do: got a second hello, expected one")
         else:
-            event.pop("t", None)
             await self._feed(event, seq)
             await self._show_curve(self.session)
 
@@ -157,7 +156,7 @@ class Connection:
 
     async def _part(self, kind: int, last: bool, data: bytes) -> None:
         """Take a part of a file; the whole of it is replayed, or opened as a design."""
-        whole = self._player.whole(kind, last, data)
+        whole = self._player.whole(last, data)
         if whole is None:
             return
         try:

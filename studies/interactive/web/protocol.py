@@ -31,7 +31,7 @@ REPLAY, DESIGN = 2, 3
 #: of which only the newest counts: they never use up what a key or a button needs.
 RATE, BURST, KEPT = 120.0, 120.0, 20.0
 
-#: Event -> the fields it may have besides "do", "t" and "seq".
+#: Event -> the fields it may have besides "do" and "seq".
 FIELDS: dict[str, frozenset[str]] = {
     "hello": frozenset({"version", "token"}),
     "setup": frozenset({"preset", "values", "drive", "solver", "sweeps", "lock_step", "rest"}),
@@ -86,7 +86,7 @@ def event(text: str) -> dict[str, Any]:
     fields = FIELDS.get(str(content.get("do")))
     if fields is None:
         raise BadInput(f"do: got {str(content.get('do'))[:40]!r}, expected one of {', '.join(FIELDS)}")
-    odd = set(content) - fields - {"do", "t", "seq"}
+    odd = set(content) - fields - {"do", "seq"}
     if odd:
         raise BadInput(
             f"{min(odd)[:40]!r}: got an unknown field of {content['do']}, expected {sorted(fields)}"

@@ -45,14 +45,14 @@ class Settings:
     Attributes:
         port: 0 for any; share: the address of this machine by which its network reaches the page too.
         camera: "browser", "none", "film" or "server", which the page is told.
-        source: makes the pictures of a socket, or None; keep: takes the lines of a recording, of the first
-            page that is open.
+        source: of every page's pictures, None where the page's camera or nothing sends them; keep: takes the
+            lines of a recording, of the first page that is open.
     """
 
     port: int = 0
     share: str | None = None
     camera: str = "browser"
-    source: Callable[[], Source] | None = None
+    source: Source | None = None
     calibration: Camera | None = None
     preset: str = "polymer"
     keep: Callable[[str], None] | None = None

@@ -57,7 +57,7 @@ function show(state, picture) {
   numbers.show(state, ring);
   controls.follow(state);
   at("mode").textContent = state.mode + (state.paused ? ", paused" : "");
-  at("pace").textContent = state.warnings.find((w) => w.code === "slowed")?.text ?? "";
+  at("pace").textContent = /\((.*)\)/.exec(state.warnings.find((w) => w.code === "slowed")?.text)?.[1] ?? "";
   at("mode").classList.toggle("released", state.mode === "released");
   at("release").firstChild.textContent = state.mode === "released" ? "Catch " : "Release ";
   at("pause").firstChild.textContent = state.paused ? "Resume " : "Pause ";
@@ -169,7 +169,7 @@ function filming(on) {
 
 function shape() {
   view.shaping = at("shape").checked;
-  if (view.shaping) say("Drag a clamp: length, inclination and crossing follow.");
+  say(view.shaping ? "Drag a clamp: length, inclination and crossing follow." : "");
   if (studio.state) show(studio.state, studio.picture);
 }
 

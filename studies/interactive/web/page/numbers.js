@@ -5,6 +5,8 @@ const at = (id) => document.getElementById(id);
 const deg = (rad) => rad * 180 / Math.PI;
 // Times and counts of the machine; what the pivot does comes as text from the server, whose formatter is the only one.
 const short = (value, digits = 3) => (value === null || value === undefined ? "–" : Number(value.toPrecision(digits)).toString());
+// A gap of states [s] from which on nothing moved meanwhile.
+const STILL = 0.3;
 // Parts of a design's own scales that the axes of the plots span at least.
 const LEAST = 1e-3;
 
@@ -52,7 +54,8 @@ export class Numbers {
     while (now - this.times[0] > 2000) this.times.shift();
     const rate = this.times.length > 1 ? (this.times.length - 1) / (now - this.times[0]) * 1000 : 0;
     at("rate").textContent = `${rate.toFixed(0)} Hz`;
-    window.studio.rate = rate;
+    clearTimeout(this.idle);
+    this.idle = setTimeout(() => { at("rate").textContent = ""; }, 2000);
   }
 
   gauge(state) {
@@ -96,7 +99,10 @@ export class Numbers {
     const top = Math.max(LEAST * scale.energy, ...recent.map((s) => Math.abs(sum(s.energy))));
     const [unit, per] = top < 1e-4 ? ["µJ", 1e6] : top < 0.1 ? ["mJ", 1e3] : ["J", 1];
     at("energy-unit").textContent = unit;
-    const line = (value) => recent.map((s) => [s.at - end, per * value(s.energy)]);
+    const line = (value) => recent.flatMap((s, k) => {
+      const before = recent[k - 1], now = [s.at - end, per * value(s.energy)];
+      return before && s.at - before.at > STILL ? [[s.at - end, per * value(before.energy)], now] : [now];
+    });
     plot(at("energy"), [
       { points: line(sum), colour: "--sum" },
       { points: line((e) => e.kinetic), colour: "--kinetic", dashed: true },

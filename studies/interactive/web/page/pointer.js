@@ -88,17 +88,20 @@ export class Pointer {
     if (!this.held) return;
     const answered = this.seq === undefined || this.last === undefined || (this.studio.state.seq ?? -1) >= this.seq;
     const wanted = this.next ?? (answered ? this.studio.state.wanted : this.last);
-    this.post(wanted.map((value, k) => value + change[k]));
+    this.next = wanted.map((value, k) => value + change[k]);
+    if (this.waiting || this.early) this.post(this.next);
+    else this.flush();  // a key waits for no frame, as pointers do that come in step with them
   }
+
+  get early() { return performance.now() - (this.seq ?? -SHORTEST) < SHORTEST; }
 
   // One pose a drawn frame, on a fast screen every second or third: the newest wins.
   post(pose) {
     this.next = pose;
     if (this.waiting) return;
     const drawn = () => {
-      const early = performance.now() - (this.seq ?? -SHORTEST) < SHORTEST;
-      this.waiting = early ? requestAnimationFrame(drawn) : null;
-      if (!early) this.flush();
+      this.waiting = this.early ? requestAnimationFrame(drawn) : null;
+      if (!this.waiting) this.flush();
     };
     this.waiting = requestAnimationFrame(drawn);
   }

@@ -31,7 +31,6 @@ export class Socket {
   }
 
   get ready() { return this.socket?.readyState === WebSocket.OPEN; }
-  get waiting() { return this.socket?.bufferedAmount ?? 0; }
 
   send(event) { if (this.ready) this.socket.send(event instanceof Uint8Array ? event : JSON.stringify(event)); }
 

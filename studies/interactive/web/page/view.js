@@ -9,7 +9,7 @@ function stressed(share) {
   return `rgb(${STRESS[k].map((low, i) => Math.round(low + part * (STRESS[k + 1][i] - low))).join()})`;
 }
 
-export const multiply = (a, b) => [0, 3, 6].flatMap((r) => [0, 1, 2].map((c) => a[r] * b[c] + a[r + 1] * b[c + 3] + a[r + 2] * b[c + 6]));
+const multiply = (a, b) => [0, 3, 6].flatMap((r) => [0, 1, 2].map((c) => a[r] * b[c] + a[r + 1] * b[c + 3] + a[r + 2] * b[c + 6]));
 
 export class View {
   constructor(canvas) {
@@ -17,8 +17,14 @@ export class View {
     this.context = canvas.getContext("2d");
     this.plane = null;
     this.size = [WIDTH, HEIGHT];
+    this.wide = canvas.clientWidth;
+    new ResizeObserver(() => { this.wide = canvas.clientWidth; }).observe(canvas);
     this.resize();
   }
+
+  // Of the picture's units to one of the screen's [px]: lines, dots and words are as large on every screen.
+  get pen() { return this.size[0] / (this.wide || this.size[0]); }
+  dash(...lengths) { this.context.setLineDash(lengths.map((length) => length * this.pen)); }
 
   resize() {
     const scale = Math.max(1, Math.min(3, Math.ceil(1280 / this.size[0])));
@@ -90,9 +96,9 @@ export class View {
     this.plates(state);
     for (const [x, y] of centres.slice(-150)) this.dot(x, y, 1.3, COLOURS.path);
     state.shape.forEach((strip, s) => {
-      c.setLineDash(stale ? [6, 5] : []);
+      if (stale) this.dash(6, 5);
       this.strip(strip, state.stress.along[s], state.values.thickness);
-      c.setLineDash([]);
+      this.dash();
     });
     this.pull(state);
     if (state.centre) this.cross(...state.centre, COLOURS.path);
@@ -105,7 +111,7 @@ export class View {
   handle(x, y) {
     for (const [colour, width] of [["#000", 5], [COLOURS.plate, 2.5]]) {
       const c = this.context;
-      c.beginPath(); c.arc(...this.to(x, y), 7, 0, 7); c.strokeStyle = colour; c.lineWidth = width; c.stroke();
+      c.beginPath(); c.arc(...this.to(x, y), 7 * this.pen, 0, 7); c.strokeStyle = colour; c.lineWidth = width * this.pen; c.stroke();
     }
   }
 
@@ -130,7 +136,7 @@ export class View {
   // from end to end, for a stroke by itself for each part takes longer than all else.
   strip(places, stress, thickness) {
     const [x, y] = places[Math.floor(places.length / 2)], [u, v] = this.to(x, y), [p, q] = this.to(x + thickness, y);
-    const width = Math.max(THINNEST, Math.hypot(p - u, q - v)), [x0, y0] = this.to(...places[0]), [x1, y1] = this.to(...places[places.length - 1]);
+    const width = Math.max(THINNEST, Math.hypot(p - u, q - v) / this.pen), [x0, y0] = this.to(...places[0]), [x1, y1] = this.to(...places[places.length - 1]);
     const colour = this.context.createLinearGradient(x0, y0, x1, y1), chord = (x1 - x0) ** 2 + (y1 - y0) ** 2;
     places.forEach(([a, b], k) => {
       const [m, n] = this.to(a, b), share = ((m - x0) * (x1 - x0) + (n - y0) * (y1 - y0)) / chord;
@@ -144,23 +150,20 @@ export class View {
   pull(state) {
     const [x0, y0] = state.placing.centre, [x, y] = state.wanted;
     if (state.grip === null || Math.hypot(x - state.displacement[0], y - state.displacement[1]) < 5e-4) return;
-    this.context.setLineDash([4, 4]);
+    this.dash(4, 4);
     this.line([[state.pose[0], state.pose[1]], [x0 + x, y0 + y]], COLOURS.moving, 2);
-    this.context.setLineDash([]);
+    this.dash();
     this.dot(x0 + x, y0 + y, 3.5, COLOURS.moving);
   }
 
   grid() {
-    const c = this.context;
-    c.strokeStyle = "#222b33"; c.lineWidth = 1;
+    const c = this.context, pen = this.pen;
     for (let k = -20; k <= 30; k++) {
       this.line([[k / 100, -0.2], [k / 100, 0.3]], "#20272e", 1);
       this.line([[-0.2, k / 100], [0.3, k / 100]], "#20272e", 1);
     }
-    const [x, y] = this.to(0, 0), [x1] = this.to(0.01, 0);
-    c.fillStyle = "#94a3b1"; c.font = "12px system-ui, sans-serif";
-    c.fillText(`grid 10 mm`, 10, this.size[1] - 10);
-    return [x, y, x1];
+    c.fillStyle = "#94a3b1"; c.font = `${12 * pen}px system-ui, sans-serif`;
+    c.fillText("grid 10 mm", 10 * pen, this.size[1] - 10 * pen);
   }
 
   outlines(state) {
@@ -170,7 +173,7 @@ export class View {
       quad.forEach(([x, y], k) => (k ? c.lineTo(x + 0.5, y + 0.5) : c.moveTo(x + 0.5, y + 0.5)));
       c.closePath();
       c.strokeStyle = i ? COLOURS.moving : COLOURS.ground;
-      c.lineWidth = 1.5;
+      c.lineWidth = 1.5 * this.pen;
       c.stroke();
     });
   }
@@ -193,18 +196,18 @@ export class View {
     const c = this.context;
     c.beginPath();
     points.forEach(([x, y], k) => (k ? c.lineTo(...this.to(x, y)) : c.moveTo(...this.to(x, y))));
-    c.strokeStyle = colour; c.lineWidth = width; c.lineJoin = "round"; c.lineCap = "butt";
+    c.strokeStyle = colour; c.lineWidth = width * this.pen; c.lineJoin = "round"; c.lineCap = "butt";
     c.stroke();
   }
 
   dot(x, y, radius, colour) {
     const c = this.context;
-    c.beginPath(); c.arc(...this.to(x, y), radius, 0, 7); c.fillStyle = colour; c.fill();
+    c.beginPath(); c.arc(...this.to(x, y), radius * this.pen, 0, 7); c.fillStyle = colour; c.fill();
   }
 
   cross(x, y, colour) {
-    const c = this.context, [u, v] = this.to(x, y);
-    c.beginPath(); c.moveTo(u - 7, v); c.lineTo(u + 7, v); c.moveTo(u, v - 7); c.lineTo(u, v + 7);
-    c.strokeStyle = colour; c.lineWidth = 1.5; c.stroke();
+    const c = this.context, [u, v] = this.to(x, y), arm = 7 * this.pen;
+    c.beginPath(); c.moveTo(u - arm, v); c.lineTo(u + arm, v); c.moveTo(u, v - arm); c.lineTo(u, v + arm);
+    c.strokeStyle = colour; c.lineWidth = 1.5 * this.pen; c.stroke();
   }
 }
