@@ -9,7 +9,7 @@ import numpy as np
 from studies.answers.models import Model, effects_of, mode_bodies, model_of
 from studies.answers.response import Answered, assembled
 from studies.answers.settings import FeSettings, SplineSettings
-from studies.answers.strength import moduli_of, strains_of
+from studies.answers.strength import stress_of
 from studies.cases.keys import GROUND
 from studies.cases.mechanism import Sectioned
 from studies.errors import BadInput
@@ -104,8 +104,7 @@ class Fields:
     @property
     def stress(self) -> Array:
         """(S, G, P) larger magnitude of axial and bending stress together at the two outer fibres [Pa]."""
-        strain = strains_of(self.parts, self.axial_force, self.bending_moment)
-        return np.asarray(moduli_of(self.parts)[:, None] * strain)
+        return stress_of(self.parts, self.axial_force, self.bending_moment)
 
     @property
     def strain_energy(self) -> Array:

@@ -8,20 +8,11 @@ import numpy as np
 
 from studies.answers.frequency import Frequency, swing_frequency
 from studies.answers.models import Asked
-from studies.answers.response import Answered, Solved, ended, taken
+from studies.answers.response import Answered, Solved, arrays_of, ended, taken
 from studies.cases.design import flexural_scale
 from studies.kinds import Array
 
-#: Arrays that a motion takes over from a model's trajectory as they are.
-SHARED_ARRAYS = (
-    "time",
-    "kinetic_energy",
-    "strain_energy",
-    "gravity_energy",
-    "work",
-    "dissipated",
-)
-#: Those that a model may lack which keeps its constraints exactly, and everywhere.
+#: Arrays that a model may lack which keeps its constraints exactly, and everywhere.
 RESIDUALS = ("constraint_residual", "velocity_residual")
 
 #: Kinetic energy over EI/L of the stiffest strip that is none: a turn of some 1e-8 rad.
@@ -86,8 +77,8 @@ def motion(asked: Asked, result: Any, *, wall_s: float, solve_s: float) -> Motio
     One without a part of the design's energy in it stands still, and says so.
     """
     exact, kinetic = np.zeros(len(result.time)), np.asarray(result.kinetic_energy)
-    arrays: dict[str, Any] = {name: getattr(result, name) for name in SHARED_ARRAYS}
-    arrays |= {name: getattr(result, name, exact) for name in RESIDUALS}
+    arrays: dict[str, Any] = dict.fromkeys(RESIDUALS, exact)
+    arrays |= {name: getattr(result, name) for name in arrays_of(Motion) if hasattr(result, name)}
     arrays = {name: np.asarray(array, dtype=float) for name, array in arrays.items()}
     found = ended(result)
     if len(kinetic) and float(kinetic.max()) <= STILL * flexural_scale(asked.design):
@@ -105,7 +96,7 @@ def motion(asked: Asked, result: Any, *, wall_s: float, solve_s: float) -> Motio
 
 def no_motion(asked: Asked, message: str) -> Motion:
     """Return the motion of a design that statics does not bring to the start: without a record."""
-    nothing: dict[str, Any] = {name: np.zeros(0) for name in (*SHARED_ARRAYS, *RESIDUALS)}
+    nothing: dict[str, Any] = {name: np.zeros(0) for name in arrays_of(Motion)}
     return Motion(
         status="not_converged",
         message=message,

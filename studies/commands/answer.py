@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from studies.answers.response import Answered, Response
+from studies.answers.motion import Spectrum
+from studies.answers.response import Answered, Response, Solved
 from studies.commands.parser import STREAM
 from studies.errors import BadInput
 from studies.kinds import Array
@@ -83,10 +84,10 @@ def headed(answer: Any) -> dict[str, Any]:
     return {name: getattr(answer, name) for name in names if hasattr(answer, name)}
 
 
-def described(model: str, settings: Mapping[str, Any], effects: Iterable[str]) -> str:
+def described(answer: Answered) -> str:
     """Return the model with its settings, and the effects that it was assembled of, in two lines."""
-    given = (f"{name} {_short(value)}" for name, value in settings.items() if value is not None)
-    return f"{model}: {', '.join(given)}\neffects: {', '.join(effects)}"
+    given = (f"{name} {_short(value)}" for name, value in answer.settings.items() if value is not None)
+    return f"{answer.model}: {', '.join(given)}\neffects: {', '.join(answer.effects)}"
 
 
 def remarks(answer: Response, points: Iterable[Mapping[str, Any]]) -> Iterator[str]:
@@ -112,9 +113,9 @@ def passed(point: Mapping[str, Any]) -> str:
     )
 
 
-def estimated(estimate: Mapping[str, Any] | None) -> Iterator[str]:
+def estimated(answer: Answered) -> Iterator[str]:
     """Yield what an answer that was solved to an accuracy says of its error, in a line; nothing of others."""
-    if estimate is not None:
+    if (estimate := answer.estimate) is not None:
         errors = {name: value for name, value in estimate.items() if name not in ("accuracy", *CHOSEN)}
         listed = ", ".join(f"{name.replace('_', ' ')} {value:.1e}" for name, value in errors.items())
         what = "elements" if "meshes" in estimate else "control points"
@@ -122,12 +123,17 @@ def estimated(estimate: Mapping[str, Any] | None) -> Iterator[str]:
         yield f"estimated error: {listed}; {what} tried: {tried}"
 
 
-def ending(status: str, counters: Mapping[str, int], wall_s: float) -> str:
+def ending(answer: Solved | Spectrum) -> str:
     """Return how the solve ended, its work and its time in a line."""
+    counters = answer.counters if isinstance(answer, Solved) else {}
     work = [f"{name.replace('_', ' ')} {count}" for name, count in counters.items()]
     return "; ".join(
         part
-        for part in (status.replace("_", " "), ", ".join(work), f"solved in {wall_s * 1e3:.3g} ms")
+        for part in (
+            answer.status.replace("_", " "),
+            ", ".join(work),
+            f"solved in {answer.wall_s * 1e3:.3g} ms",
+        )
         if part
     )
 

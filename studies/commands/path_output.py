@@ -116,7 +116,7 @@ def as_frame(answer: Response) -> "pd.DataFrame":
 
 def readable(answer: Response) -> Iterator[str]:
     """Yield the lines of the tables, and what is to be said of the answer."""
-    yield described(answer.model, answer.settings, answer.effects)
+    yield described(answer)
     yield from columns.table([*_states(answer), *_columns(answer)])
     if answer.body is not None:
         body = answer.body if answer.crossing is None else "the body"
@@ -125,9 +125,9 @@ def readable(answer: Response) -> Iterator[str]:
     yield from _told(strength(answer))
     worth = validity(answer)  # of yield the strength has told
     yield from (f"beyond the model: {each}" for each in worth.outside)
-    yield from estimated(answer.estimate)
+    yield from estimated(answer)
     yield from remarks(answer, critical(answer))
-    yield ending(answer.status, answer.counters, answer.wall_s)
+    yield ending(answer)
 
 
 def _states(answer: Response) -> Iterator[Column]:
