@@ -49,6 +49,25 @@ class Answered:
         """Name of the body that is driven or let go, or may be; None without one."""
         return self.design.body
 
+    @staticmethod
+    def about(asked: Asked, result: Any = None) -> dict[str, Any]:
+        """Return what was asked, and of the model's own answer, where there is one, the settings that it has
+        chosen for its accuracy and its estimate of its error."""
+        estimate: Any = getattr(result, "estimate", None)
+        parts = None
+        if estimate is not None:
+            parts = asdict(estimate)
+            parts |= dict(parts.pop("errors", {}))
+        return {
+            "design": asked.design,
+            "modelled": asked.modelled,
+            "model": asked.settings.model,
+            "settings": asked.discretised(result),
+            "effects": asked.effects,
+            "solution": result,
+            "estimate": parts,
+        }
+
 
 @dataclass(frozen=True, kw_only=True)
 class Solved(Answered):
@@ -79,6 +98,22 @@ class Solved(Answered):
     def centre(self) -> Array:
         """(S, 2) centre of mass of that body [m]."""
         return self.bodies[str(self.body)][:, :2]
+
+    @classmethod
+    def arrays(cls) -> list[str]:
+        """Return the names of the arrays that are taken over from a model's own answer as they are."""
+        return [each.name for each in fields(cls) if each.type == Array]
+
+    @staticmethod
+    def ended(result: Any) -> dict[str, Any]:
+        """Return how the bodies moved and how that ended; only some models say how well they resolve it."""
+        return {
+            "bodies": {name: np.asarray(place, dtype=float) for name, place in result.bodies.items()},
+            "status": str(result.status.value),
+            "message": result.message,
+            "resolution": getattr(result, "resolution", ""),
+            "counters": dict(result.counters),
+        }
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -150,54 +185,12 @@ class Response(Solved):
         [N/m, N, N m/rad]; found when it is first asked for."""
         return np.asarray(self.solution.body_stiffness(self.body))
 
-
-def response(asked: Asked, result: Any, *, wall_s: float, solve_s: float) -> Response:
-    """Return the neutral form of a model's path."""
-    names = arrays_of(Response)
-    arrays: dict[str, Any] = {name: np.asarray(getattr(result, name), dtype=float) for name in names}
-    return Response(
-        bodies={name: np.asarray(place, dtype=float) for name, place in result.bodies.items()},
-        critical_points=tuple(result.critical_points),
-        wall_s=wall_s,
-        solve_s=solve_s,
-        **taken(asked, result) | {"effects": assembled(asked.effects)},
-        **ended(result),
-        **arrays,
-    )
-
-
-def arrays_of(kind: type[Solved]) -> list[str]:
-    """Return the arrays that a kind of answer takes over from a model's own as they are."""
-    return [each.name for each in fields(kind) if each.type == Array]
-
-
-def taken(asked: Asked, result: Any = None) -> dict[str, Any]:
-    """Return what was asked, and of the model's own answer, where there is one, the settings that it has
-    chosen for its accuracy and its estimate of its error."""
-    estimate: Any = getattr(result, "estimate", None)
-    parts = None
-    if estimate is not None:
-        parts = asdict(estimate)
-        parts |= dict(parts.pop("errors", {}))
-    return {
-        "design": asked.design,
-        "modelled": asked.modelled,
-        "model": asked.settings.model,
-        "settings": asked.discretised(result),
-        "effects": asked.effects,
-        "solution": result,
-        "estimate": parts,
-    }
-
-
-def ended(result: Any) -> dict[str, Any]:
-    """Return how a path or a motion ended; only some models say how well they resolve it."""
-    return {
-        "status": str(result.status.value),
-        "message": result.message,
-        "resolution": getattr(result, "resolution", ""),
-        "counters": dict(result.counters),
-    }
+    @classmethod
+    def of(cls, asked: Asked, result: Any, **seconds: float) -> "Response":
+        """Return the neutral form of a model's path; seconds: its times."""
+        arrays = {name: np.asarray(getattr(result, name), dtype=float) for name in cls.arrays()}
+        own = {"critical_points": tuple(result.critical_points), "effects": assembled(asked.effects)}
+        return cls(**cls.about(asked, result) | cls.ended(result) | arrays | own | seconds)
 
 
 def assembled(names: Iterable[str]) -> tuple[str, ...]:

@@ -18,7 +18,7 @@ from studies.answers.metrics import (
 )
 from studies.answers.motion import Motion
 from studies.answers.reference import SWING_MESHES, limit_of_swings
-from studies.answers.response import arrays_of, centre_shift
+from studies.answers.response import centre_shift
 from studies.answers.settings import FeSettings, SplineSettings
 from studies.answers.strength import extreme_fibre_strain
 from studies.cases.problem import CaseError, named_case
@@ -157,7 +157,7 @@ def test_limit_of_swings_removes_the_error_of_the_mesh():
     for elements in SWING_MESHES:
         h = 1.0 / elements
         rotation = np.cos(500.0 * instants) * (1.0 + 3.0 * h**2 + 7.0 * h**4)
-        arrays = {name: np.ones_like(instants) for name in arrays_of(Motion) if name != "time"}
+        arrays = {name: np.ones_like(instants) for name in Motion.arrays() if name != "time"}
         levels.append(
             Motion(
                 design=TABLE_1,
