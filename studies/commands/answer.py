@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from studies.answers.motion import Spectrum
-from studies.answers.response import Answered, Response, Solved
+from studies.answers.response import Answered, Solved
 from studies.commands.parser import STREAM
 from studies.errors import BadInput
 from studies.kinds import Array
@@ -88,29 +88,6 @@ def described(answer: Answered) -> str:
     """Return the model with its settings, and the effects that it was assembled of, in two lines."""
     given = (f"{name} {_short(value)}" for name, value in answer.settings.items() if value is not None)
     return f"{answer.model}: {', '.join(given)}\neffects: {', '.join(answer.effects)}"
-
-
-def remarks(answer: Response, points: Iterable[Mapping[str, Any]]) -> Iterator[str]:
-    """Yield what is to be said of a path beside its numbers: what it passed, how uncertain it is.
-
-    Why a path stopped early is told on the error stream, see `deliver`.
-
-    points: the critical points as JSON has them.
-    """
-    if answer.converged and answer.message:
-        yield answer.message
-    yield from dict.fromkeys(f"{point['kind']}: {passed(point)}" for point in points)
-    if answer.resolution:
-        yield answer.resolution
-
-
-def passed(point: Mapping[str, Any]) -> str:
-    """Return where a critical point is: its load factor, the force that acts there, and the rotation."""
-    force = f" (force {point['force_N']:.4g} N)" if "force_N" in point else ""
-    turn = point["rotation_rad"]
-    return f"load factor {point['load_factor']:.6g}{force}" + (
-        f", {math.degrees(turn):.6g} deg" if math.isfinite(turn) else ""
-    )
 
 
 def estimated(answer: Answered) -> Iterator[str]:
