@@ -164,10 +164,12 @@ def own_fields(solution: Any, modelled: Any) -> Fields:
 
 
 def _as_fine(asked: Any, solution: Any) -> Any:
-    """Return the pivot or mechanism with the control points, or elements, that an accuracy has taken."""
+    """Return the pivot or mechanism as it was solved: in motion, with the control points or elements that an
+    accuracy has taken."""
     if hasattr(asked, "with_control_points"):
         chosen = getattr(solution, "settings", {}).get("control_points", asked.design.discretisation.points)
-        return asked.with_control_points(getattr(solution, "control_points", chosen))
+        fine = asked.with_control_points(getattr(solution, "control_points", chosen))
+        return fine if KINDS[type(solution).__name__] is _path else fine.in_motion()
     from fe_reference.refined import finer
 
     meshes = getattr(solution.estimate, "meshes", ())
