@@ -5,11 +5,9 @@ from contextlib import suppress
 from functools import partial
 from typing import Any
 
-import numpy as np
-
-from studies.answers.models import Asked, mode_bodies, put
-from studies.answers.motion import Motion, Spectrum, motion, no_motion
-from studies.answers.response import Response, response, taken
+from studies.answers.models import Asked, put
+from studies.answers.motion import Motion, Spectrum
+from studies.answers.response import Response
 from studies.answers.settings import Settings
 from studies.cases.design import Design
 from studies.cases.problem import Problem
@@ -62,7 +60,7 @@ def answer_static(
         warm_up=1 if repeat > 1 else 0,
         part=_solve_s,
     )
-    return response(asked, timing.result, wall_s=timing.median, solve_s=timing.median_part)
+    return Response.of(asked, timing.result, wall_s=timing.median, solve_s=timing.median_part)
 
 
 def answer_release(
@@ -123,12 +121,12 @@ def answer_release(
         with asked.refusals():
             timing = measure(release, repeat=repeat, warm_up=1 if repeat > 1 else 0, part=_solve_s)
     except model.errors.ConvergenceError as error:
-        return no_motion(asked, f"statics does not reach the start: {error}")
+        return Motion.without_start(asked, f"statics does not reach the start: {error}")
     result = timing.result
     wall_s = max(timing.median - _wall_of_start(release, result, repeat), 0.0)
     if check:
         result = model.dynamics.checked(asked.modelled, result, **at)
-    return motion(asked, result, wall_s=wall_s, solve_s=timing.median_part)
+    return Motion.of(asked, result, wall_s=wall_s, solve_s=timing.median_part)
 
 
 def answer_modes(
@@ -169,32 +167,8 @@ def answer_modes(
         with asked.refusals():
             timing = measure(solve, repeat=1, warm_up=0)
     except asked.model.errors.ConvergenceError as error:
-        return Spectrum(
-            status="not_converged",
-            message=f"statics does not reach the state: {error}",
-            frequency=np.zeros(0),
-            body_shapes=np.zeros((0, 3)),
-            slide_frequency=np.zeros(0),
-            wall_s=0.0,
-            **state,
-            **taken(asked),
-        )
-    return _spectrum(asked, timing.result, wall_s=timing.median, **state)
-
-
-def _spectrum(asked: Asked, modes: Any, **about: Any) -> Spectrum:
-    """Return the neutral form of a model's modes; only a spline has slide modes."""
-    names, body = [body.name for body in asked.design.bodies], asked.design.body
-    shapes = mode_bodies(modes, names)
-    return Spectrum(
-        status="converged",
-        message="",
-        frequency=np.asarray(modes.frequency, dtype=float),
-        body_shapes=shapes[:, names.index(body)] if body else np.zeros((len(shapes), 3)),
-        slide_frequency=np.asarray(getattr(modes, "slide_frequency", ()), dtype=float),
-        **taken(asked, modes),
-        **about,
-    )
+        return Spectrum.without_state(asked, f"statics does not reach the state: {error}", **state)
+    return Spectrum.of(asked, timing.result, wall_s=timing.median, **state)
 
 
 def _solve_s(result: Any) -> float:

@@ -9,7 +9,7 @@ import numpy as np
 
 from studies.answers.metrics import extrapolate
 from studies.answers.models import put
-from studies.answers.response import Answered, assembled, taken
+from studies.answers.response import Answered, assembled
 from studies.answers.settings import FeSettings, Settings, SplineSettings
 from studies.cases.design import Design
 from studies.cases.effects import Effects
@@ -124,7 +124,7 @@ def _of(design: Design, settings: Settings, direction: float, held: bool, body: 
         if lost or path.status.value != "converged":
             break
     return Capacity(
-        **taken(asked, path) | {"effects": assembled(asked.effects)},
+        **Capacity.about(asked, path) | {"effects": assembled(asked.effects)},
         status="converged" if lost else str(path.status.value),
         message=str(path.message),
         direction=direction,

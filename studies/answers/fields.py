@@ -9,7 +9,7 @@ import numpy as np
 from studies.answers.models import Model, effects_of, mode_bodies, model_of
 from studies.answers.response import Answered, assembled
 from studies.answers.settings import FeSettings, SplineSettings
-from studies.answers.strength import moduli_of, strains_of
+from studies.answers.strength import stress_of
 from studies.cases.keys import GROUND
 from studies.cases.mechanism import Sectioned
 from studies.errors import BadInput
@@ -104,8 +104,7 @@ class Fields:
     @property
     def stress(self) -> Array:
         """(S, G, P) larger magnitude of axial and bending stress together at the two outer fibres [Pa]."""
-        strain = strains_of(self.parts, self.axial_force, self.bending_moment)
-        return np.asarray(moduli_of(self.parts)[:, None] * strain)
+        return stress_of(self.parts, self.axial_force, self.bending_moment)
 
     @property
     def strain_energy(self) -> Array:
@@ -165,10 +164,12 @@ def own_fields(solution: Any, modelled: Any) -> Fields:
 
 
 def _as_fine(asked: Any, solution: Any) -> Any:
-    """Return the pivot or mechanism with the control points, or elements, that an accuracy has taken."""
+    """Return the pivot or mechanism as it was solved: in motion, with the control points or elements that an
+    accuracy has taken."""
     if hasattr(asked, "with_control_points"):
         chosen = getattr(solution, "settings", {}).get("control_points", asked.design.discretisation.points)
-        return asked.with_control_points(getattr(solution, "control_points", chosen))
+        fine = asked.with_control_points(getattr(solution, "control_points", chosen))
+        return fine if KINDS[type(solution).__name__] is _path else fine.in_motion()
     from fe_reference.refined import finer
 
     meshes = getattr(solution.estimate, "meshes", ())

@@ -7,21 +7,12 @@ from typing import Any
 import numpy as np
 
 from studies.answers.frequency import Frequency, swing_frequency
-from studies.answers.models import Asked
-from studies.answers.response import Answered, Solved, ended, taken
+from studies.answers.models import Asked, mode_bodies
+from studies.answers.response import Answered, Solved
 from studies.cases.design import flexural_scale
 from studies.kinds import Array
 
-#: Arrays that a motion takes over from a model's trajectory as they are.
-SHARED_ARRAYS = (
-    "time",
-    "kinetic_energy",
-    "strain_energy",
-    "gravity_energy",
-    "work",
-    "dissipated",
-)
-#: Those that a model may lack which keeps its constraints exactly, and everywhere.
+#: Arrays that a model may lack which keeps its constraints exactly, and everywhere.
 RESIDUALS = ("constraint_residual", "velocity_residual")
 
 #: Kinetic energy over EI/L of the stiffest strip that is none: a turn of some 1e-8 rad.
@@ -79,44 +70,36 @@ class Motion(Solved):
         """Frequency of the rotation's swing about its rest [Hz]; NaN without a whole swing."""
         return self.swing.value
 
+    @classmethod
+    def of(cls, asked: Asked, result: Any, **seconds: float) -> "Motion":
+        """Return the neutral form of a model's trajectory; seconds: its times.
 
-def motion(asked: Asked, result: Any, *, wall_s: float, solve_s: float) -> Motion:
-    """Return the neutral form of a model's trajectory; only some say how well they resolve the swing.
+        One without a part of the design's energy in it stands still, and says so.
+        """
+        exact, kinetic = np.zeros(len(result.time)), np.asarray(result.kinetic_energy)
+        given: dict[str, Any] = dict.fromkeys(RESIDUALS, exact)
+        given |= {name: getattr(result, name) for name in cls.arrays() if hasattr(result, name)}
+        own: dict[str, Any] = {name: np.asarray(array, dtype=float) for name, array in given.items()}
+        own["rotation_error"] = getattr(result, "rotation_error", math.nan)
+        if len(kinetic) and float(kinetic.max()) <= STILL * flexural_scale(asked.design):
+            own |= {"message": result.message or NOTHING_MOVES, "resolution": ""}
+        return cls(**cls.about(asked, result) | cls.ended(result) | own | seconds)
 
-    One without a part of the design's energy in it stands still, and says so.
-    """
-    exact, kinetic = np.zeros(len(result.time)), np.asarray(result.kinetic_energy)
-    arrays: dict[str, Any] = {name: getattr(result, name) for name in SHARED_ARRAYS}
-    arrays |= {name: getattr(result, name, exact) for name in RESIDUALS}
-    arrays = {name: np.asarray(array, dtype=float) for name, array in arrays.items()}
-    found = ended(result)
-    if len(kinetic) and float(kinetic.max()) <= STILL * flexural_scale(asked.design):
-        found |= {"message": result.message or NOTHING_MOVES, "resolution": ""}
-    return Motion(
-        bodies={name: np.asarray(place, dtype=float) for name, place in result.bodies.items()},
-        rotation_error=getattr(result, "rotation_error", math.nan),
-        wall_s=wall_s,
-        solve_s=solve_s,
-        **taken(asked, result),
-        **found,
-        **arrays,
-    )
-
-
-def no_motion(asked: Asked, message: str) -> Motion:
-    """Return the motion of a design that statics does not bring to the start: without a record."""
-    nothing: dict[str, Any] = {name: np.zeros(0) for name in (*SHARED_ARRAYS, *RESIDUALS)}
-    return Motion(
-        status="not_converged",
-        message=message,
-        resolution="",
-        bodies={body.name: np.zeros((0, 3)) for body in asked.design.bodies},
-        counters={},
-        wall_s=0.0,
-        solve_s=0.0,
-        **taken(asked),
-        **nothing,
-    )
+    @classmethod
+    def without_start(cls, asked: Asked, message: str) -> "Motion":
+        """Return the motion of a design that statics does not bring to the start: without a record."""
+        nothing: dict[str, Any] = {name: np.zeros(0) for name in cls.arrays()}
+        return cls(
+            status="not_converged",
+            message=message,
+            resolution="",
+            bodies={body.name: np.zeros((0, 3)) for body in asked.design.bodies},
+            counters={},
+            wall_s=0.0,
+            solve_s=0.0,
+            **cls.about(asked),
+            **nothing,
+        )
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -137,3 +120,33 @@ class Spectrum(Answered):
     body_shapes: Array
     slide_frequency: Array
     wall_s: float
+
+    @classmethod
+    def of(cls, asked: Asked, modes: Any, **state: Any) -> "Spectrum":
+        """Return the neutral form of a model's modes, of which only a spline has some that slide; state: what
+        they are about, and their time."""
+        names = [body.name for body in asked.design.bodies]
+        shapes, body = mode_bodies(modes, names), asked.design.body
+        return cls(
+            status="converged",
+            message="",
+            frequency=np.asarray(modes.frequency, dtype=float),
+            body_shapes=shapes[:, names.index(body)] if body else np.zeros((len(shapes), 3)),
+            slide_frequency=np.asarray(getattr(modes, "slide_frequency", ()), dtype=float),
+            **cls.about(asked, modes),
+            **state,
+        )
+
+    @classmethod
+    def without_state(cls, asked: Asked, message: str, **state: Any) -> "Spectrum":
+        """Return that statics does not reach the state: no modes."""
+        return cls(
+            status="not_converged",
+            message=message,
+            frequency=np.zeros(0),
+            body_shapes=np.zeros((0, 3)),
+            slide_frequency=np.zeros(0),
+            wall_s=0.0,
+            **cls.about(asked),
+            **state,
+        )

@@ -1,32 +1,17 @@
 """The neutral answer to a static problem: arrays that do not tell which model they came from."""
 
 from collections.abc import Iterable
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, fields
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 
 from studies.answers.models import Asked
-from studies.answers.strength import moduli_of, strains_of
+from studies.answers.strength import stress_of
 from studies.cases.design import Design
 from studies.cases.effects import MOTION_ONLY
 from studies.kinds import Array
-
-#: Arrays that an answer takes over from a model's solution as they are.
-ARRAYS = (
-    "load_factor",
-    "torque",
-    "stiffness",
-    "bending_energy",
-    "axial_energy",
-    "shear_energy",
-    "gravity_energy",
-    "work",
-    "stations",
-    "axial_force",
-    "bending_moment",
-)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -64,6 +49,25 @@ class Answered:
         """Name of the body that is driven or let go, or may be; None without one."""
         return self.design.body
 
+    @staticmethod
+    def about(asked: Asked, result: Any = None) -> dict[str, Any]:
+        """Return what was asked, and of the model's own answer, where there is one, the settings that it has
+        chosen for its accuracy and its estimate of its error."""
+        estimate: Any = getattr(result, "estimate", None)
+        parts = None
+        if estimate is not None:
+            parts = asdict(estimate)
+            parts |= dict(parts.pop("errors", {}))
+        return {
+            "design": asked.design,
+            "modelled": asked.modelled,
+            "model": asked.settings.model,
+            "settings": asked.discretised(result),
+            "effects": asked.effects,
+            "solution": result,
+            "estimate": parts,
+        }
+
 
 @dataclass(frozen=True, kw_only=True)
 class Solved(Answered):
@@ -95,6 +99,22 @@ class Solved(Answered):
         """(S, 2) centre of mass of that body [m]."""
         return self.bodies[str(self.body)][:, :2]
 
+    @classmethod
+    def arrays(cls) -> list[str]:
+        """Return the names of the arrays that are taken over from a model's own answer as they are."""
+        return [each.name for each in fields(cls) if each.type == Array]
+
+    @staticmethod
+    def ended(result: Any) -> dict[str, Any]:
+        """Return how the bodies moved and how that ended; only some models say how well they resolve it."""
+        return {
+            "bodies": {name: np.asarray(place, dtype=float) for name, place in result.bodies.items()},
+            "status": str(result.status.value),
+            "message": result.message,
+            "resolution": getattr(result, "resolution", ""),
+            "counters": dict(result.counters),
+        }
+
 
 @dataclass(frozen=True, kw_only=True)
 class Response(Solved):
@@ -108,8 +128,7 @@ class Response(Solved):
             where nothing is driven.
         bending_energy, axial_energy, shear_energy: (S,) of all strips [J]; zero without shear.
         gravity_energy: (S,) against rest [J]; work: (S,) of loads and drives since the first state [J].
-        stations: (P,) reference arc length over L [1]; axial_force: (S, G, P) [N]; bending_moment: [N m];
-            extreme_fibre_stress: its largest magnitude over the section's depth [Pa].
+        stations: (P,) reference arc length over L [1]; axial_force: (S, G, P) [N]; bending_moment: [N m].
     """
 
     critical_points: tuple[Any, ...] = ()
@@ -124,7 +143,6 @@ class Response(Solved):
     stations: Array
     axial_force: Array
     bending_moment: Array
-    extreme_fibre_stress: Array
 
     @property
     def crossing(self) -> tuple[float, float] | None:
@@ -151,6 +169,11 @@ class Response(Solved):
         """(S,) bending, axial and shear energy together [J]."""
         return self.bending_energy + self.axial_energy + self.shear_energy
 
+    @cached_property
+    def extreme_fibre_stress(self) -> Array:
+        """(S, G, P) largest magnitude over the section's depth [Pa]."""
+        return stress_of(self.design.strips, self.axial_force, self.bending_moment)
+
     @property
     def max_stress(self) -> Array:
         """(S,) largest extreme-fibre stress over all strips [Pa]."""
@@ -162,51 +185,12 @@ class Response(Solved):
         [N/m, N, N m/rad]; found when it is first asked for."""
         return np.asarray(self.solution.body_stiffness(self.body))
 
-
-def response(asked: Asked, result: Any, *, wall_s: float, solve_s: float) -> Response:
-    """Return the neutral form of a model's path, with what follows from it and the given data."""
-    arrays: dict[str, Any] = {name: np.asarray(getattr(result, name), dtype=float) for name in ARRAYS}
-    strips = asked.design.strips
-    strain = strains_of(strips, arrays["axial_force"], arrays["bending_moment"])
-    return Response(
-        bodies={name: np.asarray(place, dtype=float) for name, place in result.bodies.items()},
-        critical_points=tuple(result.critical_points),
-        extreme_fibre_stress=moduli_of(strips)[:, None] * strain,
-        wall_s=wall_s,
-        solve_s=solve_s,
-        **taken(asked, result) | {"effects": assembled(asked.effects)},
-        **ended(result),
-        **arrays,
-    )
-
-
-def taken(asked: Asked, result: Any = None) -> dict[str, Any]:
-    """Return what was asked, and of the model's own answer, where there is one, the settings that it has
-    chosen for its accuracy and its estimate of its error."""
-    estimate: Any = getattr(result, "estimate", None)
-    parts = None
-    if estimate is not None:
-        parts = asdict(estimate)
-        parts |= dict(parts.pop("errors", {}))
-    return {
-        "design": asked.design,
-        "modelled": asked.modelled,
-        "model": asked.settings.model,
-        "settings": asked.discretised(result),
-        "effects": asked.effects,
-        "solution": result,
-        "estimate": parts,
-    }
-
-
-def ended(result: Any) -> dict[str, Any]:
-    """Return how a path or a motion ended; only some models say how well they resolve it."""
-    return {
-        "status": str(result.status.value),
-        "message": result.message,
-        "resolution": getattr(result, "resolution", ""),
-        "counters": dict(result.counters),
-    }
+    @classmethod
+    def of(cls, asked: Asked, result: Any, **seconds: float) -> "Response":
+        """Return the neutral form of a model's path; seconds: its times."""
+        arrays = {name: np.asarray(getattr(result, name), dtype=float) for name in cls.arrays()}
+        own = {"critical_points": tuple(result.critical_points), "effects": assembled(asked.effects)}
+        return cls(**cls.about(asked, result) | cls.ended(result) | arrays | own | seconds)
 
 
 def assembled(names: Iterable[str]) -> tuple[str, ...]:

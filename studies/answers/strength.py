@@ -90,16 +90,13 @@ def extreme_fibre_strain(strip: Sectioned, axial_force: Array, bending_moment: A
     return np.asarray(np.abs(axial) + np.abs(bending))
 
 
-def strains_of(strips: Sequence[Sectioned], axial_force: Array, bending_moment: Array) -> Array:
-    """Return the extreme fibre strains of strips (S, G, P) [1], of their forces (S, G, P) [N, N m]."""
+def stress_of(strips: Sequence[Sectioned], axial_force: Array, bending_moment: Array) -> Array:
+    """Return the extreme fibre stress of strips (S, G, P) [Pa], of their forces (S, G, P) [N, N m]."""
     forces = zip(np.moveaxis(axial_force, 1, 0), np.moveaxis(bending_moment, 1, 0), strict=True)
-    each = [extreme_fibre_strain(strip, *own) for strip, own in zip(strips, forces, strict=True)]
-    return np.stack(each, axis=1)
-
-
-def moduli_of(strips: Sequence[Sectioned]) -> Array:
-    """Return Young's modulus of every strip (G,) [Pa]."""
-    return np.array([strip.youngs_modulus for strip in strips])
+    pairs = zip(strips, forces, strict=True)
+    return np.stack(
+        [strip.youngs_modulus * extreme_fibre_strain(strip, *own) for strip, own in pairs], axis=1
+    )
 
 
 def _turns(answer: "Response") -> Array:

@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from studies.answers.response import Answered, Response
+from studies.answers.motion import Spectrum
+from studies.answers.response import Answered, Solved
 from studies.commands.parser import STREAM
 from studies.errors import BadInput
 from studies.kinds import Array
@@ -83,38 +84,15 @@ def headed(answer: Any) -> dict[str, Any]:
     return {name: getattr(answer, name) for name in names if hasattr(answer, name)}
 
 
-def described(model: str, settings: Mapping[str, Any], effects: Iterable[str]) -> str:
+def described(answer: Answered) -> str:
     """Return the model with its settings, and the effects that it was assembled of, in two lines."""
-    given = (f"{name} {_short(value)}" for name, value in settings.items() if value is not None)
-    return f"{model}: {', '.join(given)}\neffects: {', '.join(effects)}"
+    given = (f"{name} {_short(value)}" for name, value in answer.settings.items() if value is not None)
+    return f"{answer.model}: {', '.join(given)}\neffects: {', '.join(answer.effects)}"
 
 
-def remarks(answer: Response, points: Iterable[Mapping[str, Any]]) -> Iterator[str]:
-    """Yield what is to be said of a path beside its numbers: what it passed, how uncertain it is.
-
-    Why a path stopped early is told on the error stream, see `deliver`.
-
-    points: the critical points as JSON has them.
-    """
-    if answer.converged and answer.message:
-        yield answer.message
-    yield from dict.fromkeys(f"{point['kind']}: {passed(point)}" for point in points)
-    if answer.resolution:
-        yield answer.resolution
-
-
-def passed(point: Mapping[str, Any]) -> str:
-    """Return where a critical point is: its load factor, the force that acts there, and the rotation."""
-    force = f" (force {point['force_N']:.4g} N)" if "force_N" in point else ""
-    turn = point["rotation_rad"]
-    return f"load factor {point['load_factor']:.6g}{force}" + (
-        f", {math.degrees(turn):.6g} deg" if math.isfinite(turn) else ""
-    )
-
-
-def estimated(estimate: Mapping[str, Any] | None) -> Iterator[str]:
+def estimated(answer: Answered) -> Iterator[str]:
     """Yield what an answer that was solved to an accuracy says of its error, in a line; nothing of others."""
-    if estimate is not None:
+    if (estimate := answer.estimate) is not None:
         errors = {name: value for name, value in estimate.items() if name not in ("accuracy", *CHOSEN)}
         listed = ", ".join(f"{name.replace('_', ' ')} {value:.1e}" for name, value in errors.items())
         what = "elements" if "meshes" in estimate else "control points"
@@ -122,12 +100,17 @@ def estimated(estimate: Mapping[str, Any] | None) -> Iterator[str]:
         yield f"estimated error: {listed}; {what} tried: {tried}"
 
 
-def ending(status: str, counters: Mapping[str, int], wall_s: float) -> str:
+def ending(answer: Solved | Spectrum) -> str:
     """Return how the solve ended, its work and its time in a line."""
+    counters = answer.counters if isinstance(answer, Solved) else {}
     work = [f"{name.replace('_', ' ')} {count}" for name, count in counters.items()]
     return "; ".join(
         part
-        for part in (status.replace("_", " "), ", ".join(work), f"solved in {wall_s * 1e3:.3g} ms")
+        for part in (
+            answer.status.replace("_", " "),
+            ", ".join(work),
+            f"solved in {answer.wall_s * 1e3:.3g} ms",
+        )
         if part
     )
 

@@ -72,7 +72,7 @@ def _document(found: Capacity) -> dict[str, Any]:
 def _readable(found: list[Capacity]) -> Iterator[str]:
     """Yield what every model says, and how far they are apart."""
     for each in found:
-        yield described(each.model, each.settings, each.effects)
+        yield described(each)
         way = f"force at {math.degrees(each.direction):g} deg, rotation {'held' if each.held else 'free'}"
         angle = math.degrees(each.turned) if math.isfinite(each.turned) else 0.0
         turned = f", turned {angle:.4g} deg" if abs(angle) > NO_TURN else ""

@@ -88,7 +88,7 @@ def main(arguments: argparse.Namespace) -> int:
     fields = fields_of(answer)
     files = contents(fields, arguments.formats, _drawn(fields, arguments.draw_deg))
     write(arguments.out, files, fields, Path(arguments.case).name)
-    print(described(fields.model, fields.settings, fields.effects))
+    print(described(answer))
     print(f"{arguments.out}: {len(fields.values)} states of {fields.analysis} in {len(files)} files")
     return 0 if answer.converged else not_converged(answer.message)
 

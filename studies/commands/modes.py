@@ -73,7 +73,7 @@ def _document(answer: Spectrum) -> dict[str, Any]:
 
 def _readable(answer: Spectrum, count: int) -> Iterator[str]:
     """Yield the lines of a short table."""
-    yield tell.described(answer.model, answer.settings, answer.effects)
+    yield tell.described(answer)
     yield "displacement of the body at unit modal mass"
     yield from table(
         [
@@ -87,13 +87,13 @@ def _readable(answer: Spectrum, count: int) -> Iterator[str]:
             ),
         ]
     )
-    yield from tell.estimated(answer.estimate)
+    yield from tell.estimated(answer)
     least = answer.estimate or {}
     if least.get("frequency", 0.0) > least.get("accuracy", math.inf):
         yield f"the accuracy of {least['accuracy']:g} is not reached by all frequencies"
     if answer.converged and len(answer.frequency) < count:
         yield f"{len(answer.frequency)} of {count} modes: the discretisation has no more"
-    yield tell.ending(answer.status, {}, answer.wall_s)
+    yield tell.ending(answer)
 
 
 def _above_noise(shape: Array) -> Array:

@@ -1,7 +1,7 @@
 """What is told of a static path: its columns for JSON and CSV, and a table to read."""
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
@@ -12,7 +12,7 @@ from studies.answers.strength import Strength, strength
 from studies.answers.validity import validity
 from studies.cases.design import flexural_scale
 from studies.commands import columns
-from studies.commands.answer import described, ending, estimated, headed, places, remarks
+from studies.commands.answer import described, ending, estimated, headed, places
 from studies.commands.columns import Column, one, quantity
 from studies.kinds import Array
 
@@ -104,6 +104,27 @@ def critical(answer: Response) -> list[dict[str, Any]]:
     ]
 
 
+def _remarks(answer: Response) -> Iterator[str]:
+    """Yield what is to be said of a path beside its numbers: what it passed, how uncertain it is.
+
+    Why a path stopped early is told on the error stream, see `deliver`.
+    """
+    if answer.converged and answer.message:
+        yield answer.message
+    yield from dict.fromkeys(f"{point['kind']}: {passed(point)}" for point in critical(answer))
+    if answer.resolution:
+        yield answer.resolution
+
+
+def passed(point: Mapping[str, Any]) -> str:
+    """Return where a critical point is: its load factor, the force that acts there, and the rotation."""
+    force = f" (force {point['force_N']:.4g} N)" if "force_N" in point else ""
+    turn = point["rotation_rad"]
+    return f"load factor {point['load_factor']:.6g}{force}" + (
+        f", {math.degrees(turn):.6g} deg" if math.isfinite(turn) else ""
+    )
+
+
 def as_frame(answer: Response) -> "pd.DataFrame":
     """Return a row a state: the model, its arrays, and of a mechanism the places of all bodies."""
     found: dict[str, Any] = {"model": answer.model} | _arrays(answer)
@@ -116,7 +137,7 @@ def as_frame(answer: Response) -> "pd.DataFrame":
 
 def readable(answer: Response) -> Iterator[str]:
     """Yield the lines of the tables, and what is to be said of the answer."""
-    yield described(answer.model, answer.settings, answer.effects)
+    yield described(answer)
     yield from columns.table([*_states(answer), *_columns(answer)])
     if answer.body is not None:
         body = answer.body if answer.crossing is None else "the body"
@@ -125,9 +146,9 @@ def readable(answer: Response) -> Iterator[str]:
     yield from _told(strength(answer))
     worth = validity(answer)  # of yield the strength has told
     yield from (f"beyond the model: {each}" for each in worth.outside)
-    yield from estimated(answer.estimate)
-    yield from remarks(answer, critical(answer))
-    yield ending(answer.status, answer.counters, answer.wall_s)
+    yield from estimated(answer)
+    yield from _remarks(answer)
+    yield ending(answer)
 
 
 def _states(answer: Response) -> Iterator[Column]:

@@ -180,7 +180,7 @@ def _document(answer: Motion) -> dict[str, Any]:
 
 def _readable(answer: Motion) -> Iterator[str]:
     """Yield the lines of a short table: a few of the instants, of the body that was let go."""
-    yield tell.described(answer.model, answer.settings, answer.effects)
+    yield tell.described(answer)
     last, scale = len(answer.time) - 1, flexural_scale(answer.design)
     shown = sorted({round(last * part / LINES) for part in range(LINES + 1)} if last >= 0 else ())
     kinetic, strain = answer.kinetic_energy[shown], answer.strain_energy[shown]
@@ -209,4 +209,4 @@ def _readable(answer: Motion) -> Iterator[str]:
         yield answer.resolution
     if answer.converged and answer.message:
         yield answer.message
-    yield tell.ending(answer.status, answer.counters, answer.wall_s)
+    yield tell.ending(answer)

@@ -34,10 +34,10 @@ from studies.answers.adapters import answer_static
 from studies.answers.metrics import differences
 from studies.answers.response import Response
 from studies.commands import arguments as take
-from studies.commands.answer import deliver, passed, pictured
+from studies.commands.answer import deliver, pictured
 from studies.commands.columns import fixed
 from studies.commands.parser import command
-from studies.commands.path_output import as_document, as_frame, critical, readable
+from studies.commands.path_output import as_document, as_frame, critical, passed, readable
 from studies.record.progress import Bar
 
 

@@ -34,10 +34,14 @@ class Finding:
     value: float
     holds: bool
 
+    def told(self) -> str:
+        """Return the value as the sentence tells it."""
+        return percent(self.value)
+
     def sentence(self) -> str:
         """Return the finding as a sentence."""
         verdict = "holds" if self.holds else "does not hold"
-        return f"{self.formulation}: {self.quantity} is {percent(self.value)}, so the claim {verdict}."
+        return f"{self.formulation}: {self.quantity} is {self.told()}, so the claim {verdict}."
 
     def row(self) -> dict[str, Any]:
         """Return the columns claim, formulation, quantity, value, holds ("yes" or "no") and sentence."""
@@ -47,10 +51,9 @@ class Finding:
 class Ratio(Finding):
     """A finding whose value says how many times."""
 
-    def sentence(self) -> str:
-        """Return the finding as a sentence."""
-        verdict = "holds" if self.holds else "does not hold"
-        return f"{self.formulation}: {self.quantity} is {self.value:.3g}, so the claim {verdict}."
+    def told(self) -> str:
+        """Return the value as the sentence tells it."""
+        return f"{self.value:.3g}"
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -15,9 +15,8 @@ from studies.answers import validity
 from studies.answers.adapters import answer_modes, answer_release
 from studies.answers.models import Asked, put
 from studies.answers.motion import Motion, Spectrum
-from studies.answers.response import response
+from studies.answers.response import Response
 from studies.answers.settings import Settings, settings_of_model
-from studies.answers.strength import moduli_of
 from studies.answers.validity import Strip, strips_of
 from studies.cases.design import Design
 from studies.cases.document import is_mechanism
@@ -213,10 +212,11 @@ def static_answer(design: Design, settings: Settings, *, both_sides: bool) -> tu
 
 def _paths_of(asked: Asked, result: Any) -> Paths:
     """Return the path of one design from a model's solution."""
-    design, answer = asked.design, response(asked, result, wall_s=np.nan, solve_s=np.nan)
+    design, answer = asked.design, Response.of(asked, result, wall_s=np.nan, solve_s=np.nan)
     inertia, states = getattr(result, "inertia", None), len(answer.load_factor)
     places = {name: place[None] for name, place in answer.bodies.items()}
-    strains = (answer.extreme_fibre_stress.max(axis=2) / moduli_of(design.strips)).max(axis=0)
+    moduli = np.array([strip.youngs_modulus for strip in design.strips])
+    strains = (answer.extreme_fibre_stress.max(axis=2) / moduli).max(axis=0)
     strips = zip(strips_of(design), strains[:, None], strict=True)
     nowhere = np.full((states, 2), np.nan)
     return Paths(

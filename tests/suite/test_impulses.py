@@ -6,7 +6,7 @@ import pytest
 from spline_model.modes import natural_frequencies
 from spline_model.sequential_impulse import solve_impulses, stability_limit
 from studies.answers.models import put
-from studies.answers.motion import motion
+from studies.answers.motion import Motion
 from studies.cases.problem import named_case
 from studies.convergence import impulse_tables
 from studies.convergence.impulse_tables import GROUPS
@@ -16,7 +16,7 @@ def test_a_motion_by_impulses_is_a_neutral_answer():
     """A trajectory of impulses becomes the neutral motion of the other integrators."""
     asked = put(named_case(), impulse_tables.SETTINGS, moving=True)
     run = solve_impulses(asked.modelled, start=0.5, duration=0.05)
-    answer = motion(asked, run, wall_s=0.0, solve_s=0.0)
+    answer = Motion.of(asked, run, wall_s=0.0, solve_s=0.0)
     assert answer.converged
     own = {
         "integrator": "sequential impulses, stable",

@@ -130,6 +130,25 @@ def test_a_models_own_solution_is_drawn_as_the_answer():
     assert b"svg" in style.printed(studies.overlay({"a": (path, fine), "b": (rough, pivot)}).figure, "svg")
 
 
+def test_an_answer_is_drawn_without_its_design():
+    """An answer knows what was asked: it is drawn alone, and over another, as by model and design."""
+    answer = shown("path")[1]
+    assert b"svg" in style.printed(studies.plot(answer, name="alone").figure, "svg")
+    assert b"svg" in style.printed(studies.overlay({"a": answer, "b": answer}).figure, "svg")
+    assert own_fields(answer.solution, answer.modelled).torque == pytest.approx(fields_of(answer).torque)
+
+
+def test_a_motion_has_the_fields_of_what_swings():
+    """Fields of a motion are those of the control points that were chosen, as stiff as they are in motion."""
+    design = replace(named_design(PIVOT), increments=4)
+    given = {"duration": 1e-3, "records": 10, "step": 5e-5}
+    free, fixed = (
+        fields_of(answer_release(design, SplineSettings(control_points=n), **given)) for n in (None, 6)
+    )
+    assert free.settings == fixed.settings
+    assert free.reactions == pytest.approx(fixed.reactions, rel=1e-12)
+
+
 def test_states_of_another_design_are_refused():
     """A solution and a design that do not go together are one line, in both models and between them."""
     pivot = fe_reference.cross_axis_pivot(**TABLE_ONE, elements=3)
