@@ -1,6 +1,8 @@
 """Convergence of the splines with their control points in every form: the locking map."""
 
+from collections.abc import Iterator
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -12,13 +14,15 @@ from studies.answers.reference import QUANTITIES
 from studies.answers.settings import SplineSettings
 from studies.cases.problem import named_case
 from studies.convergence.sweep import reaching, spline_row
-from studies.engine.study import Finding, Part, Study, Tables, percent
+from studies.engine.study import Claim, Part, Study, Tables, percent
 from studies.paper.formulations import refined
 from studies.record.panels import CONTROL_POINTS, Axis, Curves, Doubt, Panel, sheet
 from studies.record.style import BASES, STRETCH, page
 
 COUNTS = range(4, 13)
 MEASURES = ("material", "spatial")
+#: Error that is asked of trajectory and torque [1].
+CLOSE = 1e-4
 
 
 def _settings() -> list[SplineSettings]:
@@ -96,35 +100,19 @@ def _map(panel: Axes, rows: pd.DataFrame, norm: LogNorm) -> None:
     panel.set(xticks=list(COUNTS), yticks=list(modes))
 
 
-def _findings(tables: Tables) -> list[Finding]:
-    """Return what the map says of locking and of the number of control points, from the default modes."""
-    found = []
+def _forms(tables: Tables) -> Iterator[dict[str, Any]]:
+    """Yield, for each basis and stretch form with its default modes, the error of the torque with four
+    control points, the least of any, and from which count on trajectory and torque are close."""
     chosen = _default_modes(tables["map"]).query("measure == 'material'")
     for (basis, stretch), curve in chosen.groupby(["basis", "stretch"]):
-        name = f"{BASES[str(basis)]}, {stretch} stretch"
-        four = curve.query("control_points == 4").iloc[0]
-        found.append(
-            Finding(
-                claim="Four control points give the torque to 3 % on the whole path",
-                formulation=name,
-                quantity="the largest error of the torque with four control points",
-                value=float(four["error_torque"]),
-                holds=bool(four["error_torque"] <= 0.03),
-            )
-        )
-        count = reaching(curve, "control_points", 1e-4)
-        best = float(curve["error_torque"].min())
-        found.append(
-            Finding(
-                claim=f"At most {COUNTS[-1]} control points give trajectory and torque to {percent(1e-4)}",
-                formulation=name,
-                quantity="the smallest error of the torque"
-                + (f" (within it from n = {count})" if count else ""),
-                value=best,
-                holds=count is not None,
-            )
-        )
-    return found
+        count = reaching(curve, "control_points", CLOSE)
+        yield {
+            "name": f"{BASES[str(basis)]}, {stretch} stretch",
+            "four": curve.query("control_points == 4")["error_torque"].iloc[0],
+            "best": curve["error_torque"].min(),
+            "reaches": count is not None,
+            "place": f" (within it from n = {count})" if count else "",
+        }
 
 
 STUDY = Study(
@@ -135,6 +123,23 @@ STUDY = Study(
             ask=lambda name: {"reference": {"quantity": name, "uncertainty": refined().uncertainty[name]}},
         ),
     ),
-    claims=(_findings,),
+    claims=(
+        Claim(
+            claim="Four control points give the torque to 3 % on the whole path",
+            formulation="{name}",
+            quantity="the largest error of the torque with four control points",
+            rows=_forms,
+            value="four",
+            most=0.03,
+        ),
+        Claim(
+            claim=f"At most {COUNTS[-1]} control points give trajectory and torque to {percent(CLOSE)}",
+            formulation="{name}",
+            quantity="the smallest error of the torque{place}",
+            rows=_forms,
+            value="best",
+            holds=lambda row: row["reaches"],
+        ),
+    ),
     figures={"control_points": _lines, "locking_map": _maps},
 )

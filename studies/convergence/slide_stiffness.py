@@ -5,6 +5,7 @@ of these strains forbids it. Too little leaves the sliding slow, so that it take
 is locking again.
 """
 
+from collections.abc import Iterator
 from functools import partial
 from itertools import product
 from typing import Any
@@ -18,7 +19,7 @@ from studies.answers.frequency import swing_frequency
 from studies.answers.reference import QUANTITIES, errors
 from studies.answers.settings import SplineSettings
 from studies.cases.problem import named_case
-from studies.engine.study import Answer, Finding, Part, Study, Tables
+from studies.engine.study import Answer, Claim, Part, Study, Tables
 from studies.paper import formulations
 from studies.record.panels import Axis, Curves, Panel, sheet
 from studies.record.style import BLACK, COUNT_COLOURS, Look
@@ -99,24 +100,13 @@ def _motion(n: int, value: float) -> Answer:
     return {"motion": row}
 
 
-def _findings(tables: Tables, problem: str, column: str, what: str) -> list[Finding]:
-    """Return for each count whether the default is near the best of the values, which it names."""
-    found, rows = [], tables[problem]
+def _defaults_beside_best(tables: Tables, problem: str, column: str) -> Iterator[dict[str, Any]]:
+    """Yield, for each count, the default and the best of the values, and the error of one over the other."""
     own = tables["defaults"].query("problem == @problem").set_index("control_points")["slide_stiffness"]
-    for n, curve in rows.groupby("control_points"):
+    for n, curve in tables[problem].groupby("control_points"):
         by_value = curve.set_index("slide_stiffness")[column].dropna()
         best, default = float(by_value.index[int(by_value.argmin())]), float(own[n])
-        excess = float(by_value[default] / by_value[best])
-        found.append(
-            Finding(
-                claim=f"The default slide stiffness is near the best for the {what} (within {NEAR:g} x)",
-                formulation=f"n = {n}",
-                quantity=f"the error with {default:.3g} EI/L^2 over the least, with {best:g},",
-                value=excess,
-                holds=excess <= NEAR,
-            )
-        )
-    return found
+        yield {"n": n, "default": default, "best": best, "excess": by_value[default] / by_value[best]}
 
 
 STUDY = Study(
@@ -125,9 +115,19 @@ STUDY = Study(
         Part(at=_moving, ask=_motion),
         Part(ask=lambda: {"defaults": _defaults()}),
     ),
-    claims=(
-        partial(_findings, problem="statics", column="error_torque", what="torque on the path"),
-        partial(_findings, problem="motion", column="error_rotation_rad", what="rotation in motion"),
+    claims=tuple(
+        Claim(
+            claim=f"The default slide stiffness is near the best for the {what} (within {NEAR:g} x)",
+            formulation="n = {n}",
+            quantity="the error with {default:.3g} EI/L^2 over the least, with {best:g},",
+            rows=partial(_defaults_beside_best, problem=problem, column=column),
+            value="excess",
+            most=NEAR,
+        )
+        for problem, column, what in (
+            ("statics", "error_torque", "torque on the path"),
+            ("motion", "error_rotation_rad", "rotation in motion"),
+        )
     ),
     figures={"slide_stiffness": _figure},
 )

@@ -1,10 +1,14 @@
-"""Sizing from several starts: sequential quadratic programming with exact gradients."""
+"""Sizing from several starts: first to a feasible design near by, then sequential quadratic programming.
+
+Both with exact gradients. Far outside the constraints the minimisation goes astray: where it ended there
+would hang on round-off.
+"""
 
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from scipy.optimize import minimize
+from scipy.optimize import lsq_linear, minimize
 from scipy.stats import qmc
 
 from studies.cases.problem import Problem
@@ -19,6 +23,16 @@ MOST_RUNS = 4
 PRECISION = 1e-10
 #: Largest violation of any row that counts as none [1].
 FEASIBLE = 1e-6
+#: Largest violation that is left to the minimisation [1].
+NEARLY = 1e-3
+#: Longest step to a feasible design, of a variable's bounds, and the shortest before it is given up.
+LONGEST, SHORTEST = 0.25, 1e-6
+#: Part of the foretold decrease of the violations that a step has to reach.
+KEPT = 0.1
+#: Stiffness over the wanted one below which no logarithm tells more.
+SOFTEST = 1e-2
+#: Weight of a step's length beside the violations that it leaves.
+LENGTH = 1e-3
 #: Residual of the Karush-Kuhn-Tucker conditions below which a point is an optimum, relative to the gradient.
 STATIONARY = 1e-3
 #: Two optima are one if objective, inclination and crossing ratio differ by less [1].
@@ -71,13 +85,72 @@ def optimise(task: Sizing, start: Array) -> Outcome | None:
     if programme.answers(start) is None:
         return None
     history = [_progress(programme, start)]
-    outcome, at = None, start
+    outcome, at = None, feasible(programme, start, history)
     for _ in range(MOST_RUNS):
         outcome = _run(programme, start, at, history)
         if outcome is None or outcome.converged or outcome.violation > FEASIBLE:
             break
         at = outcome.at[:-1]
     return outcome
+
+
+def feasible(programme: Programme, at: Array, history: list[tuple[float, float]]) -> Array:
+    """Return the scaled variables (N,) of a feasible design near ``at``, or of the least violation there.
+
+    Each step, which goes to the history, is the shortest of those that leave the linearised constraints least
+    violated; it is shortened where they are no guide.
+    """
+    beyond, jacobian = _graded(*programme.excesses(at))
+    reach = LONGEST
+    for _ in range(MOST_ITERATIONS):
+        left = _violated(beyond)
+        if np.abs(left).max() <= NEARLY or reach < SHORTEST:
+            break
+        step = _towards(beyond, jacobian, np.maximum(-at, -reach), np.minimum(1.0 - at, reach))
+        foretold = left @ left - np.sum(_violated(beyond + jacobian @ step) ** 2)
+        if foretold <= PRECISION:
+            break
+        there = np.clip(at + step, 0.0, 1.0)
+        new, slope = _graded(*programme.excesses(there))  # of a design without an answer: far outside
+        if left @ left - np.sum(_violated(new) ** 2) >= KEPT * foretold:
+            at, beyond, jacobian = there, new, slope
+            history.append(_progress(programme, at))
+        else:
+            reach *= 0.25
+    return at
+
+
+def _graded(excess: Array, jacobian: Array) -> tuple[Array, Array]:
+    """Return the logarithms of stiffness and of what is beyond its limit, over wanted and limit, and other
+    excesses as they are, with their Jacobian: by the logarithm sizes act nearly in proportion."""
+    over = excess > 0.0
+    over[-1] = True
+    ratio = np.where(over, np.maximum(1.0 + excess, SOFTEST), 1.0)
+    return np.where(over, np.log(ratio), excess), jacobian / ratio[:, None]
+
+
+def _violated(excess: Array) -> Array:
+    """Return what of the excesses is a violation: all beyond the limit, and the equality's to either side."""
+    return np.append(np.maximum(excess[:-1], 0.0), excess[-1])
+
+
+def _towards(excess: Array, jacobian: Array, low: Array, high: Array) -> Array:
+    """Return the shortest step within bounds (N,) that leaves the linearised excesses least violated.
+
+    Least squares of violations, each with a slack of at least zero for what its row holds by, and the step.
+    """
+    near = excess + np.abs(jacobian) @ np.maximum(-low, high) > 0.0  # others hold after any such step
+    near[-1] = True
+    excess, jacobian = excess[near], jacobian[near]
+    size, slacks = len(low), len(excess) - 1
+    rows = np.zeros((slacks + 1 + size, size + slacks))
+    rows[: slacks + 1, :size] = jacobian
+    rows[:slacks, size:] = np.eye(slacks)
+    rows[slacks + 1 :, :size] = LENGTH * np.eye(size)
+    bounds = (np.append(low, np.zeros(slacks)), np.append(high, np.full(slacks, np.inf)))
+    wanted = np.append(-excess, np.zeros(size))
+    step: Array = lsq_linear(rows, wanted, bounds, method="bvls").x[:size]  # type: ignore[operator]
+    return step
 
 
 def _run(programme: Programme, start: Array, at: Array, history: list[tuple[float, float]]) -> Outcome | None:
@@ -168,9 +241,7 @@ def _progress(programme: Programme, y: Array) -> tuple[float, float]:
 
 def _violation(programme: Programme, y: Array) -> float:
     """Return the worst violation of what does not depend on t."""
-    whole = np.append(y[: len(programme.task.span)], np.inf)
-    worst = max(float(-programme.inequalities(whole).min()), float(np.abs(programme.equality(y)).max()))
-    return max(worst, 0.0)
+    return float(np.abs(_violated(programme.excesses(y)[0])).max())
 
 
 def _outcome(programme: Programme, start: Array, at: Array, message: str, history: Array) -> Outcome | None:

@@ -78,6 +78,16 @@ class Programme:
             row[0, :-1] = found.by_stiffness * self.task.span / self.task.stiffness
         return row
 
+    def excesses(self, y: Array) -> tuple[Array, Array]:
+        """Return how far each row that does not depend on t is beyond its limit (Q,) [1], below zero where it
+        holds but for the last, the equality's; and their Jacobian (Q, N)."""
+        whole = np.append(y[: len(self.task.span)], np.inf)
+        rows = self.inequalities(whole)
+        free = np.isfinite(rows)
+        excess = np.append(-rows[free], self.equality(whole))
+        jacobian = np.vstack((-self.inequality_jacobian(whole)[free], self.equality_jacobian(whole)))
+        return excess, jacobian[:, :-1]
+
     def row_names(self) -> list[str]:
         """Return what each row of `inequalities` holds."""
         states, fibres = self.task.states, 2 * self.task.fibres

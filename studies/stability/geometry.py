@@ -4,7 +4,7 @@ import math
 from collections.abc import Iterator
 from dataclasses import replace
 
-from studies.cases.mechanism import Body, Mechanism, Strip
+from studies.cases.mechanism import Mechanism, Strip
 from studies.cases.problem import Problem, named_case
 from studies.engine.study import Part
 from studies.stability import family, maps
@@ -61,34 +61,10 @@ def _others() -> Iterator[family.StaticCase]:
 
 def as_mechanism(given: Problem, degrees: float) -> Mechanism:
     """Return the pivot as a mechanism of two strips and a body, driven to `degrees`."""
-    cos, sin = math.cos(given.inclination), math.sin(given.inclination)
-    ground = ((0.0, 0.0), (2.0 * given.crossing_ratio * given.length * cos, 0.0))
-    strips = tuple(
-        Strip(
-            name=f"strip_{number}",
-            start=start,
-            end=(start[0] + side * given.length * cos, given.length * sin),
-            tip="body",
-            area=given.area,
-            second_moment_of_area=given.second_moment_of_area,
-            youngs_modulus=given.youngs_modulus,
-            poisson_ratio=given.poisson_ratio,
-            density=given.density,
-        )
-        for number, (start, side) in enumerate(zip(ground, (1.0, -1.0), strict=True), start=1)
-    )
-    middle = tuple(sum(strip.end[k] for strip in strips) / 2.0 for k in range(2))
     return Mechanism(
-        strips=strips,
-        bodies=(
-            Body(
-                name="body",
-                centre=(middle[0], middle[1]),
-                mass=given.body_mass,
-                moment_of_inertia=given.body_moment_of_inertia,
-            ),
-        ),
-        body="body",
+        strips=given.strips,
+        bodies=given.bodies,
+        body=given.body,
         rotation=math.radians(degrees),
         increments=given.increments,
         effects=given.effects,
