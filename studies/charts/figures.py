@@ -2,16 +2,13 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
-from typing import Any
 
 import pandas as pd
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.ticker import MaxNLocator
 
 from studies.engine.study import Tables, records
-from studies.record.panels import Axis, Curves, Level, Mark, Panel, Words, sheet
-from studies.record.style import BLACK, BLUE, GREEN, ORANGE, PURPLE, SKY, Look, page
+from studies.record.panels import Axis, Contours, Curves, Level, Mark, Panel, Words, sheet
+from studies.record.style import BLACK, BLUE, GREEN, ORANGE, PURPLE, SKY, Look
 
 #: Quantity -> how it is written beside its charts.
 NAMES = {
@@ -27,34 +24,20 @@ WIDTH = 6.3
 BESIDE = {"large steel": ((4, -10), "right"), "titanium": ((4, -10), "left")}
 
 
-def _charts(rows: tuple[str, ...], tables: Tables) -> Figure:
-    """Draw a row of charts a quantity, a column a rotation."""
-    table = tables["map"]
-    turns = sorted(set(table["rotation_deg"]))
-    drawn = page(WIDTH, 1.5 * len(rows) + 0.35)
-    panels = drawn.subplots(len(rows), len(turns), sharex=True, sharey=True, squeeze=False)
-    for line, name in zip(panels, rows, strict=True):
-        for panel, turn in zip(line, turns, strict=True):
-            _chart(panel, table[table["rotation_deg"] == turn], name)
-        line[0].set_ylabel(f"{NAMES[name]}\ninclination [°]")
-    for panel, turn in zip(panels[0], turns, strict=True):
-        panel.set_title(f"{turn:g}°")
-    drawn.supxlabel("crossing ratio λ", fontsize=8)
-    return drawn
-
-
-def _chart(panel: Axes, rows: pd.DataFrame, name: str) -> None:
-    grid: Any = rows.pivot(index="inclination_deg", columns="crossing_ratio", values=name)
-    levels = MaxNLocator(4, steps=(1, 2, 2.5, 5, 10)).tick_values(
-        grid.to_numpy().min(), grid.to_numpy().max()
-    )
-    lines = panel.contour(grid.columns, grid.index, grid, levels=levels, colors=BLUE, linewidths=0.8)
-    for said in panel.clabel(lines, fontsize=7, inline_spacing=1, fmt=lambda value: f"{value:.3g}"):
-        said.set_clip_on(False)
-    panel.axvline(LEAST_SHIFT, color=ORANGE, linewidth=0.7, linestyle=":")
-    panel.axvline(1.0 - LEAST_SHIFT, color=ORANGE, linewidth=0.7, linestyle=":")
-    panel.grid(visible=False)
-    panel.set(xticks=(0.2, 0.5, 0.8), yticks=(30, 45, 60))
+def _charts(quantities: tuple[str, ...], tables: Tables) -> Figure:
+    """Draw a row of charts a quantity, a column a rotation, with the ratios of least shift."""
+    ratio = Axis(column="crossing_ratio", label="ratio λ", ticks=(0.2, 0.5, 0.8))
+    shiftless = [
+        Level(at=at, colour=ORANGE, line=":", upright=True) for at in (LEAST_SHIFT, 1.0 - LEAST_SHIFT)
+    ]
+    turns = list(tables["map"].groupby("rotation_deg"))
+    lines = []
+    for name in quantities:
+        y = Axis(column="inclination_deg", label=f"{NAMES[name]}\ninclination [°]", ticks=(30, 45, 60))
+        lines.append(
+            [Panel(x=ratio, y=y, marks=[Contours(rows=rows, column=name), *shiftless]) for _, rows in turns]
+        )
+    return sheet(WIDTH, 1.5 * len(quantities) + 0.35, lines, columns=[f"{turn:g}°" for turn, _ in turns])
 
 
 def _loads(tables: Tables) -> Figure:

@@ -1,7 +1,5 @@
 """Convergence of the splines with their control points in every form: the locking map."""
 
-from dataclasses import replace
-
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
@@ -51,8 +49,7 @@ def _lines(tables: Tables) -> Figure:
             for basis in BASES
         ]
         lines.append([Panel(x=CONTROL_POINTS, y=y, marks=(curves, doubt)) for curves in forms])
-    lines[0] = [replace(panel, title=label) for panel, label in zip(lines[0], BASES.values(), strict=True)]
-    return sheet(9.5, 6.6, lines, legend=3)
+    return sheet(9.5, 6.6, lines, columns=list(BASES.values()), legend=3)
 
 
 def _maps(tables: Tables) -> Figure:

@@ -47,16 +47,16 @@ QUANTITIES = (
 def _step_size(tables: Tables) -> Figure:
     """Draw error, drift, energy and time against the step, one column a design."""
     rows = tables["steps"].merge(tables["timings"], on=["design", "form", "step_s"])
-    columns = []
+    columns, titles = [], []
     for design, mine in rows.groupby("design", sort=False):
         limits = tables["limits"].query("design == @design and sweeps == 0").set_index("group")["predicted_s"]
         marks: list[Mark] = [Curves(rows=mine, looks=FORMS, by="form"), *_marks(limits)]
         panels = [Panel(x=replace(STEP, label="step h [s]"), y=y, marks=marks) for y in QUANTITIES]
         lost = mine[(mine["form"] == "printed") & (mine["status"] != "converged")]["step_s"]
-        title = f"{design}, released from 90°"
-        panels[0] = replace(panels[0], marks=[*marks, Unstable(lost)], title=title)
+        panels[0] = replace(panels[0], marks=[*marks, Unstable(lost)])
         columns.append(panels)
-    return sheet(8.8, 9.2, list(zip(*columns, strict=True)), legend=4)
+        titles.append(f"{design}, released from 90°")
+    return sheet(8.8, 9.2, list(zip(*columns, strict=True)), columns=titles, legend=4)
 
 
 def _marks(limits: pd.Series) -> list[Level]:

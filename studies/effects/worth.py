@@ -17,7 +17,7 @@ from studies.effects.audit import audit
 from studies.effects.beyond import ALL, SHEAR, prices
 from studies.effects.scenes import CHANGES, SIZES, Variant, size_of
 from studies.engine.study import Answer, Claim, Finding, Part, Study, Tables, records
-from studies.record.panels import CONTROL_POINTS, Axis, Curves, Level, Panel, Slope, Words, sheet
+from studies.record.panels import CONTROL_POINTS, Axis, Curves, Level, Mark, Panel, Slope, Words, sheet
 from studies.record.style import BLACK, BLUE, GREEN, ORANGE, RED, Look
 
 SETTINGS = SplineSettings(control_points=6)
@@ -192,7 +192,8 @@ def _worth(tables: Tables) -> Figure:
         mine = rows[rows["design"] == design]
         changes = mine.melt(id_vars="scene", value_vars=list(SHOWN), var_name="what", value_name="change")
         curves = Curves(rows=changes, looks=SHOWN, by="what", more={"markersize": 5.5, "clip_on": False})
-        marks = (curves, Level(at=TOLERANCE, colour=RED, upright=True), *_times(mine, times[design], order))
+        words = _times(mine, times[design], order)
+        marks: list[Mark] = [curves, Level(at=TOLERANCE, colour=RED, upright=True), *words]
         y = Axis(column="scene", label="", names=order)
         panels.append(Panel(x=CHANGE, y=y, marks=marks, title=textwrap.fill(design, 16)))
     title = f"Change by leaving out one effect of the full scene; line: {TOLERANCE:g}; left edge: no more"

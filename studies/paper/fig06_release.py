@@ -81,17 +81,14 @@ def _figure(tables: Tables) -> Figure:
                 _largest(motions, far, Doubt(factor * level[column])),
             ]
         )
-    rows[0] = [
-        replace(rows[0][0], title="After the release from 90°"),
-        replace(rows[0][1], title="Largest difference to refined elements so far"),
-    ]
     rows.append(
         [
             _values(motions, Axis(column="strain_J", label="strain energy [J]")),
             _largest(motions, Axis(column="change", label="change of energy [1]", log=True)),
         ]
     )
-    return sheet(8.8, 8.0, rows, legend=3)
+    titles = ("After the release from 90°", "Largest difference to refined elements so far")
+    return sheet(8.8, 8.0, rows, columns=titles, legend=3)
 
 
 def _values(motions: pd.DataFrame, y: Axis) -> Panel:

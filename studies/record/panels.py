@@ -13,8 +13,9 @@ import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure, SubFigure
+from matplotlib.ticker import MaxNLocator
 
-from studies.record.style import Look, page
+from studies.record.style import BLUE, Look, page
 
 #: Colour of levels and slopes, and of the words beside them.
 MARK = "#444444"
@@ -165,12 +166,50 @@ class Level:
         line = panel.axvline if self.upright else panel.axhline
         line(self.at, color=self.colour, linestyle=self.line, linewidth=0.9, label=self.label)
         if self.words:
-            beside = self.place >= 1.0
-            panel.annotate(
-                self.words, (self.place, self.at), (2, 0) if beside else (0, 2), ("axes fraction", "data"),
-                "offset points", ha="right" if 0.5 < self.place < 1.0 else "left",
-                va="center" if beside else "bottom", fontsize=8, color=self.colour, bbox=BACKGROUND,
-            )  # fmt: skip
+            panel.annotate(self.words, fontsize=8, color=self.colour, bbox=BACKGROUND, **self._placed())
+
+    def _placed(self) -> dict[str, Any]:
+        """Return where the words stand, as of `Axes.annotate`."""
+        if self.upright:
+            place: dict[str, Any] = {"xy": (self.at, self.place), "xycoords": ("data", "axes fraction")}
+            return place | {"xytext": (0, 4), "textcoords": "offset points", "ha": "center", "va": "bottom"}
+        place = {"xy": (self.place, self.at), "xycoords": ("axes fraction", "data")}
+        if self.place >= 1.0:
+            return place | {"xytext": (2, 0), "textcoords": "offset points", "ha": "left", "va": "center"}
+        side = "right" if self.place > 0.5 else "left"
+        return place | {"xytext": (0, 2), "textcoords": "offset points", "ha": side, "va": "bottom"}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Contours:
+    """Lines of equal values of a table over both axes: a map of a design space.
+
+    Attributes:
+        column: of the values; factor: to what is written beside the lines.
+        levels: of the lines, round ones without; shaded: whether what lies between them is.
+    """
+
+    rows: pd.DataFrame
+    column: str
+    factor: float = 1.0
+    levels: Sequence[float] = ()
+    colour: str = BLUE
+    shaded: bool = False
+
+    def draw(self, panel: Axes, x: Axis, y: Axis) -> None:
+        """Draw the lines with their values."""
+        grid: Any = self.rows.pivot(index=y.column, columns=x.column, values=self.column) * self.factor
+        low, high = grid.to_numpy().min(), grid.to_numpy().max()
+        levels = self.levels or MaxNLocator(4, steps=(1, 2, 2.5, 5, 10)).tick_values(low, high)
+        where = (grid.columns, grid.index, grid)
+        if self.shaded:
+            panel.contourf(*where, levels=[min(0.0, low), *levels, high], cmap="Blues", alpha=0.6)
+        lines = panel.contour(*where, levels=levels, colors=self.colour, linewidths=0.8)
+        for said in panel.clabel(
+            lines, fontsize=8 if self.shaded else 7, inline_spacing=1, fmt=lambda value: f"{value:.3g}"
+        ):
+            said.set_clip_on(False)
+        panel.grid(visible=False)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -270,22 +309,28 @@ Drawn = Callable[[Axes], None]
 
 
 def sheet(
-    width: float, height: float, rows: Sequence[Sequence[Drawn]], *, title: str = "", legend: int = 0
+    width: float,
+    height: float,
+    rows: Sequence[Sequence[Drawn]],
+    *,
+    title: str = "",
+    columns: Sequence[str] = (),
+    legend: int = 0,
 ) -> Figure:
     """Return the page with rows of panels; those with the same axis share it, and its name stands once.
 
     Args:
-        width, height: as of `page` [inch]; title: of the whole.
+        width, height: as of `page` [inch]; title: of the whole; columns: titles of the columns.
         legend: columns of the one below all panels, for all of them; 0 for none.
     """
     drawn = page(width, height)
-    columns = list(zip(*rows, strict=True))
-    shared_x = all(_same("x", column) for column in columns) and len(rows) > 1
+    across = list(zip(*rows, strict=True))
+    shared_x = all(_same("x", column) for column in across) and len(rows) > 1
     along: Any = "all" if _same("x", [panel for row in rows for panel in row]) else "col"
-    shared_y = all(_same("y", row) for row in rows) and len(columns) > 1
-    across: Any = "row" if shared_y else "col" if all(_same("y", column) for column in columns) else "none"
+    shared_y = all(_same("y", row) for row in rows) and len(across) > 1
+    up: Any = "row" if shared_y else "col" if all(_same("y", column) for column in across) else "none"
     grid = drawn.subplots(
-        len(rows), len(columns), squeeze=False, sharex=along if shared_x else "none", sharey=across
+        len(rows), len(across), squeeze=False, sharex=along if shared_x else "none", sharey=up
     )
     for line, draws in zip(grid, rows, strict=True):
         for panel, draw in zip(line, draws, strict=True):
@@ -294,6 +339,8 @@ def sheet(
         panel.set_xlabel("")
     for panel in grid[:, 1:].flat if shared_y else ():
         panel.set_ylabel("")
+    for panel, words in zip(grid[0], columns, strict=False):
+        panel.set_title(words)
     if title:
         drawn.suptitle(title)
     if legend:
