@@ -7,7 +7,8 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from studies.engine.study import Tables, records
-from studies.record.panels import Axis, Contours, Curves, Level, Mark, Panel, Words, sheet
+from studies.record.marks import Contours, Level, Words
+from studies.record.panels import Axis, Curves, Mark, Panel, sheet
 from studies.record.style import BLACK, BLUE, GREEN, ORANGE, PURPLE, SKY, Look
 
 #: Quantity -> how it is written beside its charts.
@@ -26,17 +27,13 @@ BESIDE = {"large steel": ((4, -10), "right"), "titanium": ((4, -10), "left")}
 
 def _charts(quantities: tuple[str, ...], tables: Tables) -> Figure:
     """Draw a row of charts a quantity, a column a rotation, with the ratios of least shift."""
-    ratio = Axis(column="crossing_ratio", label="ratio λ", ticks=(0.2, 0.5, 0.8))
-    shiftless = [
-        Level(at=at, colour=ORANGE, line=":", upright=True) for at in (LEAST_SHIFT, 1.0 - LEAST_SHIFT)
-    ]
+    ratio = Axis("crossing_ratio", "ratio λ", ticks=(0.2, 0.5, 0.8))
+    shiftless = [Level(at, colour=ORANGE, line=":", upright=True) for at in (LEAST_SHIFT, 1.0 - LEAST_SHIFT)]
     turns = list(tables["map"].groupby("rotation_deg"))
     lines = []
     for name in quantities:
-        y = Axis(column="inclination_deg", label=f"{NAMES[name]}\ninclination [°]", ticks=(30, 45, 60))
-        lines.append(
-            [Panel(x=ratio, y=y, marks=[Contours(rows=rows, column=name), *shiftless]) for _, rows in turns]
-        )
+        y = Axis("inclination_deg", f"{NAMES[name]}\ninclination [°]", ticks=(30, 45, 60))
+        lines.append([Panel(ratio, y, [Contours(rows, name), *shiftless]) for _, rows in turns])
     return sheet(WIDTH, 1.5 * len(quantities) + 0.35, lines, columns=[f"{turn:g}°" for turn, _ in turns])
 
 
@@ -52,16 +49,16 @@ def _loads(tables: Tables) -> Figure:
     across = rows["direction"] == "across"
     colours = dict(zip(sorted(set(rows["crossing_ratio"])), (BLUE, SKY, GREEN, ORANGE, BLACK), strict=True))
     looks = {ratio: Look(label=f"λ = {ratio:.3g}", colour=colour) for ratio, colour in colours.items()}
-    load = Axis(column="load", label="$P L^2/(EI)$")
-    stiffness = Axis(column="relative", label="$K/K(P=0)$, α = 45°")
+    load = Axis("load", "$P L^2/(EI)$")
+    stiffness = Axis("relative", "$K/K(P=0)$, α = 45°")
     panels = (
         Panel(
-            x=replace(load, label="$P L^2/(EI)$, + to the ground"), y=stiffness, title="along the axis",
-            marks=(Curves(rows=rows[~across], looks=looks, by="crossing_ratio"), Level(at=0.0)),
+            replace(load, label="$P L^2/(EI)$, + to the ground"), stiffness, title="along the axis",
+            marks=(Curves(rows[~across], looks, by="crossing_ratio"), Level(0.0))
         ),
         Panel(
-            x=load, y=replace(stiffness, label=""), title="across it",
-            marks=(Curves(rows=rows[across], looks=looks, by="crossing_ratio"),),
+            load, replace(stiffness, label=""), title="across it",
+            marks=(Curves(rows[across], looks, by="crossing_ratio"),)
         ),
         _buckling(tables["buckling"]),
     )  # fmt: skip
@@ -75,9 +72,9 @@ def _buckling(rows: pd.DataFrame) -> Panel:
         for inclination, line in ((30.0, ":"), (45.0, "-"), (60.0, "--"))
     }
     return Panel(
-        x=Axis(column="crossing_ratio", label="crossing ratio λ"),
-        y=Axis(column="load", label="buckling $P L^2/(EI)$", limits=(0.0, None)),
-        marks=(Curves(rows=rows, looks=looks, by="inclination_deg"),),
+        Axis("crossing_ratio", "crossing ratio λ"),
+        Axis("load", "buckling $P L^2/(EI)$", limits=(0.0, None)),
+        (Curves(rows, looks, by="inclination_deg"),),
         title="to the ground",
     )
 
@@ -89,22 +86,22 @@ def _validity(tables: Tables) -> Figure:
         line, share = "-" if row["share"] < 0.02 else "--", f"{row['share']:.0%}"
         if row["ratio"] == "width_ratio":
             place, words = (row["value"], 0.18), f"clamped width {share}"
-            marks.append(Level(at=row["value"], colour=GREEN, line=line, upright=True))
-            marks.append(Words(text=words, at=place, by=(2, 0), colour=GREEN, turned=True))
+            marks.append(Level(row["value"], colour=GREEN, line=line, upright=True))
+            marks.append(Words(words, place, by=(2, 0), colour=GREEN, turned=True))
         elif row["ratio"] == "thickness_ratio":
             place, words = (0.7, row["value"]), f"roots of one block {share}"
-            marks.append(Level(at=row["value"], colour=PURPLE, line=line))
-            marks.append(Words(text=words, at=place, by=(0, 2), colour=PURPLE))
-    marks.append(Curves(rows=tables["validity"], looks=Look(label="_", colour=BLACK, line="", marker="o")))
+            marks.append(Level(row["value"], colour=PURPLE, line=line))
+            marks.append(Words(words, place, by=(0, 2), colour=PURPLE))
+    marks.append(Curves(tables["validity"], Look(label="_", colour=BLACK, line="", marker="o")))
     for row in records(tables["validity"]):
         text = row["pivot"].removesuffix("_pivot").replace("_", " ")
         by, side = BESIDE.get(text, ((4, 4), "left"))
         place = (row["width_ratio"], row["thickness_ratio"])
-        marks.append(Words(text=text, at=place, by=by, colour=BLACK, side=side))
+        marks.append(Words(text, place, by=by, colour=BLACK, side=side))
     panel = Panel(
-        x=Axis(column="width_ratio", label="width over length $b/L$", log=True, limits=(0.02, 2.0)),
-        y=Axis(column="thickness_ratio", label="thickness over length $t/L$", log=True, limits=(2.5e-3, 0.2)),
-        marks=marks,
+        Axis("width_ratio", "width over length $b/L$", log=True, limits=(0.02, 2.0)),
+        Axis("thickness_ratio", "thickness over length $t/L$", log=True, limits=(2.5e-3, 0.2)),
+        marks,
     )
     return sheet(WIDTH, 3.1, [[panel]])
 

@@ -12,7 +12,8 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from studies.kinds import Array
-from studies.record.panels import Axis, Contours, Curves, Level, Panel
+from studies.record.marks import Contours, Level
+from studies.record.panels import Axis, Curves, Panel
 from studies.record.style import BLACK, RED, Look, page
 
 
@@ -119,15 +120,15 @@ def _map(maps: pd.DataFrame, name: str, factor: float, title: str, levels: tuple
     """Return one quantity over crossing ratio and inclination, with Wittrick's ratios and Table 1's place."""
     reference = pd.DataFrame({"crossing_ratio": [0.5], "inclination_deg": [45.0]})
     return Panel(
-        x=Axis(column="crossing_ratio", label="crossing ratio [1]"),
-        y=Axis(column="inclination_deg", label="inclination [°]"),
-        marks=(
-            Contours(rows=maps, column=name, factor=factor, levels=levels, colour=BLACK, shaded=True),
+        Axis("crossing_ratio", "crossing ratio [1]"),
+        Axis("inclination_deg", "inclination [°]"),
+        (
+            Contours(maps, name, factor=factor, levels=levels, colour=BLACK, shaded=True),
             *(
-                Level(at=ratio, words=label, colour=RED, line="--", upright=True)
+                Level(ratio, words=label, colour=RED, line="--", upright=True)
                 for label, ratio in WITTRICK.items()
             ),
-            Curves(rows=reference, looks=Look(label="_", colour=RED), more=STAR),
+            Curves(reference, Look(label="_", colour=RED), more=STAR),
         ),
         title=title.format(maps["slenderness"].iloc[0]),
     )
