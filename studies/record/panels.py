@@ -1,8 +1,8 @@
 """Panels of figures: curves of tables over axes, and the sheets they stand on, alike in every study.
 
 A study says of a panel what stands along its axes and which marks are drawn over them: curves, and those of
-`studies.record.marks`; `sheet` puts panels on a page. What no other figure has, a study draws itself, by a mark
-of its own, or by a function of matplotlib's axes in a panel's place.
+`studies.record.marks`. `sheet` puts them on a page. What no other figure has, a study draws itself: by a mark
+of its own, or a function of matplotlib's axes in a panel's place.
 """
 
 import math
