@@ -31,7 +31,8 @@ from studies.baselines.variants import (
 )
 from studies.cases.problem import named_case
 from studies.engine.study import Answer, Claim, Part, Study, Tables, records
-from studies.record.panels import Axis, Curves, Level, Panel, sheet
+from studies.record.marks import Level
+from studies.record.panels import Axis, Curves, Panel, sheet
 from studies.record.style import BLACK, BLUE, ORANGE, PURPLE, YELLOW, Look
 
 GROUPS = (ELEMENTS, EXUDYN, AS_DELIVERED, OPENSEES, SURROGATE)
@@ -110,10 +111,10 @@ LOOKS = {
 
 def _work_precision(tables: Tables) -> Figure:
     """Draw every setting as a point and the best of each model as a line, for the path and the swing."""
-    path = Axis(column="worst", label="larger error of trajectory and torque [1]", log=True)
-    swing = Axis(column="rotation_rad", label="largest error of the rotation [rad]", log=True)
+    path = Axis("worst", "larger error of trajectory and torque [1]", log=True)
+    swing = Axis("rotation_rad", "largest error of the rotation [rad]", log=True)
     doubts = [
-        Level(at=row["rotation_rad"], words=f"uncertainty of the limit {row['theory']}", line=":", place=0.99)
+        Level(row["rotation_rad"], words=f"uncertainty of the limit {row['theory']}", line=":", place=0.99)
         for row in records(tables["swing_theories"].query("what == 'uncertainty'"))
     ]
     panels = [
@@ -131,11 +132,11 @@ def _panel(tables: Tables, task: str, y: Axis, title: str, *marks: Level) -> Pan
     rows = rows[rows["status"] == "converged"].merge(times, on=["model", "variant"]).sort_values("solve_s")
     best = rows[rows[y.column] <= rows.groupby(["model", "group"])[y.column].cummin()]
     return Panel(
-        x=Axis(column="solve_s", label="time of the solver [ms]", factor=1e3, log=True),
-        y=y,
-        marks=(
-            Curves(rows=rows, looks=LOOKS, by=("model", "group"), faint=True),
-            Curves(rows=best, looks=LOOKS, by=("model", "group")),
+        Axis("solve_s", "time of the solver [ms]", factor=1e3, log=True),
+        y,
+        (
+            Curves(rows, LOOKS, by=("model", "group"), faint=True),
+            Curves(best, LOOKS, by=("model", "group")),
             *marks,
         ),
         title=title,

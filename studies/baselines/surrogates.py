@@ -33,7 +33,8 @@ from studies.model_form.account import CASE as GUIDE
 from studies.model_form.account import LOADS, guide_design, guide_shape
 from studies.paper import formulations
 from studies.published.problems import moved
-from studies.record.panels import AMPLITUDE, ROTATION, TIME, Axis, Curves, Level, Panel, sheet
+from studies.record.marks import Level
+from studies.record.panels import AMPLITUDE, ROTATION, TIME, Axis, Curves, Panel, sheet
 from studies.record.style import BLACK, GREEN, LOOKS, ORANGE, PURPLE, SKY, YELLOW, Look
 
 #: Splines beside them: what the paper wrote, the same count without locking, and the default.
@@ -227,11 +228,11 @@ def _figure(tables: Tables) -> Figure:
 def _static(rows: pd.DataFrame, quantity: str) -> Panel:
     label = f"|error of the {quantity}| [1]"
     return Panel(
-        x=replace(ROTATION, limits=(0, 90)),
-        y=Axis(column=quantity, label=label, log=True, limits=ERRORS),
-        marks=(
-            Curves(rows=rows, looks=MODELS | DRAWN, by="model"),
-            *(Level(at=level, words=f"{level:.0%}", place=1.0) for level in LEVELS),
+        replace(ROTATION, limits=(0, 90)),
+        Axis(quantity, label, log=True, limits=ERRORS),
+        (
+            Curves(rows, MODELS | DRAWN, by="model"),
+            *(Level(level, words=f"{level:.0%}", place=1.0) for level in LEVELS),
         ),
     )
 
@@ -239,9 +240,9 @@ def _static(rows: pd.DataFrame, quantity: str) -> Panel:
 def _frequencies(rows: pd.DataFrame) -> Panel:
     looks = {name: replace(look, marker="o") for name, look in MODELS.items()}
     return Panel(
-        x=AMPLITUDE,
-        y=Axis(column="shift", label="shift of the frequency [%]", factor=100.0),
-        marks=(Curves(rows=rows, looks=looks, by="model"), Level(at=0.0)),
+        AMPLITUDE,
+        Axis("shift", "shift of the frequency [%]", factor=100.0),
+        (Curves(rows, looks, by="model"), Level(0.0)),
         title="Free swing",
     )
 
@@ -252,15 +253,15 @@ def _motions(rows: pd.DataFrame) -> tuple[Panel, Panel]:
     label = "difference to the refined spline [°]"
     return (
         Panel(
-            x=TIME,
-            y=replace(ROTATION, label="rotation [°]", ticks=range(-90, 91, 45)),
-            marks=(Curves(rows=rows, looks=looks, by="model"),),
+            TIME,
+            replace(ROTATION, label="rotation [°]", ticks=range(-90, 91, 45)),
+            (Curves(rows, looks, by="model"),),
             title="Released at 90°",
         ),
         Panel(
-            x=TIME,
-            y=replace(ROTATION, column="difference_rad", label=label, ticks=range(-180, 181, 60)),
-            marks=(Curves(rows=rows, looks=MODELS, by="model"),),
+            TIME,
+            replace(ROTATION, column="difference_rad", label=label, ticks=range(-180, 181, 60)),
+            (Curves(rows, MODELS, by="model"),),
         ),
     )
 

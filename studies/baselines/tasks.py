@@ -1,17 +1,16 @@
 """Path and swing of the spline and of other codes: errors against the limit of each theory, and times."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 from scipy.interpolate import CubicSpline
 
-from studies.answers.adapters import answer_release, answer_static
-from studies.answers.metrics import relative_error, trajectory_error
-from studies.answers.reference import MESHES, RECORDS, limit_of, limit_of_swings, sampled
+from studies.answers.adapters import answer_release
+from studies.answers.reference import RECORDS, limit_of_swings, sampled
 from studies.answers.settings import FeSettings, SplineSettings
-from studies.baselines.answer import Followed
+from studies.baselines.answer import Followed, SolvedPath
 from studies.baselines.exudyn_strips import exudyn_ancf, exudyn_exact
 from studies.baselines.openseespy import openseespy_frame
 from studies.baselines.own import spline
@@ -26,6 +25,7 @@ from studies.baselines.variants import (
 from studies.cases.problem import Problem
 from studies.kinds import Array
 from studies.paper import formulations
+from studies.work_precision.members import limit_of_theory, path_errors
 
 Rows = list[dict[str, Any]]
 
@@ -44,23 +44,11 @@ PATH_ERRORS = ("trajectory", "torque", "torque_at_end", "worst", "fineness")
 WORK = ("unknowns", "newton_iterations", "factorisations")
 
 
-@dataclass(frozen=True, kw_only=True)
-class Limit:
-    """What a path is held against: centre (S, 2) [m] and torque (S,) [N m]."""
-
-    centre: Array
-    torque: Array
-
-    def errors(self, centre: Array, torque: Array) -> dict[str, float]:
-        """Return the largest errors over the path, the torque's at its end, and the worst of both."""
-        trajectory = float(trajectory_error(centre, self.centre).max())
-        by_state = np.abs(relative_error(torque[1:], self.torque[1:]))  # at rest there is none
-        return {
-            "trajectory": trajectory,
-            "torque": float(by_state.max()),
-            "torque_at_end": float(by_state[-1]),
-            "worst": max(trajectory, float(by_state.max())),
-        }
+def errors_of(path: SolvedPath, limit: SolvedPath) -> dict[str, float]:
+    """Return the largest errors over a path, the torque's at its end, and the worst of both."""
+    found = path_errors(path, limit)
+    largest = {name: found[f"error_{name}"] for name in ("trajectory", "torque")}
+    return largest | {"torque_at_end": found["end_torque"], "worst": max(largest.values())}
 
 
 def _rotations(problem: Problem) -> Array:
@@ -68,7 +56,7 @@ def _rotations(problem: Problem) -> Array:
     return np.linspace(0.0, problem.rotation, problem.increments + 1)
 
 
-def path_limits(problem: Problem) -> tuple[dict[str, Limit], Rows]:
+def path_limits(problem: Problem) -> tuple[dict[str, SolvedPath], Rows]:
     """Return the limit of either theory, and rows of how certain they are and how far they are apart.
 
     Without shear it is a refined spline; with shear that of this repository's Reissner elements.
@@ -76,22 +64,19 @@ def path_limits(problem: Problem) -> tuple[dict[str, Limit], Rows]:
     turns = _rotations(problem)
     refined = spline.static_path(problem, turns, control_points=REFINED)
     check = spline.static_path(problem, turns, control_points=CHECK)
-    reissner = limit_of([answer_static(problem, FeSettings(elements=n, element="reissner")) for n in MESHES])
-    found = {
-        WITHOUT_SHEAR: Limit(centre=refined.centre, torque=refined.torque),
-        WITH_SHEAR: Limit(centre=reissner.centre, torque=reissner.torque),
-    }
+    reissner = limit_of_theory(problem, "shear")
+    found = {WITHOUT_SHEAR: refined, WITH_SHEAR: reissner.path}
     told = [
-        ("uncertainty", WITHOUT_SHEAR, found[WITHOUT_SHEAR].errors(check.centre, check.torque)),
+        ("uncertainty", WITHOUT_SHEAR, errors_of(check, refined)),
         ("uncertainty", WITH_SHEAR, reissner.uncertainty),
-        ("difference of the theories", "", found[WITH_SHEAR].errors(refined.centre, refined.torque)),
+        ("difference of the theories", "", errors_of(refined, reissner.path)),
     ]
     for module, settings in FINEST.items():
         if not module.installed():
             continue
         theory = WITH_SHEAR if module is exudyn_exact else WITHOUT_SHEAR
         path = module.static_path(problem, turns, **settings)
-        away = found[theory].errors(path.centre, path.torque)
+        away = errors_of(path, found[theory])
         told.append((f"{module.model}, {settings['elements']} elements", theory, away))
     return found, [
         {"what": what, "theory": theory, "trajectory": errors["trajectory"], "torque": errors["torque"]}
@@ -99,14 +84,14 @@ def path_limits(problem: Problem) -> tuple[dict[str, Limit], Rows]:
     ]
 
 
-def compared_paths(problem: Problem, against: dict[str, Limit]) -> tuple[Rows, Rows]:
+def compared_paths(problem: Problem, against: dict[str, SolvedPath]) -> tuple[Rows, Rows]:
     """Return errors and work, and times, a row a variant."""
     turns = _rotations(problem)
 
     def solve(variant: Variant) -> tuple[dict[str, Any], Followed]:
         path = variant.module.static_path(problem, turns, **variant.settings)
         work = {name: path.work.get(name, np.nan) for name in WORK}
-        found = against[variant.theory].errors(path.centre, path.torque)
+        found = errors_of(path, against[variant.theory])
         counts = (variant.settings.get(name) for name in ("elements", "control_points"))
         fineness = next((float(count) for count in counts if count), np.nan)  # a closed form has none
         return found | {"fineness": fineness} | work, path

@@ -2,16 +2,14 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
-from typing import Any
 
 import pandas as pd
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.ticker import MaxNLocator
 
 from studies.engine.study import Tables, records
-from studies.record.panels import Axis, Curves, Level, Mark, Panel, Words, sheet
-from studies.record.style import BLACK, BLUE, GREEN, ORANGE, PURPLE, SKY, Look, page
+from studies.record.marks import Contours, Level, Words
+from studies.record.panels import Axis, Curves, Mark, Panel, sheet
+from studies.record.style import BLACK, BLUE, GREEN, ORANGE, PURPLE, SKY, Look
 
 #: Quantity -> how it is written beside its charts.
 NAMES = {
@@ -27,34 +25,16 @@ WIDTH = 6.3
 BESIDE = {"large steel": ((4, -10), "right"), "titanium": ((4, -10), "left")}
 
 
-def _charts(rows: tuple[str, ...], tables: Tables) -> Figure:
-    """Draw a row of charts a quantity, a column a rotation."""
-    table = tables["map"]
-    turns = sorted(set(table["rotation_deg"]))
-    drawn = page(WIDTH, 1.5 * len(rows) + 0.35)
-    panels = drawn.subplots(len(rows), len(turns), sharex=True, sharey=True, squeeze=False)
-    for line, name in zip(panels, rows, strict=True):
-        for panel, turn in zip(line, turns, strict=True):
-            _chart(panel, table[table["rotation_deg"] == turn], name)
-        line[0].set_ylabel(f"{NAMES[name]}\ninclination [°]")
-    for panel, turn in zip(panels[0], turns, strict=True):
-        panel.set_title(f"{turn:g}°")
-    drawn.supxlabel("crossing ratio λ", fontsize=8)
-    return drawn
-
-
-def _chart(panel: Axes, rows: pd.DataFrame, name: str) -> None:
-    grid: Any = rows.pivot(index="inclination_deg", columns="crossing_ratio", values=name)
-    levels = MaxNLocator(4, steps=(1, 2, 2.5, 5, 10)).tick_values(
-        grid.to_numpy().min(), grid.to_numpy().max()
-    )
-    lines = panel.contour(grid.columns, grid.index, grid, levels=levels, colors=BLUE, linewidths=0.8)
-    for said in panel.clabel(lines, fontsize=7, inline_spacing=1, fmt=lambda value: f"{value:.3g}"):
-        said.set_clip_on(False)
-    panel.axvline(LEAST_SHIFT, color=ORANGE, linewidth=0.7, linestyle=":")
-    panel.axvline(1.0 - LEAST_SHIFT, color=ORANGE, linewidth=0.7, linestyle=":")
-    panel.grid(visible=False)
-    panel.set(xticks=(0.2, 0.5, 0.8), yticks=(30, 45, 60))
+def _charts(quantities: tuple[str, ...], tables: Tables) -> Figure:
+    """Draw a row of charts a quantity, a column a rotation, with the ratios of least shift."""
+    ratio = Axis("crossing_ratio", "ratio λ", ticks=(0.2, 0.5, 0.8))
+    shiftless = [Level(at, colour=ORANGE, line=":", upright=True) for at in (LEAST_SHIFT, 1.0 - LEAST_SHIFT)]
+    turns = list(tables["map"].groupby("rotation_deg"))
+    lines = []
+    for name in quantities:
+        y = Axis("inclination_deg", f"{NAMES[name]}\ninclination [°]", ticks=(30, 45, 60))
+        lines.append([Panel(ratio, y, [Contours(rows, name), *shiftless]) for _, rows in turns])
+    return sheet(WIDTH, 1.5 * len(quantities) + 0.35, lines, columns=[f"{turn:g}°" for turn, _ in turns])
 
 
 def _loads(tables: Tables) -> Figure:
@@ -69,16 +49,16 @@ def _loads(tables: Tables) -> Figure:
     across = rows["direction"] == "across"
     colours = dict(zip(sorted(set(rows["crossing_ratio"])), (BLUE, SKY, GREEN, ORANGE, BLACK), strict=True))
     looks = {ratio: Look(label=f"λ = {ratio:.3g}", colour=colour) for ratio, colour in colours.items()}
-    load = Axis(column="load", label="$P L^2/(EI)$")
-    stiffness = Axis(column="relative", label="$K/K(P=0)$, α = 45°")
+    load = Axis("load", "$P L^2/(EI)$")
+    stiffness = Axis("relative", "$K/K(P=0)$, α = 45°")
     panels = (
         Panel(
-            x=replace(load, label="$P L^2/(EI)$, + to the ground"), y=stiffness, title="along the axis",
-            marks=(Curves(rows=rows[~across], looks=looks, by="crossing_ratio"), Level(at=0.0)),
+            replace(load, label="$P L^2/(EI)$, + to the ground"), stiffness, title="along the axis",
+            marks=(Curves(rows[~across], looks, by="crossing_ratio"), Level(0.0))
         ),
         Panel(
-            x=load, y=replace(stiffness, label=""), title="across it",
-            marks=(Curves(rows=rows[across], looks=looks, by="crossing_ratio"),),
+            load, replace(stiffness, label=""), title="across it",
+            marks=(Curves(rows[across], looks, by="crossing_ratio"),)
         ),
         _buckling(tables["buckling"]),
     )  # fmt: skip
@@ -92,9 +72,9 @@ def _buckling(rows: pd.DataFrame) -> Panel:
         for inclination, line in ((30.0, ":"), (45.0, "-"), (60.0, "--"))
     }
     return Panel(
-        x=Axis(column="crossing_ratio", label="crossing ratio λ"),
-        y=Axis(column="load", label="buckling $P L^2/(EI)$", limits=(0.0, None)),
-        marks=(Curves(rows=rows, looks=looks, by="inclination_deg"),),
+        Axis("crossing_ratio", "crossing ratio λ"),
+        Axis("load", "buckling $P L^2/(EI)$", limits=(0.0, None)),
+        (Curves(rows, looks, by="inclination_deg"),),
         title="to the ground",
     )
 
@@ -106,22 +86,22 @@ def _validity(tables: Tables) -> Figure:
         line, share = "-" if row["share"] < 0.02 else "--", f"{row['share']:.0%}"
         if row["ratio"] == "width_ratio":
             place, words = (row["value"], 0.18), f"clamped width {share}"
-            marks.append(Level(at=row["value"], colour=GREEN, line=line, upright=True))
-            marks.append(Words(text=words, at=place, by=(2, 0), colour=GREEN, turned=True))
+            marks.append(Level(row["value"], colour=GREEN, line=line, upright=True))
+            marks.append(Words(words, place, by=(2, 0), colour=GREEN, turned=True))
         elif row["ratio"] == "thickness_ratio":
             place, words = (0.7, row["value"]), f"roots of one block {share}"
-            marks.append(Level(at=row["value"], colour=PURPLE, line=line))
-            marks.append(Words(text=words, at=place, by=(0, 2), colour=PURPLE))
-    marks.append(Curves(rows=tables["validity"], looks=Look(label="_", colour=BLACK, line="", marker="o")))
+            marks.append(Level(row["value"], colour=PURPLE, line=line))
+            marks.append(Words(words, place, by=(0, 2), colour=PURPLE))
+    marks.append(Curves(tables["validity"], Look(label="_", colour=BLACK, line="", marker="o")))
     for row in records(tables["validity"]):
         text = row["pivot"].removesuffix("_pivot").replace("_", " ")
         by, side = BESIDE.get(text, ((4, 4), "left"))
         place = (row["width_ratio"], row["thickness_ratio"])
-        marks.append(Words(text=text, at=place, by=by, colour=BLACK, side=side))
+        marks.append(Words(text, place, by=by, colour=BLACK, side=side))
     panel = Panel(
-        x=Axis(column="width_ratio", label="width over length $b/L$", log=True, limits=(0.02, 2.0)),
-        y=Axis(column="thickness_ratio", label="thickness over length $t/L$", log=True, limits=(2.5e-3, 0.2)),
-        marks=marks,
+        Axis("width_ratio", "width over length $b/L$", log=True, limits=(0.02, 2.0)),
+        Axis("thickness_ratio", "thickness over length $t/L$", log=True, limits=(2.5e-3, 0.2)),
+        marks,
     )
     return sheet(WIDTH, 3.1, [[panel]])
 

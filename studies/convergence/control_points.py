@@ -1,7 +1,6 @@
 """Convergence of the splines with their control points in every form: the locking map."""
 
 from collections.abc import Iterator
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -16,7 +15,8 @@ from studies.cases.problem import named_case
 from studies.convergence.sweep import reaching, spline_row
 from studies.engine.study import Claim, Part, Study, Tables, percent
 from studies.paper.formulations import refined
-from studies.record.panels import CONTROL_POINTS, Axis, Curves, Doubt, Panel, sheet
+from studies.record.marks import Doubt
+from studies.record.panels import CONTROL_POINTS, Axis, Curves, Panel, sheet
 from studies.record.style import BASES, STRETCH, page
 
 COUNTS = range(4, 13)
@@ -48,15 +48,11 @@ def _lines(tables: Tables) -> Figure:
     rows, limits = _default_modes(tables["map"]), tables["reference"]
     lines = []
     for quantity in ("trajectory", "torque"):
-        y = Axis(column=f"error_{quantity}", label=f"largest error of the {quantity} [1]", log=True)
+        y = Axis(f"error_{quantity}", f"largest error of the {quantity} [1]", log=True)
         doubt = Doubt(float(limits["uncertainty"][limits["quantity"] == quantity].max()))
-        forms = [
-            Curves(rows=rows[rows["basis"] == basis], looks=STRETCH, by=("stretch", "measure"))
-            for basis in BASES
-        ]
-        lines.append([Panel(x=CONTROL_POINTS, y=y, marks=(curves, doubt)) for curves in forms])
-    lines[0] = [replace(panel, title=label) for panel, label in zip(lines[0], BASES.values(), strict=True)]
-    return sheet(9.5, 6.6, lines, legend=3)
+        forms = [Curves(rows[rows["basis"] == basis], STRETCH, by=("stretch", "measure")) for basis in BASES]
+        lines.append([Panel(CONTROL_POINTS, y, (curves, doubt)) for curves in forms])
+    return sheet(9.5, 6.6, lines, columns=list(BASES.values()), legend=3)
 
 
 def _maps(tables: Tables) -> Figure:

@@ -11,19 +11,8 @@ from matplotlib.lines import Line2D
 
 from studies.convergence.swing_sweep import INTEGRATORS, MODES, PARTS
 from studies.engine.study import Claim, Study, Tables
-from studies.record.panels import (
-    AMPLITUDE,
-    CONTROL_POINTS,
-    MESH,
-    STEP,
-    Axis,
-    Curves,
-    Doubt,
-    Drawn,
-    Level,
-    Panel,
-    sheet,
-)
+from studies.record.marks import Doubt, Level
+from studies.record.panels import AMPLITUDE, CONTROL_POINTS, MESH, STEP, Axis, Curves, Drawn, Panel, sheet
 from studies.record.style import BLACK, BLUE, LOOKS, ORANGE, Look
 
 SPLINE, TWENTY = "n = 6", "FE, 20 elements"
@@ -44,20 +33,20 @@ ALIKE = 1e-3
 def _shifts(tables: Tables) -> Figure:
     """Draw the shifts of the swing (above) and the errors of the linear modes (below), by refinement."""
     doubt = Doubt(float(tables["reference"]["uncertainty"].iloc[0]))
-    size = Axis(column="shift", label="|shift of the frequency| [1]", log=True)
+    size = Axis("shift", "|shift of the frequency| [1]", log=True)
     unnamed = replace(size, label="")
     swing = (
         Panel(
-            x=CONTROL_POINTS, y=size, marks=(*_by_stretch(tables["control_points"]), doubt),
-            title="Swing from 90°", legend={"loc": "upper right", "fontsize": 7},
+            CONTROL_POINTS, size, (*_by_stretch(tables["control_points"]), doubt),
+            title="Swing from 90°", legend={"loc": "upper right", "fontsize": 7}
         ),
         Panel(
-            x=replace(MESH, each=2), y=unnamed, title="Swing from 90°",
-            marks=(Curves(rows=tables["elements"], looks=MESHES), doubt),
+            replace(MESH, each=2), unnamed, title="Swing from 90°",
+            marks=(Curves(tables["elements"], MESHES), doubt)
         ),
         Panel(
-            x=STEP, y=unnamed, marks=(Curves(rows=tables["steps"], looks=STEPPED, by="integrator"),),
-            title="Swing from 90°, n = 6", legend="upper left",
+            STEP, unnamed, (Curves(tables["steps"], STEPPED, by="integrator"),),
+            title="Swing from 90°, n = 6", legend="upper left"
         ),
     )  # fmt: skip
     return sheet(9.5, 6.6, (swing, _modes(tables["modes"])))
@@ -71,8 +60,8 @@ def _by_stretch(rows: pd.DataFrame) -> tuple[Curves, Curves]:
         name: replace(look, label=f"{name}, statics", line=":", marker="") for name, look in forms.items()
     }
     return (
-        Curves(rows=rows, looks=swung, by="stretch"),
-        Curves(rows=rows, looks=predicted, by="stretch", y="shift_from_statics"),
+        Curves(rows, swung, by="stretch"),
+        Curves(rows, predicted, by="stretch", y="shift_from_statics"),
     )
 
 
@@ -82,10 +71,10 @@ def _modes(rows: pd.DataFrame) -> list[Drawn]:
     for mode, look in zip(range(1, MODES + 1), LOOKS.values(), strict=False):
         frequency = rows.loc[rows["mode"] == mode, "limit_Hz"].iloc[0]
         looks[mode] = Look(label=f"mode {mode}: {frequency:.1f} Hz", colour=look.colour, marker="o")
-    y = Axis(column="error", label="|error of the frequency| [1]", log=True, limits=(1e-11, None))
+    y = Axis("error", "|error of the frequency| [1]", log=True, limits=(1e-11, None))
     points, meshes = (
-        Panel(x=replace(x, column="count"), y=y, title="Small motion at rest",
-              marks=(Curves(rows=rows[rows["model"] == model], looks=looks, by="mode"),))
+        Panel(replace(x, column="count"), y, title="Small motion at rest",
+              marks=(Curves(rows[rows["model"] == model], looks, by="mode"),))
         for x, model in ((CONTROL_POINTS, "spline"), (replace(MESH, each=2), "fe"))
     )  # fmt: skip
 
@@ -104,19 +93,19 @@ def _backbone(tables: Tables) -> Figure:
     spline = rows[rows["formulation"] == SPLINE]
     massless = Look(label="from statics alone, massless strips", colour=BLACK, line=":")
     curve = Panel(
-        x=AMPLITUDE,
-        y=Axis(column="frequency_Hz", label="frequency of the swing [Hz]"),
-        marks=(
-            Curves(rows=rows, looks={name: LOOKS[name] for name in (TWENTY, SPLINE)}),
-            Curves(rows=spline, looks=massless, y="frequency_from_statics_Hz"),
-            Level(at=rows["first_mode_Hz"].iloc[0], words="first mode at rest", place=0.99),
+        AMPLITUDE,
+        Axis("frequency_Hz", "frequency of the swing [Hz]"),
+        (
+            Curves(rows, {name: LOOKS[name] for name in (TWENTY, SPLINE)}),
+            Curves(spline, massless, y="frequency_from_statics_Hz"),
+            Level(rows["first_mode_Hz"].iloc[0], words="first mode at rest", place=0.99),
         ),
         legend="upper left",
     )
     difference = Panel(
-        x=AMPLITUDE,
-        y=Axis(column="difference", label="difference to 20 elements [1e-4]", factor=1e4),
-        marks=(Curves(rows=apart, looks=LOOKS[SPLINE]), Level(at=0.0)),
+        AMPLITUDE,
+        Axis("difference", "difference to 20 elements [1e-4]", factor=1e4),
+        (Curves(apart, LOOKS[SPLINE]), Level(0.0)),
     )
     return sheet(9.5, 3.8, [[curve, difference]])
 

@@ -10,7 +10,8 @@ from matplotlib.figure import Figure
 
 from studies.convergence.impulse_tables import PAPER_STEP, PARTS
 from studies.engine.study import Claim, Study, Tables
-from studies.record.panels import STEP, Axis, Curves, Level, Mark, Panel, Slope, sheet
+from studies.record.marks import Level, Slope
+from studies.record.panels import STEP, Axis, Curves, Mark, Panel, sheet
 from studies.record.style import BLUE, GREEN, GREY, ORANGE, RED, Look
 
 #: What "stable up to 2 / omega" is read as: the measured limit within this part of it.
@@ -31,32 +32,26 @@ GROUPS = {
     for name, colour in {"axial": ORANGE, "bending": GREEN, "swing": GREY}.items()
 }
 QUANTITIES = (
-    Axis(
-        column="error_rotation_rad",
-        label="error of rotation [deg]",
-        factor=180.0 / np.pi,
-        log=True,
-        least=1e-6,
-    ),
-    Axis(column="drift", label="gap of the clamps / L [1]", log=True, least=1e-16),
-    Axis(column="energy_change", label="|change of energy| [1]", log=True, least=1e-7),
-    Axis(column="motion_s", label="time for the motion [s]", log=True, least=1e-5),
+    Axis("error_rotation_rad", "error of rotation [deg]", factor=180.0 / np.pi, log=True, least=1e-6),
+    Axis("drift", "gap of the clamps / L [1]", log=True, least=1e-16),
+    Axis("energy_change", "|change of energy| [1]", log=True, least=1e-7),
+    Axis("motion_s", "time for the motion [s]", log=True, least=1e-5),
 )
 
 
 def _step_size(tables: Tables) -> Figure:
     """Draw error, drift, energy and time against the step, one column a design."""
     rows = tables["steps"].merge(tables["timings"], on=["design", "form", "step_s"])
-    columns = []
+    columns, titles = [], []
     for design, mine in rows.groupby("design", sort=False):
         limits = tables["limits"].query("design == @design and sweeps == 0").set_index("group")["predicted_s"]
-        marks: list[Mark] = [Curves(rows=mine, looks=FORMS, by="form"), *_marks(limits)]
-        panels = [Panel(x=replace(STEP, label="step h [s]"), y=y, marks=marks) for y in QUANTITIES]
+        marks: list[Mark] = [Curves(mine, FORMS, by="form"), *_marks(limits)]
+        panels = [Panel(replace(STEP, label="step h [s]"), y, marks) for y in QUANTITIES]
         lost = mine[(mine["form"] == "printed") & (mine["status"] != "converged")]["step_s"]
-        title = f"{design}, released from 90°"
-        panels[0] = replace(panels[0], marks=[*marks, Unstable(lost)], title=title)
+        panels[0] = replace(panels[0], marks=[*marks, Unstable(lost)])
         columns.append(panels)
-    return sheet(8.8, 9.2, list(zip(*columns, strict=True)), legend=4)
+        titles.append(f"{design}, released from 90°")
+    return sheet(8.8, 9.2, list(zip(*columns, strict=True)), columns=titles, legend=4)
 
 
 def _marks(limits: pd.Series) -> list[Level]:
@@ -65,8 +60,8 @@ def _marks(limits: pd.Series) -> list[Level]:
     for group, step in limits.items():
         label = f"2/ω, {group} modes" if group != "swing" else "2/ω, rigid swing"
         look = GROUPS[str(group)].colour
-        marks.append(Level(at=float(step), label=label, colour=look, line="--", upright=True))
-    return [*marks, Level(at=PAPER_STEP, label="the paper's 1/100 s", line=":", upright=True)]
+        marks.append(Level(float(step), label=label, colour=look, line="--", upright=True))
+    return [*marks, Level(PAPER_STEP, label="the paper's 1/100 s", line=":", upright=True)]
 
 
 @dataclass(frozen=True)
@@ -97,17 +92,15 @@ def _limits(rows: pd.DataFrame) -> Panel:
         for group, look in GROUPS.items()
     }
     few = Look(label="with 1, 2, 3 sweeps only", colour=RED, line="", marker="x")
-    direct = Curves(
-        rows=rows[rows["sweeps"] == 0], looks=looks, by=("design", "group"), more={"markersize": 6}
-    )
+    direct = Curves(rows[rows["sweeps"] == 0], looks, by=("design", "group"), more={"markersize": 6})
     return Panel(
-        x=Axis(column="predicted_s", label="2/ω of the spectrum [s]", log=True, limits=ends),
-        y=Axis(column="measured_s", label="measured limit [s]", log=True, limits=ends),
-        marks=(
+        Axis("predicted_s", "2/ω of the spectrum [s]", log=True, limits=ends),
+        Axis("measured_s", "measured limit [s]", log=True, limits=ends),
+        (
             direct,
-            Curves(rows=rows[(rows["sweeps"] > 0) & (rows["ratio"] < 0.99)], looks=few),
+            Curves(rows[(rows["sweeps"] > 0) & (rows["ratio"] < 0.99)], few),
             Slope(through=ends[:1] * 2, power=1, span=ends, label="_", line="-"),
-            Level(at=PAPER_STEP, words="the paper's 1/100 s", line=":"),
+            Level(PAPER_STEP, words="the paper's 1/100 s", line=":"),
         ),
         title="Limit as printed",
         legend=BENEATH,
@@ -124,9 +117,9 @@ def _errors(rows: pd.DataFrame) -> Panel:
     least = rows[rows["step_s"] == rows.groupby(groups)["step_s"].transform("min")]
     label = "error of the velocity change [1]"
     return Panel(
-        x=Axis(column="sweep", label="sweeps"),
-        y=Axis(column="error", label=label, log=True, least=1e-16, limits=(1e-16, 1e3)),
-        marks=(Curves(rows=least, looks=looks, by=groups),),
+        Axis("sweep", "sweeps"),
+        Axis("error", label, log=True, least=1e-16, limits=(1e-16, 1e3)),
+        (Curves(least, looks, by=groups),),
         title=f"Sweeps, h = {1e6 * rows['step_s'].min():.2g} µs",
         legend=BENEATH,
     )
@@ -139,12 +132,12 @@ def _factors(rows: pd.DataFrame) -> Panel:
         for form, look in FORMS.items()
     }
     return Panel(
-        x=replace(STEP, label="step h [s]"),
-        y=Axis(column="contraction", label="error after a sweep over that before [1]", log=True),
-        marks=(
-            Curves(rows=rows, looks=looks, by=("form", "impulses")),
-            Level(at=1.0),
-            Level(at=PAPER_STEP, line=":", upright=True),
+        replace(STEP, label="step h [s]"),
+        Axis("contraction", "error after a sweep over that before [1]", log=True),
+        (
+            Curves(rows, looks, by=("form", "impulses")),
+            Level(1.0),
+            Level(PAPER_STEP, line=":", upright=True),
         ),
         title="Left by a sweep",
         legend=BENEATH,

@@ -66,11 +66,11 @@ def _panel(tables: Tables, problem: str, column: str, label: str, title: str) ->
     rows, keys = tables[problem], ["control_points", "slide_stiffness"]
     looks = {n: Look(label=f"n = {n}", colour=COUNT_COLOURS[n], marker="o") for n in COUNTS}
     defaults = rows.merge(tables["defaults"].query("problem == @problem")[keys], on=keys)
-    rings = Curves(rows=defaults, looks=RING, more={"markersize": 8.0})
+    rings = Curves(defaults, RING, more={"markersize": 8.0})
     return Panel(
-        x=Axis(column="slide_stiffness", label="slide stiffness [EI/L²]", log=True),
-        y=Axis(column=column, label=label, log=True),
-        marks=(Curves(rows=rows, looks=looks, by="control_points"), rings),
+        Axis("slide_stiffness", "slide stiffness [EI/L²]", log=True),
+        Axis(column, label, log=True),
+        (Curves(rows, looks, by="control_points"), rings),
         title=title,
     )
 

@@ -17,7 +17,8 @@ from studies.cases.design import Design
 from studies.cases.problem import named_case
 from studies.engine.study import Answer, Claim, Part, Study, Tables
 from studies.kinds import Progress
-from studies.record.panels import CONTROL_POINTS, MESH, Axis, Curves, Doubt, Panel, Slope, sheet
+from studies.record.marks import Doubt, Slope
+from studies.record.panels import CONTROL_POINTS, MESH, Axis, Curves, Panel, sheet
 from studies.record.progress import silent
 from studies.record.style import ELEMENTS, LOOKS
 
@@ -134,10 +135,10 @@ def drawn(splines: pd.DataFrame, elements: pd.DataFrame, limit: Reference) -> Fi
     """
     above, below = [], []
     for quantity in QUANTITIES:
-        y = Axis(column=f"error_{quantity}", label=f"error of the {quantity} [1]", log=True)
+        y = Axis(f"error_{quantity}", f"error of the {quantity} [1]", log=True)
         doubt = Doubt(limit.uncertainty[quantity])
-        above.append(Panel(x=CONTROL_POINTS, y=y, marks=(Curves(rows=splines, looks=LOOKS["n = 6"]), doubt)))
-        below.append(Panel(x=MESH, y=y, marks=(Curves(rows=elements, looks=LOOKS["FE, 20 elements"]), doubt)))
+        above.append(Panel(CONTROL_POINTS, y, (Curves(splines, LOOKS["n = 6"]), doubt)))
+        below.append(Panel(MESH, y, (Curves(elements, LOOKS["FE, 20 elements"]), doubt)))
     above[0], below[0] = replace(above[0], title="spline"), replace(below[0], title="finite elements")
     return sheet(11.5, 6.0, (above, below))
 
@@ -158,14 +159,10 @@ def _elements_figure(tables: Tables) -> Figure:
     """Draw the errors over the number of elements, one panel a quantity, beside the slope of second order."""
     rows, span, panels = tables["meshes"], (MESHES[0], MESHES[-1]), []
     for quantity in QUANTITIES:
-        y = Axis(column=f"error_{quantity}", label=f"largest error of the {quantity} [1]", log=True)
+        y = Axis(f"error_{quantity}", f"largest error of the {quantity} [1]", log=True)
         start = (span[0], 0.5 * rows.sort_values("elements")[y.column].iloc[0])
         order = Slope(through=start, power=-ORDER, span=span, label="order 2")
-        panels.append(
-            Panel(
-                x=replace(MESH, each=2), y=y, marks=(Curves(rows=rows, looks=ELEMENTS, by="element"), order)
-            )
-        )
+        panels.append(Panel(replace(MESH, each=2), y, (Curves(rows, ELEMENTS, by="element"), order)))
     return sheet(11.5, 3.9, [panels], legend=3)
 
 

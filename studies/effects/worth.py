@@ -17,7 +17,8 @@ from studies.effects.audit import audit
 from studies.effects.beyond import ALL, SHEAR, prices
 from studies.effects.scenes import CHANGES, SIZES, Variant, size_of
 from studies.engine.study import Answer, Claim, Part, Study, Tables, records
-from studies.record.panels import CONTROL_POINTS, Axis, Curves, Level, Mark, Panel, Slope, Words, sheet
+from studies.record.marks import Level, Slope, Words
+from studies.record.panels import CONTROL_POINTS, Axis, Curves, Mark, Panel, sheet
 from studies.record.style import BLACK, BLUE, GREEN, ORANGE, RED, Look
 
 SETTINGS = SplineSettings(control_points=6)
@@ -55,12 +56,7 @@ SHOWN = {
 #: Changes below the first of these are drawn on the edge; the last is the other edge.
 LEAST, MOST = 1e-7, 30.0
 CHANGE = Axis(
-    column="change",
-    label="|change| [1]",
-    log=True,
-    least=LEAST,
-    limits=(LEAST, MOST),
-    ticks=(1e-6, 1e-4, 1e-2, 1.0),
+    "change", "|change| [1]", log=True, least=LEAST, limits=(LEAST, MOST), ticks=(1e-6, 1e-4, 1e-2, 1.0)
 )
 
 
@@ -171,14 +167,11 @@ def _worth(tables: Tables) -> Figure:
     for design in _designs():
         mine = rows[rows["design"] == design]
         changes = mine.melt(id_vars="scene", value_vars=list(SHOWN), var_name="what", value_name="change")
-        curves = Curves(rows=changes, looks=SHOWN, by="what", more={"markersize": 5.5, "clip_on": False})
-        marks: tuple[Mark, ...] = (
-            curves,
-            Level(at=TOLERANCE, colour=RED, upright=True),
-            *_times(mine, times[design], order),
-        )
-        y = Axis(column="scene", label="", names=order)
-        panels.append(Panel(x=CHANGE, y=y, marks=marks, title=textwrap.fill(design, 16)))
+        curves = Curves(changes, SHOWN, by="what", more={"markersize": 5.5, "clip_on": False})
+        words = _times(mine, times[design], order)
+        marks: list[Mark] = [curves, Level(TOLERANCE, colour=RED, upright=True), *words]
+        y = Axis("scene", "", names=order)
+        panels.append(Panel(CHANGE, y, marks, title=textwrap.fill(design, 16)))
     title = f"Change by leaving out one effect of the full scene; line: {TOLERANCE:g}; left edge: no more"
     return sheet(9.5, 3.9, [panels], title=title, legend=len(SHOWN))
 
@@ -190,7 +183,7 @@ def _times(rows: pd.DataFrame, ratios: pd.Series, order: Sequence[str]) -> Itera
         alone = "motion stops" if row["status"] == "not_converged" else "no motion"
         text = f"time x {1.0 / ratio:.2g}" if np.isfinite(ratio) else alone
         place = (MOST, order.index(row["scene"]))
-        yield Words(text=text, at=place, by=(-2, 7), colour="#666666", side="right")
+        yield Words(text, place, by=(-2, 7), colour="#666666", side="right")
 
 
 def _savings(tables: Tables) -> Figure:
@@ -199,25 +192,25 @@ def _savings(tables: Tables) -> Figure:
         "yes": Look(label="stretching", colour=BLUE, marker="o"),
         "no": Look(label="inextensible", colour=ORANGE, marker="o"),
     }
-    steps = (Curves(rows=tables["steps"], looks=looks, by="stretching"),)
-    frequency = Axis(column="highest_frequency_Hz", label="highest frequency [kHz]", factor=1e-3, log=True)
-    step = Axis(column="explicit_step_s", label="largest stable explicit step [µs]", factor=1e6, log=True)
+    steps = (Curves(tables["steps"], looks, by="stretching"),)
+    frequency = Axis("highest_frequency_Hz", "highest frequency [kHz]", factor=1e-3, log=True)
+    step = Axis("explicit_step_s", "largest stable explicit step [µs]", factor=1e6, log=True)
     rows = tables["mass_ratio"].sort_values("mass_ratio")
-    ratio, shift = rows["mass_ratio"], Axis(column="shift", label="shift of the first mode [1]", log=True)
+    ratio, shift = rows["mass_ratio"], Axis("shift", "shift of the first mode [1]", log=True)
     start, span = (ratio.iloc[0], abs(rows["shift"].iloc[0])), (ratio.iloc[0], ratio.iloc[-1])
     massless = Panel(
-        x=Axis(column="mass_ratio", label="mass of strips / of body", log=True),
-        y=shift,
-        marks=(
-            Curves(rows=rows, looks=Look(label="massless strips", colour=BLUE, marker="o")),
+        Axis("mass_ratio", "mass of strips / of body", log=True),
+        shift,
+        (
+            Curves(rows, Look(label="massless strips", colour=BLUE, marker="o")),
             Slope(through=start, power=1, span=span, label="in proportion"),
         ),
         title="Strips without inertia",
         legend="best",
     )
     title = "Table 1, at rest and at 90°"
-    highest = Panel(x=CONTROL_POINTS, y=frequency, marks=steps, title=title, legend="best")
-    return sheet(9.5, 3.6, [[highest, Panel(x=CONTROL_POINTS, y=step, marks=steps), massless]])
+    highest = Panel(CONTROL_POINTS, frequency, steps, title=title, legend="best")
+    return sheet(9.5, 3.6, [[highest, Panel(CONTROL_POINTS, step, steps), massless]])
 
 
 STUDY = Study(

@@ -27,7 +27,8 @@ from studies.cases.mechanism import Mechanism
 from studies.engine.study import Answer, Claim, Part, Ratio, Study, Tables
 from studies.model_form.solids import guide_compliance, linear_factor, solid_factor
 from studies.published.case import loaded, published
-from studies.record.panels import Axis, Curves, Level, Panel, Words, sheet
+from studies.record.marks import Level, Words
+from studies.record.panels import Axis, Curves, Panel, sheet
 from studies.record.style import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, Look
 
 CASE = "parallelogram"
@@ -128,21 +129,21 @@ def _figure(tables: Tables) -> Figure:
     coarse, stars = tables["account"][~fine], tables["account"][fine]
     ends = coarse.sort_values("load").groupby("answer").last()
     panel = Panel(
-        x=Axis(column="load", label="load across [EI/L²]", limits=(0.0, 25.0)),
-        y=Axis(column="error", label="difference to solids [%]", factor=100.0),
-        marks=(
-            Curves(rows=coarse, looks=LOOKS, by="answer", more={"markersize": 4}),
-            Curves(rows=stars, looks=STARS, by="answer", more={"markersize": 9}),
+        Axis("load", "load across [EI/L²]", limits=(0.0, 25.0)),
+        Axis("error", "difference to solids [%]", factor=100.0),
+        (
+            Curves(coarse, LOOKS, by="answer", more={"markersize": 4}),
+            Curves(stars, STARS, by="answer", more={"markersize": 9}),
             *(
                 Words(
-                    text=LOOKS[str(answer)].label, at=(end["load"], 100.0 * end["error"]), by=(5, -3),
-                    colour=LOOKS[str(answer)].colour,
+                    LOOKS[str(answer)].label, (end["load"], 100.0 * end["error"]), by=(5, -3),
+                    colour=LOOKS[str(answer)].colour
                 )
                 for answer, end in ends.iterrows()
             ),
-            Level(at=0.0),
+            Level(0.0),
         ),
-        title="Lines: elements of 10 mm; stars: of 3 mm",
+        title="Lines: elements of 10 mm; stars: of 3 mm"
     )  # fmt: skip
     return sheet(6.3, 3.2, [[panel]])
 

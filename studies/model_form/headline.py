@@ -35,7 +35,8 @@ from studies.model_form.account import (
 )  # fmt: skip
 from studies.model_form.account import LOOKS as WORDS
 from studies.published.case import loaded
-from studies.record.panels import Axis, Curves, Level, Mark, Panel, Words, sheet
+from studies.record.marks import Level, Words
+from studies.record.panels import Axis, Curves, Mark, Panel, sheet
 from studies.record.style import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, Look
 from studies.record.timing import measure
 
@@ -143,18 +144,18 @@ def _figure(tables: Tables) -> Figure:
     """Draw errors against solids over the time of a state, with what each theory leaves."""
     rows, printed = _timed(tables).sort_values("count"), tables["theirs"].query("error != 0")
     panel = Panel(
-        x=Axis(column="wall_s", label="time of a state, whole call [s]", log=True, limits=(1e-7, 3e4)),
-        y=Axis(
-            column="error", label="difference to solids of 3 mm [%]", factor=100.0, log=True,
-            limits=(0.03, 30.0),
+        Axis("wall_s", "time of a state, whole call [s]", log=True, limits=(1e-7, 3e4)),
+        Axis(
+            "error", "difference to solids of 3 mm [%]", factor=100.0, log=True,
+            limits=(0.03, 30.0)
         ),
-        marks=(
-            Curves(rows=rows, looks=LOOKS, by=("model", "answer"), along="count", more={"linewidth": 0.9}),
-            Curves(rows=printed, looks=PRINTED),
+        (
+            Curves(rows, LOOKS, by=("model", "answer"), along="count", more={"linewidth": 0.9}),
+            Curves(printed, PRINTED),
             *_said(rows, printed),
             *_levels(tables["floors"]),
         ),
-        title="Crosses: Su and Servey, their machine",
+        title="Crosses: Su and Servey, their machine"
     )  # fmt: skip
     return sheet(6.3, 4.1, [[panel]])
 
@@ -164,10 +165,10 @@ def _said(rows: pd.DataFrame, printed: pd.DataFrame) -> Iterator[Words]:
     for (model, answer), (text, point, by, side) in LINES.items():
         at = rows[(rows["model"] == model) & (rows["answer"] == answer)].iloc[point]
         place = (at["wall_s"], 100.0 * abs(at["error"]))
-        yield Words(text=text, at=place, by=by, colour=LOOKS[model, answer].colour, side=side)
+        yield Words(text, place, by=by, colour=LOOKS[model, answer].colour, side=side)
     for row in records(printed):
         place, by = (row["wall_s"], 100.0 * abs(row["error"])), THEIR_LABELS.get(row["model"], (0, 5))
-        yield Words(text=row["model"], at=place, by=by, colour=PURPLE)
+        yield Words(row["model"], place, by=by, colour=PURPLE)
 
 
 def _levels(floors: pd.DataFrame) -> Iterator[Mark]:
@@ -175,9 +176,9 @@ def _levels(floors: pd.DataFrame) -> Iterator[Mark]:
     for row in records(floors):
         level = 100.0 * abs(row["error"])
         by = -9 if row["answer"] == SHEARED else 2  # below its line: another is close above
-        yield Level(at=level, colour=GREY, line=":")
+        yield Level(level, colour=GREY, line=":")
         text = f"{WORDS[row['answer']].label}: {level:.2g} %"
-        yield Words(text=text, at=(1.2e-7, level), by=(0, by), colour=GREY)
+        yield Words(text, (1.2e-7, level), by=(0, by), colour=GREY)
 
 
 def _cheaper(tables: Tables) -> list[dict[str, Any]]:

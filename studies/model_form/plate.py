@@ -12,7 +12,8 @@ from matplotlib.figure import Figure
 from fe_reference import PlateFactors, plate_factors
 from studies.cases.problem import named_case
 from studies.engine.study import Answer, Claim, Part, Study, Tables
-from studies.record.panels import Axis, Curves, Level, Panel, sheet
+from studies.record.marks import Level
+from studies.record.panels import Axis, Curves, Panel, sheet
 from studies.record.style import BLACK, BLUE, GREEN, GREY, ORANGE, RED, Look
 
 CASE = "cross_axis_pivot"
@@ -86,19 +87,15 @@ def _lacking(tables: Tables, kind: str) -> Panel:
     looks = {nu: Look(label=f"ν = {nu}", colour=each, marker="o") for nu, each in COLOURS.items()}
     factors, ritz = tables["factors"], tables["ritz"].query("poisson_ratio == 0.3")
     return Panel(
-        x=Axis(column="width_ratio", label="width over length b/L", log=True),
-        y=Axis(column="excess", label="stiffness above the beam's [%]", factor=100.0),
-        marks=(
-            *(Level(at=100.0 / (1.0 - nu**2) - 100.0, colour=each, line=":") for nu, each in COLOURS.items()),
+        Axis("width_ratio", "width over length b/L", log=True),
+        Axis("excess", "stiffness above the beam's [%]", factor=100.0),
+        (
+            *(Level(100.0 / (1.0 - nu**2) - 100.0, colour=each, line=":") for nu, each in COLOURS.items()),
+            Curves(factors.assign(excess=factors[f"factor_{kind}"] - 1.0), by="poisson_ratio", looks=looks),
+            Curves(ritz.assign(excess=ritz[f"ritz_{kind}"] - 1.0), RITZ_LOOK, more={"markersize": 7.0}),
             Curves(
-                rows=factors.assign(excess=factors[f"factor_{kind}"] - 1.0), by="poisson_ratio", looks=looks
-            ),
-            Curves(
-                rows=ritz.assign(excess=ritz[f"ritz_{kind}"] - 1.0), looks=RITZ_LOOK, more={"markersize": 7.0}
-            ),
-            Curves(
-                rows=tables["paper"].query("kind == @kind"),
-                looks=Look(label="Table 1", colour=RED, line="", marker="*"),
+                tables["paper"].query("kind == @kind"),
+                Look(label="Table 1", colour=RED, line="", marker="*"),
                 more={"markersize": 11.0},
             ),
         ),

@@ -14,7 +14,8 @@ from studies.engine.study import Answer, Finding, Part, Study, Tables
 from studies.kinds import Array
 from studies.paper import formulations
 from studies.paper.formulations import FE, LOCKING_FREE, PAPER, REFINED, SETTINGS
-from studies.record.panels import ROTATION, Axis, Curves, Level, Panel, key
+from studies.record.marks import Level
+from studies.record.panels import ROTATION, Axis, Curves, Panel, key
 from studies.record.style import LOOKS, page
 
 #: Parts of the path at which the pivot is drawn.
@@ -56,11 +57,11 @@ def _figure(tables: Tables) -> Figure:
         panels[label].set_title(f"{np.degrees(rotation):.3g}°")
     panels["a"].set_ylabel("y [mm]")
     error = Panel(
-        x=ROTATION,
-        y=Axis(column="distance", label="largest distance / length [1]", log=True),
-        marks=(
-            Curves(rows=tables["distances"].query("rotation_rad > 0"), looks=LOOKS),
-            Level(at=BOUND, words="1 %"),
+        ROTATION,
+        Axis("distance", "largest distance / length [1]", log=True),
+        (
+            Curves(tables["distances"].query("rotation_rad > 0"), LOOKS),
+            Level(BOUND, words="1 %"),
         ),
         title="Distance of the strips to those of the refined finite elements",
     )

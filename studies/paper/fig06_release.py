@@ -13,7 +13,8 @@ from studies.answers.settings import SplineSettings
 from studies.engine.study import Answer, Finding, Part, Study, Tables
 from studies.paper import formulations
 from studies.paper.formulations import FE, LOCKING_FREE, MEANING, PAPER, REFINED, SETTINGS
-from studies.record.panels import TIME, Axis, Curves, Doubt, Panel, sheet
+from studies.record.marks import Doubt
+from studies.record.panels import TIME, Axis, Curves, Panel, sheet
 from studies.record.style import CHECK, LOOKS
 
 #: Formulations of Fig 6, and the refined spline that the reference, which it shares nothing with, is held to.
@@ -74,31 +75,28 @@ def _figure(tables: Tables) -> Figure:
     rows = []
     for column, label, factor in QUANTITIES:
         unit = label[label.index("[") :]
-        far = Axis(column=f"difference_{column}", label=f"difference {unit}", factor=factor, log=True)
+        far = Axis(f"difference_{column}", f"difference {unit}", factor=factor, log=True)
         rows.append(
             [
-                _values(motions, Axis(column=column, label=label, factor=factor)),
+                _values(motions, Axis(column, label, factor=factor)),
                 _largest(motions, far, Doubt(factor * level[column])),
             ]
         )
-    rows[0] = [
-        replace(rows[0][0], title="After the release from 90°"),
-        replace(rows[0][1], title="Largest difference to refined elements so far"),
-    ]
     rows.append(
         [
-            _values(motions, Axis(column="strain_J", label="strain energy [J]")),
-            _largest(motions, Axis(column="change", label="change of energy [1]", log=True)),
+            _values(motions, Axis("strain_J", "strain energy [J]")),
+            _largest(motions, Axis("change", "change of energy [1]", log=True)),
         ]
     )
-    return sheet(8.8, 8.0, rows, legend=3)
+    titles = ("After the release from 90°", "Largest difference to refined elements so far")
+    return sheet(8.8, 8.0, rows, columns=titles, legend=3)
 
 
 def _values(motions: pd.DataFrame, y: Axis) -> Panel:
     """Return the panel of a quantity; the reference is broad and lies below the others, which cover it."""
-    broad = Curves(rows=motions, looks={REFINED: LINES[REFINED]}, more={"linewidth": 2.8, "zorder": 1.9})
+    broad = Curves(motions, {REFINED: LINES[REFINED]}, more={"linewidth": 2.8, "zorder": 1.9})
     others = {name: look for name, look in LINES.items() if name not in (REFINED, REFINED_SPLINE)}
-    return Panel(x=TIME, y=y, marks=(broad, Curves(rows=motions, looks=others)))
+    return Panel(TIME, y, (broad, Curves(motions, others)))
 
 
 def _largest(motions: pd.DataFrame, y: Axis, *marks: Doubt) -> Panel:
@@ -106,7 +104,7 @@ def _largest(motions: pd.DataFrame, y: Axis, *marks: Doubt) -> Panel:
     late = motions[motions["time_s"] > 0.0]
     so_far = late.assign(**{y.column: late[y.column].abs().groupby(late["formulation"]).cummax()})
     others = {name: look for name, look in LINES.items() if name != REFINED}
-    return Panel(x=TIME, y=y, marks=(Curves(rows=so_far, looks=others), *marks))
+    return Panel(TIME, y, (Curves(so_far, others), *marks))
 
 
 def _motion(name: str) -> Motion:

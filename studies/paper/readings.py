@@ -100,9 +100,9 @@ def _figure(tables: Tables) -> Figure:
         "error_stiffness": Look(label="stiffness", colour=ORANGE, line="--", marker="s"),
     }
     panel = Panel(
-        x=Axis(column="gauss_points", label="Gauss points a strip"),
-        y=Axis(column="error_torque", label="largest error [1]", log=True),
-        marks=[Curves(rows=tables["quadrature"], looks=look, y=column) for column, look in looks.items()],
+        Axis("gauss_points", "Gauss points a strip"),
+        Axis("error_torque", "largest error [1]", log=True),
+        [Curves(tables["quadrature"], look, y=column) for column, look in looks.items()],
         legend="best",
     )
     return sheet(4.0, 2.4, [[panel]])

@@ -13,7 +13,8 @@ from studies.engine.study import Answer, Claim, Finding, Part, Study, Tables
 from studies.kinds import Array
 from studies.paper import formulations
 from studies.paper.formulations import FE, REFINED, SETTINGS
-from studies.record.panels import ROTATION, Axis, Curves, Doubt, Level, Panel, Words, key, sheet
+from studies.record.marks import Doubt, Level, Words
+from studies.record.panels import ROTATION, Axis, Curves, Panel, key, sheet
 from studies.record.style import LOOKS, page
 
 BOUND = 0.01
@@ -50,24 +51,24 @@ def _trajectories(tables: Tables) -> Figure:
     drawn, paths = page(9.5, 5.6), tables["paths"]
     panels = drawn.subplot_mosaic([["path", "error"], ["end", "error"]])
     last = 1e3 * paths.query("formulation == @REFINED")[["com_x_m", "com_y_m"]].to_numpy()[-1]
-    x = Axis(column="com_x_m", label="x of the centre of mass [mm]", factor=1e3)
-    y = Axis(column="com_y_m", label="y [mm]", factor=1e3)
+    x = Axis("com_x_m", "x of the centre of mass [mm]", factor=1e3)
+    y = Axis("com_y_m", "y [mm]", factor=1e3)
     near_x, near_y = (
         replace(axis, limits=(value - below, value + above))
         for axis, value, below, above in ((x, last[0], 0.8, 2.2), (y, last[1], 0.3, 1.4))
     )
-    curves = Curves(rows=paths, looks=LOOKS, along="rotation_rad", more={"markersize": 3.5})
-    Panel(x=x, y=y, marks=(curves,), title="Path from 0 to 90°")(panels["path"])
-    Panel(x=near_x, y=near_y, marks=(curves,), title="Its end, enlarged")(panels["end"])
+    curves = Curves(paths, LOOKS, along="rotation_rad", more={"markersize": 3.5})
+    Panel(x, y, (curves,), title="Path from 0 to 90°")(panels["path"])
+    Panel(near_x, near_y, (curves,), title="Its end, enlarged")(panels["end"])
     for name in ("path", "end"):
         panels[name].set_aspect("equal")
     Panel(
-        x=ROTATION,
-        y=Axis(column="error_trajectory", label="distance to the refined path / travel [1]", log=True),
-        marks=(
-            Curves(rows=paths.query("formulation != @REFINED"), looks=LOOKS),
+        ROTATION,
+        Axis("error_trajectory", "distance to the refined path / travel [1]", log=True),
+        (
+            Curves(paths.query("formulation != @REFINED"), LOOKS),
             Doubt(tables["reference"]["uncertainty"].max()),
-            Level(at=BOUND, words="the paper's 1 %"),
+            Level(BOUND, words="the paper's 1 %"),
         ),
         title="Error of the path",
     )(panels["error"])
@@ -159,24 +160,24 @@ def _curves_and_errors(tables: Tables, quantity: str, column: str, label: str) -
     locked = curves.query("formulation == @formulations.PAPER")[column].max()
     unit = label[label.index("[") + 1 : -1]
     above = Panel(
-        x=ROTATION,
-        y=Axis(column=column, label=label, limits=(0.0, 1.8 * refined[column].max())),
-        marks=(
-            Curves(rows=curves, looks=LOOKS, more={"markevery": 2}),
+        ROTATION,
+        Axis(column, label, limits=(0.0, 1.8 * refined[column].max())),
+        (
+            Curves(curves, LOOKS, more={"markevery": 2}),
             Words(
-                text=f"as the paper:\nup to {locked:.0f} {unit}",
-                at=(0.03, 0.86),
+                f"as the paper:\nup to {locked:.0f} {unit}",
+                (0.03, 0.86),
                 placed=True,
                 colour=LOOKS[formulations.PAPER].colour,
             ),
         ),
     )
     below = Panel(
-        x=ROTATION,
-        y=Axis(column=f"error_{quantity}", label=f"|error of the {quantity}| [1]", log=True),
-        marks=(
-            Curves(rows=curves.query("formulation != @REFINED and rotation_rad > 0"), looks=LOOKS),
-            Level(at=NEGLIGIBLE, words="3 %"),
+        ROTATION,
+        Axis(f"error_{quantity}", f"|error of the {quantity}| [1]", log=True),
+        (
+            Curves(curves.query("formulation != @REFINED and rotation_rad > 0"), LOOKS),
+            Level(NEGLIGIBLE, words="3 %"),
             Doubt(tables["reference"].query("quantity == @quantity")["uncertainty"].max()),
         ),
     )

@@ -229,17 +229,17 @@ def _figure(tables: Tables) -> Figure:
     looks = {
         (model, answer): Look(
             label=f"{LABELS[model]}, {answer}".replace("_", " "), colour=COLOURS[model], line="",
-            marker=MARKERS[answer], hollow=True,
+            marker=MARKERS[answer], hollow=True
         )
         for model, answer in rows[["model", "answer"]].drop_duplicates().itertuples(index=False)
     }  # fmt: skip
     label = "difference to the value in print [1]; bar: limit and uncertainty"
     panel = Panel(
-        x=Axis(column="error", label=label, log=True, least=FLOOR),
-        y=Axis(column="problem", label="", names=[each for each in titles if each in set(rows["problem"])]),
-        marks=(
-            Curves(rows=rows, looks=looks, by=("model", "answer"), more={"markersize": 5.0}),
-            Curves(rows=bars, looks=BAR, more={"markersize": 14.0}),
+        Axis("error", label, log=True, least=FLOOR),
+        Axis("problem", "", names=[each for each in titles if each in set(rows["problem"])]),
+        (
+            Curves(rows, looks, by=("model", "answer"), more={"markersize": 5.0}),
+            Curves(bars, BAR, more={"markersize": 14.0}),
         ),
     )
     return sheet(7.5, 4.6, [[panel]], legend=2)

@@ -1,7 +1,8 @@
-"""Panels of figures: curves of tables over axes, with levels, slopes and doubt, alike in every study.
+"""Panels of figures: curves of tables over axes, and the sheets they stand on, alike in every study.
 
-A study says of a panel what stands along its axes and which marks are drawn over them; `sheet` puts panels on
-a page. What no other figure has, a study draws itself, by a function of matplotlib's axes in a panel's place.
+A study says of a panel what stands along its axes and which marks are drawn over them: curves, and those of
+`studies.record.marks`. `sheet` puts them on a page. What no other figure has, a study draws itself: by a mark
+of its own, or a function of matplotlib's axes in a panel's place.
 """
 
 import math
@@ -9,22 +10,17 @@ from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, Protocol
 
-import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure, SubFigure
 
 from studies.record.style import Look, page
 
-#: Colour of levels and slopes, and of the words beside them.
-MARK = "#444444"
 #: Beyond this a logarithmic axis has no marks within its decades: hundreds that say nothing.
 CROWDED = 1e4
-#: What words beside a mark stand on, so that curves behind them do not disturb.
-BACKGROUND = {"facecolor": "white", "edgecolor": "none", "pad": 0.5, "alpha": 0.85}
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True)
 class Axis:
     """What stands along an axis of a panel.
 
@@ -77,12 +73,12 @@ class Axis:
 
 
 #: Axes that many figures have.
-ROTATION = Axis(column="rotation_rad", label="rotation [deg]", factor=180.0 / math.pi, ticks=range(0, 91, 15))
+ROTATION = Axis("rotation_rad", "rotation [deg]", factor=180.0 / math.pi, ticks=range(0, 91, 15))
 AMPLITUDE = replace(ROTATION, column="amplitude_rad", label="amplitude of the swing [deg]")
-TIME = Axis(column="time_s", label="time [ms]", factor=1e3)
-CONTROL_POINTS = Axis(column="control_points", label="control points a strip, n", each=1)
-MESH = Axis(column="elements", label="elements a strip", log=True, each=1)
-STEP = Axis(column="step_s", label="step [s]", log=True)
+TIME = Axis("time_s", "time [ms]", factor=1e3)
+CONTROL_POINTS = Axis("control_points", "control points a strip, n", each=1)
+MESH = Axis("elements", "elements a strip", log=True, each=1)
+STEP = Axis("step_s", "step [s]", log=True)
 
 
 class Mark(Protocol):
@@ -92,7 +88,7 @@ class Mark(Protocol):
         """Draw it over these axes."""
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True)
 class Curves:
     """Curves of a table, one a look.
 
@@ -142,103 +138,7 @@ class Curves:
         return (self.rows[list(self.by)] == key).all(axis=1)
 
 
-@dataclass(frozen=True, kw_only=True)
-class Level:
-    """A line across a panel, or up where `upright`: a bound, what the paper has, a number to compare with.
-
-    Attributes:
-        words: beside it; label: or in the legend.
-        place: of the words over the line [of the width, or height]: beyond one half they end there, at 1 they
-            stand beside the panel.
-    """
-
-    at: float
-    words: str = ""
-    label: str = "_"
-    colour: str = MARK
-    line: str = "-"
-    upright: bool = False
-    place: float = 0.01
-
-    def draw(self, panel: Axes, x: Axis, y: Axis) -> None:
-        """Draw the level."""
-        line = panel.axvline if self.upright else panel.axhline
-        line(self.at, color=self.colour, linestyle=self.line, linewidth=0.9, label=self.label)
-        if self.words:
-            beside = self.place >= 1.0
-            panel.annotate(
-                self.words, (self.place, self.at), (2, 0) if beside else (0, 2), ("axes fraction", "data"),
-                "offset points", ha="right" if 0.5 < self.place < 1.0 else "left",
-                va="center" if beside else "bottom", fontsize=8, color=self.colour, bbox=BACKGROUND,
-            )  # fmt: skip
-
-
-@dataclass(frozen=True, kw_only=True)
-class Slope:
-    """What goes with a power of x, over a span of x through a point: an order.
-
-    It comes after what it is held against, and leaves the limits of the panel as they are.
-    """
-
-    through: tuple[float, float]
-    power: float
-    span: tuple[float, float]
-    label: str
-    line: str = ":"
-
-    def draw(self, panel: Axes, x: Axis, y: Axis) -> None:
-        """Draw the slope, within what else is drawn."""
-        at, value = self.through
-        ends, limits = np.array(self.span), panel.get_ylim()
-        panel.plot(
-            ends, value * (ends / at) ** self.power, self.line, color=MARK, linewidth=0.9, label=self.label
-        )
-        panel.set_ylim(limits)
-
-
-@dataclass(frozen=True, kw_only=True)
-class Words:
-    """Words beside a point of the axes, or at a place of the panel, in parts of it, where `placed`.
-
-    Attributes:
-        by: how far from there [pt]; side: of the words that is there, left or right; turned: written upwards.
-    """
-
-    text: str
-    at: tuple[float, float]
-    by: tuple[float, float] = (0.0, 0.0)
-    colour: str = MARK
-    side: str = "left"
-    turned: bool = False
-    placed: bool = False
-
-    def draw(self, panel: Axes, x: Axis, y: Axis) -> None:
-        """Write the words."""
-        panel.annotate(
-            self.text, self.at, self.by, "axes fraction" if self.placed else "data", "offset points",
-            ha=self.side, va="top" if self.turned else "baseline", rotation=90 if self.turned else 0,
-            color=self.colour, fontsize=8,
-        )  # fmt: skip
-
-
 @dataclass(frozen=True)
-class Doubt:
-    """How uncertain the reference is that errors are held against [of the axis y]: shaded below."""
-
-    level: float
-
-    def draw(self, panel: Axes, x: Axis, y: Axis) -> None:
-        """Shade what lies below."""
-        panel.set_ylim(bottom=self.level / 10.0)
-        panel.axhspan(self.level / 1e3, self.level, color="#eeeeee", zorder=0)
-        panel.annotate(
-            "uncertainty of the reference", (0.98, self.level), (0, -3), ("axes fraction", "data"),
-            "offset points", ha="right", va="top", fontsize=8, color="#666666",
-            bbox=BACKGROUND | {"facecolor": "#eeeeee"},
-        )  # fmt: skip
-
-
-@dataclass(frozen=True, kw_only=True)
 class Panel:
     """Marks over two axes.
 
@@ -270,22 +170,28 @@ Drawn = Callable[[Axes], None]
 
 
 def sheet(
-    width: float, height: float, rows: Sequence[Sequence[Drawn]], *, title: str = "", legend: int = 0
+    width: float,
+    height: float,
+    rows: Sequence[Sequence[Drawn]],
+    *,
+    title: str = "",
+    columns: Sequence[str] = (),
+    legend: int = 0,
 ) -> Figure:
     """Return the page with rows of panels; those with the same axis share it, and its name stands once.
 
     Args:
-        width, height: as of `page` [inch]; title: of the whole.
+        width, height: as of `page` [inch]; title: of the whole; columns: titles of the columns.
         legend: columns of the one below all panels, for all of them; 0 for none.
     """
     drawn = page(width, height)
-    columns = list(zip(*rows, strict=True))
-    shared_x = all(_same("x", column) for column in columns) and len(rows) > 1
+    across = list(zip(*rows, strict=True))
+    shared_x = all(_same("x", column) for column in across) and len(rows) > 1
     along: Any = "all" if _same("x", [panel for row in rows for panel in row]) else "col"
-    shared_y = all(_same("y", row) for row in rows) and len(columns) > 1
-    across: Any = "row" if shared_y else "col" if all(_same("y", column) for column in columns) else "none"
+    shared_y = all(_same("y", row) for row in rows) and len(across) > 1
+    up: Any = "row" if shared_y else "col" if all(_same("y", column) for column in across) else "none"
     grid = drawn.subplots(
-        len(rows), len(columns), squeeze=False, sharex=along if shared_x else "none", sharey=across
+        len(rows), len(across), squeeze=False, sharex=along if shared_x else "none", sharey=up
     )
     for line, draws in zip(grid, rows, strict=True):
         for panel, draw in zip(line, draws, strict=True):
@@ -294,6 +200,8 @@ def sheet(
         panel.set_xlabel("")
     for panel in grid[:, 1:].flat if shared_y else ():
         panel.set_ylabel("")
+    for panel, words in zip(grid[0], columns, strict=False):
+        panel.set_title(words)
     if title:
         drawn.suptitle(title)
     if legend:

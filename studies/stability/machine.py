@@ -24,7 +24,8 @@ from studies.cases.design import named_design
 from studies.cases.mechanism import Mechanism
 from studies.cases.problem import TABLE_1, named_case
 from studies.engine.study import Answer, Part, Tables
-from studies.record.panels import Axis, Curves, Level, Panel, sheet
+from studies.record.marks import Level
+from studies.record.panels import Axis, Curves, Panel, sheet
 from studies.record.source import ROOT
 from studies.record.style import BLUE, ORANGE, RED, SKY, Look
 from studies.stability import family, maps
@@ -81,19 +82,19 @@ def _run(model: str, count: int, steps: int = PIECE) -> Iterator[tuple[dict[str,
 def _drift_figure(tables: Tables) -> Figure:
     """Draw energy, constraint residual and memory against the number of steps."""
     looks = {model: Look(label=model, colour=colour) for model, colour in COLOURS.items()}
-    drift = Curves(rows=tables["drift"], looks=looks, by="model")
+    drift = Curves(tables["drift"], looks, by="model")
     memory = tables["timings_memory"].query("model == @family.DEFAULT")
-    steps, residual = Axis(column="steps", label="steps [1]", log=True), "constraint residual of a piece [m]"
-    energy = Axis(column="energy_change", label="largest change of energy [1]", log=True, least=1e-16)
-    clamps = Axis(column="constraint_residual_m", label=residual, log=True, least=1e-19)
-    held = Axis(column="largest_memory_MB", label="largest memory of the process [MB]", limits=(0.0, None))
+    steps, residual = Axis("steps", "steps [1]", log=True), "constraint residual of a piece [m]"
+    energy = Axis("energy_change", "largest change of energy [1]", log=True, least=1e-16)
+    clamps = Axis("constraint_residual_m", residual, log=True, least=1e-19)
+    held = Axis("largest_memory_MB", "largest memory of the process [MB]", limits=(0.0, None))
     panels = (
         Panel(
-            x=steps, y=replace(energy, limits=(1e-16, 1e-5)), legend="upper left",
-            marks=(drift, Level(at=DRIFT, colour=RED, line=":")),
+            steps, replace(energy, limits=(1e-16, 1e-5)), legend="upper left",
+            marks=(drift, Level(DRIFT, colour=RED, line=":"))
         ),
-        Panel(x=steps, y=replace(clamps, limits=(1e-18, 1e-14)), marks=(drift,)),
-        Panel(x=steps, y=held, marks=(Curves(rows=memory, looks=Look(label="_", colour=ORANGE)),)),
+        Panel(steps, replace(clamps, limits=(1e-18, 1e-14)), (drift,)),
+        Panel(steps, held, (Curves(memory, Look(label="_", colour=ORANGE)),)),
     )  # fmt: skip
     title = f"Free swing of Table 1 from {START_DEG:g}° in steps of {LONG_STEP:g} s, without damping"
     return sheet(9.6, 3.1, [panels], title=title)

@@ -16,7 +16,8 @@ from studies.answers.response import Response
 from studies.answers.settings import Settings, SplineSettings
 from studies.cases.problem import Problem, named_case
 from studies.engine.study import Part, Tables
-from studies.record.panels import Axis, Curves, Level, Panel, sheet
+from studies.record.marks import Level
+from studies.record.panels import Axis, Curves, Panel, sheet
 from studies.record.style import BLACK, BLUE, GREY, ORANGE, Look
 from studies.stability import family, maps
 
@@ -26,7 +27,7 @@ INCREMENTS = (1, 2, 5, 20, 200)
 FAR, FAR_CHECK = SplineSettings(control_points=16), SplineSettings(control_points=14)
 #: Columns whose answers to other increments are compared with one another, and their colours.
 COMPARED = {family.SIX: BLUE, family.FE: BLACK}
-DIFFERENCE = Axis(column="", label="difference of torque [1]", log=True)
+DIFFERENCE = Axis("", "difference of torque [1]", log=True)
 
 
 def _rotated() -> Iterator[family.StaticCase]:
@@ -82,18 +83,18 @@ def _increments_figure(tables: Tables) -> Figure:
     parts = (("torque_change", "o", "-", "torque at 90°"), ("hysteresis", "s", "--", "there and back"))
     curves = [
         Curves(
-            rows=tables["increments"], by="model", y=column,
+            tables["increments"], by="model", y=column,
             looks={
                 model: Look(label=f"{model}: {label}", colour=colour, line=line, marker=marker)
                 for model, colour in COMPARED.items()
-            },
+            }
         )
         for column, marker, line, label in parts
     ]  # fmt: skip
     panel = Panel(
-        x=Axis(column="increments", label="increments [1]", log=True),
-        y=replace(DIFFERENCE, least=1e-17, limits=(1e-17, 1e-6)),
-        marks=(*curves, Level(at=1e-8, colour=ORANGE), Level(at=1e-9, colour=GREY, line=":")),
+        Axis("increments", "increments [1]", log=True),
+        replace(DIFFERENCE, least=1e-17, limits=(1e-17, 1e-6)),
+        (*curves, Level(1e-8, colour=ORANGE), Level(1e-9, colour=GREY, line=":")),
         legend={"loc": "center left", "fontsize": 7},
     )
     return sheet(4.6, 3.2, [[panel]])
@@ -197,27 +198,27 @@ def _gap(one: Response, other: Response) -> float:
 
 def _limit_figure(tables: Tables) -> Figure:
     limit = tables["limit"]
-    slenderness = Axis(column="slenderness", label="slenderness L/t [1]", log=True)
+    slenderness = Axis("slenderness", "slenderness L/t [1]", log=True)
     iterations = "Newton iterations of the path [1]"
     error = Look(label="to the inextensible strip", colour=BLUE, marker="o")
     lost = Look(label="beyond the law, neighbours", colour=ORANGE, line="--", marker="s")
     left = Panel(
-        x=slenderness,
-        y=DIFFERENCE,
-        marks=(
-            Curves(rows=limit, looks=error, y="error"),
-            Curves(rows=limit, looks=lost, y="lost_digits"),
-            Level(at=1e-9, colour=GREY, line=":"),
+        slenderness,
+        DIFFERENCE,
+        (
+            Curves(limit, error, y="error"),
+            Curves(limit, lost, y="lost_digits"),
+            Level(1e-9, colour=GREY, line=":"),
         ),
         title="Spline n = 6, 90°",
         legend="upper right",
     )
     right = Panel(
-        x=slenderness,
-        y=Axis(column="iterations", label=iterations, limits=(0.0, 30.0)),
-        marks=(
-            Curves(rows=limit, looks=Look(label="extensible", colour=BLUE, marker="o")),
-            Level(at=limit["iterations_inextensible"].iloc[0], label="inextensible", colour=BLACK, line="--"),
+        slenderness,
+        Axis("iterations", iterations, limits=(0.0, 30.0)),
+        (
+            Curves(limit, Look(label="extensible", colour=BLUE, marker="o")),
+            Level(limit["iterations_inextensible"].iloc[0], label="inextensible", colour=BLACK, line="--"),
         ),
         legend="lower right",
     )

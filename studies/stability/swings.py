@@ -23,7 +23,8 @@ from studies.answers.settings import FeSettings, Settings, SplineSettings
 from studies.cases.design import Design
 from studies.cases.problem import named_case
 from studies.engine.study import Answer, Part, Tables
-from studies.record.panels import STEP, Axis, Curves, Level, Panel, Slope, sheet
+from studies.record.marks import Level, Slope
+from studies.record.panels import STEP, Axis, Curves, Panel, sheet
 from studies.record.style import BLUE, GREEN, ORANGE, RED, Look
 from studies.stability import family, maps
 from studies.stability.geometry import as_mechanism
@@ -164,10 +165,10 @@ def _order_figure(tables: Tables) -> Figure:
     third, span = order.iloc[2], (order["step_s"].min(), order["step_s"].max())
     through = (third["step_s"], third["error_rad"])
     left = Panel(
-        x=STEP,
-        y=Axis(column="error_rad", label="error of the rotation [rad]", log=True),
-        marks=(
-            Curves(rows=order, looks=looks, by="resolved"),
+        STEP,
+        Axis("error_rad", "error of the rotation [rad]", log=True),
+        (
+            Curves(order, looks, by="resolved"),
             Slope(through=through, power=2, span=span, label="order 2", line="--"),
         ),
         title=f"{family.DEFAULT}, from 90°",
@@ -179,11 +180,11 @@ def _order_figure(tables: Tables) -> Figure:
     }
     gain = "gain of energy over that of the start [1]"
     right = Panel(
-        x=replace(STEP, column="x"),
-        y=Axis(column="energy_gain", label=gain, log=True, least=1e-17, limits=(1e-17, 1e-6)),
-        marks=(
-            Curves(rows=tables["outcomes"].query("model == @family.DEFAULT"), looks=starts, by="y"),
-            Level(at=1e-8, colour=RED),
+        replace(STEP, column="x"),
+        Axis("energy_gain", gain, log=True, least=1e-17, limits=(1e-17, 1e-6)),
+        (
+            Curves(tables["outcomes"].query("model == @family.DEFAULT"), starts, by="y"),
+            Level(1e-8, colour=RED),
         ),
         legend={"loc": "upper left", "ncols": 2},
     )

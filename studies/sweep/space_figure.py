@@ -12,7 +12,9 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from studies.kinds import Array
-from studies.record.style import BLACK, RED, page
+from studies.record.marks import Contours, Level
+from studies.record.panels import Axis, Curves, Panel
+from studies.record.style import BLACK, RED, Look, page
 
 
 def not_dominated(costs: Array) -> NDArray[np.bool_]:
@@ -86,7 +88,7 @@ def space(tables: Mapping[str, pd.DataFrame]) -> Figure:
     figure.colorbar(marks, ax=list(above), label="crossing ratio [1]", shrink=0.95)
     above[0].legend(loc="lower right", frameon=True, framealpha=0.9)
     for panel, name in zip(below, MAPS, strict=True):
-        _map(panel, tables["map"], name, *MAPS[name])
+        _map(tables["map"], name, *MAPS[name])(panel)
     return figure
 
 
@@ -114,23 +116,19 @@ def _cloud(
     return marks
 
 
-def _map(
-    panel: Axes, maps: pd.DataFrame, name: str, factor: float, title: str, levels: tuple[float, ...]
-) -> None:
-    """Draw one quantity over crossing ratio and inclination, with Wittrick's ratios and Table 1's place."""
-    wide = maps.pivot(index="inclination_deg", columns="crossing_ratio", values=name) * factor
-    ratios, angles, values = wide.columns.to_numpy(), wide.index.to_numpy(), wide.to_numpy()
-    panel.contourf(ratios, angles, values, levels=[0.0, *levels, values.max()], cmap="Blues", alpha=0.6)
-    lines = panel.contour(ratios, angles, values, levels=levels, colors=BLACK, linewidths=0.7)
-    panel.clabel(lines, fmt="%g", fontsize=8)
-    for label, ratio in WITTRICK.items():
-        panel.axvline(ratio, color=RED, linestyle="--", linewidth=1.0)
-        panel.annotate(
-            label, (ratio, 0.0), (0, 6), ("data", "axes fraction"), "offset points",
-            ha="center", va="bottom", fontsize=8, color=RED,
-            bbox={"facecolor": "white", "edgecolor": "none", "pad": 1.0, "alpha": 0.85},
-        )  # fmt: skip
-    panel.plot(0.5, 45.0, **STAR)
-    panel.set(xlabel="crossing ratio [1]", ylabel="inclination [°]")
-    panel.set_title(title.format(maps["slenderness"].iloc[0]))
-    panel.grid(False)
+def _map(maps: pd.DataFrame, name: str, factor: float, title: str, levels: tuple[float, ...]) -> Panel:
+    """Return one quantity over crossing ratio and inclination, with Wittrick's ratios and Table 1's place."""
+    reference = pd.DataFrame({"crossing_ratio": [0.5], "inclination_deg": [45.0]})
+    return Panel(
+        Axis("crossing_ratio", "crossing ratio [1]"),
+        Axis("inclination_deg", "inclination [°]"),
+        (
+            Contours(maps, name, factor=factor, levels=levels, colour=BLACK, shaded=True),
+            *(
+                Level(ratio, words=label, colour=RED, line="--", upright=True)
+                for label, ratio in WITTRICK.items()
+            ),
+            Curves(reference, Look(label="_", colour=RED), more=STAR),
+        ),
+        title=title.format(maps["slenderness"].iloc[0]),
+    )

@@ -75,7 +75,7 @@ def _figure(tables: Tables) -> Figure:
     workers = {
         (kind, count): Look(
             label=f"{count} {_named(kind, count)}", colour=colours[kind], line="--" if count == 1 else "-",
-            marker="o",
+            marker="o"
         )
         for kind in KINDS
         for count in WORKERS
@@ -83,16 +83,16 @@ def _figure(tables: Tables) -> Figure:
     costs = {kind: f"1 {_named(kind, 1)}: {1e3 * chunk_cost(cuts, kind):.1f} ms a chunk" for kind in KINDS}
     rates = timings.assign(rate=timings["designs"] / timings["wall_s"])
     rate = Panel(
-        x=Axis(column="designs", label="designs of the sweep [1]", log=True),
-        y=Axis(column="rate", label="designs a second [1/s]", limits=(0.0, None)),
-        marks=(Curves(rows=rates, looks=workers, by=("workers", "count")),),
+        Axis("designs", "designs of the sweep [1]", log=True),
+        Axis("rate", "designs a second [1/s]", limits=(0.0, None)),
+        (Curves(rates, workers, by=("workers", "count")),),
         title=f"Paths of 20 increments, n = 6, {timings['cores'].iloc[0]} cores",
     )
     looks = {kind: Look(label=label, colour=colours[kind], marker="o") for kind, label in costs.items()}
     cost = Panel(
-        x=Axis(column="chunks", label="chunks [1]", log=True),
-        y=Axis(column="wall_s", label="time [s]", limits=(0.0, None)),
-        marks=(Curves(rows=cuts, looks=looks, by="workers"),),
+        Axis("chunks", "chunks [1]", log=True),
+        Axis("wall_s", "time [s]", limits=(0.0, None)),
+        (Curves(cuts, looks, by="workers"),),
         title=f"{CUT} designs in more chunks",
     )
     return sheet(9.5, 4.4, [[rate, cost]], legend=3)

@@ -156,16 +156,16 @@ def diagram(
     """
     rows = joined(tables)
     curves: dict[str, Any] = {"looks": styles, "by": "series", "family": "family", "along": rank}
-    time = Axis(column="solve_s", label=f"time of the {part} [s]", log=True)
-    work = Axis(column="flops", label="counted operations [1]", log=True)
+    time = Axis("solve_s", f"time of the {part} [s]", log=True)
+    work = Axis("flops", "counted operations [1]", log=True)
     lines = []
     for quantity, title in quantities.items():
         shown = rows[rows[f"error_{quantity}"] >= margin * rows[f"reference_{quantity}"]]
         counted = shown[shown["flops"].notna()]
-        y = Axis(column=f"error_{quantity}", label=title, log=True)
-        timed = Panel(x=time, y=y, marks=(Curves(rows=shown[shown["solve_s"].notna()], **curves),))
+        y = Axis(f"error_{quantity}", title, log=True)
+        timed = Panel(time, y, (Curves(shown[shown["solve_s"].notna()], **curves),))
         named = Families(counted, rank, styles)
-        lines.append((timed, Panel(x=work, y=y, marks=(Curves(rows=counted, **curves), named))))
+        lines.append((timed, Panel(work, y, (Curves(counted, **curves), named))))
     return sheet(width, 1.6 + 2.1 * len(quantities), lines, legend=3)
 
 

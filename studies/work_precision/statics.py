@@ -22,7 +22,8 @@ from studies.answers.settings import FeSettings, SplineSettings
 from studies.baselines.variants import missing
 from studies.cases.problem import named_case
 from studies.engine.study import Answer, Claim, Part, Study, Tables
-from studies.record.panels import CONTROL_POINTS, Axis, Curves, Panel, Slope, sheet
+from studies.record.marks import Slope
+from studies.record.panels import CONTROL_POINTS, Axis, Curves, Panel, sheet
 from studies.record.style import BASES, BLUE, GREEN, Look
 from studies.work_precision.equal_error import diagram, digits, finer, joined, less
 from studies.work_precision.members import THEORIES, Limit, Member, limit_of_theory, path_errors
@@ -190,8 +191,8 @@ def _scaling_figure(tables: Tables) -> Figure:
     }
     timed, counted = tables["scaling_of_time"], tables["scaling"]
     counted = counted.assign(flops=counted["assembly_flops"] + counted["factorisation_flops"])
-    time = Axis(column="iteration_s", label="time of one iteration [µs]", factor=1e6, log=True)
-    work = Axis(column="flops", label="operations of one iteration [1]", log=True)
+    time = Axis("iteration_s", "time of one iteration [µs]", factor=1e6, log=True)
+    work = Axis("flops", "operations of one iteration [1]", log=True)
     panels = []
     for rows, y in ((timed, time), (counted, work)):
         x, span = (
@@ -200,7 +201,7 @@ def _scaling_figure(tables: Tables) -> Figure:
         )
         start = (span[0], 0.8 * y.of(rows).min())
         slopes = [Slope(through=start, power=p, span=span, label=f"n^{p}", line=line) for p, line in POWERS]
-        panels.append(Panel(x=x, y=y, marks=(Curves(rows=rows, looks=looks, by="basis"), *slopes)))
+        panels.append(Panel(x, y, (Curves(rows, looks, by="basis"), *slopes)))
     return sheet(9.5, 3.8, [panels], legend=4)
 
 

@@ -10,12 +10,12 @@ from studies.answers.adapters import answer_static
 from studies.answers.reference import limit_of
 from studies.answers.settings import FeSettings
 from studies.baselines import peers, tasks, variants
-from studies.baselines.answer import BaselineFailed
+from studies.baselines.answer import BaselineFailed, SolvedPath
 from studies.baselines.exudyn_solve import SOLVERS
 from studies.baselines.exudyn_strips import exudyn_ancf, exudyn_exact
 from studies.baselines.openseespy import openseespy_frame
 from studies.baselines.own import elements, spline
-from studies.baselines.tasks import Limit
+from studies.baselines.tasks import errors_of
 from studies.baselines.variants import PEERS, Variant, kept, spread, tried
 from studies.cases.problem import named_case
 from studies.errors import BadInput
@@ -33,8 +33,7 @@ opensees = pytest.mark.skipif(
 def against_spline(module, problem=CASE, turns=TURNS, **settings):
     """Larger error of trajectory and torque over the path, against the refined spline."""
     limit = spline.static_path(problem, turns, control_points=14)
-    path = module.static_path(problem, turns, **settings)
-    return Limit(centre=limit.centre, torque=limit.torque).errors(path.centre, path.torque)["worst"]
+    return errors_of(module.static_path(problem, turns, **settings), limit)["worst"]
 
 
 @exudyn
@@ -65,9 +64,11 @@ def test_exact_beam_gate_has_teeth():
 
 def _against_reissner(**settings):
     meshes = [answer_static(CASE, FeSettings(elements=n, element="reissner")) for n in (20, 40, 80)]
-    limit = limit_of(meshes)
-    path = exudyn_exact.static_path(CASE, TURNS, **settings)
-    return Limit(centre=limit.centre, torque=limit.torque).errors(path.centre, path.torque)["worst"]
+    found = limit_of(meshes)
+    limit = SolvedPath(
+        rotation=TURNS, centre=found.centre, torque=found.torque, stiffness=found.stiffness, work={}
+    )
+    return errors_of(exudyn_exact.static_path(CASE, TURNS, **settings), limit)["worst"]
 
 
 @exudyn

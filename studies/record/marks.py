@@ -1,0 +1,152 @@
+"""Marks of panels beside their curves: levels, slopes, maps, words, and how uncertain a reference is."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.ticker import MaxNLocator
+
+from studies.record.panels import Axis
+from studies.record.style import BLUE
+
+#: Colour of levels and slopes, and of the words beside them.
+MARK = "#444444"
+#: What words beside a mark stand on, so that curves behind them do not disturb.
+BACKGROUND = {"facecolor": "white", "edgecolor": "none", "pad": 0.5, "alpha": 0.85}
+
+
+@dataclass(frozen=True)
+class Level:
+    """A line across a panel, or up where `upright`: a bound, what the paper has, a number to compare with.
+
+    Attributes:
+        words: beside it; label: or in the legend.
+        place: of the words over the line [of the width, or height]: beyond one half they end there, at 1 they
+            stand beside the panel.
+    """
+
+    at: float
+    words: str = ""
+    label: str = "_"
+    colour: str = MARK
+    line: str = "-"
+    upright: bool = False
+    place: float = 0.01
+
+    def draw(self, panel: Axes, x: Axis, y: Axis) -> None:
+        """Draw the level."""
+        line = panel.axvline if self.upright else panel.axhline
+        line(self.at, color=self.colour, linestyle=self.line, linewidth=0.9, label=self.label)
+        if self.words:
+            panel.annotate(self.words, fontsize=8, color=self.colour, bbox=BACKGROUND, **self._placed())
+
+    def _placed(self) -> dict[str, Any]:
+        """Return where the words stand, as of `Axes.annotate`."""
+        if self.upright:
+            place: dict[str, Any] = {"xy": (self.at, self.place), "xycoords": ("data", "axes fraction")}
+            return place | {"xytext": (0, 4), "textcoords": "offset points", "ha": "center", "va": "bottom"}
+        place = {"xy": (self.place, self.at), "xycoords": ("axes fraction", "data")}
+        if self.place >= 1.0:
+            return place | {"xytext": (2, 0), "textcoords": "offset points", "ha": "left", "va": "center"}
+        side = "right" if self.place > 0.5 else "left"
+        return place | {"xytext": (0, 2), "textcoords": "offset points", "ha": side, "va": "bottom"}
+
+
+@dataclass(frozen=True)
+class Contours:
+    """Lines of equal values of a table over both axes: a map of a design space.
+
+    Attributes:
+        column: of the values; factor: to what is written beside the lines.
+        levels: of the lines, round ones without; shaded: whether what lies between them is.
+    """
+
+    rows: pd.DataFrame
+    column: str
+    factor: float = 1.0
+    levels: Sequence[float] = ()
+    colour: str = BLUE
+    shaded: bool = False
+
+    def draw(self, panel: Axes, x: Axis, y: Axis) -> None:
+        """Draw the lines with their values."""
+        grid: Any = self.rows.pivot(index=y.column, columns=x.column, values=self.column) * self.factor
+        low, high = grid.to_numpy().min(), grid.to_numpy().max()
+        levels = self.levels or MaxNLocator(4, steps=(1, 2, 2.5, 5, 10)).tick_values(low, high)
+        where = (grid.columns, grid.index, grid)
+        if self.shaded:
+            panel.contourf(*where, levels=[min(0.0, low), *levels, high], cmap="Blues", alpha=0.6)
+        lines = panel.contour(*where, levels=levels, colors=self.colour, linewidths=0.8)
+        for said in panel.clabel(
+            lines, fontsize=8 if self.shaded else 7, inline_spacing=1, fmt=lambda value: f"{value:.3g}"
+        ):
+            said.set_clip_on(False)
+        panel.grid(visible=False)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Slope:
+    """What goes with a power of x, over a span of x through a point: an order.
+
+    It comes after what it is held against, and leaves the limits of the panel as they are.
+    """
+
+    through: tuple[float, float]
+    power: float
+    span: tuple[float, float]
+    label: str
+    line: str = ":"
+
+    def draw(self, panel: Axes, x: Axis, y: Axis) -> None:
+        """Draw the slope, within what else is drawn."""
+        at, value = self.through
+        ends, limits = np.array(self.span), panel.get_ylim()
+        panel.plot(
+            ends, value * (ends / at) ** self.power, self.line, color=MARK, linewidth=0.9, label=self.label
+        )
+        panel.set_ylim(limits)
+
+
+@dataclass(frozen=True)
+class Words:
+    """Words beside a point of the axes, or at a place of the panel, in parts of it, where `placed`.
+
+    Attributes:
+        by: how far from there [pt]; side: of the words that is there, left or right; turned: written upwards.
+    """
+
+    text: str
+    at: tuple[float, float]
+    by: tuple[float, float] = (0.0, 0.0)
+    colour: str = MARK
+    side: str = "left"
+    turned: bool = False
+    placed: bool = False
+
+    def draw(self, panel: Axes, x: Axis, y: Axis) -> None:
+        """Write the words."""
+        panel.annotate(
+            self.text, self.at, self.by, "axes fraction" if self.placed else "data", "offset points",
+            ha=self.side, va="top" if self.turned else "baseline", rotation=90 if self.turned else 0,
+            color=self.colour, fontsize=8,
+        )  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Doubt:
+    """How uncertain the reference is that errors are held against [of the axis y]: shaded below."""
+
+    level: float
+
+    def draw(self, panel: Axes, x: Axis, y: Axis) -> None:
+        """Shade what lies below."""
+        panel.set_ylim(bottom=self.level / 10.0)
+        panel.axhspan(self.level / 1e3, self.level, color="#eeeeee", zorder=0)
+        panel.annotate(
+            "uncertainty of the reference", (0.98, self.level), (0, -3), ("axes fraction", "data"),
+            "offset points", ha="right", va="top", fontsize=8, color="#666666",
+            bbox=BACKGROUND | {"facecolor": "#eeeeee"},
+        )  # fmt: skip

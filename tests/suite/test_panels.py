@@ -1,0 +1,89 @@
+"""Panels of figures draw what their axes say of a table, and sheets name each thing once."""
+
+from dataclasses import replace
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from studies.record.marks import Contours, Level, Slope
+from studies.record.panels import Axis, Curves, Panel, sheet
+from studies.record.style import BLUE, RED, Look
+
+ROWS = pd.DataFrame(
+    {
+        "model": ["one", "one", "one", "other", "other"],
+        "count": [3, 1, 2, 1, 2],
+        "error": [1e-3, -1e-1, 0.0, 1e-2, np.nan],
+    }
+)
+LOOKS = {
+    "one": Look(label="one", colour=BLUE),
+    "other": Look(label="other", colour=RED, marker="o", hollow=True),
+    "absent": Look(label="absent", colour=RED),
+}
+COUNT, ERROR = Axis("count", "count", each=1), Axis("error", "error [1]", log=True)
+CURVES = Curves(ROWS, LOOKS, by="model")
+
+
+def test_curves_are_sizes_in_order_over_a_logarithmic_axis():
+    """Points are joined in the order of x, errors lose their sign, and one that is nought is not drawn."""
+    panel = sheet(3.0, 2.0, [[Panel(COUNT, ERROR, (CURVES,))]]).axes[0]
+    one, other = panel.lines  # of what has no row, nothing is drawn
+    np.testing.assert_array_equal(one.get_xdata(), [1, 2, 3])
+    np.testing.assert_array_equal(one.get_ydata(), [1e-1, np.nan, 1e-3])
+    assert (one.get_color(), other.get_markerfacecolor()) == (BLUE, "none")
+    assert (panel.get_yscale(), list(panel.get_xticks())) == ("log", [1, 2, 3])
+
+
+@pytest.mark.parametrize(("axis", "drawn"), [
+    (replace(ERROR, least=1e-2), [1e-1, 1e-2, 1e-2]),
+    (replace(ERROR, factor=10.0), [1.0, np.nan, 1e-2]),
+    (Axis("error", "", factor=100.0), [-10.0, 0.0, 0.1]),
+])  # fmt: skip
+def test_axis_scales_and_floors(axis, drawn):
+    """An axis has its own unit, and a floor where it is logarithmic."""
+    rows = ROWS[ROWS["model"] == "one"].sort_values("count")
+    np.testing.assert_allclose(axis.of(rows), drawn)
+
+
+def test_names_run_from_the_top():
+    """What has names in place of numbers stands beside them, the first on top."""
+    names = Axis("model", "", names=("other", "one"))
+    panel = sheet(3.0, 2.0, [[Panel(ERROR, names, (Curves(ROWS, LOOKS["one"]),))]]).axes[0]
+    assert [each.get_text() for each in panel.get_yticklabels()] == ["other", "one"]
+    assert set(panel.lines[0].get_ydata()) == {0, 1}
+    bottom, top = panel.get_ylim()
+    assert bottom > top
+
+
+def test_sheet_shares_equal_axes_and_names_everything_once():
+    """Panels with the same axis share it; its name and every curve's stand once on the page."""
+    panel, other = Panel(COUNT, ERROR, (CURVES, Level(1e-2, label="bound"))), replace(ERROR, label="other")
+    page = sheet(4.0, 4.0, [[panel, panel], 2 * [replace(panel, y=other)]], columns=("a", "b"), legend=2)
+    assert [each.get_xlabel() for each in page.axes] == ["", "", "count", "count"]
+    assert [each.get_ylabel() for each in page.axes] == ["error [1]", "", "other", ""]
+    assert [each.get_title(loc="left") or each.get_title() for each in page.axes] == ["a", "b", "", ""]
+    assert [each.get_text() for each in page.legends[0].get_texts()] == ["one", "other", "bound"]
+    assert page.axes[0].get_shared_y_axes().joined(*page.axes[:2])
+    assert not page.axes[0].get_shared_y_axes().joined(page.axes[0], page.axes[2])
+
+
+def test_slope_goes_with_its_power_and_leaves_the_limits():
+    """A slope of order p through a point changes by 2^p over twice x, and what it is held against fills the
+    panel."""
+    slope = Slope(through=(1.0, 1e-1), power=-2, span=(1.0, 2.0), label="order 2")
+    with_slope = sheet(3.0, 2.0, [[Panel(COUNT, ERROR, (CURVES, slope))]]).axes[0]
+    without = sheet(3.0, 2.0, [[Panel(COUNT, ERROR, (CURVES,))]]).axes[0]
+    np.testing.assert_allclose(with_slope.lines[-1].get_ydata(), [1e-1, 2.5e-2])
+    assert with_slope.get_ylim() == without.get_ylim()
+
+
+def test_contours_stand_where_the_table_has_their_values():
+    """Over a plane the line of a level is where the plane has it."""
+    x, y = np.meshgrid(np.linspace(0.0, 1.0, 5), np.linspace(0.0, 2.0, 5))
+    rows = pd.DataFrame({"x": x.ravel(), "y": y.ravel(), "z": (x + y).ravel()})
+    map_ = Contours(rows, "z", factor=10.0, levels=(15.0,))
+    panel = sheet(3.0, 2.0, [[Panel(Axis("x", ""), Axis("y", ""), (map_,))]]).axes[0]
+    (line,) = panel.collections[0].get_paths()
+    np.testing.assert_allclose(line.vertices.sum(axis=1), 1.5)
