@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from contextlib import suppress
+from dataclasses import replace
 from functools import partial
 from typing import Any
 
@@ -17,7 +18,7 @@ from studies.answers.models import (
     refusals,
     static_path,
 )
-from studies.answers.motion import Motion, Spectrum, motion, no_motion
+from studies.answers.motion import NOTHING_MOVES, UNSTABLE, Motion, Spectrum, motion, no_motion
 from studies.answers.response import Response, response, taken
 from studies.answers.settings import Settings, SplineSettings
 from studies.cases.design import Design, flexural_scale
@@ -141,7 +142,8 @@ def answer_release(
     wall_s = max(timing.median - _wall_of_start(release, result, repeat), 0.0)
     if check:
         result = model.dynamics.checked(asked, result, **at)
-    return motion(result, energy=flexural_scale(design), wall_s=wall_s, solve_s=timing.median_part, **about)
+    answer = motion(result, energy=flexural_scale(design), wall_s=wall_s, solve_s=timing.median_part, **about)
+    return _weighed(answer, design, settings, at["start"]) if answer.message == NOTHING_MOVES else answer
 
 
 def answer_modes(
@@ -200,6 +202,17 @@ def answer_modes(
             **about,
         )
     return _spectrum(timing.result, design, wall_s=timing.median, **about)
+
+
+def _weighed(still: Motion, design: Design, settings: Settings, start: float | None) -> Motion:
+    """Return a motion that stands still; it says so where its equilibrium is unstable.
+
+    Not asked where a load or a drive has a history: modes are about the state under full loads.
+    """
+    if design.history or any("history" in table for table in design.effects.tables.values()):
+        return still
+    fall = answer_modes(design, settings, rotation=start, count=1).falls_in
+    return still if fall is None else replace(still, message=UNSTABLE.format(fall))
 
 
 def _spectrum(modes: Any, design: Design, **about: Any) -> Spectrum:

@@ -30,6 +30,9 @@ def main(arguments: argparse.Namespace) -> int:
         print(text)
         return 0
     require_writable_file(arguments.out)
-    write_whole(arguments.out, f"{text}\n".encode())
+    written = f"{text}\n".encode()
+    if arguments.out.is_file() and arguments.out.read_bytes() != written:
+        raise BadInput(f"--out: got {arguments.out}, which holds something else, expected a new file")
+    write_whole(arguments.out, written)
     print(f"{arguments.out}: written; `python -m studies solve {arguments.out}`")
     return 0

@@ -48,12 +48,10 @@ def test_modes_of_strips_alone(model, strip, command):
 
 
 @pytest.mark.parametrize("model", ["fe", "fe-shear", "spline"])
-def test_release_of_strips_alone_is_refused(model, strip, command):
+def test_release_of_strips_alone_is_refused(model, strip, refused):
     """A release reports the swing of a body: without one it is refused in one line that says what can be."""
-    ended = command("release", strip, "--model", model)
-    assert (ended.code, ended.out) == (2, "")
-    assert ended.err.startswith("studies: bodies: got none, expected a body whose swing is followed; `export")
-    assert len(ended.err.splitlines()) == 1
+    text = "studies: bodies: got none, expected a body whose swing is followed; `export"
+    assert refused("release", strip, "--model", model, says=text).startswith(text)
 
 
 @pytest.mark.parametrize("model", ["fe", "fe-shear"])
