@@ -1,10 +1,11 @@
-"""For all tests: no kernel answers that was compiled from a source which is gone, and one hash a source."""
+"""For all tests: no kernel of a source which is gone, one hash a source, and what a refusal looks like."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from functools import cache
 
 import pytest
 
+from studies.__main__ import main
 from studies.record import store
 from studies.record.source import forget_stale
 
@@ -20,3 +21,18 @@ def _hashed_once() -> Iterator[None]:
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(store, "source_hash", cache(store.source_hash))
         yield
+
+
+@pytest.fixture
+def refused(capsys: pytest.CaptureFixture[str]) -> Callable[..., str]:
+    """Run `python -m studies` with words that it must refuse: exit code 2 and one line, which is returned."""
+
+    def run(*words: object, says: str) -> str:
+        capsys.readouterr()
+        assert main([str(word) for word in words]) == 2
+        said = capsys.readouterr()
+        assert (said.out, said.err.count("\n"), said.err[-1]) == ("", 1, "\n")
+        assert says in said.err
+        return said.err
+
+    return run

@@ -2,11 +2,12 @@
 
 from collections.abc import Callable
 from contextlib import suppress
+from dataclasses import replace
 from functools import partial
 from typing import Any
 
 from studies.answers.models import Asked, put
-from studies.answers.motion import Motion, Spectrum
+from studies.answers.motion import NOTHING_MOVES, UNSTABLE, Motion, Spectrum
 from studies.answers.response import Response
 from studies.answers.settings import Settings
 from studies.cases.design import Design
@@ -105,7 +106,8 @@ def answer_release(
         expected = "`export --analysis release` has the motion of strips alone"
         raise BadInput(f"bodies: got none, expected a body whose swing is followed; {expected}")
     asked = put(design, settings, moving=True)
-    model, at = asked.model, {"start": design.rotation if start is None else start, "body": design.body}
+    start = design.rotation if start is None else start
+    model, at = asked.model, {"start": start, "body": design.body}
     with asked.refusals():
         at |= _drive_of(asked)
     given = {name: value for name, value in options.items() if value is not None} | model.release_options
@@ -126,7 +128,8 @@ def answer_release(
     wall_s = max(timing.median - _wall_of_start(release, result, repeat), 0.0)
     if check:
         result = model.dynamics.checked(asked.modelled, result, **at)
-    return Motion.of(asked, result, wall_s=wall_s, solve_s=timing.median_part)
+    answer = Motion.of(asked, result, wall_s=wall_s, solve_s=timing.median_part)
+    return _weighed(answer, design, settings, start) if answer.message == NOTHING_MOVES else answer
 
 
 def answer_modes(
@@ -169,6 +172,17 @@ def answer_modes(
     except asked.model.errors.ConvergenceError as error:
         return Spectrum.without_state(asked, f"statics does not reach the state: {error}", **state)
     return Spectrum.of(asked, timing.result, wall_s=timing.median, **state)
+
+
+def _weighed(still: Motion, design: Design, settings: Settings, start: float | None) -> Motion:
+    """Return a motion that stands still; it says so where its equilibrium is unstable.
+
+    Not asked where a load or a drive has a history: modes are about the state under full loads.
+    """
+    if design.history or any("history" in table for table in design.effects.tables.values()):
+        return still
+    fall = answer_modes(design, settings, rotation=start, count=1).falls_in
+    return still if fall is None else replace(still, message=UNSTABLE.format(fall))
 
 
 def _solve_s(result: Any) -> float:

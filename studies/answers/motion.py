@@ -21,6 +21,10 @@ NOTHING_MOVES = (
     "nothing moves: the start is in equilibrium with all that acts; turn a body before it is let go, or give "
     "a load a history"
 )
+UNSTABLE = (
+    "nothing moves, but the start is an unstable equilibrium, where a disturbance grows e-fold in {:.3g} s: "
+    "turn a body a little before it is let go"
+)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -120,6 +124,12 @@ class Spectrum(Answered):
     body_shapes: Array
     slide_frequency: Array
     wall_s: float
+
+    @property
+    def falls_in(self) -> float | None:
+        """Time in which a disturbance of an unstable state grows e-fold [s]; None of a stable one."""
+        least = float(self.frequency.min(initial=0.0))
+        return -1.0 / (2.0 * math.pi * least) if least < 0.0 else None
 
     @classmethod
     def of(cls, asked: Asked, modes: Any, **state: Any) -> "Spectrum":

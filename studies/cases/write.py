@@ -104,6 +104,7 @@ def _effects() -> Iterator[str]:
     yield "|---|---|---|"
     for name, meaning in keys.EFFECTS.items():
         yield f"| `{name}` | {meaning} | {'unless taken out' if name in DEFAULT else 'where it is named'} |"
+    yield ""
     yield from _tables({f"[effects.{name}]": rows for name, rows in keys.EFFECT_KEYS.items() if rows})
 
 

@@ -33,6 +33,8 @@ def _case_file(text: str) -> str:
     if Path(text).is_file() or text.endswith(".toml") or (Path(text).exists() and not own.is_file()):
         return text
     if not own.is_file():
+        if Path(f"{text}.toml").is_file():
+            raise argparse.ArgumentTypeError(f"got {text}, expected {text}.toml")
         near = nearest(text, sorted(path.stem for path in FOLDER.glob("*.toml")))
         raise argparse.ArgumentTypeError(f"got {text}, expected {near}, or a file that ends in .toml")
     return str(own)

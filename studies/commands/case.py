@@ -40,7 +40,10 @@ def main(arguments: argparse.Namespace) -> int:
     if arguments.out is None:
         print(text)
         return 0
-    write_whole(arguments.out, f"{text}\n".encode())
+    written = f"{text}\n".encode()
+    if arguments.out.is_file() and arguments.out.read_bytes() != written:
+        raise BadInput(f"--out: got {arguments.out}, which holds something else, expected a new file")
+    write_whole(arguments.out, written)
     print(f"{arguments.out}: written; `python -m studies solve {arguments.out}`")
     return 0
 

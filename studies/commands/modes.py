@@ -87,6 +87,8 @@ def _readable(answer: Spectrum, count: int) -> Iterator[str]:
             ),
         ]
     )
+    if (fall := answer.falls_in) is not None:
+        yield f"a negative frequency is an unstable mode: a disturbance grows e-fold in {fall:.3g} s"
     yield from tell.estimated(answer)
     least = answer.estimate or {}
     if least.get("frequency", 0.0) > least.get("accuracy", math.inf):

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, NoReturn
 
+from studies.cases.document import nearest
 from studies.cases.rules import Rule
 from studies.errors import BadInput
 from studies.record.files import PICTURES, require_writable_file
@@ -25,14 +26,19 @@ class Parser(argparse.ArgumentParser):
 
     def error(self, message: str) -> NoReturn:
         """Raise BadInput with `message` in one line, naming the option nearest to an unknown one."""
-        unknown = re.match(r"unrecognized arguments: (--[\w-]+)", message)
-        if unknown:
+        if unknown := re.match(r"unrecognized arguments: (--[\w-]+)", message):
             options = [option for action in self._actions for option in action.option_strings]
             near = difflib.get_close_matches(unknown[1], options, n=1)
             message += (
                 f", expected {near[0]} (the nearest option)" if near else f", expected one of {options}"
             )
-        raise BadInput(f"{self.prog.removeprefix('python -m studies ')}: {message}")
+        if other := re.match(r"(argument .*: )invalid choice: '(.*)' \(choose from (.*)\)$", message):
+            known = re.findall(r"[\w-]+", other[3])
+            message = f"{other[1]}got {other[2]}, expected {nearest(other[2], known)}"
+        if bare := re.match(r"argument (--[\w-]+): expected one argument", message):
+            message += f"; one that begins with - is given as {bare[1]}=-..."
+        command = self.prog.removeprefix("python -m studies").strip()
+        raise BadInput(f"{command}: {message}" if command else message)
 
 
 class Argument:

@@ -143,7 +143,7 @@ def readable(answer: Response) -> Iterator[str]:
         body = answer.body if answer.crossing is None else "the body"
         yield f"stiffness of {body} about its centre at fixed loads, and over that of the rotation"
         yield from columns.table(list(_body_columns(answer)))
-    yield from _told(strength(answer))
+    yield from _told(strength(answer), floor=_stress_floor(answer))
     worth = validity(answer)  # of yield the strength has told
     yield from (f"beyond the model: {each}" for each in worth.outside)
     yield from estimated(answer)
@@ -171,8 +171,7 @@ def _columns(answer: Response) -> Iterator[Column]:
         yield from quantity("N m", floor=columns.FORCE_FLOOR * scale, torque=answer.torque)
         yield from quantity("N m/rad", floor=columns.FORCE_FLOOR * scale, stiffness=answer.stiffness)
     yield from quantity("J", floor=columns.ENERGY_FLOOR * scale, energy=answer.strain_energy)
-    floor = columns.STRAIN_FLOOR * max(strip.youngs_modulus for strip in answer.design.strips)
-    yield from quantity("Pa", floor=floor, highest=6, digits=6, stress=answer.max_stress)
+    yield from quantity("Pa", floor=_stress_floor(answer), highest=6, digits=6, stress=answer.max_stress)
     if not pivot:
         for name, place in answer.bodies.items():
             yield from quantity("m", highest=-3, group=name, x=place[:, 0], y=place[:, 1])
@@ -198,8 +197,16 @@ def _body_columns(answer: Response) -> Iterator[Column]:
         yield columns.plain(name, (one(each, DIGITS) for each in ratio[rows]))
 
 
-def _told(found: Strength) -> Iterator[str]:
-    """Yield where the stress is largest and what of it the material bears."""
+def _stress_floor(answer: Response) -> float:
+    """Return the stress below which it is round-off [Pa]."""
+    return columns.STRAIN_FLOOR * max(float(strip.youngs_modulus) for strip in answer.design.strips)
+
+
+def _told(found: Strength, *, floor: float) -> Iterator[str]:
+    """Yield where the stress is largest and what of it the material bears; below the floor there is none."""
+    if found.stress < floor:
+        yield "no stress: nothing is turned, and no load acts"
+        return
     at = _state(found.load_factor, found.rotation)
     yield f"largest stress {one(found.stress / 1e6, 5)} MPa, of {found.strip} {found.place}, {at}"
     if found.safety is None:

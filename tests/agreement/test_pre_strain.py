@@ -8,42 +8,23 @@ from studies.answers.fields import fields_of
 from studies.answers.settings import FeSettings, Settings, SplineSettings
 from studies.cases.design import read_design
 from tests import gates
+from tests.one_strip import SECOND_MOMENT, YOUNGS_MODULUS, one_strip
 
 NATURAL_CURVATURE = 1.5
 
-ARC = f"""
-[[strips]]
-name = "strip"
-start_m = [0, 0]
-end_m = [0.1, 0]
-rise_m = 0.01
-tip = "free"
-
-[section]
-area_m2 = 5e-6
-second_moment_m4 = 1.0416667e-13
-
-[material]
-youngs_modulus_Pa = 206e9
-poisson_ratio = 0.29
-density_kg_m3 = 7800
-
-[drive]
-increments = 4
-
-[scene]
+SCENE = f"""
 effects = ["bending", "stretching", "pre_strain"]
 
 [effects.pre_strain]
 curvature_per_m = {NATURAL_CURVATURE}
 """
-RIGIDITY = 206e9 * 1.0416667e-13
+RIGIDITY = YOUNGS_MODULUS * SECOND_MOMENT
 
 
 def left_over(folder, settings: Settings) -> tuple[float, float]:
     """Largest moment over EI kappa_n, and error of the tip's turn over kappa_n L: zero for a free arc."""
     path = folder / "arc.toml"
-    path.write_text(ARC)
+    path.write_text(one_strip(SCENE, rise=0.01))
     design = read_design(path)
     fields = fields_of(answer_static(design, settings))
     turn = NATURAL_CURVATURE * fields.arc_length[0, -1]

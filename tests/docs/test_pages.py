@@ -71,6 +71,13 @@ def test_commands_that_are_shown_exist(page):
 
 
 @pytest.mark.parametrize("page", blocks.PAGES)
+def test_tables_end_before_the_text(page):
+    """An empty line follows each table: without it the next line of text is drawn as a row."""
+    text = (ROOT / page).read_text(encoding="utf-8")
+    assert re.findall(r"^\|.*\n(?![|\n]).+", text, re.MULTILINE) == []
+
+
+@pytest.mark.parametrize("page", blocks.PAGES)
 def test_links_lead_somewhere(page):
     """Files that a page links to or shows are there, and so are the headings."""
     text = (ROOT / page).read_text(encoding="utf-8")

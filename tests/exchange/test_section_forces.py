@@ -11,6 +11,7 @@ from studies.answers.fields import Fields, fields_of
 from studies.answers.settings import FeSettings, Settings, SplineSettings
 from studies.cases.design import Design, named_design, read_design
 from tests import gates
+from tests.one_strip import one_strip
 
 SPLINE, ELEMENTS = SplineSettings(control_points=12), FeSettings(elements=40)
 SHEAR = FeSettings(elements=20, element="reissner")
@@ -103,27 +104,7 @@ def test_both_models_agree_on_section_forces():
         gates.check("section_forces_agree", difference(fine, solved("cross_axis_pivot", coarse)))
 
 
-CURVED = """
-[[strips]]
-name = "strip"
-start_m = [0, 0]
-end_m = [0.1, 0]
-rise_m = 0.01
-tip = "free"
-
-[section]
-area_m2 = 5e-6
-second_moment_m4 = 1.0416667e-13
-
-[material]
-youngs_modulus_Pa = 206e9
-poisson_ratio = 0.29
-density_kg_m3 = 7800
-
-[drive]
-increments = 4
-
-[scene]
+LOADED = """
 effects = ["bending", "stretching", "gravity", "tip_force"]
 
 [effects.tip_force]
@@ -135,7 +116,7 @@ force_N = [0, 1]
 def test_both_models_agree_on_a_curved_strip_with_a_free_tip(tmp_path):
     """A heavy curved strip that is loaded at its free tip has the same section forces in both models."""
     path = tmp_path / "curved.toml"
-    path.write_text(CURVED)
+    path.write_text(one_strip(LOADED, rise=0.01))
     design, teeth = read_design(path), FeSettings(**gates.teeth("section_forces_curved"))
     fine, elements, coarse = (static_fields(design, each) for each in (SPLINE, ELEMENTS, teeth))
     gates.check("section_forces_curved", difference(fine, elements))

@@ -150,7 +150,7 @@ def test_command_tells_the_capacity(capsys):
     assert (one["held"], one["kind"], one["status"]) == (True, "bifurcation", "converged")
 
 
-def test_a_body_that_is_not_there_is_refused(capsys):
+def test_a_body_that_is_not_there_is_refused(refused):
     """Requirement: an unknown body is one line with what there is."""
-    assert main(["capacity", "four_bar_of_flexures", "--body", "wing"]) == 2
-    assert capsys.readouterr().err == "studies: body: got wing, expected one of crank, coupler, rocker\n"
+    text = "studies: body: got wing, expected one of crank, coupler, rocker\n"
+    refused("capacity", "four_bar_of_flexures", "--body", "wing", says=text)

@@ -145,24 +145,18 @@ BAD_VALUES = {
 
 
 @pytest.mark.parametrize("name", BAD_VALUES)
-def test_bad_case_is_one_line(name, case, command):
+def test_bad_case_is_one_line(name, case, refused):
     """A case file with a fault is refused with file, key, got and expected in one line."""
     old, new, text = BAD_VALUES[name]
     path = case((old, new))
-    outcome = command("solve", path, "--model", "fe")
-    assert outcome.code == 2
-    assert outcome.out == ""
-    assert outcome.err.count("\n") == 1
-    assert outcome.err.startswith(f"studies: {path}: ")
-    assert text in outcome.err
+    assert refused("solve", path, "--model", "fe", says=text).startswith(f"studies: {path}: ")
 
 
-def test_missing_section_names_what_it_needs(case, command, table_1):
+def test_missing_section_names_what_it_needs(case, refused, table_1):
     """A case without a section is refused with the keys that the section must have."""
     body = table_1[table_1.index("[body]") : table_1.index("[drive]")]
-    outcome = command("solve", case((body, "")), "--model", "fe")
-    assert outcome.code == 2
-    assert "[body]: got no such section, expected one with mass_kg, moment_of_inertia_kg_m2" in outcome.err
+    text = "[body]: got no such section, expected one with mass_kg, moment_of_inertia_kg_m2"
+    refused("solve", case((body, "")), "--model", "fe", says=text)
 
 
 #: Words after `solve CASE.toml`, and what the one line must say.
@@ -201,25 +195,25 @@ BAD_OPTIONS = {
     ),
     "option of the other model": (["--model", "fe", "--basis", "bezier"], "--basis: got it with --model fe"),
     "misspelt option": (["--model", "fe", "--elemnts", "4"], "expected --elements (the nearest option)"),
-    "unknown basis": (["--model", "spline", "--basis", "nurbs"], "--basis: invalid choice: 'nurbs'"),
+    "effects without =": (["--effects", "-gravity"], "one that begins with - is given as --effects=-..."),
+    "unknown basis": (
+        ["--model", "spline", "--basis", "nurbs"],
+        "--basis: got nurbs, expected one of bezier, bspline",
+    ),
 }
 
 
 @pytest.mark.parametrize("name", BAD_OPTIONS)
-def test_bad_option_is_one_line(name, case, command):
+def test_bad_option_is_one_line(name, case, refused):
     """An option with a fault is refused with got and expected in one line."""
     words, text = BAD_OPTIONS[name]
-    outcome = command("solve", case(), *words)
-    assert outcome.code == 2
-    assert outcome.out == ""
-    assert outcome.err.count("\n") == 1
-    assert text in outcome.err
+    refused("solve", case(), *words, says=text)
 
 
 @pytest.mark.parametrize(
     ("words", "text"),
     [
-        (["slove"], "invalid choice: 'slove'"),
+        (["slove"], "studies: argument COMMAND: got slove, expected solve (the nearest name)"),
         (["run", "fig04_trajectry"], "got fig04_trajectry, expected fig04_trajectory (the nearest name)"),
         (["run"], "required: NAME"),
         (
@@ -230,48 +224,43 @@ def test_bad_option_is_one_line(name, case, command):
         (["converge", "absent.toml"], "absent.toml: cannot be read (No such file or directory)"),
     ],
 )
-def test_bad_words_are_one_line(words, text, command):
+def test_bad_words_are_one_line(words, text, refused):
     """Unknown commands, studies and files are refused in one line."""
-    outcome = command(*words)
-    assert outcome.code == 2
-    assert outcome.err.count("\n") == 1
-    assert text in outcome.err
+    refused(*words, says=text)
 
 
-def test_folder_and_binary_files_are_refused(tmp_path, command):
+def test_a_case_here_is_named_with_its_ending(tmp_path, monkeypatch, refused):
+    """Who leaves out the ending of a file that is here is told the file, and not another case."""
+    monkeypatch.chdir(tmp_path)
+    Path("my_pivot.toml").write_text("", encoding="utf-8")
+    refused("solve", "my_pivot", says="got my_pivot, expected my_pivot.toml")
+
+
+def test_folder_and_binary_files_are_refused(tmp_path, refused):
     """A folder, or bytes that are not text, given as case file are refused in one line."""
     binary = tmp_path / "binary.toml"
     binary.write_bytes(b"\xff\xfe\x00")
     for path, text in ((tmp_path, "cannot be read (Is a directory)"), (binary, "bytes that are not UTF-8")):
-        outcome = command("solve", path, "--model", "fe")
-        assert outcome.code == 2
-        assert outcome.err.count("\n") == 1
-        assert text in outcome.err
+        refused("solve", path, "--model", "fe", says=text)
 
 
-def test_unwritable_answer_is_refused_before_solving(case, command, tmp_path):
+def test_unwritable_answer_is_refused_before_solving(case, refused, tmp_path):
     """An answer that cannot be written is refused in one line before solving and leaves nothing."""
     blocked = tmp_path / "file"
     blocked.write_text("in the way")
     before = sorted(tmp_path.rglob("*"))
     for target in (blocked / "x.json", tmp_path / "absent" / "x.json", tmp_path):
         path = case()
-        outcome = command("solve", path, "--model", "fe", "--json", target)
-        assert outcome.code == 2
-        assert outcome.err.count("\n") == 1
-        assert f"{target}: cannot be written" in outcome.err
+        refused("solve", path, "--model", "fe", "--json", target, says=f"{target}: cannot be written")
         path.unlink()
     assert sorted(tmp_path.rglob("*")) == before
 
 
-def test_unwritable_results_are_refused_before_computing(command, tmp_path):
+def test_unwritable_results_are_refused_before_computing(refused, tmp_path):
     """A results folder that cannot be written is refused in one line, before anything is computed."""
     blocked = tmp_path / "file"
     blocked.write_text("in the way")
-    outcome = command("run", "fig04_trajectory", "--results", blocked / "results")
-    assert outcome.code == 2
-    assert outcome.err.count("\n") == 1
-    assert "cannot be written" in outcome.err
+    refused("run", "fig04_trajectory", "--results", blocked / "results", says="cannot be written")
 
 
 def test_bad_input_as_a_user_sees_it(tmp_path):

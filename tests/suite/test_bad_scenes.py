@@ -79,13 +79,10 @@ REFUSED = {
 
 
 @pytest.mark.parametrize("name", REFUSED)
-def test_senseless_effects_are_one_line(name, case, command):
+def test_senseless_effects_are_one_line(name, case, refused):
     """Unknown, contradictory and missing effects are one line that lists what there is, and exit code 2."""
     change, model, verb, text = REFUSED[name]
-    outcome = command(verb, case(), "--model", model, f"--effects={change}")
-    assert (outcome.code, outcome.out) == (2, "")
-    assert outcome.err.count("\n") == 1
-    assert text in outcome.err
+    refused(verb, case(), "--model", model, f"--effects={change}", says=text)
 
 
 #: What is written over a mechanism's case, and what the one line must say.
@@ -186,32 +183,25 @@ BAD_SCENES = {
 
 
 @pytest.mark.parametrize("name", BAD_SCENES)
-def test_bad_scene_is_one_line(name, tmp_path, command):
+def test_bad_scene_is_one_line(name, tmp_path, refused):
     """A mechanism's case file with a fault is refused with file, key, got and expected in one line."""
     old, new, text = BAD_SCENES[name]
     content = (FOLDER / "four_bar_of_flexures.toml").read_text(encoding="utf-8")
     assert old in content
     path = tmp_path / "case.toml"
     path.write_text(content.replace(old, new, 1), encoding="utf-8")
-    outcome = command("solve", path, "--model", "spline")
-    assert (outcome.code, outcome.out) == (2, "")
-    assert outcome.err.count("\n") == 1
-    assert outcome.err.startswith(f"studies: {path}: ")
-    assert text in outcome.err
+    assert refused("solve", path, "--model", "spline", says=text).startswith(f"studies: {path}: ")
 
 
-def test_refining_needs_a_rotation(command):
+def test_refining_needs_a_rotation(refused):
     """Errors are related to a rotation: a mechanism that follows its loads is refused in one line."""
-    outcome = command("converge", FOLDER / "parallel_strip_guide.toml")
-    assert outcome.code == 2
-    assert "drive.rotation_deg: got none, expected a rotation to relate errors to" in outcome.err
+    text = "drive.rotation_deg: got none, expected a rotation to relate errors to"
+    refused("converge", FOLDER / "parallel_strip_guide.toml", says=text)
 
 
 @pytest.mark.parametrize("head", ["strips = []", "strips = [1]"])
-def test_mechanism_without_strips_is_refused(head, tmp_path, command):
+def test_mechanism_without_strips_is_refused(head, tmp_path, refused):
     """A mechanism needs strips, each a table of its own."""
     path = tmp_path / "case.toml"
     path.write_text(f"{head}\n[drive]\nincrements = 2\n", encoding="utf-8")
-    outcome = command("modes", path, "--model", "spline")
-    assert outcome.code == 2
-    assert f"strips: got {head[9:]}, expected tables [[strips]]" in outcome.err
+    refused("modes", path, "--model", "spline", says=f"strips: got {head[9:]}, expected tables [[strips]]")

@@ -43,10 +43,21 @@ def test_template_is_solved_as_it_is(kind, model, command, tmp_path):
     assert isinstance(read_design(path), Problem) == (kind == "pivot")
 
 
-def test_template_is_of_one_kind(command):
+def test_template_is_of_one_kind(refused):
     """Both kinds at once are refused in one line."""
-    outcome = command("case", "--pivot", "--mechanism")
-    assert outcome.err == "studies: case: got --pivot and --mechanism, expected one of them\n"
+    refused(
+        "case", "--pivot", "--mechanism", says="case: got --pivot and --mechanism, expected one of them\n"
+    )
+
+
+def test_template_leaves_a_changed_design_alone(command, refused, tmp_path):
+    """Written twice the template is there; a file with anything else in it stays as it is."""
+    path = tmp_path / "my.toml"
+    assert [command("case", "--out", path).code for _ in range(2)] == [0, 0]
+    mine = path.read_text(encoding="utf-8").replace("= 0.08 ", "= 0.09 ")
+    path.write_text(mine, encoding="utf-8")
+    refused("case", "--out", path, says=f"--out: got {path}, which holds something else, expected a new file")
+    assert path.read_text(encoding="utf-8") == mine
 
 
 def test_sides_are_area_and_second_moment(case):
@@ -265,10 +276,9 @@ def test_a_body_is_led_in_one_direction_or_both(led, command, tmp_path):
 
 
 @pytest.mark.parametrize("led", ['["free", "free"]', '[1, "fre"]', "[1]"])
-def test_a_body_that_is_not_led_is_refused(led, case, command):
+def test_a_body_that_is_not_led_is_refused(led, case, refused):
     """A displacement without a number, or with another word than free, is refused in one line."""
     named = '[scene]\neffects = ["+driven_displacement"]\n'
     scene = f"{named}[effects.driven_displacement]\ndisplacement_m = {led}\n"
-    outcome = command("solve", case(("[drive]", f"{scene}[drive]")))
-    assert outcome.code == 2
-    assert 'expected two finite numbers [x, y], one of them or "free" [m]\n' in outcome.err
+    text = 'expected two finite numbers [x, y], one of them or "free" [m]\n'
+    refused("solve", case(("[drive]", f"{scene}[drive]")), says=text)

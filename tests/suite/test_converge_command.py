@@ -96,24 +96,17 @@ def test_folder_holds_tables_and_figure(short):
         (["--control-points", "8:4"], "--control-points: got 8:4, expected FIRST:LAST"),
     ],
 )
-def test_bad_ranges_are_one_line(words, text, case, command):
+def test_bad_ranges_are_one_line(words, text, case, refused):
     """A range that cannot be refined over is refused in one line."""
-    outcome = command("converge", case(), *words)
-    assert outcome.code == 2
-    assert outcome.err.count("\n") == 1
-    assert text in outcome.err
+    refused("converge", case(), *words, says=text)
 
 
-def test_no_rotation_and_no_folder_are_refused(case, command, tmp_path):
+def test_no_rotation_and_no_folder_are_refused(case, refused, tmp_path):
     """A path without rotation, or a folder that cannot be made, is refused before solving."""
-    outcome = command("converge", case(("rotation_deg = 90", "rotation_deg = 0")))
-    assert outcome.code == 2
-    assert "drive.rotation_deg: got 0, expected a rotation to relate errors to" in outcome.err
+    text = "drive.rotation_deg: got 0, expected a rotation to relate errors to"
+    refused("converge", case(("rotation_deg = 90", "rotation_deg = 0")), says=text)
     (tmp_path / "file").write_text("in the way")
-    outcome = command("converge", case(), "--out", tmp_path / "file" / "out")
-    assert outcome.code == 2
-    assert outcome.err.count("\n") == 1
-    assert "cannot be written" in outcome.err
+    refused("converge", case(), "--out", tmp_path / "file" / "out", says="cannot be written")
 
 
 def test_count_that_reaches_an_accuracy_holds_from_there_on():

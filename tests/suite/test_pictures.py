@@ -197,11 +197,9 @@ def test_command_writes_a_picture_beside_its_answer(words, kind, tmp_path, capsy
 @pytest.mark.parametrize(
     ("name", "expected"), [("a.gif", ".svg, .png or .pdf"), ("no/a.svg", "writable place")]
 )
-def test_a_picture_that_cannot_be_written_is_refused_before_solving(name, expected, tmp_path, capsys):
+def test_a_picture_that_cannot_be_written_is_refused_before_solving(name, expected, tmp_path, refused):
     """A wrong ending or a missing folder is one line, and nothing is solved."""
-    assert main(["solve", PIVOT, "--plot", str(tmp_path / name)]) == 2
-    said = capsys.readouterr()
-    assert (said.out, expected in said.err) == ("", True)
+    refused("solve", PIVOT, "--plot", tmp_path / name, says=expected)
 
 
 @pytest.mark.slow
@@ -233,10 +231,9 @@ def test_compare_tells_what_the_answers_tell(tmp_path, capsys):
         ([PIVOT, FOUR_BAR, "--model", "fe", "--control-points", "6"], "--control-points: got it with"),
     ],
 )
-def test_compare_refuses_in_a_line(words, expected, capsys):
+def test_compare_refuses_in_a_line(words, expected, refused):
     """Too few or many designs, and options that no model takes, are one line."""
-    assert main(["compare", *words]) == 2
-    assert expected in capsys.readouterr().err
+    refused("compare", *words, says=expected)
 
 
 def test_curves_over_rotation_begin_under_the_loads():

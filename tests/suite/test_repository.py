@@ -155,9 +155,15 @@ def test_integration_runs_what_a_user_runs():
 
 
 def test_every_folder_says_what_lives_in_it():
-    """Each top-level folder has a README of about ten lines, and CONTRIBUTING's layout names the folder."""
+    """Each top-level folder has a README of about ten lines, and CONTRIBUTING's layout names the folder, with
+    the parts of studies and tests; the README of the pages names them all."""
     layout = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
     for name in ("spline_model", "fe_reference", "studies", "results", "report", "docs", "tests"):
         text = (ROOT / name / "README.md").read_text(encoding="utf-8")
         assert 5 <= len(text.splitlines()) <= 16, name
         assert f"\n    {name}/" in layout
+    parts = {Path(name).parts for name in _committed() if name.startswith(("studies/", "tests/"))}
+    assert [part[1] for part in parts if len(part) > 2 and f" {part[1]}/" not in layout] == []
+    pages = (ROOT / "docs" / "README.md").read_text(encoding="utf-8")
+    named = {path.name for path in (ROOT / "docs").glob("*.md")} - {"README.md"}
+    assert [name for name in named if f"`{name}`" not in pages] == []

@@ -125,7 +125,7 @@ def test_effects_are_changed_on_the_command_line(change, names, case, command):
 
 
 @pytest.mark.parametrize("model", ["spline", "fe"])
-def test_tables_of_effects_are_there_for_the_command_line(model, case, command):
+def test_tables_of_effects_are_there_for_the_command_line(model, case, command, refused):
     """A table gives the parameters of an effect that --effects adds; without it weight is the earth's. A
     table that nothing names is refused, and one that --effects takes out stays behind."""
     end = ("increments = 20", "increments = 2\n[effects.gravity]\nacceleration_m_per_s2 = [0, -9810]")
@@ -136,9 +136,7 @@ def test_tables_of_effects_are_there_for_the_command_line(model, case, command):
     for changes in ((), (end,)):
         loaded = answer(command, "solve", case(*changes), *words, "--effects=+gravity")
         shifts.append(loaded["com_y_m"][0] - bare["com_y_m"][0])
-    outcome = command("solve", case(end), *words)
-    assert (outcome.code, outcome.out) == (2, "")
-    assert outcome.err.endswith('expected [scene] with effects = ["+gravity"] as well\n')
+    refused("solve", case(end), *words, says='expected [scene] with effects = ["+gravity"] as well\n')
     named = case((end[0], end[1].replace("[eff", '[scene]\neffects = ["+gravity"]\n[eff')))
     heavy = answer(command, "solve", named, *words)
     assert heavy["com_y_m"] == loaded["com_y_m"]

@@ -194,12 +194,9 @@ def test_accuracy_out_of_reach_is_exit_code_3(case, command):
     ],
     ids=["zero", "axial modes"],
 )
-def test_accuracy_that_cannot_be_is_one_line(options, line, case, command):
+def test_accuracy_that_cannot_be_is_one_line(options, line, case, refused):
     """Elements are refined by another command; an accuracy is positive; it chooses the axial modes."""
-    outcome = command("solve", case(), "--model", *options)
-    assert (outcome.code, outcome.out) == (2, "")
-    assert line in outcome.err
-    assert outcome.err.count("\n") == 1
+    refused("solve", case(), "--model", *options, says=line)
 
 
 def test_a_mechanism_is_answered_to_an_accuracy(command):

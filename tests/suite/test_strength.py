@@ -56,6 +56,14 @@ def test_solve_says_how_safe_it_is(case, command):
     assert any(line.startswith("safety 0.03") and "500.0 MPa: it yields from 4.54" in line for line in lines)
 
 
+def test_what_rests_has_no_stress_and_no_safety(case, command):
+    """Requirement: unturned and without a load round-off is not told as a stress, nor what it is to yield."""
+    path = case(("poisson_ratio = 0.29", "poisson_ratio = 0.29\nyield_strength_Pa = 500e6"))
+    out = command("solve", path, "--rotation-deg", 0, "--increments", 2, "--control-points", 6).out
+    assert "no stress: nothing is turned, and no load acts" in out
+    assert "safety" not in out
+
+
 @pytest.mark.parametrize("settings", [SIX, FeSettings(elements=20)], ids=lambda s: s.model)
 def test_stress_of_a_strip_bent_by_a_moment(settings, command):
     """Requirement: a mechanism's stress is M / W of the rectangle with its A and I, by both models."""

@@ -2,26 +2,9 @@
 
 import pytest
 
-TEXT = """
-[[strips]]
-name = "strip"
-start_m = [0, 0]
-end_m = [0.1, 0]
-tip = "free"
+from tests.one_strip import one_strip
 
-[section]
-area_m2 = 5e-6
-second_moment_m4 = 1.0416667e-13
-
-[material]
-youngs_modulus_Pa = 206e9
-poisson_ratio = 0.29
-density_kg_m3 = 7800
-
-[drive]
-increments = 2
-
-[scene]
+SCENE = """
 effects = ["bending", "stretching", "strip_inertia", "tip_force"]
 
 [effects.tip_force]
@@ -34,7 +17,7 @@ force_N = [0, -0.5]
 def strip(tmp_path):
     """Path of a case of one strip with a force at its free tip."""
     path = tmp_path / "strip.toml"
-    path.write_text(TEXT, encoding="utf-8")
+    path.write_text(one_strip(SCENE), encoding="utf-8")
     return path
 
 
@@ -48,12 +31,10 @@ def test_modes_of_strips_alone(model, strip, command):
 
 
 @pytest.mark.parametrize("model", ["fe", "fe-shear", "spline"])
-def test_release_of_strips_alone_is_refused(model, strip, command):
+def test_release_of_strips_alone_is_refused(model, strip, refused):
     """A release reports the swing of a body: without one it is refused in one line that says what can be."""
-    ended = command("release", strip, "--model", model)
-    assert (ended.code, ended.out) == (2, "")
-    assert ended.err.startswith("studies: bodies: got none, expected a body whose swing is followed; `export")
-    assert len(ended.err.splitlines()) == 1
+    text = "studies: bodies: got none, expected a body whose swing is followed; `export"
+    assert refused("release", strip, "--model", model, says=text).startswith(text)
 
 
 @pytest.mark.parametrize("model", ["fe", "fe-shear"])

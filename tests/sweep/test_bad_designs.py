@@ -86,15 +86,12 @@ BAD = [
 
 
 @pytest.mark.parametrize(("change", "words"), BAD, ids=[words[:40] for _, words in BAD])
-def test_bad_designs_are_one_line(change, words, tmp_path, capsys):
+def test_bad_designs_are_one_line(change, words, tmp_path, refused):
     """Requirement: what is wrong with the file is one line with its key, and the folder is not made."""
     path = tmp_path / "designs.toml"
     path.write_text("\n".join((GOOD | change).values()))
     out = tmp_path / "out"
-    assert main(["sweep", str(path), "--out", str(out)]) == 2
-    error = capsys.readouterr().err
-    assert error.count("\n") == 1
-    assert words in error
+    refused("sweep", path, "--out", out, says=words)
     assert not out.exists()
 
 
@@ -106,7 +103,7 @@ def test_the_good_file_is_good(tmp_path, capsys):
     assert "8 designs solved" in capsys.readouterr().out
 
 
-def test_a_file_without_rows_or_with_a_wrong_value_is_named(tmp_path, capsys):
+def test_a_file_without_rows_or_with_a_wrong_value_is_named(tmp_path, refused):
     """Requirement: faults of the CSV file name it, its column and the value."""
     path, table = tmp_path / "designs.toml", tmp_path / "a.csv"
     path.write_text('case = "cross_axis_pivot"\nsample.file = "a.csv"')
@@ -117,8 +114,7 @@ def test_a_file_without_rows_or_with_a_wrong_value_is_named(tmp_path, capsys):
         ("strip.crossingratio\n0.5\n", "expected strip.crossing_ratio (the nearest name)"),
     ):
         table.write_text(text)
-        assert main(["sweep", str(path), "--out", str(tmp_path / "out")]) == 2
-        assert words in capsys.readouterr().err
+        refused("sweep", path, "--out", tmp_path / "out", says=words)
 
 
 #: A grid over a load, with or without its name in the scene.

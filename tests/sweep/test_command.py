@@ -12,7 +12,6 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
-from studies.__main__ import main
 from studies.record.source import ROOT
 from studies.sweep.read import read_plan
 from tests.sweep.sweeps import RANDOM
@@ -91,11 +90,11 @@ def test_the_help_shows_a_file_that_works(tmp_path, capsys):
     assert asked.task.batch
 
 
-def test_scheduler_and_workers_exclude_each_other(tmp_path, capsys):
+def test_scheduler_and_workers_exclude_each_other(tmp_path, refused):
     """Requirement: options that contradict each other are refused."""
-    words = ["sweep", str(EXAMPLES[0]), "--out", str(tmp_path / "out")]
-    assert main([*words, "--workers", "2", "--scheduler", "tcp://127.0.0.1:1"]) == 2
-    assert "--workers: got it with --scheduler" in capsys.readouterr().err
+    words = ["sweep", EXAMPLES[0], "--out", tmp_path / "out"]
+    both = ["--workers", 2, "--scheduler", "tcp://127.0.0.1:1"]
+    refused(*words, *both, says="--workers: got it with --scheduler")
 
 
 def left_of(group: int, within: float = 60.0) -> list[str]:
