@@ -189,6 +189,11 @@ class Scales:
         rigidity = max((e.flexural_rigidity for e in scene.of(Bending)), default=1.0)
         return cls(scene=scene, length=length, energy=rigidity / length)
 
+    @property
+    def pose(self) -> NDArray[np.float64]:
+        """The unit of a body's pose (3,)."""
+        return np.array([self.length, self.length, 1.0])
+
     @cached_property
     def unit(self) -> NDArray[np.float64]:
         """The unit of each unknown (N,)."""

@@ -78,7 +78,7 @@ class HeldPivot:
 
     @property
     def _unit(self) -> Array:
-        return np.array([self.model.length, self.model.length, 1.0])
+        return self.model.system.scales.pose
 
     def reset(self) -> HeldState:
         """Back to rest, unloaded."""

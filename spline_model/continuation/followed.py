@@ -15,7 +15,7 @@ from spline_model import checks
 from spline_model.bordered import evaluate, open_energy
 from spline_model.compile import compile_scene
 from spline_model.continuation.resolution import LARGEST_DEFECT, Resolution
-from spline_model.effects import Bending, MixedStretching, Stretching
+from spline_model.effects import StrainEnergy, Stretching
 from spline_model.newton import Newton, Workspace, getrf, getrs, solve
 from spline_model.solution import Later
 
@@ -95,9 +95,7 @@ class Followed(Workspace):
         """The same scene with twice the Gauss points."""
         scene = self.system.scene
         effects = tuple(
-            replace(e, gauss_points=2 * e.gauss_points)
-            if isinstance(e, Bending | MixedStretching | Stretching)
-            else e
+            replace(e, gauss_points=2 * e.gauss_points) if isinstance(e, StrainEnergy) else e
             for e in scene.effects
         )
         return replace(self.of(compile_scene(replace(scene, effects=effects))), grows=self.grows)

@@ -96,7 +96,24 @@ class Curl:
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Bending(Potential):
+class StrainEnergy(Potential):
+    """An energy of one strip's strain, summed over its Gauss points.
+
+    Parameters: strip, measure (one of MEASURES), gauss_points in each knot span.
+    """
+
+    strip: str
+    measure: str = "material"
+    gauss_points: int
+
+    def require_sum(self, measures: tuple[str, ...]) -> None:
+        """Refuse another measure, and no Gauss points."""
+        require_choice("measure", self.measure, measures)
+        require_count("gauss_points", self.gauss_points, 1)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Bending(StrainEnergy):
     """Bending energy of one strip.
 
     C(u) is the centreline, ' = d/du, J0 = |C0'| the reference speed and
@@ -123,17 +140,13 @@ class Bending(Potential):
     Source: paper Eqs 10 to 12; Antman, Nonlinear Problems of Elasticity (2005), ch. 4.
     """
 
-    strip: str
     flexural_rigidity: float
     natural_curvature: float = 0.0
     curl: Curl | None = None
-    measure: str = "material"
-    gauss_points: int
 
     def __post_init__(self) -> None:
         require_not_negative("flexural_rigidity", self.flexural_rigidity, "N m^2")
-        require_choice("measure", self.measure, MEASURES)
-        require_count("gauss_points", self.gauss_points, 1)
+        self.require_sum(MEASURES)
 
     def rigidity_at(self, basis: SplineBasis, u: Array) -> Array:
         """Rigidity at u (P,) of a strip of that basis [N m^2]."""
@@ -205,7 +218,7 @@ class Shear(Potential):
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Stretching(Potential):
+class Stretching(StrainEnergy):
     """Stretching energy of one strip by quadrature of the strain: the paper's form, which locks.
 
     With the axial strain eps = |C'| / J0 - 1 (Eq 14)
@@ -223,20 +236,16 @@ class Stretching(Potential):
     Source: paper Eqs 13 to 15.
     """
 
-    strip: str
     axial_rigidity: float
     natural_strain: float = 0.0
-    measure: str = "material"
-    gauss_points: int
 
     def __post_init__(self) -> None:
         require_not_negative("axial_rigidity", self.axial_rigidity, "N")
-        require_choice("measure", self.measure, MEASURES)
-        require_count("gauss_points", self.gauss_points, 1)
+        self.require_sum(MEASURES)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class MixedStretching(Potential):
+class MixedStretching(StrainEnergy):
     """Stretching of one strip with an axial force of its own (Hellinger-Reissner).
 
     N(u) = sum of a_k P_k(u) is an unknown and
@@ -258,14 +267,10 @@ class MixedStretching(Potential):
     Source: Reissner, On a variational theorem in elasticity, J Math Phys 29 (1950) 90.
     """
 
-    strip: str
     axial_compliance: float
     modes: AxialModes
     natural_strain: float = 0.0
-    measure: str = "material"
-    gauss_points: int
 
     def __post_init__(self) -> None:
         require_not_negative("axial_compliance", self.axial_compliance, "1/N")
-        require_choice("measure", self.measure, MEASURES[:2])
-        require_count("gauss_points", self.gauss_points, 1)
+        self.require_sum(MEASURES[:2])

@@ -83,7 +83,7 @@ class Masses(NamedTuple):
         """The bodies and what acts on them; poses: the number of their coordinates."""
         system, loads, drives = motion.system, motion.loads, motion.drives
         layout, length, energy = system.layout, system.scales.length, system.scales.energy
-        unit, begin = np.tile([length, length, 1.0], poses // 3), layout.poses.start
+        unit, begin = np.tile(system.scales.pose, poses // 3), layout.poses.start
         inertia, drag, weight = np.zeros((3, poses))
         given = np.diag(motion.mass), np.diag(motion.drag), system.weight
         for mine, acts in zip((inertia, drag, weight), given, strict=True):

@@ -96,8 +96,7 @@ class Stepper(Moves):
         """The present state's record (W,); the axial forces are those that its strains give."""
         strain = sum(self.energies) + open_energy(self.system, self.z)
         (row,) = rows_of(self.motion, self.z[None], self.v[None], np.array([[strain, 0.0, 0.0]]))
-        length = self.system.scales.length
-        poses = self.z[self.poses].reshape(-1, 3) / [length, length, 1.0]
+        poses = self.z[self.poses].reshape(-1, 3) / self.system.scales.pose
         return np.concatenate((poses.ravel(), self.z, self.v, row / self.energy))
 
     def unknowns(self, records: Array) -> tuple[Array, Array]:

@@ -251,10 +251,11 @@ class Stepper(Moves):
         self._model = self._model.with_drives(self.motion)
         v, lost = self.motion.catch(z, v, self.active, time, span)
         self._model.set_velocity(self._state, v)
+        lost /= self.motion.system.scales.energy
         if (self.active > before).any():
-            self._state.totals[1] += lost / self._model.energy
+            self._state.totals[1] += lost
         else:  # a drive that changes its own rate does work
-            self._state.totals[0] -= lost / self._model.energy
+            self._state.totals[0] -= lost
 
     def kept(self) -> list[Array]:
         """Copies of the state's arrays, for ``take_back``."""

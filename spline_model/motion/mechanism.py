@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from spline_model.basis import SplineBasis
 from spline_model.compile import System
-from spline_model.effects import Bending, Clamp, MixedStretching, RootCompliance, Stretching, StripDamping
+from spline_model.effects import Bending, Clamp, MixedStretching, RootCompliance, StrainEnergy, StripDamping
 from spline_model.effects.base import Constraint
 from spline_model.errors import InvalidParameter
 from spline_model.motion.arrays import Flexures, Masses, Scratch, State, sizes_of, zeros
@@ -35,15 +35,13 @@ AS_IN_STATICS = (
 class Moving:
     """A scene in reduced coordinates y: the bodies' poses, free strip ends among them, then w and a a strip.
 
-    to_modes (S, K, K): the scene's axial forces from the strips'; length L [m] and energy EI/L [J].
+    to_modes (S, K, K): the scene's axial forces from the strips'.
     """
 
     system: System
     strips: Flexures
     masses: Masses
     to_modes: Array
-    length: float
-    energy: float
 
     @property
     def width(self) -> int:
@@ -74,23 +72,19 @@ class Moving:
         layout, n = self.system.layout, self.strips.mass.shape[1]
         of_bodies[: len(self._units)] = given[layout.poses] / self._units
         for s, strip in enumerate(self.system.scene.strips):
-            of_points[s] = given[layout.strip(strip.name)].reshape(n, 2).T / self.length
-
-    @property
-    def unit(self) -> Array:
-        """Of a pose (3,) [m, rad]."""
-        return np.array([self.length, self.length, 1.0])
+            of_points[s] = given[layout.strip(strip.name)].reshape(n, 2).T / self.system.scales.length
 
     @cached_property
     def _units(self) -> Array:
-        return np.tile(self.unit, len(self.system.scene.bodies))
+        return np.tile(self.system.scales.pose, len(self.system.scene.bodies))
 
     def _coordinates(self, z: Array) -> Array:
         system, strips, n = self.system, self.strips, self.strips.mass.shape[1]
+        length, energy = system.scales.length, system.scales.energy
         pose, own = np.zeros(len(self.masses.inertia)), []
         pose[: len(self._units)] = z[system.layout.poses] / self._units
         for s, strip in enumerate(system.scene.strips):
-            points = z[system.layout.strip(strip.name)].reshape(n, 2) / self.length
+            points = z[system.layout.strip(strip.name)].reshape(n, 2) / length
             chords = points[1] - points[0], points[-1] - points[-2]
             for body, frame, at, chord in (
                 (strips.roots[s], strips.root[s], 0, chords[0]),
@@ -106,7 +100,7 @@ class Moving:
             own += [
                 points[strips.lead : -strips.lead].ravel(),
                 reach,
-                np.linalg.solve(self.to_modes[s], forces) * self.length / self.energy,
+                np.linalg.solve(self.to_modes[s], forces) * length / energy,
             ]
         return np.concatenate((pose, *own))
 
@@ -128,11 +122,12 @@ class Moving:
             for i, c in enumerate(scene.of(Constraint))
             if isinstance(c, Clamp)
         }
-        force = self.energy / self.length
-        unit = force * np.array([1.0, 1.0, self.length])
+        length = system.scales.length
+        force = system.scales.energy / length
+        unit = force * np.array([1.0, 1.0, length])
         for s, strip in enumerate(scene.strips):
             place = layout.strip(strip.name)
-            both = records[:, at : at + 4 * n].reshape(count, 2 * n, 2) * self.length
+            both = records[:, at : at + 4 * n].reshape(count, 2 * n, 2) * length
             z[:, place], v[:, place] = both[:, :, 0], both[:, :, 1]
             for e, end in enumerate(("start", "end")):
                 if (strip.name, end) in rows:
@@ -157,8 +152,6 @@ class Moving:
         return cls(
             system=system,
             masses=Masses.of(motion, poses),
-            length=system.scales.length,
-            energy=system.scales.energy,
             **_strips(motion, ends),
         )
 
@@ -202,13 +195,8 @@ def _strips(motion: Motion, ends: Ends) -> dict[str, Any]:
 def _grid(system: System) -> tuple[SplineBasis, int]:
     """Basis and Gauss points of all strips."""
     scene = system.scene
-    elastic: list[Bending | MixedStretching | Stretching] = [
-        *scene.of(Bending),
-        *scene.of(MixedStretching),
-        *scene.of(Stretching),
-    ]
     bases = {strip.basis for strip in scene.strips}
-    kinds = {(e.gauss_points, e.measure) for e in elastic}
+    kinds = {(e.gauss_points, e.measure) for e in scene.of(StrainEnergy)}
     if len(bases) != 1 or len(kinds) != 1:
         raise InvalidParameter("strips", f"{len(bases)} bases, {len(kinds)} quadratures", "one of each")
     if sorted(e.strip for e in scene.of(Bending)) != sorted(s.name for s in scene.strips):

@@ -185,9 +185,8 @@ class _Stepper(energy_consistent.Moves):
     def __init__(self, model: Reduced, y: Array, start: Start) -> None:
         self.motion, self._model = start.motion, model
         self._masses = Masses.of(self.motion, len(model.bodies.rest))
-        self.unit = np.array([model.length, model.length, 1.0])
         rate, moved = np.zeros((len(model.bodies.rest) // 3, 3)), model.system.layout.poses
-        rate[: len(model.system.scene.bodies)] = start.v[moved].reshape(-1, 3) / self.unit
+        rate[: len(model.system.scene.bodies)] = start.v[moved].reshape(-1, 3) / model.system.scales.pose
         self._poses = Poses.of(y, rate.ravel(), self._masses.inertia, len(model.bodies.load))
         self.width = model.size + rate.size + ENERGIES
         self.counters = np.zeros(6, dtype=np.int64)
@@ -224,6 +223,6 @@ class _Stepper(energy_consistent.Moves):
         model, size = self._model, len(self._poses.y)
         layout, count = model.system.layout, 3 * len(model.system.scene.bodies)
         v = np.zeros((len(records), layout.coordinate_count))
-        v[:, layout.poses] = records[:, size : size + count] * np.tile(self.unit, count // 3)
+        v[:, layout.poses] = records[:, size : size + count] * np.tile(model.system.scales.pose, count // 3)
         y = np.ascontiguousarray(records[:, :size])
         return unknowns_of(model, y, np.zeros((len(y), 0))), v

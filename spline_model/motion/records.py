@@ -96,7 +96,7 @@ def compact(
     scales, bodies = motion.system.scales, len(motion.turns)
     return Records(
         spacing=spacing,
-        poses=records[:, : 3 * bodies] * np.tile([scales.length, scales.length, 1.0], bodies),
+        poses=records[:, : 3 * bodies] * np.tile(scales.pose, bodies),
         rows=records[:, -ENERGIES:] * scales.energy,
         whole=Whole(motion, partial(_read, unknowns, records, z)),
         message=message,

@@ -183,11 +183,12 @@ def add_points(s, a, h, state, strips, work):
     """Forces on the control points, their tangent in the new ones, gaps and their derivatives."""
     n, measure, force, blocks = strips.mass.shape[1], strips.measure, work.force[s], work.blocks
     rate, strain, stretching = strips.relaxation[s] / h, strips.strain[s], strips.stretching[s]
+    points, gap, pull, along = work.points[s], work.gap[s], work.pull, work.along
     _clear_points(s, a, strips, work)
     for p in range(strips.weight.size):
         begin, weight, speed = strips.first[p], strips.weight[p], strips.speed[s, p]
         old, new, d1, d2 = state.at[s, p], work.at[s, p], strips.d1[p], strips.d2[p]
-        curve_at(p, work.points[s], strips.first, strips.d1, strips.d2, new)
+        curve_at(p, points, strips.first, strips.d1, strips.d2, new)
         x1, y1, v0, v1 = new[0], new[1], old[4], new[4]
         (
             g0, g1, g2, g3,
@@ -202,9 +203,7 @@ def add_points(s, a, h, state, strips, work):
         tx, ty = x1 * inverse, y1 * inverse
         if a.size > 0:
             mean, modes = 0.5 * (v0 + v1) - (1.0 + strain) * speed + rate * (v1 - v0), strips.modes[s, p]
-            tension = _add_axial(
-                begin, weight, rate, mean, dx, dy, tx, ty, modes, d1, a, work.gap[s], work.pull, work.along
-            )
+            tension = _add_axial(begin, weight, rate, mean, dx, dy, tx, ty, modes, d1, a, gap, pull, along)
         if stretching > 0.0:
             tension, stiffness = stretching_between(v0, v1, speed, strain, stretching, rate, measure)
         turn = 0.5 * tension * w
