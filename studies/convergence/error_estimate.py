@@ -9,11 +9,13 @@ and torque, and its estimate is of the stress in each state; it is judged apart.
 
 import math
 from collections.abc import Iterator, Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
 
 import numpy as np
+import pandas as pd
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from scipy.stats import qmc
 
@@ -24,7 +26,9 @@ from studies.answers.response import Response
 from studies.answers.settings import SplineSettings
 from studies.cases.problem import Problem, named_case
 from studies.engine.study import Answer, Claim, Part, Study, Tables
-from studies.record.style import BLACK, BLUE, GREEN, ORANGE, RED, page
+from studies.record.marks import Slope, Words
+from studies.record.panels import Axis, Curves, Panel, sheet
+from studies.record.style import BLUE, GREEN, ORANGE, Look
 
 SEED = 2013
 #: Static designs: how many, their bounds, and what is asked for [1].
@@ -110,33 +114,47 @@ def _described(number: int, problem: Problem) -> dict[str, float]:
 
 def _figure(tables: Tables) -> Figure:
     """Draw the estimates against the true errors, and the true errors against what was asked for."""
-    sheet = page(9.5, 4.6)
-    panels = dict(zip(("statics", "motion"), sheet.subplots(1, 2), strict=True))
     rows = tables["estimates"]
-    for problem, panel in panels.items():
-        these = rows[(rows["problem"] == problem) & rows["counts"]]
-        ends = np.array([these["true_error"].min() / 2.0, these["true_error"].max() * 2.0])
-        panel.fill_between(ends, BAND[0] * ends, BAND[1] * ends, color="#eeeeee", zorder=0)
-        panel.loglog(ends, ends, color=BLACK, linewidth=0.8)
-        panel.loglog(ends, LEAST * ends, color=RED, linewidth=0.8, linestyle=":")
-        for quantity, colour in QUANTITIES.items():
-            dots = these[these["quantity"] == quantity]
-            if len(dots):
-                panel.loglog(
-                    dots["true_error"], dots["estimate"], "o", color=colour, markersize=3.0, label=quantity
-                )
-        panel.set(xlabel=f"true error [{these['unit'].iloc[0]}]", ylabel="estimated error")
-        panel.legend(loc="upper left")
-    panels["statics"].set_title(f"Static paths of {DESIGNS} designs")
-    panels["motion"].set_title(f"A period of {SWINGS} designs let go")
-    panels["motion"].annotate(
-        "grey: 0.3 to 10 times the true error\ndotted: a third of it",
-        (0.98, 0.03),
-        xycoords="axes fraction",
-        ha="right",
-        fontsize=8,
+    rows = rows[rows["counts"]]
+    said = "grey: 0.3 to 10 times the true error\ndotted: a third of it"
+    words = Words(said, (0.98, 0.03), side="right", placed=True)
+    static = _panel(rows[rows["problem"] == "statics"], f"Static paths of {DESIGNS} designs")
+    moving = _panel(rows[rows["problem"] == "motion"], f"A period of {SWINGS} designs let go", words)
+    return sheet(9.5, 4.6, [[static, moving]])
+
+
+def _panel(rows: pd.DataFrame, title: str, *words: Words) -> Panel:
+    """Return the estimates over the true errors of one kind of problem."""
+    low, high, unit = rows["true_error"].min() / 2.0, rows["true_error"].max() * 2.0, rows["unit"].iloc[0]
+    looks = {
+        name: Look(label=name, colour=colour, line="", marker="o") for name, colour in QUANTITIES.items()
+    }
+    return Panel(
+        Axis("true_error", f"true error [{unit}]", log=True),
+        Axis("estimate", f"estimated error [{unit}]", log=True),
+        (
+            Near(low, high),
+            Curves(rows, looks, by="quantity"),
+            Slope(through=(low, low), power=1, span=(low, high), label="_", line="-"),
+            Slope(through=(low, LEAST * low), power=1, span=(low, high), label="_"),
+            *words,
+        ),
+        title=title,
+        legend="upper left",
     )
-    return sheet
+
+
+@dataclass(frozen=True)
+class Near:
+    """Where estimates are near true errors from `low` to `high`: shaded."""
+
+    low: float
+    high: float
+
+    def draw(self, panel: Axes, x: Axis, y: Axis) -> None:
+        """Shade it."""
+        ends = np.array([self.low, self.high])
+        panel.fill_between(ends, BAND[0] * ends, BAND[1] * ends, color="#eeeeee", zorder=0)
 
 
 def _static(number: int, problem: Problem) -> Answer:

@@ -104,9 +104,8 @@ class Slope:
         """Draw the slope, within what else is drawn."""
         at, value = self.through
         ends, limits = np.array(self.span), panel.get_ylim()
-        panel.plot(
-            ends, value * (ends / at) ** self.power, self.line, color=MARK, linewidth=0.9, label=self.label
-        )
+        look: dict[str, Any] = {"color": MARK, "linestyle": self.line, "linewidth": 0.9, "zorder": 1.5}
+        panel.plot(ends, value * (ends / at) ** self.power, **look, label=self.label)
         panel.set_ylim(limits)
 
 

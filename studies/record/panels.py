@@ -6,7 +6,7 @@ of its own, or a function of matplotlib's axes in a panel's place.
 """
 
 import math
-from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, Protocol
 
@@ -131,11 +131,12 @@ class Curves:
                 if len(rows):
                     yield (look if place == 0 else replace(look, label="_")), rows
 
-    def _is(self, key: Hashable) -> Any:
+    def _is(self, key: Any) -> Any:
         """Return which rows are of a look."""
         if isinstance(self.by, str):
             return self.rows[self.by] == key
-        return (self.rows[list(self.by)] == key).all(axis=1)
+        values = dict(zip(self.by, key, strict=True))
+        return (self.rows[list(values)] == pd.Series(values)).all(axis=1)
 
 
 @dataclass(frozen=True)
