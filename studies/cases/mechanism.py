@@ -24,10 +24,14 @@ class Sectioned:
 
     @property
     def depth(self) -> float:
-        """Depth of the section [m]: as given, or sqrt(12 I / A) of the rectangle with its A and I."""
-        if self.section_depth is not None:
-            return self.section_depth
-        return math.sqrt(12.0 * self.second_moment_of_area / self.area)
+        """Depth of the section [m]: as given, or that of the rectangle with its A and I."""
+        depth: float = self.rectangle()["thickness"] if self.section_depth is None else self.section_depth
+        return depth
+
+    def rectangle(self) -> dict[str, Any]:
+        """Return width and thickness [m] of the rectangle with its A and I: sqrt(12 I / A) thick."""
+        thickness = math.sqrt(12.0 * self.second_moment_of_area / self.area)
+        return {"width": self.area / thickness, "thickness": thickness}
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -174,10 +174,8 @@ def usual_task(start: Problem, bounds: Mapping[str, tuple[float, float]] | None 
 
 def variables_of(problem: Problem) -> Array:
     """Return the variables (5,) of a design, its section taken as the rectangle that A and I imply."""
-    thickness = math.sqrt(12.0 * problem.second_moment_of_area / problem.area)
-    return np.array(
-        [problem.length, problem.inclination, problem.crossing_ratio, thickness, problem.area / thickness]
-    )
+    values = vars(problem) | problem.rectangle()
+    return np.array([values[name] for name in VARIABLES])
 
 
 def varied(problem: Problem, variables: Array) -> Problem:

@@ -1,6 +1,5 @@
 """What planar beams leave out, priced: how the answers of a design change with each such effect."""
 
-import math
 from dataclasses import dataclass, replace
 from typing import Any, TypeVar
 
@@ -10,7 +9,7 @@ from studies.answers.adapters import answer_modes, answer_static
 from studies.answers.response import Response
 from studies.answers.settings import FeSettings, Settings, SplineSettings
 from studies.cases.design import Design
-from studies.cases.mechanism import Mechanism, Strip
+from studies.cases.mechanism import Mechanism
 from studies.cases.problem import Problem
 from studies.effects.scenes import Unanswered, reached, strayed
 from studies.errors import BadInput
@@ -39,14 +38,10 @@ def with_sections(design: Either, names: tuple[str, ...] = SECTIONS) -> Either:
 def _sided(design: Either) -> Either:
     """Return a design whose strips have the sides of the rectangles with their A and I."""
     if isinstance(design, Problem):
-        return design if design.width is not None else replace(design, section_depth=None, **_sides(design))
-    strips = [each if each.width is not None else replace(each, **_sides(each)) for each in design.strips]
+        known = design.width is not None
+        return design if known else replace(design, section_depth=None, **design.rectangle())
+    strips = [each if each.width is not None else replace(each, **each.rectangle()) for each in design.strips]
     return replace(design, strips=tuple(strips))
-
-
-def _sides(strip: Problem | Strip) -> dict[str, Any]:
-    thickness = math.sqrt(12.0 * strip.second_moment_of_area / strip.area)
-    return {"width": strip.area / thickness, "thickness": thickness}
 
 
 def prices(design: Design) -> list[dict[str, Any]]:
