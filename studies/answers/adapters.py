@@ -123,7 +123,8 @@ def answer_release(
     model = model_of(settings)
     asked, keywords = built(model, design, settings, moving=True)
     about = {"model": settings.model, "settings": keywords, "effects": effects_of(asked), "body": design.body}
-    at = {"start": design.rotation if start is None else start, "body": design.body}
+    start = design.rotation if start is None else start
+    at = {"start": start, "body": design.body}
     with refusals(model, settings):
         at |= _drive_of(model, design)
     given = {name: value for name, value in options.items() if value is not None} | model.release_options
@@ -143,7 +144,7 @@ def answer_release(
     if check:
         result = model.dynamics.checked(asked, result, **at)
     answer = motion(result, energy=flexural_scale(design), wall_s=wall_s, solve_s=timing.median_part, **about)
-    return _weighed(answer, design, settings, at["start"]) if answer.message == NOTHING_MOVES else answer
+    return _weighed(answer, design, settings, start) if answer.message == NOTHING_MOVES else answer
 
 
 def answer_modes(
