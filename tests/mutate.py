@@ -64,6 +64,7 @@ def outcome(copy: Path, tests: Sequence[str], *, shown: bool = False) -> int:
             command, cwd=copy, env=env, capture_output=not shown, timeout=LONGEST * len(tests)
         ).returncode
     except subprocess.TimeoutExpired:
+        print(f"no end within {LONGEST * len(tests)} s, which counts as failed:", *tests, flush=True)
         return FAILED
 
 
