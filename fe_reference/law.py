@@ -19,8 +19,7 @@ normal t and n = t turned by +90 deg, one integration point, free of locking, of
     eps = r'.t - 1,    gamma = r'.n,    kappa = (phi_2 - phi_1) / l0
     U = l0 (EA (eps - e0)^2 + kGA gamma^2 + EI (kappa - k0)^2) / 2        [J]
 
-e0 and k0 are natural strain and curvature, of which a share may act. Both are held by a test against what
-scikit-fem assembles from these energies as weak forms.
+e0, k0: natural strain and curvature, of which a share may act. A test holds both against weak forms of scikit-fem.
 
 **Sections that do not curl freely** have the energy of `bending` in place of EI kappa^2 / 2: at the one point
 of the shear-deformable element, and at two Gauss points of the other, whose curvature is linear.
@@ -50,8 +49,7 @@ Moved = tuple[float, float, float, float]
 #: What `elements` is given, and what it writes.
 Given = tuple[bool, Array, Indices, Array]
 Written = tuple[Array, Array, Array, Array]
-#: What is asked of the law: forces, with the tangent, or with the part of it that comes from the change of
-#: the strains alone.
+#: What is asked of the law: forces, with the tangent, or with the part of it by the change of strains alone.
 FORCES, TANGENT, MATERIAL = 0, 1, 2
 #: A Newton step for the turns of roots [rad] below which the next one is round-off.
 QUADRATIC = 1e-9

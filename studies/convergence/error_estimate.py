@@ -265,10 +265,7 @@ def _of_problems(tables: Tables) -> Iterator[dict[str, Any]]:
 
 STUDY = Study(
     parts=(
-        Part(
-            at=lambda: enumerate(_drawn(named_case(), BOUNDS, count=DESIGNS, seed=SEED)),
-            ask=_static,
-        ),
+        Part(at=lambda: enumerate(_drawn(named_case(), BOUNDS, count=DESIGNS, seed=SEED)), ask=_static),
         Part(
             at=lambda: enumerate(_drawn(named_case(), SWING_BOUNDS, count=SWINGS, seed=SEED)),
             ask=lambda *design: {"estimates": _swing_rows(*design)},
