@@ -19,7 +19,7 @@ normal t and n = t turned by +90 deg, one integration point, free of locking, of
     eps = r'.t - 1,    gamma = r'.n,    kappa = (phi_2 - phi_1) / l0
     U = l0 (EA (eps - e0)^2 + kGA gamma^2 + EI (kappa - k0)^2) / 2        [J]
 
-e0, k0: natural strain and curvature, of which a share may act. A test holds both against weak forms of scikit-fem.
+e0, k0: natural strain and curvature, of which a share may act. A test holds both against weak forms.
 
 **Sections that do not curl freely** have the energy of `bending` in place of EI kappa^2 / 2: at the one point
 of the shear-deformable element, and at two Gauss points of the other, whose curvature is linear.

@@ -233,10 +233,9 @@ def _rotation_error(motion: Motion, exact: Motion) -> float:
 
 def _timed(accuracy: float) -> dict[str, Any]:
     """Return what a search costs over the plain path with the control points that it chose."""
-    problem = named_case()
-    searched = answer_static(problem, SplineSettings(control_points=FIRST), accuracy=accuracy, repeat=9)
+    searched = answer_static(named_case(), SplineSettings(control_points=FIRST), accuracy=accuracy, repeat=9)
     chosen = (searched.estimate or {})["control_points"]
-    plain = answer_static(problem, SplineSettings(control_points=chosen), repeat=9)
+    plain = answer_static(named_case(), SplineSettings(control_points=chosen), repeat=9)
     return {
         "accuracy": accuracy,
         "control_points": chosen,

@@ -72,10 +72,10 @@ def test_an_unnamed_effect_is_never_asked(monkeypatch):
 
 
 POISONED = """
-import spline_model.effects.boundary as history, spline_model.strip.points as points
+import spline_model.effects.boundary as history, spline_model.strip.laws as laws
 def poison(*_):
     raise RuntimeError("not in the scene")
-points.stretching_law = history.factor_at = poison
+laws.stretching_law = history.factor_at = poison
 from spline_model.pivot import cross_axis_pivot
 from spline_model.statics import solve_statics
 from tests.table_one import SIX, TABLE_ONE
