@@ -55,9 +55,7 @@ SHOWN = {
 }
 #: Changes below the first of these are drawn on the edge; the last is the other edge.
 LEAST, MOST = 1e-7, 30.0
-CHANGE = Axis(
-    "change", "|change| [1]", log=True, least=LEAST, limits=(LEAST, MOST), ticks=(1e-6, 1e-4, 1e-2, 1.0)
-)
+CHANGE = Axis("change", "|change| [1]", log=True, least=LEAST, limits=(LEAST, MOST), ticks=(1e-6, 1e-3, 1.0))
 
 
 def _designs() -> dict[str, Problem]:

@@ -84,20 +84,20 @@ def _drift_figure(tables: Tables) -> Figure:
     looks = {model: Look(label=model, colour=colour) for model, colour in COLOURS.items()}
     drift = Curves(tables["drift"], looks, by="model")
     memory = tables["timings_memory"].query("model == @family.DEFAULT")
-    steps, residual = Axis("steps", "steps [1]", log=True), "constraint residual of a piece [m]"
+    steps, residual = Axis("steps", "steps [1]", log=True), "constraint residual [m]"
     energy = Axis("energy_change", "largest change of energy [1]", log=True, least=1e-16)
     clamps = Axis("constraint_residual_m", residual, log=True, least=1e-19)
-    held = Axis("largest_memory_MB", "largest memory of the process [MB]", limits=(0.0, None))
+    held = Axis("largest_memory_MB", "memory of the process [MB]", limits=(0.0, None))
     panels = (
         Panel(
-            steps, replace(energy, limits=(1e-16, 1e-5)), legend="upper left",
+            steps, replace(energy, limits=(1e-16, 1e-5)),
             marks=(drift, Level(DRIFT, colour=RED, line=":"))
         ),
         Panel(steps, replace(clamps, limits=(1e-18, 1e-14)), (drift,)),
         Panel(steps, held, (Curves(memory, Look(label="_", colour=ORANGE)),)),
     )  # fmt: skip
     title = f"Free swing of Table 1 from {START_DEG:g}° in steps of {LONG_STEP:g} s, without damping"
-    return sheet(9.6, 3.1, [panels], title=title)
+    return sheet(9.6, 3.4, [panels], title=title, legend=len(looks))
 
 
 def _judgement(model: str, drift: pd.DataFrame) -> dict[str, Any]:
