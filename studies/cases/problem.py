@@ -102,7 +102,7 @@ class Problem(Sectioned):
             if value is None and key.optional:
                 continue
             try:
-                key.rule.verify(value)
+                key.rule.parse(key.rule.in_file(value))
             except ValueError as error:
                 raise CaseError(f"{key.section}.{key.name}: {error}") from None
         self._check_section()

@@ -9,7 +9,7 @@ from studies.cases import keys
 from studies.cases.effects import DEFAULT
 from studies.cases.keys import EFFECT_KEYS, KEYS, MOMENTS
 from studies.cases.problem import Problem
-from studies.cases.rules import FREE, Key, Number
+from studies.cases.rules import FREE, Key
 
 #: Significant digits of a number that is made in the file's unit.
 DIGITS = 15
@@ -61,7 +61,7 @@ def _parameters(effect: str, values: Mapping[str, Any]) -> Iterator[tuple[str, A
 
 def _in_file(key: Key, value: Any) -> Any:
     """Return the value of a key in the file's unit, to the digits that survive the way back."""
-    return float(f"{key.rule.from_si(value):.{DIGITS}g}") if isinstance(key.rule, Number) else value
+    return float(f"{key.rule.in_file(value):.{DIGITS}g}") if key.rule.kind == "number" else value
 
 
 def _text(value: Any) -> str:

@@ -12,7 +12,7 @@ from collections.abc import Iterable, Iterator
 
 from studies.cases import keys
 from studies.cases.effects import DEFAULT
-from studies.cases.rules import Choice, Key
+from studies.cases.rules import Key
 from studies.cases.write import MECHANISM, PIVOT
 from studies.commands.arguments import OUT_FILE
 from studies.commands.parser import Argument, command
@@ -69,7 +69,7 @@ def _template_lines(rows: Iterable[Key], prefix: str = "") -> Iterator[str]:
         used = not key.optional or key.name in SHOWN
         begin = f"{prefix if used else '# '}{key.name} = {key.example}"
         unit = f" [{key.unit}]" if key.unit not in ("", "1") else ""
-        choice = f": {key.admitted}" if isinstance(key.rule, Choice) else ""
+        choice = f": {key.admitted}" if key.rule.kind == "choice" else ""
         default = "" if used else f"; left out: {key.default}"
         yield f"{begin:<{COLUMN}} # {key.meaning}{unit}{choice}{default}"
 
