@@ -7,9 +7,8 @@ from typing import Any
 import numpy as np
 
 from studies.answers.models import Model, effects_of, mode_bodies, model_of
-from studies.answers.response import Answered, assembled
+from studies.answers.response import Answered, assembled, stress_of
 from studies.answers.settings import FeSettings, SplineSettings
-from studies.answers.strength import stress_of
 from studies.cases.keys import GROUND
 from studies.cases.mechanism import Sectioned
 from studies.errors import BadInput

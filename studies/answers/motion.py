@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from studies.answers.frequency import Frequency, swing_frequency
+from studies.answers.metrics import Frequency, swing_frequency
 from studies.answers.models import Asked, mode_bodies
 from studies.answers.response import Answered, Solved
 from studies.cases.design import flexural_scale
@@ -96,11 +96,7 @@ class Motion(Solved):
         return cls(
             status="not_converged",
             message=message,
-            resolution="",
             bodies={body.name: np.zeros((0, 3)) for body in asked.design.bodies},
-            counters={},
-            wall_s=0.0,
-            solve_s=0.0,
             **cls.about(asked),
             **nothing,
         )
@@ -123,7 +119,7 @@ class Spectrum(Answered):
     frequency: Array
     body_shapes: Array
     slide_frequency: Array
-    wall_s: float
+    wall_s: float = 0.0
 
     @property
     def falls_in(self) -> float | None:
@@ -156,7 +152,6 @@ class Spectrum(Answered):
             frequency=np.zeros(0),
             body_shapes=np.zeros((0, 3)),
             slide_frequency=np.zeros(0),
-            wall_s=0.0,
             **cls.about(asked),
             **state,
         )

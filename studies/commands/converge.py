@@ -19,7 +19,7 @@ from pathlib import Path
 import pandas as pd
 
 from studies.answers.adapters import answer_static
-from studies.answers.reference import QUANTITIES, NoReference, Reference, errors
+from studies.answers.reference import QUANTITIES, NoReference, Reference, largest_errors
 from studies.answers.response import Response
 from studies.answers.settings import SplineSettings
 from studies.commands import arguments as take
@@ -138,7 +138,7 @@ def _by_itself(answer: Response, limit: Reference) -> Iterator[str]:
         yield f"without --control-points `solve` stops: {answer.message}"
         return
     yield f"without --control-points `solve` takes {estimate['control_points']}, with moments by balance"
-    for title, values in (("error", errors(answer, limit).largest()), ("estimate", estimate)):
+    for title, values in (("error", largest_errors(answer, limit)), ("estimate", estimate)):
         yield f"{title:<9}" + ", ".join(f"{name} {values[name]:.1e}" for name in QUANTITIES)
 
 
