@@ -86,12 +86,13 @@ def wide(unit: str, digits: int, *, floor: float = 0.0, **values: ArrayLike) -> 
     return tuple(columns)
 
 
-def angle(radians: ArrayLike, *, group: str = "", name: str = "rotation") -> Column:
+def angle(radians: ArrayLike, *, group: str = "") -> Column:
     """Return a column of angles in degrees."""
     degrees = np.degrees(_above(ANGLE_FLOOR, radians))
     largest = float(np.nanmax(np.abs(degrees), initial=0.0))
     decimals = max(ANGLE_DECIMALS, _decimals(largest, ANGLE_DECIMALS + 2))
-    return Column(name=name, unit="deg", cells=tuple(fixed(each, decimals) for each in degrees), group=group)
+    cells = tuple(fixed(each, decimals) for each in degrees)
+    return Column(name="rotation", unit="deg", cells=cells, group=group)
 
 
 def plain(name: str, cells: Iterable[str], unit: str = "") -> Column:

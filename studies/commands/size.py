@@ -31,10 +31,10 @@ from pathlib import Path
 from typing import Any
 
 from studies.answers.reference import NoReference
+from studies.cases.design import as_toml, document_of
 from studies.cases.document import is_mechanism, parsed
 from studies.cases.keys import LOADS_FIRST
 from studies.cases.problem import Problem
-from studies.cases.write import as_toml, document_of
 from studies.commands import arguments as take
 from studies.commands.answer import deliver, not_converged
 from studies.commands.parser import Argument, command, positive, reads, whole_number

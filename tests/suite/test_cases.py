@@ -8,16 +8,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from studies.cases import write
-from studies.cases.design import named_design, read_design
+from studies.cases.design import as_toml, document_of, named_design, read_design
 from studies.cases.effects import Effects
 from studies.cases.keys import EFFECT_KEYS, EFFECTS, MATERIALS, OWN
 from studies.cases.mechanism import Mechanism
 from studies.cases.problem import FOLDER, CaseError, Problem, named_case
-from studies.cases.write import as_toml, document_of
+from studies.commands.case import MECHANISM, PIVOT
 
 DECLARED = [
-    *(key for each in (write.PIVOT, write.MECHANISM, EFFECT_KEYS) for keys in each.values() for key in keys),
+    *(key for each in (PIVOT, MECHANISM, EFFECT_KEYS) for keys in each.values() for key in keys),
     *OWN,
 ]
 AREA, MOMENT = "area_m2 = 5e-5 ", "second_moment_m4 = 1.041e-10 "

@@ -8,10 +8,10 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 from spline_model.modes import natural_frequencies
+from studies.cases.design import as_toml, document_of
 from studies.cases.effects import Effects
 from studies.cases.keys import MATERIALS
 from studies.cases.problem import Problem, named_case
-from studies.cases.write import as_toml, document_of
 from studies.errors import BadInput
 from studies.interactive.pivot.design import POISSON_RATIO, build, scene
 
