@@ -1,13 +1,13 @@
 """Names of commands and studies and their modules, which are imported when they are called."""
 
 import argparse
-import difflib
 import re
 from collections.abc import Iterable
 from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from studies.cases.document import nearest
 from studies.commands.parser import command
 from studies.errors import BadInput
 
@@ -135,9 +135,7 @@ def selected(names: Iterable[str]) -> list[str]:
         found = {study for study in STUDIES if name in (study, *study.split("/"), "all")}
         if not found:
             known = [*STUDIES, *(study.split("/")[-1] for study in STUDIES)]
-            near = difflib.get_close_matches(name, known, n=1)
-            hint = f"{near[0]} (the nearest name)" if near else "one of " + ", ".join(STUDIES)
-            raise BadInput(f"study: got {name}, expected {hint}")
+            raise BadInput(f"study: got {name}, expected {nearest(name, known, listed=STUDIES)}")
         chosen |= found
     return [study for study in STUDIES if study in chosen]
 

@@ -49,27 +49,21 @@ def deliver(
     """
     csv = getattr(arguments, "csv", None)
     if arguments.json is not None:
-        _put(
-            arguments.json,
-            json.dumps(_plain(document), allow_nan=False, indent=1) + "\n",
-            "the answer as JSON",
-        )
+        _put(arguments.json, json.dumps(_plain(document), allow_nan=False, indent=1) + "\n", "JSON")
     if csv is not None and frame is not None:
-        _put(csv, frame().to_csv(index=False, float_format="%.12g", lineterminator="\n"), "the answer as CSV")
+        _put(csv, frame().to_csv(index=False, float_format="%.12g", lineterminator="\n"), "CSV")
     if arguments.json is None and csv is None:
         print("\n".join(table))
-    if failure is None:
-        return 0
-    return not_converged(failure)
+    return 0 if failure is None else not_converged(failure)
 
 
-def _put(target: Path, text: str, what: str) -> None:
-    """Write a text to a file and say so, or to the output stream."""
+def _put(target: Path, text: str, form: str) -> None:
+    """Write the answer to a file and say so, or to the output stream."""
     if target == STREAM:
         sys.stdout.write(text)
     else:
         write_whole(target, text.encode())
-        print(f"{target}: {what}")
+        print(f"{target}: the answer as {form}")
 
 
 def not_converged(why: object) -> int:
@@ -102,17 +96,10 @@ def estimated(answer: Answered) -> Iterator[str]:
 
 def ending(answer: Solved | Spectrum) -> str:
     """Return how the solve ended, its work and its time in a line."""
-    counters = answer.counters if isinstance(answer, Solved) else {}
-    work = [f"{name.replace('_', ' ')} {count}" for name, count in counters.items()]
-    return "; ".join(
-        part
-        for part in (
-            answer.status.replace("_", " "),
-            ", ".join(work),
-            f"solved in {answer.wall_s * 1e3:.3g} ms",
-        )
-        if part
-    )
+    counters: dict[str, int] = getattr(answer, "counters", {})  # modes count nothing
+    work = ", ".join(f"{name.replace('_', ' ')} {count}" for name, count in counters.items())
+    parts = (answer.status.replace("_", " "), work, f"solved in {answer.wall_s * 1e3:.3g} ms")
+    return "; ".join(filter(None, parts))
 
 
 def places(bodies: Mapping[str, Array]) -> dict[str, dict[str, Array]]:
@@ -138,13 +125,9 @@ def _short(value: Any) -> str:
 
 def pictured(arguments: argparse.Namespace, *answers: Answered) -> None:
     """Draw what there is of the answers to a design where --plot says, and say where it is."""
-    if arguments.plot is None:
-        return
-    draw(
-        arguments,
-        [shown_of(arguments.case, each) for each in answers if each.solution is not None],
-        arguments.plot,
-    )
+    if arguments.plot is not None:
+        shown = [shown_of(arguments.case, each) for each in answers if each.solution is not None]
+        draw(arguments, shown, arguments.plot)
 
 
 def shown_of(case: str, answer: Answered) -> "Shown":
@@ -168,8 +151,7 @@ def draw(arguments: argparse.Namespace, shown: "list[Shown]", target: Path) -> N
         print(f"studies: {target}: nothing is drawn: {error}", file=sys.stderr)
     else:
         taken = STREAM in (arguments.json, getattr(arguments, "csv", None))
-        stream = sys.stderr if taken else sys.stdout
-        print(f"{target}: the picture", file=stream)
+        print(f"{target}: the picture", file=sys.stderr if taken else sys.stdout)
 
 
 def called(case: str, answer: Any) -> str:

@@ -125,10 +125,8 @@ def main(arguments: argparse.Namespace) -> int:
         for done, (case, settings) in enumerate(asked, start=1):
             found.append(_solved(case, settings, arguments))
             bar(done, len(asked))
-    for target, parts in (
-        (arguments.plot, [each.shown for each in found if each.shown]),
-        (arguments.plot_modes, [each.modes for each in found if each.modes]),
-    ):
+    for target, what in ((arguments.plot, "shown"), (arguments.plot_modes, "modes")):
+        parts = [each for each in (getattr(design, what) for design in found) if each]
         if target is not None and len(parts) == len(found):
             draw(arguments, parts, target)
     failed = (

@@ -1,7 +1,6 @@
 """Commands and their arguments as values, a parser whose errors are one line, and types of what they read."""
 
 import argparse
-import difflib
 import re
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
@@ -27,8 +26,7 @@ class Parser(argparse.ArgumentParser):
         """Raise BadInput with `message` in one line, naming the option nearest to an unknown one."""
         if unknown := re.match(r"unrecognized arguments: (--[\w-]+)", message):
             options = [option for action in self._actions for option in action.option_strings]
-            near = difflib.get_close_matches(unknown[1], options, n=1)
-            message += f", expected {f'{near[0]} (the nearest option)' if near else f'one of {options}'}"
+            message += f", expected {nearest(unknown[1], options, what='option')}"
         if other := re.match(r"(argument .*: )invalid choice: '(.*)' \(choose from (.*)\)$", message):
             known = re.findall(r"[\w-]+", other[3])
             message = f"{other[1]}got {other[2]}, expected {nearest(other[2], known)}"

@@ -57,16 +57,16 @@ def _arrays(answer: Response) -> dict[str, Array]:
     return found
 
 
-def _off_axis(answer: Response) -> tuple[Array, Array]:
-    """Return the stiffness in x and in y over that of the rotation, whose lever is a strip's length (S,) [1].
+def _off_axis(answer: Response) -> Array:
+    """Return the stiffness in x and y over that of the rotation, whose lever is a strip's length (2, S) [1].
 
     In x and y all else is held; the rotation is free to shift.
     """
-    matrix, length = answer.body_stiffness, _length(answer)
+    matrix = answer.body_stiffness
     known = ~np.isnan(matrix).any(axis=(1, 2))
     turning = np.full(len(matrix), np.nan)
     turning[known] = 1.0 / np.linalg.inv(matrix[known])[:, 2, 2]
-    return length**2 * matrix[:, 0, 0] / turning, length**2 * matrix[:, 1, 1] / turning
+    return np.asarray(_length(answer) ** 2 * np.diagonal(matrix, axis1=1, axis2=2)[:, :2].T / turning)
 
 
 def _length(answer: Response) -> float:
