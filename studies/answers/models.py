@@ -52,6 +52,10 @@ def model_of(settings: Settings) -> Model:
             static_fields=section_forces.strip_fields,
             moving_fields=section_forces.strip_fields,
         )
+    return _spline()
+
+
+def _spline() -> Model:
     from spline_model import dynamics, effects, errors, mechanism, modes, pivot, section_forces, statics
 
     return Model(

@@ -101,8 +101,10 @@ def table(where: str, document: Mapping[str, Any], section: str) -> Mapping[str,
 
 
 def nearest(name: str, known: Iterable[str], *, listed: Iterable[str] = (), what: str = "name") -> str:
-    """Return the known name nearest to `name`, or all that are `listed`, the known ones unless said, as what was
-    expected; `what` the names are of."""
+    """Return the known name nearest to `name`, or all that are `listed`, the known ones unless said.
+
+    Beside the nearest stands `what` it is.
+    """
     known = list(known)
     near = difflib.get_close_matches(name, known, n=1)
     return f"{near[0]} (the nearest {what})" if near else "one of " + ", ".join(listed or known)

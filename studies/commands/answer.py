@@ -12,6 +12,8 @@ import numpy as np
 
 from studies.answers.motion import Spectrum
 from studies.answers.response import Answered, Solved
+from studies.answers.strength import Strength
+from studies.commands.columns import ANGLE_FLOOR, one
 from studies.commands.parser import STREAM
 from studies.errors import BadInput
 from studies.kinds import Array
@@ -100,6 +102,47 @@ def ending(answer: Solved | Spectrum) -> str:
     work = ", ".join(f"{name.replace('_', ' ')} {count}" for name, count in counters.items())
     parts = (answer.status.replace("_", " "), work, f"solved in {answer.wall_s * 1e3:.3g} ms")
     return "; ".join(filter(None, parts))
+
+
+def strength_told(found: Strength, *, floor: float) -> Iterator[str]:
+    """Yield where the stress is largest and what of it the material bears; below the floor there is none."""
+    if found.stress < floor:
+        yield "no stress: nothing is turned, and no load acts"
+        return
+    at = _state(found.load_factor, found.rotation)
+    yield f"largest stress {one(found.stress / 1e6, 5)} MPa, of {found.strip} {found.place}, {at}"
+    if found.safety is None:
+        return
+    limit = f" of {one(found.yield_strength / 1e6, 4)} MPa" if found.yield_strength is not None else ""
+    if found.yields is None:
+        yield f"safety {one(found.safety, 4)} against the yield strength{limit}, which is not reached"
+    else:
+        where = _state(*found.yields).removeprefix("at ")
+        yield f"safety {one(found.safety, 4)} against the yield strength{limit}: it yields from {where} on"
+
+
+def _state(load_factor: float, rotation: float) -> str:
+    """Return which state it is, in degrees, or by its load."""
+    if math.isfinite(rotation) and abs(rotation) > ANGLE_FLOOR:
+        return f"at {math.degrees(rotation):.4g} deg"
+    return f"at load factor {load_factor:.4g}"
+
+
+def strength_document(found: Strength) -> dict[str, Any]:
+    """Return the largest stress and what of it the material bears, as JSON has it."""
+    yields = None
+    if found.yields is not None:
+        yields = {"load_factor": found.yields[0], "rotation_rad": found.yields[1]}
+    return {
+        "max_stress_Pa": found.stress,
+        "strip": found.strip,
+        "station": found.station,
+        "load_factor": found.load_factor,
+        "rotation_rad": found.rotation,
+        "yield_strength_Pa": found.yield_strength,
+        "safety": found.safety,
+        "yields_from": yields,
+    }
 
 
 def places(bodies: Mapping[str, Array]) -> dict[str, dict[str, Array]]:

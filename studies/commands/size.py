@@ -194,7 +194,8 @@ def _asked(task: NumbersTask, arguments: argparse.Namespace) -> NumbersTask:
     travel = arguments.travel_mm
     wanted = arguments.stiffness if travel is None else 1e-3 * travel
     strengths = [strip.yield_strength for strip in task.start.strips]
-    strength = None if None in strengths else min(strengths)
+    known = [each for each in strengths if each is not None]
+    strength = min(known) if len(known) == len(strengths) else None
     allowed = _allowable(strength, arguments, case.largest(STRESS))
     return replace(task, stiffness=case.stiffness if wanted is None else wanted, allowable_stress=allowed)
 
@@ -202,8 +203,10 @@ def _asked(task: NumbersTask, arguments: argparse.Namespace) -> NumbersTask:
 def _file(task: Sizing, found: Outcome, name: str) -> str:
     """Return the optimum as a case file, with the comment what it is the optimum of."""
     least, held = question(task)
-    numbers = isinstance(task, NumbersTask)
-    content = task.content(task.values(found.at)) if numbers else document_of(found.problem)
+    if isinstance(task, NumbersTask):
+        content = task.content(task.values(found.at))
+    else:
+        content = document_of(found.problem)
     return as_toml(content, [f"Sized from {name} for the {least},", f"{held}."])
 
 
