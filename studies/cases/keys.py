@@ -2,8 +2,9 @@
 the materials that they may name, each value with its source."""
 
 import tomllib
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 from studies.cases.rules import (
     FREE,
@@ -24,36 +25,10 @@ from studies.cases.rules import (
     whole,
 )
 
-
-@dataclass(frozen=True, kw_only=True)
-class _Material:
-    """A linear elastic material at room temperature.
-
-    Attributes:
-        youngs_modulus: E [Pa]. poisson_ratio: nu [1]. density: [kg/m^3].
-        yield_strength: [Pa]; None of a material that breaks before it yields.
-        title: what it is, in words. source: of the values.
-        checked: which of them were found again, and where.
-    """
-
-    youngs_modulus: float
-    poisson_ratio: float
-    density: float
-    yield_strength: float | None = None
-    title: str
-    source: str
-    checked: str
-
-    def values(self) -> dict[str, float]:
-        """Return what it fills of a strip, by attribute."""
-        names = ("youngs_modulus", "poisson_ratio", "density", "yield_strength")
-        return {name: getattr(self, name) for name in names if getattr(self, name) is not None}
-
-
 _FILE = Path(__file__).parent / "tables" / "materials.toml"
-MATERIALS = {
-    name: _Material(**given) for name, given in tomllib.loads(_FILE.read_text(encoding="utf-8")).items()
-}
+#: Linear elastic materials at room temperature by name: values by attribute in SI, title, source, and what
+#: was found again.
+MATERIALS: dict[str, dict[str, Any]] = tomllib.loads(_FILE.read_text(encoding="utf-8"))
 
 GROUND = "ground"
 #: How loads and a driven rotation meet: loads come on before it and stay, or both grow together.

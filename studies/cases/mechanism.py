@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from studies.cases import document, keys
 from studies.cases.document import CaseError
 from studies.cases.effects import Effects, read_effects
-from studies.cases.keys import GROUND, LOADS_FIRST, MATERIALS, MOMENTS, NAMED, SECTION, SIDES
+from studies.cases.keys import GROUND, LOADS_FIRST, MATERIAL, MATERIALS, MOMENTS, NAMED, SECTION, SIDES
 from studies.cases.rules import FREE, shown
 
 if TYPE_CHECKING:  # a template of a case waits for no arrays
@@ -136,7 +136,7 @@ def read_mechanism(path: str, content: Mapping[str, Any], changes: str | None = 
     document.refuse_sections(path, content, keys.SECTIONS)
     shared = {
         **document.values(path, SECTION, document.table(path, content, "section"), "section"),
-        **document.values(path, keys.MATERIAL, document.table(path, content, "material"), "material"),
+        **document.values(path, MATERIAL, document.table(path, content, "material"), "material"),
     }
     _refuse_both(path, shared, "section")
     bodies = tuple(
@@ -227,7 +227,8 @@ def completed(
     values = dict(found)
     named = values.pop(NAMED.attribute, None)
     if named is not None:
-        values = MATERIALS[named].values() | values
+        own = MATERIALS[named]
+        values = {key.attribute: own[key.attribute] for key in MATERIAL if key.attribute in own} | values
     pair = SIDES if any(key.attribute in values for key in SIDES) else MOMENTS
     if not any(key.attribute in values for key in SECTION):
         expected = "width_m and thickness_m, or area_m2 and second_moment_m4"

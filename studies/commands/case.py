@@ -129,10 +129,10 @@ def _materials() -> Iterator[str]:
     yield "| name | E [GPa] | Poisson's ratio [1] | density [kg/m^3] | yield strength [MPa] | what, source |"
     yield "|---|---:|---:|---:|---:|---|"
     for name, given in keys.MATERIALS.items():
-        strength = "none" if given.yield_strength is None else f"{given.yield_strength / 1e6:g}"
-        numbers = f"{given.youngs_modulus / 1e9:g} | {given.poisson_ratio:g} | {given.density:g} | {strength}"
-        said = f"{given.title}. {given.source}. Found again: {given.checked}"
-        yield f"| `{name}` | {numbers} | {said} |"
+        strength = f"{given['yield_strength'] / 1e6:g}" if "yield_strength" in given else "none"
+        elastic = f"{given['youngs_modulus'] / 1e9:g} | {given['poisson_ratio']:g} | {given['density']:g}"
+        said = f"{given['title']}. {given['source']}. Found again: {given['checked']}"
+        yield f"| `{name}` | {elastic} | {strength} | {said} |"
 
 
 #: Tables of the page of case files, by the names of their places.

@@ -217,9 +217,7 @@ def preset(name: object) -> _Preset:
 def catalogue() -> dict[str, Any]:
     """Return parameters, presets and what each material that yields sets, for whoever shows them."""
     designs = {name: {"title": p.title, "note": p.note, "values": p.values()} for name, p in PRESETS.items()}
-    known = {
-        each.title.partition(",")[0]: each.values() for each in MATERIALS.values() if each.yield_strength
-    }
+    known = {each["title"].partition(",")[0]: each for each in MATERIALS.values() if "yield_strength" in each}
     return {
         "parameters": [asdict(parameter) for parameter in PARAMETERS.values()],
         "presets": designs,
