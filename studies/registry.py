@@ -48,7 +48,6 @@ PLACES: dict[str, str] = {
     "draw": "studies.commands.results:draw",
     "verify": "studies.commands.results:verify",
     "status": "studies.commands.results:status",
-    "compile": "studies.commands.compile_kernels",
 }
 
 #: Study -> module with its declaration, `STUDY`, whose first line says what it shows; or module:constant, and
