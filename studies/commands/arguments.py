@@ -17,6 +17,7 @@ from studies.commands.parser import (
     names_of,
     not_negative,
     positive,
+    reads,
     whole_number,
     writable_file,
 )
@@ -108,7 +109,7 @@ ROTATION = Argument("--rotation-deg X", read=lambda text: keys.ROTATION.parse(de
 INCREMENTS = Argument(
     "--increments K",
     "increments of the path (default: the case's)",
-    lambda text: keys.INCREMENTS.parse(int(text)),
+    reads(keys.INCREMENTS.expected, lambda text: keys.INCREMENTS.parse(int(text))),
 )
 ACCURACY = Argument("--accuracy A", read=positive)
 COUNT = Argument("--count C", "number of modes, default 10", whole_number(1), default=10)
