@@ -15,7 +15,7 @@ from importlib import import_module  # noqa: E402
 from studies.commands.parser import Command, Parser  # noqa: E402
 from studies.errors import BadInput  # noqa: E402
 from studies.record.source import forget_stale  # noqa: E402
-from studies.registry import COMMANDS  # noqa: E402
+from studies.registry import COMMANDS, PLACES  # noqa: E402
 
 BAD_INPUT = 2
 INTERRUPTED = 130
@@ -74,14 +74,14 @@ def _dispatch(words: list[str]) -> int:
 
 def command_of(name: str) -> tuple[Command, Parser]:
     """Import a command; return it with its parser, which its own text or that of its module explains."""
-    place, _, function = COMMANDS[name][0].partition(":")
+    place, _, function = PLACES.get(name, f"studies.commands.{name}").partition(":")
     module = import_module(place)
     command: Command = getattr(module, function or "main")
     return command, command.parser(name, inspect.getdoc(command.run) if function else module.__doc__)
 
 
 def _overview() -> Parser:
-    lines = "\n".join(f"  {name:12s} {text}" for name, (_, text) in COMMANDS.items())
+    lines = "\n".join(f"  {name:12s} {text}" for name, text in COMMANDS.items())
     parser = Parser(
         prog="python -m studies",
         description="Studies of the cross-axis flexural pivot, by splines and by finite elements.\n\n"

@@ -1,5 +1,10 @@
 """Errors that a user of the command line can mend."""
 
+from argparse import ArgumentTypeError
 
-class BadInput(ValueError):
-    """Input that cannot be worked with; its text is one line that says what was got and what was expected."""
+
+class BadInput(ArgumentTypeError, ValueError):
+    """Input that cannot be worked with; its text is one line that says what was got and what was expected.
+
+    Raised by what reads a word of the command line, it is told as it stands, behind the word's name.
+    """

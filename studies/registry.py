@@ -1,58 +1,53 @@
 """Names of commands and studies and their modules, which are imported when they are called."""
 
 import argparse
-import difflib
 import re
 from collections.abc import Iterable
 from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from studies.cases.document import nearest
 from studies.commands.parser import command
 from studies.errors import BadInput
 
 if TYPE_CHECKING:  # a command that runs no study does not wait for tables and figures
     from studies.engine.study import Study
 
-#: Command -> (module with `main`, or module:function, what it does).
-COMMANDS: dict[str, tuple[str, str]] = {
-    "solve": ("studies.commands.solve", "drive a pivot through a rotation and report its path"),
-    "release": ("studies.commands.release", "let go of a driven pivot and report its motion"),
-    "modes": ("studies.commands.modes", "report natural frequencies, at rest or at a rotation"),
-    "export": (
-        "studies.commands.export",
-        "write deformed shapes and section forces as VTK, SVG, CSV, Parquet",
-    ),
-    "capacity": ("studies.commands.capacity", "say which force a design bears before it buckles"),
-    "compare": ("studies.commands.compare", "hold designs, or models, against one another"),
-    "converge": ("studies.commands.converge", "refine both models on a design until an accuracy is reached"),
-    "audit": ("studies.commands.audit", "say what each effect of a scene is worth, and which are enough"),
-    "advise": ("studies.commands.advise", "say which setting of each model meets an error at the least cost"),
-    "size": ("studies.commands.size", "size a pivot for a range, stiffness and stress by exact gradients"),
-    "sweep": ("studies.commands.sweep", "solve thousands of designs into one table, here or on a cluster"),
-    "case": ("studies.commands.case", "print a commented case file to begin a design with"),
-    "interactive": (
-        "studies.commands.interactive",
-        "drive a pivot by camera or mouse and let it go, in the browser",
-    ),
-    "markers": ("studies.commands.interactive:markers", "print the sheet with the two markers"),
-    "calibrate": (
-        "studies.commands.interactive:calibrate",
-        "find a camera's constants from the marker sheet",
-    ),
-    "list": ("studies.registry:listed", "list the studies"),
-    "run": ("studies.commands.results:run", "compute and draw studies"),
-    "draw": ("studies.commands.results:draw", "redraw studies from their stored tables"),
-    "verify": (
-        "studies.commands.results:verify",
-        "compute stale studies anew, fresh where all comes out as stored",
-    ),
-    "status": ("studies.commands.results:status", "say which stored results are fresh, stale or missing"),
-    "compile": ("studies.commands.compile_kernels", "compile the kernels of both models, once"),
-    "readme": (
-        "studies.commands.readme",
-        "rewrite the tables of README.md and docs/ from the results",
-    ),
+#: Command -> what it does.
+COMMANDS: dict[str, str] = {
+    "solve": "drive a pivot through a rotation and report its path",
+    "release": "let go of a driven pivot and report its motion",
+    "modes": "report natural frequencies, at rest or at a rotation",
+    "export": "write deformed shapes and section forces as VTK, SVG, CSV, Parquet",
+    "capacity": "say which force a design bears before it buckles",
+    "compare": "hold designs, or models, against one another",
+    "converge": "refine both models on a design until an accuracy is reached",
+    "audit": "say what each effect of a scene is worth, and which are enough",
+    "advise": "say which setting of each model meets an error at the least cost",
+    "size": "size a pivot for a range, stiffness and stress by exact gradients",
+    "sweep": "solve thousands of designs into one table, here or on a cluster",
+    "case": "print a commented case file to begin a design with",
+    "interactive": "drive a pivot by camera or mouse and let it go, in the browser",
+    "markers": "print the sheet with the two markers",
+    "calibrate": "find a camera's constants from the marker sheet",
+    "list": "list the studies",
+    "run": "compute and draw studies",
+    "draw": "redraw studies from their stored tables",
+    "verify": "compute stale studies anew, fresh where all comes out as stored",
+    "status": "say which stored results are fresh, stale or missing",
+    "compile": "compile the kernels of both models, once",
+    "readme": "rewrite the tables of README.md and docs/ from the results",
+}
+#: Commands that are no `main` of a module of their name in `studies.commands` -> module, or module:function.
+PLACES: dict[str, str] = {
+    "markers": "studies.commands.interactive:markers",
+    "calibrate": "studies.commands.interactive:calibrate",
+    "list": "studies.registry:listed",
+    "run": "studies.commands.results:run",
+    "draw": "studies.commands.results:draw",
+    "verify": "studies.commands.results:verify",
+    "status": "studies.commands.results:status",
 }
 
 #: Study -> module with its declaration, `STUDY`, whose first line says what it shows; or module:constant, and
@@ -135,9 +130,7 @@ def selected(names: Iterable[str]) -> list[str]:
         found = {study for study in STUDIES if name in (study, *study.split("/"), "all")}
         if not found:
             known = [*STUDIES, *(study.split("/")[-1] for study in STUDIES)]
-            near = difflib.get_close_matches(name, known, n=1)
-            hint = f"{near[0]} (the nearest name)" if near else "one of " + ", ".join(STUDIES)
-            raise BadInput(f"study: got {name}, expected {hint}")
+            raise BadInput(f"study: got {name}, expected {nearest(name, known, listed=STUDIES)}")
         chosen |= found
     return [study for study in STUDIES if study in chosen]
 

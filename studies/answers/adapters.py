@@ -170,7 +170,7 @@ def answer_modes(
         with asked.refusals():
             timing = measure(solve, repeat=1, warm_up=0)
     except asked.model.errors.ConvergenceError as error:
-        return Spectrum.without_state(asked, f"statics does not reach the state: {error}", **state)
+        return Spectrum.of(asked, None, message=f"statics does not reach the state: {error}", **state)
     return Spectrum.of(asked, timing.result, wall_s=timing.median, **state)
 
 

@@ -7,11 +7,10 @@ from typing import Any
 import numpy as np
 
 from studies.answers.models import Model, effects_of, mode_bodies, model_of
-from studies.answers.response import Answered, assembled
+from studies.answers.response import Answered, assembled, stress_of
 from studies.answers.settings import FeSettings, SplineSettings
-from studies.answers.strength import stress_of
 from studies.cases.keys import GROUND
-from studies.cases.mechanism import Sectioned
+from studies.cases.mechanism import Sectioned, Strip
 from studies.errors import BadInput
 from studies.kinds import Array
 
@@ -38,7 +37,7 @@ class _Part(Sectioned):
     youngs_modulus: float
     area: float
     second_moment_of_area: float
-    section_depth: float | None = None
+    section_depth: None = None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -72,7 +71,7 @@ class Fields:
     status: str
     message: str
     analysis: str
-    parts: tuple[_Part, ...]
+    parts: tuple[_Part | Strip, ...]
     blocks: tuple[Any, ...]
     driven: int
     series: str
@@ -123,13 +122,12 @@ def fields_of(answer: Answered) -> Fields:
     if answer.solution is None:
         raise BadInput(f"{answer.model}: got no state, expected a solution with one: {answer.message}")
     found = own_fields(answer.solution, answer.modelled)
-    parts = zip(found.parts, answer.design.strips, strict=True)
     return replace(
         found,
         model=answer.model,
         settings=answer.settings,
         driven=[block.name for block in found.blocks].index(answer.body) if answer.body else 0,
-        parts=tuple(replace(part, section_depth=strip.depth) for part, strip in parts),
+        parts=answer.design.strips,
     )
 
 
@@ -245,17 +243,21 @@ def _arrays(found: Any) -> dict[str, Any]:
 def _strips_of(asked: Any) -> tuple[_Part, ...]:
     """Return the strips of a pivot or mechanism of a model, their sections taken as rectangles."""
     if hasattr(asked, "design"):
-        return tuple(_part(strip.name, strip.root, strip.tip, strip) for strip in asked.design.strips)
-    names: dict[int, str | None] = dict(enumerate(asked.body_names))
-    names |= {-1: GROUND, -2: None}
+        given = [(strip, strip.root, strip.tip, strip) for strip in asked.design.strips]
+    else:
+        names = {**dict(enumerate(asked.body_names)), -1: GROUND, -2: None}
+        given = [(strip, names[strip.root], names[strip.tip], strip.section) for strip in asked.strips]
     return tuple(
-        _part(strip.name, names[strip.root], names[strip.tip], strip.section) for strip in asked.strips
+        _Part(
+            name=strip.name,
+            root=root,
+            tip=tip,
+            youngs_modulus=section.youngs_modulus,
+            area=section.area,
+            second_moment_of_area=section.second_moment_of_area,
+        )
+        for strip, root, tip, section in given
     )
-
-
-def _part(name: str, root: str | None, tip: str | None, section: Any) -> _Part:
-    names = ("youngs_modulus", "area", "second_moment_of_area")
-    return _Part(name=name, root=root, tip=tip, **{each: getattr(section, each) for each in names})
 
 
 def _bodies_of(asked: Any) -> tuple[Any, ...]:

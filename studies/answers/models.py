@@ -1,7 +1,7 @@
 """The two models side by side: the one file that knows both, and how a design is put to either."""
 
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass
 from types import ModuleType
 from typing import Any
@@ -100,11 +100,9 @@ class Asked:
             given["control_points"] = result.control_points
         return _keywords(self.model, given, self.moving) | dict(getattr(result, "settings", {}))
 
-    @contextmanager
-    def refusals(self) -> Iterator[None]:
+    def refusals(self) -> AbstractContextManager[None]:
         """Turn what the model refuses into one line."""
-        with _refusals(self.model, self.settings):
-            yield
+        return _refusals(self.model, self.settings)
 
     def static_path(self, **how: Any) -> Any:
         """Return the model's static solution.

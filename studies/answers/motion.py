@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from studies.answers.frequency import Frequency, swing_frequency
+from studies.answers.metrics import Frequency, swing_frequency
 from studies.answers.models import Asked, mode_bodies
 from studies.answers.response import Answered, Solved
 from studies.cases.design import flexural_scale
@@ -96,11 +96,7 @@ class Motion(Solved):
         return cls(
             status="not_converged",
             message=message,
-            resolution="",
             bodies={body.name: np.zeros((0, 3)) for body in asked.design.bodies},
-            counters={},
-            wall_s=0.0,
-            solve_s=0.0,
             **cls.about(asked),
             **nothing,
         )
@@ -123,7 +119,7 @@ class Spectrum(Answered):
     frequency: Array
     body_shapes: Array
     slide_frequency: Array
-    wall_s: float
+    wall_s: float = 0.0
 
     @property
     def falls_in(self) -> float | None:
@@ -132,31 +128,21 @@ class Spectrum(Answered):
         return -1.0 / (2.0 * math.pi * least) if least < 0.0 else None
 
     @classmethod
-    def of(cls, asked: Asked, modes: Any, **state: Any) -> "Spectrum":
-        """Return the neutral form of a model's modes, of which only a spline has some that slide; state: what
-        they are about, and their time."""
-        names = [body.name for body in asked.design.bodies]
-        shapes, body = mode_bodies(modes, names), asked.design.body
+    def of(cls, asked: Asked, modes: Any, *, message: str = "", **state: Any) -> "Spectrum":
+        """Return the neutral form of a model's modes, of which only a spline has some that slide.
+
+        Args:
+            asked: what was asked. modes: None where statics does not reach the state, as `message` says.
+            state: what they are about, and their time.
+        """
+        names, body = [body.name for body in asked.design.bodies], asked.design.body
+        shapes = np.zeros((0, len(names), 3)) if modes is None else mode_bodies(modes, names)
         return cls(
-            status="converged",
-            message="",
-            frequency=np.asarray(modes.frequency, dtype=float),
+            status="not_converged" if modes is None else "converged",
+            message=message,
+            frequency=np.asarray(getattr(modes, "frequency", ()), dtype=float),
             body_shapes=shapes[:, names.index(body)] if body else np.zeros((len(shapes), 3)),
             slide_frequency=np.asarray(getattr(modes, "slide_frequency", ()), dtype=float),
             **cls.about(asked, modes),
-            **state,
-        )
-
-    @classmethod
-    def without_state(cls, asked: Asked, message: str, **state: Any) -> "Spectrum":
-        """Return that statics does not reach the state: no modes."""
-        return cls(
-            status="not_converged",
-            message=message,
-            frequency=np.zeros(0),
-            body_shapes=np.zeros((0, 3)),
-            slide_frequency=np.zeros(0),
-            wall_s=0.0,
-            **cls.about(asked),
             **state,
         )

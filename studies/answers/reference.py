@@ -1,15 +1,14 @@
 """The references that paths and motions are held against: limits of refinement of the finite elements."""
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import Any
 
 import numpy as np
 from scipy.interpolate import CubicSpline
 
 from studies.answers.adapters import answer_release, answer_static
-from studies.answers.frequency import swing_frequency
-from studies.answers.metrics import extrapolate, relative_error, trajectory_error
+from studies.answers.metrics import extrapolate, relative_error, swing_frequency, trajectory_error
 from studies.answers.motion import Motion
 from studies.answers.response import Response
 from studies.answers.settings import FeSettings
@@ -37,8 +36,6 @@ class NoReference(RuntimeError):
 #: What a path is judged by, and the array of an answer that tells it.
 ARRAYS = {"trajectory": "centre", "torque": "torque", "stiffness": "stiffness", "stress": "max_stress"}
 QUANTITIES = tuple(ARRAYS)
-#: What a reference calls its limit, where not as the quantity.
-LIMITS = {"trajectory": "centre"}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -47,8 +44,8 @@ class Reference:
 
     Attributes:
         finest: the answer on the finest mesh, for shapes and what else is not extrapolated.
-        rotation: (S,) [rad]; centre: (S, 2) [m]; torque: (S,) [N m]; stiffness: (S,) [N m / rad]; stress:
-            (S,) the largest of each state [Pa]; the limits.
+        rotation: (S,) [rad]; centre: (S, 2) [m]; torque: (S,) [N m]; stiffness: (S,) [N m / rad];
+            max_stress: (S,) the largest of each state [Pa]; the limits.
         uncertainty: largest over the path, relative, of each of `QUANTITIES` [1].
     """
 
@@ -57,22 +54,8 @@ class Reference:
     centre: Array
     torque: Array
     stiffness: Array
-    stress: Array
+    max_stress: Array
     uncertainty: Mapping[str, float]
-
-
-@dataclass(frozen=True, kw_only=True)
-class Errors:
-    """Errors of one path against a reference, (S,) each: trajectory >= 0, the others signed [1]."""
-
-    trajectory: Array
-    torque: Array
-    stiffness: Array
-    stress: Array
-
-    def largest(self) -> dict[str, float]:
-        """Return the largest magnitude of each over the path [1]."""
-        return {name: float(np.abs(getattr(self, name)).max()) for name in QUANTITIES}
 
 
 def reference(problem: Problem) -> Reference:
@@ -96,7 +79,7 @@ def limit_of(answers: Sequence[Response]) -> Reference:
     limits = {
         name: extrapolate([getattr(answer, array) for answer in answers]) for name, array in ARRAYS.items()
     }
-    values = {LIMITS.get(name, name): limit.value for name, limit in limits.items()}
+    values = {ARRAYS[name]: limit.value for name, limit in limits.items()}
     uncertainty = {
         name: float(_error_of(name)(limit.value + limit.uncertainty, limit.value).max())
         for name, limit in limits.items()
@@ -110,14 +93,18 @@ def _error_of(name: str) -> Callable[[Array, Array], Array]:
     return trajectory_error if name == "trajectory" else relative_error
 
 
-def errors(answer: Response, against: Reference) -> Errors:
-    """Return the errors of `answer`, of which only the states it reached count."""
-    limits = {name: getattr(against, LIMITS.get(name, name)) for name in ARRAYS}
-    return Errors(**{n: _error_of(n)(getattr(answer, ARRAYS[n]), limit) for n, limit in limits.items()})
+def errors(answer: Response, against: Reference) -> dict[str, Array]:
+    """Return the errors of `answer` by `QUANTITIES`, (S,) of the states that it reached: of the trajectory
+    >= 0, the others signed [1]."""
+    return {
+        name: _error_of(name)(getattr(answer, array), getattr(against, array))
+        for name, array in ARRAYS.items()
+    }
 
 
-#: Arrays of a swing beside its instants.
-SWUNG = ("rotation", "centre", "kinetic_energy", "strain_energy")
+def largest_errors(answer: Response, against: Reference) -> dict[str, float]:
+    """Return the largest magnitude of each error over the path [1]."""
+    return {name: float(np.abs(error).max()) for name, error in errors(answer, against).items()}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -133,6 +120,10 @@ class Swing:
     centre: Array
     kinetic_energy: Array
     strain_energy: Array
+
+
+#: Arrays of a swing beside its instants.
+SWUNG = [each.name for each in fields(Swing) if each.name != "time"]
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -1,6 +1,6 @@
 """The neutral answer to a static problem: arrays that do not tell which model they came from."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import asdict, dataclass, field, fields
 from functools import cached_property
 from typing import Any
@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 
 from studies.answers.models import Asked
-from studies.answers.strength import stress_of
 from studies.cases.design import Design
 from studies.cases.effects import MOTION_ONLY
+from studies.cases.mechanism import Sectioned
 from studies.kinds import Array
 
 
@@ -83,10 +83,10 @@ class Solved(Answered):
             [rad]; a pivot's origin is A1.
     """
 
-    resolution: str
-    counters: dict[str, int]
-    wall_s: float
-    solve_s: float
+    resolution: str = ""
+    counters: dict[str, int] = field(default_factory=dict)
+    wall_s: float = 0.0
+    solve_s: float = 0.0
     bodies: dict[str, Array]
 
     @property
@@ -191,6 +191,13 @@ class Response(Solved):
         arrays = {name: np.asarray(getattr(result, name), dtype=float) for name in cls.arrays()}
         own = {"critical_points": tuple(result.critical_points), "effects": assembled(asked.effects)}
         return cls(**cls.about(asked, result) | cls.ended(result) | arrays | own | seconds)
+
+
+def stress_of(strips: Sequence[Sectioned], axial_force: Array, bending_moment: Array) -> Array:
+    """Return the extreme fibre stress of strips (S, G, P) [Pa], of their forces (S, G, P) [N, N m]."""
+    forces = zip(np.moveaxis(axial_force, 1, 0), np.moveaxis(bending_moment, 1, 0), strict=True)
+    pairs = zip(strips, forces, strict=True)
+    return np.stack([strip.youngs_modulus * strip.extreme_fibre_strain(*own) for strip, own in pairs], axis=1)
 
 
 def assembled(names: Iterable[str]) -> tuple[str, ...]:

@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from studies.answers.strength import extreme_fibre_strain
 from studies.cases.design import Design
 
 if TYPE_CHECKING:
@@ -249,7 +248,7 @@ def strips_of(design: Design, forces: Any = None) -> list[Strip]:
         if forces is not None:
             axial, moment = forces.axial_force[:, i], forces.bending_moment[:, i]
             most = np.abs(moment).max(initial=0.0) / (part.youngs_modulus * part.second_moment_of_area)
-            strain = extreme_fibre_strain(part, axial, moment).max(initial=0.0)
+            strain = part.extreme_fibre_strain(axial, moment).max(initial=0.0)
             strip = replace(strip, strain=float(strain), curvature=float(most))
         found.append(strip)
     return found

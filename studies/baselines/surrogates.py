@@ -14,8 +14,7 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from studies.answers.adapters import answer_release, answer_static
-from studies.answers.frequency import swing_frequency
-from studies.answers.metrics import relative_error, trajectory_error
+from studies.answers.metrics import relative_error, swing_frequency, trajectory_error
 from studies.answers.reference import Swing
 from studies.answers.response import Response
 from studies.answers.settings import SplineSettings

@@ -1,15 +1,20 @@
-"""Designs: what a case file may hold, a cross-axis pivot or any mechanism of strips and bodies."""
+"""Designs: what a case file may hold, a pivot or any mechanism of strips and bodies; read and written."""
 
 import hashlib
 import json
-from collections.abc import Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
 from studies.cases.document import is_mechanism, parsed
+from studies.cases.keys import EFFECT_KEYS, KEYS, MOMENTS
 from studies.cases.mechanism import Mechanism, read_mechanism
 from studies.cases.problem import FOLDER, Problem, read_problem
+from studies.cases.rules import FREE, Key
+
+#: Significant digits of a number that is made in the file's unit.
+DIGITS = 15
 
 Design = Problem | Mechanism
 
@@ -46,3 +51,64 @@ def flexural_scale(design: Design) -> float:
 def fingerprint(design: Design) -> str:
     """Return the SHA-256 of a design's values, whatever the layout or comments of its file."""
     return hashlib.sha256(json.dumps(asdict(design), sort_keys=True).encode()).hexdigest()
+
+
+def as_toml(document: Mapping[str, Any], remarks: Iterable[str] = ()) -> str:
+    """Return the text of a case's document: tables, and arrays of tables, of numbers, texts and lists.
+
+    Args:
+        document: as a file is parsed. remarks: lines of comment to begin with.
+    """
+    lines = [f"# {remark}" for remark in remarks]
+    for section, content in document.items():
+        for table in content if isinstance(content, list) else [content]:
+            nested = {name: value for name, value in table.items() if isinstance(value, Mapping)}
+            if len(nested) < len(table) or not table:
+                lines += ["", f"[[{section}]]" if isinstance(content, list) else f"[{section}]"]
+                lines += [f"{name} = {_text(value)}" for name, value in table.items() if name not in nested]
+            for name, inner in nested.items():
+                lines += ["", f"[{section}.{name}]"]
+                lines += [f"{key} = {_text(each)}" for key, each in inner.items()]
+    return "\n".join(lines) + "\n"
+
+
+def document_of(problem: Problem) -> dict[str, dict[str, Any]]:
+    """Return the document of a pivot's case, which is read as the same pivot to the digits that a file has.
+
+    A section with known sides has these.
+    """
+    implied = {key.attribute for key in MOMENTS} if problem.width is not None else set()
+    given = {key: getattr(problem, key.attribute, None) for key in KEYS if key.attribute not in implied}
+    found: dict[str, dict[str, Any]] = {}
+    for key, value in given.items():
+        if value is not None:
+            found.setdefault(key.section, {})[key.name] = _in_file(key, value)
+    found["scene"] = {"effects": problem.effects.names}
+    tables = {name: dict(_parameters(name, own)) for name, own in problem.effects.tables.items()}
+    return found | ({"effects": tables} if tables else {})
+
+
+def _parameters(effect: str, values: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
+    """Yield key and value of an effect's parameters; those of one that was added to the splines' as they
+    are."""
+    known = {key.attribute: key for key in EFFECT_KEYS.get(effect, ())}
+    for attribute, value in values.items():
+        key = known.get(attribute)
+        yield (attribute, value) if key is None else (key.name, _in_file(key, value))
+
+
+def _in_file(key: Key, value: Any) -> Any:
+    """Return the value of a key in the file's unit, to the digits that survive the way back."""
+    return float(f"{key.rule.in_file(value):.{DIGITS}g}") if key.rule.kind == "number" else value
+
+
+def _text(value: Any) -> str:
+    """Return a number, a text or a list as it stands in a TOML file."""
+    if value is None:
+        return f'"{FREE}"'
+    if isinstance(value, str):
+        return json.dumps(value)
+    if isinstance(value, Sequence):
+        return f"[{', '.join(map(_text, value))}]"
+    short = f"{value:.{DIGITS}g}" if isinstance(value, float) else str(value)
+    return short if float(short) == value else repr(value)

@@ -100,10 +100,14 @@ def table(where: str, document: Mapping[str, Any], section: str) -> Mapping[str,
     return content
 
 
-def nearest(name: str, known: Sequence[str]) -> str:
-    """Return the known name nearest to `name`, or all of them, as what was expected."""
+def nearest(name: str, known: Iterable[str], *, listed: Iterable[str] = (), what: str = "name") -> str:
+    """Return the known name nearest to `name`, or all that are `listed`, the known ones unless said.
+
+    Beside the nearest stands `what` it is.
+    """
+    known = list(known)
     near = difflib.get_close_matches(name, known, n=1)
-    return f"{near[0]} (the nearest name)" if near else "one of " + ", ".join(known)
+    return f"{near[0]} (the nearest {what})" if near else "one of " + ", ".join(listed or known)
 
 
 def one_of(where: str, label: str, value: Any, names: Sequence[str]) -> str:

@@ -1,9 +1,8 @@
 """The keys of case files, of a pivot, of a mechanism and of effects, and the attribute that each fills; and
 the materials that they may name, each value with its source."""
 
-import math
 import tomllib
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -12,71 +11,37 @@ from studies.cases.rules import (
     HISTORY,
     INTERVAL,
     Key,
-    Number,
     Rule,
-    Text,
     choice,
     finite,
     finite_pair,
     free_pair,
     keys_of,
     not_negative,
+    number,
     number_or,
     positive,
+    text,
     whole,
 )
 
-
-@dataclass(frozen=True, kw_only=True)
-class _Material:
-    """A linear elastic material at room temperature.
-
-    Attributes:
-        youngs_modulus: E [Pa]. poisson_ratio: nu [1]. density: [kg/m^3].
-        yield_strength: [Pa]; None of a material that breaks before it yields.
-        title: what it is, in words. source: of the values.
-        checked: which of them were found again, and where.
-    """
-
-    youngs_modulus: float
-    poisson_ratio: float
-    density: float
-    yield_strength: float | None = None
-    title: str
-    source: str
-    checked: str
-
-    def values(self) -> dict[str, float]:
-        """Return what it fills of a strip, by attribute."""
-        names = ("youngs_modulus", "poisson_ratio", "density", "yield_strength")
-        return {name: getattr(self, name) for name in names if getattr(self, name) is not None}
-
-
 _FILE = Path(__file__).parent / "tables" / "materials.toml"
-MATERIALS = {
-    name: _Material(**given) for name, given in tomllib.loads(_FILE.read_text(encoding="utf-8")).items()
-}
+#: Linear elastic materials at room temperature by name: values by attribute in SI, title, source, and what
+#: was found again.
+MATERIALS: dict[str, dict[str, Any]] = tomllib.loads(_FILE.read_text(encoding="utf-8"))
 
 GROUND = "ground"
 #: How loads and a driven rotation meet: loads come on before it and stay, or both grow together.
 LOADS_FIRST, TOGETHER = "loads first", "together"
 
 
-def _degrees(expected: str, low: float, high: float, *, closed: bool = True) -> Number:
-    """Return the rule for an angle that a file gives in degrees."""
-    ends: Any = {"closed_low": closed, "closed_high": closed}
-    return Number(
-        expected=f"{expected} [deg]", low=low, high=high, to_si=math.radians, from_si=math.degrees, **ends
-    )
-
-
-ROTATION = _degrees("a number from -360 to 360", -360.0, 360.0)
-INCLINATION = _degrees("a number between 0 and 90, both excluded", 0.0, 90.0, closed=False)
+ROTATION = number("a number from -360 to 360 [deg]", -360.0, 360.0, closed="low and high", degrees=True)
+INCLINATION = number("a number between 0 and 90, both excluded [deg]", 0.0, 90.0, degrees=True)
 INCREMENTS = whole(1, 100_000)
-POISSON = Number(expected="a number above -1 and at most 0.5 [1]", low=-1.0, high=0.5, closed_high=True)
-RATIO = Number(expected="a number between 0 and 1, both excluded [1]", low=0.0, high=1.0)
-NAME, PLACE = Text(expected="a name"), Text(expected=f"{GROUND} or the name of a body")
-TIP = Text(expected=f"{PLACE.expected}, or {FREE}")
+POISSON = number("a number above -1 and at most 0.5 [1]", -1.0, 0.5, closed="high")
+RATIO = number("a number between 0 and 1, both excluded [1]", 0.0, 1.0)
+NAME, PLACE = text("a name"), text(f"{GROUND} or the name of a body")
+TIP = text(f"{PLACE.expected}, or {FREE}")
 
 # Rows: name in the file, attribute, rule, default ("": it is needed), example, meaning.
 # fmt: off
@@ -182,7 +147,7 @@ BODY = keys_of(
 DRIVE = (
     *keys_of(
         "drive",
-        ("body", "body", Text(expected="the name of a body"), "the only one there is",
+        ("body", "body", text("the name of a body"), "the only one there is",
          '"body"', "the body that is driven, let go, and whose swing is reported"),
         ("rotation_deg", "rotation", ROTATION, "none: the bodies follow the loads",
          "20", "that the body is driven to, counter-clockwise"),
@@ -224,7 +189,7 @@ EFFECTS: dict[str, str] = {
 # fmt: off
 _Row = tuple[str, str, Rule, str, str, str]
 _BODY: _Row = (
-    "body", "body", Text(expected="the name of a body"), "the only one",
+    "body", "body", text("the name of a body"), "the only one",
     '"body"', "on which body, of a mechanism",
 )
 _HISTORY: _Row = (
@@ -232,7 +197,7 @@ _HISTORY: _Row = (
     "[[0, 0], [0.01, 1]]", "in motion: factor of the load over time, constant behind the last instant",
 )
 _FORCE: _Row = ("force_N", "force", finite_pair("N"), "", "[0, -1]", "the force [x, y]")
-_FREE_TIP = Text(expected="the name of a strip with a free end")
+_FREE_TIP = text("the name of a strip with a free end")
 _LED, _ROOT = free_pair("m"), number_or("monolithic", not_negative("1"))
 #: Effect -> its keys.
 _PARAMETERS: dict[str, tuple[_Row, ...]] = {

@@ -3,13 +3,16 @@
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from studies.cases import document, keys
 from studies.cases.document import CaseError
 from studies.cases.effects import Effects, read_effects
-from studies.cases.keys import GROUND, LOADS_FIRST, MATERIALS, MOMENTS, NAMED, SECTION, SIDES
+from studies.cases.keys import GROUND, LOADS_FIRST, MATERIAL, MATERIALS, MOMENTS, NAMED, SECTION, SIDES
 from studies.cases.rules import FREE, shown
+
+if TYPE_CHECKING:  # a template of a case waits for no arrays
+    from studies.kinds import Array
 
 Values = Mapping[str, Any]
 
@@ -32,6 +35,21 @@ class Sectioned:
         """Return width and thickness [m] of the rectangle with its A and I: sqrt(12 I / A) thick."""
         thickness = math.sqrt(12.0 * self.second_moment_of_area / self.area)
         return {"width": self.area / thickness, "thickness": thickness}
+
+    def extreme_fibre_strain(self, axial_force: "Array", bending_moment: "Array") -> "Array":
+        """Return max |N/(EA) +- M d/(2 EI)|, the larger magnitude of the two extreme fibres (d: the depth).
+
+        Exact for plane sections and small strain; leaves out shear, the strips' initial curvature and the
+        clamps' notches.
+
+        Args:
+            axial_force: N, any shape [N].
+            bending_moment: M, the same shape [N m].
+        """
+        modulus, inertia = self.youngs_modulus, self.second_moment_of_area
+        axial = axial_force / (modulus * self.area)
+        bending = bending_moment * self.depth / (2.0 * modulus * inertia)
+        return abs(axial) + abs(bending)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -118,7 +136,7 @@ def read_mechanism(path: str, content: Mapping[str, Any], changes: str | None = 
     document.refuse_sections(path, content, keys.SECTIONS)
     shared = {
         **document.values(path, SECTION, document.table(path, content, "section"), "section"),
-        **document.values(path, keys.MATERIAL, document.table(path, content, "material"), "material"),
+        **document.values(path, MATERIAL, document.table(path, content, "material"), "material"),
     }
     _refuse_both(path, shared, "section")
     bodies = tuple(
@@ -209,7 +227,8 @@ def completed(
     values = dict(found)
     named = values.pop(NAMED.attribute, None)
     if named is not None:
-        values = MATERIALS[named].values() | values
+        own = MATERIALS[named]
+        values = {key.attribute: own[key.attribute] for key in MATERIAL if key.attribute in own} | values
     pair = SIDES if any(key.attribute in values for key in SIDES) else MOMENTS
     if not any(key.attribute in values for key in SECTION):
         expected = "width_m and thickness_m, or area_m2 and second_moment_m4"

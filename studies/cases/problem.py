@@ -18,23 +18,14 @@ __all__ = ["FOLDER", "TABLE_1", "CaseError", "Problem", "named_case", "read_prob
 TABLE_1 = "cross_axis_pivot"
 FOLDER = Path(__file__).parent
 
-#: Parameters that both models take by keyword, under the same names as the attributes of `Problem`.
-PIVOT_PARAMETERS = (
-    "length",
-    "inclination",
-    "crossing_ratio",
-    "area",
-    "second_moment_of_area",
-    "youngs_modulus",
-    "poisson_ratio",
-    "density",
-    "body_mass",
-    "body_moment_of_inertia",
-    "centre_offset",
-    "orientation",
-)
-#: Those of them that are passed on only where the case gives them: the sides of a rectangular section.
+#: Parameters that are passed on only where the case gives them: the sides of a rectangular section.
 SIDES = ("width", "thickness")
+#: What only answers ask for, or stands for other values.
+_BESIDE = (*SIDES, "section_depth", "yield_strength", "material")
+#: Parameters that both models take by keyword, under the same names as the attributes of `Problem`.
+PIVOT_PARAMETERS = tuple(
+    key.attribute for key in KEYS if key.section != "drive" and key.attribute not in _BESIDE
+)
 #: What strips and body are called.
 STRIPS, BODY = ("strip_1", "strip_2"), "body"
 #: How far area and second moment may be from those of the sides [1].
@@ -102,7 +93,7 @@ class Problem(Sectioned):
             if value is None and key.optional:
                 continue
             try:
-                key.rule.verify(value)
+                key.rule.parse(key.rule.in_file(value))
             except ValueError as error:
                 raise CaseError(f"{key.section}.{key.name}: {error}") from None
         self._check_section()

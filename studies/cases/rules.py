@@ -7,18 +7,20 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any
 
+from studies.errors import BadInput
+
 #: What stands in place of a number that is not prescribed.
 FREE = "free"
 #: Bits of the longest whole number that an error shows in full.
 LONGEST = 64
 
 
-def _same(value: float) -> float:
-    return float(value)
+def _anything(value: Any) -> bool:
+    return True
 
 
-class _Refused(Exception):
-    """A value that a rule does not admit."""
+def _same(value: Any) -> Any:
+    return value
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -26,163 +28,157 @@ class Rule:
     """What a value of a case file may be.
 
     Attributes:
-        expected: what a refusal says. read: makes of a value what is kept.
+        expected: what a refusal says. admits: whether a value may stand in a file.
+        read: makes of one that may what is kept, in SI; in_file: the way back.
+        kind: "number", "pair", "text" or "choice"; "" of any other.
     """
 
     expected: str
-    read: Callable[[Any], Any]
+    admits: Callable[[Any], bool] = _anything
+    read: Callable[[Any], Any] = _same
+    in_file: Callable[[Any], Any] = _same
+    kind: str = ""
 
     def parse(self, value: Any) -> Any:
-        """Return `value` (in the file's unit) as it is kept, in SI; ValueError says what was got and
+        """Return `value` (in the file's unit) as it is kept, in SI; BadInput says what was got and
         expected."""
-        try:
-            return self.read(value)
-        except _Refused:
-            raise ValueError(f"got {shown(value)}, expected {self.expected}") from None
-
-    def verify(self, value: Any) -> None:
-        """Raise ValueError unless `value` (in SI) is admissible."""
-        self.parse(value)
+        if not self.admits(value):
+            raise BadInput(f"got {shown(value)}, expected {self.expected}")
+        return self.read(value)
 
 
-@dataclass(frozen=True, kw_only=True)
-class Number(Rule):
-    """A finite number in an interval, whose ends are excluded unless closed, converted to SI by `to_si`."""
+def number(
+    expected: str,
+    low: float = -math.inf,
+    high: float = math.inf,
+    *,
+    closed: str = "",
+    degrees: bool = False,
+) -> Rule:
+    """Return the rule for a finite number in an interval.
 
-    read: Callable[[Any], Any] = _same
-    low: float = -math.inf
-    high: float = math.inf
-    closed_low: bool = False
-    closed_high: bool = False
-    to_si: Callable[[float], float] = _same
-    from_si: Callable[[float], float] = _same
+    Args:
+        expected: what a refusal says. low, high: ends, excluded unless `closed` names them.
+        closed: "low", "high" or "low and high".
+        degrees: whether the file gives an angle in degrees, which is kept in radians.
+    """
 
-    def parse(self, value: Any) -> float:
-        """Return `value` (in the file's unit) in SI; ValueError says what was got and expected."""
-        if _is_number(value):
-            number = _as_float(value)
-            above = number >= self.low if self.closed_low else number > self.low
-            below = number <= self.high if self.closed_high else number < self.high
-            if math.isfinite(number) and above and below:
-                return self.to_si(number)
-        raise ValueError(f"got {shown(value)}, expected {self.expected}")
+    def admits(value: Any) -> bool:
+        if not _is_number(value):
+            return False
+        above = low < value or ("low" in closed and low == value)
+        below = value < high or ("high" in closed and value == high)
+        return above and below
 
-    def verify(self, value: Any) -> None:
-        """Raise ValueError unless `value` (SI) is admissible."""
-        self.parse(self.from_si(_as_float(value)) if _is_number(value) else value)
+    def read(value: float) -> float:
+        return math.radians(value) if degrees else float(value)
+
+    def in_file(value: Any) -> Any:
+        return math.degrees(value) if degrees and _is_number(value) else value
+
+    return Rule(expected=expected, admits=admits, read=read, in_file=in_file, kind="number")
 
 
 def _is_number(value: Any) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool)
+    """Whether a value is a finite number; a whole number beyond the range of floats is none."""
+    if not isinstance(value, int | float) or isinstance(value, bool):
+        return False
+    try:
+        return math.isfinite(value)
+    except OverflowError:
+        return False
 
 
-def _pair(value: Any) -> tuple[float, float]:
-    if not isinstance(value, list | tuple) or len(value) != 2:
-        raise _Refused
-    if not all(_is_number(part) and math.isfinite(_as_float(part)) for part in value):
-        raise _Refused
-    return float(value[0]), float(value[1])
+def positive(unit: str) -> Rule:
+    """Return the rule for a positive number of that unit."""
+    return number(f"a positive number [{unit}]", low=0.0)
 
 
-@dataclass(frozen=True, kw_only=True)
-class Pair(Rule):
-    """Two finite numbers [x, y], or what `read` makes of two."""
-
-    read: Callable[[Any], Any] = _pair
+def not_negative(unit: str) -> Rule:
+    """Return the rule for a number of that unit that is not below zero."""
+    return number(f"a number of at least 0 [{unit}]", low=0.0, closed="low")
 
 
-def free_pair(unit: str) -> Pair:
-    """Return the rule for two finite numbers, or one of them and "free" in place of the other, which is then
-    None."""
-
-    def read(value: Any) -> tuple[float | None, float | None]:
-        parts = list(value) if isinstance(value, list | tuple) else []
-        free = [part in (FREE, None) for part in parts]
-        if not any(free) or all(free):
-            return _pair(value)
-        x, y = _pair([0.0 if is_free else part for part, is_free in zip(parts, free, strict=True)])
-        return (None, y) if free[0] else (x, None)
-
-    return Pair(expected=f'two finite numbers [x, y], one of them or "free" [{unit}]', read=read)
+def finite(unit: str) -> Rule:
+    """Return the rule for any finite number of that unit."""
+    return number(f"a finite number [{unit}]")
 
 
-def _text(value: Any) -> str:
-    if not isinstance(value, str) or not value:
-        raise _Refused
-    return value
-
-
-@dataclass(frozen=True, kw_only=True)
-class Text(Rule):
-    """A text that is not empty."""
-
-    read: Callable[[Any], Any] = _text
-
-
-class Choice(Rule):
-    """One of some names."""
-
-
-def choice(*names: str) -> Choice:
-    """Return the rule for one of these names."""
-
-    def read(value: Any) -> str:
-        if value not in names:
-            raise _Refused
-        return str(value)
-
-    return Choice(expected="one of " + ", ".join(f'"{name}"' for name in names), read=read)
+def number_or(word: str, other: Rule) -> Rule:
+    """Return the rule for a number, or one word in its place."""
+    return Rule(
+        expected=f'"{word}" or {other.expected}',
+        admits=lambda value: value == word or other.admits(value),
+        read=lambda value: word if value == word else other.read(value),
+    )
 
 
 def whole(low: int, high: int) -> Rule:
     """Return the rule for a whole number between these, both included."""
-
-    def read(value: Any) -> int:
-        if not isinstance(value, int) or isinstance(value, bool) or not low <= value <= high:
-            raise _Refused
-        return value
-
-    return Rule(expected=f"a whole number from {low} to {high}", read=read)
+    return Rule(
+        expected=f"a whole number from {low} to {high}",
+        admits=lambda value: isinstance(value, int) and not isinstance(value, bool) and low <= value <= high,
+    )
 
 
-def number_or(word: str, number: Number) -> Rule:
-    """Return the rule for a number, or one word in its place."""
-
-    def read(value: Any) -> float | str:
-        try:
-            return word if value == word else number.parse(value)
-        except ValueError:
-            raise _Refused from None
-
-    return Rule(expected=f'"{word}" or {number.expected}', read=read)
+def text(expected: str) -> Rule:
+    """Return the rule for a text that is not empty."""
+    return Rule(expected=expected, admits=lambda value: isinstance(value, str) and value != "", kind="text")
 
 
-def _history(value: Any) -> tuple[tuple[float, float], ...]:
-    if not isinstance(value, list | tuple) or not value:
-        raise _Refused
-    points = tuple(Pair(expected=HISTORY.expected).parse(point) for point in value)
-    if any(after[0] <= before[0] for before, after in pairwise(points)):
-        raise _Refused
-    return points
+def choice(*names: str) -> Rule:
+    """Return the rule for one of these names."""
+    expected = "one of " + ", ".join(f'"{name}"' for name in names)
+    return Rule(expected=expected, admits=lambda value: value in names, kind="choice")
 
 
-def _interval(value: Any) -> tuple[float, float]:
-    begin, end = _pair(value)
-    if not begin < end:
-        raise _Refused
-    return begin, end
+def _is_pair(value: Any) -> bool:
+    return isinstance(value, list | tuple) and len(value) == 2 and all(map(_is_number, value))
 
 
-def _truth(value: Any) -> bool:
-    if not isinstance(value, bool):
-        raise _Refused
-    return value
+def _pair(value: Any) -> tuple[float, float]:
+    return float(value[0]), float(value[1])
+
+
+def finite_pair(unit: str) -> Rule:
+    """Return the rule for two finite numbers of that unit."""
+    return Rule(expected=f"two finite numbers [x, y] [{unit}]", admits=_is_pair, read=_pair, kind="pair")
+
+
+def free_pair(unit: str) -> Rule:
+    """Return the rule for two finite numbers, or one of them and "free" in place of the other, which is then
+    None."""
+
+    def read(value: Any) -> tuple[float | None, ...]:
+        return tuple(None if part in (FREE, None) else float(part) for part in value)
+
+    def admits(value: Any) -> bool:
+        given = (
+            [part for part in value if part not in (FREE, None)] if isinstance(value, list | tuple) else []
+        )
+        return bool(given) and len(value) == 2 and all(map(_is_number, given))
+
+    expected = f'two finite numbers [x, y], one of them or "free" [{unit}]'
+    return Rule(expected=expected, admits=admits, read=read, kind="pair")
+
+
+def _is_history(value: Any) -> bool:
+    given = isinstance(value, list | tuple) and value and all(map(_is_pair, value))
+    return bool(given) and all(before[0] < after[0] for before, after in pairwise(value))
 
 
 #: A truth value; pairs [time in s, factor] in order of time; two instants.
-TRUTH = Rule(expected="true or false", read=_truth)
-HISTORY = Rule(expected="pairs [time, factor] with increasing times [s]", read=_history)
-INTERVAL = Rule(expected="two instants [begin, end], the first before the second [s]", read=_interval)
+TRUTH = Rule(expected="true or false", admits=lambda value: isinstance(value, bool))
+HISTORY = Rule(
+    expected="pairs [time, factor] with increasing times [s]",
+    admits=_is_history,
+    read=lambda value: tuple(map(_pair, value)),
+)
+INTERVAL = Rule(
+    expected="two instants [begin, end], the first before the second [s]",
+    admits=lambda value: _is_pair(value) and value[0] < value[1],
+    read=_pair,
+)
 
 
 @dataclass(frozen=True)
@@ -228,14 +224,6 @@ def keys_of(section: str, *rows: tuple[str, str, Rule, str, str, str]) -> tuple[
     return tuple(Key(section, *row, optional=bool(row[3])) for row in rows)
 
 
-def _as_float(value: float) -> float:
-    """Return a number as a float: infinite where a whole number is beyond the range of floats."""
-    try:
-        return float(value)
-    except OverflowError:
-        return math.inf if value > 0 else -math.inf
-
-
 def shown(value: Any) -> str:
     """Return `value` as it stands in a TOML file, with its type where that is the likely mistake.
 
@@ -254,23 +242,3 @@ def shown(value: Any) -> str:
 
 def _part(value: Any) -> str:
     return repr(value) if isinstance(value, str) else shown(value)
-
-
-def positive(unit: str) -> Number:
-    """Return the rule for a positive number of that unit."""
-    return Number(expected=f"a positive number [{unit}]", low=0.0)
-
-
-def not_negative(unit: str) -> Number:
-    """Return the rule for a number of that unit that is not below zero."""
-    return Number(expected=f"a number of at least 0 [{unit}]", low=0.0, closed_low=True)
-
-
-def finite(unit: str) -> Number:
-    """Return the rule for any finite number of that unit."""
-    return Number(expected=f"a finite number [{unit}]")
-
-
-def finite_pair(unit: str) -> Pair:
-    """Return the rule for two finite numbers of that unit."""
-    return Pair(expected=f"two finite numbers [x, y] [{unit}]")

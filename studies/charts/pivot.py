@@ -20,8 +20,8 @@ import pandas as pd
 from spline_model import solve_many
 from spline_model.batch import Batch
 from studies.answers.adapters import answer_static
-from studies.answers.capacity import FORCE, capacity
 from studies.answers.settings import SplineSettings
+from studies.answers.strength import FORCE, capacity
 from studies.cases.effects import Effects
 from studies.cases.problem import Problem, named_case
 from studies.charts import figures

@@ -12,6 +12,8 @@ import numpy as np
 
 from studies.answers.motion import Spectrum
 from studies.answers.response import Answered, Solved
+from studies.answers.strength import Strength
+from studies.commands.columns import ANGLE_FLOOR, one
 from studies.commands.parser import STREAM
 from studies.errors import BadInput
 from studies.kinds import Array
@@ -49,27 +51,21 @@ def deliver(
     """
     csv = getattr(arguments, "csv", None)
     if arguments.json is not None:
-        _put(
-            arguments.json,
-            json.dumps(_plain(document), allow_nan=False, indent=1) + "\n",
-            "the answer as JSON",
-        )
+        _put(arguments.json, json.dumps(_plain(document), allow_nan=False, indent=1) + "\n", "JSON")
     if csv is not None and frame is not None:
-        _put(csv, frame().to_csv(index=False, float_format="%.12g", lineterminator="\n"), "the answer as CSV")
+        _put(csv, frame().to_csv(index=False, float_format="%.12g", lineterminator="\n"), "CSV")
     if arguments.json is None and csv is None:
         print("\n".join(table))
-    if failure is None:
-        return 0
-    return not_converged(failure)
+    return 0 if failure is None else not_converged(failure)
 
 
-def _put(target: Path, text: str, what: str) -> None:
-    """Write a text to a file and say so, or to the output stream."""
+def _put(target: Path, text: str, form: str) -> None:
+    """Write the answer to a file and say so, or to the output stream."""
     if target == STREAM:
         sys.stdout.write(text)
     else:
         write_whole(target, text.encode())
-        print(f"{target}: {what}")
+        print(f"{target}: the answer as {form}")
 
 
 def not_converged(why: object) -> int:
@@ -102,17 +98,51 @@ def estimated(answer: Answered) -> Iterator[str]:
 
 def ending(answer: Solved | Spectrum) -> str:
     """Return how the solve ended, its work and its time in a line."""
-    counters = answer.counters if isinstance(answer, Solved) else {}
-    work = [f"{name.replace('_', ' ')} {count}" for name, count in counters.items()]
-    return "; ".join(
-        part
-        for part in (
-            answer.status.replace("_", " "),
-            ", ".join(work),
-            f"solved in {answer.wall_s * 1e3:.3g} ms",
-        )
-        if part
-    )
+    counters: dict[str, int] = getattr(answer, "counters", {})  # modes count nothing
+    work = ", ".join(f"{name.replace('_', ' ')} {count}" for name, count in counters.items())
+    parts = (answer.status.replace("_", " "), work, f"solved in {answer.wall_s * 1e3:.3g} ms")
+    return "; ".join(filter(None, parts))
+
+
+def strength_told(found: Strength, *, floor: float) -> Iterator[str]:
+    """Yield where the stress is largest and what of it the material bears; below the floor there is none."""
+    if found.stress < floor:
+        yield "no stress: nothing is turned, and no load acts"
+        return
+    at = _state(found.load_factor, found.rotation)
+    yield f"largest stress {one(found.stress / 1e6, 5)} MPa, of {found.strip} {found.place}, {at}"
+    if found.safety is None:
+        return
+    limit = f" of {one(found.yield_strength / 1e6, 4)} MPa" if found.yield_strength is not None else ""
+    if found.yields is None:
+        yield f"safety {one(found.safety, 4)} against the yield strength{limit}, which is not reached"
+    else:
+        where = _state(*found.yields).removeprefix("at ")
+        yield f"safety {one(found.safety, 4)} against the yield strength{limit}: it yields from {where} on"
+
+
+def _state(load_factor: float, rotation: float) -> str:
+    """Return which state it is, in degrees, or by its load."""
+    if math.isfinite(rotation) and abs(rotation) > ANGLE_FLOOR:
+        return f"at {math.degrees(rotation):.4g} deg"
+    return f"at load factor {load_factor:.4g}"
+
+
+def strength_document(found: Strength) -> dict[str, Any]:
+    """Return the largest stress and what of it the material bears, as JSON has it."""
+    yields = None
+    if found.yields is not None:
+        yields = {"load_factor": found.yields[0], "rotation_rad": found.yields[1]}
+    return {
+        "max_stress_Pa": found.stress,
+        "strip": found.strip,
+        "station": found.station,
+        "load_factor": found.load_factor,
+        "rotation_rad": found.rotation,
+        "yield_strength_Pa": found.yield_strength,
+        "safety": found.safety,
+        "yields_from": yields,
+    }
 
 
 def places(bodies: Mapping[str, Array]) -> dict[str, dict[str, Array]]:
@@ -138,13 +168,9 @@ def _short(value: Any) -> str:
 
 def pictured(arguments: argparse.Namespace, *answers: Answered) -> None:
     """Draw what there is of the answers to a design where --plot says, and say where it is."""
-    if arguments.plot is None:
-        return
-    draw(
-        arguments,
-        [shown_of(arguments.case, each) for each in answers if each.solution is not None],
-        arguments.plot,
-    )
+    if arguments.plot is not None:
+        shown = [shown_of(arguments.case, each) for each in answers if each.solution is not None]
+        draw(arguments, shown, arguments.plot)
 
 
 def shown_of(case: str, answer: Answered) -> "Shown":
@@ -168,8 +194,7 @@ def draw(arguments: argparse.Namespace, shown: "list[Shown]", target: Path) -> N
         print(f"studies: {target}: nothing is drawn: {error}", file=sys.stderr)
     else:
         taken = STREAM in (arguments.json, getattr(arguments, "csv", None))
-        stream = sys.stderr if taken else sys.stdout
-        print(f"{target}: the picture", file=stream)
+        print(f"{target}: the picture", file=sys.stderr if taken else sys.stdout)
 
 
 def called(case: str, answer: Any) -> str:

@@ -11,18 +11,18 @@ from studies.cases.design import Design, read_design
 from studies.cases.document import nearest
 from studies.cases.problem import FOLDER
 from studies.commands.parser import (
+    STREAM,
     Argument,
     degrees,
-    file_or_stream,
     names_of,
     not_negative,
-    picture_file,
     positive,
-    ruled,
+    reads,
     whole_number,
     writable_file,
 )
 from studies.errors import BadInput
+from studies.record.files import PICTURES
 
 Some = TypeVar("Some", bound=Design)
 
@@ -34,10 +34,22 @@ def _case_file(text: str) -> str:
         return text
     if not own.is_file():
         if Path(f"{text}.toml").is_file():
-            raise argparse.ArgumentTypeError(f"got {text}, expected {text}.toml")
+            raise BadInput(f"got {text}, expected {text}.toml")
         near = nearest(text, sorted(path.stem for path in FOLDER.glob("*.toml")))
-        raise argparse.ArgumentTypeError(f"got {text}, expected {near}, or a file that ends in .toml")
+        raise BadInput(f"got {text}, expected {near}, or a file that ends in .toml")
     return str(own)
+
+
+def _file_or_stream(text: str) -> Path:
+    """Parse a file that is to be written, or "-" for the output stream."""
+    return STREAM if text == str(STREAM) else writable_file(text)
+
+
+def _picture_file(text: str) -> Path:
+    """Parse the file of a picture, which must have one of the known endings."""
+    if Path(text).suffix[1:].lower() not in PICTURES:
+        raise BadInput(f"got {text}, expected a file that ends in .svg, .png or .pdf")
+    return writable_file(text)
 
 
 CASE = Argument(
@@ -93,9 +105,11 @@ _SEVERAL = Argument(
 MODEL = CASE, EFFECTS, _ONE, *SPLINE, ELEMENTS
 SEVERAL_MODELS = CASE, EFFECTS, _SEVERAL, *SPLINE, ELEMENTS
 
-ROTATION = Argument("--rotation-deg X", read=ruled(keys.ROTATION, degrees), dest="rotation")
+ROTATION = Argument("--rotation-deg X", read=lambda text: keys.ROTATION.parse(degrees(text)), dest="rotation")
 INCREMENTS = Argument(
-    "--increments K", "increments of the path (default: the case's)", ruled(keys.INCREMENTS, int)
+    "--increments K",
+    "increments of the path (default: the case's)",
+    reads(keys.INCREMENTS.expected, lambda text: keys.INCREMENTS.parse(int(text))),
 )
 ACCURACY = Argument("--accuracy A", read=positive)
 COUNT = Argument("--count C", "number of modes, default 10", whole_number(1), default=10)
@@ -112,17 +126,17 @@ INTEGRATOR = Argument(
 JSON = Argument(
     "--json FILE|-",
     "write the answer as JSON to FILE or the output stream (default: a table to read)",
-    file_or_stream,
+    _file_or_stream,
 )
 CSV = Argument(
     "--csv FILE|-",
     "write a row a state as CSV to FILE or the output stream (default: a table to read)",
-    file_or_stream,
+    _file_or_stream,
 )
 PLOT = Argument(
     "--plot FILE",
     "draw the answer at the width of a page, as .svg, .png or .pdf (default: no picture)",
-    picture_file,
+    _picture_file,
 )
 OUT = Argument("--out FOLDER", read=Path)
 OUT_FILE = Argument("--out FILE", read=writable_file)

@@ -17,7 +17,7 @@ import math
 from collections.abc import Iterator
 from typing import Any
 
-from studies.answers.capacity import Capacity, capacity
+from studies.answers.strength import Capacity, capacity
 from studies.commands import arguments as take
 from studies.commands.answer import deliver, described, headed
 from studies.commands.columns import one

@@ -8,12 +8,11 @@ docs/cases.md tells the same with the rules. Exit code 0: done; 2: bad input.
 """
 
 import argparse
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 
 from studies.cases import keys
 from studies.cases.effects import DEFAULT
-from studies.cases.rules import Choice, Key
-from studies.cases.write import MECHANISM, PIVOT
+from studies.cases.rules import Key
 from studies.commands.arguments import OUT_FILE
 from studies.commands.parser import Argument, command
 from studies.errors import BadInput
@@ -25,6 +24,18 @@ SHOWN = {keys.NAMED.name, *(key.name for key in keys.SIDES), "rotation_deg", "ce
 NAMES = "gravity"
 #: Where the comments begin.
 COLUMN = 36
+#: Tables of a pivot's file, and of a mechanism's, in the order of a file, with their keys.
+PIVOT: dict[str, tuple[Key, ...]] = {
+    f"[{section}]": tuple(key for key in keys.KEYS if key.section == section)
+    for section in dict.fromkeys(key.section for key in keys.KEYS)
+}
+MECHANISM: dict[str, tuple[Key, ...]] = {
+    "[[strips]]": keys.STRIP,
+    "[[bodies]]": keys.BODY,
+    "[section]": keys.SECTION,
+    "[material]": keys.MATERIAL,
+    "[drive]": keys.DRIVE,
+}
 
 
 @command(
@@ -69,7 +80,7 @@ def _template_lines(rows: Iterable[Key], prefix: str = "") -> Iterator[str]:
         used = not key.optional or key.name in SHOWN
         begin = f"{prefix if used else '# '}{key.name} = {key.example}"
         unit = f" [{key.unit}]" if key.unit not in ("", "1") else ""
-        choice = f": {key.admitted}" if isinstance(key.rule, Choice) else ""
+        choice = f": {key.admitted}" if key.rule.kind == "choice" else ""
         default = "" if used else f"; left out: {key.default}"
         yield f"{begin:<{COLUMN}} # {key.meaning}{unit}{choice}{default}"
 
@@ -89,3 +100,62 @@ def _scene(named: list[str]) -> Iterator[str]:
         yield f"# {name}: {keys.EFFECTS[name]}"
         yield f"{mark}[effects.{name}]"
         yield from _template_lines(rows, mark)
+
+
+def markdown_head(*names: str) -> str:
+    """Return the two lines that a table of Markdown begins with."""
+    return f"| {' | '.join(names)} |\n|{'---|' * len(names)}"
+
+
+def _mechanism() -> Iterator[str]:
+    """Yield the tables of a mechanism's keys."""
+    yield from _tables(MECHANISM)
+    own = ", ".join(f"`{key.name}`" for key in keys.OWN)
+    yield ""
+    yield f"A strip may also have, in place of what `[section]` and `[material]` say of all: {own}."
+
+
+def _effects() -> Iterator[str]:
+    """Yield the table of effects, and that of the keys of their parameters."""
+    yield markdown_head("effect", "what it is", "in a scene")
+    for name, meaning in keys.EFFECTS.items():
+        yield f"| `{name}` | {meaning} | {'unless taken out' if name in DEFAULT else 'where it is named'} |"
+    yield ""
+    yield from _tables({f"[effects.{name}]": rows for name, rows in keys.EFFECT_KEYS.items() if rows})
+
+
+def _materials() -> Iterator[str]:
+    """Yield the table of materials."""
+    yield "| name | E [GPa] | Poisson's ratio [1] | density [kg/m^3] | yield strength [MPa] | what, source |"
+    yield "|---|---:|---:|---:|---:|---|"
+    for name, given in keys.MATERIALS.items():
+        strength = f"{given['yield_strength'] / 1e6:g}" if "yield_strength" in given else "none"
+        elastic = f"{given['youngs_modulus'] / 1e9:g} | {given['poisson_ratio']:g} | {given['density']:g}"
+        said = f"{given['title']}. {given['source']}. Found again: {given['checked']}"
+        yield f"| `{name}` | {elastic} | {strength} | {said} |"
+
+
+#: Tables of the page of case files, by the names of their places.
+PAGE: dict[str, Callable[[], Iterator[str]]] = {
+    "keys of a pivot": lambda: _tables(PIVOT),
+    "keys of a mechanism": _mechanism,
+    "effects": _effects,
+    "materials": _materials,
+}
+
+
+def _tables(tables: dict[str, tuple[Key, ...]]) -> Iterator[str]:
+    """Yield a heading and a table of keys for each table of a file."""
+    for place, (title, rows) in enumerate(tables.items()):
+        if place:
+            yield ""
+        yield f"`{title}`"
+        yield ""
+        yield from _rows(rows)
+
+
+def _rows(rows: Iterable[Key]) -> Iterator[str]:
+    yield markdown_head("key", "unit", "rule", "where it is left out", "meaning")
+    for key in rows:
+        default = key.default if key.optional else "refused"
+        yield f"| `{key.name}` | {key.unit or '-'} | {key.admitted} | {default} | {key.meaning} |"

@@ -60,38 +60,40 @@ def quantity(
         group: heading over the columns.
         **values: of each column by its heading; NaN where there is none.
     """
-    given = {name: _above(floor, value) for name, value in values.items()}
-    largest = max((float(np.nanmax(np.abs(each), initial=0.0)) for each in given.values()), default=0.0)
-    power = _power(largest, highest)
-    decimals = _decimals(largest / 10.0**power, digits)
-    return tuple(
-        Column(
-            name=name,
-            unit=PREFIXES[power] + unit,
-            cells=tuple(fixed(value / 10.0**power, decimals) for value in each),
-            group=group,
-        )
-        for name, each in given.items()
-    )
+    shown, scaled = prefixed(unit, np.stack([_above(floor, each) for each in values.values()]), highest)
+    decimals = _decimals(_largest(scaled), digits)
+    rows = [tuple(fixed(value, decimals) for value in each) for each in scaled]
+    pairs = zip(values, rows, strict=True)
+    return tuple(Column(name=name, unit=shown, cells=cells, group=group) for name, cells in pairs)
 
 
 def wide(unit: str, digits: int, *, floor: float = 0.0, **values: ArrayLike) -> tuple[Column, ...]:
     """Return columns over many powers of ten: every number with its significant digits, a prefix a column."""
     columns = []
     for name, value in values.items():
-        given = _above(floor, value)
-        power = _power(float(np.nanmax(np.abs(given), initial=0.0)), 6)
-        cells = tuple(one(each / 10.0**power, digits) for each in given)
-        columns.append(Column(name=name, unit=PREFIXES[power] + unit, cells=cells))
+        shown, scaled = prefixed(unit, _above(floor, value), 6)
+        cells = tuple(one(each, digits) for each in scaled)
+        columns.append(Column(name=name, unit=shown, cells=cells))
     return tuple(columns)
 
 
-def angle(radians: ArrayLike, *, group: str = "", name: str = "rotation") -> Column:
+def prefixed(unit: str, values: np.ndarray, highest: int) -> tuple[str, np.ndarray]:
+    """Return a unit with a prefix, of a power of ten of `highest` at most, and the values in it.
+
+    Of the largest value it leaves three digits before the point at most.
+    """
+    largest, power = _largest(values), min(highest, 0)
+    if largest > 0.0:
+        power = max(min(PREFIXES), min(highest, 3 * math.floor(math.log10(largest) / 3.0)))
+    return PREFIXES[power] + unit, values / 10.0**power
+
+
+def angle(radians: ArrayLike, *, group: str = "") -> Column:
     """Return a column of angles in degrees."""
     degrees = np.degrees(_above(ANGLE_FLOOR, radians))
-    largest = float(np.nanmax(np.abs(degrees), initial=0.0))
-    decimals = max(ANGLE_DECIMALS, _decimals(largest, ANGLE_DECIMALS + 2))
-    return Column(name=name, unit="deg", cells=tuple(fixed(each, decimals) for each in degrees), group=group)
+    decimals = max(ANGLE_DECIMALS, _decimals(_largest(degrees), ANGLE_DECIMALS + 2))
+    cells = tuple(fixed(each, decimals) for each in degrees)
+    return Column(name="rotation", unit="deg", cells=cells, group=group)
 
 
 def plain(name: str, cells: Iterable[str], unit: str = "") -> Column:
@@ -160,11 +162,8 @@ def _above(floor: float, values: ArrayLike) -> np.ndarray:
     return np.where(np.abs(found) < floor, 0.0, found)
 
 
-def _power(largest: float, highest: int) -> int:
-    """Return the power of ten of the prefix that leaves at most three digits before the point."""
-    if largest == 0.0:
-        return min(highest, 0)
-    return max(min(PREFIXES), min(highest, 3 * math.floor(math.log10(largest) / 3.0)))
+def _largest(values: np.ndarray) -> float:
+    return float(np.nanmax(np.abs(values), initial=0.0))
 
 
 def _decimals(largest: float, digits: int) -> int:

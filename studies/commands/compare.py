@@ -28,7 +28,7 @@ from studies.answers.strength import strength
 from studies.cases.design import read_design
 from studies.commands import arguments as take
 from studies.commands.answer import called, deliver, draw, shown_of
-from studies.commands.columns import NOTHING, PREFIXES, plain, quantity, significant, table
+from studies.commands.columns import NOTHING, plain, prefixed, significant, table
 from studies.commands.parser import Argument, command
 from studies.errors import BadInput
 from studies.pictures.shown import LETTERS, Shown
@@ -125,10 +125,8 @@ def main(arguments: argparse.Namespace) -> int:
         for done, (case, settings) in enumerate(asked, start=1):
             found.append(_solved(case, settings, arguments))
             bar(done, len(asked))
-    for target, parts in (
-        (arguments.plot, [each.shown for each in found if each.shown]),
-        (arguments.plot_modes, [each.modes for each in found if each.modes]),
-    ):
+    for target, what in ((arguments.plot, "shown"), (arguments.plot_modes, "modes")):
+        parts = [each for each in (getattr(design, what) for design in found) if each]
         if target is not None and len(parts) == len(found):
             draw(arguments, parts, target)
     failed = (
@@ -184,13 +182,10 @@ def _readable(found: Sequence[_Compared]) -> Iterator[str]:
 
 def _cells(unit: str, highest: int, values: list[float]) -> tuple[str, list[str]]:
     """Return the unit of a row, with its prefix, and its numbers."""
-    if unit == "deg":
-        return unit, [significant(math.degrees(value), DIGITS) for value in values]
-    if not unit:
-        return "", [significant(value, DIGITS) for value in values]
-    (column,) = quantity(unit, highest=highest, values=values)
-    power = {prefix: power for power, prefix in PREFIXES.items()}[column.unit.removesuffix(unit)]
-    return column.unit, [significant(value / 10.0**power, DIGITS) for value in values]
+    shown = np.degrees(values) if unit == "deg" else np.array(values)
+    if unit not in ("", "deg"):
+        unit, shown = prefixed(unit, shown, highest)
+    return unit, [significant(value, DIGITS) for value in shown]
 
 
 def _ratio(value: float, first: float) -> str:

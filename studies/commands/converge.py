@@ -12,20 +12,20 @@ not converge keeps its row.
 
 import argparse
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
 
 import pandas as pd
 
 from studies.answers.adapters import answer_static
-from studies.answers.reference import QUANTITIES, NoReference, Reference, errors
+from studies.answers.reference import QUANTITIES, NoReference, Reference, largest_errors
 from studies.answers.response import Response
 from studies.answers.settings import SplineSettings
 from studies.commands import arguments as take
 from studies.commands.answer import not_converged
 from studies.commands.columns import cell
-from studies.commands.parser import command, counts
+from studies.commands.parser import command, reads
 from studies.convergence.sweep import (
     FINEST,
     drawn,
@@ -45,13 +45,24 @@ from studies.record.store import as_csv
 ACCURACIES = (1e-3, 1e-4, 1e-6)
 
 
+def _counts(low: int) -> Callable[[str], tuple[int, int]]:
+    """Return a parser of ranges "first:last" of whole numbers from `low` upwards, both ends included."""
+
+    def value_of(text: str) -> tuple[int, int] | None:
+        first, _, last = text.partition(":")
+        written = first.isdecimal() and last.isdecimal()
+        return (int(first), int(last)) if written and low <= int(first) < int(last) else None
+
+    return reads(f"FIRST:LAST with {low} <= FIRST < LAST", value_of)
+
+
 @command(
     take.CASE,
     take.CONTROL_POINTS.but(
-        "of the splines, in steps of 1, default 4:12", read=counts(4), default=(4, 12), metavar="A:B"
+        "of the splines, in steps of 1, default 4:12", read=_counts(4), default=(4, 12), metavar="A:B"
     ),
     take.ELEMENTS.but(
-        "of the meshes, by doubling, default 5:160", read=counts(1), default=(5, 160), metavar="A:B"
+        "of the meshes, by doubling, default 5:160", read=_counts(1), default=(5, 160), metavar="A:B"
     ),
     take.BASIS.but(default="bezier"),
     take.MEASURE.but(choices=("material", "spatial"), default="material"),
@@ -127,7 +138,7 @@ def _by_itself(answer: Response, limit: Reference) -> Iterator[str]:
         yield f"without --control-points `solve` stops: {answer.message}"
         return
     yield f"without --control-points `solve` takes {estimate['control_points']}, with moments by balance"
-    for title, values in (("error", errors(answer, limit).largest()), ("estimate", estimate)):
+    for title, values in (("error", largest_errors(answer, limit)), ("estimate", estimate)):
         yield f"{title:<9}" + ", ".join(f"{name} {values[name]:.1e}" for name in QUANTITIES)
 
 

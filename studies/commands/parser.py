@@ -1,8 +1,6 @@
 """Commands and their arguments as values, a parser whose errors are one line, and types of what they read."""
 
 import argparse
-import difflib
-import math
 import re
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
@@ -10,9 +8,9 @@ from pathlib import Path
 from typing import Any, NoReturn
 
 from studies.cases.document import nearest
-from studies.cases.rules import Rule
+from studies.cases.rules import number
 from studies.errors import BadInput
-from studies.record.files import PICTURES, require_writable_file
+from studies.record.files import require_writable_file
 
 #: What stands for the output stream in place of a file.
 STREAM = Path("-")
@@ -28,10 +26,7 @@ class Parser(argparse.ArgumentParser):
         """Raise BadInput with `message` in one line, naming the option nearest to an unknown one."""
         if unknown := re.match(r"unrecognized arguments: (--[\w-]+)", message):
             options = [option for action in self._actions for option in action.option_strings]
-            near = difflib.get_close_matches(unknown[1], options, n=1)
-            message += (
-                f", expected {near[0]} (the nearest option)" if near else f", expected one of {options}"
-            )
+            message += f", expected {nearest(unknown[1], options, what='option')}"
         if other := re.match(r"(argument .*: )invalid choice: '(.*)' \(choose from (.*)\)$", message):
             known = re.findall(r"[\w-]+", other[3])
             message = f"{other[1]}got {other[2]}, expected {nearest(other[2], known)}"
@@ -109,7 +104,7 @@ def reads(expected: str, value_of: Callable[[str], Any]) -> Callable[[str], Any]
         except ValueError:
             value = None
         if value is None:
-            raise argparse.ArgumentTypeError(f"got {text}, expected {expected}")
+            raise BadInput(f"got {text}, expected {expected}")
         return value
 
     return parse
@@ -124,43 +119,20 @@ def whole_number(low: int) -> Callable[[str], int]:
     return reads(f"a whole number of at least {low}", value_of)
 
 
-def counts(low: int) -> Callable[[str], tuple[int, int]]:
-    """Return a parser of ranges "first:last" of whole numbers from `low` upwards, both ends included."""
-
-    def value_of(text: str) -> tuple[int, int] | None:
-        first, _, last = text.partition(":")
-        written = first.isdecimal() and last.isdecimal()
-        return (int(first), int(last)) if written and low <= int(first) < int(last) else None
-
-    return reads(f"FIRST:LAST with {low} <= FIRST < LAST", value_of)
+def _number(expected: str, **limits: Any) -> Callable[[str], float]:
+    """Return a parser of finite numbers that a rule with these limits admits."""
+    rule = number(f"a finite number {expected}", **limits)
+    return reads(rule.expected, lambda text: rule.parse(float(text)))
 
 
-def _number(low: float, expected: str, *, least: bool = False) -> Callable[[str], float]:
-    """Return a parser of finite numbers above `low`, or with `least` from there upwards."""
-
-    def value_of(text: str) -> float | None:
-        value = float(text)
-        return value if math.isfinite(value) and (low <= value if least else low < value) else None
-
-    return reads(f"a finite number {expected}", value_of)
+degrees = _number("of degrees")
+positive = _number("above 0", low=0.0)
+not_negative = _number("of at least 0", low=0.0, closed="low")
 
 
-degrees = _number(-math.inf, "of degrees")
-positive = _number(0.0, "above 0")
-not_negative = _number(0.0, "of at least 0", least=True)
-
-
-def ruled(rule: Rule, read: Callable[[str], Any]) -> Callable[[str], Any]:
-    """Return a parser of what a key of a case may be, in SI, from the text that `read` makes a number of."""
-
-    def parse(text: str) -> Any:
-        value = read(text)
-        try:
-            return rule.parse(value)
-        except ValueError as error:
-            raise argparse.ArgumentTypeError(str(error)) from None
-
-    return parse
+def degrees_list(text: str) -> tuple[float, ...]:
+    """Parse comma-separated angles in degrees."""
+    return tuple(degrees(part) for part in text.split(","))
 
 
 def names_of(known: Iterable[str]) -> Callable[[str], tuple[str, ...]]:
@@ -172,7 +144,7 @@ def names_of(known: Iterable[str]) -> Callable[[str], tuple[str, ...]]:
         for name in given:
             if name not in choices or given.count(name) > 1:
                 expected = f"one or more of {', '.join(choices)}, each once, separated by commas"
-                raise argparse.ArgumentTypeError(f"got {name or 'nothing'}, expected {expected}")
+                raise BadInput(f"got {name or 'nothing'}, expected {expected}")
         return given
 
     return parse
@@ -180,25 +152,5 @@ def names_of(known: Iterable[str]) -> Callable[[str], tuple[str, ...]]:
 
 def writable_file(text: str) -> Path:
     """Parse a file that is to be written, refused before anything is computed where it cannot be."""
-    try:
-        require_writable_file(Path(text))
-    except BadInput as error:
-        raise argparse.ArgumentTypeError(str(error)) from None
+    require_writable_file(Path(text))
     return Path(text)
-
-
-def file_or_stream(text: str) -> Path:
-    """Parse a file that is to be written, or "-" for the output stream."""
-    return STREAM if text == str(STREAM) else writable_file(text)
-
-
-def picture_file(text: str) -> Path:
-    """Parse the file of a picture, which must have one of the known endings."""
-    if Path(text).suffix[1:].lower() not in PICTURES:
-        raise argparse.ArgumentTypeError(f"got {text}, expected a file that ends in .svg, .png or .pdf")
-    return writable_file(text)
-
-
-def degrees_list(text: str) -> tuple[float, ...]:
-    """Parse comma-separated angles in degrees."""
-    return tuple(degrees(part) for part in text.split(","))

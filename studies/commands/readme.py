@@ -15,7 +15,7 @@ from typing import Any
 
 import pandas as pd
 
-from studies.cases.write import PAGE
+from studies.commands.case import PAGE, markdown_head
 from studies.commands.parser import command
 from studies.errors import BadInput
 from studies.record.files import write_whole
@@ -43,11 +43,6 @@ SHORT = ("n = 4, as the paper", "n = 4, locking-free", "n = 6", "FE, 20 elements
 CLAIMED = ("n = 4, as the paper", "n = 4, locking-free", "n = 6")
 
 
-def _head(*names: str) -> str:
-    """Return the two lines that a table begins with."""
-    return f"| {' | '.join(names)} |\n|{'---|' * len(names)}"
-
-
 def _short(store: Store) -> Iterator[str]:
     """Yield the one table of the first screen: a row a formulation, errors in percent."""
     paths = _path_rows(store)
@@ -56,7 +51,7 @@ def _short(store: Store) -> Iterator[str]:
     static = _stored(store, "convergence/control_points", "reference").set_index("quantity")["uncertainty"]
     moving = _stored(store, "paper/fig06_release", "reference").set_index("quantity")["uncertainty"]
     limits = [*(static[each] for each in QUANTITIES), moving["frequency"]]
-    yield _head("largest error, against refined finite elements", *names)
+    yield markdown_head("largest error, against refined finite elements", *names)
     for name in SHORT:
         errors = " | ".join(_percent(paths[SWINGS[name]][f"error_{each}"]) for each in QUANTITIES)
         shift = swings[name]["frequency_shift"]
@@ -70,7 +65,7 @@ def _short(store: Store) -> Iterator[str]:
 def _sized(store: Store) -> Iterator[str]:
     """Yield the table of the designs that gradients found, a row a design, beside what each began from."""
     size = "length, depth, width [mm]"
-    yield _head("design", size, "inclination", "crossing", "shift [mm]", "stiffness varies by")
+    yield markdown_head("design", size, "inclination", "crossing", "shift [mm]", "stiffness varies by")
     table = _stored(store, "design/sizing", "designs")
     for row in table.sort_values(["baseline", "factor_centre_shift"]).to_dict("records"):
         size = ", ".join(f"{1e3 * row[f'{key}_m']:.3g}" for key in ("length", "thickness", "width"))
@@ -87,7 +82,7 @@ def _less(factor: float) -> str:
 def _paths(store: Store) -> Iterator[str]:
     """Yield the table of the static path: a row a formulation, and the uncertainty of the reference."""
     limits = _stored(store, "convergence/control_points", "reference").set_index("quantity")["uncertainty"]
-    yield _head("largest error over 0 to 90°", *QUANTITIES)
+    yield markdown_head("largest error over 0 to 90°", *QUANTITIES)
     for label, row in _path_rows(store).items():
         yield f"| {label} | " + " | ".join(f"{row[f'error_{name}']:.1e}" for name in QUANTITIES) + " |"
     yield "| *uncertainty of the reference* | " + " | ".join(f"{limits[n]:.0e}" for n in QUANTITIES) + " |"
@@ -97,7 +92,7 @@ def _swings(store: Store) -> Iterator[str]:
     """Yield the table of the swing after the release: shift of the frequency and error of the rotation."""
     rows = _rows(_stored(store, "paper/fig06_release", "summary"), "formulation")
     limits = _stored(store, "paper/fig06_release", "reference").set_index("quantity")["uncertainty"]
-    yield _head("swing of 0.05 s from 90°", "frequency", "rotation")
+    yield markdown_head("swing of 0.05 s from 90°", "frequency", "rotation")
     for name, label in SWINGS.items():
         row = rows[name]
         yield f"| {label} | {row['frequency_shift']:+.1e} | {row['error_rotation_rad']:.1e} rad |"
@@ -109,18 +104,18 @@ def _claims(store: Store) -> Iterator[str]:
     """Yield the table of the paper's claims: one row a claim, one column a formulation."""
     studies = ("paper/fig04_trajectory", "paper/fig05_stiffness", "paper/fig06_release")
     found = pd.concat([_stored(store, study, "findings") for study in studies])
-    yield _head("claim of the paper", *CLAIMED)
+    yield markdown_head("claim of the paper", *CLAIMED)
     for claim, rows in found.groupby("claim", sort=True):
         verdicts = _rows(rows, "formulation")
         cells = (f"{verdicts[name]['holds']} ({_percent(verdicts[name]['value'])})" for name in CLAIMED)
         yield f"| {claim} | " + " | ".join(cells) + " |"
 
 
-def published(store: Store) -> Iterator[str]:
+def _published(store: Store) -> Iterator[str]:
     """Yield the table of published problems: of each and each kind of answer the value that is met worst, by
     the splines where they answer."""
     values = _stored(store, "published/problems", "values")
-    yield _head("published problem", "asked", "in print", "ours", "difference", "limit")
+    yield markdown_head("published problem", "asked", "in print", "ours", "difference", "limit")
     for _, every in values.groupby(["problem", "answer"], sort=False):
         rows = every[every["model"] == "spline"] if (every["model"] == "spline").any() else every
         row = rows.iloc[int(rows["error"].abs().argmax())]
@@ -187,7 +182,7 @@ def _costs(store: Store) -> Iterator[str]:
         groups = [group for group in GROUPS if group in set(found.dropna(subset="ratio")["group"])]
         if k:
             yield ""
-        yield _head(title, "spline", *groups)
+        yield markdown_head(title, "spline", *groups)
         for level, rows in sorted(found.groupby("level"), reverse=True):
             peers = _rows(rows, "group")
             cells = (_cost(peers[group]) if group in peers else "–" for group in groups)
@@ -212,7 +207,7 @@ def _of_page(name: str) -> Callable[[Store], Iterable[str]]:
 
 #: File -> block -> the lines that stand between its marks.
 BLOCKS: dict[Path, Mapping[str, Callable[[Store], Iterable[str]]]] = {
-    ROOT / "README.md": {"agreement": _short, "published": published},
+    ROOT / "README.md": {"agreement": _short, "published": _published},
     ROOT / "docs" / "findings.md": {
         "paths": _paths,
         "swings": _swings,
@@ -228,14 +223,14 @@ BLOCKS: dict[Path, Mapping[str, Callable[[Store], Iterable[str]]]] = {
 @command()
 def main(arguments: argparse.Namespace) -> int:
     """Rewrite the blocks; return the exit code."""
-    texts = {path: rewritten(path, Store()) for path in BLOCKS}
+    texts = {path: _rewritten(path, Store()) for path in BLOCKS}
     for path, text in texts.items():
         write_whole(path, text.encode())
         print(f"{path.relative_to(ROOT)}: {', '.join(BLOCKS[path])}")
     return 0
 
 
-def rewritten(path: Path, store: Store) -> str:
+def _rewritten(path: Path, store: Store) -> str:
     """Return the text of a file of `BLOCKS` with what stands between its marks made anew from `store`.
 
     Raises:
@@ -243,22 +238,22 @@ def rewritten(path: Path, store: Store) -> str:
     """
     text = path.read_text(encoding="utf-8")
     for name, made in BLOCKS[path].items():
-        text = between(text, name, made(store), path.name)
+        text = _between(text, name, made(store), path.name)
     return text
 
 
-def marks(name: str) -> tuple[str, str]:
+def _marks(name: str) -> tuple[str, str]:
     """Return the marks before and after the block of this name."""
     return f"<!-- {name}: written by `python -m studies readme` -->", f"<!-- end of {name} -->"
 
 
-def between(text: str, name: str, made: Iterable[str], where: str) -> str:
+def _between(text: str, name: str, made: Iterable[str], where: str) -> str:
     """Return `text` with `made` in place of what stands between the marks of the block `name`.
 
     Raises:
         BadInput: the marks are missing; `where` is the file that the message names.
     """
-    begin, end = marks(name)
+    begin, end = _marks(name)
     head, found_begin, rest = text.partition(begin)
     _, found_end, tail = rest.partition(end)
     if not (found_begin and found_end):

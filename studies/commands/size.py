@@ -31,10 +31,10 @@ from pathlib import Path
 from typing import Any
 
 from studies.answers.reference import NoReference
+from studies.cases.design import as_toml, document_of
 from studies.cases.document import is_mechanism, parsed
 from studies.cases.keys import LOADS_FIRST
 from studies.cases.problem import Problem
-from studies.cases.write import as_toml, document_of
 from studies.commands import arguments as take
 from studies.commands.answer import deliver, not_converged
 from studies.commands.parser import Argument, command, positive, reads, whole_number
@@ -56,8 +56,6 @@ BOUNDS: dict[str, tuple[str, float, float, str]] = {
     "thickness": ("thickness_mm", 1e-3, math.inf, "in mm, default 0.1 to 1.6 of the case's"),
     "width": ("width_mm", 1e-3, math.inf, "in mm, default 0.2 of the case's to its length"),
 }
-#: Effects under which there is no centre shift to size.
-UNSIZED = {"driven_displacement"}
 
 
 def _interval(most: float) -> Callable[[str], tuple[float, float]]:
@@ -128,7 +126,7 @@ def main(arguments: argparse.Namespace) -> int:
     failure = _failure(outcomes) if found is None else None
     document = as_document(task, outcomes, found, checked)
     if arguments.out is not None and found is not None:
-        write_whole(arguments.out, _file(task, found, _remarks(task, arguments)).encode())
+        write_whole(arguments.out, _file(task, found, Path(arguments.case).stem).encode())
         print(f"studies: {arguments.out}: the optimum as a case file", file=sys.stderr)
     return deliver(arguments, document, readable(task, outcomes, found, checked), failure=failure)
 
@@ -142,8 +140,9 @@ def _start(arguments: argparse.Namespace) -> Problem:
         raise BadInput(
             f"{arguments.case}: strip.section_depth_m: got {start.section_depth:g}, expected {expected}"
         )
-    for name in UNSIZED.intersection(start.effects.names):
-        raise BadInput(f"{arguments.case}: scene.effects: got {name}, expected a body that is free to shift")
+    if "driven_displacement" in start.effects.names:
+        expected = "a body that is free to shift"
+        raise BadInput(f"{arguments.case}: scene.effects: got driven_displacement, expected {expected}")
     if len(sides_of(start)) > 1 and start.order != LOADS_FIRST:
         expected = f'"{LOADS_FIRST}", so that the loads are whole at every rotation'
         raise BadInput(f'{arguments.case}: drive.order: got "{start.order}", expected {expected}')
@@ -201,17 +200,14 @@ def _asked(task: NumbersTask, arguments: argparse.Namespace) -> NumbersTask:
     return replace(task, stiffness=case.stiffness if wanted is None else wanted, allowable_stress=allowed)
 
 
-def _file(task: Sizing, found: Outcome, remarks: list[str]) -> str:
-    """Return the optimum as a case file."""
+def _file(task: Sizing, found: Outcome, name: str) -> str:
+    """Return the optimum as a case file, with the comment what it is the optimum of."""
+    least, held = question(task)
     if isinstance(task, NumbersTask):
-        return as_toml(task.content(task.values(found.at)), remarks)
-    return as_toml(document_of(found.problem), remarks)
-
-
-def _remarks(task: Sizing, arguments: argparse.Namespace) -> list[str]:
-    """Return the comment of the optimum's case file: what it is the optimum of."""
-    least = f"Sized from {Path(arguments.case).stem} for the {question(task)[0]}"
-    return [f"{least},", f"{question(task)[1]}."]
+        content = task.content(task.values(found.at))
+    else:
+        content = document_of(found.problem)
+    return as_toml(content, [f"Sized from {name} for the {least},", f"{held}."])
 
 
 def _allowable(strength: float | None, arguments: argparse.Namespace, own: float) -> float:

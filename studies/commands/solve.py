@@ -27,18 +27,44 @@ another, with their largest differences over the path, each in parts of the larg
 
 import argparse
 import math
-from collections.abc import Iterator, Sequence
-from typing import Any
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import asdict
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
 
 from studies.answers.adapters import answer_static
 from studies.answers.metrics import differences
 from studies.answers.response import Response
+from studies.answers.strength import strength
+from studies.answers.validity import validity
+from studies.cases.design import flexural_scale
+from studies.commands import answer as tell
 from studies.commands import arguments as take
-from studies.commands.answer import deliver, pictured
-from studies.commands.columns import fixed
+from studies.commands import columns
+from studies.commands.columns import Column, fixed, one, quantity
 from studies.commands.parser import command
-from studies.commands.path_output import as_document, as_frame, critical, passed, readable
+from studies.kinds import Array
 from studies.record.progress import Bar
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+#: Effects whose share a table shows beside the rotation.
+LOADS = {"applied_force", "applied_moment", "tip_force", "driven_displacement"}
+#: Entries of the stiffness of a body, in x, y and turn, by name with unit.
+ENTRIES = {
+    "xx_N_per_m": (0, 0),
+    "xy_N_per_m": (0, 1),
+    "yy_N_per_m": (1, 1),
+    "xt_N": (0, 2),
+    "yt_N": (1, 2),
+    "tt_Nm_per_rad": (2, 2),
+}
+#: States that the table of the stiffness of the body shows.
+SHOWN = 4
+#: Its digits, and its part that is round-off; displacement below which there is none, in lengths of a strip.
+DIGITS, ROUND_OFF, SHIFT_FLOOR = 4, 1e-9, 1e-12
 
 
 @command(
@@ -64,8 +90,8 @@ def main(arguments: argparse.Namespace) -> int:
         with Bar(f"solve {settings.model}") as bar:
             answers.append(answer_static(design, settings, progress=bar, **how))
     stopped = [_stopped(answer) for answer in answers if not answer.converged]
-    pictured(arguments, *answers)
-    return deliver(
+    tell.pictured(arguments, *answers)
+    return tell.deliver(
         arguments,
         _document(answers),
         _table(answers),
@@ -78,41 +104,195 @@ def _stopped(answer: Response) -> str:
     """Return how far a path came, why it stopped, and what mends a discretisation that is too coarse."""
     given = answer.resolution and not answer.estimate
     mend = "; without --control-points their number is chosen" if given else ""
-    points, asked = critical(answer), answer.design.rotation
+    points, asked = _critical(answer), answer.design.rotation
     if points and "buckle" not in answer.message:
-        mend += f"; it lost its stability before, first at {passed(points[0])}"
+        mend += f"; it lost its stability before, first at {_passed(points[0])}"
     if answer.model == "spline" and not given:
         mend += "; --model fe may go further"
+    reached = ""
     if answer.crossing is not None and asked:
         last = math.degrees(answer.rotation[-1]) if len(answer.rotation) else 0.0
-        mend = f"{answer.message}{mend}"
-        return f"reached {fixed(last, 3)} of {math.degrees(asked):.3f} deg: {mend}"
-    return f"{answer.message}{mend}"
+        reached = f"reached {fixed(last, 3)} of {math.degrees(asked):.3f} deg: "
+    return f"{reached}{answer.message}{mend}"
 
 
 def _document(answers: Sequence[Response]) -> dict[str, Any]:
     """Return the JSON object: of one answer, or of several with their differences."""
     if len(answers) == 1:
-        return as_document(answers[0])
+        return _document_of(answers[0])
     return {
-        "answers": [as_document(answer) for answer in answers],
+        "answers": [_document_of(answer) for answer in answers],
         "differences": {answer.model: differences(answer, answers[0]) for answer in answers[1:]},
     }
 
 
-def _frame(answers: Sequence[Response]) -> Any:
-    """Return the rows of all answers as a table of pandas, which only who asks for one waits for."""
-    import pandas as pd
+def _frame(answers: Sequence[Response]) -> "pd.DataFrame":
+    """Return a row a state: the model, its arrays, and of a mechanism the places of all bodies."""
+    import pandas as pd  # only who asks for a table waits for it
 
-    return pd.concat([as_frame(answer) for answer in answers])
+    tables = []
+    for answer in answers:
+        found: dict[str, Any] = {"model": answer.model} | _arrays(answer)
+        for name, place in tell.places(answer.bodies if answer.crossing is None else {}).items():
+            found |= {f"{name}_{key}": column for key, column in place.items()}
+        tables.append(pd.DataFrame(found))
+    return pd.concat(tables)
 
 
 def _table(answers: Sequence[Response]) -> Iterator[str]:
     """Yield the lines to read: every answer, and how far those after the first are from it."""
     for answer in answers:
-        yield from readable(answer)
+        yield from _readable(answer)
         yield from [""] * (len(answers) > 1)
     for answer in answers[1:]:
         apart = differences(answer, answers[0])
         told = (f"{name.replace('_', ' ')} {value:.1e}" for name, value in apart.items() if value is not None)
         yield f"{answer.model} differs from {answers[0].model} by: {', '.join(told)}"
+
+
+def _arrays(answer: Response) -> dict[str, Array]:
+    """Return what is one number in every state, by names with units."""
+    found, pivot = {"load_factor": answer.load_factor}, answer.crossing is not None
+    if pivot:
+        found |= {"rotation_rad": answer.rotation}
+        found |= dict(zip(("com_x_m", "com_y_m"), answer.centre.T, strict=True))
+        found |= dict(zip(("centre_shift_x_m", "centre_shift_y_m"), answer.centre_shift.T, strict=True))
+    found |= {"torque_Nm": answer.torque, "stiffness_Nm_per_rad": answer.stiffness}
+    found["strain_energy_J"] = answer.strain_energy
+    if not pivot:
+        found |= {"gravity_energy_J": answer.gravity_energy, "work_J": answer.work}
+    found["max_stress_Pa"] = answer.max_stress
+    if answer.body is not None:
+        matrix = answer.body_stiffness
+        found |= {f"body_stiffness_{name}": matrix[:, i, j] for name, (i, j) in ENTRIES.items()}
+        found |= dict(zip(("off_axis_ratio_x", "off_axis_ratio_y"), _off_axis(answer), strict=True))
+    return found
+
+
+def _off_axis(answer: Response) -> Array:
+    """Return the stiffness in x and y over that of the rotation, whose lever is a strip's length (2, S) [1].
+
+    In x and y all else is held; the rotation is free to shift.
+    """
+    matrix = answer.body_stiffness
+    known = ~np.isnan(matrix).any(axis=(1, 2))
+    turning = np.full(len(matrix), np.nan)
+    turning[known] = 1.0 / np.linalg.inv(matrix[known])[:, 2, 2]
+    return np.asarray(_length(answer) ** 2 * np.diagonal(matrix, axis1=1, axis2=2)[:, :2].T / turning)
+
+
+def _length(answer: Response) -> float:
+    """Return the length of the longest strip [m]."""
+    return max(strip.length for strip in answer.design.strips)
+
+
+def _document_of(answer: Response) -> dict[str, Any]:
+    """Return the answer as the JSON object of the command: of a pivot the one body, of a mechanism all."""
+    return {
+        **tell.headed(answer),
+        "critical_points": _critical(answer),
+        **({} if answer.crossing is not None else {"bodies": tell.places(answer.bodies)}),
+        **_arrays(answer),
+        "strength": tell.strength_document(strength(answer)),
+        "validity": asdict(validity(answer)),
+        **({} if answer.estimate is None else {"estimate": answer.estimate}),
+        "counters": answer.counters,
+        "wall_s": answer.wall_s,
+    }
+
+
+def _critical(answer: Response) -> list[dict[str, Any]]:
+    """Return the critical points of a path as JSON has them, with the force that acts on a body there [N]."""
+    acting = answer.design.effects.parameters().get("applied_force")
+    force = math.hypot(*acting["force"]) if acting and "applied_force" in answer.effects else None
+    return [
+        {
+            "kind": point.kind,
+            "load_factor": point.load_factor,
+            "rotation_rad": point.rotation,
+            **({} if force is None else {"force_N": force * point.load_factor}),
+        }
+        for point in answer.critical_points
+    ]
+
+
+def _passed(point: Mapping[str, Any]) -> str:
+    """Return where a critical point is: its load factor, the force that acts there, and the rotation."""
+    force = f" (force {point['force_N']:.4g} N)" if "force_N" in point else ""
+    turn = point["rotation_rad"]
+    return f"load factor {point['load_factor']:.6g}{force}" + (
+        f", {math.degrees(turn):.6g} deg" if math.isfinite(turn) else ""
+    )
+
+
+def _readable(answer: Response) -> Iterator[str]:
+    """Yield the lines of the tables, and what is to be said of the answer: what it passed, how sure it is.
+
+    Why a path stopped early is told on the error stream.
+    """
+    yield tell.described(answer)
+    yield from columns.table([*_states(answer), *_columns(answer)])
+    if answer.body is not None:
+        body = answer.body if answer.crossing is None else "the body"
+        yield f"stiffness of {body} about its centre at fixed loads, and over that of the rotation"
+        yield from columns.table(list(_body_columns(answer)))
+    yield from tell.strength_told(strength(answer), floor=_stress_floor(answer))
+    # of yield the strength has told
+    yield from (f"beyond the model: {each}" for each in validity(answer).outside)
+    yield from tell.estimated(answer)
+    if answer.converged and answer.message:
+        yield answer.message
+    yield from dict.fromkeys(f"{point['kind']}: {_passed(point)}" for point in _critical(answer))
+    if answer.resolution:
+        yield answer.resolution
+    yield tell.ending(answer)
+
+
+def _states(answer: Response) -> Iterator[Column]:
+    """Yield the columns that say which state it is."""
+    if answer.crossing is None or LOADS & set(answer.effects):
+        yield columns.plain("load", (f"{factor:.3f}" for factor in answer.load_factor))
+    if answer.crossing is not None:
+        yield columns.angle(answer.rotation)
+
+
+def _columns(answer: Response) -> Iterator[Column]:
+    """Yield the columns of places, torque, stiffness, energy and stress."""
+    pivot, scale = answer.crossing is not None, flexural_scale(answer.design)
+    if answer.crossing is not None:
+        yield from quantity("m", highest=-3, x=answer.centre[:, 0], y=answer.centre[:, 1])
+        floor = SHIFT_FLOOR * _length(answer)
+        yield from quantity("m", highest=-3, floor=floor, digits=6, shift=np.hypot(*answer.centre_shift.T))
+    if pivot or np.isfinite(answer.torque).any():
+        yield from quantity("N m", floor=columns.FORCE_FLOOR * scale, torque=answer.torque)
+        yield from quantity("N m/rad", floor=columns.FORCE_FLOOR * scale, stiffness=answer.stiffness)
+    yield from quantity("J", floor=columns.ENERGY_FLOOR * scale, energy=answer.strain_energy)
+    yield from quantity("Pa", floor=_stress_floor(answer), highest=6, digits=6, stress=answer.max_stress)
+    if not pivot:
+        for name, place in answer.bodies.items():
+            yield from quantity("m", highest=-3, group=name, x=place[:, 0], y=place[:, 1])
+            yield columns.angle(place[:, 2], group=name)
+
+
+def _body_columns(answer: Response) -> Iterator[Column]:
+    """Yield the columns of the stiffness of the body, at a few of the states."""
+    last = len(answer.load_factor) - 1
+    rows = sorted({round(last * part / SHOWN) for part in range(SHOWN + 1)})
+    for column in _states(answer):
+        yield Column(name=column.name, unit=column.unit, cells=tuple(column.cells[row] for row in rows))
+    if answer.crossing is None and np.isfinite(answer.torque).any():
+        yield columns.angle(answer.bodies[str(answer.body)][rows, 2])
+    matrix = answer.body_stiffness[rows]
+    xx, yy, xy = matrix[:, 0, 0], matrix[:, 1, 1], matrix[:, 0, 1]
+    floor = ROUND_OFF * float(np.nanmax(np.abs(xx) + np.abs(yy), initial=0.0))
+    yield from columns.wide("N/m", DIGITS, floor=floor, **{"x": xx, "y": yy, "x y": xy})
+    coupled = {"x turn": matrix[:, 0, 2], "y turn": matrix[:, 1, 2]}
+    yield from columns.wide("N", DIGITS, floor=floor * _length(answer), **coupled)
+    yield from columns.wide("N m/rad", DIGITS, turn=matrix[:, 2, 2])
+    for name, ratio in zip(("x over", "y over"), _off_axis(answer), strict=True):
+        yield columns.plain(name, (one(each, DIGITS) for each in ratio[rows]))
+
+
+def _stress_floor(answer: Response) -> float:
+    """Return the stress below which it is round-off [Pa]."""
+    return columns.STRAIN_FLOOR * max(float(strip.youngs_modulus) for strip in answer.design.strips)

@@ -15,8 +15,8 @@ from matplotlib.figure import Figure
 
 from spline_model.pivot import SLIDE_STIFFNESS, swinging_slide_stiffness
 from studies.answers.adapters import answer_static
-from studies.answers.frequency import swing_frequency
-from studies.answers.reference import QUANTITIES, errors
+from studies.answers.metrics import swing_frequency
+from studies.answers.reference import QUANTITIES, largest_errors
 from studies.answers.settings import SplineSettings
 from studies.cases.problem import named_case
 from studies.engine.study import Answer, Claim, Part, Study, Tables
@@ -80,7 +80,7 @@ def _static(n: int, value: float) -> Answer:
     settings = SplineSettings(control_points=n, slide_stiffness=value)
     answer = answer_static(named_case(), settings)
     row: dict[str, Any] = {"control_points": n, "slide_stiffness": value, "status": answer.status}
-    found = errors(answer, formulations.refined()).largest() if answer.converged else {}
+    found = largest_errors(answer, formulations.refined()) if answer.converged else {}
     return {"statics": row | {f"error_{name}": found.get(name, np.nan) for name in QUANTITIES}}
 
 

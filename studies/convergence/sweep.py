@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 
 from studies.answers.adapters import answer_static
 from studies.answers.metrics import observed_order
-from studies.answers.reference import QUANTITIES, Reference, errors, limit_of
+from studies.answers.reference import QUANTITIES, Reference, largest_errors, limit_of
 from studies.answers.response import Response
 from studies.answers.settings import FeSettings, SplineSettings
 from studies.cases.design import Design
@@ -122,7 +122,7 @@ def _outcome(answer: Response, against: Reference) -> dict[str, Any]:
     row: dict[str, Any] = {"status": answer.status, "reached_rad": answer.rotation[-1]}
     row |= dict.fromkeys(ERROR_COLUMNS, np.nan)
     if answer.converged:
-        row |= {f"error_{name}": value for name, value in errors(answer, against).largest().items()}
+        row |= {f"error_{name}": value for name, value in largest_errors(answer, against).items()}
     return row | {"newton_iterations": answer.counters["newton_iterations"], "message": answer.message}
 
 
@@ -173,7 +173,7 @@ def _limits(element: str, limit: Reference) -> list[dict[str, Any]]:
         "com_y_m": (limit.centre[-1, 1], "trajectory"),
         "torque_Nm": (limit.torque[-1], "torque"),
         "stiffness_Nm_per_rad": (limit.stiffness[-1], "stiffness"),
-        "max_stress_Pa": (limit.stress[-1], "stress"),
+        "max_stress_Pa": (limit.max_stress[-1], "stress"),
     }
     return [
         {

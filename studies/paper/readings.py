@@ -13,7 +13,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from studies.answers.adapters import answer_release, answer_static
-from studies.answers.frequency import swing_frequency
+from studies.answers.metrics import swing_frequency
 from studies.answers.motion import Motion
 from studies.answers.settings import SplineSettings
 from studies.cases.effects import Effects

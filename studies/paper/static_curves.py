@@ -23,7 +23,7 @@ BOUND = 0.01
 def _compared_paths(name: str) -> Answer:
     """Return a formulation's path, its error against the refined elements, and a summary."""
     answer, limit = formulations.answer(name), formulations.refined()
-    error = errors(answer, limit).trajectory
+    error = errors(answer, limit)["trajectory"]
     difference = trajectory_error(answer.centre, formulations.answer(FE).centre)
     summary = {
         "formulation": name,
@@ -118,17 +118,17 @@ def _compared_curves(name: str) -> Answer:
         "formulation": name,
         "meaning": formulations.MEANING[name],
         "status": answer.status,
-        "error_torque_half": error.torque[half] if half < len(error.torque) else np.nan,
-        "error_torque_end": error.torque[-1],
-        "error_torque_largest": float(np.abs(error.torque).max()),
-        "error_stiffness_end": error.stiffness[-1],
-        "error_stiffness_largest": float(np.abs(error.stiffness).max()),
+        "error_torque_half": error["torque"][half] if half < len(error["torque"]) else np.nan,
+        "error_torque_end": error["torque"][-1],
+        "error_torque_largest": float(np.abs(error["torque"]).max()),
+        "error_stiffness_end": error["stiffness"][-1],
+        "error_stiffness_largest": float(np.abs(error["stiffness"]).max()),
         "axial_energy_end_J": answer.axial_energy[-1],
         "bending_energy_end_J": answer.bending_energy[-1],
         "max_stress_end_Pa": answer.max_stress[-1],
     }
     return {
-        "curves": _curve(name, answer, error.torque, error.stiffness),
+        "curves": _curve(name, answer, error["torque"], error["stiffness"]),
         "summary": summary,
         "findings": [] if name == FE else _findings(name, answer, formulations.answer(FE)),
     }

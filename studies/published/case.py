@@ -13,7 +13,7 @@ from studies.cases import document
 from studies.cases.design import Design, design_of
 from studies.cases.document import CaseError
 from studies.cases.mechanism import Mechanism
-from studies.cases.rules import Key, Rule, Text, choice, finite, not_negative, positive, shown
+from studies.cases.rules import Key, Rule, choice, finite, not_negative, positive, shown, text
 
 FOLDER = Path(__file__).parent / "cases"
 
@@ -61,9 +61,9 @@ def _limits(value: Any) -> dict[str, float]:
 
 
 PROBLEM = (
-    _key("problem", "title", Text(expected="a title")),
-    _key("problem", "source", Text(expected="where the values are in print")),
-    _key("problem", "body", Text(expected="the name of the body whose place is asked"), optional=True),
+    _key("problem", "title", text("a title")),
+    _key("problem", "source", text("where the values are in print")),
+    _key("problem", "body", text("the name of the body whose place is asked"), optional=True),
     _key("problem", "pins", _names(), optional=True),
     _key("problem", "models", _names(*MODELS)),
     _key("problem", "answers", _names(*ANSWERS)),
@@ -73,7 +73,7 @@ VALUE = (
     _key("values", "at", finite("1 or deg"), optional=True),
     _key("values", "load", positive("load of the design"), optional=True),
     _key("values", "published", finite("unit")),
-    _key("values", "unit", Text(expected="the printed unit")),
+    _key("values", "unit", text("the printed unit")),
     _key("values", "unit_SI", positive("SI"), attribute="scale"),
     _key("values", "uncertainty", not_negative("unit")),
     _key("values", "bound", choice(EQUAL, AT_MOST, AT_LEAST), optional=True),

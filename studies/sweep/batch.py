@@ -16,7 +16,6 @@ from studies.cases.document import is_mechanism
 from studies.cases.effects import DEFAULT, MOTION_ONLY
 from studies.cases.mechanism import of_sides
 from studies.cases.problem import PIVOT_PARAMETERS, SIDES, Problem
-from studies.cases.rules import Pair
 from studies.kinds import Array
 from studies.sweep import plan, points
 from studies.sweep.plan import Task
@@ -28,9 +27,7 @@ PLAIN = {"bending", "stretching"}
 
 Columns = dict[str, Array]
 _KEYS = {f"{key.section}.{key.name}": key for key in case_keys.KEYS if key is not case_keys.NAMED}
-_PARTS = {
-    f"{name}.{part}" for name, key in _KEYS.items() if isinstance(key.rule, Pair) for part in plan.PARTS
-}
+_PARTS = {f"{name}.{part}" for name, key in _KEYS.items() if key.rule.kind == "pair" for part in plan.PARTS}
 
 
 def solve_chunk(task: Task, start: int, columns: Mapping[str, list[Any]]) -> pa.Table:

@@ -11,7 +11,7 @@ from studies.answers.settings import settings_of_model
 from studies.cases import design, effects, keys
 from studies.cases.design import Design
 from studies.cases.document import is_mechanism
-from studies.cases.rules import Number, Pair, Rule, Text, not_negative, positive, whole
+from studies.cases.rules import Rule, not_negative, number, positive, text, whole
 
 METHODS = ("grid", "list", "latin-hypercube", "sobol")
 KINDS = ("static", "modes", "release")
@@ -128,7 +128,7 @@ _SETTING_RULES: dict[str, Rule] = {
 
 def _names(value: Any) -> list[str]:
     """Return the names of effects in a text with commas; ValueError unless all are known."""
-    names = [name.strip() for name in Text(expected=NAMES.expected).parse(value).split(",")]
+    names = [name.strip() for name in text(NAMES.expected).parse(value).split(",")]
     for name in names:
         effects.require_known("effect", name)
     return names
@@ -148,10 +148,10 @@ def known(document: Mapping[str, Any], model: str) -> dict[str, Rule]:
     for rows in keys.EFFECT_KEYS.values():
         found |= {f"{key.section}.{key.name}": key.rule for key in rows}
     for name, rule in list(found.items()):
-        if isinstance(rule, Pair):
-            found |= {f"{name}.{part}": Number(expected="a finite number") for part in PARTS}
+        if rule.kind == "pair":
+            found |= {f"{name}.{part}": number("a finite number") for part in PARTS}
     settings = {
-        f"{SETTINGS}.{each.name}": _SETTING_RULES.get(each.name, Text(expected="a name"))
+        f"{SETTINGS}.{each.name}": _SETTING_RULES.get(each.name, text("a name"))
         for each in fields(settings_of_model(model))
         if each.name != "element"
     }
@@ -166,7 +166,7 @@ def _of_mechanism(document: Mapping[str, Any]) -> dict[str, Rule]:
     for section, rows in own.items():
         for part in document.get(section, []):
             found |= {f"{section}.{part['name']}.{key.name}": key.rule for key in rows}
-    return {key: rule for key, rule in found.items() if not isinstance(rule, Text)}
+    return {key: rule for key, rule in found.items() if rule.kind != "text"}
 
 
 def put(document: dict[str, Any], key: str, value: Any) -> None:

@@ -14,7 +14,7 @@ from studies.cases import document
 from studies.cases.document import CaseError
 from studies.cases.keys import ROTATION
 from studies.cases.problem import FOLDER
-from studies.cases.rules import TRUTH, Rule, Text, positive, shown, whole
+from studies.cases.rules import TRUTH, Rule, positive, shown, text, whole
 from studies.sweep import batch, plan, points
 from studies.sweep.plan import KINDS, Analysis, Plan, Sample, Task
 from studies.sweep.sample import POINTS, leaves, require_known, sample_of
@@ -36,7 +36,7 @@ OPTIONS: dict[str, dict[str, tuple[str, Rule]]] = {
     "release": {
         "duration_s": ("duration", positive("s")),
         "step_s": ("step", positive("s")),
-        "integrator": ("integrator", Text(expected="the name of an integrator")),
+        "integrator": ("integrator", text("the name of an integrator")),
     },
 }
 STANDARD: dict[str, dict[str, Any]] = {"static": {}, "modes": {"count": 3}, "release": {"duration": 0.05}}

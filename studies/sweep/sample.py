@@ -11,7 +11,7 @@ from scipy.stats import qmc
 
 from studies.cases import document
 from studies.cases.document import CaseError
-from studies.cases.rules import Number, shown, whole
+from studies.cases.rules import shown, whole
 from studies.kinds import Array
 from studies.sweep.plan import METHODS, Axis, Sample
 
@@ -96,14 +96,14 @@ def _listed(where: str, label: str, rule: Any, values: Any) -> tuple[Any, ...]:
         raise CaseError(f"{where}: {label}.values: got {shown(values)}, expected a list of values")
     for value in values:
         document.admitted(where, label, rule, value)
-    kept = [float(v) if isinstance(rule, Number) else tuple(v) if isinstance(v, list) else v for v in values]
+    kept = [float(v) if rule.kind == "number" else tuple(v) if isinstance(v, list) else v for v in values]
     return tuple(kept)
 
 
 def _range(where: str, key: str, given: Mapping[str, Any], rule: Any, *, grid: bool) -> Axis:
     """Return an axis from a low to a high end."""
     label = f"vary.{key}"
-    if not isinstance(rule, Number):
+    if rule.kind != "number":
         raise CaseError(f"{where}: {label}: got a range, expected values ({rule.expected})")
     for name in ("from", "to", *(["points"] if grid else [])):
         if name not in given:

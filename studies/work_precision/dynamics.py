@@ -13,7 +13,7 @@ import numpy as np
 import pandas as pd
 
 from studies.answers.adapters import answer_release
-from studies.answers.frequency import swing_frequency
+from studies.answers.metrics import swing_frequency
 from studies.answers.settings import SplineSettings
 from studies.baselines.answer import SolvedMotion
 from studies.baselines.variants import missing

@@ -9,8 +9,7 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 
 from studies.answers.adapters import answer_release, answer_static
-from studies.answers.frequency import swing_frequency
-from studies.answers.metrics import relative_error, trajectory_error
+from studies.answers.metrics import relative_error, swing_frequency, trajectory_error
 from studies.answers.motion import Motion
 from studies.answers.reference import MESHES, QUANTITIES, limit_of
 from studies.answers.settings import FeSettings, Settings, SplineSettings
@@ -155,7 +154,7 @@ def limit_of_theory(problem: Design, theory: str) -> Limit:
             centre=limit.centre,
             torque=limit.torque,
             stiffness=limit.stiffness,
-            max_stress=limit.stress,
+            max_stress=limit.max_stress,
         ),
         uncertainty=limit.uncertainty,
         source=f"{element} elements, {', '.join(map(str, MESHES))} a strip, extrapolated",

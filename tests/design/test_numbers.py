@@ -5,10 +5,9 @@ import tomllib
 import numpy as np
 import pytest
 
-from studies.cases.design import Design, named_design, read_design
+from studies.cases.design import Design, as_toml, named_design, read_design
 from studies.cases.document import parsed
 from studies.cases.problem import FOLDER
-from studies.cases.write import as_toml
 from studies.design.evaluate import STRESS, VARIATION
 from studies.design.numbers import NumbersTask, by_sides, number_of
 from studies.design.programme import gradient_error

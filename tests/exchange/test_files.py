@@ -19,7 +19,7 @@ from studies.answers.fields import Fields, fields_of
 from studies.answers.settings import FeSettings, SplineSettings
 from studies.cases.design import named_design
 from studies.cases.problem import FOLDER
-from studies.commands.path_output import as_frame
+from studies.commands.solve import _frame
 from studies.exchange.formats import COLUMNS, FORMATS, contents, tables
 from studies.exchange.vtk import BODY_ARM, BODY_CENTRE, CLAMP, STRIP, mesh, mode_scale
 
@@ -125,7 +125,7 @@ def test_states_have_the_columns_of_the_solved_table(name):
     design = replace(named_design(name), increments=2)
     answer = answer_static(design, SplineSettings(control_points=6))
     found = tables(fields_of(answer))
-    states, rows = found["states"], as_frame(answer)
+    states, rows = found["states"], _frame([answer])
     both = [column for column in states if column in rows]
     assert {"load_factor", "torque_Nm", "stiffness_Nm_per_rad", "strain_energy_J", "max_stress_Pa"} <= set(
         both

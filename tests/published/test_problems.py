@@ -154,7 +154,7 @@ def test_table_of_published_values():
          "bound": AT_MOST, "model": "fe-shear"},
     ]  # fmt: skip
     store: Any = SimpleNamespace(load_tables=lambda study: {"values": pd.DataFrame(rows)})
-    assert "\n".join(readme.published(store)).splitlines() == [
+    assert "\n".join(readme._published(store)).splitlines() == [
         "| published problem | asked | in print | ours | difference | limit |",
         "|---|---|---|---|---|---|",
         "| A | rotation | 20 ± 0.1 mm | 20.6 mm | +3 % | 2 % |",

@@ -10,8 +10,8 @@ from scipy.optimize import brentq
 
 from studies.__main__ import main
 from studies.answers.adapters import answer_static
-from studies.answers.capacity import capacity
 from studies.answers.settings import FeSettings, SplineSettings
+from studies.answers.strength import capacity
 from studies.cases.design import named_design
 from studies.cases.effects import Effects
 from studies.cases.problem import named_case

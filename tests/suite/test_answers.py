@@ -20,7 +20,6 @@ from studies.answers.motion import Motion
 from studies.answers.reference import SWING_MESHES, limit_of_swings
 from studies.answers.response import centre_shift
 from studies.answers.settings import FeSettings, SplineSettings
-from studies.answers.strength import extreme_fibre_strain
 from studies.cases.problem import CaseError, named_case
 from tests import gates
 
@@ -82,7 +81,7 @@ def test_extreme_fibre_strain_is_the_larger_of_the_two_fibres():
     moment = np.array([2.0, 2.0, -2.0])
     stretch = 100.0 / (TABLE_1.youngs_modulus * TABLE_1.area)
     bend = 2.0 * TABLE_1.depth / (2.0 * TABLE_1.youngs_modulus * TABLE_1.second_moment_of_area)
-    assert extreme_fibre_strain(TABLE_1, axial, moment) == pytest.approx(
+    assert TABLE_1.extreme_fibre_strain(axial, moment) == pytest.approx(
         [bend + stretch, bend + stretch, bend]
     )
     assert TABLE_1.depth == pytest.approx(5e-3, rel=1e-3)

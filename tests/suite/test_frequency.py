@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from studies.answers.adapters import answer_modes, answer_release
-from studies.answers.frequency import passages, swing_frequency
+from studies.answers.metrics import passages, swing_frequency
 from studies.answers.settings import FeSettings, SplineSettings
 from studies.cases.design import named_design
 from studies.cases.problem import named_case

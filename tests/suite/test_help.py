@@ -60,7 +60,7 @@ def test_overview_names_every_command(capsys):
     with pytest.raises(SystemExit):
         main(["--help"])
     said = capsys.readouterr().out
-    for name, (_, text) in COMMANDS.items():
+    for name, text in COMMANDS.items():
         assert f"  {name:12s} {text}\n" in said
     assert max(map(len, said.splitlines())) <= 110
     (example,) = re.findall(r"^    python -m studies (.+)$", said, flags=re.MULTILINE)

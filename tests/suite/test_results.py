@@ -108,9 +108,9 @@ def test_findings_say_what_their_numbers_say():
 def test_pages_agree_with_the_results(page):
     """The tables of README.md and of docs/findings.md are those of the stored results."""
     text = page.read_text(encoding="utf-8")
-    assert readme.rewritten(page, Store()) == text
+    assert readme._rewritten(page, Store()) == text
     for name in readme.BLOCKS[page]:
-        begin, end = readme.marks(name)
+        begin, end = readme._marks(name)
         assert text.index(begin) < text.index("|---|", text.index(begin)) < text.index(end)
 
 
@@ -130,12 +130,12 @@ def test_pages_are_not_written_without_results_or_marks(tmp_path, monkeypatch):
     with pytest.raises(
         BadInput, match=r"control_points: got no stored tables, expected those of `make figures`"
     ):
-        readme.rewritten(page, Store(tmp_path))
+        readme._rewritten(page, Store(tmp_path))
     bare = tmp_path / "BARE.md"
     bare.write_text("no marks", encoding="utf-8")
     monkeypatch.setitem(readme.BLOCKS, bare, readme.BLOCKS[page])
     with pytest.raises(BadInput, match=r"BARE\.md: got no marks, expected <!-- agreement: written by"):
-        readme.rewritten(bare, Store())
+        readme._rewritten(bare, Store())
 
 
 def test_stored_tables_are_tidy():

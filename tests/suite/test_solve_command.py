@@ -8,7 +8,7 @@ import pytest
 
 from studies.answers import adapters
 from studies.cases.problem import FOLDER
-from studies.commands.path_output import ENTRIES
+from studies.commands.solve import ENTRIES
 
 ARRAYS = {
     "load_factor",

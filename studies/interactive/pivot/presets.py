@@ -8,10 +8,10 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 from spline_model.modes import natural_frequencies
+from studies.cases.design import as_toml, document_of
 from studies.cases.effects import Effects
 from studies.cases.keys import MATERIALS
 from studies.cases.problem import Problem, named_case
-from studies.cases.write import as_toml, document_of
 from studies.errors import BadInput
 from studies.interactive.pivot.design import POISSON_RATIO, build, scene
 
@@ -217,9 +217,7 @@ def preset(name: object) -> _Preset:
 def catalogue() -> dict[str, Any]:
     """Return parameters, presets and what each material that yields sets, for whoever shows them."""
     designs = {name: {"title": p.title, "note": p.note, "values": p.values()} for name, p in PRESETS.items()}
-    known = {
-        each.title.partition(",")[0]: each.values() for each in MATERIALS.values() if each.yield_strength
-    }
+    known = {each["title"].partition(",")[0]: each for each in MATERIALS.values() if "yield_strength" in each}
     return {
         "parameters": [asdict(parameter) for parameter in PARAMETERS.values()],
         "presets": designs,

@@ -52,12 +52,12 @@ def main(arguments: argparse.Namespace) -> int:
     workers = min(max(map(len, CALLS)), os.cpu_count() or 1)
     with ProcessPoolExecutor(workers, mp_context=get_context("spawn")) as pool:
         for calls in CALLS:
-            list(pool.map(call, *zip(*calls, strict=True)))
+            list(pool.map(_call, *zip(*calls, strict=True)))
     print(f"studies: ready after {time.perf_counter() - begin:.0f} s", file=sys.stderr)
     return 0
 
 
-def call(settings: Settings, tasks: tuple[str, ...]) -> None:
+def _call(settings: Settings, tasks: tuple[str, ...]) -> None:
     """Solve something small by a model: statics, modes, and releases by integrators."""
     from spline_model.batch import solve_many
     from spline_model.sequential_impulse import solve_impulses
