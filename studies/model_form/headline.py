@@ -18,7 +18,7 @@ from studies.answers.adapters import answer_static
 from studies.answers.models import put
 from studies.answers.settings import FeSettings, Settings, SplineSettings
 from studies.baselines.constraint_strips import guide
-from studies.engine.study import Answer, Claim, Part, Ratio, Study, Tables, records
+from studies.engine.study import Answer, Claim, Part, Study, Tables, records
 from studies.model_form.account import (
     BEAM,
     BOTH,
@@ -231,7 +231,7 @@ STUDY = Study(
             rows=_cheaper,
             value="ratio",
             least=1.0,
-            kind=Ratio,
+            ratio=True,
         ),
     ),
     varying=("times",),
