@@ -37,8 +37,8 @@ from studies.model_form.account import LOOKS as WORDS
 from studies.published.case import loaded
 from studies.record.marks import Level, Words
 from studies.record.panels import Axis, Curves, Mark, Panel, sheet
+from studies.record.progress import measure
 from studies.record.style import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, Look
-from studies.record.timing import measure
 
 #: Displacement of the stage [m] by solids of 3 mm, the finest in print, and the strips' length [m].
 TRUTH, LENGTH = 48.6102e-3, 0.25
