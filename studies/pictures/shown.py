@@ -177,8 +177,8 @@ class Chart:
             near = 0.03 * np.ptp(np.array(panel.dataLim.get_points()), axis=0).max()
             for k, (look, end) in enumerate(zip(named, ends, strict=True)):
                 before = int((np.hypot(*(ends[:k] - end).T) < near).sum())
-                panel.annotate(look.label, (end[0], end[1]), (8 * before, 3), ha="center", va="bottom", color=look.colour,
-                               **words)  # fmt: skip
+                above: dict[str, Any] = {"ha": "center", "va": "bottom", "color": look.colour}
+                panel.annotate(look.label, (end[0], end[1]), (8 * before, 3), **above, **words)
             return
         low, high = panel.get_ylim()
         heights = (ends[:, 1] - low) / (high - low)
