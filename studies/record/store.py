@@ -72,31 +72,6 @@ def _surroundings() -> dict[str, Any]:
     return {"versions": versions, "machine": machine, "date": datetime.date.today().isoformat()}
 
 
-def _judge(record: Mapping[str, Any], now: Mapping[str, Any], *, data: Path, figures: Path) -> _State:
-    """Return whether the result described by `record` still stands.
-
-    Args:
-        record: its provenance.
-        now: `inputs` of the study as it is today.
-        data: folder of its tables.
-        figures: folder of all figures.
-    """
-    for folder, kind in ((data, "tables"), (figures, "figures")):
-        for name, digest in record[kind].items():
-            path = folder / name
-            if not path.is_file():
-                return _State(kind="missing", reason=f"{name} does not exist")
-            if sha256(path.read_bytes()).hexdigest() != digest:
-                return _State(kind="stale", reason=f"{name} was changed after it was made")
-    if not record["figures"]:
-        return _State(kind="missing", reason="no figure was drawn")
-    if record["inputs"]["cases"] != now["cases"]:
-        return _State(kind="stale", reason="a case was changed")
-    if record["inputs"]["source_sha256"] != now["source_sha256"]:
-        return _State(kind="stale", reason="the source was changed")
-    return _State(kind="fresh")
-
-
 def _processor() -> str:
     """Return the processor's model name where the system tells it, else its family."""
     facts = Path("/proc/cpuinfo")
@@ -193,8 +168,20 @@ class Store:
             record = self.record(study)
         except FileNotFoundError:
             return _State(kind="missing", reason="never run")
+        for folder, kind in ((self.data(study), "tables"), (self.figures, "figures")):
+            for name, digest in record[kind].items():
+                path = folder / name
+                if not path.is_file():
+                    return _State(kind="missing", reason=f"{name} does not exist")
+                if sha256(path.read_bytes()).hexdigest() != digest:
+                    return _State(kind="stale", reason=f"{name} was changed after it was made")
+        if not record["figures"]:
+            return _State(kind="missing", reason="no figure was drawn")
         now = inputs(module, cases)
-        return _judge(record, now, data=self.data(study), figures=self.figures)
+        for part, said in (("cases", "a case"), ("source_sha256", "the source")):
+            if record["inputs"][part] != now[part]:
+                return _State(kind="stale", reason=f"{said} was changed")
+        return _State(kind="fresh")
 
 
 @dataclass(frozen=True, kw_only=True)
