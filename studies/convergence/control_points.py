@@ -79,22 +79,12 @@ def _maps(tables: Tables) -> Figure:
 def _map(panel: Axes, rows: pd.DataFrame, norm: LogNorm) -> None:
     """Draw the errors as coloured squares with their decimal exponent; a failed point is a cross."""
     modes = np.arange(1, max(COUNTS))
-    grid = np.full((len(modes), len(COUNTS)), np.nan)
-    columns = (rows[name].to_numpy(float) for name in ("axial_modes", "control_points", "error_torque"))
-    for m, n, error in zip(*columns, strict=True):
-        i, j = int(m) - 1, int(n) - COUNTS[0]
-        grid[i, j] = error
-        dark = np.isfinite(error) and error < 1e-5
+    told: list[str] = ["axial_modes", "control_points", "error_torque"]
+    for m, n, error in rows[told].itertuples(index=False):
         text = f"{np.log10(error):.0f}" if np.isfinite(error) else "x"
-        panel.text(
-            COUNTS[j],
-            modes[i],
-            text,
-            ha="center",
-            va="center",
-            fontsize=7.5,
-            color="white" if dark else "black",
-        )
+        colour = "white" if error < 1e-5 else "black"
+        panel.text(n, m, text, ha="center", va="center", fontsize=7.5, color=colour)
+    grid = rows.pivot(index=told[0], columns=told[1], values=told[2]).reindex(index=modes, columns=COUNTS)
     edges = np.arange(COUNTS[0] - 0.5, COUNTS[-1] + 1.0)
     panel.pcolormesh(edges, np.arange(0.5, len(modes) + 1.0), grid, norm=norm, cmap="viridis")
     panel.grid(False)

@@ -65,8 +65,8 @@ QUANTITIES = {"trajectory": BLUE, "torque": ORANGE, "rotation": GREEN}
 
 def _drawn(
     problem: Problem, bounds: Mapping[str, tuple[float, float]], *, count: int, seed: int
-) -> list[Problem]:
-    """Return `count` pivots like `problem` whose values fill the bounds evenly: a Latin hypercube.
+) -> Iterator[Problem]:
+    """Yield `count` pivots like `problem` whose values fill the bounds evenly: a Latin hypercube.
 
     Args:
         problem: gives what is not drawn: length, width of the section, material, body.
@@ -80,20 +80,16 @@ def _drawn(
     low[0], high[0] = math.log(low[0]), math.log(high[0])
     points = qmc.scale(qmc.LatinHypercube(d=len(names), seed=seed).random(count), low, high)
     width = problem.area / problem.depth
-    designs = []
     for logarithm, crossing_ratio, inclination, rotation in points:
         depth = problem.length / math.exp(logarithm)
-        designs.append(
-            replace(
-                problem,
-                area=width * depth,
-                second_moment_of_area=width * depth**3 / 12.0,
-                crossing_ratio=float(crossing_ratio),
-                inclination=float(inclination),
-                rotation=float(rotation),
-            )
+        yield replace(
+            problem,
+            area=width * depth,
+            second_moment_of_area=width * depth**3 / 12.0,
+            crossing_ratio=float(crossing_ratio),
+            inclination=float(inclination),
+            rotation=float(rotation),
         )
-    return designs
 
 
 def _period(problem: Problem) -> float:
