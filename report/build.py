@@ -113,11 +113,11 @@ def gathered(results: Results) -> dict[str, Any]:
     content["figures"] = {name: digest for name, (_, digest) in results.figures().items()}
     content["date"] = max(results.record(study)["date"] for study in STUDIES)
     content["stale"] = sorted(results.stale)
-    content["fingerprint"] = fingerprint(content)
+    content["fingerprint"] = _fingerprint(content)
     return content
 
 
-def fingerprint(content: dict[str, Any]) -> str:
+def _fingerprint(content: dict[str, Any]) -> str:
     """Return the SHA-256 of all that typst is given: numbers, figures, text."""
     digest = hashlib.sha256(json.dumps(content, sort_keys=True).encode())
     for pattern in SOURCES:
