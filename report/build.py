@@ -22,7 +22,7 @@ from typing import Any
 import typst
 
 import report.content
-from report.facts import FACTS, HOLDS, LISTINGS, Register, ReportError, Results
+from report.facts import FACTS, HOLDS, LISTINGS, Fact, ReportError, Results
 from studies.errors import BadInput
 from studies.record.files import require_writable_file, write_whole
 from studies.record.source import ROOT
@@ -93,7 +93,7 @@ def main(words: Sequence[str] | None = None) -> int:
 SOURCES = ("report.typ", "lib.typ", "drawing.typ", "references.yml", "sections/*.typ")
 
 
-def quotable() -> dict[str, Register]:
+def quotable() -> dict[str, Mapping[str, Fact]]:
     """Return what `report.content` gives by kind and name."""
     for module in iter_modules(report.content.__path__):
         import_module(f"report.content.{module.name}")
@@ -113,11 +113,11 @@ def gathered(results: Results) -> dict[str, Any]:
     content["figures"] = {name: digest for name, (_, digest) in results.figures().items()}
     content["date"] = max(results.record(study)["date"] for study in STUDIES)
     content["stale"] = sorted(results.stale)
-    content["fingerprint"] = fingerprint(content)
+    content["fingerprint"] = _fingerprint(content)
     return content
 
 
-def fingerprint(content: dict[str, Any]) -> str:
+def _fingerprint(content: dict[str, Any]) -> str:
     """Return the SHA-256 of all that typst is given: numbers, figures, text."""
     digest = hashlib.sha256(json.dumps(content, sort_keys=True).encode())
     for pattern in SOURCES:

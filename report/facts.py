@@ -5,17 +5,14 @@ tables as functions of the results under `holds` and `listing`.
 """
 
 import math
-import tomllib
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cache
 from typing import Any, Self
 
 import pandas as pd
 
 from report.forms import Form
 from studies.errors import BadInput
-from studies.record.source import ROOT
 from studies.record.store import Store
 from studies.registry import STUDIES
 
@@ -125,7 +122,7 @@ class Fact:
             raise ReportError(f"{name}: {error} ({self.said})") from None
 
 
-class Register(dict[str, Fact]):
+class _Register(dict[str, Fact]):
     """Facts by name, each entered once."""
 
     def __setitem__(self, name: str, fact: Fact) -> None:
@@ -140,7 +137,7 @@ class Register(dict[str, Fact]):
 
 
 #: What the text may quote, by name: numbers, conditions, tables.
-FACTS, HOLDS, LISTINGS = Register(), Register(), Register()
+FACTS, HOLDS, LISTINGS = _Register(), _Register(), _Register()
 
 
 def holds(name: str, *, timed: bool = False) -> Callable[[Callable[[Results], Any]], None]:
@@ -201,20 +198,29 @@ class Stored:
         """Return the fact that is the value of a column in the one row that there is."""
         return self.fact(_only(name, equal), form, **equal)
 
+    def table(self, shown: Shown, *, by: str | None = None) -> Fact:
+        """Return the table with a row for each of the rows, in the order of the column `by`."""
+
+        def made(results: Results) -> Table:
+            rows = self.rows(results)
+            return columns(rows.sort_values(by) if by else rows, shown)
+
+        return Fact(made=made, form=table, said="a table")
+
     def largest(self, name: str, form: Form, /, **equal: Any) -> Fact:
         """Return the fact that is the largest magnitude of a column."""
-        return self.fact(lambda rows: column(rows, name).abs().max(), form, **equal)
+        return self.fact(lambda rows: _column(rows, name).abs().max(), form, **equal)
 
     def least(self, name: str, form: Form, /, **equal: Any) -> Fact:
         """Return the fact that is the smallest magnitude of a column."""
-        return self.fact(lambda rows: column(rows, name).abs().min(), form, **equal)
+        return self.fact(lambda rows: _column(rows, name).abs().min(), form, **equal)
 
 
 def _only(name: str, equal: Mapping[str, Any]) -> Callable[[pd.DataFrame], Any]:
     def pick(rows: pd.DataFrame) -> Any:
         if len(rows) != 1:
             raise LookupError(f"{len(rows)} rows with {equal}, expected one")
-        return column(rows, name).iloc[0]
+        return _column(rows, name).iloc[0]
 
     return pick
 
@@ -226,27 +232,21 @@ def columns(rows: pd.DataFrame, shown: Shown) -> Table:
         yield [made(row) if callable(made) else made[1](row[made[0]]) for made in shown.values()]
 
 
-def where(table: pd.DataFrame, /, **equal: Any) -> pd.DataFrame:
-    """Return the rows of `table` whose columns have the values `equal`.
+def where(rows: pd.DataFrame, /, **equal: Any) -> pd.DataFrame:
+    """Return those of `rows` whose columns have the values `equal`.
 
     Raises:
         LookupError: no such column, or no such row.
     """
     for name, value in equal.items():
-        table = table[column(table, name) == value]
-        if table.empty:
+        rows = rows[_column(rows, name) == value]
+        if rows.empty:
             raise LookupError(f"no row with {name} = {value}")
-    return table
+    return rows
 
 
-def column(table: pd.DataFrame, name: str) -> Any:
-    """Return a column of `table`; LookupError when it has none of that name."""
-    if name not in table:
-        raise LookupError(f"no column {name}, there are {', '.join(table.columns)}")
-    return table[name]
-
-
-@cache
-def gates() -> dict[str, dict[str, Any]]:
-    """Return every gate by name: limit, unit, measured, against."""
-    return tomllib.loads((ROOT / "tests" / "gates.toml").read_text(encoding="utf-8"))
+def _column(rows: pd.DataFrame, name: str) -> Any:
+    """Return a column of `rows`; LookupError when they have none of that name."""
+    if name not in rows:
+        raise LookupError(f"no column {name}, there are {', '.join(rows.columns)}")
+    return rows[name]

@@ -24,10 +24,12 @@ def significant(value: Any, digits: int = 2) -> str:
     if -4 < exponent < 6:
         text = f"{round(value, digits - 1 - exponent):.{max(0, digits - 1 - exponent)}f}"
     else:
-        mantissa = f"{value / 10.0**exponent:.{digits - 1}f}"
-        power = f"10{str(exponent).translate(_RAISED)}"
-        text = f"{mantissa}{SPACE}×{SPACE}{power}"
+        text = f"{value / 10.0**exponent:.{digits - 1}f}{SPACE}×{SPACE}{_ten(exponent)}"
     return text.replace("-", MINUS)
+
+
+def _ten(exponent: int) -> str:
+    return f"10{str(exponent).translate(_RAISED)}"
 
 
 def power(value: Any) -> str:
@@ -36,15 +38,14 @@ def power(value: Any) -> str:
     if value == 0.0 or 1.0 <= abs(value) < 100.0:
         return significant(value)
     mantissa, _, exponent = f"{value:.1e}".partition("e")
-    raised = str(int(exponent)).translate(_RAISED)
-    return f"{mantissa}{SPACE}×{SPACE}10{raised}".replace("-", MINUS)
+    return f"{mantissa}{SPACE}×{SPACE}{_ten(int(exponent))}".replace("-", MINUS)
 
 
 def decade(value: Any) -> str:
     """Return a power of ten, or a number of one digit times one."""
     exponent = round(math.log10(float(value)))
     if math.isclose(float(value), 10.0**exponent, rel_tol=1e-9):
-        return f"10{str(exponent).translate(_RAISED)}"
+        return _ten(exponent)
     return significant(value, 1)
 
 

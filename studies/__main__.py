@@ -14,7 +14,7 @@ from importlib import import_module  # noqa: E402
 
 from studies.commands.parser import Command, Parser  # noqa: E402
 from studies.errors import BadInput  # noqa: E402
-from studies.record.source import forget_stale  # noqa: E402
+from studies.record.files import forget_stale  # noqa: E402
 from studies.registry import COMMANDS, PLACES  # noqa: E402
 
 BAD_INPUT = 2

@@ -7,7 +7,7 @@ import pytest
 
 from studies.__main__ import main
 from studies.record import store
-from studies.record.source import forget_stale
+from studies.record.files import forget_stale
 
 
 def pytest_configure() -> None:

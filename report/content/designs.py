@@ -1,10 +1,163 @@
-"""The sample of the design space, its throughput, and the pivot sized by exact gradients."""
+"""Designs: charts and where their theory ends, a sample of the design space, pivots sized by gradients."""
 
 from typing import Any
 
-from report.content.basis import pivot
-from report.facts import FACTS, Fact, Results, Shown, Stored, Table, columns, holds, listing
-from report.forms import angle, count, degrees, digits, percent, power, significant, times, unit
+import pandas as pd
+
+from report.facts import FACTS, LISTINGS, Fact, Results, Shown, Stored, Table, columns, holds, listing
+from report.forms import Form, angle, count, dash, degrees, digits, percent, power, significant, times, unit
+
+RANGES, POINTS, VALIDITY, COLLAPSE, LOADS, LIMITS = (
+    Stored("charts/pivot", name) for name in ("ranges", "points", "validity", "collapse", "loads", "limits")
+)
+#: Strain sigma_y / E and slenderness of the example, the ratios it is asked at, and its strength.
+EXAMPLE_STRAIN, EXAMPLE_SLENDERNESS, MIDDLE, SHIFTLESS = 0.005, 40.0, 0.5, 0.1273
+EXAMPLE = EXAMPLE_STRAIN * EXAMPLE_SLENDERNESS
+#: Slenderness from which on the charts are said to hold.
+FROM = 30.0
+#: Ways in which a beam is left, by the ratio that says how far, and how that is written.
+ENDS: dict[str, tuple[str, Form]] = {
+    "width": ("width_ratio", percent),
+    "thick": ("thickness_ratio", percent),
+    "bent": ("curvature_ratio", significant),
+}
+
+
+@listing("ranges")
+def _ranges(results: Results) -> Table:
+    found = RANGES.rows(results).pivot(index="crossing_ratio", columns="strength", values="rotation_deg")
+    yield ["crossing ratio", *(f"strength {significant(each, 1)}" for each in found.columns)]
+    for ratio, own in found.iterrows():
+        yield [f"λ = {significant(ratio, 3)}", *map(dash(angle()), own)]
+
+
+@listing("points")
+def _points(results: Results) -> Table:
+    found = POINTS.rows(results).pivot(
+        index=["quantity", "error"], columns="rotation_deg", values="control_points"
+    )
+    yield ["error", *(f"{turn:.0f}°" for turn in found.columns)]
+    for row in found.sort_index(ascending=False).reset_index().to_dict("split")["data"]:
+        yield [f"{row[0]} to {percent(row[1])}", *map(dash(count), row[2:])]
+
+
+def _short(pivot: str) -> str:
+    return pivot.replace("cross_axis", "reference").replace("_", " ").removesuffix(" pivot")
+
+
+LISTINGS["validity"] = VALIDITY.table(
+    {
+        "pivot": ("pivot", _short),
+        "to": ("rotation_deg", lambda turn: f"{turn:.0f}°"),
+        "t/L": ("thickness_ratio", significant),
+        "b/L": ("width_ratio", significant),
+        "b²/(R t)": ("curvature_ratio", significant),
+        "clamped width": lambda row: f"+{percent(row['clamped_least'])} to +{percent(row['clamped_most'])}",
+        "flattening": ("flattened", lambda share: f"+{percent(share)}"),
+        "roots": ("roots", percent),
+        "shear": ("shear", percent),
+    },
+    by="thickness_ratio",
+)
+
+
+def _collapse(results: Results, pick: str, *quantities: str) -> float:
+    rows = COLLAPSE.rows(results).query("quantity in @quantities and slenderness >= @FROM")
+    return float(rows[pick].max())
+
+
+def _others(results: Results) -> float:
+    return _collapse(results, "largest", "stiffness", "stress", "variation")
+
+
+def _kept(results: Results) -> float:
+    """Return the largest rotation [deg] to which four points keep a percent of the torque."""
+    table = POINTS.rows(results, quantity="torque", error=0.01)
+    return float(table.loc[table["control_points"] <= 4, "rotation_deg"].max())
+
+
+def _loads(results: Results, ratio: float, direction: str) -> pd.DataFrame:
+    return LOADS.rows(results, crossing_ratio=ratio, direction=f"{direction} the ground", inclination_deg=45)
+
+
+def _tips(results: Results) -> float:
+    """Return the pull at which the pivot that crosses at mid-length has no stiffness left."""
+    rows = _loads(results, MIDDLE, "away from")
+    past = int((rows["stiffness"] <= 0.0).to_numpy().argmax())
+    load, stiffness = (rows[name].to_numpy()[past - 1 : past + 1] for name in ("load", "stiffness"))
+    return float(load[0] + (load[1] - load[0]) * stiffness[0] / (stiffness[0] - stiffness[1]))
+
+
+def _insensitive(results: Results) -> float:
+    """Return how much the stiffness of the pivot without shift changes by loads along its axis."""
+    rows = pd.concat([_loads(results, SHIFTLESS, way) for way in ("towards", "away from")])
+    return float((rows["stiffness"] / rows["stiffness"].iloc[0] - 1.0).abs().max())
+
+
+FACTS |= {
+    f"charts.{name}-one": LIMITS.at("value", form, ratio=ratio, share=0.01)
+    for name, (ratio, form) in ENDS.items()
+}
+FACTS |= {
+    "charts.from": Fact(made=lambda _: FROM, form=significant),
+    "charts.collapse.most": Fact(made=_others, form=percent),
+    "charts.collapse.shift": Fact(made=lambda r: _collapse(r, "largest", "shift"), form=percent),
+    "charts.collapse.shift.median": Fact(made=lambda r: _collapse(r, "median", "shift"), form=percent),
+    "charts.example.strain": Fact(made=lambda _: EXAMPLE_STRAIN, form=digits(1)),
+    "charts.example.slenderness": Fact(made=lambda _: EXAMPLE_SLENDERNESS, form=significant),
+    "charts.example.strength": Fact(made=lambda _: EXAMPLE, form=digits(1)),
+    "charts.example.range": RANGES.at("rotation_deg", angle(), crossing_ratio=MIDDLE, strength=EXAMPLE),
+    "charts.example.range.shiftless": RANGES.at(
+        "rotation_deg", angle(), crossing_ratio=SHIFTLESS, strength=EXAMPLE
+    ),
+    "charts.example.ratio": Fact(made=lambda _: SHIFTLESS, form=digits(4)),
+    "charts.farthest": Stored("charts/pivot", "map").largest("rotation_deg", angle()),
+    "charts.tips": Fact(made=_tips, form=significant),
+    "charts.buckles": Stored("charts/pivot", "buckling").at(
+        "load", significant, crossing_ratio=MIDDLE, inclination_deg=45
+    ),
+    "charts.insensitive": Fact(made=_insensitive, form=percent),
+    "charts.load": LOADS.largest("load", significant),
+    "charts.four": Fact(made=_kept, form=angle()),
+}
+
+
+@holds("charts.collapse")
+def _(r: Results) -> Any:
+    """stiffness, stress and variation of pivots of L/t from 30 on are within 1 % of the charts"""
+    return _others(r) < 0.01
+
+
+@holds("charts.thick-shift")
+def _(r: Results) -> Any:
+    """the shift of thick strips is farther from the charts than all else"""
+    return _collapse(r, "largest", "shift") > _others(r)
+
+
+@holds("charts.pulled")
+def _(r: Results) -> Any:
+    """pulled, a pivot that crosses at mid-length loses its stiffness; pushed, it gains"""
+    pulled, pushed = (_loads(r, MIDDLE, way)["stiffness"] for way in ("away from", "towards"))
+    return pulled.min() < 0.0 and pushed.is_monotonic_increasing
+
+
+@holds("charts.insensitive")
+def _(r: Results) -> Any:
+    """loads change the stiffness of the pivot without shift by less than a quarter"""
+    return _insensitive(r) < 0.25
+
+
+@holds("charts.paper-four")
+def _(r: Results) -> Any:
+    """four control points keep one percent of the torque to some rotation of the charts"""
+    return _kept(r) > 0.0
+
+
+@holds("designer.ends")
+def _(r: Results) -> Any:
+    """each limit of a plain beam lies within the range of the pivots it is taken from"""
+    return all(FACTS[f"charts.{name}-one"].made(r) > 0.0 for name in ENDS)
+
 
 SPACE, THROUGHPUT, SIZING = "sweep/design_space", "sweep/throughput", "design/sizing"
 SAMPLE, CHECKS, COMPARED = (Stored(SPACE, name) for name in ("designs", "checks", "comparison"))
@@ -12,12 +165,16 @@ DESIGNS, ACTIVE, CHECKED = (Stored(SIZING, name) for name in ("designs", "active
 STARTS, TOLERANCES = Stored(SIZING, "starts"), Stored(SIZING, "tolerances")
 SHIFT, VARIATION = "least centre shift", "least variation of stiffness"
 NARROW, STEEL = ", narrow strips", ", spring steel"
-#: Question -> column of the factor by which it betters its baseline.
-QUESTIONS = (SHIFT, SHIFT + NARROW, VARIATION, VARIATION + NARROW, SHIFT + STEEL, VARIATION + STEEL)
-FACTORS = {
-    question: "factor_centre_shift" if SHIFT in question else "factor_stiffness_variation"
-    for question in QUESTIONS
+#: Short name -> question, and column of the factor by which it betters its baseline.
+QUESTIONS = {
+    "shift": SHIFT,
+    "shift.narrow": SHIFT + NARROW,
+    "variation": VARIATION,
+    "variation.narrow": VARIATION + NARROW,
+    "steel.shift": SHIFT + STEEL,
+    "steel.variation": VARIATION + STEEL,
 }
+FACTORS = {SHIFT: "factor_centre_shift", VARIATION: "factor_stiffness_variation"}
 #: Column of whose tolerance a row is of, and what begins the name of all of them together.
 DIMENSION, ALL = "dimension", "all, "
 #: A stress that designs of the sample stay below [Pa].
@@ -25,10 +182,8 @@ STRENGTH = 600e6
 
 
 def _checked(results: Results, *, variation: bool = False) -> float:
-    """Return the largest difference of splines and elements over the chosen designs: relative, of the
-    variation, which is itself relative to the stiffness at rest, as it is."""
-    table = COMPARED.rows(results)
-    rows = table[(table["quantity"] == "stiffness_variation") == variation]
+    """Return the largest difference of splines and elements: relative, of the variation as it is."""
+    rows = COMPARED.rows(results).query("(quantity == 'stiffness_variation') == @variation")
     return float(rows["error"].abs().max())
 
 
@@ -38,9 +193,8 @@ def _dominating(results: Results) -> float:
     return round(float(share) * len(SAMPLE.rows(results)), 6)
 
 
-@listing("chosen")
-def _chosen(results: Results) -> Table:
-    shown: Shown = {
+LISTINGS["chosen"] = CHECKS.table(
+    {
         "design": ("design", str),
         "crossing": ("crossing_ratio", digits(3)),
         "inclination": ("inclination_deg", angle()),
@@ -50,7 +204,7 @@ def _chosen(results: Results) -> Table:
         "shift": ("centre_shift_max_m", unit("mm", 2, 1e3)),
         "stress": ("stress_max_Pa", unit("GPa", 2, 1e-9)),
     }
-    return columns(CHECKS.rows(results), shown)
+)
 
 
 @listing("sizing")
@@ -68,7 +222,7 @@ def _designs(results: Results) -> Table:
         "bounds that are active": ("design", lambda name: str(bounds.get(name, "–")).replace("_", " ")),
     }
     found: Any = DESIGNS.rows(results).set_index("design", drop=False)
-    return columns(found.loc[[*dict.fromkeys(found["baseline"]), *QUESTIONS]], shown)
+    return columns(found.loc[[*dict.fromkeys(found["baseline"]), *QUESTIONS.values()]], shown)
 
 
 @listing("tolerances")
@@ -89,20 +243,15 @@ def _farthest(results: Results, against: str) -> float:
     return float(rows.loc[rows["against"].str.startswith(against), "error"].abs().max())
 
 
-def _plate(results: Results) -> float:
-    """Return by how much a strip of Table 1's material is stiffer where its section stays flat."""
-    square = float(pivot().poisson_ratio) ** 2
-    return square / (1.0 - square)
+def _factor(question: str) -> str:
+    return FACTORS[question.partition(",")[0]]
 
 
 def _gain(results: Results, question: str) -> float:
-    return float(DESIGNS.value(results, FACTORS[question], design=question))
+    return float(DESIGNS.value(results, _factor(question), design=question))
 
 
-def _factor(question: str) -> Fact:
-    return DESIGNS.at(FACTORS[question], times, design=question)
-
-
+FACTS |= {f"sizing.{name}": DESIGNS.at(_factor(each), times, design=each) for name, each in QUESTIONS.items()}
 FACTS |= {
     "space.designs": SAMPLE.fact(len, count),
     "space.front": SAMPLE.fact(len, count, front="yes"),
@@ -114,12 +263,6 @@ FACTS |= {
     "throughput.rate": Stored(THROUGHPUT, "timings").fact(
         lambda rows: (rows["designs"] / rows["wall_s"]).max(), significant
     ),
-    "sizing.shift": _factor(SHIFT),
-    "sizing.shift.narrow": _factor(SHIFT + NARROW),
-    "sizing.variation": _factor(VARIATION),
-    "sizing.variation.narrow": _factor(VARIATION + NARROW),
-    "sizing.steel.shift": _factor(SHIFT + STEEL),
-    "sizing.steel.variation": _factor(VARIATION + STEEL),
     "sizing.steel.stress": DESIGNS.largest(
         "largest_stress_Pa", unit("MPa", 3, 1e-6), baseline="spring steel"
     ),
@@ -127,7 +270,6 @@ FACTS |= {
     "sizing.questions": STARTS.fact(lambda rows: rows["question"].nunique(), count),
     "sizing.starts": STARTS.fact(len, count),
     "sizing.reached": STARTS.fact(len, count, optimum=1),
-    "sizing.plate": Fact(made=_plate, form=percent),
     "tolerances.stiffness": TOLERANCES.largest("solved", percent, quantity="stiffness"),
     "tolerances.shift": TOLERANCES.largest("solved", percent, quantity="centre-shift"),
     "sizing.range": Stored(SIZING, "curves").largest("rotation_rad", degrees, design="Table 1"),
@@ -143,7 +285,7 @@ def _(r: Results) -> Any:
 @holds("sizing.better")
 def _(r: Results) -> Any:
     """each optimum betters Table 1 in what it was asked for"""
-    return all(_gain(r, question) > 1.0 for question in QUESTIONS)
+    return all(_gain(r, question) > 1.0 for question in QUESTIONS.values())
 
 
 @holds("sizing.verified")

@@ -4,7 +4,7 @@ from collections.abc import Callable
 from typing import Any
 
 from report.content.basis import TORQUE
-from report.facts import FACTS, Cell, Fact, Results, Shown, Stored, Table, columns, holds, listing
+from report.facts import FACTS, LISTINGS, Cell, Fact, Results, Shown, Stored, Table, columns, holds, listing
 from report.forms import Form, count, dash, percent, power, seconds, signed_percent, times, unit
 
 WORTH, CHEAPEST = (Stored("effects/worth", name) for name in ("worth", "cheapest"))
@@ -26,16 +26,13 @@ def _worth(results: Results) -> Table:
         yield [str(scene), *map(dash(power), largest.loc[scene])]
 
 
-@listing("cheapest")
-def _cheapest(results: Results) -> Table:
-    return columns(
-        CHEAPEST.rows(results),
-        {
-            "design": ("design", str),
-            "cheapest scene that suffices": ("scene", str),
-            "its largest change": ("largest", power),
-        },
-    )
+LISTINGS["cheapest"] = CHEAPEST.table(
+    {
+        "design": ("design", str),
+        "cheapest scene that suffices": ("scene", str),
+        "its largest change": ("largest", power),
+    }
+)
 
 
 @listing("impulse-limits")
@@ -68,15 +65,15 @@ def _assumptions(results: Results) -> Table:
     return columns(table[table["reading"] != chosen["reading"]].sort_values("reading"), shown)
 
 
-@listing("quadrature")
-def _quadrature(results: Results) -> Table:
-    shown: Shown = {
+LISTINGS["quadrature"] = QUADRATURE.table(
+    {
         "Gauss points a strip": ("gauss_points", count),
         "torque": ("error_torque", percent),
         "stiffness": ("error_stiffness", percent),
         "stiffness at the end": ("error_stiffness_end", signed_percent),
-    }
-    return columns(QUADRATURE.rows(results).sort_values("gauss_points"), shown)
+    },
+    by="gauss_points",
+)
 
 
 def _lost(design: str) -> Fact:

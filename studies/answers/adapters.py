@@ -14,7 +14,7 @@ from studies.cases.design import Design
 from studies.cases.problem import Problem
 from studies.errors import BadInput
 from studies.kinds import Progress
-from studies.record.timing import measure
+from studies.record.progress import measure
 
 #: Rotation of the first solve, which only compiles [rad]: small enough for any design and discretisation.
 WARM_UP_ROTATION = 1e-3

@@ -13,7 +13,7 @@ from studies.answers.response import Response
 from studies.cases.problem import Problem
 from studies.errors import BadInput
 from studies.kinds import Array
-from studies.record.timing import measure
+from studies.record.progress import measure
 
 
 class BaselineFailed(RuntimeError):

@@ -42,6 +42,8 @@ TIMES = {"s": "solve_s", "low_s": "low_s", "high_s": "high_s"}
 
 #: A limit must be this much more certain than the level that errors against it are compared at.
 CERTAINTY = 2.0
+#: How all variants are drawn behind the fastest: marks alone, without a name.
+FAINT = {"linestyle": "", "alpha": 0.35, "label": None}
 
 
 def _ratios(
@@ -135,7 +137,7 @@ def _panel(tables: Tables, task: str, y: Axis, title: str, *marks: Level) -> Pan
         Axis("solve_s", "time of the solver [ms]", factor=1e3, log=True),
         y,
         (
-            Curves(rows, LOOKS, by=("model", "group"), faint=True),
+            Curves(rows, LOOKS, by=("model", "group"), more=FAINT),
             Curves(best, LOOKS, by=("model", "group")),
             *marks,
         ),

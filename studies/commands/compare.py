@@ -32,7 +32,7 @@ from studies.commands.columns import NOTHING, plain, prefixed, significant, tabl
 from studies.commands.parser import Argument, command
 from studies.errors import BadInput
 from studies.pictures.shown import LETTERS, Shown
-from studies.record.progress import Bar
+from studies.record.progress import Bar, watched
 
 #: Digits of a number; a variation below which a stiffness is constant but for round-off [1].
 DIGITS, ROUND_OFF = 5, 1e-8
@@ -121,10 +121,7 @@ def main(arguments: argparse.Namespace) -> int:
         got = f"{len(asked)} (designs: {len(arguments.cases)}, models: {len(arguments.model)})"
         raise BadInput(f"compare: got {got}, expected 2 to {len(LETTERS)} designs, or a design by two models")
     with Bar("compare") as bar:
-        found = []
-        for done, (case, settings) in enumerate(asked, start=1):
-            found.append(_solved(case, settings, arguments))
-            bar(done, len(asked))
+        found = [_solved(case, settings, arguments) for case, settings in watched(asked, bar)]
     for target, what in ((arguments.plot, "shown"), (arguments.plot_modes, "modes")):
         parts = [each for each in (getattr(design, what) for design in found) if each]
         if target is not None and len(parts) == len(found):

@@ -18,7 +18,7 @@ from multiprocessing import get_context
 from studies.answers.settings import FeSettings, Settings, SplineSettings
 from studies.cases.problem import Problem
 from studies.commands.parser import command
-from studies.record.source import forget, forget_stale
+from studies.record.files import forget, forget_stale
 
 MIXED, CONSISTENT = SplineSettings(control_points=4), SplineSettings(control_points=4, stretch="consistent")
 ELEMENTS = FeSettings(elements=4)

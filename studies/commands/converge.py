@@ -31,13 +31,13 @@ from studies.convergence.sweep import (
     drawn,
     element_sweep,
     reaching,
-    spline_sweep,
+    spline_row,
     with_orders,
 )
 from studies.errors import BadInput
 from studies.record import style
 from studies.record.files import require_writable_folder, write_whole
-from studies.record.progress import Bar
+from studies.record.progress import Bar, watched
 from studies.record.source import ROOT
 from studies.record.store import as_csv
 
@@ -88,13 +88,14 @@ def main(arguments: argparse.Namespace) -> int:
     except NoReference as error:
         return not_converged(f"{error}; begin with more elements, as --elements 20:160, or turn less far")
     with Bar("splines") as bar:
-        splines = with_orders(spline_sweep(problem, settings, limit, bar), "control_points")
+        rows = [spline_row(problem, each, limit) for each in watched(settings, bar)]
+    splines = with_orders(pd.DataFrame(rows), "control_points")
     itself = answer_static(problem, replace(settings[0], control_points=None))
     print("\n".join((*_report(splines, elements, limit), *_by_itself(itself, limit))))
     with style.applied():
-        figure = style.rendered(drawn(splines, elements, limit))
-    contents = {"control_points.csv": as_csv(splines), "elements.csv": as_csv(elements)}
-    contents |= {f"convergence.{kind}": content for kind, content in figure.items()}
+        figure = drawn(splines, elements, limit)
+        contents = {f"convergence.{kind}": style.rendered(figure, kind) for kind in ("svg", "png")}
+    contents = {"control_points.csv": as_csv(splines), "elements.csv": as_csv(elements)} | contents
     for name, content in contents.items():
         write_whole(output / name, content)
     print(f"\n{output}: {', '.join(contents)}")

@@ -65,8 +65,8 @@ QUANTITIES = {"trajectory": BLUE, "torque": ORANGE, "rotation": GREEN}
 
 def _drawn(
     problem: Problem, bounds: Mapping[str, tuple[float, float]], *, count: int, seed: int
-) -> list[Problem]:
-    """Return `count` pivots like `problem` whose values fill the bounds evenly: a Latin hypercube.
+) -> Iterator[Problem]:
+    """Yield `count` pivots like `problem` whose values fill the bounds evenly: a Latin hypercube.
 
     Args:
         problem: gives what is not drawn: length, width of the section, material, body.
@@ -80,20 +80,16 @@ def _drawn(
     low[0], high[0] = math.log(low[0]), math.log(high[0])
     points = qmc.scale(qmc.LatinHypercube(d=len(names), seed=seed).random(count), low, high)
     width = problem.area / problem.depth
-    designs = []
     for logarithm, crossing_ratio, inclination, rotation in points:
         depth = problem.length / math.exp(logarithm)
-        designs.append(
-            replace(
-                problem,
-                area=width * depth,
-                second_moment_of_area=width * depth**3 / 12.0,
-                crossing_ratio=float(crossing_ratio),
-                inclination=float(inclination),
-                rotation=float(rotation),
-            )
+        yield replace(
+            problem,
+            area=width * depth,
+            second_moment_of_area=width * depth**3 / 12.0,
+            crossing_ratio=float(crossing_ratio),
+            inclination=float(inclination),
+            rotation=float(rotation),
         )
-    return designs
 
 
 def _period(problem: Problem) -> float:
@@ -133,7 +129,7 @@ def _panel(rows: pd.DataFrame, title: str, *words: Words) -> Panel:
         Axis("true_error", f"true error [{unit}]", log=True),
         Axis("estimate", f"estimated error [{unit}]", log=True),
         (
-            Near(low, high),
+            _Near(low, high),
             Curves(rows, looks, by="quantity"),
             Slope(through=(low, low), power=1, span=(low, high), label="_", line="-"),
             Slope(through=(low, LEAST * low), power=1, span=(low, high), label="_"),
@@ -145,7 +141,7 @@ def _panel(rows: pd.DataFrame, title: str, *words: Words) -> Panel:
 
 
 @dataclass(frozen=True)
-class Near:
+class _Near:
     """Where estimates are near true errors from `low` to `high`: shaded."""
 
     low: float
@@ -165,9 +161,8 @@ def _static(number: int, problem: Problem) -> Answer:
     for accuracy in ACCURACIES:
         answer = answer_static(problem, SplineSettings(control_points=FIRST), accuracy=accuracy)
         identity = {"problem": "statics", **_described(number, problem), "accuracy": accuracy}
-        estimate = answer.estimate or {}
         for quantity, error in _path_errors(answer, exact).items():
-            row = identity | _judged(quantity, "1", estimate, error, uncertainty[quantity], answer)
+            row = identity | _judged(quantity, "1", error, uncertainty[quantity], answer)
             rows["stress" if quantity == "stress" else "estimates"].append(row)
     return rows
 
@@ -182,21 +177,16 @@ def _swing_rows(number: int, problem: Problem) -> Iterator[dict[str, Any]]:
     uncertainty = _rotation_error(check, exact)
     for accuracy in SWING_ACCURACIES:
         answer = let_go(SplineSettings(control_points=FIRST), accuracy=accuracy)
-        estimate = answer.estimate or {}
         identity = {"problem": "motion", **_described(number, problem), "accuracy": accuracy}
         error = _rotation_error(answer, exact)
-        yield identity | _judged("rotation", "rad", estimate, error, uncertainty, answer)
+        yield identity | _judged("rotation", "rad", error, uncertainty, answer)
 
 
 def _judged(
-    quantity: str,
-    unit: str,
-    estimate: Mapping[str, Any],
-    error: float,
-    uncertainty: float,
-    answer: Response | Motion,
+    quantity: str, unit: str, error: float, uncertainty: float, answer: Response | Motion
 ) -> dict[str, Any]:
-    """Return the columns that hold an estimate against a true error."""
+    """Return the columns that hold an answer's estimate against a true error."""
+    estimate = answer.estimate or {}
     estimated = estimate.get(quantity, math.nan)
     return {
         "quantity": quantity,
@@ -262,6 +252,23 @@ def _of_problems(tables: Tables) -> Iterator[dict[str, Any]]:
         }
 
 
+#: Claims, what is measured of each kind of problem, its column, and the least that it may be.
+JUDGED = (
+    (
+        f"Estimates lie within {BAND[0]:g} to {BAND[1]:g} times the true error for {SHARE:.0%}",
+        "the share of designs and accuracies whose estimates all do",
+        "inside",
+        SHARE,
+    ),
+    (
+        "No estimate is optimistic by more than three times",
+        "the least estimate over its true error",
+        "least",
+        LEAST,
+    ),
+    ("The true error is below what was asked for", "the share of errors that are", "met", 1.0),
+)
+
 STUDY = Study(
     parts=(
         Part(at=lambda: enumerate(_drawn(named_case(), BOUNDS, count=DESIGNS, seed=SEED)), ask=_static),
@@ -280,21 +287,7 @@ STUDY = Study(
             value=value,
             least=least,
         )
-        for claim, quantity, value, least in (
-            (
-                f"Estimates lie within {BAND[0]:g} to {BAND[1]:g} times the true error for {SHARE:.0%}",
-                "the share of designs and accuracies whose estimates all do",
-                "inside",
-                SHARE,
-            ),
-            (
-                "No estimate is optimistic by more than three times",
-                "the least estimate over its true error",
-                "least",
-                LEAST,
-            ),
-            ("The true error is below what was asked for", "the share of errors that are", "met", 1.0),
-        )
+        for claim, quantity, value, least in JUDGED
     ),
     figures={"error_estimate": _figure},
 )

@@ -48,7 +48,7 @@ def _step_size(tables: Tables) -> Figure:
         marks: list[Mark] = [Curves(mine, FORMS, by="form"), *_marks(limits)]
         panels = [Panel(replace(STEP, label="step h [s]"), y, marks) for y in QUANTITIES]
         lost = mine[(mine["form"] == "printed") & (mine["status"] != "converged")]["step_s"]
-        panels[0] = replace(panels[0], marks=[*marks, Unstable(lost)])
+        panels[0] = replace(panels[0], marks=[*marks, _Unstable(lost)])
         columns.append(panels)
         titles.append(f"{design}, released from 90°")
     return sheet(8.8, 9.2, list(zip(*columns, strict=True)), columns=titles, legend=4)
@@ -65,7 +65,7 @@ def _marks(limits: pd.Series) -> list[Level]:
 
 
 @dataclass(frozen=True)
-class Unstable:
+class _Unstable:
     """Marks along the top of a panel at the printed steps that blow up."""
 
     steps: pd.Series
@@ -107,35 +107,34 @@ def _limits(rows: pd.DataFrame) -> Panel:
     )
 
 
+def _swept_looks() -> dict[tuple[str, str], Look]:
+    """Return the looks of the forms by what their impulses go by."""
+    return {
+        (form, impulses): replace(look, label=f"{look.label}, by {impulses[:-1]}", line=line)
+        for impulses, line in IMPULSES.items()
+        for form, look in FORMS.items()
+    }
+
+
 def _errors(rows: pd.DataFrame) -> Panel:
     groups = ["form", "impulses"]
-    looks = {
-        (form, impulses): replace(look, label=f"{look.label}, by {impulses[:-1]}", line=line, marker=".")
-        for form, look in FORMS.items()
-        for impulses, line in IMPULSES.items()
-    }
     least = rows[rows["step_s"] == rows.groupby(groups)["step_s"].transform("min")]
     label = "error of the velocity change [1]"
     return Panel(
         Axis("sweep", "sweeps"),
         Axis("error", label, log=True, least=1e-16, limits=(1e-16, 1e3)),
-        (Curves(least, looks, by=groups),),
+        (Curves(least, _swept_looks(), by=groups, more={"marker": "."}),),
         title=f"Sweeps, h = {1e6 * rows['step_s'].min():.2g} µs",
         legend=BENEATH,
     )
 
 
 def _factors(rows: pd.DataFrame) -> Panel:
-    looks = {
-        (form, impulses): replace(look, label=f"{look.label}, by {impulses[:-1]}", line=line)
-        for impulses, line in IMPULSES.items()
-        for form, look in FORMS.items()
-    }
     return Panel(
         replace(STEP, label="step h [s]"),
         Axis("contraction", "error after a sweep over that before [1]", log=True),
         (
-            Curves(rows, looks, by=("form", "impulses")),
+            Curves(rows, _swept_looks(), by=("form", "impulses")),
             Level(1.0),
             Level(PAPER_STEP, line=":", upright=True),
         ),

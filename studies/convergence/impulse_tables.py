@@ -25,7 +25,7 @@ from studies.answers.settings import SplineSettings
 from studies.cases.problem import Problem, named_case
 from studies.engine.study import Answer, Part
 from studies.kinds import Array
-from studies.record.timing import measure
+from studies.record.progress import measure
 
 SETTINGS = SplineSettings(control_points=6)
 

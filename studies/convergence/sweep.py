@@ -1,8 +1,8 @@
 """Sweeps over refinement: one row a discretisation with its largest errors, failed ones included."""
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable
 from dataclasses import replace
-from typing import Any, TypeVar
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -19,22 +19,13 @@ from studies.engine.study import Answer, Claim, Part, Study, Tables
 from studies.kinds import Progress
 from studies.record.marks import Doubt, Slope
 from studies.record.panels import CONTROL_POINTS, MESH, Axis, Curves, Panel, sheet
-from studies.record.progress import silent
+from studies.record.progress import silent, watched
 from studies.record.style import ELEMENTS, LOOKS
-
-Item = TypeVar("Item")
 
 ERROR_COLUMNS = tuple(f"error_{name}" for name in QUANTITIES)
 
 #: Meshes above this one are answered but not extrapolated from: their stiffness carries too much round-off.
 FINEST = 160
-
-
-def spline_sweep(
-    problem: Design, settings: Sequence[SplineSettings], against: Reference, progress: Progress = silent
-) -> pd.DataFrame:
-    """Return the rows of `spline_row` for each of `settings`."""
-    return pd.DataFrame([spline_row(problem, each, against) for each in _watched(settings, progress)])
 
 
 def spline_row(problem: Design, setting: SplineSettings, against: Reference) -> dict[str, Any]:
@@ -62,7 +53,7 @@ def element_sweep(
     counts = list(elements)
     answers = [
         answer_static(problem, FeSettings(elements=count, element=element))
-        for count in _watched(counts, progress)
+        for count in watched(counts, progress)
     ]
     limit = limit_of([answer for answer in answers if answer.settings["elements"] <= FINEST])
     rows = [
@@ -70,14 +61,6 @@ def element_sweep(
         for count, answer in zip(counts, answers, strict=True)
     ]
     return with_orders(pd.DataFrame(rows), "elements"), limit
-
-
-def _watched(items: Sequence[Item], progress: Progress) -> Iterator[Item]:
-    """Yield each of `items`, and tell how many of them are done."""
-    for done, item in enumerate(items):
-        progress(done, len(items))
-        yield item
-    progress(len(items), len(items))
 
 
 def with_orders(table: pd.DataFrame, count: str) -> pd.DataFrame:
@@ -130,7 +113,7 @@ def drawn(splines: pd.DataFrame, elements: pd.DataFrame, limit: Reference) -> Fi
     """Draw the largest errors over the number of control points (above) and of elements (below).
 
     Args:
-        splines, elements: rows of `spline_sweep` and `element_sweep`.
+        splines, elements: rows of `spline_row` and of `element_sweep`.
         limit: the reference, for its uncertainty.
     """
     above, below = [], []

@@ -2,7 +2,7 @@
 
 import dataclasses
 import math
-from functools import cache
+from functools import cache, partial
 from itertools import product
 from typing import Any
 
@@ -46,7 +46,9 @@ def _of_control_points(stretch: str, n: int) -> Answer:
     """
     settings = SplineSettings(control_points=n, stretch=stretch)
     motion = formulations.resolved(settings)
-    implied = _static_frequency(answer_static(named_case(), _as_in(motion, settings)))
+    # its static path has the slide stiffness that the pivot had in motion
+    slid = dataclasses.replace(settings, slide_stiffness=motion.settings["slide_stiffness"])
+    implied = _static_frequency(answer_static(named_case(), slid))
     row = {"stretch": stretch, "control_points": n} | _outcome(motion)
     return {"control_points": row | {"shift_from_statics": implied / _finest_static_frequency() - 1.0}}
 
@@ -74,11 +76,9 @@ def _modes() -> Answer:
 
     Columns: model, count, mode, frequency_Hz, limit_Hz, error (relative), uncertainty (of the limit).
     """
-    problem = named_case()
-    meshes = {n: answer_modes(problem, FeSettings(elements=n), count=MODES).frequency for n in MODE_MESHES}
-    splines = {
-        n: answer_modes(problem, SplineSettings(control_points=n), count=MODES).frequency for n in COUNTS
-    }
+    ask: Any = partial(answer_modes, named_case(), count=MODES)
+    meshes = {n: ask(FeSettings(elements=n)).frequency for n in MODE_MESHES}
+    splines = {n: ask(SplineSettings(control_points=n)).frequency for n in COUNTS}
     # consistent masses and cubic elements: the frequencies are of order four
     limit = extrapolate([meshes[n] for n in MODE_MESHES[-3:]], order=4.0)
     rows = [
@@ -140,11 +140,6 @@ def _static_frequency(answer: Response) -> float:
         mass=problem.body_mass,
         moment_of_inertia=problem.body_moment_of_inertia,
     )
-
-
-def _as_in(motion: Motion, settings: SplineSettings) -> SplineSettings:
-    """Return `settings` with the slide stiffness that the pivot had in motion, for its static path."""
-    return dataclasses.replace(settings, slide_stiffness=motion.settings["slide_stiffness"])
 
 
 def _outcome(motion: Motion, exact: Motion | None = None) -> dict[str, Any]:

@@ -20,7 +20,7 @@ from studies.design.evaluate import CENTRE_SHIFT, STRESS, VARIABLES, VARIATION, 
 from studies.design.optimise import Outcome, best, search, starts
 from studies.design.task import OBJECTIVES, UNITS, Task, variables_of, varied
 from studies.effects.beyond import ALL, SECTIONS, relative_change, with_sections
-from studies.engine.study import Claim, Ratio, Tables
+from studies.engine.study import Claim, Tables
 from studies.kinds import Array
 from studies.record.progress import silent
 
@@ -179,7 +179,7 @@ CLAIMS = (
         value="over_plain",
         least=0.9,
         most=1.1,
-        kind=Ratio,
+        ratio=True,
     ),
     Claim(
         claim="At the usual tolerances a design keeps its stiffness within 5 %",
@@ -197,7 +197,7 @@ CLAIMS = (
             rows=_all_of(name),
             value=lambda row: 1.0 + row["solved"],
             most=2.0,
-            kind=Ratio,
+            ratio=True,
         )
         for name, words in ((each, each.replace("-", " ")) for each in OBJECTIVES)
     ),

@@ -15,6 +15,7 @@ from studies.cases.problem import Problem
 from studies.design.evaluate import CENTRE_SHIFT, Answers
 from studies.design.programme import Active, Programme, Sizing, conditions
 from studies.kinds import Array, Progress
+from studies.record.progress import watched
 
 MOST_ITERATIONS = 100
 #: Times that the optimiser is started again where it stopped short of an optimum.
@@ -176,11 +177,7 @@ def _run(programme: Programme, start: Array, at: Array, history: list[tuple[floa
 
 def search(task: Sizing, begin: Array, progress: Progress) -> list[Outcome]:
     """Optimise from scaled starts (K, N); those without an answer are left out."""
-    found = []
-    for done, start in enumerate(begin):
-        progress(done, len(begin))
-        found.append(optimise(task, start))
-    progress(len(begin), len(begin))
+    found = [optimise(task, start) for start in watched(list(begin), progress)]
     return [each for each in found if each is not None]
 
 

@@ -19,8 +19,7 @@ from studies.design.evaluate import CENTRE_SHIFT, VARIATION, Answers, Measured, 
 from studies.design.optimise import Outcome, best, numbered, search, starts
 from studies.design.programme import gradient_error
 from studies.engine.study import Answer, Part, Study
-from studies.record.progress import silent
-from studies.record.timing import measure
+from studies.record.progress import measure, silent
 
 #: Control points of what is timed, and how often it is.
 TIMED, REPEAT = (6, 8, 10), 21

@@ -2,58 +2,54 @@
 
 import importlib.util
 import math
+import os
+import pickle
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import asdict, dataclass, field
+from concurrent.futures import Executor, ProcessPoolExecutor, as_completed
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from functools import cache
+from multiprocessing import get_context
+from pathlib import Path
 from typing import Any
 
 import pandas as pd
 from matplotlib.figure import Figure
 
 from studies.cases.problem import TABLE_1
+from studies.kinds import Progress
+from studies.record.progress import silent
 from studies.record.store import Digits
+from studies.registry import study_at
 
 #: Tables of a study, by name.
 Tables = Mapping[str, pd.DataFrame]
+Row = dict[str, Any]
+#: What one asking gives to tables, by their name: a row, rows or a table of its own.
+Answer = Mapping[str, Row | Iterable[Row] | pd.DataFrame]
 
 
-@dataclass(frozen=True, kw_only=True)
-class Finding:
-    """One claim held against one formulation.
+def finding(
+    *, claim: str, formulation: str, quantity: str, value: float, holds: bool, ratio: bool = False
+) -> Row:
+    """Return the row of one claim held against one formulation, with the sentence that says it.
 
-    Attributes:
+    Args:
         claim: what the paper says, with the bound it is read as.
         formulation: which formulation it was held against.
         quantity: what was measured.
-        value: measured [1].
-        holds: whether the claim holds.
+        value: measured [1]; ratio: whether it says how many times.
+        holds: whether the claim holds, "yes" or "no" in the row.
     """
-
-    claim: str
-    formulation: str
-    quantity: str
-    value: float
-    holds: bool
-
-    def told(self) -> str:
-        """Return the value as the sentence tells it."""
-        return percent(self.value)
-
-    def sentence(self) -> str:
-        """Return the finding as a sentence."""
-        verdict = "holds" if self.holds else "does not hold"
-        return f"{self.formulation}: {self.quantity} is {self.told()}, so the claim {verdict}."
-
-    def row(self) -> dict[str, Any]:
-        """Return the columns claim, formulation, quantity, value, holds ("yes" or "no") and sentence."""
-        return asdict(self) | {"holds": "yes" if self.holds else "no", "sentence": self.sentence()}
-
-
-class Ratio(Finding):
-    """A finding whose value says how many times."""
-
-    def told(self) -> str:
-        """Return the value as the sentence tells it."""
-        return f"{self.value:.3g}"
+    told, verdict = f"{value:.3g}" if ratio else percent(value), "holds" if holds else "does not hold"
+    return {
+        "claim": claim,
+        "formulation": formulation,
+        "quantity": quantity,
+        "value": value,
+        "holds": "yes" if holds else "no",
+        "sentence": f"{formulation}: {quantity} is {told}, so the claim {verdict}.",
+    }
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -64,36 +60,35 @@ class Claim:
         claim, formulation, quantity: texts in which a column in braces stands for the row's value, formatted
             as `str.format` does.
         rows: of the tables, which rows are judged.
-        value: the column that was measured [1], or what makes it of a row.
+        value: the column that was measured [1], or what makes it of a row; ratio: it says how many times.
         holds: of a row, whether the claim holds. Without it: `least` <= value <= `most`.
-        kind: of the findings: `Ratio` where the value says how many times.
     """
 
     claim: str
     formulation: str
     quantity: str
-    rows: Callable[[Tables], pd.DataFrame | Iterable[dict[str, Any]]]
-    value: str | Callable[[dict[str, Any]], float]
-    holds: Callable[[dict[str, Any]], Any] | None = None
+    rows: Callable[[Tables], pd.DataFrame | Iterable[Row]]
+    value: str | Callable[[Row], float]
+    holds: Callable[[Row], Any] | None = None
     least: float = -math.inf
     most: float = math.inf
-    kind: type[Finding] = Finding
+    ratio: bool = False
 
-    def __call__(self, tables: Tables) -> Iterator[Finding]:
+    def __call__(self, tables: Tables) -> Iterator[Row]:
         """Yield the findings."""
         for row in records(self.rows(tables)):
             value = float(row[self.value] if isinstance(self.value, str) else self.value(row))
-            within = self.least <= value <= self.most
-            yield self.kind(
+            yield finding(
                 claim=self.claim.format(**row),
                 formulation=self.formulation.format(**row),
                 quantity=self.quantity.format(**row),
                 value=value,
-                holds=bool(self.holds(row)) if self.holds else within,
+                holds=bool(self.holds(row)) if self.holds else self.least <= value <= self.most,
+                ratio=self.ratio,
             )
 
 
-def records(rows: pd.DataFrame | Iterable[dict[str, Any]]) -> Iterable[dict[str, Any]]:
+def records(rows: pd.DataFrame | Iterable[Row]) -> Iterable[Row]:
     """Return the rows of a table by column, or rows as they are."""
     if not isinstance(rows, pd.DataFrame):
         return rows
@@ -107,13 +102,6 @@ def percent(value: float) -> str:
         digits = 0 if hundredfold == 0.0 else max(0, 1 - math.floor(math.log10(abs(hundredfold))))
         return f"{hundredfold:.{digits}f} %"
     return f"{100.0 * value:.1e} %"
-
-
-Row = dict[str, Any]
-#: What one asking gives to tables, by their name: a row, rows, findings or a table of its own.
-Answer = Mapping[str, Row | Iterable[Row] | Iterable[Finding] | pd.DataFrame]
-
-FINDINGS, OF_TIME = "findings", "findings_of_time"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -131,8 +119,12 @@ class Part:
     alone: bool = False
 
     def answer(self, point: Any) -> Answer:
-        """Return the answer at a point."""
-        return self.ask(*point) if isinstance(point, tuple) else self.ask(point)
+        """Return the answer at a point as what can be kept and sent: rows that are yielded are all there."""
+        given = self.ask(*point) if isinstance(point, tuple) else self.ask(point)
+        return {
+            name: rows if isinstance(rows, dict | pd.DataFrame) else list(rows)
+            for name, rows in given.items()
+        }
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -153,8 +145,8 @@ class Study:
     cases: tuple[str, ...] = (TABLE_1,)
     parts: tuple[Part, ...]
     made: Mapping[str, Callable[[Tables], pd.DataFrame | Iterable[Row]]] = field(default_factory=dict)
-    claims: tuple[Callable[[Tables], Iterable[Finding]], ...] = ()
-    claims_of_time: tuple[Callable[[Tables], Iterable[Finding]], ...] = ()
+    claims: tuple[Claim, ...] = ()
+    claims_of_time: tuple[Claim, ...] = ()
     figures: Mapping[str, Callable[[Tables], Figure]]
     varying: tuple[str, ...] = ()
     digits: Mapping[str, Digits] = field(default_factory=dict)
@@ -171,14 +163,12 @@ class Study:
             for name, rows in answer.items():
                 one = isinstance(rows, Mapping | pd.DataFrame)
                 given.setdefault(name, []).extend([rows] if one else rows)
-        findings = {name: given.pop(name, []) for name in (FINDINGS, OF_TIME)}
+        findings = {"findings": given.pop("findings", []), "findings_of_time": []}
         tables = {name: _as_table(rows) for name, rows in given.items()}
         for name, make in self.made.items():
             tables[name] = _as_table(make(tables))
-        for claim in self.claims:
-            findings[FINDINGS].extend(claim(tables))
-        for claim in self.claims_of_time:
-            findings[OF_TIME].extend(claim(tables))
+        for found, claims in zip(findings.values(), (self.claims, self.claims_of_time), strict=True):
+            found.extend(row for claim in claims for row in claim(tables))
         return tables | {name: _as_table(rows) for name, rows in findings.items() if rows}
 
     def draw(self, tables: Tables) -> dict[str, Figure]:
@@ -187,14 +177,14 @@ class Study:
 
 
 def _as_table(rows: pd.DataFrame | Iterable[Any]) -> pd.DataFrame:
-    """Return rows, findings or tables one below the other as one table."""
+    """Return rows, or tables one below the other, as one table."""
     if isinstance(rows, pd.DataFrame):
         return rows
     given: list[Any] = list(rows)
     if given and all(isinstance(each, pd.DataFrame) for each in given):
         whole: pd.DataFrame = pd.concat(given)
         return whole
-    return pd.DataFrame([each.row() if isinstance(each, Finding) else each for each in given])
+    return pd.DataFrame(given)
 
 
 def absent(modules: Iterable[str]) -> list[str]:
@@ -207,3 +197,104 @@ def lacking(extra: str, names: list[str]) -> str:
     if not names:
         return ""
     return f"it needs {', '.join(names)}: python -m pip install '.[{extra}]'"
+
+
+#: Part and place of a point in a study.
+Key = tuple[int, int]
+
+
+class Kept:
+    """Answers kept in a file as they come, so that an interrupted study goes on from there."""
+
+    def __init__(self, path: Path) -> None:
+        self._path = path
+        path.parent.mkdir(parents=True, exist_ok=True)
+
+    def read(self) -> dict[Key, Answer]:
+        """Return what is there; a last answer that was cut off is left out."""
+        found: dict[Key, Answer] = {}
+        if self._path.is_file():
+            with self._path.open("rb") as stream:
+                try:
+                    while True:
+                        key, answer = pickle.load(stream)
+                        found[key] = answer
+                except (EOFError, pickle.UnpicklingError):
+                    pass
+        return found
+
+    def add(self, key: Key, answer: Answer) -> None:
+        """Keep one more answer."""
+        with self._path.open("ab") as stream:
+            stream.write(pickle.dumps((key, answer)))
+
+    def forget(self) -> None:
+        """Remove all, once they are stored as tables."""
+        self._path.unlink(missing_ok=True)
+
+
+@contextmanager
+def processes(count: int) -> Iterator[Executor | None]:
+    """Yield what runs points on `count` processes, one thread each; nothing for a single one."""
+    if count < 2:
+        yield None
+        return
+    pool = ProcessPoolExecutor(count, mp_context=get_context("spawn"))
+    try:
+        yield pool
+    finally:
+        pool.shutdown(cancel_futures=True)
+
+
+def cores() -> int:
+    """Return how many processes this one may run beside each other."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+def answered(
+    study: Study,
+    progress: Progress = silent,
+    *,
+    kept: Kept | None = None,
+    pool: Executor | None = None,
+    module: str = "",
+) -> dict[str, pd.DataFrame]:
+    """Return the tables of `study`.
+
+    Args:
+        progress: is told how many points of how many are done.
+        kept: where answers are kept until the study is whole, and taken from if it was begun.
+        pool: runs the points beside each other, but those of parts that must be alone; with it `module` is
+            the place, of `study_at`, where the other processes find the study.
+    """
+    points = [list(part.at()) for part in study.parts]
+    keys = [(i, k) for i, some in enumerate(points) for k in range(len(some))]
+    found = kept.read() if kept else {}
+    open_keys = [key for key in keys if key not in found]
+    beside = [key for key in open_keys if pool and not study.parts[key[0]].alone]
+
+    def note(key: Key, answer: Answer) -> None:
+        found[key] = answer
+        if kept:
+            kept.add(key, answer)
+        progress(len(found), len(keys))
+
+    progress(len(found), len(keys))
+    if pool:
+        waiting = {pool.submit(_elsewhere, module, *key): key for key in beside}
+        for future in as_completed(waiting):
+            note(waiting[future], future.result())
+    for key in open_keys:
+        if key not in found:
+            note(key, study.parts[key[0]].answer(points[key[0]][key[1]]))
+    return study.tables(found[key] for key in keys)
+
+
+def _elsewhere(module: str, part: int, place: int) -> Answer:
+    """Answer one point in another process, which has the study from its module."""
+    return study_at(module).parts[part].answer(_points(module, part)[place])
+
+
+@cache
+def _points(module: str, part: int) -> list[Any]:
+    return list(study_at(module).parts[part].at())

@@ -199,7 +199,7 @@ def _svg(fields: Fields, drawn: list[int]) -> Contents:
 
     with style.applied():
         if fields.mode_shape is not None:
-            figure = shapes.modes([(fields, "", "-")], drawn)
+            figure = shapes.modes([(fields, None)], drawn)
         else:
             figure = style.page(SIZE, SIZE + 0.9)
             panel = figure.subplots()
@@ -208,7 +208,7 @@ def _svg(fields: Fields, drawn: list[int]) -> Contents:
             what = {"static": "static path", "release": "motion after the release"}[fields.analysis]
             panel.set_title(f"{shapes.NAMES[fields.model]}: {what}")
             figure.legend(handles=handles, loc="outside lower center", ncols=3)
-        return {f"{fields.analysis}.svg": style.vector(figure)}
+        return {f"{fields.analysis}.svg": style.rendered(figure, "svg")}
 
 
 def _csv(fields: Fields, drawn: list[int]) -> Contents:

@@ -24,7 +24,7 @@ from fe_reference import plate_factors
 from studies.answers.adapters import answer_static
 from studies.answers.settings import SplineSettings
 from studies.cases.mechanism import Mechanism
-from studies.engine.study import Answer, Claim, Part, Ratio, Study, Tables
+from studies.engine.study import Answer, Claim, Part, Study, Tables
 from studies.model_form.solids import guide_compliance, linear_factor, solid_factor
 from studies.published.case import loaded, published
 from studies.record.marks import Level, Words
@@ -174,7 +174,7 @@ STUDY = Study(
             rows=lambda tables: _flattened(tables["account"]),
             value="ratio",
             most=ALIKE,
-            kind=Ratio,
+            ratio=True,
         ),
     ),
     figures={"model_form_account": _figure},

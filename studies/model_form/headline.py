@@ -18,7 +18,7 @@ from studies.answers.adapters import answer_static
 from studies.answers.models import put
 from studies.answers.settings import FeSettings, Settings, SplineSettings
 from studies.baselines.constraint_strips import guide
-from studies.engine.study import Answer, Claim, Part, Ratio, Study, Tables, records
+from studies.engine.study import Answer, Claim, Part, Study, Tables, records
 from studies.model_form.account import (
     BEAM,
     BOTH,
@@ -37,8 +37,8 @@ from studies.model_form.account import LOOKS as WORDS
 from studies.published.case import loaded
 from studies.record.marks import Level, Words
 from studies.record.panels import Axis, Curves, Mark, Panel, sheet
+from studies.record.progress import measure
 from studies.record.style import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, Look
-from studies.record.timing import measure
 
 #: Displacement of the stage [m] by solids of 3 mm, the finest in print, and the strips' length [m].
 TRUTH, LENGTH = 48.6102e-3, 0.25
@@ -231,7 +231,7 @@ STUDY = Study(
             rows=_cheaper,
             value="ratio",
             least=1.0,
-            kind=Ratio,
+            ratio=True,
         ),
     ),
     varying=("times",),

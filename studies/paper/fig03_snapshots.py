@@ -10,7 +10,7 @@ from scipy.interpolate import CubicSpline
 
 from studies.answers.response import Response
 from studies.cases.problem import named_case
-from studies.engine.study import Answer, Finding, Part, Study, Tables
+from studies.engine.study import Answer, Part, Study, Tables, finding
 from studies.kinds import Array
 from studies.paper import formulations
 from studies.paper.formulations import FE, LOCKING_FREE, PAPER, REFINED, SETTINGS
@@ -32,7 +32,7 @@ def _compared(name: str) -> Answer:
     """Return a formulation's shapes at the snapshots, and their distance to the finest elements."""
     answer = formulations.answer(name)
     distance = _distance(answer, formulations.refined().finest) / named_case().length
-    found = Finding(
+    found = finding(
         claim="Conclusion: four control points approximate negligibly (shape within 1 % of the length)",
         formulation=name,
         quantity="the largest distance across the reference curve, over the length,",

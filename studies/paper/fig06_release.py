@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from studies.answers.motion import Motion
 from studies.answers.reference import Swing, SwingReference, sampled
 from studies.answers.settings import SplineSettings
-from studies.engine.study import Answer, Finding, Part, Study, Tables
+from studies.engine.study import Answer, Part, Row, Study, Tables, finding
 from studies.paper import formulations
 from studies.paper.formulations import FE, LOCKING_FREE, MEANING, PAPER, REFINED, SETTINGS
 from studies.record.marks import Doubt
@@ -152,14 +152,14 @@ def _summary(name: str, motion: Motion, limit: SwingReference) -> dict[str, Any]
     }
 
 
-def _findings(name: str, motion: Motion, elements: Motion) -> list[Finding]:
+def _findings(name: str, motion: Motion, elements: Motion) -> list[Row]:
     """Return the claims of Fig 6 held against a spline, compared with 20 elements as there."""
     twenty = sampled(elements, formulations.INSTANTS).centre
     distance = np.linalg.norm(sampled(motion, formulations.INSTANTS).centre - twenty, axis=1).max()
     distance /= np.linalg.norm(np.ptp(twenty, axis=0))  # the diagonal of the rectangle that the path fills
     shift = motion.frequency / elements.frequency - 1.0
     return [
-        Finding(
+        finding(
             claim="Fig 6: the two time histories are slightly different "
             "(within 10 % of the travel over 0.05 s)",
             formulation=name,
@@ -167,7 +167,7 @@ def _findings(name: str, motion: Motion, elements: Motion) -> list[Finding]:
             value=float(distance),
             holds=bool(motion.converged and distance < SLIGHT),
         ),
-        Finding(
+        finding(
             claim="Fig 6: the spline swings at a higher frequency than 20 finite elements",
             formulation=name,
             quantity="the signed difference of the frequency to 20 finite elements",

@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from studies.answers.metrics import relative_error, trajectory_error
 from studies.answers.reference import Reference, errors
 from studies.answers.response import Response
-from studies.engine.study import Answer, Claim, Finding, Part, Study, Tables
+from studies.engine.study import Answer, Claim, Part, Row, Study, Tables, finding
 from studies.kinds import Array
 from studies.paper import formulations
 from studies.paper.formulations import FE, REFINED, SETTINGS
@@ -184,11 +184,11 @@ def _curves_and_errors(tables: Tables, quantity: str, column: str, label: str) -
     return above, below
 
 
-def _findings(name: str, answer: Response, against: Response) -> list[Finding]:
+def _findings(name: str, answer: Response, against: Response) -> list[Row]:
     """Return the claims of Fig 5 held against one formulation, compared with 20 elements as there."""
     off = {of: relative_error(getattr(answer, of), getattr(against, of)) for of in ("torque", "stiffness")}
     found = [
-        Finding(
+        finding(
             claim=f"Fig 5: the differences are negligible ({of} within 3 % at every rotation)",
             formulation=name,
             quantity=f"the largest difference of the {of} to 20 finite elements",
@@ -197,7 +197,7 @@ def _findings(name: str, answer: Response, against: Response) -> list[Finding]:
         )
         for of, difference in off.items()
     ]
-    stiffer = Finding(
+    stiffer = finding(
         claim="Fig 5: the spline overestimates the stiffness (at the end of the movement)",
         formulation=name,
         quantity="the signed difference of the stiffness to 20 finite elements at the end",

@@ -1,7 +1,7 @@
 """One answer, or several over one another, on a page: curves, and the deformed shapes to scale."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -15,11 +15,10 @@ from studies.answers.response import Answered
 from studies.errors import BadInput
 from studies.kinds import Array
 from studies.pictures import shapes
-from studies.pictures.charts import Chart, Curve, Quantity
-from studies.pictures.shown import LETTERS, TURNED, Shown
+from studies.pictures.shown import LETTERS, TURNED, Chart, Curve, Quantity, Shown
 from studies.record import style
 from studies.record.files import PICTURES, write_whole
-from studies.record.style import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, RED
+from studies.record.style import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, RED, Look
 
 #: Colours and lines of answers over one another.
 SEVERAL: tuple[tuple[str, Any], ...] = (
@@ -49,12 +48,12 @@ SHIFT = Quantity(name="centre shift", unit="m", highest=-3)
 Values = Callable[[Shown], Array | None]
 
 
-def _look(place: int, shown: Sequence[Shown]) -> dict[str, Any]:
-    """Return name, colour and line of an answer among those that are shown: letters where they are many."""
+def _looks(shown: Sequence[Shown]) -> list[Look]:
+    """Return name, colour and line of the answers that are shown: letters where they are many."""
     if len(shown) == 1:
-        return {"name": "", "colour": shapes.COLOURS[shown[0].fields.model], "line": "-"}
-    colour, line = SEVERAL[place]
-    return {"name": LETTERS[place], "colour": colour, "line": line}
+        return [Look(label="", colour=shapes.COLOURS[shown[0].fields.model])]
+    several = zip(LETTERS, SEVERAL, shown, strict=False)
+    return [Look(label=letter, colour=colour, line=line) for letter, (colour, line), _ in several]
 
 
 def _charts_of(shown: Sequence[Shown]) -> Iterator[Chart]:
@@ -97,11 +96,11 @@ def _chart(
     shown: Sequence[Shown], x: Quantity, y: Quantity, across: Values, up: Values, **more: Any
 ) -> Iterator[Chart]:
     """Yield the chart of a quantity of all that have it; none where none has."""
-    curves = []
-    for place, each in enumerate(shown):
+    curves: list[Curve] = []
+    for look, each in zip(_looks(shown), shown, strict=True):
         along, values = across(each), up(each)
         if along is not None and values is not None:
-            curves.append(Curve(x=along, y=values, **_look(place, shown)))
+            curves.append((look, along, values))
     if curves:
         yield Chart(x=x, y=y, curves=tuple(curves), **more)
 
@@ -123,7 +122,7 @@ def _energies(shown: Sequence[Shown], x: Quantity, over: Callable[[Shown], Array
     parts = {
         name: part for name, part in only.fields.energies.items() if np.abs(part).max() > SHARE * largest
     }
-    curves = tuple(Curve(name=name, x=over(only), y=part, colour=PARTS[name]) for name, part in parts.items())
+    curves = tuple((Look(label=name, colour=PARTS[name]), over(only), part) for name, part in parts.items())
     if curves:
         yield Chart(x=x, y=ENERGY, curves=curves)
 
@@ -164,8 +163,7 @@ def picture(shown: Sequence[Shown]) -> Figure:
 
 
 def _modes(shown: Sequence[Shown]) -> Figure:
-    looks = [_look(place, shown) for place in range(len(shown))]
-    drawn = [(each.fields, own["colour"], own["line"]) for each, own in zip(shown, looks, strict=True)]
+    drawn = [(each.fields, look) for each, look in zip(shown, _looks(shown), strict=True)]
     figure = shapes.modes(drawn, range(max(len(each.fields.values) for each in shown)))
     _head(figure, shown)
     return figure
@@ -191,27 +189,21 @@ def _head(figure: Figure, shown: Sequence[Shown]) -> None:
     if len(shown) == 1:
         figure.suptitle(shown[0].name, x=0.01, ha="left")
         return
-    key = [_entry(shown, place) for place in range(len(shown))]
-    figure.legend(handles=key, loc="outside upper left", ncols=1, handlelength=3.0, fontsize=8.0)
-
-
-def _entry(shown: Sequence[Shown], place: int) -> Line2D:
-    own = _look(place, shown)
-    return Line2D(
-        [], [], color=own["colour"], linestyle=own["line"], label=f"{own['name']}  {shown[place].name}"
-    )
+    named = zip(_looks(shown), shown, strict=True)
+    looks = [replace(look, label=f"{look.label}  {each.name}") for look, each in named]
+    handles = [Line2D([], [], **look.keywords()) for look in looks]
+    figure.legend(handles=handles, loc="outside upper left", ncols=1, handlelength=3.0, fontsize=8.0)
 
 
 def _shapes(figure: Figure, place: Any, shown: Sequence[Shown]) -> None:
     """Draw one design at some of its states, or several where their paths end, in their own colours."""
     panel = figure.add_subplot(place)
     several = len(shown) > 1
-    for k, each in enumerate(shown):
+    for look, each in zip(_looks(shown), shown, strict=True):
         last = len(each.fields.values) - 1
         parts = (1.0,) if several else STATES[each.fields.analysis]
         states = sorted({round(part * last) for part in parts})
-        own = _look(k, shown)
-        handles = shapes.states_over_rest(panel, each.fields, states, colour=own["colour"], line=own["line"])
+        handles = shapes.states_over_rest(panel, each.fields, states, look)
     shapes.to_scale(panel)
     panel.margins(0.06)
     if several:

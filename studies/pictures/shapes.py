@@ -15,7 +15,7 @@ from studies.cases.keys import GROUND
 from studies.exchange.vtk import mode_scale
 from studies.kinds import Array
 from studies.record import style
-from studies.record.style import BLACK, BLUE, GREEN
+from studies.record.style import BLACK, BLUE, GREEN, Look
 
 #: Colours of the models as in the figures of the studies: elements black, with shear green, splines blue.
 COLOURS = {"spline": BLUE, "fe": BLACK, "fe-shear": GREEN}
@@ -27,29 +27,30 @@ ROW, MOST_MODES, ROW_HEIGHT, TITLE = 3, 12, 2.1, 28
 
 
 def states_over_rest(
-    panel: Axes, fields: Fields, states: Sequence[int], *, colour: str = "", line: Any = "-"
+    panel: Axes, fields: Fields, states: Sequence[int], look: Look | None = None
 ) -> list[Line2D]:
     """Draw states over the shape at rest, later ones stronger; return what a legend says of them."""
     _at_rest(panel, fields, fields.rest_shape, fields.rest_bodies)
     handles = [Line2D([], [], color=REST, linestyle="--", label="at rest")]
     for state, strength in zip(states, _strengths(len(states)), strict=True):
-        look: dict[str, Any] = {
-            "color": colour or COLOURS[fields.model],
-            "alpha": strength,
-            "linestyle": line,
-            "linewidth": 1.8,
-        }
-        _deformed(panel, fields, fields.shape[state], fields.bodies[state, :, :2], **look)
-        handles.append(Line2D([], [], label=_named(fields, state), **look))
+        how = _line(fields, look) | {"alpha": strength}
+        _deformed(panel, fields, fields.shape[state], fields.bodies[state, :, :2], **how)
+        handles.append(Line2D([], [], label=_named(fields, state), **how))
     return handles
 
 
-def modes(several: Sequence[tuple[Fields, str, Any]], states: Sequence[int]) -> Figure:
+def _line(fields: Fields, look: Look | None) -> dict[str, Any]:
+    """Return colour and line as of `Axes.plot`, those of the model without a look."""
+    look = look or Look(label="", colour=COLOURS[fields.model])
+    return {"color": look.colour, "linestyle": look.line, "linewidth": 1.8}
+
+
+def modes(several: Sequence[tuple[Fields, Look | None]], states: Sequence[int]) -> Figure:
     """Return the drawings of modes, the first `MOST_MODES` of them, over the state that they are about.
 
     Args:
-        several: of each design its fields, colour ("" for that of its model) and line; the modes of the same
-            number stand over one another, with the sign that turns them the same way.
+        several: of each design its fields and look, None for that of its model; the modes of the same number
+            stand over one another, with the sign that turns them the same way.
         states: the modes, by their place.
     """
     chosen = list(states)[:MOST_MODES]
@@ -61,8 +62,8 @@ def modes(several: Sequence[tuple[Fields, str, Any]], states: Sequence[int]) -> 
         panel.set_axis_off()
     for place, (panel, state) in enumerate(zip(panels, chosen, strict=False)):
         there = [each for each in several if state < len(each[0].values)]
-        for fields, colour, line in there:
-            _mode(panel, fields, state, _turned_as(fields, there[0][0], state), colour, line)
+        for fields, look in there:
+            _mode(panel, fields, state, _turned_as(fields, there[0][0], state), look)
         rates = ", ".join(f"{float(np.asarray(each[0].frequency)[state]):.5g}" for each in there)
         panel.set_title(textwrap.fill(f"mode {state + 1}: {rates} Hz", TITLE))
         left, bottom = place % columns == 0, place + columns >= len(chosen)
@@ -70,14 +71,13 @@ def modes(several: Sequence[tuple[Fields, str, Any]], states: Sequence[int]) -> 
     return figure
 
 
-def _mode(panel: Axes, fields: Fields, state: int, sign: float, colour: str, line: Any) -> None:
+def _mode(panel: Axes, fields: Fields, state: int, sign: float, look: Look | None) -> None:
     """Draw a mode of a design over the state that it is about."""
     scale = sign * mode_scale(fields, state)
     shape = fields.shape[state] + scale * np.asarray(fields.mode_shape)[state]
     moved = fields.bodies[state, :, :2] + scale * np.asarray(fields.mode_bodies)[state, :, :2]
     _at_rest(panel, fields, fields.shape[state], fields.bodies[state, :, :2])
-    look: dict[str, Any] = {"color": colour or COLOURS[fields.model], "linestyle": line, "linewidth": 1.8}
-    _deformed(panel, fields, shape, moved, **look)
+    _deformed(panel, fields, shape, moved, **_line(fields, look))
 
 
 def _turned_as(fields: Fields, first: Fields, state: int) -> float:

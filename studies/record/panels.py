@@ -98,7 +98,6 @@ class Curves:
         family: column whose values have a curve each in the same look.
         along: column in whose order points are joined, x by default.
         y: column in place of the axis's.
-        faint: whether marks alone are drawn, faintly and without a name.
         more: of `Axes.plot`.
     """
 
@@ -108,7 +107,6 @@ class Curves:
     family: str = ""
     along: str = ""
     y: str = ""
-    faint: bool = False
     more: Mapping[str, Any] | None = None
 
     def draw(self, panel: Axes, x: Axis, y: Axis) -> None:
@@ -116,10 +114,7 @@ class Curves:
         upright = replace(y, column=self.y or y.column)
         for look, rows in self._curves():
             ordered = rows.sort_values(self.along or x.column, kind="stable")
-            how = look.keywords() | dict(self.more or {})
-            if self.faint:
-                how |= {"linestyle": "", "alpha": 0.35, "label": None}
-            panel.plot(x.of(ordered), upright.of(ordered), **how)
+            panel.plot(x.of(ordered), upright.of(ordered), **look.keywords() | dict(self.more or {}))
 
     def _curves(self) -> Iterable[tuple[Look, pd.DataFrame]]:
         """Yield the rows of every curve with its look, which has a name where it is first drawn."""

@@ -4,7 +4,6 @@ Provenance says what a stored result was made from, and whether it still stands.
 """
 
 import datetime
-import hashlib
 import importlib.metadata
 import io
 import json
@@ -12,6 +11,7 @@ import os
 import platform
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from hashlib import sha256
 from pathlib import Path
 from typing import Any
 
@@ -30,16 +30,11 @@ DEPENDENCIES = ("numpy", "scipy", "numba", "scikit-fem", "pandas", "matplotlib")
 
 
 @dataclass(frozen=True, kw_only=True)
-class State:
+class _State:
     """Whether a stored study is "fresh", "stale" or "missing", and why."""
 
     kind: str
     reason: str = ""
-
-
-def sha256(content: bytes) -> str:
-    """Return the SHA-256 of `content` in hexadecimal."""
-    return hashlib.sha256(content).hexdigest()
 
 
 def inputs(module: str, cases: Iterable[str]) -> dict[str, Any]:
@@ -56,7 +51,7 @@ def _fingerprint(name: str) -> str:
     """Return the hash of a design by its name, of the values of another file by its path below studies/."""
     if "/" not in name:
         return fingerprint(named_design(name))
-    return sha256(json.dumps(parsed(_file(name)), sort_keys=True).encode())
+    return sha256(json.dumps(parsed(_file(name)), sort_keys=True).encode()).hexdigest()
 
 
 def _file(name: str) -> Path:
@@ -75,31 +70,6 @@ def _surroundings() -> dict[str, Any]:
         "threads": os.environ.get("OMP_NUM_THREADS", "not set"),
     }
     return {"versions": versions, "machine": machine, "date": datetime.date.today().isoformat()}
-
-
-def _judge(record: Mapping[str, Any], now: Mapping[str, Any], *, data: Path, figures: Path) -> State:
-    """Return whether the result described by `record` still stands.
-
-    Args:
-        record: its provenance.
-        now: `inputs` of the study as it is today.
-        data: folder of its tables.
-        figures: folder of all figures.
-    """
-    for folder, kind in ((data, "tables"), (figures, "figures")):
-        for name, digest in record[kind].items():
-            path = folder / name
-            if not path.is_file():
-                return State(kind="missing", reason=f"{name} does not exist")
-            if sha256(path.read_bytes()) != digest:
-                return State(kind="stale", reason=f"{name} was changed after it was made")
-    if not record["figures"]:
-        return State(kind="missing", reason="no figure was drawn")
-    if record["inputs"]["cases"] != now["cases"]:
-        return State(kind="stale", reason="a case was changed")
-    if record["inputs"]["source_sha256"] != now["source_sha256"]:
-        return State(kind="stale", reason="the source was changed")
-    return State(kind="fresh")
 
 
 def _processor() -> str:
@@ -154,7 +124,7 @@ class Store:
             "elapsed_s": round(elapsed, 2),
             **_surroundings(),
         }
-        replace_folder(self.data(study), {**contents, PROVENANCE: as_json(record)})
+        replace_folder(self.data(study), {**contents, PROVENANCE: _as_json(record)})
 
     def load_tables(self, study: str) -> dict[str, pd.DataFrame]:
         """Return the stored tables of `study`; FileNotFoundError when there are none."""
@@ -167,9 +137,9 @@ class Store:
     def save_figures(self, study: str, figures: Mapping[str, Figure]) -> None:
         """Store the figures of `study` as SVG and PNG and note them in its provenance."""
         contents = {
-            f"{name}.{kind}": content
+            f"{name}.{kind}": rendered(figure, kind)
             for name, figure in figures.items()
-            for kind, content in rendered(figure).items()
+            for kind in ("svg", "png")
         }
         record = self.record(study)
         require_writable_folder(self.figures)
@@ -178,26 +148,40 @@ class Store:
         for name, content in contents.items():
             write_whole(self.figures / name, content)
         record["figures"] = _hashes(contents)
-        write_whole(self.data(study) / PROVENANCE, as_json(record))
+        self._note(study, record)
 
     def renew(self, study: str, *, module: str, cases: Iterable[str]) -> None:
         """Note that the stored tables are those of the present source and cases."""
-        record = self.record(study) | {"inputs": inputs(module, cases)}
-        write_whole(self.data(study) / PROVENANCE, as_json(record))
+        self._note(study, self.record(study) | {"inputs": inputs(module, cases)})
+
+    def _note(self, study: str, record: Mapping[str, Any]) -> None:
+        write_whole(self.data(study) / PROVENANCE, _as_json(record))
 
     def record(self, study: str) -> dict[str, Any]:
         """Return the provenance of `study`; FileNotFoundError when it was never run."""
         record: dict[str, Any] = json.loads((self.data(study) / PROVENANCE).read_text(encoding="utf-8"))
         return record
 
-    def state(self, study: str, *, module: str, cases: Iterable[str]) -> State:
+    def state(self, study: str, *, module: str, cases: Iterable[str]) -> _State:
         """Return whether the stored result of `study` is fresh, stale or missing."""
         try:
             record = self.record(study)
         except FileNotFoundError:
-            return State(kind="missing", reason="never run")
+            return _State(kind="missing", reason="never run")
+        for folder, kind in ((self.data(study), "tables"), (self.figures, "figures")):
+            for name, digest in record[kind].items():
+                path = folder / name
+                if not path.is_file():
+                    return _State(kind="missing", reason=f"{name} does not exist")
+                if sha256(path.read_bytes()).hexdigest() != digest:
+                    return _State(kind="stale", reason=f"{name} was changed after it was made")
+        if not record["figures"]:
+            return _State(kind="missing", reason="no figure was drawn")
         now = inputs(module, cases)
-        return _judge(record, now, data=self.data(study), figures=self.figures)
+        for part, said in (("cases", "a case"), ("source_sha256", "the source")):
+            if record["inputs"][part] != now[part]:
+                return _State(kind="stale", reason=f"{said} was changed")
+        return _State(kind="fresh")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -234,10 +218,10 @@ def as_csv(table: pd.DataFrame) -> bytes:
     return text.getvalue().encode()
 
 
-def as_json(record: Mapping[str, Any]) -> bytes:
+def _as_json(record: Mapping[str, Any]) -> bytes:
     """Return `record` as indented JSON that ends with a newline."""
     return (json.dumps(record, indent=2) + "\n").encode()
 
 
 def _hashes(contents: Mapping[str, bytes]) -> dict[str, str]:
-    return {name: sha256(content) for name, content in sorted(contents.items())}
+    return {name: sha256(content).hexdigest() for name, content in sorted(contents.items())}

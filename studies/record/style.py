@@ -2,8 +2,7 @@
 
 import io
 import re
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from typing import Any
 
@@ -48,6 +47,10 @@ SETTINGS: Any = {
     "path.simplify_threshold": 0.8,
     "savefig.dpi": 180,
 }
+
+
+#: What each format says of a file that differs from one day or machine to the next.
+UNSAID = {"svg": "Date", "png": "Software", "pdf": "CreationDate"}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -117,11 +120,9 @@ PRINTED: Any = {
 }
 
 
-@contextmanager
-def applied(**more: Any) -> Iterator[None]:
-    """Draw in the suite's style within this context, with `more` settings of matplotlib."""
-    with mpl.rc_context(SETTINGS | more):
-        yield
+def applied(**more: Any) -> AbstractContextManager[None]:
+    """Return the context that draws in the suite's style, with `more` settings of matplotlib."""
+    return mpl.rc_context(SETTINGS | more)
 
 
 def page(width: float, height: float) -> Figure:
@@ -133,30 +134,24 @@ def page(width: float, height: float) -> Figure:
     return Figure(figsize=(share * width, (0.1 + 0.9 * share) * height), layout="constrained")
 
 
-def rendered(figure: Figure) -> Mapping[str, bytes]:
-    """Return `figure` as {"svg": ..., "png": ...}: the same bytes for the same figure."""
-    return {"svg": vector(figure), "png": _in_palette(_saved(figure, "png", "Software"))}
-
-
-def vector(figure: Figure) -> bytes:
-    """Return the SVG of `figure` alone."""
-    return _short(_saved(figure, "svg", "Date"))
+def rendered(figure: Figure, kind: str) -> bytes:
+    """Return `figure` as "svg" or "png", as small as it looks the same: equal bytes for an equal figure."""
+    return {"svg": _short, "png": _in_palette}[kind](_saved(figure, kind))
 
 
 def printed(figure: Figure, kind: str) -> bytes:
     """Return a picture at the width of a page as one of `PICTURES`: the same bytes for the same figure."""
-    unsaid = {"svg": "Date", "png": "Software", "pdf": "CreationDate"}[kind]
-    return _saved(figure, kind, unsaid, **PRINTED)
+    return _saved(figure, kind, **PRINTED)
 
 
-def _saved(figure: Figure, kind: str, unsaid: str, **settings: Any) -> bytes:
+def _saved(figure: Figure, kind: str, **settings: Any) -> bytes:
     """Return `figure` in a format, without what differs from one day or machine to the next."""
     stream = io.BytesIO()
     for said in figure.findobj(Text):
         for given, written in WRITTEN.items():
             said.set_text(said.get_text().replace(given, written))
     with applied(**settings):
-        figure.savefig(stream, format=kind, metadata={unsaid: None})
+        figure.savefig(stream, format=kind, metadata={UNSAID[kind]: None})
     return stream.getvalue()
 
 

@@ -18,7 +18,7 @@ from studies.answers.settings import SplineSettings
 from studies.baselines.answer import SolvedMotion
 from studies.baselines.variants import missing
 from studies.cases.problem import named_case
-from studies.engine.study import Answer, Claim, Part, Ratio, Study, Tables
+from studies.engine.study import Answer, Claim, Part, Study, Tables
 from studies.kinds import Array
 from studies.work_precision.equal_error import diagram, digits, finer, less
 from studies.work_precision.members import RECORDS, Member, at, motion_errors
@@ -123,7 +123,7 @@ STUDY = Study(
             rows=_swing,
             value=lambda row: DURATION / row["solve_s"],
             holds=lambda row: DURATION / row["solve_s"] > 5.0,
-            kind=Ratio,
+            ratio=True,
         ),
     ),
     figures={

@@ -9,7 +9,7 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from studies.engine.study import Claim, Ratio, Tables, records
+from studies.engine.study import Claim, Tables, records
 from studies.record.panels import Axis, Curves, Panel, sheet
 from studies.record.style import Look
 from studies.work_precision.series import SPLINE
@@ -105,7 +105,7 @@ def less(cost: str, table: str, claim: str, targets: Sequence[float]) -> Claim:
         ],
         value="ratio",
         holds=lambda row: row["ratio"] > 1.0,
-        kind=Ratio,
+        ratio=True,
     )
 
 

@@ -1,6 +1,8 @@
-"""The sections as the tests read them: their prose without what may hold digits, and the names they quote."""
+"""The sections as the tests read them: prose without what may hold digits, the names they quote; results."""
 
 import re
+
+import pandas as pd
 
 from studies.record.source import ROOT
 
@@ -51,3 +53,13 @@ def quoted(function: str) -> set[str]:
         found |= set(re.findall(rf'\b{function}\("([^"]+)"\)', source))
         found |= set(re.findall(rf'\b{function}\("([^"]+)"[,\[]', source))
     return found
+
+
+class OneTable:
+    """Results in which every table is the same one."""
+
+    def __init__(self, **columns):
+        self._table = pd.DataFrame(columns)
+
+    def table(self, study, name):
+        return self._table

@@ -5,7 +5,6 @@ import shutil
 import subprocess
 import sys
 
-import pandas as pd
 import pytest
 
 import report.build
@@ -14,6 +13,7 @@ from report.facts import Fact, ReportError, Results, Stored, table
 from report.forms import percent
 from studies.record.source import ROOT
 from studies.record.store import RESULTS, Store
+from tests.report.sources import OneTable
 
 FIG04 = "paper/fig04_trajectory"
 
@@ -74,16 +74,6 @@ def test_stale_results_pass_when_allowed(changed):
     assert results.stale == {FIG04: "findings.csv was changed after it was made"}
 
 
-class _Given:
-    """Results of one table."""
-
-    def __init__(self, **columns):
-        self._table = pd.DataFrame(columns)
-
-    def table(self, study, name):
-        return self._table
-
-
 @pytest.mark.parametrize(
     ("columns", "reason"),
     [
@@ -99,15 +89,15 @@ def test_number_that_is_not_there_is_refused(columns, reason):
     """A fact that is no number, or not one number, is named with its table."""
     given = Stored("study", "table").at("value", percent, formulation="a")
     if columns.get("value") == ["word"]:
-        assert given.given("name", _Given(**columns | {"value": [0.5]})) == "50\u00a0%"
+        assert given.given("name", OneTable(**columns | {"value": [0.5]})) == "50\u00a0%"
         return
     with pytest.raises(ReportError, match=rf"^name: .*{reason}.*\(study/table\)$"):
-        given.given("name", _Given(**columns))
+        given.given("name", OneTable(**columns))
 
 
 def test_condition_and_table_without_their_data_are_refused():
     """A condition or table that asks for what is not there is named."""
-    missing = _Given(a=[1])
+    missing = OneTable(a=[1])
     lost = Fact(made=lambda r: Stored("", "").value(r, "b"), form=bool, said="some words")
     with pytest.raises(ReportError, match=r"^name: no column b.* \(some words\)$"):
         lost.given("name", missing)

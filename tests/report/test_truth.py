@@ -12,17 +12,7 @@ from report.content.hard_cases import kinds
 from studies.record.source import ROOT
 from studies.record.store import Store
 from studies.stability.family import COLUMNS, DEFAULT, VARIED
-from tests.report.sources import SECTIONS, text
-
-
-class _One:
-    """Results in which every table is the same one."""
-
-    def __init__(self, **columns):
-        self._table = pd.DataFrame(columns)
-
-    def table(self, study, name):
-        return self._table
+from tests.report.sources import SECTIONS, OneTable, text
 
 
 def _stored(study, name):
@@ -77,7 +67,9 @@ def test_surrogate_that_is_nearer_to_the_end_takes_the_sentence_with_it():
 
     def given(*spline):
         errors = np.concatenate([np.full(5, 0.5), spline, spline])
-        return _One(model=np.repeat(models, 5), rotation_rad=np.tile(np.arange(5.0), 3), trajectory=errors)
+        return OneTable(
+            model=np.repeat(models, 5), rotation_rad=np.tile(np.arange(5.0), 3), trajectory=errors
+        )
 
     assert condition.made(given(0.0, 0.1, 0.9, 0.9, 0.1))
     assert not condition.made(given(0.0, 0.1, 0.9, 0.9, 0.9))
@@ -160,7 +152,7 @@ def test_cost_is_compared_by_one_criterion(content):
 
 def test_floor_is_what_a_formulation_ends_on():
     """Requirement: a floor is the error at the most control points, not the least of any setting."""
-    given = _One(
+    given = OneTable(
         basis="bezier", measure="spatial", stretch="mixed", control_points=[6, 6, 12, 12],
         error_trajectory=[0.0005, 0.0008, 0.00075, 0.00075],
     )  # fmt: skip
@@ -169,7 +161,7 @@ def test_floor_is_what_a_formulation_ends_on():
 
 def test_energy_at_the_start_is_that_of_the_start():
     """Requirement: the energy that a swing begins with is taken at its first instant."""
-    given = _One(formulation="FE refined", time_s=[0.0, 0.01], strain_J=[726.19, 728.45])
+    given = OneTable(formulation="FE refined", time_s=[0.0, 0.01], strain_J=[726.19, 728.45])
     assert quotable()["facts"]["fig06.energy"].made(given) == 726.19
 
 

@@ -6,8 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from studies.record.source import ROOT
-from studies.record.syntax import imports
+from studies.record.source import ROOT, imports
 
 REPOSITORY = {"spline_model", "fe_reference", "studies", "tests", "report"}
 MODELS = {

@@ -2,7 +2,7 @@
 
 import pytest
 
-from studies.record.source import forget_stale
+from studies.record.files import forget_stale
 
 SOURCES = {
     "spline_model/__init__.py": "",

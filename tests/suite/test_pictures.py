@@ -18,9 +18,8 @@ from studies.answers.fields import fields_of, own_fields
 from studies.answers.settings import FeSettings, SplineSettings
 from studies.cases.design import named_design
 from studies.errors import BadInput
-from studies.pictures.charts import APART, WITHIN, apart
 from studies.pictures.page import picture, turning
-from studies.pictures.shown import Shown
+from studies.pictures.shown import APART, WITHIN, Shown, apart
 from studies.record import style
 from tests.table_one import SIX, TABLE_ONE
 

@@ -1,7 +1,9 @@
 """The committed results are fresh, can be drawn again, reproduce, and are what README.md says."""
 
 import importlib.metadata
+import json
 import shutil
+from hashlib import sha256
 
 import numpy as np
 import pandas as pd
@@ -11,12 +13,12 @@ from matplotlib.legend import Legend
 
 from studies.__main__ import main
 from studies.commands import readme
-from studies.engine.answer import answered
+from studies.engine.study import answered
 from studies.errors import BadInput
 from studies.paper import formulations
 from studies.record import style
 from studies.record.source import ROOT
-from studies.record.store import Store, as_csv, as_json, same, sha256
+from studies.record.store import Store, as_csv, same
 from studies.registry import STUDIES, study_of
 from studies.stability.family import DEFAULT, DIGITS
 
@@ -49,7 +51,9 @@ def test_stored_tables_draw_the_stored_figures(name):
             pytest.skip(f"drawn with {library} {record['versions'][library]}")
     with style.applied():
         figures = study_of(name).draw(store.load_tables(name))
-    drawn = {f"{title}.svg": sha256(style.vector(page)) for title, page in figures.items()}
+    drawn = {
+        f"{title}.svg": sha256(style.rendered(page, "svg")).hexdigest() for title, page in figures.items()
+    }
     assert drawn == {file: digest for file, digest in record["figures"].items() if file.endswith(".svg")}
 
 
@@ -60,7 +64,7 @@ def test_legends_stand_on_their_page(name):
     store = Store()
     with style.applied():
         for title, page in study_of(name).draw(store.load_tables(name)).items():
-            style.vector(page)  # which settles the layout and writes the words
+            style.rendered(page, "svg")  # which settles the layout and writes the words
             renderer = FigureCanvasAgg(page).get_renderer()
             for entry in (entry for legend in page.findobj(Legend) for entry in legend.get_texts()):
                 box, said = entry.get_window_extent(renderer), (title, entry.get_text())
@@ -186,7 +190,7 @@ def test_a_study_that_comes_out_equal_is_fresh_again(tmp_path, capsys):
 
     def changed(**given):
         record = store.record(name) | given
-        (store.data(name) / "provenance.json").write_bytes(as_json(record))
+        (store.data(name) / "provenance.json").write_text(json.dumps(record), encoding="utf-8")
 
     words = ["verify", name, "--results", str(tmp_path), "--processes", "1"]
     old = {"cases": store.record(name)["inputs"]["cases"], "source_sha256": "of other code"}

@@ -6,9 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from studies.record.source import ROOT, WITHOUT_INFLUENCE, reached, source_hash
+from studies.record.source import PACKAGES, ROOT, WITHOUT_INFLUENCE, reached, source_hash
 from studies.record.store import inputs
-from studies.record.syntax import PACKAGES
 from studies.registry import STUDIES, study_of
 
 FILES = {

@@ -168,7 +168,7 @@ def test_pixels_keep_the_colours_of_lines():
         panel = figure.subplots()
         for level, colour in enumerate(colours):
             panel.plot([0, 1], [level, level], color=colour, linewidth=4.0)
-        png = style.rendered(figure)["png"]
+        png = style.rendered(figure, "png")
     with Image.open(io.BytesIO(png)) as picture:
         found = set(map(tuple, np.asarray(picture.convert("RGB")).reshape(-1, 3).tolist()))
     assert {tuple(int(colour[i : i + 2], 16) for i in (1, 3, 5)) for colour in colours} <= found
@@ -187,6 +187,6 @@ def test_figures_write_units_and_the_pivot_in_one_way():
         figure = style.page(4.0, 2.0)
         panel = figure.subplots()
         panel.set(xlabel="rotation [deg]", ylabel="error of the path / travel [1]", title="Table 1, at rest")
-        style.vector(figure)
+        style.rendered(figure, "svg")
     assert (panel.get_xlabel(), panel.get_ylabel()) == ("rotation [°]", "error of the path / travel")
     assert panel.get_title(loc="left") == "reference pivot, at rest"

@@ -3,8 +3,7 @@
 import pandas as pd
 import pytest
 
-from studies.engine.answer import Kept, answered, processes
-from studies.engine.study import Claim, Finding, Part, Study
+from studies.engine.study import Claim, Kept, Part, Study, answered, finding, processes
 
 ASKED: list[int] = []
 
@@ -44,7 +43,7 @@ def test_tuples_are_taken_apart_and_tables_are_taken_whole():
 
 def test_claims_are_held_against_rows():
     """A claim is a finding a row, with columns in its words; what the parts found stands beside them."""
-    own = Finding(claim="c", formulation="f", quantity="q", value=1.0, holds=True)
+    own = finding(claim="c", formulation="f", quantity="q", value=1.0, holds=True)
     claim = Claim(
         claim="At most two",
         formulation="number {number}",
