@@ -135,7 +135,7 @@ def calibrate(arguments: argparse.Namespace) -> int:
     not suffice.
     """
     _require_extra("calibrate")
-    from studies.interactive.tracking.views import calibrated, views
+    from studies.interactive.tracking.sheet import calibrated, views
     from studies.interactive.web.sources import VideoSource
 
     place = int(arguments.source) if arguments.source.isdecimal() else Path(arguments.source)

@@ -20,7 +20,6 @@ from PIL import Image
 from studies.engine.study import Answer, Part, Study, Tables, absent, lacking
 from studies.interactive.pivot.presets import PRESETS, STEPS_A_FRAME
 from studies.interactive.pivot.session import Session
-from studies.interactive.tracking.painter import rotation
 from studies.record import style
 
 #: The paper's pictures a second.
@@ -96,6 +95,8 @@ def _snapshots(browser: Any) -> Iterator[dict[str, Any]]:
 
 def _taken(browser: Any, label: str) -> dict[str, Any]:
     """Return what the page shows now."""
+    from studies.interactive.tracking.painter import rotation
+
     state = browser.ask("({ ...studio.state, canvas: document.getElementById('stage').toDataURL() })")
     return {
         "label": label,
@@ -133,6 +134,8 @@ def _alone(preset: str) -> Iterator[dict[str, Any]]:
         call()
         took = 1e3 * (time.perf_counter() - begin)
         return {"preset": preset, "work": work, "repeat": repeat, "frame": frame, "time_ms": took}
+
+    from studies.interactive.tracking.painter import rotation
 
     for repeat in range(REPEATS):
         session = Session(preset)

@@ -17,10 +17,9 @@ from studies.interactive.pivot.design import Placing, build
 from studies.interactive.pivot.presets import PRESETS
 from studies.interactive.tracking.painter import Optics
 from studies.interactive.tracking.planar import project
-from studies.interactive.tracking.tracker import encoded
 from studies.interactive.web.browser import Browser, executable
 from studies.interactive.web.server import Server, Settings
-from studies.interactive.web.sources import FilmSource
+from studies.interactive.web.sources import FilmSource, encoded
 from tests.interactive.films import both, film, true_corners, truth
 from tests.interactive.pages import BODY, BUSY, WATCH, load
 

@@ -63,7 +63,7 @@ CAMERAS = [
 def test_camera_gates_have_teeth(monkeypatch):
     """Requirement: with corners as the detector gives them both fail."""
     assert gates.teeth("camera_angle") == gates.teeth("camera_shift") == {"refined": False}
-    monkeypatch.setattr(tracking.edges, "refine", raw)
+    monkeypatch.setattr(tracking.squares, "refine", raw)
     monkeypatch.setattr(tracking, "REFUSE_PX", 10.0)
     angles, shifts, _ = errors(watch(film(CAMERAS[-1], frames=6, samples=3)))
     for quantity, values in (("angle", angles), ("shift", shifts)):

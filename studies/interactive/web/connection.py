@@ -18,7 +18,8 @@ from studies.interactive.pivot.motion import SOLVERS
 from studies.interactive.pivot.recording import Player, Recorder, line
 from studies.interactive.pivot.session import Session
 from studies.interactive.pivot.view import DRIVES, curved
-from studies.interactive.tracking.tracker import Picture, Tracker
+from studies.interactive.tracking.edges import Picture
+from studies.interactive.tracking.tracker import Tracker
 from studies.interactive.web import protocol
 from studies.interactive.web.sources import Settings, Shot, Source
 

@@ -6,16 +6,30 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Protocol
 
+import cv2
 import numpy as np
 from numpy.typing import NDArray
 
 from studies.errors import BadInput
+from studies.interactive.tracking.edges import Picture
 from studies.interactive.tracking.painter import Film
 from studies.interactive.tracking.planar import Camera
-from studies.interactive.tracking.tracker import Picture, cv2, decoded, encoded
 
 #: Pictures a second of films that do not say.
 RATE = 25.0
+
+
+def decoded(data: bytes) -> Picture:
+    """Return the grey picture of a JPEG."""
+    picture = cv2.imdecode(np.frombuffer(data, dtype=np.uint8), cv2.IMREAD_GRAYSCALE)
+    return np.asarray(picture, dtype=np.uint8)
+
+
+def encoded(picture: Picture, quality: int = 90) -> bytes:
+    """Return a grey picture as a JPEG."""
+    done, data = cv2.imencode(".jpg", picture, [cv2.IMWRITE_JPEG_QUALITY, quality])
+    assert done
+    return bytes(data.tobytes())
 
 
 @dataclass(frozen=True, kw_only=True)
