@@ -135,12 +135,12 @@ def calibrate(arguments: argparse.Namespace) -> int:
     not suffice.
     """
     _require_extra("calibrate")
+    from studies.interactive.tracking.films import Video
     from studies.interactive.tracking.sheet import calibrated, views
-    from studies.interactive.web.sources import VideoSource
 
     place = int(arguments.source) if arguments.source.isdecimal() else Path(arguments.source)
     found, size = [], (0, 0)
-    for corners, seen in views(VideoSource(place).once(), arguments.views):
+    for corners, seen in views(Video(place).once(), arguments.views):
         found.append(corners)
         size = seen
         print(f"\rview {len(found)} of {arguments.views}", end="", file=sys.stderr, flush=True)
@@ -198,19 +198,18 @@ def _require_extra(name: str) -> None:
 
 def _source(arguments: argparse.Namespace):  # type: ignore[no-untyped-def]
     """Return what makes the pictures, and how the page shall call it."""
-    from studies.interactive.tracking.painter import demo_film
-    from studies.interactive.web.sources import FilmSource, VideoSource
+    from studies.interactive.tracking.films import Video, demo_film
 
     if arguments.film is not None:
         if arguments.camera != "browser":
             raise BadInput(f"--camera: got {arguments.camera} beside --film, expected one of them")
-        made = FilmSource(demo_film()) if arguments.film == "demo" else VideoSource(Path(arguments.film))
+        made = demo_film() if arguments.film == "demo" else Video(Path(arguments.film))
         return made, "film"
     if arguments.camera in ("browser", "none"):
         return None, arguments.camera
     if not arguments.camera.isdecimal():
         raise BadInput(f"--camera: got {arguments.camera}, expected browser, none or a number")
-    return VideoSource(int(arguments.camera)), "server"
+    return Video(int(arguments.camera)), "server"
 
 
 def _stream(path: Path | None):  # type: ignore[no-untyped-def]

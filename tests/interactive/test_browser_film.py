@@ -15,11 +15,11 @@ from PIL import Image
 
 from studies.interactive.pivot.design import Placing, build
 from studies.interactive.pivot.presets import PRESETS
+from studies.interactive.tracking.films import encoded
 from studies.interactive.tracking.painter import Optics
 from studies.interactive.tracking.planar import project
 from studies.interactive.web.browser import Browser, executable
 from studies.interactive.web.server import Server, Settings
-from studies.interactive.web.sources import FilmSource, encoded
 from tests.interactive.films import both, film, true_corners, truth
 from tests.interactive.pages import BODY, BUSY, WATCH, load
 
@@ -87,7 +87,7 @@ def still():
     """Canvas, state and homography of a page that shows one picture of a film, and the frame's number."""
     number = 6
     optics, picture = Optics(), film().picture(6)
-    one = FilmSource(film(frames=1))
+    one = film(frames=1)
     one._kept[0] = encoded(picture, 95)
     with Server(Settings(camera="film", source=one)) as hosted, Browser() as browser:
         load(browser, hosted)

@@ -14,6 +14,28 @@ from studies.interactive.pivot.mechanics import Mechanics, Snapshot
 from studies.interactive.pivot.presets import STEP, STEPS_A_FRAME
 from studies.kinds import Array
 
+#: What an event may do, each a method of the session, and the fields that the page may say of it.
+EVENTS: dict[str, tuple[str, ...]] = {
+    "setup": ("preset", "values", "drive", "solver", "sweeps", "lock_step", "rest"),
+    "pose": ("pose",),
+    "seen": ("marker", "sd", "rms", "state", "plane", "quads", "faults"),
+    "unseen": ("code", "text"),
+    "tick": (),
+    "release": ("speed",),
+    "catch": (),
+    "pause": (),
+    "resume": (),
+    "step": (),
+    "reset": (),
+    "parameter": ("name", "value", "part"),
+    "preset": ("name", "values", "part"),
+    "undo": (),
+    "redo": (),
+    "drive": ("by",),
+    "solver": ("name", "sweeps"),
+    "rest": (),
+}
+
 
 class Event(dict[str, Any]):
     """An event by the names of its fields, each of which is checked when it is read; BadInput in one line for

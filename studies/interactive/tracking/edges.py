@@ -21,10 +21,8 @@ Picture = NDArray[np.uint8]
 
 #: Profiles an edge, and where along it: the ends are left to the neighbouring edges.
 STATIONS, INSET = 56, 0.08
-#: Samples a pixel along a profile.
-DENSITY = 2.0
-#: How often the step is fitted in the last pass.
-FITS = 2
+#: Samples a pixel along a profile; how often the step is fitted to them in the last pass.
+DENSITY, FITS = 2.0, 2
 #: Least step from dark to light that is an edge [grey levels of 255].
 LEAST_STEP = 15.0
 #: Bounds of the blur of an edge [px].

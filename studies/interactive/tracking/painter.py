@@ -1,11 +1,10 @@
-"""Films of both markers with known truth: drawn exactly, blurred, unevenly lit and noisy as a camera's.
+"""Pictures of markers with known truth: drawn exactly, blurred, unevenly lit and noisy as a camera's.
 
 Every pixel is the mean of exact black and white over its area, so that the truth holds to a small part of a
 pixel.
 """
 
 import math
-from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 
 import cv2
@@ -13,9 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import map_coordinates  # type: ignore[attr-defined]
 
-from spline_model.held import HeldPivot
-from studies.interactive.pivot.design import SIDE, Placing, build, turned
-from studies.interactive.pivot.presets import PRESETS
+from studies.interactive.pivot.design import SIDE
 from studies.interactive.tracking.edges import Picture
 from studies.interactive.tracking.planar import BITS, Camera, cells, project
 from studies.kinds import Array
@@ -149,7 +146,7 @@ class Painter:
         plane = self._plane_of(marker)
         half = 0.5 + MARGIN / BITS
         where, places = self._area(plane, half * np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]]))
-        inside = (np.abs(places) < half).all(axis=-1)
+        inside = np.abs(places).max(axis=-1) < half
         j, i = np.moveaxis(np.floor((places * [1.0, -1.0] + 0.5) * BITS), -1, 0)
         i, j = (np.clip(each, -1, BITS).astype(int) + 1 for each in (i, j))
         values = np.pad(np.where(cells(marker.number), WHITE, BLACK), 1, constant_values=WHITE)[i, j]
@@ -193,55 +190,3 @@ def _burn_in(picture: Picture, number: int) -> None:
     for bit in range(COUNTER_BITS):
         value = 255 if number >> bit & 1 else 0
         picture[0 : 2 * BLOCK, bit * BLOCK : (bit + 1) * BLOCK] = value
-
-
-@dataclass(frozen=True, kw_only=True)
-class Film:
-    """Frames at 25 Hz by number: `scene(k)` gives the markers and fingers of frame k."""
-
-    painter: Painter
-    frames: int
-    scene: Callable[[int], tuple[list[Marker], tuple[Finger, ...]]]
-    rate: float = 25.0
-
-    def picture(self, k: int) -> Picture:
-        """Return frame k, from 0."""
-        markers, fingers = self.scene(k % self.frames)
-        return self.painter.draw(markers, k % self.frames, fingers)
-
-    def __iter__(self) -> Iterator[Picture]:
-        return (self.picture(k) for k in range(self.frames))
-
-
-#: Length of the film, its turns and the frames in which a finger covers a corner and a hand a marker.
-FRAMES = 300
-TURN = math.radians(52)
-FINGER = range(150, 168)
-HIDDEN = range(235, 247)
-
-
-def demo_film() -> Film:
-    """Return the demo film with its truth: the body follows the pivot's own path, the hand pushes nothing
-    else."""
-    pivot = build(PRESETS["polymer"].values())
-    placing, solver = Placing.of(pivot), HeldPivot(pivot)
-    poses = [placing.marker(solver.turn(rotation(k)).pose) for k in range(FRAMES)]
-
-    def scene(k: int) -> tuple[list[Marker], tuple[Finger, ...]]:
-        moving = Marker(number=1, pose=tuple(poses[k]))
-        markers = [Marker(number=0, pose=(0.0, 0.0, 0.0)), moving]
-        return (markers[:1] if k in HIDDEN else markers), (_finger(poses[k]),) if k in FINGER else ()
-
-    return Film(painter=Painter(Optics(), samples=2, numbered=False), frames=FRAMES, scene=scene)
-
-
-def rotation(k: int) -> float:
-    """Return the body's rotation in frame k [rad]: there, back, to the other side, still for the last
-    second."""
-    u = min(1.0, k / (FRAMES - 25))
-    return TURN * math.sin(2.0 * math.pi * u) * math.sin(math.pi * u) ** 2 * 1.3
-
-
-def _finger(pose: NDArray[np.float64]) -> Finger:
-    corner = pose[:2] + turned(pose[2], np.array([0.03, 0.03]))
-    return Finger(centre=(float(corner[0]), float(corner[1])))

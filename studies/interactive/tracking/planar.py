@@ -120,7 +120,7 @@ def project(plane: Array, points: Array) -> Array:
 
 def homography(picture: Array) -> Array:
     """Return the homography (3, 3), last entry 1, that takes CORNERS to their pictures (4, 2)."""
-    return np.asarray(cv2.getPerspectiveTransform(np.float32(CORNERS), np.float32(picture)))
+    return np.asarray(cv2.getPerspectiveTransform(CORNERS.astype(np.float32), picture.astype(np.float32)))
 
 
 def fit(corners: Array, camera: Camera | None = None, start: Fit | None = None) -> Fit:

@@ -70,7 +70,7 @@ class Tracker:
         self._mirrored = False
         self._tries = 0
 
-    def squares(self, picture: Picture, *, whole: bool = False) -> dict[int, list[Array]]:
+    def markers(self, picture: Picture, *, whole: bool = False) -> dict[int, list[Array]]:
         """Return the corners (4, 2) [px], in the markers' order, of the squares of the family 36h11 in a grey
         picture by their ids; `whole` looks at all its pixels, for small markers."""
         scale = 1 if whole else (4 if picture.shape[1] > WIDE else 2)
@@ -80,7 +80,7 @@ class Tracker:
             small = np.asarray(cv2.resize(picture, size, interpolation=cv2.INTER_AREA), dtype=np.uint8)
         quads, ids, _ = self._detector.detectMarkers(small)
         found: dict[int, list[Array]] = {}
-        for number, quad in zip([] if ids is None else np.ravel(ids).tolist(), quads, strict=True):
+        for number, quad in zip([] if ids is None else map(int, np.ravel(ids)), quads, strict=True):
             # the centre of the first small pixel lies between those of the first large ones
             corners = np.asarray(quad[0], dtype=float) * scale + (scale - 1) / 2
             found.setdefault(number, []).append(corners)
@@ -88,13 +88,13 @@ class Tracker:
 
     def see(self, picture: Picture, time: float) -> dict[str, Any]:
         """Return the event "seen" or "unseen" of a picture taken at `time` [s]; see `session`."""
-        found = self.squares(picture)
+        found = self.markers(picture)
         if {0, 1} <= set(found) or _doubles(found):
             self._tries = 0
         else:
             self._tries += 1
             if not self._known or self._far() or self._tries % 5 == 0:  # look at every pixel, now and then
-                found = self.squares(picture, whole=True)
+                found = self.markers(picture, whole=True)
         if doubles := _doubles(found):
             return _unseen(f"duplicate-{min(doubles)}")
         read = {number: found[number][0] for number in (0, 1) if number in found}
@@ -201,7 +201,7 @@ class Tracker:
         if self._blind_since is None:
             self._blind_since, self._mirrored = time, False
         if time - self._blind_since >= BLIND and (self._mirrored or self._tries % 5 == 0):
-            self._mirrored = not {0, 1}.isdisjoint(self.squares(np.ascontiguousarray(picture[:, ::-1])))
+            self._mirrored = not {0, 1}.isdisjoint(self.markers(np.ascontiguousarray(picture[:, ::-1])))
         return _unseen("mirrored" if self._mirrored else "lost-both")
 
 
