@@ -61,7 +61,7 @@ EXTRA = {
 )
 def main(arguments: argparse.Namespace) -> int:
     """Serve until interrupted, or replay; return the exit code."""
-    from studies.interactive.pivot import presets
+    from studies.interactive import presets
 
     if arguments.case is not None:
         if arguments.preset is not None:
@@ -226,7 +226,7 @@ def _stream(path: Path | None):  # type: ignore[no-untyped-def]
 
 def _replay(path: Path) -> int:
     """Replay a session file; 0 where every state is the recorded one."""
-    from studies.interactive.pivot.recording import replay
+    from studies.interactive.recording import replay
 
     try:
         lines = path.read_text(encoding="utf-8").splitlines()

@@ -18,8 +18,8 @@ from matplotlib.figure import Figure
 from PIL import Image
 
 from studies.engine.study import Answer, Part, Study, Tables, absent, lacking
-from studies.interactive.pivot.presets import PRESETS, STEPS_A_FRAME
-from studies.interactive.pivot.session import Session
+from studies.interactive.presets import PRESETS, STEPS_A_FRAME
+from studies.interactive.session import Session
 from studies.record import style
 
 #: The paper's pictures a second.

@@ -7,8 +7,8 @@ from functools import cache, lru_cache
 import numpy as np
 
 from spline_model.held import HeldPivot
-from studies.interactive.pivot.design import SIDE, Placing, build, turned
-from studies.interactive.pivot.presets import PRESETS
+from studies.interactive.design import SIDE, Placing, build, turned
+from studies.interactive.presets import PRESETS
 from studies.interactive.tracking.films import Film
 from studies.interactive.tracking.painter import BLOCK, COUNTER_BITS, Finger, Marker, Optics, Painter
 from studies.interactive.tracking.planar import CORNERS, project

@@ -13,8 +13,8 @@ pytest.importorskip("uvicorn", reason="the extra `interactive` is not installed"
 
 from PIL import Image
 
-from studies.interactive.pivot.design import Placing, build
-from studies.interactive.pivot.presets import PRESETS
+from studies.interactive.design import Placing, build
+from studies.interactive.presets import PRESETS
 from studies.interactive.tracking.films import encoded
 from studies.interactive.tracking.painter import Optics
 from studies.interactive.tracking.planar import project

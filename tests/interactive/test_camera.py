@@ -12,8 +12,8 @@ pytest.importorskip("cv2", reason="the extra `interactive` is not installed")
 
 from studies.__main__ import main
 from studies.errors import BadInput
-from studies.interactive.pivot.design import PRINTED
-from studies.interactive.pivot.session import Session
+from studies.interactive.design import PRINTED
+from studies.interactive.session import Session
 from studies.interactive.tracking import tracker as tracking
 from studies.interactive.tracking.painter import Marker, Optics
 from studies.interactive.tracking.planar import Camera

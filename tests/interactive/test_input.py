@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from studies.errors import BadInput
-from studies.interactive.pivot.design import inverse
-from studies.interactive.pivot.presets import PARAMETERS, PRESETS
-from studies.interactive.pivot.session import EVENTS, Session
+from studies.interactive.design import inverse
+from studies.interactive.presets import PARAMETERS, PRESETS
+from studies.interactive.session import EVENTS, Session
 from tests.interactive.events import FRAME, codes, seen, session, turned
 
 

@@ -10,10 +10,10 @@ import pytest
 from spline_model.modes import natural_frequencies
 from studies.cases.problem import FOLDER, named_case
 from studies.errors import BadInput
-from studies.interactive.pivot import presets
-from studies.interactive.pivot.design import build
-from studies.interactive.pivot.recording import Recorder, mark, replay
-from studies.interactive.pivot.session import Session
+from studies.interactive import presets
+from studies.interactive.design import build
+from studies.interactive.recording import Recorder, mark, replay
+from studies.interactive.session import Session
 from studies.record.source import ROOT
 
 

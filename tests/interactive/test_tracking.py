@@ -7,8 +7,8 @@ import pytest
 
 pytest.importorskip("cv2", reason="the extra `interactive` is not installed")
 
-from studies.interactive.pivot.design import SIDE
-from studies.interactive.pivot.session import Session
+from studies.interactive.design import SIDE
+from studies.interactive.session import Session
 from studies.interactive.tracking import tracker as tracking
 from studies.interactive.tracking.painter import Marker, Optics
 from studies.interactive.tracking.planar import Camera, fit

@@ -12,8 +12,8 @@ import numpy as np
 
 from spline_model.held import HeldPivot
 from studies.errors import BadInput
-from studies.interactive.pivot.design import Placing, build, turned
-from studies.interactive.pivot.presets import PRESETS
+from studies.interactive.design import Placing, build, turned
+from studies.interactive.presets import PRESETS
 from studies.interactive.tracking.edges import Picture
 from studies.interactive.tracking.painter import Finger, Marker, Optics, Painter
 from studies.kinds import Array

@@ -11,8 +11,9 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import map_coordinates  # type: ignore[attr-defined]
+from scipy.spatial.transform import Rotation
 
-from studies.interactive.pivot.design import SIDE
+from studies.interactive.design import SIDE
 from studies.interactive.tracking.edges import Picture
 from studies.interactive.tracking.planar import BITS, Camera, cells, project
 from studies.kinds import Array
@@ -60,10 +61,8 @@ class Optics:
     @property
     def plane(self) -> Array:
         """Homography (3, 3) from the plane [m] to the picture [px], the lens apart."""
-        ct, st, cr, sr = math.cos(self.tilt), math.sin(self.tilt), math.cos(self.roll), math.sin(self.roll)
-        roll = np.array([[cr, -sr, 0.0], [sr, cr, 0.0], [0.0, 0.0, 1.0]])
-        tilt = np.array([[1.0, 0.0, 0.0], [0.0, -ct, -st], [0.0, st, -ct]])  # picture y runs down
-        turn = roll @ tilt
+        # picture y runs down
+        turn = Rotation.from_euler("xz", (math.pi - self.tilt, self.roll)).as_matrix()
         place = np.array([0.0, 0.0, self.distance]) - turn @ np.array([*self.target, 0.0])
         return np.asarray(self.camera.matrix @ np.column_stack((turn[:, 0], turn[:, 1], place)))
 

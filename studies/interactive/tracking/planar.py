@@ -62,7 +62,7 @@ class Camera:
         """Return where points (..., 2) [px] would be seen without the lens."""
         rounds = (cv2.TERM_CRITERIA_COUNT, 20, 0.0)
         straight = cv2.undistortImagePoints(picture.reshape(-1, 1, 2), self.matrix, self._lens, arg1=rounds)
-        return np.asarray(straight).reshape(picture.shape)
+        return np.asarray(straight, dtype=float).reshape(picture.shape)
 
     def distorted(self, straight: Array) -> Array:
         """Return where points (P, 2) [px] that are so without the lens are seen."""

@@ -12,8 +12,8 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
 from studies.errors import BadInput
-from studies.interactive.pivot.design import PRINTED, SIDE, Placing, build
-from studies.interactive.pivot.presets import PRESETS
+from studies.interactive.design import PRINTED, SIDE, Placing, build
+from studies.interactive.presets import PRESETS
 from studies.interactive.tracking.edges import Picture
 from studies.interactive.tracking.painter import MARGIN
 from studies.interactive.tracking.planar import BITS, CORNERS, Camera, cells
@@ -86,11 +86,11 @@ def _marker(axes: Axes, number: int, centre: np.ndarray, words: str, side: int) 
 def _ruler(axes: Axes, x: float, y: float) -> None:
     """A ruler of RULER millimetres."""
     axes.plot([x, x + RULER], [y, y], color="black", linewidth=0.8)
-    for k in range(int(RULER) + 1):
-        high = 5.0 if k % 10 == 0 else 3.5 if k % 5 == 0 else 2.0
-        axes.plot([x + k, x + k], [y, y + high], color="black", linewidth=0.4)
-        if k % 10 == 0:
-            axes.text(x + k, y + 6, str(k), ha="center", fontsize=7)
+    marks = np.arange(RULER + 1)
+    high = np.select([marks % 10 == 0, marks % 5 == 0], [5.0, 3.5], 2.0)
+    axes.vlines(x + marks, y, y + high, color="black", linewidth=0.4)
+    for k in marks[::10]:
+        axes.text(x + k, y + 6, f"{k:.0f}", ha="center", fontsize=7)
     axes.text(x + RULER + 3, y, "mm", fontsize=8)
 
 

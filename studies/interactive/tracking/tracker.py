@@ -8,7 +8,7 @@ from typing import Any
 import cv2
 import numpy as np
 
-from studies.interactive.pivot.design import SIDE
+from studies.interactive.design import SIDE
 from studies.interactive.tracking import planar, squares
 from studies.interactive.tracking.edges import Picture
 from studies.interactive.tracking.planar import Camera

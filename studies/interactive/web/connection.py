@@ -13,18 +13,18 @@ from numpy.linalg import LinAlgError
 from starlette.websockets import WebSocket
 
 from studies.errors import BadInput
-from studies.interactive.pivot import presets
-from studies.interactive.pivot.bench import DRIVES
-from studies.interactive.pivot.input import MOST_STEPS
-from studies.interactive.pivot.mechanics import Mechanics
-from studies.interactive.pivot.motion import SOLVERS
-from studies.interactive.pivot.recording import Player, Recorder
-from studies.interactive.pivot.session import Session
-from studies.interactive.pivot.view import curved
+from studies.interactive import presets
+from studies.interactive.bench import DRIVES
+from studies.interactive.input import MOST_STEPS
+from studies.interactive.mechanics import Mechanics
+from studies.interactive.motion import SOLVERS
+from studies.interactive.recording import Player, Recorder
+from studies.interactive.session import Session
 from studies.interactive.tracking.edges import Picture
 from studies.interactive.tracking.films import Shot, Source
 from studies.interactive.tracking.planar import Camera
 from studies.interactive.tracking.tracker import Tracker
+from studies.interactive.view import curved
 from studies.interactive.web import protocol
 
 LOG = logging.getLogger(__name__)
@@ -194,10 +194,9 @@ class Connection:
             await self._say({"kind": "curve", **curved(curve, mechanics.values["yield_strength"])})
 
     def _set_side(self, side_mm: object) -> None:
-        good = isinstance(side_mm, int | float) and not isinstance(side_mm, bool)
-        if not good or not SIDES[0] <= side_mm / 1e3 <= SIDES[1]:  # type: ignore[operator]
+        if not presets.finite(side_mm) or not SIDES[0] <= side_mm / 1e3 <= SIDES[1]:
             raise BadInput(f"side_mm: got {side_mm!r}, expected {SIDES[0] * 1e3:g} to {SIDES[1] * 1e3:g}")
-        self._tracker = Tracker(side=float(side_mm) / 1e3, camera=self._settings.calibration)  # type: ignore[arg-type]
+        self._tracker = Tracker(side=side_mm / 1e3, camera=self._settings.calibration)
 
     async def _record(self, on: bool) -> None:
         """Begin a recording, or end it and send its lines."""

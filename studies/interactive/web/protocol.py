@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from studies.errors import BadInput
-from studies.interactive.pivot.input import EVENTS
+from studies.interactive.input import EVENTS
 
 VERSION = 1
 #: Longest text and picture that are taken [bytes], and the largest picture [px].

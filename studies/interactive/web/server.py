@@ -24,8 +24,8 @@ from starlette.websockets import WebSocket, WebSocketDisconnect
 
 from spline_model.reduced import pose
 from studies.errors import BadInput
-from studies.interactive.pivot.motion import SOLVERS
-from studies.interactive.pivot.session import Session
+from studies.interactive.motion import SOLVERS
+from studies.interactive.session import Session
 from studies.interactive.tracking.films import demo_film
 from studies.interactive.tracking.tracker import Tracker
 from studies.interactive.web import protocol

@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import Any
+from typing import Any, TypeGuard
 
 from spline_model.modes import natural_frequencies
 from studies.cases.effects import Effects
@@ -14,11 +14,16 @@ from studies.cases.mechanism import of_sides
 from studies.cases.problem import Problem, named_case
 from studies.cases.write import as_toml, document_of
 from studies.errors import BadInput
-from studies.interactive.pivot.design import GIVEN, POISSON_RATIO, build, scene
+from studies.interactive.design import GIVEN, POISSON_RATIO, build, scene
 
 #: Simulated time of one step over the time scale [s]: four of them make a frame of 25 Hz (section 4.1).
 STEP = 0.01
 STEPS_A_FRAME = 4
+
+
+def finite(value: object) -> TypeGuard[float]:
+    """Return whether a value is a finite number."""
+    return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
 
 
 @dataclass(frozen=True)
@@ -46,12 +51,12 @@ class _Parameter:
         Raises:
             BadInput: not a finite number between low and high; one line.
         """
-        good = isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
-        if not good or not self.low <= value <= self.high:  # type: ignore[operator]
+        good = finite(value)
+        if not good or not self.low <= value <= self.high:
             low, high = self.low * self.per_si, self.high * self.per_si
-            got = f"{float(value) * self.per_si:g}" if good else repr(value)  # type: ignore[arg-type]
+            got = f"{value * self.per_si:g}" if good else repr(value)
             raise BadInput(f"{self.name}: got {got}, expected {low:g} to {high:g} {self.unit}")
-        return float(value)  # type: ignore[arg-type]
+        return float(value)
 
 
 _DEGREE = math.radians(1.0)

@@ -10,8 +10,8 @@ from collections.abc import Awaitable, Callable, Iterable, Iterator, Mapping
 from typing import Any
 
 from studies.errors import BadInput
-from studies.interactive.pivot.input import Event
-from studies.interactive.pivot.session import Session
+from studies.interactive.input import Event
+from studies.interactive.session import Session
 
 #: Characters of the hash that marks a state.
 MARK = 16

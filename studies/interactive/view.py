@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from studies.interactive.pivot.bench import SPRUNG, Bench
-from studies.interactive.pivot.design import Curve, scales
+from studies.interactive.bench import SPRUNG, Bench
+from studies.interactive.design import Curve, scales
 from studies.kinds import Array
 
 #: Least spread that is written, over its value.

@@ -12,9 +12,9 @@ from spline_model.content import STEPS_PER_PERIOD
 from spline_model.held import HeldPivot, HeldState
 from spline_model.modes import natural_frequencies
 from spline_model.pivot import BODY, STRIPS
-from studies.interactive.pivot.design import PLACES, REACH, Curve, build, read, scales
-from studies.interactive.pivot.motion import Motion, Pull, motion
-from studies.interactive.pivot.presets import STEP
+from studies.interactive.design import PLACES, REACH, Curve, build, read, scales
+from studies.interactive.motion import Motion, Pull, motion
+from studies.interactive.presets import STEP
 from studies.kinds import Array
 
 #: Time over which strips follow the hand's velocity at a release [s]: short enough that no pose leaves its

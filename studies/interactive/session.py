@@ -10,13 +10,13 @@ from typing import Any
 
 import numpy as np
 
-from studies.interactive.pivot import presets
-from studies.interactive.pivot.bench import DRIVES, SPRUNG, Bench
-from studies.interactive.pivot.input import EVENTS, MOST_STEPS, Event
-from studies.interactive.pivot.mechanics import Mechanics
-from studies.interactive.pivot.motion import SOLVERS
-from studies.interactive.pivot.presets import STEP
-from studies.interactive.pivot.view import SENTENCES, shown
+from studies.interactive import presets
+from studies.interactive.bench import DRIVES, SPRUNG, Bench
+from studies.interactive.input import EVENTS, MOST_STEPS, Event
+from studies.interactive.mechanics import Mechanics
+from studies.interactive.motion import SOLVERS
+from studies.interactive.presets import STEP
+from studies.interactive.view import SENTENCES, shown
 from studies.kinds import Array
 
 #: Farthest a pose may lie from rest: shift over the strips' length, and turn [rad].
