@@ -145,13 +145,11 @@ def calibrate(arguments: argparse.Namespace) -> int:
         size = seen
         print(f"\rview {len(found)} of {arguments.views}", end="", file=sys.stderr, flush=True)
     print(file=sys.stderr)
-    made = calibrated(found, size)
-    made.camera.write(arguments.out)
+    camera, spread, rms = calibrated(found, size)
+    camera.write(arguments.out)
     for name, unit in (("fx", "px"), ("fy", "px"), ("cx", "px"), ("cy", "px"), ("k1", ""), ("k2", "")):
-        print(f"{name} = {getattr(made.camera, name):.4g} ± {getattr(made.sd, name):.2g} {unit}".rstrip())
-    print(
-        f"{arguments.out}: {len(found)} views of {size[0]} x {size[1]} px, corners within {made.rms:.2f} px"
-    )
+        print(f"{name} = {getattr(camera, name):.4g} ± {getattr(spread, name):.2g} {unit}".rstrip())
+    print(f"{arguments.out}: {len(found)} views of {size[0]} x {size[1]} px, corners within {rms:.2f} px")
     return 0
 
 

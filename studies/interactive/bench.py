@@ -39,12 +39,13 @@ class Bench:
     preset: str
     mechanics: Mechanics
     placing: Placing
+    _at_rest: Array | None = None
 
     def begin(self, preset: str, values: Mapping[str, object], lock_step: bool) -> None:
         """Everything as at the start, with these settings; BadInput for values that do not fit."""
+        self._build(preset, values, anew=True)
         self._past, self._future = list[_Design](), list[_Design]()
-        self._at_rest: Array | None = None
-        self._build(preset, values)
+        self._at_rest, self.placing = None, Placing.of(self.mechanics.pivot)
         self.clock, self.hand, self.readings = Clock(lock_step=lock_step), Hand(), Readings()
         self.warnings: dict[str, str] = {}
         self.drive, self.solver = DRIVES[0], next(iter(SOLVERS))
@@ -102,13 +103,12 @@ class Bench:
         rigid[:2] = np.linalg.solve(tangent[:2, :2] + spring, np.hstack((spring, -tangent[:2, 2:])))
         return rigid
 
-    def _build(self, preset: str, values: Mapping[str, object]) -> None:
+    def _build(self, preset: str, values: Mapping[str, object], *, anew: bool = False) -> None:
         if preset != presets.OWN:  # a recorded one brings its values
             presets.preset(preset)
         good = presets.checked(values)
-        known = getattr(self, "mechanics", None)
-        if known is not None and good | {"time_scale": known.values["time_scale"]} == known.values:
-            known.pace(good["time_scale"])
+        if not anew and good | {"time_scale": self.mechanics.values["time_scale"]} == self.mechanics.values:
+            self.mechanics.pace(good["time_scale"])
         else:
             self.mechanics = Mechanics(good)
             self.placing = Placing.of(self.mechanics.pivot, self._at_rest)

@@ -171,6 +171,11 @@ class Placing:
         rest = np.array(PRINTED) if rest is None else rest
         return cls(ground=ground, rest=rest, centre=pivot.centre, crossing=crossing)
 
+    @property
+    def _arm(self) -> Array:
+        """From marker 1 to the body's centre (2,) [m], at rest."""
+        return self.centre - self.ground - self.rest[:2]
+
     def crossing_shift(self, body: Array) -> float:
         """Return how far [m] the body's point that lies in the strips' crossing at rest is from there."""
         return float(np.hypot(*(body[:2] + turned(body[2], self.crossing - self.centre) - self.crossing)))
@@ -179,18 +184,16 @@ class Placing:
         """Return the body's pose (3,) for marker 1 at `marker` in marker 0's frame, its turn counted on
         from `near`."""
         angle = near + math.remainder(marker[2] - self.rest[2] - near, math.tau)
-        arm = self.centre - self.ground - self.rest[:2]
-        return np.array([*(self.ground + marker[:2] + turned(angle, arm)), angle])
+        return np.array([*(self.ground + marker[:2] + turned(angle, self._arm)), angle])
 
     def marker(self, body: Array) -> Array:
         """Return the pose (3,) of marker 1 in marker 0's frame for the body's pose."""
-        arm = self.centre - self.ground - self.rest[:2]
-        return np.array([*(body[:2] - self.ground - turned(body[2], arm)), body[2] + self.rest[2]])
+        return np.array([*(body[:2] - self.ground - turned(body[2], self._arm)), body[2] + self.rest[2]])
 
     def spread(self, sd: Array, turn: float) -> Array:
         """Return the body's pose over those of the marker's x, y and turn (3, 3), in standard deviations, at
         the body's turn [rad]."""
-        arm = turned(turn, self.centre - self.ground - self.rest[:2])
+        arm = turned(turn, self._arm)
         return np.array([[1.0, 0.0, -arm[1]], [0.0, 1.0, arm[0]], [0.0, 0.0, 1.0]]) * sd
 
     def looks_swapped(self, marker: Array) -> bool:

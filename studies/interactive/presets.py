@@ -51,12 +51,11 @@ class _Parameter:
         Raises:
             BadInput: not a finite number between low and high; one line.
         """
-        good = finite(value)
-        if not good or not self.low <= value <= self.high:
-            low, high = self.low * self.per_si, self.high * self.per_si
-            got = f"{value * self.per_si:g}" if good else repr(value)
-            raise BadInput(f"{self.name}: got {got}, expected {low:g} to {high:g} {self.unit}")
-        return float(value)
+        if finite(value) and self.low <= value <= self.high:
+            return float(value)
+        low, high = self.low * self.per_si, self.high * self.per_si
+        got = f"{value * self.per_si:g}" if finite(value) else repr(value)
+        raise BadInput(f"{self.name}: got {got}, expected {low:g} to {high:g} {self.unit}")
 
 
 _DEGREE = math.radians(1.0)

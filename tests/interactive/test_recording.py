@@ -57,6 +57,17 @@ def test_a_design_of_ones_own_is_one_more_preset(monkeypatch):
         presets.preset(presets.OWN)
 
 
+def test_a_recording_begins_at_rest():
+    """Requirement: a session that is recorded begins anew, held at rest, whatever it did before."""
+    session = Session()
+    session.feed({"do": "pose", "pose": [0.0, 0.0, 0.3], "t": 0.0})
+    session.feed({"do": "release", "t": 0.1})
+    lines = Recorder(session).lines
+    assert not session.mechanics.moving
+    assert session.mechanics.snapshot.pose[2] == 0.0
+    assert all(good for _, good in replay(lines))
+
+
 def test_a_changed_event_is_noticed():
     """Requirement: the comparison has teeth: a pose that differs in the last digits gives other states."""
     lines = recorded()

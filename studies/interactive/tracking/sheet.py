@@ -3,7 +3,6 @@ constants from views of it, with how uncertain they are."""
 
 import io
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
 
 import cv2
 import numpy as np
@@ -126,17 +125,9 @@ def _unlike(corners: Array, other: Array) -> float:
     return float(np.linalg.norm(z - w * np.vdot(w, z) / np.vdot(w, w)) / np.linalg.norm(z))
 
 
-@dataclass(frozen=True, kw_only=True)
-class _Calibration:
-    """A camera, the standard deviations of its constants, and the residual (rms) of the corners [px]."""
-
-    camera: Camera
-    sd: Camera
-    rms: float
-
-
-def calibrated(pictures: Sequence[Array], size: tuple[int, int]) -> _Calibration:
-    """Return the camera that saw the sheet's corners as (8, 2) [px] in three views or more.
+def calibrated(pictures: Sequence[Array], size: tuple[int, int]) -> tuple[Camera, Camera, float]:
+    """Return the camera that saw the sheet's corners as (8, 2) [px] in three views or more, the standard
+    deviations of its constants, and the residual (rms) of the corners [px].
 
     Args:
         size: width and height of the pictures [px].
@@ -160,4 +151,4 @@ def calibrated(pictures: Sequence[Array], size: tuple[int, int]) -> _Calibration
             f"views: got a focal length of {fx:.0f} ± {spread.fx:.0f} px, expected it to {100 * SURE:g} %: "
             "tilt the sheet more, to all sides, near to the camera"
         )
-    return _Calibration(camera=Camera(fx=fx, fy=fy, cx=cx, cy=cy, k1=k1, k2=k2), sd=spread, rms=float(rms))
+    return Camera(fx=fx, fy=fy, cx=cx, cy=cy, k1=k1, k2=k2), spread, float(rms)

@@ -62,8 +62,8 @@ class Browser:
                 words += ["--use-fake-device-for-media-stream", f"--use-file-for-fake-video-capture={film}"]
             if hasattr(os, "geteuid") and os.geteuid() == 0:
                 words.append("--no-sandbox")  # its sandbox refuses to run for root
-            silent = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
-            self._process = subprocess.Popen([*words, "about:blank"], **silent)
+            silent = subprocess.DEVNULL
+            self._process = subprocess.Popen([*words, "about:blank"], stdout=silent, stderr=silent)
             stack.callback(self._end)
             socket = connect(self._page_address(), max_size=None, compression=None)
             self._socket = stack.enter_context(socket)
