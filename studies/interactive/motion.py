@@ -3,7 +3,7 @@ step after step, sequential impulses (section 4.1) in all their forms, or the en
 
 import math
 from dataclasses import dataclass
-from typing import NamedTuple, Protocol
+from typing import NamedTuple
 
 import numpy as np
 
@@ -51,30 +51,6 @@ class _Moving(NamedTuple):
     iterations: int
 
 
-class Motion(Protocol):
-    """A solver that was started from a state; `longest`: step [s] that it can take."""
-
-    longest: float
-
-    def advance(self, steps: int, step: float) -> float:
-        """Take `steps` steps of `step` seconds; returns the time done [s], 0 where the solver fails, the last
-        good state being kept."""
-
-    def state(self) -> _Moving:
-        """Return the present state."""
-
-
-def motion(solver: str, sweeps: int, pivot: Pivot, z: Array, v: Array) -> Motion:
-    """Return the motion of the released pivot from unknowns z (N or more,) and velocities v (Q,).
-
-    sweeps: most of them for one linear system, where there are any.
-    """
-    if solver == "energy":
-        return _Energy(pivot, z, v)
-    form, way = solver.split()
-    return _Impulses(pivot, z, v, form, way, sweeps)
-
-
 class _Energy:
     """The energy-consistent integrator, one call a frame."""
 
@@ -86,7 +62,8 @@ class _Energy:
         self._stepper, self._iterations = Stepper(Start(set_in_motion(system), known, v)), 0
 
     def advance(self, steps: int, step: float) -> float:
-        """Take steps, halved at need down to SMALLEST_PART."""
+        """Take `steps` steps of `step` seconds, halved at need down to SMALLEST_PART; returns the time done
+        [s], 0 where the solver fails, the last good state being kept."""
         stepper = self._stepper
         before, kept = int(stepper.counters[NEWTON]), stepper.kept()
         for _ in range(steps):
@@ -119,7 +96,7 @@ class _Impulses:
             self.longest = STABLE_PART * limit**2 / (math.hypot(limit, time) + time)
 
     def advance(self, steps: int, step: float) -> float:
-        """Take steps; where one must be cut below its least part, none counts."""
+        """As of the other; where a step must be cut below its least part, none counts."""
         solver, begin = self._solver, self._out.state
         parts = min(MOST_PARTS, max(1, math.ceil(step / self.longest)))
         step, steps = min(step / parts, self.longest), steps * parts
@@ -137,6 +114,21 @@ class _Impulses:
         out = self._out
         energies = out.kinetic_energy, out.strain_energy, self._dissipated
         return _Moving(out.state.z, out.state.v, *energies, out.counters[self._count])
+
+
+#: A solver that was started from a state; `longest`: step [s] that it can take.
+Motion = _Energy | _Impulses
+
+
+def motion(solver: str, sweeps: int, pivot: Pivot, z: Array, v: Array) -> Motion:
+    """Return the motion of the released pivot from unknowns z (N or more,) and velocities v (Q,).
+
+    sweeps: most of them for one linear system, where there are any.
+    """
+    if solver == "energy":
+        return _Energy(pivot, z, v)
+    form, way = solver.split()
+    return _Impulses(pivot, z, v, form, way, sweeps)
 
 
 @dataclass(frozen=True, eq=False)
