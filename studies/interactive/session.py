@@ -106,7 +106,7 @@ class Session(Bench):
         self.marker = marker
         for code in event.words("faults"):
             self._warn(code)
-        if self._frame(event, time) or self.paused:
+        if self._tick(event, time) or self.paused:
             return
         body = self.placing.body(marker, near=self.wanted[2])
         pose = np.array([*(body[:2] - self.placing.centre), body[2]])
@@ -122,13 +122,9 @@ class Session(Bench):
         """A frame without a pose: the last one is held, and why is said."""
         self.sight = {"state": "lost", **{key: event[key] for key in ("plane", "quads") if key in event}}
         self._warn(str(event.get("code", "lost")), str(event.get("text", "")))
-        self._frame(event, time)
+        self._tick(event, time)
 
-    def _tick(self, event: Event, time: float) -> None:
-        """A frame's time has passed without a camera."""
-        self._frame(event, time)
-
-    def _frame(self, event: Event, time: float) -> bool:
+    def _tick(self, event: Event, time: float) -> bool:
         """Advance the released body by a frame, by no more steps than there is room for; False while it is
         held."""
         room = event.whole("room", MOST_STEPS) if "room" in event else MOST_STEPS

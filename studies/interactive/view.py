@@ -29,15 +29,15 @@ def quantity(value: float | None, unit: str, least: float = 0.0, spread: float |
     value = 0.0 if abs(value) < least else value
     if spread is None:
         value = float(f"{value:.3g}")
-        scale, prefix = _prefix(abs(value), unit)
+        scale, prefix = _prefix(abs(value))
         return f"{value / scale + 0.0:.4g} {prefix}{unit}"
     spread = float(f"{max(spread, FINEST * abs(value)):.2g}")
-    scale, prefix = _prefix(max(abs(value), spread), unit)
+    scale, prefix = _prefix(max(abs(value), spread))
     places = max(0, 1 - math.floor(math.log10(spread / scale))) if spread > 0.0 else 2
     return f"{fixed(value / scale, places)} ± {spread / scale:.{places}f} {prefix}{unit}"
 
 
-def _prefix(size: float, unit: str) -> tuple[float, str]:
+def _prefix(size: float) -> tuple[float, str]:
     if size == 0.0:
         return 1.0, ""
     return next((pair for pair in PREFIXES if size >= pair[0]), PREFIXES[-1])
